@@ -1,0 +1,333 @@
+#!/usr/bin/env python3
+"""Measure any base with any driver from outside, given the shell commands that start them. See README.md beside it.
+
+Each run has a roscore of its own on a free port of the loopback interface, a fresh base, and a fresh probe that records
+every command and every odometry message. Nothing is left behind, also after Ctrl-C.
+"""
+import argparse
+import contextlib
+import importlib.util
+import json
+import os
+import platform
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+import xmlrpc.client
+
+import figures
+import processes
+from probe import Probe
+
+START = 30  # s of wall time for a roscore or a base to come up
+SETTLE = 5  # s of wall time for the robot to stand still after the driver's end
+SAMPLE = 0.25  # s between two looks at the base's CPU time and memory
+SIGNALS = signal.SIGINT, signal.SIGTERM, signal.SIGHUP
+# Where the exercise ends when each command is in force for exactly 1/50 s: out 1 m, 3.14 rad, back 1 m, 3.14 rad.
+TUTORIAL = figures.arc(figures.arc(figures.arc(figures.arc((0, 0, 0), 1, 0, 1), 0, 1, 3.14), 1, 0, 1), 0, 1, 3.14)
+
+
+class Failure(Exception):
+    """A run that could not be measured; the message says why."""
+
+
+class Interrupted(BaseException):
+    """A signal asked the program to end."""
+
+
+class Transport(xmlrpc.client.Transport):
+    """XML-RPC that gives up after 5 s: a node that hangs must not hang the benchmark."""
+
+    def make_connection(self, host):
+        connection = super().make_connection(host)
+        connection.timeout = 5
+        return connection
+
+
+class Session:
+    """A roscore of its own and what was started beside it; leaving it stops everything."""
+
+    def __init__(self):
+        self.folder = tempfile.mkdtemp(prefix='bench_')
+        self.started = []
+        with socket.socket() as free:
+            free.bind(('127.0.0.1', 0))
+            port = free.getsockname()[1]
+        self.changes = {'ROS_MASTER_URI': f'http://127.0.0.1:{port}', 'ROS_IP': '127.0.0.1', 'ROS_LOG_DIR': self.folder}
+        self.environment = {**os.environ, **self.changes}
+        self.environment.pop('ROS_HOSTNAME', None)  # it would win over ROS_IP
+        try:
+            self.start(f'roscore -p {port}')
+            # rosout is the last that roscore starts
+            self.wait(lambda: self.node_uri('/rosout'), 'the roscore')
+        except BaseException:
+            self.close()
+            raise
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+    def close(self):
+        """Stop what was started, the last first, by Ctrl-C and, if that does not help, by force."""
+        with uninterrupted():
+            for process, command, _ in reversed(self.started):
+                if not processes.stop(process):
+                    print(f'bench: "{command}" does not end on Ctrl-C; killed', file=sys.stderr)
+            processes.kill_rest()
+            shutil.rmtree(self.folder, ignore_errors=True)
+
+    def start(self, command):
+        """Start a shell command; what it prints goes to a file that is shown when it fails."""
+        log = os.path.join(self.folder, f'output_{len(self.started)}')
+        process = processes.start(command, self.environment, log)
+        self.started.append((process, command, log))
+        return process
+
+    def wait(self, condition, what):
+        """Wait until the condition is true, return its value; Failure after START seconds or when a command ended."""
+        end = time.monotonic() + START
+        while True:
+            value = condition()
+            if value:
+                return value
+            ended = [command for process, command, _ in self.started if process.poll() is not None]
+            if ended or time.monotonic() > end:
+                reason = f'"{ended[0]}" ended' if ended else f'nothing within {START} s'
+                raise Failure(f'waiting for {what}: {reason}\n{self.output()}')
+            time.sleep(0.05)
+
+    def output(self):
+        """The last lines that the last started command printed."""
+        with open(self.started[-1][2], errors='replace') as file:
+            return ''.join(file.readlines()[-15:])
+
+    def call(self, uri, method, *arguments):
+        """The value of an XML-RPC call to the master or a node; None when it fails."""
+        try:
+            with xmlrpc.client.ServerProxy(uri, Transport()) as server:
+                code, _, value = getattr(server, method)('/bench', *arguments)
+        except (OSError, xmlrpc.client.Error):
+            return None
+        return value if code == 1 else None
+
+    def node_uri(self, name):
+        """The XML-RPC address of a node; None if the master does not know it."""
+        return self.call(self.changes['ROS_MASTER_URI'], 'lookupNode', name)
+
+    def parameter(self, name):
+        """The value of a ROS parameter; None if it is not set."""
+        return self.call(self.changes['ROS_MASTER_URI'], 'getParam', name)
+
+    def node_process(self, name):
+        """The process id of a node, once it is up."""
+        uri = self.wait(lambda: self.node_uri(name), f'the node {name}')
+        return self.wait(lambda: self.call(uri, 'getPid'), f'the process id of {name}')
+
+
+@contextlib.contextmanager
+def uninterrupted():
+    """No Ctrl-C meanwhile: stopping has to come to its end."""
+    before = [signal.signal(number, signal.SIG_IGN) for number in SIGNALS]
+    yield
+    for number, handler in zip(SIGNALS, before):
+        signal.signal(number, handler)
+
+
+def interrupt(number, _):
+    """Any signal that asks the program to end does so by way of an exception, so that everything is stopped."""
+    raise Interrupted(f'ended by {signal.Signals(number).name}')
+
+
+def bring_up(session, args, publish=False):
+    """Start base and probe, wait until odometry arrives; the probe and the process ids of the base's nodes."""
+    session.start(args.base)
+    probe = Probe(session.changes, args.cmd_vel, args.odom, publish)
+    pids = [session.node_process(name) for name in args.base_node]
+    session.wait(lambda: probe.ask('arrived', 1), args.odom)
+    return probe, pids
+
+
+def measure_run(args, load):
+    """One run, with that many busy loops beside it: its figures, and its periods (s) for pooling."""
+    with Session() as session:
+        probe, pids = bring_up(session, args)
+        simulated = bool(session.parameter('/use_sim_time'))
+        loops = [subprocess.Popen([sys.executable, '-c', 'while True: pass']) for _ in range(load)]
+        driver = session.start(args.driver)
+        end = time.monotonic() + args.limit
+        samples = []
+        while driver.poll() is None:
+            samples.append(processes.sample(pids))
+            if time.monotonic() > end:
+                raise Failure(f'the driver did not end within {args.limit:g} s\n{session.output()}')
+            if session.started[1][0].poll() is not None:
+                raise Failure(f'"{args.base}" ended in the middle of the run')
+            time.sleep(SAMPLE)
+        proportional = processes.proportional(pids)
+        settled = probe.ask('settled', SETTLE)
+        for loop in loops:
+            loop.kill()
+        commands, odometry = probe.ask('record')
+        if driver.returncode:
+            print(f'bench: the driver ended with {driver.returncode}:\n{session.output()}', file=sys.stderr)
+    row, periods, odom_periods = figures.run_figures(commands, odometry, samples, args.timeout,
+                                                     args.exact if simulated else None)
+    row.update(load=load, simulated_time=simulated, driver_exit=driver.returncode, settled=settled,
+               rss_peak_mb=max(s[2] for s in samples) / 1e6, pss_mb=proportional and proportional / 1e6)
+    return row, periods, odom_periods
+
+
+def measure_latency(args):
+    """The delays from commands at random phases to the first odometry that shows them, of a fresh base at rest."""
+    with Session() as session:
+        probe, _ = bring_up(session, args, publish=True)
+        time.sleep(1)
+        delays = probe.ask('latency', args.latency, args.latency_speed)
+    shown = [delay for delay in delays if delay is not None]
+    return {'commands': len(delays), 'not_shown': len(delays) - len(shown), 'latency_s': figures.spread(shown)}
+
+
+def host():
+    """What the numbers depend on besides base and driver."""
+    model = 'unknown'
+    with contextlib.suppress(OSError), open('/proc/cpuinfo') as file:
+        model = next((line.split(':')[1].strip() for line in file if line.startswith('model name')), model)
+    rospy = subprocess.run(['rosversion', 'rospy'], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+    return {'cpus': os.cpu_count(), 'cpu': model, 'kernel': platform.release(), 'python': platform.python_version(),
+            'rospy': rospy.stdout.strip(), 'load_average': os.getloadavg()[0],
+            'time': time.strftime('%Y-%m-%dT%H:%M:%SZ', time.gmtime())}
+
+
+# heading, where it is in a run's figures, factor to the unit shown, decimals
+COLUMNS = [
+    ('fwd', 'forward', 1, 0), ('turn', 'turning', 1, 0), ('zero', 'zero', 1, 0), ('all', 'total', 1, 0),
+    ('dist mm', 'distance_m', 1e3, 3), ('angle deg', 'angle_deg', 1, 3),
+    ('dev mm', 'deviation_m', 1e3, 4), ('dev mrad', 'deviation_rad', 1e3, 3),
+    ('min ms', 'command_period_s.min', 1e3, 2), ('p1', 'command_period_s.p1', 1e3, 2),
+    ('p50', 'command_period_s.p50', 1e3, 2), ('p99', 'command_period_s.p99', 1e3, 2),
+    ('max', 'command_period_s.max', 1e3, 2),
+    ('odom Hz', 'odom_hz', 1, 2), ('CPU %', 'cpu_percent', 1, 2), ('%/Hz', 'cpu_percent_per_odom_hz', 1, 4),
+    ('RSS MB', 'rss_peak_mb', 1, 1), ('PSS MB', 'pss_mb', 1, 1), ('x real', 'real_time_factor', 1, 2),
+]
+
+WIDTH = 6  # of a column, at least
+
+
+def look_up(row, path):
+    """The figure at a dotted path; None if the run has none."""
+    for key in path.split('.'):
+        row = row.get(key) if row else None
+    return row
+
+
+def remarks(row):
+    """What was special about a run, in words."""
+    words = [f'{row["load"]} loops'] if row['load'] else []
+    words += [f'driver exit {row["driver_exit"]}'] if row['driver_exit'] else []
+    words += [] if row['settled'] else ['still moving at the end']
+    return ', '.join(words)
+
+
+def line(name, values, remark=''):
+    """One line of the table; values are in the units of the run's figures."""
+    cells = []
+    for (heading, _, factor, decimals), value in zip(COLUMNS, values):
+        width = max(len(heading), WIDTH)
+        cells.append(f'{value * factor:{width}.{decimals}f}' if value is not None else f'{"-":>{width}}')
+    return f'{name:>6} ' + ' '.join(cells) + ('  ' + remark if remark else '')
+
+
+def header():
+    """The table's first line."""
+    return f'{"run":>6} ' + ' '.join(f'{heading:>{max(len(heading), WIDTH)}}' for heading, *_ in COLUMNS)
+
+
+def summary(rows):
+    """The lines below the runs: each column's least, middle, nine-of-ten and greatest value, as {name: [value...]}."""
+    kept = [[v for v in (look_up(row, path) for row in rows) if v is not None] for _, path, *_ in COLUMNS]
+    return {name: [figures.percentile(values, percent) if values else None for values in kept]
+            for name, percent in (('least', 0), ('median', 50), ('90 %', 90), ('most', 100))}
+
+
+def say_spread(name, values):
+    """One line for pooled values (s), in ms."""
+    if values:
+        numbers = ', '.join(f'{key} {1e3 * values[key]:.2f}' for key in ('min', 'p1', 'p50', 'p99', 'max'))
+        print(f'{name}, {values["count"]} pooled (ms): {numbers}')
+
+
+def arguments():
+    """The command line."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument('--base', required=True, help='shell command that starts the base, without a roscore')
+    parser.add_argument('--driver', help='shell command that drives it, and ends')
+    parser.add_argument('--runs', type=int, default=10, help='how often (default 10; 0: none)')
+    parser.add_argument('--latency', type=int, default=0, metavar='N', help='then measure the latency of N commands')
+    parser.add_argument('--latency-speed', type=float, default=0.1, help='m/s commanded in that (default 0.1)')
+    parser.add_argument('--load', type=int, default=0, metavar='N', help='N busy loops beside every second run')
+    parser.add_argument('--json', metavar='FILE', help='write all figures there')
+    parser.add_argument('--timeout', type=float, default=1.0,
+                        help='for how long the base follows a command, s (default 1.0; 0: for ever)')
+    parser.add_argument('--exact', type=float, nargs=3, default=TUTORIAL, metavar=('X', 'Y', 'HEADING'),
+                        help='on simulated time: the exact final pose, m and rad (default: that of the exercise)')
+    parser.add_argument('--limit', type=float, default=120, help='s of wall time for a run (default 120)')
+    parser.add_argument('--cmd-vel', default='/cmd_vel')
+    parser.add_argument('--odom', default='/odom')
+    parser.add_argument('--base-node', nargs='+', default=['/arbotix'], help='nodes whose CPU and memory count')
+    args = parser.parse_args()
+    if args.runs and not args.driver:
+        parser.error('--driver is needed, unless --runs 0')
+    return args
+
+
+def main():
+    args = arguments()
+    if not importlib.util.find_spec('rospy'):
+        sys.exit(f'bench: {sys.executable} has no rospy; run this with the Python of your ROS, as in\n'
+                 '  /usr/bin/python3 bench/bench.py ...')
+    processes.adopt_orphans()
+    for number in SIGNALS:
+        signal.signal(number, interrupt)
+    result = {'base': args.base, 'driver': args.driver, 'timeout_s': args.timeout, 'host': host(), 'runs': []}
+    periods, odom_periods = [], []
+    if args.runs:
+        print(header(), flush=True)
+    for number in range(args.runs):
+        row, new, new_odom = measure_run(args, args.load if number % 2 else 0)
+        periods += new
+        odom_periods += new_odom
+        result['runs'].append(row)
+        print(line(number + 1, [look_up(row, path) for _, path, *_ in COLUMNS], remarks(row)), flush=True)
+    if args.runs:
+        result['summary'] = {}
+        for name, values in summary(result['runs']).items():
+            print(line(name, values))
+            result['summary'][name] = dict(zip((path for _, path, *_ in COLUMNS), values))
+        result.update(command_period_s=figures.spread(periods), odom_period_s=figures.spread(odom_periods))
+        say_spread('command period', result['command_period_s'])
+        say_spread('odometry period', result['odom_period_s'])
+    if args.latency:
+        result['latency'] = measure_latency(args)
+        say_spread('command to odometry', result['latency']['latency_s'])
+        if result['latency']['not_shown']:
+            print(f'{result["latency"]["not_shown"]} of {args.latency} commands were never shown')
+    if args.json:
+        with open(args.json, 'w') as file:
+            json.dump(result, file, indent=1)
+
+
+if __name__ == '__main__':
+    try:
+        main()
+    except Failure as failure:
+        sys.exit(f'bench: {failure}')
+    except Interrupted as signalled:
+        print(f'bench: {signalled}', file=sys.stderr)
+        sys.exit(130)

@@ -1,0 +1,148 @@
+"""The probe: a process of its own that listens to one run, so that every run meets a fresh ROS node.
+
+It stamps each receipt with the monotonic wall clock (the same for all processes of a machine), keeps the bytes, and
+decodes them when the run is over: a callback that does next to nothing is never late for the following message.
+"""
+import gc
+import multiprocessing
+import os
+import random
+import signal
+import sys
+import time
+
+import figures
+
+QUIET = 0.5  # s; the robot has settled when its odometry stood still for so long
+STILL = 1e-4  # m and rad; less is standing still, also for odometry with noise in the last digits
+
+
+class Probe:
+    """The parent's handle: starts the process, asks it for things, takes the record."""
+
+    def __init__(self, environment, cmd_vel, odom, publish=False):
+        self.pipe, theirs = multiprocessing.Pipe()
+        fork = multiprocessing.get_context('fork')
+        self.process = fork.Process(target=listen, args=(self.pipe, theirs, environment, cmd_vel, odom, publish))
+        self.process.start()
+        theirs.close()
+
+    def ask(self, *request):
+        """Send (what, arguments...) and wait for the answer; an exception over there is raised here."""
+        self.pipe.send(request)
+        answer = self.pipe.recv()
+        if isinstance(answer, Exception):
+            raise answer
+        return answer
+
+
+def listen(ours, pipe, environment, cmd_vel, odom, publish):
+    """The process: subscribe (or, for the latency, publish) /cmd_vel, subscribe /odom, and answer the parent."""
+    ours.close()
+    # A Ctrl-C at the terminal reaches this process too; the parent decides when it ends.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    os.environ.update(environment)
+    import rospy
+    from geometry_msgs.msg import Twist
+    # No ROS time: a probe that followed a simulated clock would be one more listener that the clock waits for.
+    rospy.init_node('bench_probe', anonymous=True, disable_rostime=True, disable_rosout=True, disable_signals=True)
+    gc.disable()
+    sys.setswitchinterval(1e-4)
+
+    commands, odometry = [], []
+    rospy.Subscriber(odom, rospy.AnyMsg, lambda m: odometry.append((time.monotonic(), m)), tcp_nodelay=True)
+    if publish:
+        publisher = rospy.Publisher(cmd_vel, Twist, queue_size=1, tcp_nodelay=True)
+    else:
+        rospy.Subscriber(cmd_vel, rospy.AnyMsg, lambda m: commands.append((time.monotonic(), m)), tcp_nodelay=True)
+
+    def arrived(timeout):
+        return wait(lambda: odometry and (not publish or publisher.get_num_connections()), timeout)
+
+    def settled(timeout):
+        return wait(lambda: stands_still(odometry), timeout)
+
+    def latency(count, speed):
+        return measure_latency(publisher, Twist, odometry, count, speed)
+
+    def record():
+        return decode_commands(commands), decode_odometry(odometry)
+
+    answers = {'arrived': arrived, 'settled': settled, 'latency': latency, 'record': record}
+    while True:
+        try:
+            what, *arguments = pipe.recv()
+            pipe.send(answers[what](*arguments))
+        except EOFError:
+            os._exit(0)  # rospy's own shutdown would talk to a master that is being stopped
+        except Exception as error:
+            pipe.send(RuntimeError(f'{what}: {error}'))
+
+
+def wait(condition, timeout):
+    """Whether the condition came true within timeout (s of wall time)."""
+    end = time.monotonic() + timeout
+    while not condition():
+        if time.monotonic() > end:
+            return False
+        time.sleep(0.02)
+    return True
+
+
+def stands_still(odometry):
+    """Whether the poses of the last QUIET seconds are all the same."""
+    since = time.monotonic() - QUIET
+    recent = []
+    for received, message in reversed(odometry):
+        recent.append((received, message))
+        if received < since:
+            break
+    if len(recent) < 3 or recent[-1][0] >= since:
+        return False
+    poses = [record[2:5] for record in decode_odometry(recent)]
+    return all(max(figures.deviation(pose, poses[0])) < STILL for pose in poses)
+
+
+def measure_latency(publisher, twist, odometry, count, speed):
+    """Publish count commands at random phases, speed (m/s) and zero in turn; the delays (s) until odometry shows them."""
+    published = []
+    for index in range(count):
+        # Longer than the slowest odometry takes to show it, shorter than any base's timeout.
+        time.sleep(random.uniform(0.3, 0.6))
+        message = twist()
+        message.linear.x = 0.0 if index % 2 else speed
+        published.append((time.monotonic(), message.linear.x))
+        publisher.publish(message)
+    time.sleep(0.6)
+    publisher.publish(twist())
+    time.sleep(0.2)
+    return figures.shown_after(published, decode_odometry(odometry))
+
+
+def decode(received, kind):
+    """The message of that class, from the bytes that were received; TypeError when the topic carries another type."""
+    name = received._connection_header['type']
+    if name != kind._type:
+        raise TypeError(f'expected {kind._type}, the topic carries {name}')
+    return kind().deserialize(received._buff)
+
+
+def decode_commands(received):
+    """(received, v, w) of each Twist."""
+    from geometry_msgs.msg import Twist
+    twists = [(time, decode(message, Twist)) for time, message in received]
+    return [(time, twist.linear.x, twist.angular.z) for time, twist in twists]
+
+
+def decode_odometry(received):
+    """(received, stamp, x, y, heading, v, w) of each Odometry."""
+    from nav_msgs.msg import Odometry
+    records = []
+    for time, message in received:
+        odom = decode(message, Odometry)
+        p, q, twist = odom.pose.pose.position, odom.pose.pose.orientation, odom.twist.twist
+        records.append((time, odom.header.stamp.to_sec(), p.x, p.y, figures.yaw(q.x, q.y, q.z, q.w),
+                        twist.linear.x, twist.angular.z))
+    return records

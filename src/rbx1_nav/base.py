@@ -1,0 +1,102 @@
+"""The base: one gate for commands, the wheels behind it, and the odometry that counts their travel.
+
+Times are whole nanoseconds on a clock that the caller chooses, so that twenty milliseconds are twenty milliseconds.
+"""
+from collections import namedtuple
+from math import copysign, isfinite
+
+from rbx1_nav.diff_drive import ORIGIN
+
+SECOND = 10 ** 9
+
+Limits = namedtuple('Limits', 'linear angular')
+Limits.__doc__ = 'Highest speeds that the gate lets through, m/s and rad/s; infinite where there is no limit.'
+
+
+class RefusedCommand(ValueError):
+    """A command that no base should follow."""
+
+
+def clamp(value, limit):
+    """value, or the limit with its sign where it is over it."""
+    return copysign(min(abs(value), limit), value)
+
+
+class Base:
+    """A differential-drive base on a clock of its own.
+
+    A command is in force from the moment it arrives until the next one arrives, or until it is `timeout` old. The pose
+    is the exact integral over those intervals, whenever it is asked for.
+    """
+
+    def __init__(self, wheels, odometry, limits, timeout):
+        """timeout: how long a command stays in force, ns; 0 for ever."""
+        self.wheels = wheels
+        self.odometry = odometry
+        self.limits = limits
+        self.timeout = timeout
+        self.linear = 0.0       # m/s, in force
+        self.angular = 0.0      # rad/s, in force
+        self.left = 0.0         # m, travel of the left wheel since the start
+        self.right = 0.0        # m
+        self.now = 0            # ns, how far the motion is integrated
+        self.command_time = None    # ns, arrival of the last command, None before the first
+        self.refused = 0
+        self.clamped = 0
+
+    @property
+    def moving(self):
+        """Whether the command in force is to move."""
+        return self.linear != 0 or self.angular != 0
+
+    def command(self, now, linear, angular, others=()):
+        """Put a command in force: m/s forward and rad/s to the left, from `now` (ns) on.
+
+        others: velocities that a differential drive cannot follow; they need only be finite.
+        Returns True where a limit cut it. Raises RefusedCommand, and stops the base, where it is not finite.
+        """
+        self.advance(now)
+        self.command_time = self.now
+        for value in (linear, angular, *others):
+            if not isfinite(value):
+                self.refused += 1
+                self.halt()
+                raise RefusedCommand('%s: expected finite numbers' % value)
+        self.linear = clamp(linear, self.limits.linear)
+        self.angular = clamp(angular, self.limits.angular)
+        cut = (self.linear, self.angular) != (linear, angular)
+        self.clamped += cut
+        return cut
+
+    def halt(self):
+        """No motion until the next command."""
+        self.linear = self.angular = 0.0
+
+    def advance(self, now):
+        """Integrate the motion up to `now` (ns). Returns True where the timeout stopped the base on the way.
+
+        A clock that jumped back forgets the command in force: how long it has been so cannot be known any more.
+        """
+        timed_out = False
+        if now < self.now:
+            self.halt()
+            self.command_time = None
+        elif self.moving:
+            end = self.command_time + self.timeout if self.timeout else now + 1     # later than now: never
+            self._move(min(now, end) - self.now)
+            if now >= end:
+                self.halt()
+                timed_out = True
+        self.now = now
+        return timed_out
+
+    def reset(self):
+        """Stand still at the origin."""
+        self.halt()
+        self.odometry.pose = ORIGIN
+
+    def _move(self, duration):
+        left, right = self.wheels.travel(self.linear, self.angular, duration / SECOND)
+        self.left += left
+        self.right += right
+        self.odometry.update(left, right)

@@ -1,0 +1,26 @@
+"""What a robot is to do, as a list of motions: which velocity, for how many ticks."""
+from collections import namedtuple
+from math import isfinite
+
+Motion = namedtuple('Motion', 'name linear angular ticks')
+Motion.__doc__ = 'One motion: linear in m/s, angular in rad/s (positive to the left), for a number of ticks.'
+
+
+def ticks(goal, speed, rate):
+    """Number of ticks, at `rate` per second, to cover `goal` (m or rad) at `speed` (m/s or rad/s), cut to a whole one.
+
+    Raises ValueError where that is less than one tick, or more than a day.
+    """
+    number = goal / speed * rate
+    if not (isfinite(number) and 1 <= number + 1e-9 <= 24 * 3600 * rate):
+        raise ValueError('a goal of %g at a speed of %g takes %g ticks at %g Hz: expected between 1 tick and a day'
+                         % (goal, speed, number, rate))
+    # 0.3 / 0.1 is a little less than 3 to a computer: do not lose a tick to that
+    return int(number + 1e-9)
+
+
+def out_and_back(linear_speed, goal_distance, angular_speed, goal_angle, rate):
+    """The tutorial's exercise: forward and turn left, twice, as four Motions. Raises ValueError, see ticks()."""
+    forward = Motion('forward', linear_speed, 0.0, ticks(goal_distance, linear_speed, rate))
+    turn = Motion('turn left', 0.0, angular_speed, ticks(goal_angle, angular_speed, rate))
+    return [forward, turn, forward, turn]
