@@ -287,15 +287,9 @@ def arguments():
     return args
 
 
-def main():
-    args = arguments()
-    if not importlib.util.find_spec('rospy'):
-        sys.exit(f'bench: {sys.executable} has no rospy; run this with the Python of your ROS, as in\n'
-                 '  /usr/bin/python3 bench/bench.py ...')
-    processes.adopt_orphans()
-    for number in SIGNALS:
-        signal.signal(number, interrupt)
-    result = {'base': args.base, 'driver': args.driver, 'timeout_s': args.timeout, 'host': host(), 'runs': []}
+def measure(args, result):
+    """Do what the command line asks for: fill in result, and print it as it comes."""
+    paths = [path for _, path, *_ in COLUMNS]
     periods, odom_periods = [], []
     if args.runs:
         print(header(), flush=True)
@@ -304,12 +298,11 @@ def main():
         periods += new
         odom_periods += new_odom
         result['runs'].append(row)
-        print(line(number + 1, [look_up(row, path) for _, path, *_ in COLUMNS], remarks(row)), flush=True)
+        print(line(number + 1, [look_up(row, path) for path in paths], remarks(row)), flush=True)
     if args.runs:
-        result['summary'] = {}
         for name, values in summary(result['runs']).items():
             print(line(name, values))
-            result['summary'][name] = dict(zip((path for _, path, *_ in COLUMNS), values))
+            result['summary'][name] = dict(zip(paths, values))
         result.update(command_period_s=figures.spread(periods), odom_period_s=figures.spread(odom_periods))
         say_spread('command period', result['command_period_s'])
         say_spread('odometry period', result['odom_period_s'])
@@ -318,16 +311,33 @@ def main():
         say_spread('command to odometry', result['latency']['latency_s'])
         if result['latency']['not_shown']:
             print(f'{result["latency"]["not_shown"]} of {args.latency} commands were never shown')
-    if args.json:
-        with open(args.json, 'w') as file:
-            json.dump(result, file, indent=1)
+
+
+def main():
+    args = arguments()
+    if not importlib.util.find_spec('rospy'):
+        sys.exit(f'bench: {sys.executable} has no rospy; run this with the Python of your ROS, as in\n'
+                 '  /usr/bin/python3 bench/bench.py ...')
+    processes.adopt_orphans()
+    for number in SIGNALS:
+        signal.signal(number, interrupt)
+    result = {'base': args.base, 'driver': args.driver, 'timeout_s': args.timeout, 'host': host(),
+              'runs': [], 'summary': {}}
+    try:
+        measure(args, result)
+    except Failure as failure:
+        result['failure'] = str(failure)
+        sys.exit(f'bench: {failure}')
+    except Interrupted as signalled:
+        result['failure'] = str(signalled)
+        print(f'bench: {signalled}', file=sys.stderr)
+        sys.exit(130)
+    finally:
+        processes.kill_rest()
+        if args.json:
+            with open(args.json, 'w') as file:
+                json.dump(result, file, indent=1)
 
 
 if __name__ == '__main__':
-    try:
-        main()
-    except Failure as failure:
-        sys.exit(f'bench: {failure}')
-    except Interrupted as signalled:
-        print(f'bench: {signalled}', file=sys.stderr)
-        sys.exit(130)
+    main()

@@ -35,7 +35,7 @@ def arc(pose, v, w, duration):
 
 
 def integrate(commands, end, timeout):
-    """The exact pose at time end (s), from (0, 0, 0); each command holds until the next one, at most timeout (0: ever)."""
+    """The exact pose at time end (s) from (0, 0, 0); a command holds until the next, at most timeout (s; 0: no end)."""
     pose = 0.0, 0.0, 0.0
     ends = [received for received, _, _ in commands[1:]] + [end]
     for (received, v, w), until in zip(commands, ends):
@@ -94,7 +94,7 @@ def shown_after(published, odometry):
 
 
 def usage(samples, begin, end):
-    """Share of a core (1 = one core) between the first and last sample in the interval, from (time, cpu seconds, ...)."""
+    """Share of a core between the first and the last sample in the interval; a sample is (time, CPU seconds, ...)."""
     inside = [sample for sample in samples if begin <= sample[0] <= end]
     if len(inside) < 2:
         return None

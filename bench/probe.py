@@ -106,7 +106,7 @@ def stands_still(odometry):
 
 
 def measure_latency(publisher, twist, odometry, count, speed):
-    """Publish count commands at random phases, speed (m/s) and zero in turn; the delays (s) until odometry shows them."""
+    """Publish speed (m/s) and zero in turn, at random phases; the delays (s) until odometry shows each command."""
     published = []
     for index in range(count):
         # Longer than the slowest odometry takes to show it, shorter than any base's timeout.

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """What a reader sees: starts RViz with sim.rviz on a virtual display, runs the exercise, and reads the screen.
 
 Keeps its pictures where the environment variable RBX1_PICTURE_DIR says, if it is set.

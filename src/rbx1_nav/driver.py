@@ -205,7 +205,8 @@ def wait_for_subscribers(publisher, timeout):
             if connected and census.listeners is not None and census.listeners <= connected and _now() > 0:
                 return
             missing = ', '.join(sorted((census.listeners or set()) - connected))
-            what = ('%s to connect to %s' % (missing, topic) if missing
+            what = ('an answer from who is to listen on %s' % topic if census.listeners is None
+                    else '%s to connect to %s' % (missing, topic) if missing
                     else 'a base to listen on %s' % topic if not connected else 'the time on /clock')
             if time.monotonic() > give_up:
                 raise rospy.ROSException('Waited %g s in vain for %s' % (timeout, what))

@@ -1,0 +1,22 @@
+#!/usr/bin/python3
+"""A command is in force for exactly the timeout, then the base stops by itself."""
+import unittest
+
+import support
+
+
+class TestBaseTimeout(unittest.TestCase):
+    def test_one_command(self):
+        support.init_node('base_timeout')
+        odom = support.OdomWatch()
+        support.Commander().send(0.2)
+        odom.wait_for_twist(0.2)
+        odom.wait_for_twist(0.0)
+        # 0.2 m/s for the 1.0 s of the default timeout
+        x, y = odom.position()
+        self.assertAlmostEqual(x, 0.2, delta=support.MICROMETRE)
+        self.assertAlmostEqual(y, 0.0, delta=support.MICROMETRE)
+
+
+if __name__ == '__main__':
+    support.main('base_timeout', TestBaseTimeout)

@@ -1,0 +1,27 @@
+#!/usr/bin/python3
+"""The exercise ends where the sum says, to a micrometre, every time."""
+import unittest
+
+import support
+
+
+class TestFinalPose(unittest.TestCase):
+    def test_three_runs(self):
+        support.init_node('final_pose')
+        odom = support.OdomWatch()
+        for run in range(1, 4):
+            driver = support.out_and_back()
+            self.addCleanup(driver.kill)
+            self.assertEqual(driver.wait(), 0, driver.output)
+            message = odom.next()
+            self.assertEqual(message.twist.twist.linear.x, 0)
+            if run == 1:
+                x, y = odom.position()
+                self.assertAlmostEqual(x, support.EXACT_X, delta=support.MICROMETRE)
+                self.assertAlmostEqual(y, support.EXACT_Y, delta=support.MICROMETRE)
+            # the heading adds up over runs; 1e-6 rad, over the metre it drives, is the micrometre again
+            self.assertAlmostEqual(support.wrapped(support.yaw(message) - run * support.EXACT_TURN), 0, delta=1e-6)
+
+
+if __name__ == '__main__':
+    support.main('final_pose', TestFinalPose)

@@ -1,0 +1,34 @@
+#!/usr/bin/python3
+"""A listener hears every command of the exercise in its order, and silence after the last stop."""
+import itertools
+import unittest
+
+from geometry_msgs.msg import Twist
+
+import support
+
+
+class TestMessageCounts(unittest.TestCase):
+    def test_counts(self):
+        support.init_node('message_counts')
+        odom = support.OdomWatch()
+        commands = support.Watch('/cmd_vel', Twist)
+        driver = support.out_and_back()
+        self.addCleanup(driver.kill)
+        self.assertEqual(driver.wait(), 0, driver.output)
+
+        heard = [(m.linear.x, m.angular.z) for m in commands.messages]
+        groups = [(command, len(list(same))) for command, same in itertools.groupby(heard)]
+        forward, turn, stop = (0.2, 0.0), (0.0, 1.0), (0.0, 0.0)
+        # the last motion ends with its own stop, the exercise's and the one of the shutdown
+        self.assertEqual(groups, [(forward, 250), (stop, 1), (turn, 157), (stop, 1),
+                                  (forward, 250), (stop, 1), (turn, 157), (stop, 3)])
+
+        # two seconds of simulated time later, still nothing
+        end = odom.last.header.stamp.to_sec() + 2
+        support.wait_for(lambda: odom.last.header.stamp.to_sec() > end, 'two seconds of simulated time')
+        self.assertEqual(len(commands.messages), len(heard))
+
+
+if __name__ == '__main__':
+    support.main('message_counts', TestMessageCounts)

@@ -1,0 +1,30 @@
+#!/usr/bin/python3
+"""~reset puts the base back at the origin, at rest, also while it drives."""
+import unittest
+
+import rospy
+from std_srvs.srv import Empty
+
+import support
+
+
+class TestReset(unittest.TestCase):
+    def test_reset(self):
+        support.init_node('reset')
+        odom = support.OdomWatch()
+        commander = support.Commander()
+        commander.send(0.2, 0.5)
+        odom.wait_for_twist(0.2, 0.5)
+        support.wait_for(lambda: odom.position()[0] > 0.05, 'the base to move')
+        rospy.wait_for_service('/arbotix/reset', support.LIMIT)
+        rospy.ServiceProxy('/arbotix/reset', Empty)()
+        odom.wait_for_twist(0.0)
+        self.assertEqual(odom.position(), (0.0, 0.0))
+        self.assertEqual(support.yaw(odom.last), 0.0)
+        # and it drives again
+        commander.send(0.2)
+        support.wait_for(lambda: odom.position()[0] > 0.05, 'the base to move again')
+
+
+if __name__ == '__main__':
+    support.main('reset', TestReset)
