@@ -61,7 +61,8 @@ class OutAndBack:
         rospy.loginfo('%s: %.2f %s at %g %s/s', motion.name, motion.ticks * speed / self.rate, unit, speed, unit)
 
         # The bar is for people: tqdm leaves it out where nobody looks (disable=None).
-        ticks = tqdm(range(motion.ticks), desc=motion.name, unit_scale=speed / self.rate, unit=unit, disable=None)
+        ticks = tqdm(range(motion.ticks), desc=motion.name, unit_scale=speed / self.rate, unit=unit, disable=None,
+                     bar_format='{desc:9}: |{bar}| {n_fmt} of {total_fmt} {unit}')
         rate = driver.Rate(self.rate)
         for _ in ticks:
             if not driver.connections(self.cmd_vel):
