@@ -6,6 +6,7 @@ import signal
 import subprocess
 import threading
 import time
+from xmlrpc.client import ServerProxy
 
 import rospy
 import rostest
@@ -41,6 +42,13 @@ def twist(linear=0.0, angular=0.0):
     message = Twist()
     message.linear.x, message.angular.z = linear, angular
     return message
+
+
+def pid_of(node):
+    """Process id of a running node."""
+    uri = rospy.get_master().lookupNode(node)[2]
+    with ServerProxy(uri) as server:
+        return server.getPid('/test')[2]
 
 
 def yaw(odom):

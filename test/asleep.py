@@ -1,0 +1,27 @@
+#!/usr/bin/python3
+"""The timeout counts from the command, also when the base's process was asleep as it ended."""
+import os
+import signal
+import time
+import unittest
+
+import support
+
+
+class TestAsleep(unittest.TestCase):
+    def test_asleep(self):
+        support.init_node('asleep')
+        base = support.pid_of('/arbotix')
+        odom = support.OdomWatch()
+        support.Commander().send(0.2)
+        odom.wait_for_twist(0.2)
+        self.addCleanup(os.kill, base, signal.SIGCONT)
+        os.kill(base, signal.SIGSTOP)
+        time.sleep(1.5)     # longer than the timeout of 1.0 s
+        os.kill(base, signal.SIGCONT)
+        odom.wait_for_twist(0.0)
+        self.assertAlmostEqual(odom.position()[0], 0.2, delta=support.MICROMETRE)
+
+
+if __name__ == '__main__':
+    support.main('asleep', TestAsleep)
