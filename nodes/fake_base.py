@@ -19,7 +19,7 @@ from std_msgs.msg import Float64
 from std_srvs.srv import Empty, EmptyResponse
 from tf2_msgs.msg import TFMessage
 
-from rbx1_nav import diff_drive, messages
+from rbx1_nav import diff_drive, messages, rosout
 from rbx1_nav.base import SECOND, Base, RefusedCommand
 from rbx1_nav.config import ConfigError, read_config
 from rbx1_nav.lockstep import Lockstep
@@ -233,6 +233,7 @@ def read_factor():
 def main():
     """Read the configuration, and run. Returns the exit status."""
     rospy.init_node('arbotix')
+    rosout.decouple()
     try:
         config = read_config(rospy.get_param(rospy.get_name(), {}))
         factor = read_factor()

@@ -72,8 +72,8 @@ class OutAndBack:
 
     def stop(self):
         """Tell the robot to stop, and give it the time to do so."""
-        rospy.loginfo('Stopping the robot...')
         self.cmd_vel.publish(Twist())
+        rospy.loginfo('Stopping the robot...')
         time.sleep(1)   # wall time: a simulated clock may have stopped
 
 

@@ -14,6 +14,8 @@ from xmlrpc.client import ServerProxy, Transport
 import rosgraph
 import rospy
 
+from rbx1_nav import rosout
+
 ANSWER_TIMEOUT = 2.0    # s of wall time in which a live node, or the master, answers a call
 LINGER = 1.4            # s of wall time from a signal to the end of the process, whatever hangs
 
@@ -37,6 +39,7 @@ def init_node(name):
         if _asked_to_end.is_set():
             raise rospy.ROSInterruptException('asked to end')
         raise
+    rosout.decouple()
 
 
 def _wait_for_signal(pipe):
