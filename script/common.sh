@@ -42,3 +42,7 @@ loopback_only() {       # DIR: a ROS of our own, that nobody outside can reach; 
   export ROS_IP=127.0.0.1 ROS_HOME=$1/ros ROS_LOG_DIR=$1/ros/log
   mkdir -p "$ROS_LOG_DIR"
 }
+
+free_port() {           # a TCP port of the loopback interface that nobody listens on
+  /usr/bin/python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0)); print(s.getsockname()[1])'
+}
