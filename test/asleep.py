@@ -11,8 +11,8 @@ import support
 class TestAsleep(unittest.TestCase):
     def test_asleep(self):
         support.init_node('asleep')
-        base = support.pid_of('/arbotix')
         odom = support.OdomWatch()
+        base = support.pid_of('/arbotix')
         support.Commander().send(0.2)
         odom.wait_for_twist(0.2)
         self.addCleanup(os.kill, base, signal.SIGCONT)
