@@ -3,7 +3,6 @@
 
 Commands in on cmd_vel, odometry out on odom: config/ says which robot it is, the README lists topics and parameters.
 """
-import sys
 import threading
 import time
 from math import isfinite
@@ -19,7 +18,7 @@ from std_msgs.msg import Float64
 from std_srvs.srv import Empty, EmptyResponse
 from tf2_msgs.msg import TFMessage
 
-from rbx1_nav import diff_drive, messages, rosout
+from rbx1_nav import diff_drive, messages, node
 from rbx1_nav.base import SECOND, Base, RefusedCommand
 from rbx1_nav.config import ConfigError, read_config
 from rbx1_nav.lockstep import Lockstep
@@ -187,14 +186,14 @@ class FakeBase:
             self.run_own_clock()
         elif self.simulated():
             rospy.Subscriber('/clock', Clock, self.on_clock, queue_size=None, tcp_nodelay=True)
-            rospy.spin()
+            node.end_requested.wait()
         else:
             self.run_real_time()
 
     def run_real_time(self):
         """An even beat on the monotonic clock, stamped with ROS time."""
         beat = time.monotonic()
-        while not rospy.is_shutdown():
+        while not node.end_requested.is_set():
             self.publish()
             beat = max(beat + 1 / self.config.rate, time.monotonic())
             time.sleep(max(0, beat - time.monotonic()))
@@ -208,7 +207,7 @@ class FakeBase:
     def run_own_clock(self):
         """Advance simulated time tick by tick: never faster than asked, never past a command that is on its way."""
         beat = time.monotonic()
-        while not rospy.is_shutdown():
+        while not node.end_requested.is_set():
             self.sim_time += TICK
             self.clock_pub.publish(rospy.Time(0, self.sim_time))
             if self.odom_schedule.due(self.sim_time):
@@ -232,8 +231,7 @@ def read_factor():
 
 def main():
     """Read the configuration, and run. Returns the exit status."""
-    rospy.init_node('arbotix')
-    rosout.decouple()
+    node.init_node('arbotix')
     try:
         config = read_config(rospy.get_param(rospy.get_name(), {}))
         factor = read_factor()
@@ -251,4 +249,8 @@ def main():
 
 
 if __name__ == '__main__':
-    sys.exit(main())
+    try:
+        status = main()
+    except rospy.ROSInterruptException:     # before it began
+        status = 0
+    node.leave(status)

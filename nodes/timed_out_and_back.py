@@ -10,7 +10,7 @@ import rospy
 from geometry_msgs.msg import Twist
 from tqdm import tqdm
 
-from rbx1_nav import driver
+from rbx1_nav import driver, node
 from rbx1_nav.maneuver import out_and_back
 
 
@@ -19,7 +19,7 @@ class OutAndBack:
 
     def __init__(self):
         # Join ROS under this name. From here on Ctrl-C leads to stop() below.
-        driver.init_node('out_and_back')
+        node.init_node('out_and_back')
 
         # How often to say what to do, in Hz. Some robots stop when they hear nothing, so say it on every tick.
         self.rate = driver.positive_param('rate', 50)
@@ -86,4 +86,4 @@ if __name__ == '__main__':
     except (rospy.ROSException, ValueError) as error:
         rospy.logerr('%s', error)
         status = 1
-    driver.leave(status)
+    node.leave(status)

@@ -1,11 +1,8 @@
-"""What a script that drives a robot should not have to think about: when to start, how to keep time, when to stop.
+"""What a script that drives a robot should not have to think about: when to start, and how to keep time.
 
-A driving script publishes from its main thread only. Signals never interrupt it: a thread waits for them and asks the
-main thread to end, which notices at its next sleep() or pause(), by an exception, and stops the robot itself.
+A driving script publishes from its main thread only. A request to end the node reaches it as an exception from its next
+sleep() or pause(), and it stops the robot itself.
 """
-import os
-import signal
-import sys
 import threading
 import time
 from math import isfinite
@@ -14,61 +11,9 @@ from xmlrpc.client import ServerProxy, Transport
 import rosgraph
 import rospy
 
-from rbx1_nav import rosout
+from rbx1_nav.node import end_requested
 
 ANSWER_TIMEOUT = 2.0    # s of wall time in which a live node, or the master, answers a call
-LINGER = 1.4            # s of wall time from a signal to the end of the process, whatever hangs
-
-_asked_to_end = threading.Event()
-_stopped = threading.Event()
-
-
-def init_node(name):
-    """Become the node `name`. Ctrl-C, kill and a closed terminal, `rosnode kill` too, end the next sleep or pause."""
-    read_end, write_end = os.pipe()
-    os.set_blocking(write_end, False)
-    signal.set_wakeup_fd(write_end)     # a signal writes to the pipe; the handler itself has nothing to do
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        if number != signal.SIGHUP or signal.getsignal(number) is not signal.SIG_IGN:   # nohup means it
-            signal.signal(number, lambda *_: None)
-    threading.Thread(target=_wait_for_signal, args=(read_end,), daemon=True).start()
-    rospy.on_shutdown(_ask_to_end)
-    try:
-        rospy.init_node(name, disable_signals=True)
-    except rospy.ROSInitException:
-        if _asked_to_end.is_set():
-            raise rospy.ROSInterruptException('asked to end')
-        raise
-    rosout.decouple()
-
-
-def _wait_for_signal(pipe):
-    os.read(pipe, 1)
-    # nothing that hangs (a frozen master, say) may keep the process longer than this
-    last_resort = threading.Timer(LINGER, os._exit, [1])
-    last_resort.daemon = True
-    last_resort.start()
-    rospy.signal_shutdown('signal')
-
-
-def _ask_to_end():
-    """Runs in whatever thread ends the node; publishers are open until it returns."""
-    _asked_to_end.set()
-    _stopped.wait(LINGER)
-
-
-def leave(status):
-    """End the process with an exit status, after the robot was stopped. Does not wait for a master that hangs."""
-    _stopped.set()
-    threading.Thread(target=rospy.signal_shutdown, args=('done',), daemon=True).start()
-    give_up = time.monotonic() + 0.25
-    while not rospy.is_shutdown() and time.monotonic() < give_up:
-        time.sleep(0.01)
-    try:
-        sys.stdout.flush()
-        sys.stderr.flush()
-    finally:    # the terminal may be gone
-        os._exit(status)
 
 
 def positive_param(name, default):
@@ -91,14 +36,14 @@ def _wait_until(end, longest):
     warn_time = time.monotonic() + 5
     last = None
     while True:
-        if _asked_to_end.is_set():
+        if end_requested.is_set():
             raise rospy.ROSInterruptException('asked to end')
         now = _now()
         end = min(end, now + longest)
         if now >= end:
             return
         if rospy.rostime.is_wallclock():
-            _asked_to_end.wait((end - now) / 1e9)
+            end_requested.wait((end - now) / 1e9)
             continue
         clock_moved = rospy.rostime.get_rostime_cond()
         with clock_moved:
@@ -216,7 +161,7 @@ def wait_for_subscribers(publisher, timeout):
             if time.monotonic() > say_time:
                 say_time += 5
                 rospy.loginfo('Waiting for %s', what)
-            if _asked_to_end.wait(0.02):
+            if end_requested.wait(0.02):
                 raise rospy.ROSInterruptException('asked to end')
     finally:
         census.done.set()
