@@ -1,0 +1,20 @@
+#!/usr/bin/python3
+"""With publish_tf false the base leaves the transform to somebody else, and publishes odometry all the same."""
+import unittest
+
+from tf2_msgs.msg import TFMessage
+
+import support
+
+
+class TestPublishTF(unittest.TestCase):
+    def test_no_transform(self):
+        support.init_node('publish_tf')
+        transforms = support.Watch('/tf', TFMessage)
+        odom = support.OdomWatch()
+        support.wait_for(lambda: len(odom.messages) > 50, 'fifty odometry messages')
+        self.assertFalse(transforms.messages)
+
+
+if __name__ == '__main__':
+    support.main('publish_tf', TestPublishTF)
