@@ -22,22 +22,18 @@ class TestTimeJumps(unittest.TestCase):
         # rospy listens to /clock once for itself and once for the base: wait for the base's
         support.wait_for(lambda: clock.publish(clock.now + 0.02) or odom.last, '/odom')
 
-        def drive():
-            """Bring a command into force; where the robot is then, m."""
-            commander.send(0.2)
-
-            def moving():
-                clock.publish(clock.now + 0.02)
-                return odom.next().twist.twist.linear.x == 0.2
-            support.wait_for(moving, 'the command to be in force')
-            return odom.last.pose.pose.position.x
-
         def jump(seconds):
             """Publish a time that much later; the odometry that answers."""
             count = len(odom.messages)
             clock.publish(clock.now + seconds)
             support.wait_for(lambda: len(odom.messages) > count, 'odometry')
             return odom.last
+
+        def drive():
+            """Bring a command into force; where the robot is then, m."""
+            commander.send(0.2)
+            support.wait_for(lambda: jump(0.02).twist.twist.linear.x == 0.2, 'the command to be in force')
+            return odom.last.pose.pose.position.x
 
         # forward by an hour: the timeout ends the command
         start = drive()
