@@ -195,8 +195,15 @@ class FakeBase:
         beat = time.monotonic()
         while not node.end_requested.is_set():
             self.publish()
-            beat = max(beat + 1 / self.config.rate, time.monotonic())
-            time.sleep(max(0, beat - time.monotonic()))
+            beat = self.wait_for_beat(beat, 1 / self.config.rate)
+
+    @staticmethod
+    def wait_for_beat(beat, period):
+        """Wait for the beat that follows `beat` after `period` (s of the monotonic clock); returns it."""
+        beat = max(beat + period, time.monotonic())
+        while time.monotonic() < beat and not node.end_requested.is_set():
+            node.sleep(beat - time.monotonic())
+        return beat
 
     def on_clock(self, message):
         """Somebody else's simulated time."""
@@ -212,8 +219,7 @@ class FakeBase:
             self.clock_pub.publish(rospy.Time(0, self.sim_time))
             if self.odom_schedule.due(self.sim_time):
                 self.publish()
-            beat = max(beat + TICK / SECOND / self.factor, time.monotonic())
-            time.sleep(max(0, beat - time.monotonic()))
+            beat = self.wait_for_beat(beat, TICK / SECOND / self.factor)
             self.lockstep.collect()
 
 

@@ -11,7 +11,7 @@ from xmlrpc.client import ServerProxy, Transport
 import rosgraph
 import rospy
 
-from rbx1_nav.node import end_requested
+from rbx1_nav.node import end_requested, sleep
 
 ANSWER_TIMEOUT = 2.0    # s of wall time in which a live node, or the master, answers a call
 
@@ -43,7 +43,7 @@ def _wait_until(end, longest):
         if now >= end:
             return
         if rospy.rostime.is_wallclock():
-            end_requested.wait((end - now) / 1e9)
+            sleep((end - now) / 1e9)
             continue
         clock_moved = rospy.rostime.get_rostime_cond()
         with clock_moved:
@@ -161,7 +161,8 @@ def wait_for_subscribers(publisher, timeout):
             if time.monotonic() > say_time:
                 say_time += 5
                 rospy.loginfo('Waiting for %s', what)
-            if end_requested.wait(0.02):
+            sleep(0.02)
+            if end_requested.is_set():
                 raise rospy.ROSInterruptException('asked to end')
     finally:
         census.done.set()

@@ -18,6 +18,8 @@ from rospy.impl.rosout import RosOutHandler
 LINGER = 1.4        # s of wall time from the request to end to the end of the process, whatever hangs
 GOODBYE = 0.25      # s of wall time for the master to hear of it
 
+LONGEST_SLEEP = 0.05    # s
+
 end_requested = threading.Event()
 _leaving = threading.Event()
 
@@ -46,16 +48,29 @@ def init_node(name):
 
 def _wait_for_signal(pipe):
     os.read(pipe, 1)
+    _end_anyway()
+    rospy.signal_shutdown('signal')
+
+
+def _end_anyway():
     last_resort = threading.Timer(LINGER, os._exit, [1])
     last_resort.daemon = True
     last_resort.start()
-    rospy.signal_shutdown('signal')
 
 
 def _request_end():
     """Runs in whatever thread ends the node; publishers are open until it returns."""
+    _end_anyway()
     end_requested.set()
     _leaving.wait(LINGER)
+
+
+def sleep(seconds):
+    """Sleep for so many seconds of wall time, or for LONGEST_SLEEP: call it in a loop that looks at end_requested.
+
+    Not end_requested.wait(), which before Python 3.11 follows a system clock that is stepped.
+    """
+    time.sleep(max(0, min(seconds, LONGEST_SLEEP)))
 
 
 def leave(status):
