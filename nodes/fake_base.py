@@ -5,7 +5,6 @@ Commands in on cmd_vel, odometry out on odom: config/ says which robot it is, th
 """
 import threading
 import time
-from math import isfinite
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticStatus
@@ -20,7 +19,7 @@ from tf2_msgs.msg import TFMessage
 
 from rbx1_nav import diff_drive, messages, node
 from rbx1_nav.base import SECOND, Base, RefusedCommand
-from rbx1_nav.config import ConfigError, read_config
+from rbx1_nav.config import WHEELS, ConfigError, positive, read_config
 from rbx1_nav.lockstep import Lockstep
 
 TICK = SECOND // 50     # ns, the step of the simulated clock
@@ -149,7 +148,7 @@ class FakeBase:
         if joints:
             self.joint_pub.publish(joints)
         if timed_out:
-            rospy.logwarn('%s: no command for %g s: stopped' % (rospy.resolve_name('cmd_vel'),
+            rospy.logwarn_throttle(10, '%s: no command for %g s: stopped' % (rospy.resolve_name('cmd_vel'),
                                                                 self.config.timeout / SECOND))
         if self.diagnostics_schedule.due(now):
             self.diagnostics.force_update()
@@ -162,8 +161,8 @@ class FakeBase:
             joint.advance(elapsed / SECOND)
         difference = self.base.angular * self.config.base_width / 2
         radius = self.config.wheel_radius
-        wheels = [('base_l_wheel_joint', self.base.left / radius, (self.base.linear - difference) / radius),
-                  ('base_r_wheel_joint', self.base.right / radius, (self.base.linear + difference) / radius)]
+        wheels = [(WHEELS[0], self.base.left / radius, (self.base.linear - difference) / radius),
+                  (WHEELS[1], self.base.right / radius, (self.base.linear + difference) / radius)]
         return messages.joint_states(stamp, self.config.joints, wheels)
 
     def diagnose(self, status):
@@ -228,8 +227,7 @@ def read_factor():
     factor = rospy.get_param('~real_time_factor', None)
     if factor is None:
         return None
-    if isinstance(factor, bool) or not isinstance(factor, (int, float)) or not (isfinite(factor) and factor > 0):
-        raise ConfigError('real_time_factor: %r: expected a finite number above 0' % (factor,))
+    positive('real_time_factor', factor)
     if rospy.rostime.is_wallclock():
         raise ConfigError('real_time_factor: %r: expected /use_sim_time to be true' % factor)
     return factor
@@ -259,4 +257,7 @@ if __name__ == '__main__':
         status = main()
     except rospy.ROSInterruptException:     # before it began
         status = 0
+    except rospy.ROSException as error:
+        rospy.logfatal('%s', error)
+        status = 1
     node.leave(status)

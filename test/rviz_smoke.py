@@ -26,9 +26,9 @@ WAIT = 120      # s that a machine under load may take for what takes 5; nothing
 NAME_OK, NAME_WARN, NAME_ERROR = (40, 120, 197), (192, 128, 0), (192, 32, 32)
 MARKS = (255, 128, 13)      # the robot's orange marks, from its URDF
 
-# An arrow's shaft, 0.02 m wide, covers 930 pixels of the 0.16 m between the circles of a sector, and 580 of each 0.1 m
+# An arrow's shaft, 0.02 m wide, covers 620 pixels of the 0.16 m between the circles of a sector, and 390 of each 0.1 m
 # of the line. Less than half of one arrow is not an arrow.
-ARROW = 400
+ARROW = 260
 
 
 def load(path):
@@ -95,8 +95,8 @@ class Picture:
     @property
     def ready(self):
         """All is well, and the robot stands at the origin, facing x."""
-        # of 2200 pixels that should be there, a robot that faces the other way shows 770
-        return self.opened and self.fine > 0 and not self.warnings and not self.errors and self.robot() > 1500
+        # of 1460 pixels that should be there, a robot that faces the other way shows 510
+        return self.opened and self.fine > 0 and not self.warnings and not self.errors and self.robot() > 1000
 
     def robot(self):
         """Pixels of the marks on the robot's front half, where it is at home; they reach 0.18 m ahead of its middle."""
@@ -168,7 +168,7 @@ class RvizSmoke(unittest.TestCase):
         log = open(os.path.join(self.scratch, 'xvfb'), 'w')
         self.addCleanup(log.close)
         # noreset: or it would start anew whenever a screenshot is its last client
-        self.start(['Xvfb', '-displayfd', str(its), '-screen', '0', '1400x900x24', '+extension', 'GLX',
+        self.start(['Xvfb', '-displayfd', str(its), '-screen', '0', '1280x800x24', '+extension', 'GLX',
                     '-nolisten', 'tcp', '-noreset'], pass_fds=[its], stdout=log, stderr=log)
         os.close(its)
         with open(ours) as answer:

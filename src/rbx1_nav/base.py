@@ -3,11 +3,12 @@
 Times are whole nanoseconds on a clock that the caller chooses, so that twenty milliseconds are twenty milliseconds.
 """
 from collections import namedtuple
-from math import copysign, isfinite
+from math import copysign
 
 from rbx1_nav.diff_drive import ORIGIN
 
 SECOND = 10 ** 9
+MOST = 1e6      # m/s or rad/s that a command may ask for: no robot does, and sums stay far from overflow
 
 Limits = namedtuple('Limits', 'linear angular')
 Limits.__doc__ = 'Highest speeds that the gate lets through, m/s and rad/s; infinite where there is no limit.'
@@ -53,15 +54,15 @@ class Base:
         """Put a command in force: m/s forward and rad/s to the left, from `now` (ns) on.
 
         others: velocities that a differential drive cannot follow; they need only be finite.
-        Returns True where a limit cut it. Raises RefusedCommand, and stops the base, where it is not finite.
+        Returns True where a limit cut it. Raises RefusedCommand, and stops the base, where it is not finite or over MOST.
         """
         self.advance(now)
         self.command_time = self.now
         for value in (linear, angular, *others):
-            if not isfinite(value):
+            if not abs(value) <= MOST:      # so that nan is refused too
                 self.refused += 1
                 self.halt()
-                raise RefusedCommand('%s: expected finite numbers' % value)
+                raise RefusedCommand('%s: expected finite numbers of at most %g' % (value, MOST))
         self.linear = clamp(linear, self.limits.linear)
         self.angular = clamp(angular, self.limits.angular)
         cut = (self.linear, self.angular) != (linear, angular)

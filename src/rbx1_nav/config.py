@@ -11,6 +11,8 @@ DRIVER_KEYS = {'port', 'baud', 'rate', 'sync_write', 'sync_read', 'read_rate', '
 CONTROLLER_KEYS = {'ticks_meter', 'Kp', 'Kd', 'Ki', 'Ko', 'accel_limit'}
 JOINT_KEYS = {'id', 'neutral', 'invert', 'ticks', 'range'}
 
+WHEELS = ('base_l_wheel_joint', 'base_r_wheel_joint')
+
 Config = namedtuple('Config', 'name odom_frame_id base_frame_id base_width wheel_radius rate timeout limits publish_tf '
                               'joints ignored unknown')
 Config.__doc__ = """A robot. m, Hz, ns, and Limits; joints: Joint objects; ignored, unknown: keys without effect, sorted."""
@@ -18,6 +20,20 @@ Config.__doc__ = """A robot. m, Hz, ns, and Limits; joints: Joint objects; ignor
 
 class ConfigError(ValueError):
     """A value that makes no sense. The text names the key, the value and what is expected."""
+
+
+def describe(value):
+    """A value as the reader sees it in the YAML, with a hint where YAML took a number for text."""
+    try:
+        return '%r (text to YAML, write it like 1.0e-3)' % value if isfinite(float(value)) and isinstance(
+            value, str) else repr(value)
+    except (TypeError, ValueError, OverflowError):
+        return repr(value)
+
+
+def positive(key, value, expected='a finite number above 0'):
+    """The value of a key, if it is a number above 0; else ConfigError."""
+    return Section({key: value}, '').number(key, expected=expected)
 
 
 class Section:
@@ -35,24 +51,24 @@ class Section:
         """The full name of a key, as rosparam would spell it."""
         return '%s/%s' % (self.key, key) if self.key else key
 
-    def get(self, key, default=None):
+    def get(self, key, default=None, expected='a value'):
         """The value of a key; ConfigError if it is missing and has no default."""
         self.known.add(key)
         if key in self.values:
             return self.values[key]
         if default is None:
-            raise ConfigError('%s: missing: expected a value' % self.path(key))
+            raise ConfigError('%s: missing: expected %s' % (self.path(key), expected))
         return default
 
     def number(self, key, default=None, low=0.0, high=inf, expected='a finite number above 0', closed=False):
         """A finite number above `low` (not under it where `closed`) and not over `high`."""
-        value = self.get(key, default)
+        value = self.get(key, default, expected)
         # a bool is an int to Python, and a mistake here; the default itself may be infinite
         good = isinstance(value, (int, float)) and not isinstance(value, bool)
         if key in self.values or not good:
             good = good and isfinite(value) and (low < value or closed and low == value) and value <= high
         if not good:
-            raise ConfigError('%s: %r: expected %s' % (self.path(key), value, expected))
+            raise ConfigError('%s: %s: expected %s' % (self.path(key), describe(value), expected))
         return float(value)
 
     def flag(self, key, default):
@@ -69,9 +85,9 @@ class Section:
             raise ConfigError('%s: %r: expected the name of a frame' % (self.path(key), value))
         return value.lstrip('/')
 
-    def section(self, key, hardware=(), default=None):
+    def section(self, key, hardware=(), default=None, expected='a mapping'):
         """A mapping inside this one."""
-        return Section(self.get(key, default), self.path(key), hardware)
+        return Section(self.get(key, default, expected), self.path(key), hardware)
 
     def ignored(self):
         """Keys that only hardware needs."""
@@ -102,13 +118,13 @@ def read_config(params):
     # read elsewhere, by the node and by diagnostic_updater
     top.known |= {'real_time_factor', 'diagnostic_period'}
 
-    controllers = top.section('controllers')
+    controllers = top.section('controllers', expected='a mapping with one diff_controller')
     if len(controllers.values) != 1:
         raise ConfigError('controllers: %s: expected exactly one, of type diff_controller'
                           % (', '.join(map(str, controllers.values)) or 'none'))
     name, = controllers.values
     base = controllers.section(name, CONTROLLER_KEYS)
-    kind = base.get('type')
+    kind = base.get('type', expected='diff_controller')
     if kind != 'diff_controller':
         raise ConfigError('%s: %r: unknown controller type, expected one of: diff_controller'
                           % (base.path('type'), kind))
@@ -117,8 +133,9 @@ def read_config(params):
     joints = []
     all_joints = top.section('joints', default={})
     for joint in all_joints.values:
-        if not (isinstance(joint, str) and re.match(r'^[A-Za-z]\w*$', joint)):
-            raise ConfigError('joints: %r: expected a name of letters, digits and underscores' % (joint,))
+        if not (isinstance(joint, str) and re.match(r'^[A-Za-z]\w*$', joint)) or joint in WHEELS:
+            raise ConfigError('joints: %r: expected a name of letters, digits and underscores, other than %s'
+                              % (joint, ' and '.join(WHEELS)))
         section = all_joints.section(joint, JOINT_KEYS)
         joints.append(read_joint(joint, section))
         sections.append(section)
@@ -136,5 +153,8 @@ def read_config(params):
                       base.number('max_angular_speed', inf, expected='a finite speed above 0 in rad/s')),
         publish_tf=publish_tf,
         joints=joints)
+    if fields['odom_frame_id'] == fields['base_frame_id']:
+        raise ConfigError('%s: %r: expected a frame other than odom_frame_id'
+                          % (base.path('base_frame_id'), fields['base_frame_id']))
     return Config(ignored=sorted(key for s in sections for key in s.ignored()),
                   unknown=sorted(key for s in sections for key in s.unknown()), **fields)

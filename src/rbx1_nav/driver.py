@@ -5,12 +5,12 @@ sleep() or pause(), and it stops the robot itself.
 """
 import threading
 import time
-from math import isfinite
 from xmlrpc.client import ServerProxy, Transport
 
 import rosgraph
 import rospy
 
+from rbx1_nav.config import ConfigError, positive
 from rbx1_nav.node import end_requested, sleep
 
 ANSWER_TIMEOUT = 2.0    # s of wall time in which a live node, or the master, answers a call
@@ -18,10 +18,10 @@ ANSWER_TIMEOUT = 2.0    # s of wall time in which a live node, or the master, an
 
 def positive_param(name, default):
     """The private parameter `name`: a finite number above 0. Raises ROSException, in one line, if it is not."""
-    value = rospy.get_param('~' + name, default)
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not (isfinite(value) and value > 0):
-        raise rospy.ROSException('%s/%s: %r: expected a finite number above 0' % (rospy.get_name(), name, value))
-    return value
+    try:
+        return positive(name, rospy.get_param('~' + name, default))
+    except ConfigError as error:
+        raise rospy.ROSException('%s/%s' % (rospy.get_name(), error))
 
 
 # Keeping time

@@ -10,8 +10,10 @@ from threading import Condition
 from time import monotonic
 
 PATIENCE = 1.0      # s of wall time that a tick waits for its command
-QUIET = 0.1         # s of wall time after which a silent driver has said all that it had to say
-DEPTH = 25          # commands: more than this waiting means more than one for each tick
+FIRST_SILENCE = 0.1 # s of wall time after which a driver has said what it had to say, when it is heard for the first time
+SILENCE = 0.03      # s, the same at the start of each later stream
+SLOW = 0.05         # s of wall time: an answer that takes longer makes one wonder whether it is one
+DEPTH = 25          # commands: so many more waiting than at the start of the stream mean more than one for each tick
 
 
 class Driver:
@@ -21,7 +23,8 @@ class Driver:
         self.name = name
         self.waiting = deque()      # one for each tick; more than one where the clock ran ahead of it at first
         self.received = 0
-        self.met = False            # whether it has been seen to fall silent while the clock stands
+        self.met = False            # whether it has been heard before
+        self.lag = 0                # commands that were waiting when the stream began
         self.streaming = False      # its last command was to move: the next tick will bring another
         self.free = False           # does not drive by this clock
 
@@ -55,16 +58,17 @@ class Lockstep:
                     self._collect_from(driver)
 
     def _collect_from(self, driver):
-        if driver.waiting and not driver.met:
+        if driver.waiting and not driver.streaming:
             # the clock ran freely before: let it say what it has to say to the ticks that it has seen
-            self._let_settle(driver, QUIET)
+            self._let_settle(driver, SILENCE if driver.met else FIRST_SILENCE)
             driver.met = True
-        if driver.streaming:
+            driver.lag = len(driver.waiting)
+        elif driver.streaming:
             start = monotonic()
             if not self.changed.wait_for(lambda: driver.waiting, PATIENCE):
                 self._set_free(driver, 'left a tick without a command for %g s' % PATIENCE)
             waited = monotonic() - start
-            if not driver.free and waited > QUIET:
+            if not driver.free and waited > SLOW:
                 # so late: is it a slow answer to this tick, or does it not look at the clock at all?
                 self._let_settle(driver, 2 * waited)
         if driver.waiting:
@@ -72,7 +76,7 @@ class Lockstep:
             linear, angular, *_ = command
             driver.streaming = linear != 0 or angular != 0
             self.apply(command)
-        if len(driver.waiting) > DEPTH:
+        if len(driver.waiting) > driver.lag + DEPTH:
             self._set_free(driver, 'sends more than one command in a tick')
 
     def _let_settle(self, driver, silence):

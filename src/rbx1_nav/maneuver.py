@@ -13,14 +13,20 @@ def ticks(goal, speed, rate):
     """
     number = goal / speed * rate
     if not (isfinite(number) and 1 <= number + 1e-9 <= 24 * 3600 * rate):
-        raise ValueError('a goal of %g at a speed of %g takes %g ticks at %g Hz: expected between 1 tick and a day'
-                         % (goal, speed, number, rate))
+        raise ValueError('goal %g / speed %g * rate %g = %g ticks: expected between 1 tick and a day of them'
+                         % (goal, speed, rate, number))
     # 0.3 / 0.1 is a little less than 3 to a computer: do not lose a tick to that
     return int(number + 1e-9)
 
 
 def out_and_back(linear_speed, goal_distance, angular_speed, goal_angle, rate):
     """The tutorial's exercise: forward and turn left, twice, as four Motions. Raises ValueError, see ticks()."""
-    forward = Motion('forward', linear_speed, 0.0, ticks(goal_distance, linear_speed, rate))
-    turn = Motion('turn left', 0.0, angular_speed, ticks(goal_angle, angular_speed, rate))
+    try:
+        forward = Motion('forward', linear_speed, 0.0, ticks(goal_distance, linear_speed, rate))
+    except ValueError as error:
+        raise ValueError('goal_distance, linear_speed: %s' % error)
+    try:
+        turn = Motion('turn left', 0.0, angular_speed, ticks(goal_angle, angular_speed, rate))
+    except ValueError as error:
+        raise ValueError('goal_angle, angular_speed: %s' % error)
     return [forward, turn, forward, turn]

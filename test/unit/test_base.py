@@ -79,7 +79,7 @@ def test_a_clock_that_goes_back_forgets_the_command():
     assert base.odometry.pose == ORIGIN and not base.moving
 
 
-@pytest.mark.parametrize('command', [(nan, 0.0), (0.2, inf), (-inf, nan), (0.2, 0.0, (0.0, nan))])
+@pytest.mark.parametrize('command', [(nan, 0.0), (0.2, inf), (-inf, nan), (0.2, 0.0, (0.0, nan)), (1e308, 1e308)])
 def test_what_is_not_finite_is_refused_and_stops_it(command):
     base = make_base()
     base.command(0, 0.2, 0.0)

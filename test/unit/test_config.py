@@ -55,6 +55,7 @@ def test_unknown_keys_are_told():
     ('base_width', True, 'width'), ('rate', -5, 'above 0'), ('rate', 0, 'above 0'), ('rate', inf, 'up to 1000'),
     ('timeout', -1, '0 (never)'), ('max_linear_speed', 0, 'above 0'), ('max_angular_speed', 'fast', 'speed'),
     ('wheel_radius', [], 'radius'), ('base_frame_id', '', 'frame'), ('base_frame_id', 7, 'frame'),
+    ('base_frame_id', 'odom', 'other than odom_frame_id'),
     ('type', 'follow_controller', 'one of: diff_controller')])
 def test_a_bad_value_is_named_with_its_key_and_what_is_expected(key, value, expected):
     params = load('turtlebot.yaml')
@@ -62,7 +63,7 @@ def test_a_bad_value_is_named_with_its_key_and_what_is_expected(key, value, expe
     with pytest.raises(ConfigError) as error:
         read_config(params)
     text = str(error.value)
-    assert text.startswith('controllers/base_controller/%s: %r: ' % (key, value))
+    assert text.startswith('controllers/base_controller/%s: %r' % (key, value))
     assert expected in text and '\n' not in text
 
 
@@ -100,6 +101,16 @@ def test_a_joint_needs_a_name_that_can_be_a_topic():
     params = load('turtlebot.yaml')
     params['joints'] = {'my joint': {}}
     with pytest.raises(ConfigError, match="'my joint'.*expected a name"):
+        read_config(params)
+    params['joints'] = {'base_l_wheel_joint': {}}
+    with pytest.raises(ConfigError, match="'base_l_wheel_joint'.*expected a name"):
+        read_config(params)
+
+
+def test_a_number_that_yaml_takes_for_text_gets_a_hint():
+    params = load('turtlebot.yaml')
+    params['controllers']['base_controller']['base_width'] = '1e-1'
+    with pytest.raises(ConfigError, match='write it like 1.0e-3'):
         read_config(params)
 
 

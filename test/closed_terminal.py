@@ -1,0 +1,40 @@
+#!/usr/bin/python3
+"""A terminal that is closed in mid-motion: the robot stops, and /rosout hears both lines that nobody can read any more."""
+import fcntl
+import os
+import pty
+import subprocess
+import termios
+import unittest
+
+from rosgraph_msgs.msg import Log
+
+import support
+
+
+class TestClosedTerminal(unittest.TestCase):
+    def test_closed(self):
+        support.init_node('closed_terminal')
+        odom = support.OdomWatch()
+        log = support.Watch('/rosout', Log)
+        ours, theirs = pty.openpty()
+
+        def become_session_leader():
+            os.setsid()
+            fcntl.ioctl(theirs, termios.TIOCSCTTY, 0)
+        driver = subprocess.Popen(['rosrun', 'rbx1_nav', 'timed_out_and_back.py', '_linear_speed:=0.01'], stdin=theirs,
+                                  stdout=theirs, stderr=theirs, preexec_fn=become_session_leader)
+        self.addCleanup(driver.wait)
+        self.addCleanup(driver.kill)
+        os.close(theirs)
+        odom.wait_for_twist(0.01)
+        os.close(ours)
+        support.wait_for(lambda: driver.poll() is not None, 'the end of the driver')
+        self.assertEqual(driver.returncode, 0)
+        odom.wait_for_twist(0.0)
+        for line in ('Stopping the robot...', 'Out-and-Back node terminated.'):
+            support.wait_for(lambda: any(m.msg == line for m in log.messages), line + ' on /rosout')
+
+
+if __name__ == '__main__':
+    support.main('closed_terminal', TestClosedTerminal)

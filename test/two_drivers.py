@@ -1,0 +1,25 @@
+#!/usr/bin/python3
+"""A second driver takes the name of the first, which stops the robot and leaves; the second one drives to the end."""
+import unittest
+
+import support
+
+
+class TestTwoDrivers(unittest.TestCase):
+    def test_second_takes_over(self):
+        support.init_node('two_drivers')
+        odom = support.OdomWatch()
+        first = support.out_and_back('_linear_speed:=0.01')
+        self.addCleanup(first.kill)
+        odom.wait_for_twist(0.01)
+        second = support.out_and_back('_linear_speed:=0.2')
+        self.addCleanup(second.kill)
+        first.wait()
+        self.assertIn('Stopping the robot...', first.output)
+        self.assertEqual(second.wait(), 0, second.output)
+        self.assertEqual(second.output.count('turn left: 3.14 rad'), 2, second.output)
+        self.assertNotIn('terminated', second.output)
+
+
+if __name__ == '__main__':
+    support.main('two_drivers', TestTwoDrivers)
