@@ -74,7 +74,8 @@ class FakeBase:
         rospy.Service('~reset', Empty, self.on_reset)
         for joint in config.joints:
             rospy.Subscriber(joint.name + '/command', Float64, self.on_joint, joint, queue_size=10)
-        rospy.Subscriber('cmd_vel', Twist, self.on_twist, queue_size=None, tcp_nodelay=True)
+        self.cmd_vel = None     # there may be a command before the next line is done
+        self.cmd_vel = rospy.Subscriber('cmd_vel', Twist, self.on_twist, queue_size=None, tcp_nodelay=True)
 
     @staticmethod
     def simulated():
@@ -94,8 +95,10 @@ class FakeBase:
             rospy.logwarn_throttle(5, '%s: linear.y, linear.z, angular.x, angular.y = %s: a differential drive cannot '
                                       'follow these, expected 0; ignored' % (rospy.resolve_name('cmd_vel'), command[2]))
         if self.factor:
-            sender = twist._connection_header
-            self.lockstep.receive(id(sender), sender['callerid'], command)
+            header = twist._connection_header       # one object for each connection
+            if not self.lockstep.knows(header) and self.cmd_vel:
+                self.lockstep.keep([connection.header for connection in self.cmd_vel.impl.connections])
+            self.lockstep.receive(header, header['callerid'], command)
         else:
             self.drive(command)
 
@@ -148,8 +151,8 @@ class FakeBase:
         if joints:
             self.joint_pub.publish(joints)
         if timed_out:
-            rospy.logwarn_throttle(10, '%s: no command for %g s: stopped' % (rospy.resolve_name('cmd_vel'),
-                                                                self.config.timeout / SECOND))
+            rospy.logwarn_throttle(10, '%s: no command for %g s: stopped'
+                                   % (rospy.resolve_name('cmd_vel'), self.config.timeout / SECOND))
         if self.diagnostics_schedule.due(now):
             self.diagnostics.force_update()
 

@@ -19,7 +19,8 @@ DEPTH = 25          # commands: so many more waiting than at the start of the st
 class Driver:
     """One connection that brings commands."""
 
-    def __init__(self, name):
+    def __init__(self, connection, name):
+        self.connection = connection
         self.name = name
         self.waiting = deque()      # one for each tick; more than one where the clock ran ahead of it at first
         self.received = 0
@@ -36,13 +37,23 @@ class Lockstep:
         """apply(command): puts a command in force; say(text): tells the reader."""
         self.apply = apply
         self.say = say
-        self.drivers = {}
+        self.drivers = {}       # by the id of their connection, which they hold: so no other object gets that id
         self.changed = Condition()
 
-    def receive(self, key, name, command):
-        """Take a command that just arrived, from any thread. key: the connection; name: the node behind it."""
+    def knows(self, connection):
+        """Whether a command has come by this connection (any object)."""
+        return id(connection) in self.drivers
+
+    def keep(self, connections):
+        """Forget all drivers but those of these connections."""
         with self.changed:
-            driver = self.drivers.setdefault(key, Driver(name))
+            live = set(map(id, connections))
+            self.drivers = {key: driver for key, driver in self.drivers.items() if key in live}
+
+    def receive(self, connection, name, command):
+        """Take a command that just arrived, from any thread. connection: any object; name: the node behind it."""
+        with self.changed:
+            driver = self.drivers.setdefault(id(connection), Driver(connection, name))
             driver.received += 1
             if driver.free:
                 self.apply(command)

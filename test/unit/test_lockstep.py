@@ -16,9 +16,9 @@ class Bench:
         self.said = []
         self.lockstep = Lockstep(self.applied.append, self.said.append)
 
-    def send(self, *commands, key=1):
+    def send(self, *commands, connection='first'):
         for command in commands:
-            self.lockstep.receive(key, '/driver', command)
+            self.lockstep.receive(connection, '/driver', command)
 
 
 def test_one_command_a_tick_however_many_have_come():
@@ -92,8 +92,28 @@ def test_it_lets_go_of_one_that_speaks_while_the_clock_stands(monkeypatch):
 
 def test_drivers_do_not_take_each_others_place():
     bench = Bench()
-    bench.send(MOVE, STOP, key=1)
-    bench.send((0.0, 1.0), STOP, key=2)
+    bench.send(MOVE, STOP)
+    bench.send((0.0, 1.0), STOP, connection='second')
     bench.lockstep.collect()
     bench.lockstep.collect()
     assert bench.applied == [MOVE, (0.0, 1.0), STOP, STOP]
+
+
+def test_a_connection_that_is_gone_is_forgotten(monkeypatch):
+    monkeypatch.setattr(lockstep, 'PATIENCE', 0.2)
+    bench = Bench()
+    bench.send(MOVE, connection='killed')
+    bench.lockstep.collect()
+    bench.lockstep.keep(['first'])
+    assert not bench.lockstep.knows('killed')
+    bench.lockstep.collect()
+    assert not bench.said
+
+
+def test_a_driver_that_lags_from_the_start_is_not_one_that_sends_too_much():
+    bench = Bench()
+    bench.send(*[MOVE] * 40)
+    for _ in range(40):
+        bench.lockstep.collect()
+        bench.send(MOVE)
+    assert bench.applied == [MOVE] * 40 and not bench.said
