@@ -5,6 +5,10 @@ source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
 # ROS lives in the system's Python, whatever else the PATH puts first.
 export PATH=/usr/sbin:/usr/bin:/sbin:/bin:$PATH
 
+# Debian 13's RViz is built with Qt 6, and does not ask for what reads its icons.
+rviz_packages=(rviz)
+if . /etc/os-release; [ "${VERSION_ID:-0}" = 13 ]; then rviz_packages+=(qt6-svg-plugins); fi
+
 install_missing() {     # PACKAGE...: install those that Debian has and this machine has not
   local missing=() package run=()
   for package in "$@"; do
