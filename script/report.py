@@ -1,3 +1,4 @@
+#!/usr/bin/python3
 """Prints where a recorded run ended, and draws its odometry as arrows: report.py BAG PICTURE"""
 import sys
 from math import atan2, cos, degrees, hypot, pi, sin
