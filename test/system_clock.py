@@ -15,6 +15,7 @@ STEPPED = """
 import runpy, sys, time
 real, (node, offset) = time.time, sys.argv[1:]
 time.time = lambda: real() + float(open(offset).read() or 0)
+time.time_ns = lambda: int(time.time() * 1e9)
 sys.argv = [node]
 runpy.run_path(node, run_name='__main__')
 """
