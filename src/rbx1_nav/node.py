@@ -76,20 +76,19 @@ def init_node(name):
 
 def _wait_for_signal(pipe):
     os.read(pipe, 1)
-    _end_anyway()
-    rospy.signal_shutdown('signal')
+    _set_end_requested()
 
 
-def _end_anyway():
+def _set_end_requested():
+    end_requested.set()
     last_resort = threading.Timer(LINGER, os._exit, [1])
     last_resort.daemon = True
     last_resort.start()
 
 
 def _request_end():
-    """Runs in whatever thread ends the node; publishers are open until it returns."""
-    _end_anyway()
-    end_requested.set()
+    """What rospy calls when it is told to end, in some thread of its own; publishers are open until it returns."""
+    _set_end_requested()
     _leaving.wait(LINGER)
 
 
