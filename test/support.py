@@ -128,12 +128,6 @@ class OwnClock:
         self.now = now
         self.publisher.publish(rospy.Time.from_sec(now))
 
-    def advance(self, odom, duration, step=0.02):
-        """Advance by so many seconds; returns when the odometry has followed."""
-        for _ in range(round(duration / step)):
-            self.publish(self.now + step)
-        wait_for(lambda: abs(odom.last.header.stamp.to_sec() - self.now) < 0.03, 'odometry at %g s' % self.now)
-
 
 class Process:
     """A node under test as a process of its own. Its output is kept, line by line."""

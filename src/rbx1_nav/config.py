@@ -25,10 +25,10 @@ class ConfigError(ValueError):
 def describe(value):
     """A value as the reader sees it in the YAML, with a hint where YAML took a number for text."""
     try:
-        return '%r (text to YAML, write it like 1.0e-3)' % value if isfinite(float(value)) and isinstance(
-            value, str) else repr(value)
-    except (TypeError, ValueError, OverflowError):
-        return repr(value)
+        misread = isinstance(value, str) and isfinite(float(value))
+    except ValueError:
+        misread = False
+    return repr(value) + (' (text to YAML, write it like 1.0e-3)' if misread else '')
 
 
 def positive(key, value, expected='a finite number above 0'):

@@ -1,9 +1,9 @@
 """Keeps a simulated clock in step with those who drive on it.
 
 Whoever drives on simulated time answers each tick of the clock with one command. Hold the next tick until that command
-is there, and the run comes out the same on every machine, at any speed and under any load. Somebody who does not drive
+is there, and the run comes out the same on every machine and at any speed. Somebody who does not drive
 by this clock (a person at a keyboard, another rate, wall time) gives no answer to wait for; three rules find them out,
-each at most once for a connection, and their commands take effect as they arrive from then on.
+once for a connection, and their commands take effect as they arrive from then on.
 """
 from collections import deque
 from threading import Condition
