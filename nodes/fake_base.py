@@ -3,6 +3,7 @@
 
 Commands in on cmd_vel, odometry out on odom: config/ says which robot it is, the README lists topics and parameters.
 """
+import random
 import threading
 import time
 
@@ -12,49 +13,35 @@ from diagnostic_updater import Updater
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
-from sensor_msgs.msg import JointState
+from sensor_msgs.msg import Imu, JointState
 from std_msgs.msg import Float64
 from std_srvs.srv import Empty, EmptyResponse
 from tf2_msgs.msg import TFMessage
 
-from rbx1_nav import diff_drive, messages, node
-from rbx1_nav.base import SECOND, Base, RefusedCommand
+from rbx1_nav import messages, node, resources
+from rbx1_nav.base import SECOND, RefusedCommand
 from rbx1_nav.config import WHEELS, ConfigError, positive, read_config
 from rbx1_nav.lockstep import Lockstep
+from rbx1_nav.schedule import Schedule
+from rbx1_nav.simulation import make_robot
+from rbx1_nav.surface import load_surface, read_seed
 
 TICK = SECOND // 50     # ns, the step of the simulated clock
-
-
-class Schedule:
-    """Says when something periodic is due, also on a clock that jumps."""
-
-    def __init__(self, rate):
-        self.period = round(SECOND / rate)
-        self.last = self.next = 0
-
-    def due(self, now):
-        """Whether it is time (ns). Asks for being called about once a period or more often."""
-        back = now < self.last
-        self.last = now
-        if now < self.next and not back:
-            return False
-        late = back or now >= self.next + self.period
-        self.next = (now if late else self.next) + self.period
-        return True
 
 
 class FakeBase:
     """The core's Base, with ROS around it."""
 
-    def __init__(self, config, factor):
+    def __init__(self, config, base, gyro, factor):
         """factor: how much faster than real time, where the clock is this node's to advance; else None."""
         self.config = config
+        self.base = base
+        self.gyro = gyro
         self.factor = factor
         self.lock = threading.Lock()
-        self.base = Base(diff_drive.IdealWheels(config.base_width), diff_drive.Odometry(config.base_width),
-                         config.limits, config.timeout)
         self.sim_time = 0       # ns, the latest /clock
         self.last_stamp = None
+        self.last_reading = None    # ns, of the gyro
         self.last_joints = None
         self.odom_schedule = Schedule(config.rate)
         self.joint_schedule = Schedule(10)
@@ -62,6 +49,8 @@ class FakeBase:
         self.lockstep = Lockstep(self.drive, rospy.logwarn)
 
         self.odom_pub = rospy.Publisher('odom', Odometry, queue_size=10, tcp_nodelay=True)
+        self.imu_pub = rospy.Publisher('imu/data', Imu, queue_size=10, tcp_nodelay=True)
+        self.truth_pub = rospy.Publisher('ground_truth', Odometry, queue_size=10)
         # tf2_ros' broadcaster does just this, and costs 5 MB more for all that comes with it
         self.tf_pub = rospy.Publisher('/tf', TFMessage, queue_size=100, tcp_nodelay=True)
         self.joint_pub = rospy.Publisher('joint_states', JointState, queue_size=10)
@@ -128,6 +117,7 @@ class FakeBase:
         with self.lock:
             self.base.advance(self.now())
             self.base.reset()
+            self.gyro.reset()
         rospy.loginfo('Back at the origin.')
         return EmptyResponse()
 
@@ -143,11 +133,19 @@ class FakeBase:
             self.last_stamp = stamp
             timed_out = self.base.advance(now)
             base = self.base
-            odom = messages.odometry(stamp, self.config, base.odometry.pose, base.linear, base.angular)
+            odom = messages.odometry(stamp, self.config, base.odometry.pose, base.velocity, base.wheels.uncertainty)
+            imu = self.read_gyro(now, stamp)
+            truth = None
+            if self.truth_pub.get_num_connections():
+                truth = messages.odometry(stamp, self.config, base.wheels.truth.pose, base.true_velocity, messages.EXACT)
             joints = self.joint_states(now, stamp) if self.joint_schedule.due(now) else None
         self.odom_pub.publish(odom)
         if self.config.publish_tf:
             self.tf_pub.publish([messages.transform(odom)])
+        if imu:
+            self.imu_pub.publish(imu)
+        if truth:
+            self.truth_pub.publish(truth)
         if joints:
             self.joint_pub.publish(joints)
         if timed_out:
@@ -156,23 +154,33 @@ class FakeBase:
         if self.diagnostics_schedule.due(now):
             self.diagnostics.force_update()
 
+    def read_gyro(self, now, stamp):
+        """An Imu message; None where no time has passed to tell of."""
+        last, self.last_reading = self.last_reading, now
+        if last is None or now <= last:
+            return None
+        base = self.base
+        reading = self.gyro.read(base.wheels.truth.pose.yaw, (now - last) / SECOND, base.standing)
+        return messages.imu(stamp, self.config.base_frame_id, reading)
+
     def joint_states(self, now, stamp):
         """Move the joints, and say where they and the wheels are."""
         elapsed = max(0, now - self.last_joints) if self.last_joints is not None else 0
         self.last_joints = now
         for joint in self.config.joints:
             joint.advance(elapsed / SECOND)
-        difference = self.base.angular * self.config.base_width / 2
+        linear, angular = self.base.velocity
+        difference = angular * self.config.base_width / 2
         radius = self.config.wheel_radius
-        wheels = [(WHEELS[0], self.base.left / radius, (self.base.linear - difference) / radius),
-                  (WHEELS[1], self.base.right / radius, (self.base.linear + difference) / radius)]
+        wheels = [(WHEELS[0], self.base.left / radius, (linear - difference) / radius),
+                  (WHEELS[1], self.base.right / radius, (linear + difference) / radius)]
         return messages.joint_states(stamp, self.config.joints, wheels)
 
     def diagnose(self, status):
         """Fill in the DiagnosticStatus of the controller."""
         base = self.base
         age = 'never' if base.command_time is None else '%.3f' % ((base.now - base.command_time) / SECOND)
-        status.summary(DiagnosticStatus.OK, 'Moving' if base.moving else 'Standing')
+        status.summary(DiagnosticStatus.OK, 'Standing' if base.standing else 'Moving')
         status.add('dX', base.linear)
         status.add('dR', base.angular)
         status.add('Age of the last command (s)', age)
@@ -236,11 +244,21 @@ def read_factor():
     return factor
 
 
+def read_robot(config):
+    """(Base, gyro) on the surface, and from the seed, that the private parameters name. Raises ConfigError."""
+    surface = load_surface(rospy.get_param('~surface', 'ideal'), resources.surfaces())
+    seed = read_seed(rospy.get_param('~seed', random.randrange(10 ** 6)))
+    if surface:
+        rospy.loginfo('On %s; seed:=%d makes this run again', surface.name, seed)
+    return make_robot(config, surface, seed)
+
+
 def main():
     """Read the configuration, and run. Returns the exit status."""
     node.init_node('arbotix')
     try:
         config = read_config(rospy.get_param(rospy.get_name(), {}))
+        robot = read_robot(config)
         factor = read_factor()
     except ConfigError as error:
         rospy.logfatal('%s/%s', rospy.get_name(), error)
@@ -249,7 +267,7 @@ def main():
         rospy.loginfo('Only hardware needs these, ignored: %s', ', '.join(config.ignored))
     if config.unknown:
         rospy.logwarn('Unknown, without effect: %s', ', '.join(config.unknown))
-    base = FakeBase(config, factor)
+    base = FakeBase(config, *robot, factor)
     rospy.loginfo('%s at the origin of %s', config.base_frame_id, config.odom_frame_id)
     base.run()
     return 0

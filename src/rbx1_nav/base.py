@@ -5,7 +5,7 @@ Times are whole nanoseconds on a clock that the caller chooses, so that twenty m
 from collections import namedtuple
 from math import copysign
 
-from rbx1_nav.diff_drive import ORIGIN
+from rbx1_nav.diff_drive import ORIGIN, Odometry
 
 SECOND = 10 ** 9
 MOST = 1e6      # m/s or rad/s that a command may ask for: no robot does, and sums stay far from overflow
@@ -30,15 +30,15 @@ class Base:
     is the exact integral over those intervals, whenever it is asked for.
     """
 
-    def __init__(self, wheels, odometry, limits, timeout):
-        """timeout: how long a command stays in force, ns; 0 for ever."""
+    def __init__(self, wheels, limits, timeout):
+        """wheels: see wheels.py; timeout: how long a command stays in force, ns; 0 for ever."""
         self.wheels = wheels
-        self.odometry = odometry
+        self.odometry = Odometry(wheels.base_width)
         self.limits = limits
         self.timeout = timeout
         self.linear = 0.0       # m/s, in force
         self.angular = 0.0      # rad/s, in force
-        self.left = 0.0         # m, travel of the left wheel since the start
+        self.left = 0.0         # m, counted travel of the left wheel since the start
         self.right = 0.0        # m
         self.now = 0            # ns, how far the motion is integrated
         self.command_time = None    # ns, arrival of the last command, None before the first
@@ -49,6 +49,21 @@ class Base:
     def moving(self):
         """Whether the command in force is to move."""
         return self.linear != 0 or self.angular != 0
+
+    @property
+    def velocity(self):
+        """The speeds that the wheels tell, m/s and rad/s."""
+        return self.wheels.velocity(self.linear, self.angular)
+
+    @property
+    def true_velocity(self):
+        """The speeds of the robot itself, m/s and rad/s."""
+        return self.wheels.true_velocity(self.linear, self.angular)
+
+    @property
+    def standing(self):
+        """Whether nothing moves and nothing is to move."""
+        return not self.moving and self.wheels.at_rest
 
     def command(self, now, linear, angular, others=()):
         """Put a command in force: m/s forward and rad/s to the left, from `now` (ns) on.
@@ -88,13 +103,21 @@ class Base:
             if now >= end:
                 self.halt()
                 timed_out = True
+                self._roll_out(now - end)
+        else:
+            self._roll_out(now - self.now)
         self.now = now
         return timed_out
 
     def reset(self):
         """Stand still at the origin."""
         self.halt()
+        self.wheels.reset()
         self.odometry.pose = ORIGIN
+
+    def _roll_out(self, duration):
+        if not self.wheels.at_rest:
+            self._move(duration)
 
     def _move(self, duration):
         left, right = self.wheels.travel(self.linear, self.angular, duration / SECOND)

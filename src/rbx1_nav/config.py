@@ -116,7 +116,7 @@ def read_config(params):
         raise ConfigError('sim: False: expected true, this base only simulates')
     publish_tf = top.flag('publish_tf', True)
     # read elsewhere, by the node and by diagnostic_updater
-    top.known |= {'real_time_factor', 'diagnostic_period'}
+    top.known |= {'real_time_factor', 'diagnostic_period', 'surface', 'seed'}
 
     controllers = top.section('controllers', expected='a mapping with one diff_controller')
     if len(controllers.values) != 1:

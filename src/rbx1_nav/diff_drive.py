@@ -11,6 +11,12 @@ Pose.__doc__ = 'A pose in the odom frame: x and y in m, yaw in rad, not wrapped 
 ORIGIN = Pose(0.0, 0.0, 0.0)
 
 
+def between(pose, other):
+    """The Pose of one frame in another, where the same robot is at `pose` in that other and at `other` in the one."""
+    yaw = pose.yaw - other.yaw
+    return Pose(pose.x - other.x * cos(yaw) + other.y * sin(yaw), pose.y - other.x * sin(yaw) - other.y * cos(yaw), yaw)
+
+
 def arc(pose, distance, angle):
     """The pose after a circular arc of length `distance` (m) through `angle` (rad).
 
@@ -24,19 +30,6 @@ def arc(pose, distance, angle):
     return Pose(pose.x + chord * cos(pose.yaw + half), pose.y + chord * sin(pose.yaw + half), pose.yaw + angle)
 
 
-class IdealWheels:
-    """Wheels that do at once, and exactly, what they are told: no inertia, no slip."""
-
-    def __init__(self, base_width):
-        """base_width: distance between the wheels, m."""
-        self.base_width = base_width
-
-    def travel(self, linear, angular, duration):
-        """(left, right) travel in m while `linear` (m/s) and `angular` (rad/s) are in force for `duration` (s)."""
-        difference = angular * self.base_width / 2
-        return (linear - difference) * duration, (linear + difference) * duration
-
-
 class Odometry:
     """Integrates the travel of two wheels to a pose."""
 
@@ -47,4 +40,8 @@ class Odometry:
 
     def update(self, left, right):
         """Add a travel (m) of both wheels, each at its own constant speed meanwhile."""
-        self.pose = arc(self.pose, (left + right) / 2, (right - left) / self.base_width)
+        self.move((left + right) / 2, (right - left) / self.base_width)
+
+    def move(self, distance, angle):
+        """Add an arc of length `distance` (m) through `angle` (rad)."""
+        self.pose = arc(self.pose, distance, angle)

@@ -10,7 +10,7 @@ from xmlrpc.client import ServerProxy, Transport
 import rosgraph
 import rospy
 
-from rbx1_nav.config import ConfigError, positive
+from rbx1_nav.config import ConfigError, Section, positive
 from rbx1_nav.node import end_requested, sleep
 
 ANSWER_TIMEOUT = 2.0    # s of wall time in which a live node, or the master, answers a call
@@ -20,6 +20,19 @@ def positive_param(name, default):
     """The private parameter `name`: a finite number above 0. Raises ROSException, in one line, if it is not."""
     try:
         return positive(name, rospy.get_param('~' + name, default))
+    except ConfigError as error:
+        raise rospy.ROSException('%s/%s' % (rospy.get_name(), error))
+
+
+def frame_param(name, default):
+    """The private parameter `name`: a frame, without a leading slash. Raises ROSException, in one line, if it is not.
+
+    default: may be None too.
+    """
+    if not rospy.has_param('~' + name):
+        return default
+    try:
+        return Section({name: rospy.get_param('~' + name)}, '').frame(name, '')
     except ConfigError as error:
         raise rospy.ROSException('%s/%s' % (rospy.get_name(), error))
 

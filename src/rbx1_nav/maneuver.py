@@ -1,6 +1,6 @@
-"""What a robot is to do, as a list of motions: which velocity, for how many ticks."""
+"""What a robot is to do, as a list of motions: which velocity, and for how many ticks, or until the pose says stop."""
 from collections import namedtuple
-from math import isfinite
+from math import hypot, isfinite, pi, remainder
 
 Motion = namedtuple('Motion', 'name linear angular ticks')
 Motion.__doc__ = 'One motion: linear in m/s, angular in rad/s (positive to the left), for a number of ticks.'
@@ -30,3 +30,85 @@ def out_and_back(linear_speed, goal_distance, angular_speed, goal_angle, rate):
     except ValueError as error:
         raise ValueError('goal_angle, angular_speed: %s' % error)
     return [forward, turn, forward, turn]
+
+
+SLOW_DOWN = 0.5     # s: this time's travel before the goal, a motion begins to slow down
+STUCK = 5.0         # s without getting nearer: something holds the robot, or turns it the wrong way
+
+
+class StuckError(ValueError):
+    """A motion that gets no nearer to its goal."""
+
+
+class Leg:
+    """One motion that ends where the pose says so: slower and slower, so that it can stop on its goal."""
+
+    def __init__(self, name, goal, speed, slowest, rate):
+        """goal: m or rad; speed, slowest: m/s or rad/s; rate: how often it is asked, Hz."""
+        self.name = name
+        self.goal = goal
+        self.speed = speed
+        self.slowest = min(slowest, speed)
+        self.rate = rate
+        self.start = self.last = None   # Pose
+        self.turned = 0.0       # rad
+        self.nearest = goal     # m or rad
+        self.patience = 0       # ticks left
+
+    def next_speed(self, pose):
+        """The speed for the next tick, now that the robot is at `pose`; 0 at the goal. Raises StuckError."""
+        if self.start is None:
+            self.start = self.last = pose
+            self.patience = int(STUCK * self.rate)
+        self.turned += remainder(pose.yaw - self.last.yaw, 2 * pi)
+        self.last = pose
+        to_go = self.goal - self.done()
+        # nearer than half of the slowest tick's travel it does not get
+        if to_go < self.slowest / self.rate / 2:
+            return 0.0
+        self.patience -= 1
+        if to_go < self.nearest - self.slowest / self.rate:
+            self.nearest = to_go
+            self.patience = int(STUCK * self.rate)
+        if self.patience < 0:
+            raise StuckError('%s: no nearer for %g s, %.3f of %.3f to go' % (self.name, STUCK, to_go, self.goal))
+        return min(self.speed, max(self.slowest, to_go / SLOW_DOWN))
+
+
+class Straight(Leg):
+    """Forward, in m and m/s."""
+
+    unit = 'm'
+
+    def done(self):
+        """How far it went."""
+        return hypot(self.last.x - self.start.x, self.last.y - self.start.y)
+
+    @staticmethod
+    def velocity(speed):
+        """(linear, angular) for a speed."""
+        return speed, 0.0
+
+
+class Turn(Leg):
+    """To the left on the spot, in rad and rad/s."""
+
+    unit = 'rad'
+
+    def done(self):
+        """How far it turned."""
+        return self.turned
+
+    @staticmethod
+    def velocity(speed):
+        """(linear, angular) for a speed."""
+        return 0.0, speed
+
+
+def out_and_back_by_odometry(linear_speed, goal_distance, angular_speed, goal_angle, rate, min_linear_speed,
+                             min_angular_speed):
+    """The same exercise as four Legs that ask where the robot is: m/s, m, rad/s, rad, Hz, m/s and rad/s."""
+    def legs():
+        yield Straight('forward', goal_distance, linear_speed, min_linear_speed, rate)
+        yield Turn('turn left', goal_angle, angular_speed, min_angular_speed, rate)
+    return [*legs(), *legs()]

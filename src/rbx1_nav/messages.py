@@ -1,12 +1,16 @@
 """To and from ROS messages. The only module that knows both what a base is and what a message is."""
-from math import cos, pi, sin
+from math import atan2, cos, nan, pi, remainder, sin
 
-from geometry_msgs.msg import Quaternion, TransformStamped
+from geometry_msgs.msg import PoseWithCovarianceStamped, Quaternion, TransformStamped
 from nav_msgs.msg import Odometry
-from sensor_msgs.msg import JointState
+from sensor_msgs.msg import Imu, JointState
 
-MEASURED = 1e-6     # variance in m^2 or rad^2 (and their squares per second): a millimetre, a milliradian
-UNKNOWN = 1e6       # variance of what wheels cannot measure, as diff_drive_controller and robot_pose_ekf have it
+from rbx1_nav.diff_drive import Pose
+from rbx1_nav.ekf import Imu as ImuInput, Odom
+from rbx1_nav.wheels import MEASURED, Uncertainty
+
+UNKNOWN = 1e6       # variance of what nobody measures, as diff_drive_controller and robot_pose_ekf have it
+EXACT = Uncertainty(MEASURED, MEASURED, MEASURED, MEASURED)
 
 
 def diagonal(*variances):
@@ -16,11 +20,6 @@ def diagonal(*variances):
     return matrix
 
 
-POSE_COVARIANCE = diagonal(MEASURED, MEASURED, UNKNOWN, UNKNOWN, UNKNOWN, MEASURED)
-# a wheel does not roll sideways, so the lateral speed is known
-TWIST_COVARIANCE = diagonal(MEASURED, MEASURED, UNKNOWN, UNKNOWN, UNKNOWN, MEASURED)
-
-
 def from_twist(twist):
     """(linear, angular, others) of a Twist: m/s forward, rad/s to the left, and the four that a differential drive
     cannot follow."""
@@ -28,13 +27,22 @@ def from_twist(twist):
             (twist.linear.y, twist.linear.z, twist.angular.x, twist.angular.y))
 
 
+def yaw_of(rotation):
+    """The yaw (rad) of a Quaternion that lies in the plane; nan for one that is none at all."""
+    norm = rotation.x ** 2 + rotation.y ** 2 + rotation.z ** 2 + rotation.w ** 2
+    if not 0.9 < norm < 1.1:
+        return nan
+    return atan2(2 * (rotation.w * rotation.z + rotation.x * rotation.y),
+                 norm - 2 * (rotation.y ** 2 + rotation.z ** 2))
+
+
 def quaternion(yaw):
     """The rotation by yaw (rad) about z."""
     return Quaternion(0.0, 0.0, sin(yaw / 2), cos(yaw / 2))
 
 
-def odometry(stamp, config, pose, linear, angular):
-    """An Odometry message: the pose in the odom frame, the velocity (m/s, rad/s) in the base frame."""
+def odometry(stamp, config, pose, velocity, uncertainty):
+    """An Odometry message: the pose in the odom frame, the velocity (m/s, rad/s) in the base frame, an Uncertainty."""
     message = Odometry()
     message.header.stamp = stamp
     message.header.frame_id = config.odom_frame_id
@@ -42,10 +50,24 @@ def odometry(stamp, config, pose, linear, angular):
     message.pose.pose.position.x = pose.x
     message.pose.pose.position.y = pose.y
     message.pose.pose.orientation = quaternion(pose.yaw % (2 * pi))
-    message.pose.covariance = POSE_COVARIANCE
-    message.twist.twist.linear.x = linear
-    message.twist.twist.angular.z = angular
-    message.twist.covariance = TWIST_COVARIANCE
+    position, yaw, linear, angular = uncertainty
+    message.pose.covariance = diagonal(position, position, UNKNOWN, UNKNOWN, UNKNOWN, yaw)
+    message.twist.twist.linear.x, message.twist.twist.angular.z = velocity
+    # a wheel does not roll sideways, so the lateral speed is known
+    message.twist.covariance = diagonal(linear, MEASURED, UNKNOWN, UNKNOWN, UNKNOWN, angular)
+    return message
+
+
+def imu(stamp, frame_id, reading):
+    """An Imu message of a gyro's Reading: turning about the vertical axis is all that it measures."""
+    message = Imu()
+    message.header.stamp = stamp
+    message.header.frame_id = frame_id
+    message.orientation = quaternion(reading.yaw % (2 * pi))
+    message.orientation_covariance = [UNKNOWN, 0, 0, 0, UNKNOWN, 0, 0, 0, reading.yaw_variance]
+    message.angular_velocity.z = reading.rate
+    message.angular_velocity_covariance = [UNKNOWN, 0, 0, 0, UNKNOWN, 0, 0, 0, reading.rate_variance]
+    message.linear_acceleration_covariance[0] = -1      # none, says the message's definition
     return message
 
 
@@ -67,4 +89,70 @@ def joint_states(stamp, joints, wheels):
     message.name = [joint.name for joint in joints] + [name for name, _, _ in wheels]
     message.position = [joint.position for joint in joints] + [angle for _, angle, _ in wheels]
     message.velocity = [joint.velocity for joint in joints] + [speed for _, _, speed in wheels]
+    return message
+
+
+# for the filter
+
+def from_odometry(message):
+    """(Odom, variances of x, y and yaw in its pose) of an Odometry."""
+    pose = message.pose.pose
+    covariance = message.pose.covariance
+    return (Odom(message.header.stamp.to_nsec(),
+                 Pose(pose.position.x, pose.position.y, yaw_of(pose.orientation)),
+                 message.twist.covariance[0], message.twist.covariance[35]),
+            (covariance[0], covariance[7], covariance[35]))
+
+
+def from_imu(message):
+    """The filter's Imu of an Imu message."""
+    return ImuInput(message.header.stamp.to_nsec(), message.angular_velocity.z, message.angular_velocity_covariance[8])
+
+
+def planar_pose(stamp, frame_id, pose, covariance):
+    """A PoseWithCovarianceStamped of a Pose and the 3x3 covariance of x, y (m) and yaw (rad)."""
+    message = PoseWithCovarianceStamped()
+    message.header.stamp = stamp
+    message.header.frame_id = frame_id
+    message.pose.pose.position.x = pose.x
+    message.pose.pose.position.y = pose.y
+    message.pose.pose.orientation = quaternion(pose.yaw % (2 * pi))
+    matrix = diagonal(0.0, 0.0, UNKNOWN, UNKNOWN, UNKNOWN, 0.0)
+    for row, values in zip((0, 1, 5), covariance.tolist()):
+        for column, value in zip((0, 1, 5), values):
+            matrix[6 * row + column] = value
+    message.pose.covariance = matrix
+    return message
+
+
+def planar_transform(stamp, frame_id, child_frame_id, pose):
+    """A TransformStamped of a Pose of the child frame."""
+    message = TransformStamped()
+    message.header.stamp = stamp
+    message.header.frame_id = frame_id
+    message.child_frame_id = child_frame_id
+    message.transform.translation.x = pose.x
+    message.transform.translation.y = pose.y
+    message.transform.rotation = quaternion(pose.yaw % (2 * pi))
+    return message
+
+
+def odometry_of_pose(pose, before, frame_id, child_frame_id):
+    """An Odometry of a PoseWithCovarianceStamped. Its speeds are the mean ones since the pose `before` (may be None); how
+    good they are, poses do not tell."""
+    message = Odometry()
+    message.header.stamp = pose.header.stamp
+    message.header.frame_id = frame_id
+    message.child_frame_id = child_frame_id
+    message.pose = pose.pose
+    message.twist.covariance = diagonal(UNKNOWN, UNKNOWN, UNKNOWN, UNKNOWN, UNKNOWN, UNKNOWN)
+    elapsed = (pose.header.stamp - before.header.stamp).to_sec() if before else 0.0
+    if elapsed > 0:
+        yaw = yaw_of(pose.pose.pose.orientation)
+        turned = remainder(yaw - yaw_of(before.pose.pose.orientation), 2 * pi)
+        x = pose.pose.pose.position.x - before.pose.pose.position.x
+        y = pose.pose.pose.position.y - before.pose.pose.position.y
+        middle = yaw - turned / 2
+        message.twist.twist.linear.x = (x * cos(middle) + y * sin(middle)) / elapsed
+        message.twist.twist.angular.z = turned / elapsed
     return message

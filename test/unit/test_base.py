@@ -6,14 +6,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rbx1_nav.base import SECOND, Base, Limits, RefusedCommand
-from rbx1_nav.diff_drive import ORIGIN, IdealWheels, Odometry, arc
+from rbx1_nav.diff_drive import ORIGIN, arc
 from rbx1_nav.maneuver import out_and_back
+from rbx1_nav.wheels import IdealWheels
 
 STEP = SECOND // 50
 
 
 def make_base(timeout=1.0, linear=inf, angular=inf):
-    return Base(IdealWheels(0.26), Odometry(0.26), Limits(linear, angular), round(timeout * SECOND))
+    return Base(IdealWheels(0.26), Limits(linear, angular), round(timeout * SECOND))
 
 
 def test_the_exercise_ends_where_the_tutorial_says():

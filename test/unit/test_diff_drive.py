@@ -5,7 +5,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pytest import approx
 
-from rbx1_nav.diff_drive import ORIGIN, IdealWheels, Odometry, arc
+from rbx1_nav.diff_drive import ORIGIN, Odometry, arc
+from rbx1_nav.wheels import IdealWheels
 
 speeds = st.floats(-2, 2)
 durations = st.floats(0, 10)

@@ -1,0 +1,182 @@
+#!/usr/bin/env python3
+"""Combines wheel odometry and a gyro; stands in for robot_pose_ekf in a launch file.
+
+odom and imu_data in, odom_combined and its transform out: the README lists topics and parameters.
+"""
+import threading
+
+import rospy
+from diagnostic_msgs.msg import DiagnosticStatus
+from diagnostic_updater import Updater
+from geometry_msgs.msg import PoseWithCovarianceStamped
+from nav_msgs.msg import Odometry
+from sensor_msgs.msg import Imu
+from std_srvs.srv import Empty, EmptyResponse
+from tf2_msgs.msg import TFMessage
+
+from rbx1_nav import messages, node, resources
+from rbx1_nav.base import SECOND
+from rbx1_nav.config import ConfigError, Section
+from rbx1_nav.diff_drive import between
+from rbx1_nav.ekf import CombinedOdometry, RefusedMessage, priors
+from rbx1_nav.schedule import Schedule
+from rbx1_nav.surface import load_surface
+
+SENSORS = ('odom', 'imu_data')
+
+
+def read_parameters():
+    """The private parameters as a dictionary, robot_pose_ekf's among them. Raises ConfigError."""
+    section = Section(rospy.get_param(rospy.get_name(), {}), '')
+    values = dict(
+        freq=section.number('freq', 10.0, high=1000.0, expected='a rate above 0 and up to 1000 in Hz'),
+        sensor_timeout=section.number('sensor_timeout', 1.0, high=1e6, expected='a time above 0 in s'),
+        publish_tf=section.flag('publish_tf', True),
+        imu_used=section.flag('imu_used', True),
+        output_frame=section.frame('output_frame', 'odom'))
+    # what robot_pose_ekf can, and this filter cannot
+    if not section.flag('odom_used', True):
+        raise ConfigError('odom_used: False: expected true, nothing else tells how far the robot went')
+    if section.flag('vo_used', False):
+        raise ConfigError('vo_used: True: expected false, this filter knows no visual odometry')
+    surface = section.get('surface', '')
+    if surface:
+        load_surface(surface, resources.surfaces())
+    values['surface'] = surface
+    section.known.add('diagnostic_period')      # of diagnostic_updater
+    if section.unknown():
+        rospy.logwarn('Unknown, without effect: %s', ', '.join(section.unknown()))
+    return values
+
+
+class Ekf:
+    """The core's CombinedOdometry, with ROS around it."""
+
+    def __init__(self, parameters):
+        self.parameters = parameters
+        self.lock = threading.Lock()
+        self.combined = None        # of the present sender of odometry
+        self.sender = None          # the header of its connection
+        self.frames = None          # (frame_id, child_frame_id) of its odometry
+        self.schedule = Schedule(parameters['freq'])
+        self.heard = dict.fromkeys(SENSORS)     # rospy.Time of the last message
+        self.refused = dict.fromkeys(SENSORS, 0)
+
+        self.pose_pub = rospy.Publisher('odom_combined', PoseWithCovarianceStamped, queue_size=10)
+        self.tf_pub = rospy.Publisher('/tf', TFMessage, queue_size=100, tcp_nodelay=True)
+        self.diagnostics = Updater()
+        self.diagnostics.setHardwareID('none')
+        for sensor in SENSORS[:1 + parameters['imu_used']]:
+            self.diagnostics.add(sensor, lambda status, sensor=sensor: self.diagnose(sensor, status))
+        rospy.Service('~reset', Empty, self.on_reset)
+        self.odom_sub = None    # there may be odometry before the next line is done
+        self.odom_sub = rospy.Subscriber('odom', Odometry, self.on_odom, queue_size=None, tcp_nodelay=True)
+        if parameters['imu_used']:
+            rospy.Subscriber('imu_data', Imu, self.on_imu, queue_size=None, tcp_nodelay=True)
+
+    def on_odom(self, message):
+        """The wheels' odometry arrives."""
+        with self.lock:
+            if message._connection_header is not self.sender:
+                self.meet(message._connection_header)
+            self.frames = message.header.frame_id.lstrip('/'), message.child_frame_id.lstrip('/')
+            self.take('odom', self.combined.add_odom, *messages.from_odometry(message))
+
+    def on_imu(self, message):
+        """The gyro's reading arrives."""
+        with self.lock:
+            if self.combined:
+                self.take('imu_data', self.combined.add_imu, messages.from_imu(message))
+
+    def on_reset(self, _):
+        """Begin again where the odometry says, as the base does after its own ~reset."""
+        with self.lock:
+            if self.combined:
+                self.combined.restart('~reset')
+        return EmptyResponse()
+
+    def meet(self, sender):
+        """Somebody new sends odometry: where the one before is gone, with another robot, as far as anyone can tell."""
+        connections = self.odom_sub.impl.connections if self.odom_sub else []
+        if self.sender is None or not any(connection.header is self.sender for connection in connections):
+            if self.sender is not None:
+                rospy.logwarn('odom comes from another sender: starting again')
+            self.sender = sender
+            # a simulated base says what it stands on; a real one stands, like the tutorial's, on carpet
+            name = self.parameters['surface'] or rospy.get_param('/arbotix/surface', 'low_ply_carpet')
+            rospy.loginfo('Wheels and gyro are taken to be as on %s', name)
+            self.combined = CombinedOdometry(priors(load_surface(name, resources.surfaces())),
+                                             round(SECOND * self.parameters['sensor_timeout']),
+                                             self.parameters['imu_used'], rospy.logwarn)
+
+    def take(self, sensor, add, *what):
+        """Hand a message to the filter, and publish what comes of it."""
+        now = rospy.Time.now()
+        try:
+            add(now.to_nsec(), *what)
+        except RefusedMessage as error:
+            self.refused[sensor] += 1
+            rospy.logerr_throttle_identical(1, '%s: %s; refused' % (rospy.resolve_name(sensor), error))
+            return
+        self.heard[sensor] = now
+        estimate = self.combined.estimate
+        if estimate and self.schedule.due(estimate.stamp):
+            self.publish(estimate)
+
+    def publish(self, estimate):
+        """Say where the robot is."""
+        stamp = rospy.Time(0, estimate.stamp)
+        frame = self.parameters['output_frame']
+        self.pose_pub.publish(messages.planar_pose(stamp, frame, estimate.pose, estimate.covariance))
+        if self.parameters['publish_tf']:
+            odom_frame, base_frame = self.frames
+            # a frame has one parent: where the base frame has its own, odom, that one gets ours
+            child, pose = ((base_frame, estimate.pose) if frame == odom_frame
+                           else (odom_frame, between(estimate.pose, estimate.odom.pose)))
+            self.tf_pub.publish([messages.planar_transform(stamp, frame, child, pose)])
+
+    def diagnose(self, sensor, status):
+        """Fill in the DiagnosticStatus of a sensor."""
+        with self.lock:
+            heard, refused = self.heard[sensor], self.refused[sensor]
+            left_out = self.combined is not None and self.combined.silent[sensor]
+            outliers = self.combined.filter.outliers if self.combined and self.combined.filter else 0
+        age = None if heard is None else (rospy.Time.now() - heard).to_sec()
+        if left_out or age is None or age > self.parameters['sensor_timeout']:
+            status.summary(DiagnosticStatus.WARN, 'No message yet' if age is None else 'Silent, left out')
+        else:
+            status.summary(DiagnosticStatus.OK, 'Used')
+        status.add('Age of the last message (s)', 'never' if age is None else '%.3f' % age)
+        status.add('Refused messages', refused)
+        if sensor == 'odom':
+            status.add('Steps in which wheels and gyro contradicted each other', outliers)
+        return status
+
+    def run(self):
+        """Until the node is told to end."""
+        while not node.end_requested.is_set():
+            self.diagnostics.update()
+            node.sleep(0.05)
+
+
+def main():
+    """Read the parameters, and run. Returns the exit status."""
+    node.init_node('robot_pose_ekf')
+    try:
+        parameters = read_parameters()
+    except ConfigError as error:
+        rospy.logfatal('%s/%s', rospy.get_name(), error)
+        return 1
+    Ekf(parameters).run()
+    return 0
+
+
+if __name__ == '__main__':
+    try:
+        status = main()
+    except rospy.ROSInterruptException:     # before it began
+        status = 0
+    except rospy.ROSException as error:
+        rospy.logfatal('%s', error)
+        status = 1
+    node.leave(status)

@@ -1,0 +1,199 @@
+"""Wheels: what they make of a command, what their encoders count of it, and where it takes the robot.
+
+Every kind of wheels has
+
+    travel(linear, angular, duration)   the (left, right) travel in m that is counted while a command is in force
+    velocity(linear, angular)           the speeds (m/s, rad/s) that they tell meanwhile
+    true_velocity(linear, angular)      the speeds of the robot itself
+    at_rest         whether they stand, and go on standing until there is a command to move
+    truth           the Odometry of the robot itself, which no encoder knows
+    uncertainty     how well odometry knows it: an Uncertainty
+    reset()         puts the robot back at the origin, at rest
+"""
+from collections import namedtuple
+from math import copysign, exp, floor, hypot, log
+
+from rbx1_nav.diff_drive import ORIGIN, Odometry
+
+MEASURED = 1e-6     # variance in m^2 or rad^2 (and their squares per second): a millimetre, a milliradian
+
+Uncertainty = namedtuple('Uncertainty', 'position yaw linear angular')
+Uncertainty.__doc__ = 'Variances of an odometry: of x and y (m^2), yaw (rad^2), linear (m^2/s^2), angular speed (rad^2/s^2).'
+
+
+class IdealWheels:
+    """Wheels that do at once, and exactly, what they are told: no inertia, no slip."""
+
+    at_rest = True
+    uncertainty = Uncertainty(MEASURED, MEASURED, MEASURED, MEASURED)
+
+    def __init__(self, base_width):
+        """base_width: distance between the wheels, m."""
+        self.base_width = base_width
+        self.truth = Odometry(base_width)
+
+    @staticmethod
+    def velocity(linear, angular):
+        """What is commanded is what they do."""
+        return linear, angular
+
+    true_velocity = velocity
+
+    def travel(self, linear, angular, duration):
+        """(left, right) travel in m while `linear` (m/s) and `angular` (rad/s) are in force for `duration` (s)."""
+        difference = angular * self.base_width / 2
+        left, right = (linear - difference) * duration, (linear + difference) * duration
+        self.truth.update(left, right)
+        return left, right
+
+    def reset(self):
+        """Put the robot back at the origin."""
+        self.truth.pose = ORIGIN
+
+
+class Motor:
+    """A speed that follows a command: with a lag, with a limited acceleration, and short of it by a drag.
+
+    Its acceleration is (command - speed -+ drag) / lag, cut to accel_limit: drag always acts against the motion, so it
+    slows the start, shortens the stop, and holds a wheel that stands for as long as the command is no more than it.
+    Solved in closed form, so that it does not matter in how many steps it is asked.
+    """
+
+    def __init__(self, lag, accel_limit, drag):
+        """lag: s, accel_limit: m/s^2, drag: m/s; all above 0."""
+        self.lag = lag
+        self.accel_limit = accel_limit
+        self.drag = drag
+        self.speed = 0.0        # m/s
+
+    def travel(self, command, duration):
+        """How far it goes (m) while a speed (m/s) is asked of it for `duration` (s)."""
+        travel = 0.0
+        while duration > 0:
+            target = command - copysign(self.drag, self.speed or command)
+            if not self.speed and target * command <= 0:
+                break       # drag holds it
+            gap = target - self.speed
+            most = self.accel_limit * self.lag      # m/s: the gap from which on the limit cuts
+            if abs(gap) > most * (1 + 1e-12):
+                acceleration = copysign(self.accel_limit, gap)
+                time = (abs(gap) - most) / self.accel_limit
+                if self.speed * acceleration < 0:
+                    stop = -self.speed / acceleration
+                    if stop <= min(time, duration):
+                        travel += self.speed * stop / 2
+                        self.speed = 0.0
+                        duration -= stop
+                        continue
+                time = min(time, duration)
+                travel += (self.speed + acceleration * time / 2) * time
+                self.speed += acceleration * time
+            else:
+                time = duration
+                if self.speed * target < 0:
+                    time = min(time, self.lag * log(1 - self.speed / target))
+                closed = gap * (1 - exp(-time / self.lag))
+                travel += target * time - closed * self.lag
+                # where it comes to rest before the end of the duration, it does so exactly
+                self.speed = self.speed + closed if time == duration else 0.0
+            duration -= time
+        return travel
+
+
+class Encoder:
+    """Counts whole ticks, to the nearest."""
+
+    def __init__(self, ticks_meter):
+        """ticks_meter: ticks for each metre."""
+        self.ticks_meter = ticks_meter
+        self.total = 0.0    # m, of the wheel
+        self.ticks = 0
+
+    def count(self, travel):
+        """What it counts (m) while its wheel travels (m)."""
+        self.total += travel
+        before, self.ticks = self.ticks, floor(self.total * self.ticks_meter + 0.5)
+        return (self.ticks - before) / self.ticks_meter
+
+
+class Wheels:
+    """Two wheels with inertia on a surface that drags and lets them slip, and encoders that count whole ticks.
+
+    Both motors are alike, so what they do in common (straight) and against each other (turning) are two motions that do
+    not touch each other; each is followed with the drag and the slip of its own.
+    """
+
+    WINDOW = 0.02       # s, over which the encoders' counts are taken together to tell a speed
+
+    def __init__(self, base_width, surface, run):
+        """base_width: m; surface: a Surface; run: the Run drawn from it."""
+        self.base_width = base_width
+        self.surface = surface
+        self.run = run
+        self.straight = Motor(surface.lag, surface.accel_limit, surface.drag_straight)
+        self.turning = Motor(surface.lag, surface.accel_limit, surface.drag_turning)
+        self.left = Encoder(surface.ticks_meter)
+        self.right = Encoder(surface.ticks_meter)
+        self.truth = Odometry(base_width)
+        self.reset()
+
+    def travel(self, linear, angular, duration):
+        """(left, right) travel in m that the encoders count while `linear` (m/s) and `angular` (rad/s) are in force."""
+        straight = self.straight.travel(linear, duration)
+        turning = self.turning.travel(angular * self.base_width / 2, duration)
+        self._rolling = bool(straight or turning or self.straight.speed or self.turning.speed)
+        run = self.run
+        self.truth.move(straight * (1 - run.slip_straight), 2 * turning / self.base_width * (1 - run.slip_turning))
+        left, right = self.left.count(straight - turning), self.right.count(straight + turning)
+        self._tell_speed(left, right, duration)
+        return left, right
+
+    def velocity(self, *_):
+        """What the encoders counted last, whatever is commanded."""
+        return self._velocity
+
+    def true_velocity(self, *_):
+        """What is left of the motors' speeds, whatever is commanded."""
+        return (self.straight.speed * (1 - self.run.slip_straight),
+                2 * self.turning.speed / self.base_width * (1 - self.run.slip_turning))
+
+    @property
+    def at_rest(self):
+        """Whether nothing moved the last time, and the encoders have said so."""
+        return not (self._rolling or any(self._velocity))
+
+    def _tell_speed(self, left, right, duration):
+        self._distance += (left + right) / 2
+        self._angle += (right - left) / self.base_width
+        self._time += duration
+        if self._time >= self.WINDOW:
+            self._velocity = self._distance / self._time, self._angle / self._time
+            self._path += abs(self._distance)
+            self._turned += abs(self._angle)
+            self._time = self._distance = self._angle = 0.0
+
+    @property
+    def uncertainty(self):
+        """Pose: what slip, not known to be there, adds up to; an upper bound, since the way back may undo it.
+
+        Speeds: rounding to whole ticks, each of variance 1/6 tick^2 as the difference of two roundings (1/12 each),
+        over WINDOW; a robot that stands is known to stand.
+        """
+        surface = self.surface
+        yaw = hypot(surface.slip_turning, surface.slip_turning_spread) * self._turned
+        position = hypot(hypot(surface.slip_straight, surface.slip_straight_spread), yaw) * self._path
+        tick = 1 / surface.ticks_meter
+        position, yaw = position ** 2 + tick ** 2, yaw ** 2 + (tick / self.base_width) ** 2
+        if self.at_rest:
+            return Uncertainty(position, yaw, MEASURED, MEASURED)
+        wheel = tick ** 2 / 6 / self.WINDOW ** 2
+        return Uncertainty(position, yaw, MEASURED + wheel / 2, MEASURED + 2 * wheel / self.base_width ** 2)
+
+    def reset(self):
+        """Put the robot back at the origin, at rest."""
+        self.straight.speed = self.turning.speed = 0.0
+        self._rolling = False
+        self._velocity = 0.0, 0.0
+        self._time = self._distance = self._angle = 0.0     # s, m and rad that no speed was told of yet
+        self._path = self._turned = 0.0     # m and rad, all ways counted positive
+        self.truth.pose = ORIGIN
