@@ -168,6 +168,12 @@ def check(field, value, good, expected):
         raise RefusedMessage('%s: %s: expected %s' % (field, value, expected))
 
 
+def jumped(before, odom):
+    """Whether no robot goes from the one Odom to the other in that time."""
+    distance = hypot(odom.pose.x - before.pose.x, odom.pose.y - before.pose.y)
+    return distance > MOST_SPEED * (odom.stamp - before.stamp) / SECOND + MOST_JUMP
+
+
 class CombinedOdometry:
     """Puts messages in order, and the filter to work: a step from each odometry message to the next.
 
@@ -197,6 +203,7 @@ class CombinedOdometry:
         self.time = None            # ns, how far the filter is
         self.odom = None            # the last Odom of a step
         self.odom_yaw = None        # rad, the filter's yaw at that time
+        self.suspect = None         # an Odom that was too far away to be believed
         self.last = {'odom': None, 'imu_data': None}        # ns, stamp of the last message
         self.silent = {'odom': False, 'imu_data': False}    # who is left out
 
@@ -271,16 +278,21 @@ class CombinedOdometry:
         return self.silent['imu_data']
 
     def _step(self, odom):
-        if self.filter:
-            elapsed = (odom.stamp - self.odom.stamp) / SECOND
-            across, up = odom.pose.x - self.odom.pose.x, odom.pose.y - self.odom.pose.y
-            if hypot(across, up) > MOST_SPEED * elapsed + MOST_JUMP:
-                self.restart('odom: jumped by %.2f m in %.3f s' % (hypot(across, up), elapsed))
+        if self.filter and jumped(self.odom, odom):
+            # one such message is a mistake; two that agree are another place
+            if self.suspect is None or jumped(self.suspect, odom):
+                self.say('odom: (%g, %g) m comes too soon after (%g, %g) m: ignored' % (odom.pose[:2] + self.odom.pose[:2]))
+                self.suspect = odom
+                return
+            self.restart('odom: jumped from (%g, %g) m to (%g, %g) m' % (self.odom.pose[:2] + odom.pose[:2]))
+        self.suspect = None
         if not self.filter:
             self.filter = Filter(self.prior, odom.pose)
             self._finish(odom.stamp, odom, 0.0, 0.0)
             return
 
+        elapsed = (odom.stamp - self.odom.stamp) / SECOND
+        across, up = odom.pose.x - self.odom.pose.x, odom.pose.y - self.odom.pose.y
         duration = max(0, odom.stamp - self.time) / SECOND      # less than elapsed where the gyro went on alone
         turned = wrapped(odom.pose.yaw - self.odom.pose.yaw)
         gyro = self._gyro_turn(odom.stamp)

@@ -1,6 +1,6 @@
 """What a robot is to do, as a list of motions: which velocity, and for how many ticks, or until the pose says stop."""
 from collections import namedtuple
-from math import hypot, isfinite, pi, remainder
+from math import cos, isfinite, pi, remainder, sin
 
 Motion = namedtuple('Motion', 'name linear angular ticks')
 Motion.__doc__ = 'One motion: linear in m/s, angular in rad/s (positive to the left), for a number of ticks.'
@@ -81,8 +81,8 @@ class Straight(Leg):
     unit = 'm'
 
     def done(self):
-        """How far it went."""
-        return hypot(self.last.x - self.start.x, self.last.y - self.start.y)
+        """How far ahead it went; backwards would be less than nothing."""
+        return ((self.last.x - self.start.x) * cos(self.start.yaw) + (self.last.y - self.start.y) * sin(self.start.yaw))
 
     @staticmethod
     def velocity(speed):

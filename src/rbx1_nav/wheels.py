@@ -78,7 +78,7 @@ class Motor:
             if abs(gap) > most * (1 + 1e-12):
                 acceleration = copysign(self.accel_limit, gap)
                 time = (abs(gap) - most) / self.accel_limit
-                if self.speed * acceleration < 0:
+                if self.speed and (self.speed > 0) != (gap > 0):
                     stop = -self.speed / acceleration
                     if stop <= min(time, duration):
                         travel += self.speed * stop / 2
@@ -90,7 +90,7 @@ class Motor:
                 self.speed += acceleration * time
             else:
                 time = duration
-                if self.speed * target < 0:
+                if self.speed and (self.speed > 0) != (target > 0):
                     time = min(time, self.lag * log(1 - self.speed / target))
                 closed = gap * (1 - exp(-time / self.lag))
                 travel += target * time - closed * self.lag

@@ -1,9 +1,12 @@
 """The exercise as ticks."""
-from math import inf, pi
+from math import hypot, inf, pi, remainder
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from rbx1_nav.maneuver import out_and_back, ticks
+from rbx1_nav.diff_drive import ORIGIN, Pose, arc
+from rbx1_nav.maneuver import StuckError, out_and_back, out_and_back_by_odometry, ticks
 
 
 def test_the_tutorials_numbers():
@@ -25,3 +28,54 @@ def test_cut_to_a_whole_number_without_losing_one_to_rounding(goal, speed, rate,
 def test_no_motion_without_end_or_without_a_tick(goal, speed):
     with pytest.raises(ValueError, match='expected between 1 tick and a day'):
         ticks(goal, speed, 50)
+
+
+# by odometry
+
+LEGS = dict(linear_speed=0.2, goal_distance=1.0, angular_speed=1.0, goal_angle=pi, rate=50, min_linear_speed=0.05,
+            min_angular_speed=0.2)
+
+
+def drive(leg, pose, part=1.0):
+    """Follow a leg with a robot that does a part of what it is told; (where it ends, the speeds of all ticks)."""
+    speeds = []
+    while True:
+        speed = leg.next_speed(pose._replace(yaw=remainder(pose.yaw, 2 * pi)))
+        if not speed:
+            return pose, speeds
+        speeds.append(speed)
+        linear, angular = leg.velocity(speed)
+        pose = arc(pose, part * linear / 50, part * angular / 50)
+
+
+def test_four_legs():
+    assert [(leg.name, leg.goal, leg.unit) for leg in out_and_back_by_odometry(**LEGS)] == [
+        ('forward', 1.0, 'm'), ('turn left', pi, 'rad')] * 2
+
+
+@given(st.floats(-10, 10), st.floats(-10, 10), st.floats(-10, 10), st.floats(0.5, 1.0))
+def test_it_stops_on_its_goal_wherever_it_starts_and_however_slow_the_robot_is(x, y, yaw, part):
+    forward, turn, *_ = out_and_back_by_odometry(**LEGS)
+    pose, speeds = drive(forward, Pose(x, y, yaw), part)
+    # half of the slowest tick's travel: 0.05 m/s and 0.2 rad/s, 1/50 s
+    assert hypot(pose.x - x, pose.y - y) == pytest.approx(1.0, abs=0.5001 * 0.001)
+    assert min(speeds) >= 0.05 and max(speeds) == 0.2 == speeds[0]
+    pose, speeds = drive(turn, pose, part)
+    assert pose.yaw - yaw == pytest.approx(pi, abs=0.5001 * 0.004)
+    assert min(speeds) >= 0.2 and max(speeds) == 1.0 == speeds[0]
+
+
+def test_it_slows_down_before_its_goal():
+    _, speeds = drive(out_and_back_by_odometry(**LEGS)[0], ORIGIN)
+    assert sorted(speeds, reverse=True) == speeds and speeds[-1] == pytest.approx(0.05, abs=0.005)
+
+
+def test_a_turn_of_more_than_a_full_one():
+    pose, _ = drive(out_and_back_by_odometry(**dict(LEGS, goal_angle=7.0))[1], ORIGIN)
+    assert pose.yaw == pytest.approx(7.0, abs=0.002001)
+
+
+@pytest.mark.parametrize('part', [0.0, -1.0])
+def test_a_robot_that_gets_no_nearer_is_given_up(part):
+    with pytest.raises(StuckError, match='forward: no nearer for 5 s, .* of 1.000 to go'):
+        drive(out_and_back_by_odometry(**LEGS)[0], ORIGIN, part)
