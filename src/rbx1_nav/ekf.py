@@ -13,7 +13,7 @@ uncorrelated (the Gauss-Markov theorem), so to use the two one after the other l
 The rest is the textbook's filter: Thrun, Burgard and Fox, Probabilistic Robotics, section 3.3.
 """
 from collections import namedtuple, deque
-from math import cos, hypot, inf, isfinite, pi, radians, remainder, sin
+from math import cos, hypot, inf, pi, radians, remainder, sin
 
 import numpy
 
@@ -26,6 +26,8 @@ START = 1e-9                # variance of the first pose, m^2 and rad^2: the fra
 BIAS_WALK = radians(0.002)  # rad/s for each root of a second: no gyro's bias is constant for ever; 0.5 deg/s in 17 hours
 OUTLIER = 5.0               # standard deviations between wheels and gyro, from which on one of them must be wrong
 
+MOST = 1e6              # m or rad/s that a message may tell
+LEAST_VARIANCE = 1e-12  # m^2, rad^2, or those per second squared: a micrometre
 MOST_SPEED = 2.0        # m/s: odometry that moves faster has jumped
 MOST_JUMP = 0.05        # m that it may be off besides
 UNSEEN_SPEED = 0.5      # m/s: so fast may a robot go (1 sigma) while no odometry comes
@@ -168,6 +170,17 @@ def check(field, value, good, expected):
         raise RefusedMessage('%s: %s: expected %s' % (field, value, expected))
 
 
+def check_number(field, value):
+    """Raises RefusedMessage where a number is none, or so big that sums lose what is small."""
+    check(field, value, abs(value) <= MOST, 'a number of at most %g' % MOST)
+
+
+def check_variance(field, value):
+    """Raises RefusedMessage where a variance is 0, none, or so small or big that dividing by it means nothing."""
+    check(field, value, LEAST_VARIANCE <= value <= 1 / LEAST_VARIANCE, 'a variance above 0, from %g to %g'
+          % (LEAST_VARIANCE, 1 / LEAST_VARIANCE))
+
+
 def jumped(before, odom):
     """Whether no robot goes from the one Odom to the other in that time."""
     distance = hypot(odom.pose.x - before.pose.x, odom.pose.y - before.pose.y)
@@ -216,11 +229,12 @@ class CombinedOdometry:
         of a second's travel, which is what robot_pose_ekf takes them for.
         """
         for field, value in zip(('position.x', 'position.y', 'orientation'), odom.pose):
-            check('pose.pose.' + field, value, isfinite(value), 'finite numbers')
+            check_number('pose.pose.' + field, value)
         for index, variance in zip((0, 7, 35), pose_variances):
-            check('pose.covariance[%d]' % index, variance, 0 < variance < inf, 'a finite variance above 0')
+            check_variance('pose.covariance[%d]' % index, variance)
         for index, variance in ((0, odom.linear_variance), (35, odom.angular_variance)):
-            check('twist.covariance[%d]' % index, variance, 0 <= variance < inf, 'a finite variance')
+            if variance != 0:
+                check_variance('twist.covariance[%d]' % index, variance)
         if not (odom.linear_variance and odom.angular_variance):
             odom = odom._replace(linear_variance=pose_variances[0], angular_variance=pose_variances[2])
         self._heard('odom', now, odom.stamp)
@@ -229,9 +243,8 @@ class CombinedOdometry:
 
     def add_imu(self, now, imu):
         """Take an Imu that arrived at `now` (ns). Raises RefusedMessage."""
-        check('angular_velocity.z', imu.rate, isfinite(imu.rate), 'a finite number')
-        check('angular_velocity_covariance[8]', imu.variance, 0 < imu.variance < inf,
-              'a finite variance above 0')
+        check_number('angular_velocity.z', imu.rate)
+        check_variance('angular_velocity_covariance[8]', imu.variance)
         before = self._heard('imu_data', now, imu.stamp)
         # after a silence it tells of a time whose begin nobody knows
         if before is not None and imu.stamp - before <= self.timeout:
