@@ -141,8 +141,8 @@ def main():
         seeds = range(read_seed(arguments.seed), read_seed(arguments.seed + arguments.runs - 1) + 1)
         with open(arguments.config, encoding='utf-8') as file:
             config = read_config(yaml.safe_load(file))
-        print('%d runs of each method on %s: mean and spread (1 sigma) at the end\n'
-              '%-6s %-14s  %17s  %17s  %17s  %17s' % (arguments.runs, arguments.surface, 'method', '', 'x (m)', 'y (m)',
+        print('Runs of each method on %s: %d. Mean and spread (1 sigma) at the end:\n'
+              '%-6s %-14s  %17s  %17s  %17s  %17s' % (arguments.surface, arguments.runs, 'method', '', 'x (m)', 'y (m)',
                                                       'heading (degrees)', 'from start (m)'))
         results = {}
         for method in arguments.method:

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Prints where a recorded run ended, and draws its odometry as arrows: report.py BAG PICTURE"""
+"""Prints where a recorded run ended, and draws it as arrows: report.py BAG PICTURE"""
 import sys
 from math import atan2, cos, degrees, hypot, pi, sin
 
@@ -10,19 +10,22 @@ matplotlib.use('Agg')
 from matplotlib import pyplot       # noqa: E402  (the backend comes first)
 
 SPACING, TURN = 0.1, 0.15       # m and rad between two arrows, as in sim.rviz
+TOPICS = {'/ground_truth': ('truth', 'royalblue'), '/odom': ('/odom says', 'firebrick'),
+          '/odom_ekf': ('/odom_ekf says', 'seagreen')}
 
 
-def poses(path):
-    """All (x, y, yaw) of /odom in a bag: m and rad, the yaw not wrapped."""
-    result = []
-    with rosbag.Bag(path) as bag:
-        for _, message, _ in bag.read_messages('/odom'):
+def read_paths(bag):
+    """For each of TOPICS that was recorded, all its (x, y, yaw): m and rad, the yaw not wrapped."""
+    paths = {}
+    with rosbag.Bag(bag) as file:
+        for topic, message, _ in file.read_messages(list(TOPICS)):
+            path = paths.setdefault(topic, [])
             pose = message.pose.pose
             yaw = 2 * atan2(pose.orientation.z, pose.orientation.w)
-            if result:
-                yaw += 2 * pi * round((result[-1][2] - yaw) / (2 * pi))
-            result.append((pose.position.x, pose.position.y, yaw))
-    return result
+            if path:
+                yaw += 2 * pi * round((path[-1][2] - yaw) / (2 * pi))
+            path.append((pose.position.x, pose.position.y, yaw))
+    return {topic: paths[topic] for topic in TOPICS if topic in paths}
 
 
 def arrows(path):
@@ -34,30 +37,33 @@ def arrows(path):
     return chosen
 
 
-def draw(path, picture):
+def draw(paths, picture):
     """The arrows, seen from above."""
-    x, y, yaw = zip(*arrows(path))
     figure, axes = pyplot.subplots(figsize=(9, 6))
-    axes.quiver(x, y, [cos(a) for a in yaw], [sin(a) for a in yaw], color='firebrick', angles='xy',
-                scale_units='xy', scale=1 / 0.3, width=0.004)
-    axes.set(title='Odometry, out and back', xlabel='x (m)', ylabel='y (m)', xlim=(-0.5, 1.5), ylim=(-0.6, 0.6),
+    for topic, path in paths.items():
+        name, color = TOPICS[topic]
+        x, y, yaw = zip(*arrows(path))
+        axes.quiver(x, y, [cos(a) for a in yaw], [sin(a) for a in yaw], color=color, label=name, angles='xy',
+                    scale_units='xy', scale=1 / 0.3, width=0.004)
+    axes.set(title='Out and back', xlabel='x (m)', ylabel='y (m)', xlim=(-0.5, 1.5), ylim=(-0.6, 0.9),
              aspect='equal', xticks=[-0.5, 0, 0.5, 1, 1.5], yticks=[-0.5, 0, 0.5])
     axes.grid(True)
+    axes.legend(loc='upper right')
     figure.savefig(picture, dpi=100, bbox_inches='tight')
 
 
 def main(bag, picture):
     """Report one run."""
-    path = poses(bag)
-    if not path:
+    paths = read_paths(bag)
+    if '/odom' not in paths:
         sys.exit('%s: no odometry: expected messages on /odom' % bag)
-    (x0, y0, yaw0), (x, y, yaw) = path[0], path[-1]
-    print('Final pose               x %.4f m, y %.4f m, heading %.2f degrees' % (x, y, degrees(atan2(sin(yaw), cos(yaw)))))
-    print('Distance from the start  %.4f m' % hypot(x - x0, y - y0))
-    print('Angle turned             %.2f degrees' % degrees(yaw - yaw0))
-    draw(path, picture)
-    print('Bag                      %s' % bag)
-    print('Picture                  %s' % picture)
+    for topic, path in paths.items():
+        (x0, y0, yaw0), (x, y, yaw) = path[0], path[-1]
+        print('Final pose, %-15s x %.4f m, y %.4f m, heading %.2f degrees; %.4f m from the start, %.2f degrees turned' % (
+            TOPICS[topic][0] + ':', x, y, degrees(atan2(sin(yaw), cos(yaw))), hypot(x - x0, y - y0), degrees(yaw - yaw0)))
+    draw(paths, picture)
+    print('Bag:     %s' % bag)
+    print('Picture: %s' % picture)
 
 
 if __name__ == '__main__':

@@ -35,12 +35,35 @@ class TestBadParameters(unittest.TestCase):
             rospy.delete_param('/out_and_back')
         self.assertFalse(heard.messages)
 
+    def test_driver_by_odometry(self):
+        heard = support.Watch('/cmd_vel', Twist)
+        for argument, name, value in [('_min_linear_speed:=-1', '/min_linear_speed', '-1'),
+                                      ('_transform_timeout:=0', '/transform_timeout', '0'),
+                                      ('_odom_frame:=7', '/odom_frame', '7'), ('_base_frame:=a b', '/base_frame', "'a b'")]:
+            self.check(support.by_odometry(argument), [name, value, 'expected'])
+            rospy.delete_param('/out_and_back')
+        self.assertFalse(heard.messages)
+
+    def test_filter(self):
+        for params, expected in [
+                ({'freq': 0}, ['freq', '0', 'above 0']), ({'sensor_timeout': 'long'}, ['sensor_timeout', "'long'"]),
+                ({'imu_used': 1}, ['imu_used', '1', 'true or false']), ({'output_frame': ''}, ['output_frame', "''"]),
+                ({'odom_used': False}, ['odom_used', 'False', 'expected true']),
+                ({'vo_used': True}, ['vo_used', 'True', 'expected false']),
+                ({'surface': 'sand'}, ['surface', "'sand'", 'hard_floor, ideal, low_ply_carpet'])]:
+            rospy.set_param('/robot_pose_ekf', params)
+            self.check(support.Process('rosrun', 'rbx1_nav', 'ekf.py'), expected)
+            rospy.delete_param('/robot_pose_ekf')
+
     def test_base(self):
         for params, expected in [
                 ({}, ['/arbotix/controllers', 'missing']),
                 ({'controllers': {'base': dict(BASE, base_width=0)}}, ['base/base_width', '0', 'above 0']),
                 ({'controllers': {'base': dict(BASE, rate=-1)}}, ['base/rate', '-1', 'above 0']),
                 ({'controllers': {'base': dict(BASE, type='arm')}}, ['base/type', "'arm'", 'diff_controller']),
+                ({'controllers': {'base': BASE}, 'surface': 'sand'},
+                 ['/arbotix/surface', "'sand'", 'hard_floor, ideal, low_ply_carpet']),
+                ({'controllers': {'base': BASE}, 'seed': -1}, ['/arbotix/seed', '-1', 'whole number']),
                 ({'controllers': {'base': BASE}, 'real_time_factor': 5}, ['real_time_factor', '5', '/use_sim_time'])]:
             if params:
                 rospy.set_param('/arbotix', params)

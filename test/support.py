@@ -16,7 +16,7 @@ from rosgraph_msgs.msg import Clock
 
 LIMIT = 60      # s of wall time after which a test gives up; no test asserts less
 
-# the exact end of the exercise: 157 ticks of 1/50 s turn 3.14 rad, a little less than pi (tutorial.md does the sum)
+# the exact end of the exercise: 157 ticks of 1/50 s turn 3.14 rad, a little less than pi (the sum is in the README)
 EXACT_X, EXACT_Y, EXACT_TURN = 1 + math.cos(3.14), math.sin(3.14), 6.28
 MICROMETRE = 1e-6
 
@@ -178,6 +178,17 @@ class Process:
 def out_and_back(*arguments):
     """The exercise as a Process."""
     return Process('rosrun', 'rbx1_nav', 'timed_out_and_back.py', *arguments)
+
+
+def by_odometry(*arguments):
+    """The exercise by odometry as a Process."""
+    return Process('rosrun', 'rbx1_nav', 'odom_out_and_back.py', *arguments)
+
+
+def pose(odom):
+    """(x, y, yaw) of an Odometry message, m and rad."""
+    point = odom.pose.pose.position
+    return point.x, point.y, yaw(odom)
 
 
 def main(name, case):

@@ -1,0 +1,37 @@
+#!/usr/bin/python3
+"""odom_out_and_back.py comes back: by_odometry.py FRAME METRES DEGREES [TOPIC...]: how far off it may end.
+
+The end is that of /ground_truth. TOPICs are waited for before the start.
+"""
+import math
+import sys
+import unittest
+
+import rospy
+
+import support
+
+
+class TestByOdometry(unittest.TestCase):
+    def test_end(self):
+        frame, metres, degrees, *topics = sys.argv[1:sys.argv.index('--')]
+        support.init_node('by_odometry')
+        truth = support.Watch('/ground_truth', support.Odometry)
+        support.wait_for(lambda: truth.last, '/ground_truth')
+        for topic in topics:
+            rospy.wait_for_message(topic, rospy.AnyMsg, support.LIMIT)
+        # the filter learns the gyro's bias while the robot stands: 2 s, as offline
+        start = truth.last.header.stamp
+        support.wait_for(lambda: (truth.last.header.stamp - start).to_sec() > 2, 'two seconds')
+
+        driver = support.by_odometry('_odom_frame:=' + frame)
+        self.addCleanup(driver.kill)
+        self.assertEqual(driver.wait(), 0, driver.output)
+        x, y, yaw = support.pose(truth.next())
+        self.assertGreater(max(message.pose.pose.position.x for message in truth.messages), 0.9)
+        self.assertLess(math.hypot(x, y), float(metres))
+        self.assertLess(abs(math.degrees(support.wrapped(yaw))), float(degrees))
+
+
+if __name__ == '__main__':
+    support.main('by_odometry', TestByOdometry)

@@ -1,0 +1,50 @@
+#!/usr/bin/python3
+"""On carpet the timed script misses, as in the tutorial's picture, and just as the offline simulation of the seed says."""
+import math
+import os
+import unittest
+
+import rospkg
+import rospy
+import yaml
+
+from rbx1_nav.config import read_config
+from rbx1_nav.simulation import simulate
+from rbx1_nav.surface import load_surface
+
+import support
+
+
+class TestCarpet(unittest.TestCase):
+    def test_timed(self):
+        support.init_node('carpet')
+        odom = support.OdomWatch()
+        truth = support.Watch('/ground_truth', support.Odometry)
+        support.wait_for(lambda: truth.last, '/ground_truth')
+        driver = support.out_and_back()
+        self.addCleanup(driver.kill)
+        self.assertEqual(driver.wait(), 0, driver.output)
+        odom.next()
+        x, y, yaw = support.pose(truth.next())
+
+        # the tutorial's picture: about half a metre to the left of the start, and facing elsewhere
+        self.assertGreater(y, 0.35)
+        self.assertLess(math.hypot(x, y), 0.65)
+        self.assertTrue(20 < abs(math.degrees(support.wrapped(yaw))) < 90, math.degrees(yaw))
+        # the robot knows, all but
+        self.assertLess(math.hypot(x - odom.position()[0], y - odom.position()[1]), 0.20)
+
+        # the same pieces with the same seed, and no ROS: 1e-9 is far over what floats lose in a thousand steps
+        folder = os.path.join(rospkg.RosPack().get_path('rbx1_nav'), 'config')
+        with open(os.path.join(folder, 'turtlebot.yaml')) as file:
+            config = read_config(yaml.safe_load(file))
+        surface = load_surface('low_ply_carpet', os.path.join(folder, 'surfaces'))
+        end = simulate('timed', config, surface, rospy.get_param('/arbotix/seed')).end
+        for told, offline in (((x, y, yaw), end.truth), (support.pose(odom.last), end.odometry)):
+            self.assertAlmostEqual(told[0], offline.x, delta=1e-9)
+            self.assertAlmostEqual(told[1], offline.y, delta=1e-9)
+            self.assertAlmostEqual(support.wrapped(told[2] - offline.yaw), 0, delta=1e-9)
+
+
+if __name__ == '__main__':
+    support.main('carpet', TestCarpet)

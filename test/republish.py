@@ -1,0 +1,42 @@
+#!/usr/bin/python3
+"""With start_filter false, somebody else's combined pose becomes /odom_ekf, and no filter runs."""
+import unittest
+
+import rosnode
+import rospy
+from geometry_msgs.msg import PoseWithCovarianceStamped
+
+import support
+
+
+class TestRepublish(unittest.TestCase):
+    def test_republish(self):
+        support.init_node('republish')
+        visible = support.Watch('/odom_ekf', support.Odometry)
+        odom = rospy.Publisher('odom', support.Odometry, queue_size=1, latch=True)
+        frames = support.Odometry()
+        frames.header.frame_id, frames.child_frame_id = 'odom', 'base_link'
+        odom.publish(frames)
+
+        poses = rospy.Publisher('robot_pose_ekf/odom_combined', PoseWithCovarianceStamped, queue_size=10)
+        pose = PoseWithCovarianceStamped()
+        pose.header.frame_id = 'odom_combined'
+        pose.pose.pose.orientation.w = 1.0
+        pose.pose.covariance[0] = 0.25
+
+        def send():
+            pose.header.stamp = rospy.Time.from_sec(pose.header.stamp.to_sec() + 0.1)
+            pose.pose.pose.position.x += 0.02
+            poses.publish(pose)
+            return len(visible.messages) > 5
+        support.wait_for(send, '/odom_ekf')
+        message = visible.last
+        self.assertEqual((message.header.frame_id, message.child_frame_id), ('odom', 'base_link'))
+        self.assertEqual(message.pose.covariance[0], 0.25)
+        # 0.02 m in 0.1 s
+        self.assertAlmostEqual(message.twist.twist.linear.x, 0.2, delta=1e-6)
+        self.assertNotIn('/robot_pose_ekf', rosnode.get_node_names())
+
+
+if __name__ == '__main__':
+    support.main('republish', TestRepublish)
