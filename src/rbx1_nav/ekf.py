@@ -45,6 +45,10 @@ def priors(surface):
     return Priors(*(getattr(surface, field) for field in Priors._fields))
 
 
+Turn = namedtuple('Turn', 'angle variance by_bias by_scale by_slip')
+Turn.__doc__ = "A turn (rad), its variance (rad^2), and its derivatives by the gyro's bias and scale error and the slip."
+
+
 class RefusedMessage(ValueError):
     """A message that the filter must not see. The text names the field, the value and what is expected."""
 
@@ -61,27 +65,25 @@ class Filter:
         self.outliers = 0   # steps in which wheels and gyro contradicted each other
 
     def turn(self, duration, wheels=None, gyro=None):
-        """Choose what to make of a step of `duration` (s), and learn from it; returns a turn for move().
+        """Make a Turn for move() of what the sensors tell of a step of `duration` (s), and learn from it.
 
         wheels, gyro: (angle in rad, its variance in rad^2) as each of them tells it, or None. Where both do, and
         contradict each other by OUTLIER, the wheels have slipped like never before, and the gyro is believed.
         """
-        if wheels and gyro:
-            turn, agreed = self._compare(duration, wheels, gyro)
-            if agreed:
-                return turn
-            wheels = None
+        both = self._compare(duration, wheels, gyro) if wheels and gyro else None
+        if both:
+            return both
         if gyro:
             scale = 1 + self.state[SCALE]
             angle = (gyro[0] - self.state[BIAS] * duration) / scale
-            return angle, gyro[1] / scale ** 2, -duration / scale, -angle / scale, 0.0
+            return Turn(angle, gyro[1] / scale ** 2, -duration / scale, -angle / scale, 0.0)
         if wheels:
             made = 1 - self.state[TURNING]
-            return wheels[0] * made, wheels[1] * made ** 2, 0.0, 0.0, -wheels[0]
-        return 0.0, 0.0, 0.0, 0.0, 0.0
+            return Turn(wheels[0] * made, wheels[1] * made ** 2, 0.0, 0.0, -wheels[0])
+        return Turn(0.0, 0.0, 0.0, 0.0, 0.0)
 
     def _compare(self, duration, wheels, gyro):
-        """The difference as a measurement, then the mean."""
+        """The difference as a measurement, then the mean; None where they contradict each other."""
         state, covariance = self.state, self.covariance
         scale, made = 1 + state[SCALE], 1 - state[TURNING]
         wheel_noise, gyro_noise = wheels[1] * made ** 2, gyro[1] / scale ** 2
@@ -95,7 +97,7 @@ class Filter:
         variance = (by_bias * bias + by_scale * scale_error + by_slip * slip) + wheel_noise + gyro_noise
         if difference ** 2 > OUTLIER ** 2 * variance:
             self.outliers += 1
-            return None, False
+            return None
         gain = columns / variance
         self.state = [old - change * difference for old, change in zip(state, gain.tolist())]
         covariance -= gain[:, None] * columns
@@ -103,16 +105,16 @@ class Filter:
         scale, made = 1 + self.state[SCALE], 1 - self.state[TURNING]
         angle = (gyro[0] - self.state[BIAS] * duration) / scale
         share = gyro_noise / (gyro_noise + wheel_noise)     # of the wheels
-        return (share * wheels[0] * made + (1 - share) * angle, share * wheel_noise,
-                (share - 1) * duration / scale, (share - 1) * angle / scale, -share * wheels[0]), True
+        return Turn(share * wheels[0] * made + (1 - share) * angle, share * wheel_noise,
+                    (share - 1) * duration / scale, (share - 1) * angle / scale, -share * wheels[0])
 
     def move(self, duration, turn, direction=0.0, forward=0.0, left=0.0, variance=0.0):
-        """Make a step of `duration` (s): turn by what turn() gave, and travel; returns how far forward (m).
+        """Make a step of `duration` (s): a Turn of turn()'s, and travel; returns how far forward (m).
 
         forward, left: displacement (m) as the wheels tell it, in a frame that is turned against the robot's half way
         through the turn by `direction` (rad); variance: of the displacement, m^2.
         """
-        angle, noise, by_bias, by_scale, by_turning = turn
+        angle, noise, by_bias, by_scale, by_slip = turn
         x, y, yaw, bias, scale, straight, turning, rounding = self.state
         middle = yaw + angle / 2 + direction
         c, s = cos(middle), sin(middle)
@@ -126,9 +128,9 @@ class Filter:
         # derivatives of x and y by the angle of their middle; half of the turn counts for it
         dx, dy = -made * across, made * along
         jacobian = numpy.array([
-            [1.0, 0.0, dx, dx / 2 * by_bias, dx / 2 * by_scale, -along, dx / 2 * by_turning, made * c * moved],
-            [0.0, 1.0, dy, dy / 2 * by_bias, dy / 2 * by_scale, -across, dy / 2 * by_turning, made * s * moved],
-            [0.0, 0.0, 1.0, by_bias, by_scale, 0.0, by_turning, 0.0]])
+            [1.0, 0.0, dx, dx / 2 * by_bias, dx / 2 * by_scale, -along, dx / 2 * by_slip, made * c * moved],
+            [0.0, 1.0, dy, dy / 2 * by_bias, dy / 2 * by_scale, -across, dy / 2 * by_slip, made * s * moved],
+            [0.0, 0.0, 1.0, by_bias, by_scale, 0.0, by_slip, 0.0]])
         covariance = self.covariance
         rows = jacobian @ covariance
         pose = rows @ jacobian.T
@@ -320,17 +322,17 @@ class CombinedOdometry:
         forward, left = across * c + up * s, up * c - across * s
         # and that heading for us: half way from where we were when the wheels reported last
         since = self.filter.state[YAW] - self.odom_yaw
-        ahead = turned + wrapped(since + turn[0] - turned)
-        made = self.filter.move(duration, turn, ahead / 2 - since - turn[0] / 2, forward, left,
+        ahead = turned + wrapped(since + turn.angle - turned)
+        made = self.filter.move(duration, turn, ahead / 2 - since - turn.angle / 2, forward, left,
                                 odom.linear_variance * elapsed ** 2)
-        self._finish(max(odom.stamp, self.time), odom, made / elapsed, turn[0] / duration if duration else 0.0)
+        self._finish(max(odom.stamp, self.time), odom, made / elapsed, turn.angle / duration if duration else 0.0)
 
     def _step_by_gyro(self, end):
         duration = (end - self.time) / SECOND
         if duration > 0:
             turn = self.filter.turn(duration, None, self._gyro_turn(end))
             self.filter.move(duration, turn)
-            self._finish(end, None, 0.0, turn[0] / duration)
+            self._finish(end, None, 0.0, turn.angle / duration)
 
     def _gyro_turn(self, end):
         """(angle, variance) that the gyro read until `end` (ns); None where it does not know all of it."""
