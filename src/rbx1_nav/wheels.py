@@ -75,7 +75,7 @@ class Motor:
                 break       # drag holds it
             gap = target - self.speed
             most = self.accel_limit * self.lag      # m/s: the gap from which on the limit cuts
-            if abs(gap) > most * (1 + 1e-12):
+            if abs(gap) > most + 1e-12 * (abs(self.speed) + abs(target)):   # more than rounding may leave of it
                 acceleration = copysign(self.accel_limit, gap)
                 time = (abs(gap) - most) / self.accel_limit
                 if self.speed and (self.speed > 0) != (gap > 0):

@@ -65,6 +65,13 @@ def test_a_motor_never_accelerates_more_than_its_limit_nor_goes_faster_than_it_i
         assert abs(motor.speed) <= most and abs(travel) <= most * duration + 1e-12
 
 
+@given(motors, st.sampled_from([1e-300, 1.0, 1e6]), st.sampled_from([1e-300, 1.0, 1e9]))
+def test_no_speed_and_no_duration_takes_for_ever(motor, command, duration):
+    for _ in range(3):
+        motor.travel(command, duration)
+        motor.travel(-command, duration)
+
+
 @given(motors, st.floats(0.2, 1))
 def test_it_stays_behind_its_command_by_the_drag(motor, command):
     motor.travel(command, 100)
