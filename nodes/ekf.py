@@ -4,6 +4,7 @@
 odom and imu_data in, odom_combined and its transform out: the README lists topics and parameters.
 """
 import threading
+import time
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticStatus
@@ -23,6 +24,7 @@ from rbx1_nav.schedule import Schedule
 from rbx1_nav.surface import load_surface
 
 SENSORS = ('odom', 'imu_data')
+CARPET = 'low_ply_carpet'
 
 
 def read_parameters():
@@ -43,7 +45,6 @@ def read_parameters():
     if surface:
         load_surface(surface, resources.surfaces())
     values['surface'] = surface
-    section.known.add('diagnostic_period')      # of diagnostic_updater
     if section.unknown():
         rospy.logwarn('Unknown, without effect: %s', ', '.join(section.unknown()))
     return values
@@ -102,12 +103,20 @@ class Ekf:
             if self.sender is not None:
                 rospy.logwarn('odom comes from another sender: starting again')
             self.sender = sender
-            # a simulated base says what it stands on; a real one stands, like the tutorial's, on carpet
-            name = self.parameters['surface'] or rospy.get_param('/arbotix/surface', 'low_ply_carpet')
-            rospy.loginfo('Wheels and gyro are taken to be as on %s', name)
-            self.combined = CombinedOdometry(priors(load_surface(name, resources.surfaces())),
-                                             round(SECOND * self.parameters['sensor_timeout']),
+            self.combined = CombinedOdometry(priors(self.surface()), round(SECOND * self.parameters['sensor_timeout']),
                                              self.parameters['imu_used'], rospy.logwarn)
+
+    def surface(self):
+        """The Surface that says how far wheels and gyro are to be trusted."""
+        # a simulated base says what it stands on; a real one stands, like the tutorial's, on carpet
+        name = self.parameters['surface'] or rospy.get_param('/arbotix/surface', CARPET)
+        try:
+            surface = load_surface(name, resources.surfaces())
+        except ConfigError as error:
+            rospy.logwarn('/arbotix/%s; %s instead', error, CARPET)
+            name, surface = CARPET, load_surface(CARPET, resources.surfaces())
+        rospy.loginfo('Wheels and gyro are taken to be as on %s', name)
+        return surface
 
     def take(self, sensor, add, *what):
         """Hand a message to the filter, and publish what comes of it."""
@@ -154,8 +163,10 @@ class Ekf:
 
     def run(self):
         """Until the node is told to end."""
+        schedule = Schedule(1)
         while not node.end_requested.is_set():
-            self.diagnostics.update()
+            if schedule.due(time.monotonic_ns()):   # a clock that stands still is worth a diagnosis too
+                self.diagnostics.force_update()
             node.sleep(0.05)
 
 
