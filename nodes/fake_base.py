@@ -274,11 +274,4 @@ def main():
 
 
 if __name__ == '__main__':
-    try:
-        status = main()
-    except rospy.ROSInterruptException:     # before it began
-        status = 0
-    except rospy.ROSException as error:
-        rospy.logfatal('%s', error)
-        status = 1
-    node.leave(status)
+    node.run(main)

@@ -33,14 +33,12 @@ class OdomEkf:
         self.last = pose
 
 
+def main():
+    """Run until the node is told to end. Returns the exit status."""
+    OdomEkf()
+    node.end_requested.wait()
+    return 0
+
+
 if __name__ == '__main__':
-    status = 0
-    try:
-        OdomEkf()
-        node.end_requested.wait()
-    except rospy.ROSInterruptException:     # before it began
-        pass
-    except rospy.ROSException as error:
-        rospy.logfatal('%s', error)
-        status = 1
-    node.leave(status)
+    node.run(main)

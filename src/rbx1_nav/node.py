@@ -111,3 +111,15 @@ def leave(status):
     sys.stdout.flush()
     sys.stderr.flush()
     os._exit(status)
+
+
+def run(main):
+    """Run main(), which makes a node and returns its exit status, and end the process with that."""
+    try:
+        status = main()
+    except rospy.ROSInterruptException:     # before it began
+        status = 0
+    except rospy.ROSException as error:
+        rospy.logfatal('%s', error)
+        status = 1
+    leave(status)
