@@ -33,11 +33,13 @@ class TestEkfFrames(unittest.TestCase):
         count = len(combined.messages)
         support.wait_for(lambda: len(combined.messages) > count + 10, 'combined poses after the motion')
 
-        told = [t for m in list(transforms.messages) for t in m.transforms]
-        parents = {}
-        for transform in told:
-            parents.setdefault(transform.child_frame_id, set()).add(transform.header.frame_id)
-        self.assertEqual(parents[child], {parent})
+        told, parents = [], {}
+        for message in list(transforms.messages):
+            for transform in message.transforms:
+                told.append(transform)
+                parents.setdefault(transform.child_frame_id, set()).add(
+                    (transform.header.frame_id, message._connection_header['callerid']))
+        self.assertEqual(parents[child], {(parent, '/robot_pose_ekf')})
         self.assertTrue(all(len(each) == 1 for each in parents.values()), parents)
 
         odometry = {m.header.stamp: m for m in list(odom.messages)}
