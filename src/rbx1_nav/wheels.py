@@ -90,7 +90,7 @@ class Motor:
                 self.speed += acceleration * time
             else:
                 time = duration
-                if self.speed and (self.speed > 0) != (target > 0):
+                if self.speed and target and (self.speed > 0) != (target > 0):
                     time = min(time, self.lag * log(1 - self.speed / target))
                 closed = gap * (1 - exp(-time / self.lag))
                 travel += target * time - closed * self.lag

@@ -2,7 +2,7 @@
 from math import pi
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from rbx1_nav.base import SECOND, Base, Limits
@@ -28,6 +28,7 @@ def twin(motor):
 
 
 @given(motors, speeds, speeds, st.floats(0, 3), st.floats(0, 1))
+@example(Motor(1.0, 1.0, 0.0625), 1.0, 0.0625, 1.0, 0.5)    # a command of just the drag
 def test_it_does_not_matter_in_how_many_steps_a_motor_is_asked(motor, speed, command, duration, fraction):
     motor.speed = speed
     split = twin(motor)
