@@ -12,19 +12,20 @@ from diagnostic_updater import Updater
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import Imu
-from std_srvs.srv import Empty, EmptyResponse
+from std_msgs.msg import Empty
 from tf2_msgs.msg import TFMessage
 
 from rbx1_nav import messages, node, resources
 from rbx1_nav.base import SECOND
 from rbx1_nav.config import ConfigError, Section
 from rbx1_nav.diff_drive import between
-from rbx1_nav.ekf import CombinedOdometry, RefusedMessage, priors
+from rbx1_nav.ekf import CombinedOdometry, RefusedMessage, check, priors
 from rbx1_nav.schedule import Schedule
 from rbx1_nav.surface import load_surface
 
 SENSORS = ('odom', 'imu_data')
 CARPET = 'low_ply_carpet'
+CONTRADICTIONS = 5      # steps between two diagnoses: now and then a wheel may slip
 
 
 def read_parameters():
@@ -62,6 +63,7 @@ class Ekf:
         self.schedule = Schedule(parameters['freq'])
         self.heard = dict.fromkeys(SENSORS)     # rospy.Time of the last message
         self.refused = dict.fromkeys(SENSORS, 0)
+        self.outliers = {}      # by sensor, at its last diagnosis
 
         self.pose_pub = rospy.Publisher('odom_combined', PoseWithCovarianceStamped, queue_size=10)
         self.tf_pub = rospy.Publisher('/tf', TFMessage, queue_size=100, tcp_nodelay=True)
@@ -69,32 +71,42 @@ class Ekf:
         self.diagnostics.setHardwareID('none')
         for sensor in SENSORS[:1 + parameters['imu_used']]:
             self.diagnostics.add(sensor, lambda status, sensor=sensor: self.diagnose(sensor, status))
-        rospy.Service('~reset', Empty, self.on_reset)
         self.odom_sub = None    # there may be odometry before the next line is done
         self.odom_sub = rospy.Subscriber('odom', Odometry, self.on_odom, queue_size=None, tcp_nodelay=True)
         if parameters['imu_used']:
             rospy.Subscriber('imu_data', Imu, self.on_imu, queue_size=None, tcp_nodelay=True)
+        rospy.Subscriber('reset_odometry', Empty, self.on_reset)
 
     def on_odom(self, message):
         """The wheels' odometry arrives."""
         with self.lock:
             if message._connection_header is not self.sender:
                 self.meet(message._connection_header)
-            self.frames = message.header.frame_id.lstrip('/'), message.child_frame_id.lstrip('/')
-            self.take('odom', self.combined.add_odom, *messages.from_odometry(message))
+            self.take('odom', self.add_odom, message)
 
     def on_imu(self, message):
         """The gyro's reading arrives."""
         with self.lock:
             if self.combined:
-                self.take('imu_data', self.combined.add_imu, messages.from_imu(message))
+                self.take('imu_data', self.add_imu, message)
+
+    def add_odom(self, now, message):
+        """Hand an Odometry to the filter."""
+        frames = message.header.frame_id.lstrip('/'), message.child_frame_id.lstrip('/')
+        for field, frame in zip(('header.frame_id', 'child_frame_id'), frames):
+            check(field, repr(frame), frame, 'the name of a frame')
+        self.combined.add_odom(now, *messages.from_odometry(message))
+        self.frames = frames
+
+    def add_imu(self, now, message):
+        """Hand an Imu to the filter."""
+        self.combined.add_imu(now, messages.from_imu(message))
 
     def on_reset(self, _):
-        """Begin again where the odometry says, as the base does after its own ~reset."""
+        """Somebody put the robot elsewhere."""
         with self.lock:
             if self.combined:
-                self.combined.restart('~reset')
-        return EmptyResponse()
+                self.combined.restart('reset_odometry')
 
     def meet(self, sender):
         """Somebody new sends odometry: where the one before is gone, with another robot, as far as anyone can tell."""
@@ -108,21 +120,22 @@ class Ekf:
 
     def surface(self):
         """The Surface that says how far wheels and gyro are to be trusted."""
-        # a simulated base says what it stands on; a real one stands, like the tutorial's, on carpet
-        name = self.parameters['surface'] or rospy.get_param('/arbotix/surface', CARPET)
+        # a simulated base has a parameter that says what it stands on; a real one stands, like the tutorial's, on carpet
+        base = self.sender['callerid']
+        name = self.parameters['surface'] or rospy.get_param(base + '/surface', CARPET)
         try:
             surface = load_surface(name, resources.surfaces())
         except ConfigError as error:
-            rospy.logwarn('/arbotix/%s; %s instead', error, CARPET)
+            rospy.logwarn('%s/%s; %s instead', base, error, CARPET)
             name, surface = CARPET, load_surface(CARPET, resources.surfaces())
         rospy.loginfo('Wheels and gyro are taken to be as on %s', name)
         return surface
 
-    def take(self, sensor, add, *what):
+    def take(self, sensor, add, message):
         """Hand a message to the filter, and publish what comes of it."""
         now = rospy.Time.now()
         try:
-            add(now.to_nsec(), *what)
+            add(now.to_nsec(), message)
         except RefusedMessage as error:
             self.refused[sensor] += 1
             rospy.logerr_throttle_identical(1, '%s: %s; refused' % (rospy.resolve_name(sensor), error))
@@ -150,15 +163,18 @@ class Ekf:
             heard, refused = self.heard[sensor], self.refused[sensor]
             left_out = self.combined is not None and self.combined.silent[sensor]
             outliers = self.combined.filter.outliers if self.combined and self.combined.filter else 0
+            contradicts = outliers - self.outliers.get(sensor, 0) > CONTRADICTIONS
+            self.outliers[sensor] = outliers
         age = None if heard is None else (rospy.Time.now() - heard).to_sec()
         if left_out or age is None or age > self.parameters['sensor_timeout']:
             status.summary(DiagnosticStatus.WARN, 'No message yet' if age is None else 'Silent, left out')
+        elif contradicts:
+            status.summary(DiagnosticStatus.WARN, 'Wheels and gyro contradict each other')
         else:
             status.summary(DiagnosticStatus.OK, 'Used')
         status.add('Age of the last message (s)', 'never' if age is None else '%.3f' % age)
         status.add('Refused messages', refused)
-        if sensor == 'odom':
-            status.add('Steps in which wheels and gyro contradicted each other', outliers)
+        status.add('Steps in which wheels and gyro contradicted each other', outliers)
         return status
 
     def run(self):

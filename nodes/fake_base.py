@@ -14,8 +14,8 @@ from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import Imu, JointState
-from std_msgs.msg import Float64
-from std_srvs.srv import Empty, EmptyResponse
+from std_msgs.msg import Empty, Float64
+from std_srvs.srv import Empty as EmptyService, EmptyResponse
 from tf2_msgs.msg import TFMessage
 
 from rbx1_nav import messages, node, resources
@@ -60,7 +60,8 @@ class FakeBase:
 
         if factor:
             self.clock_pub = rospy.Publisher('/clock', Clock, queue_size=10, tcp_nodelay=True)
-        rospy.Service('~reset', Empty, self.on_reset)
+        self.reset_pub = rospy.Publisher('reset_odometry', Empty, queue_size=1)
+        rospy.Service('~reset', EmptyService, self.on_reset)
         for joint in config.joints:
             rospy.Subscriber(joint.name + '/command', Float64, self.on_joint, joint, queue_size=10)
         self.cmd_vel = None     # there may be a command before the next line is done
@@ -118,6 +119,7 @@ class FakeBase:
             self.base.advance(self.now())
             self.base.reset()
             self.gyro.reset()
+        self.reset_pub.publish()
         rospy.loginfo('Back at the origin.')
         return EmptyResponse()
 

@@ -18,13 +18,12 @@ class OdomEkf:
         self.frames = None      # (frame_id, child_frame_id) of the wheels' odometry
         self.last = None        # PoseWithCovarianceStamped
         self.publisher = rospy.Publisher('/odom_ekf', Odometry, queue_size=10)
-        self.odom = rospy.Subscriber('odom', Odometry, self.on_odom)
+        rospy.Subscriber('odom', Odometry, self.on_odom)
         rospy.Subscriber('odom_combined', PoseWithCovarianceStamped, self.on_pose)
 
     def on_odom(self, odom):
-        """The first odometry tells the names of the frames; more is not to be learned from it here."""
+        """The wheels' odometry tells the names of the frames."""
         self.frames = odom.header.frame_id.lstrip('/'), odom.child_frame_id.lstrip('/')
-        self.odom.unregister()
 
     def on_pose(self, pose):
         """A combined pose, and the speed since the one before."""

@@ -53,7 +53,7 @@ class OutAndBack:
                 self.drive(leg)
                 # Stop, and come to rest, before the next leg.
                 self.cmd_vel.publish(Twist())
-                driver.pause(1)
+                driver.pause(1, self.cmd_vel)
 
             self.cmd_vel.publish(Twist())
         finally:
@@ -63,12 +63,10 @@ class OutAndBack:
     def drive(self, leg):
         """One leg: look where the robot is, and go on, until it is there."""
         rospy.loginfo('%s: %.2f %s', leg.name, leg.goal, leg.unit)
-        rate = driver.Rate(self.rate)
+        rate = driver.Rate(self.rate, self.cmd_vel)
         command = Twist()
         speed = leg.next_speed(self.where())
         while speed:
-            if not driver.connections(self.cmd_vel):
-                raise rospy.ROSException('Nobody listens on /cmd_vel any more')
             command.linear.x, command.angular.z = leg.velocity(speed)
             self.cmd_vel.publish(command)
             rate.sleep()

@@ -7,9 +7,11 @@ import argparse
 from functools import partial
 from math import atan2, cos, degrees, hypot, pi, remainder, sin
 import os
+import signal
 import sys
 import time
 
+from matplotlib.figure import Figure
 import numpy
 from tqdm import tqdm
 import yaml
@@ -29,7 +31,7 @@ def read_arguments():
     """The command line."""
     parser = argparse.ArgumentParser(description=__doc__.split('\n')[0])
     parser.add_argument('--surface', default='ideal', metavar='NAME',
-                        help='one of %s, or a YAML file (absolute path); default: ideal'
+                        help='one of %s, or a YAML file; default: ideal'
                              % ', '.join(sorted(os.path.splitext(name)[0] for name in os.listdir(resources.surfaces()))))
     parser.add_argument('--method', choices=METHODS, action='append',
                         help='timed: by time alone; odom: by odometry; ekf: by odometry and gyro. Can be given more than '
@@ -43,8 +45,16 @@ def read_arguments():
                         help='processes; default: as many as there are processor cores')
     arguments = parser.parse_args()
     for name in ('runs', 'jobs'):
-        if getattr(arguments, name) < 1:
-            parser.error('--%s: %d: expected at least 1' % (name, getattr(arguments, name)))
+        if not 1 <= getattr(arguments, name) <= 10 ** 6:
+            parser.error('--%s: %d: expected 1 to a million' % (name, getattr(arguments, name)))
+    if os.path.splitext(arguments.surface)[1]:      # a name has none
+        arguments.surface = os.path.abspath(arguments.surface)
+    if arguments.plot:
+        known = sorted(Figure().canvas.get_supported_filetypes())
+        if os.path.splitext(arguments.plot)[1][1:] not in known:
+            parser.error('--plot: %s: expected a name that ends in one of .%s' % (arguments.plot, ', .'.join(known)))
+        if not os.path.isdir(os.path.dirname(os.path.abspath(arguments.plot))):
+            parser.error('--plot: %s: expected a folder that exists' % arguments.plot)
     arguments.method = list(dict.fromkeys(arguments.method or METHODS))
     return arguments
 
@@ -89,11 +99,8 @@ def report(method, results):
 
 def draw(file, surface, results):
     """A picture: for each method a column, above the ways to scale, below the end poses from near by."""
-    import matplotlib       # takes a while: only who wants a picture waits for it
-    matplotlib.use('Agg')
-    from matplotlib import pyplot
-    figure, panels = pyplot.subplots(2, len(results), figsize=(5.6 * len(results), 9), squeeze=False,
-                                     constrained_layout=True)
+    figure = Figure(figsize=(5.6 * len(results), 9), constrained_layout=True)
+    panels = figure.subplots(2, len(results), squeeze=False)
     number = len(next(iter(results.values())))
     figure.suptitle('Out and back on %s, %d %s' % (surface, number, 'run' if number == 1 else 'runs'))
     for (above, below), (method, runs) in zip(panels.T, results.items()):
@@ -133,14 +140,25 @@ def draw_arrow(axes, pose, color):
     axes.quiver(x, y, 0.2 * cos(yaw), 0.2 * sin(yaw), color=color, angles='xy', scale_units='xy', scale=1, width=0.012, zorder=4)
 
 
+def read_robot(path):
+    """The Config of an ArbotiX YAML file. Raises ConfigError, OSError, yaml.YAMLError."""
+    with open(path, encoding='utf-8') as file:
+        values = yaml.safe_load(file)
+    try:
+        return read_config(values)
+    except ConfigError as error:
+        raise ConfigError('%s: %s' % (path, error))
+
+
 def main():
     """Simulate, print, draw. Returns the exit status."""
+    signal.signal(signal.SIGPIPE, signal.SIG_DFL)               # whoever reads may have seen enough
+    signal.signal(signal.SIGTERM, signal.default_int_handler)   # as Ctrl-C: no process is left behind
     arguments = read_arguments()
     try:
         surface = load_surface(arguments.surface, resources.surfaces())
         seeds = range(read_seed(arguments.seed), read_seed(arguments.seed + arguments.runs - 1) + 1)
-        with open(arguments.config, encoding='utf-8') as file:
-            config = read_config(yaml.safe_load(file))
+        config = read_robot(arguments.config)
         print('Runs of each method on %s: %d. Mean and spread (1 sigma) at the end:\n'
               '%-6s %-14s  %17s  %17s  %17s  %17s' % (arguments.surface, arguments.runs, 'method', '', 'x (m)', 'y (m)',
                                                       'heading (degrees)', 'from start (m)'))

@@ -44,7 +44,7 @@ class OutAndBack:
                 self.drive(motion)
                 # Stop, and come to rest, before the next motion.
                 self.cmd_vel.publish(Twist())
-                driver.pause(1)
+                driver.pause(1, self.cmd_vel)
 
             self.cmd_vel.publish(Twist())
         finally:
@@ -63,10 +63,8 @@ class OutAndBack:
         # The bar is for people: tqdm leaves it out where nobody looks (disable=None).
         ticks = tqdm(range(motion.ticks), desc=motion.name, unit_scale=speed / self.rate, unit=unit, disable=None,
                      bar_format='{desc:9}: |{bar}| {n_fmt} of {total_fmt} {unit}')
-        rate = driver.Rate(self.rate)
+        rate = driver.Rate(self.rate, self.cmd_vel)
         for _ in ticks:
-            if not driver.connections(self.cmd_vel):
-                raise rospy.ROSException('Nobody listens on /cmd_vel any more')
             self.cmd_vel.publish(command)
             rate.sleep()
 

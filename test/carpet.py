@@ -10,7 +10,7 @@ import yaml
 
 from rbx1_nav.config import read_config
 from rbx1_nav.simulation import simulate
-from rbx1_nav.surface import load_surface
+from rbx1_nav.surface import load_surface, read_seed
 
 import support
 
@@ -39,7 +39,7 @@ class TestCarpet(unittest.TestCase):
         with open(os.path.join(folder, 'turtlebot.yaml')) as file:
             config = read_config(yaml.safe_load(file))
         surface = load_surface('low_ply_carpet', os.path.join(folder, 'surfaces'))
-        end = simulate('timed', config, surface, rospy.get_param('/arbotix/seed')).end
+        end = simulate('timed', config, surface, read_seed(rospy.get_param('/arbotix/seed'))).end
         for told, offline in (((x, y, yaw), end.truth), (support.pose(odom.last), end.odometry)):
             self.assertAlmostEqual(told[0], offline.x, delta=1e-9)
             self.assertAlmostEqual(told[1], offline.y, delta=1e-9)

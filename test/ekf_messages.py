@@ -10,6 +10,7 @@ from geometry_msgs.msg import PoseWithCovarianceStamped
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Log
 from sensor_msgs.msg import Imu
+from std_msgs.msg import Empty
 
 import support
 
@@ -107,6 +108,33 @@ class TestEkfMessages(unittest.TestCase):
         pose = self.poses.next().pose
         self.assertAlmostEqual(pose.pose.position.x, before, delta=1e-6)
         self.assertTrue(all(math.isfinite(value) for value in pose.covariance))
+
+    def test_frames_without_a_name_are_refused(self):
+        self.odom.send(lambda m: setattr(m, 'child_frame_id', ''))
+        self.said("/odom: child_frame_id: ''", 'expected', 'refused')
+        self.poses.next()
+
+    def test_reset_odometry_is_a_new_beginning(self):
+        reset = rospy.Publisher('reset_odometry', Empty, queue_size=1)
+        support.wait_for(reset.get_num_connections, 'the filter to listen')
+        reset.publish()
+        self.said('reset_odometry', 'starting again')
+        self.poses.next()
+
+    def test_a_gyro_that_contradicts_the_wheels_is_diagnosed(self):
+        turning = [0]
+
+        def make():
+            message = make_odom()
+            turning[0] += 1
+            message.pose.pose.orientation.z = math.sin(turning[0] * 0.01)
+            message.pose.pose.orientation.w = math.cos(turning[0] * 0.01)
+            return message
+        standing, self.odom.make = self.odom.make, make
+        support.wait_for(lambda: any('contradict' in status.message for m in self.diagnostics.messages[-3:]
+                                     for status in m.status), 'a contradiction in /diagnostics')
+        self.odom.make = standing
+        self.status('odom', DiagnosticStatus.OK)
 
     def test_a_silent_gyro_is_left_out_and_taken_back(self):
         self.status('imu_data', DiagnosticStatus.OK)

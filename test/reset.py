@@ -3,6 +3,7 @@
 import unittest
 
 import rospy
+from std_msgs.msg import Empty as EmptyMessage
 from std_srvs.srv import Empty
 
 import support
@@ -17,7 +18,10 @@ class TestReset(unittest.TestCase):
         odom.wait_for_twist(0.2, 0.5)
         support.wait_for(lambda: odom.position()[0] > 0.05, 'the base to move')
         rospy.wait_for_service('/arbotix/reset', support.LIMIT)
+        told = support.Watch('/reset_odometry', EmptyMessage)
+        support.wait_for(lambda: told.subscriber.get_num_connections(), 'the base to connect')
         rospy.ServiceProxy('/arbotix/reset', Empty)()
+        support.wait_for(lambda: told.last, '/reset_odometry')
         odom.wait_for_twist(0.0)
         self.assertEqual(odom.position(), (0.0, 0.0))
         self.assertEqual(support.yaw(odom.last), 0.0)

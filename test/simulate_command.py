@@ -48,8 +48,10 @@ class TestSimulateCommand(unittest.TestCase):
         for arguments, status, text in [
                 (['--surface', 'sand'], 1, "'sand': expected one of hard_floor, ideal, low_ply_carpet"),
                 (['--method', 'luck'], 2, 'luck'), (['--runs', '0'], 2, '--runs: 0: expected'),
+                (['--plot', 'picture.doc'], 2, '--plot: picture.doc: expected'), (['--plot', '/'], 2, '--plot: /: expected'),
+                (['--config', '/dev/null'], 1, '/dev/null: configuration: None: expected'),
                 (['--seed', '-1'], 1, 'seed: -1: expected'), (['--config', '/nowhere.yaml'], 1, '/nowhere.yaml'),
-                (['--runs', '1', '--method', 'timed', '--plot', '/nowhere/picture.png'], 1, '/nowhere/picture.png')]:
+                (['--plot', '/nowhere/picture.png'], 2, '--plot: /nowhere/picture.png: expected')]:
             got, output = simulate(*arguments)
             self.assertEqual(got, status, output)
             self.assertIn(text, output.splitlines()[-1])

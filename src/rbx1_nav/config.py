@@ -2,6 +2,7 @@
 from collections import namedtuple
 from math import inf, isfinite, radians
 import re
+import reprlib
 
 from rbx1_nav.base import SECOND, Limits
 from rbx1_nav.joints import Joint
@@ -42,7 +43,8 @@ class Section:
     def __init__(self, values, key, hardware=()):
         self.key = key
         if not isinstance(values, dict):
-            raise ConfigError('%s: %r: expected a mapping of keys to values' % (key, values))
+            raise ConfigError('%s: %s: expected a mapping of keys to values'
+                              % (key or 'configuration', reprlib.repr(values)))
         self.values = values
         self.hardware = set(hardware)
         self.known = set(hardware)

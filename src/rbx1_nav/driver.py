@@ -44,13 +44,18 @@ def _now():
     return time.monotonic_ns() if rospy.rostime.is_wallclock() else rospy.get_rostime().to_nsec()
 
 
-def _wait_until(end, longest):
-    """Wait until _now() is `end` (ns), but not longer than `longest` (ns) on a clock that jumped back."""
+def _wait_until(end, longest, publisher):
+    """Wait until _now() is `end` (ns), but not longer than `longest` (ns) on a clock that jumped back.
+
+    Raises ROSException when nobody listens to the publisher any more: a clock that stands may have gone with them.
+    """
     warn_time = time.monotonic() + 5
     last = None
     while True:
         if end_requested.is_set():
             raise rospy.ROSInterruptException('asked to end')
+        if not connections(publisher):
+            raise rospy.ROSException('Nobody listens on %s any more' % publisher.resolved_name)
         now = _now()
         end = min(end, now + longest)
         if now >= end:
@@ -69,10 +74,11 @@ def _wait_until(end, longest):
             rospy.logwarn('/use_sim_time is true, but the time on /clock stands still')
 
 
-def pause(seconds):
-    """Wait for so many seconds of ROS time. Raises ROSInterruptException as soon as the node is to end."""
+def pause(seconds, publisher):
+    """Wait for so many seconds of ROS time. Raises ROSInterruptException as soon as the node is to end, and ROSException
+    when nobody listens to the publisher any more."""
     duration = round(seconds * 1e9)
-    _wait_until(_now() + duration, duration)
+    _wait_until(_now() + duration, duration, publisher)
 
 
 class Rate:
@@ -82,14 +88,16 @@ class Rate:
     time would otherwise see two commands in one step.
     """
 
-    def __init__(self, hz):
-        """hz: ticks per second of ROS time; the first one is a period from now."""
+    def __init__(self, hz, publisher):
+        """hz: ticks per second of ROS time, the first one a period from now; publisher: of the commands."""
+        self.publisher = publisher
         self.period = round(1e9 / hz)
         self.next = _now() + self.period
 
     def sleep(self):
-        """Wait for the next tick. Raises ROSInterruptException as soon as the node is to end."""
-        _wait_until(self.next, self.period)
+        """Wait for the next tick. Raises ROSInterruptException as soon as the node is to end, and ROSException when nobody
+        listens to the publisher any more."""
+        _wait_until(self.next, self.period, self.publisher)
         now = _now()
         self.next = min(max(self.next + self.period, now + self.period * 6 // 10), now + self.period)
 

@@ -29,9 +29,11 @@ OUTLIER = 5.0               # standard deviations between wheels and gyro, from 
 MOST = 1e6              # m or rad/s that a message may tell
 LEAST_VARIANCE = 1e-12  # m^2, rad^2, or those per second squared: a micrometre
 MOST_SPEED = 2.0        # m/s: odometry that moves faster has jumped
-MOST_JUMP = 0.05        # m that it may be off besides
+MOST_TURN = 5.0         # rad/s: or turns faster
+SLACK = 0.02            # m and rad that it may be off besides
 UNSEEN_SPEED = 0.5      # m/s: so fast may a robot go (1 sigma) while no odometry comes
 FUTURE = SECOND // 2    # ns that a stamp may be ahead of our clock: clocks differ
+PAST = 10 * SECOND      # ns that it may be behind
 
 Priors = namedtuple('Priors', 'slip_straight slip_straight_spread slip_turning slip_turning_spread '
                               'gyro_bias gyro_scale_error gyro_measurement_range')
@@ -183,10 +185,21 @@ def check_variance(field, value):
           % (LEAST_VARIANCE, 1 / LEAST_VARIANCE))
 
 
+def told(odom):
+    """An Odom's pose, for people."""
+    return '(%.3f m, %.3f m, %.3f rad)' % odom.pose
+
+
+def distance(one, other):
+    """Between two Odoms, m."""
+    return hypot(other.pose.x - one.pose.x, other.pose.y - one.pose.y)
+
+
 def jumped(before, odom):
-    """Whether no robot goes from the one Odom to the other in that time."""
-    distance = hypot(odom.pose.x - before.pose.x, odom.pose.y - before.pose.y)
-    return distance > MOST_SPEED * (odom.stamp - before.stamp) / SECOND + MOST_JUMP
+    """Whether no robot goes or turns from the one Odom to the other in that time."""
+    elapsed = (odom.stamp - before.stamp) / SECOND
+    return (distance(before, odom) > MOST_SPEED * elapsed + SLACK
+            or abs(wrapped(odom.pose.yaw - before.pose.yaw)) > MOST_TURN * elapsed + SLACK)
 
 
 class CombinedOdometry:
@@ -240,7 +253,8 @@ class CombinedOdometry:
         if not (odom.linear_variance and odom.angular_variance):
             odom = odom._replace(linear_variance=pose_variances[0], angular_variance=pose_variances[2])
         self._heard('odom', now, odom.stamp)
-        self.waiting.append(odom)
+        if not self.silent['odom']:
+            self.waiting.append(odom)
         self._advance()
 
     def add_imu(self, now, imu):
@@ -259,11 +273,14 @@ class CombinedOdometry:
             self.restart('The clock went back by %.3f s' % ((self.now - now) / SECOND))
         self.now = now
         before = self.last[sensor]
-        check('header.stamp', '%.9f' % (stamp / SECOND), stamp <= now + FUTURE, 'none later than now, %.9f' % (now / SECOND))
-        check('header.stamp', '%.9f' % (stamp / SECOND), before is None or stamp > before,
-              'one later than the last, %.9f' % ((before or 0) / SECOND))
+        for good, expected, time in ((stamp <= now + FUTURE, 'none later than now', now),
+                                     (stamp >= now - PAST, 'none that is much older than now', now),
+                                     (before is None or stamp > before, 'one later than the last', before or 0)):
+            check('header.stamp', '%.9f' % (stamp / SECOND), good, '%s, %.9f' % (expected, time / SECOND))
         self.last[sensor] = stamp
-        if self.silent[sensor]:
+        other = self.last['odom' if sensor == 'imu_data' else 'imu_data']
+        # not if it is as late as when it was left out
+        if self.silent[sensor] and (other or 0) - stamp <= self.timeout:
             self.silent[sensor] = False
             self.say('%s is back' % sensor)
         return before
@@ -293,14 +310,14 @@ class CombinedOdometry:
         return self.silent['imu_data']
 
     def _step(self, odom):
-        if self.filter and jumped(self.odom, odom):
-            # one such message is a mistake; two that agree are another place
-            if self.suspect is None or jumped(self.suspect, odom):
-                self.say('odom: (%g, %g) m comes too soon after (%g, %g) m: ignored' % (odom.pose[:2] + self.odom.pose[:2]))
-                self.suspect = odom
-                return
-            self.restart('odom: jumped from (%g, %g) m to (%g, %g) m' % (self.odom.pose[:2] + odom.pose[:2]))
-        self.suspect = None
+        # one message from another place is a mistake; a second one from there is another place
+        suspect, self.suspect = self.suspect, None
+        if suspect and not jumped(suspect, odom) and distance(suspect, odom) <= distance(self.odom, odom):
+            self.restart('odom: jumped from %s to %s' % (told(self.odom), told(odom)))
+        elif self.filter and jumped(self.odom, odom):
+            self.say('odom: %s comes too soon after %s: ignored' % (told(odom), told(self.odom)))
+            self.suspect = odom
+            return
         if not self.filter:
             self.filter = Filter(self.prior, odom.pose)
             self._finish(odom.stamp, odom, 0.0, 0.0)

@@ -1,6 +1,6 @@
 """What a robot is to do, as a list of motions: which velocity, and for how many ticks, or until the pose says stop."""
 from collections import namedtuple
-from math import cos, isfinite, pi, remainder, sin
+from math import cos, isfinite, pi, remainder, sin, sqrt
 
 Motion = namedtuple('Motion', 'name linear angular ticks')
 Motion.__doc__ = 'One motion: linear in m/s, angular in rad/s (positive to the left), for a number of ticks.'
@@ -72,13 +72,16 @@ class Leg:
             self.patience = int(STUCK * self.rate)
         if self.patience < 0:
             raise StuckError('%s: no nearer for %g s, %.3f of %.3f to go' % (self.name, STUCK, to_go, self.goal))
-        return min(self.speed, max(self.slowest, to_go / SLOW_DOWN))
+        # the nearer, the slower: but no faster than it can brake, and never past the goal in one tick or two
+        slower = min(to_go / max(SLOW_DOWN, 2 / self.rate), sqrt(2 * self.deceleration * to_go))
+        return min(self.speed, max(self.slowest, slower))
 
 
 class Straight(Leg):
     """Forward, in m and m/s."""
 
     unit = 'm'
+    deceleration = 0.4      # m/s^2, of a robot that need not hurry
 
     def done(self):
         """How far ahead it went; backwards would be less than nothing."""
@@ -94,6 +97,7 @@ class Turn(Leg):
     """To the left on the spot, in rad and rad/s."""
 
     unit = 'rad'
+    deceleration = 2.0      # rad/s^2
 
     def done(self):
         """How far it turned."""

@@ -122,13 +122,17 @@ def simulate(method, config, surface, seed, filtered=False, keep=False):
 def simulate_many(method, config, surface, seeds, keep=0, jobs=1):
     """Yields the Results of all seeds in their order; keep: of how many to keep the path; jobs: number of processes."""
     work = partial(_simulate_one, method, config, surface)
-    tasks = [(seed, number < keep) for number, seed in enumerate(seeds)]
+    tasks = ((seed, number < keep) for number, seed in enumerate(seeds))
     if jobs == 1:
         yield from map(work, tasks)
         return
-    # Ctrl-C is for the parent to answer
-    with multiprocessing.Pool(jobs, signal.signal, (signal.SIGINT, signal.SIG_IGN)) as pool:
-        yield from pool.imap(work, tasks, chunksize=max(1, min(50, len(tasks) // 100)))
+    with multiprocessing.Pool(jobs, _leave_signals_to_the_parent) as pool:
+        yield from pool.imap(work, tasks, chunksize=max(1, min(50, len(seeds) // 100)))
+
+
+def _leave_signals_to_the_parent():
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)   # by which the parent ends it
 
 
 def _simulate_one(method, config, surface, task):

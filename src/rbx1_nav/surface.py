@@ -7,10 +7,11 @@ from collections import namedtuple
 from math import radians
 import os
 import random
+import re
 
 import yaml
 
-from rbx1_nav.config import ConfigError, Section, describe
+from rbx1_nav.config import ConfigError, Section
 
 FRACTION = dict(low=0.0, high=0.5, closed=True, expected='a part from 0 to 0.5')
 ABOVE = dict(low=0.0, expected='a finite number above 0')
@@ -73,10 +74,11 @@ def read_surface(values, name):
 
 
 def read_seed(value):
-    """A seed: a whole number from 0 to 2147483647, as ROS parameters have it. Raises ConfigError."""
-    if not isinstance(value, int) or isinstance(value, bool) or not 0 <= value < 2 ** 31:
-        raise ConfigError('seed: %s: expected a whole number from 0 to %d' % (describe(value), 2 ** 31 - 1))
-    return value
+    """A seed: a whole number from 0 to 2147483647, or its digits as text. Raises ConfigError."""
+    seed = int(value) if isinstance(value, str) and re.match(r'^\d{1,10}$', value, re.ASCII) else value
+    if not isinstance(seed, int) or isinstance(seed, bool) or not 0 <= seed < 2 ** 31:
+        raise ConfigError('seed: %r: expected a whole number from 0 to %d' % (value, 2 ** 31 - 1))
+    return seed
 
 
 def draw(surface, seed):

@@ -172,6 +172,12 @@ def test_stamps_out_of_order_or_from_the_future_are_refused(offset):
     refused(lambda robot: (Imu(robot.now + offset, 0.0, 1e-6),), 'header.stamp', sent=True)
 
 
+def test_a_first_stamp_of_long_ago_is_refused():
+    robot = Robot()
+    with pytest.raises(RefusedMessage, match='header.stamp: 0.000000000: expected none that is much older than now'):
+        robot.combined.add_odom(robot.now, robot.odom()._replace(stamp=0), VARIANCES)
+
+
 @pytest.mark.parametrize('rate, variance, field', [
     (nan, 1e-6, 'angular_velocity.z'), (inf, 1e-6, 'angular_velocity.z'), (0.1, 0.0, 'angular_velocity_covariance'),
     (0.1, -1.0, 'angular_velocity_covariance'), (0.1, nan, 'angular_velocity_covariance')])
@@ -282,6 +288,18 @@ def test_a_gyro_at_the_end_of_its_range_is_not_believed():
     assert robot.combined.filter.state[YAW] == pytest.approx(4.0 * 0.97, abs=1e-3)
 
 
+@pytest.mark.parametrize('lag', [1.1, 5.0])
+def test_a_gyro_that_is_always_too_late_is_left_out_once(lag):
+    robot = Robot(priors(None))
+    for _ in range(500):
+        robot.now += STEP
+        robot.pose = arc(robot.pose, 0.004, 0.01)
+        robot.combined.add_odom(robot.now, robot.odom(), VARIANCES)
+        robot.combined.add_imu(robot.now, Imu(robot.now - round(lag * SECOND), 0.5, 3e-6))
+    assert len(robot.said) == 1 and 'imu_data' in robot.said[0]
+    assert exact(robot.combined.estimate, robot.pose)
+
+
 def test_messages_may_come_in_any_order_of_sensors():
     together, apart = Robot(), Robot()
     together.send(100, 0.2, 0.5)
@@ -321,11 +339,12 @@ def test_a_gyro_at_another_rate(rate):
 
 # new beginnings
 
-def test_odometry_that_jumps_is_a_new_beginning():
+@pytest.mark.parametrize('there', [Pose(-1.0, 2.0, pi / 2), Pose(0.3, 0.0, 0.0), Pose(0.2, 0.0, 0.5)])
+def test_odometry_that_jumps_or_turns_too_fast_is_a_new_beginning(there):
     robot = Robot()
     robot.send(50, 0.2)
-    robot.pose = Pose(-1.0, 2.0, pi / 2)
-    assert exact(robot.send(2), robot.pose) and 'jumped' in robot.said[-1]
+    robot.pose = there
+    assert exact(robot.send(2), there) and 'jumped' in robot.said[-1]
 
 
 def test_a_single_message_from_far_away_is_a_mistake():

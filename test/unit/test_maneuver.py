@@ -70,6 +70,25 @@ def test_it_slows_down_before_its_goal():
     assert sorted(speeds, reverse=True) == speeds and speeds[-1] == pytest.approx(0.05, abs=0.005)
 
 
+def test_it_slows_down_early_enough_to_brake():
+    pose, speeds = drive(out_and_back_by_odometry(**dict(LEGS, linear_speed=2.0, goal_distance=5.0))[0], ORIGIN)
+    assert pose.x == pytest.approx(5.0, abs=0.5001 * 0.001)
+    # 0.4 m/s^2, a fiftieth of a second at a time, and twice that for a moment, where the half second takes over
+    assert all(before - after < 2.1 * 0.4 / 50 for before, after in zip(speeds, speeds[1:])) and speeds[0] == 2.0
+
+
+@pytest.mark.parametrize('rate', [1, 2, 5])
+def test_a_slow_rate_does_not_carry_it_past_its_goal(rate):
+    for leg, slowest in zip(out_and_back_by_odometry(**dict(LEGS, rate=rate)), (0.05, 0.2)):
+        pose = ORIGIN
+        while True:
+            speed = leg.next_speed(pose._replace(yaw=remainder(pose.yaw, 2 * pi)))
+            if not speed:
+                break
+            pose = arc(pose, *(value / rate for value in leg.velocity(speed)))
+        assert abs(leg.goal - leg.done()) <= 0.5001 * slowest / rate
+
+
 def test_a_turn_of_more_than_a_full_one():
     pose, _ = drive(out_and_back_by_odometry(**dict(LEGS, goal_angle=7.0))[1], ORIGIN)
     assert pose.yaw == pytest.approx(7.0, abs=0.002001)

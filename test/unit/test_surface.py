@@ -77,10 +77,14 @@ def test_an_unknown_key_is_refused():
         read_surface(dict(carpet(), friction=1), 'x')
 
 
-@pytest.mark.parametrize('seed', [-1, 2 ** 31, 1.5, '7', True, None])
+@pytest.mark.parametrize('seed', [-1, 2 ** 31, 1.5, '-7', '99999999999', '7.0', '', True, None])
 def test_a_seed_is_a_whole_number(seed):
     with pytest.raises(ConfigError, match='^seed: .*expected a whole number'):
         read_seed(seed)
+
+
+def test_a_seed_may_be_text_as_a_launch_file_has_it():
+    assert read_seed('7') == read_seed(7) == 7
 
 
 def test_a_seed_draws_the_same_again_and_another_seed_something_else():
