@@ -120,7 +120,7 @@ class Ekf:
 
     def surface(self):
         """The Surface that says how far wheels and gyro are to be trusted."""
-        # a simulated base has a parameter that says what it stands on; a real one stands, like the tutorial's, on carpet
+        # a simulated base has a parameter that says what it stands on; a real one stands on carpet, as the tutorial's
         base = self.sender['callerid']
         name = self.parameters['surface'] or rospy.get_param(base + '/surface', CARPET)
         try:

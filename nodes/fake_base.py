@@ -139,7 +139,8 @@ class FakeBase:
             imu = self.read_gyro(now, stamp)
             truth = None
             if self.truth_pub.get_num_connections():
-                truth = messages.odometry(stamp, self.config, base.wheels.truth.pose, base.true_velocity, messages.EXACT)
+                truth = messages.odometry(stamp, self.config, base.wheels.truth.pose, base.true_velocity,
+                                          messages.EXACT)
             joints = self.joint_states(now, stamp) if self.joint_schedule.due(now) else None
         self.odom_pub.publish(odom)
         if self.config.publish_tf:

@@ -20,7 +20,7 @@ from rbx1_nav import resources
 from rbx1_nav.config import ConfigError, read_config
 from rbx1_nav.maneuver import StuckError
 from rbx1_nav.simulation import METHODS, simulate_many
-from rbx1_nav.surface import load_surface, read_seed
+from rbx1_nav.surface import known_surfaces, load_surface, read_seed
 
 MOMENT = 1.0    # s: what takes longer gets a progress bar, and all processor cores
 PATHS = 20      # trajectories in a picture; more would hide each other
@@ -31,13 +31,13 @@ def read_arguments():
     """The command line."""
     parser = argparse.ArgumentParser(description=__doc__.split('\n')[0])
     parser.add_argument('--surface', default='ideal', metavar='NAME',
-                        help='one of %s, or a YAML file; default: ideal'
-                             % ', '.join(sorted(os.path.splitext(name)[0] for name in os.listdir(resources.surfaces()))))
+                        help='one of %s, or a YAML file; default: ideal' % ', '.join(known_surfaces(resources.surfaces())))
     parser.add_argument('--method', choices=METHODS, action='append',
-                        help='timed: by time alone; odom: by odometry; ekf: by odometry and gyro. Can be given more than '
-                             'once; default: all three')
+                        help='timed: by time alone; odom: by odometry; ekf: by odometry and gyro. Can be given more '
+                             'than once; default: all three')
     parser.add_argument('--runs', type=int, default=100, metavar='N', help='runs of each method; default: 100')
-    parser.add_argument('--seed', type=int, default=0, metavar='S', help='the runs are drawn from S, S+1, ...; default: 0')
+    parser.add_argument('--seed', type=int, default=0, metavar='S',
+                        help='the runs are drawn from S, S+1, ...; default: 0')
     parser.add_argument('--config', default=resources.path('config', 'turtlebot.yaml'), metavar='FILE',
                         help="ArbotiX YAML file of the base; default: the TurtleBot's")
     parser.add_argument('--plot', metavar='FILE', help='draw the ways and the end poses, side by side (PNG, PDF, SVG)')
@@ -112,7 +112,8 @@ def draw(file, surface, results):
         draw_arrow(above, runs[0].end.truth, 'firebrick')
         above.set_title('%s: %.1f cm from the start, %.1f degrees off' % (
             TITLES[method], 100 * numpy.hypot(x, y).mean(), abs(yaw).mean()))
-        points = below.scatter(x, y, c=yaw, s=12 if number <= 500 else 3, alpha=0.8 if number <= 500 else 0.4, linewidths=0)
+        few = number <= 500
+        points = below.scatter(x, y, c=yaw, s=12 if few else 3, alpha=0.8 if few else 0.4, linewidths=0)
         figure.colorbar(points, ax=below, format='%.4g').solids.set(alpha=1)
         # square, around them all, and never so near that rounding shows
         half = max(0.005, 0.6 * numpy.ptp(x), 0.6 * numpy.ptp(y))
@@ -137,7 +138,8 @@ def draw_arrow(axes, pose, color):
     """The robot at a pose."""
     x, y, yaw = pose
     axes.plot(x, y, marker='o', color=color, zorder=4)
-    axes.quiver(x, y, 0.2 * cos(yaw), 0.2 * sin(yaw), color=color, angles='xy', scale_units='xy', scale=1, width=0.012, zorder=4)
+    axes.quiver(x, y, 0.2 * cos(yaw), 0.2 * sin(yaw), color=color, angles='xy', scale_units='xy', scale=1,
+                width=0.012, zorder=4)
 
 
 def read_robot(path):
