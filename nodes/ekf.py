@@ -95,6 +95,8 @@ class Ekf:
         frames = message.header.frame_id.lstrip('/'), message.child_frame_id.lstrip('/')
         for field, frame in zip(('header.frame_id', 'child_frame_id'), frames):
             check(field, repr(frame), frame, 'the name of a frame')
+        check('child_frame_id', repr(frames[1]), frames[1] != self.parameters['output_frame'],
+              'a frame other than output_frame')
         self.combined.add_odom(now, *messages.from_odometry(message))
         self.frames = frames
 
@@ -114,18 +116,18 @@ class Ekf:
         if self.sender is None or not any(connection.header is self.sender for connection in connections):
             if self.sender is not None:
                 rospy.logwarn('odom comes from another sender: starting again')
-            self.sender = sender
-            self.combined = CombinedOdometry(priors(self.surface()), round(SECOND * self.parameters['sensor_timeout']),
+            self.combined = CombinedOdometry(priors(self.surface(sender['callerid'])), round(SECOND * self.parameters['sensor_timeout']),
                                              self.parameters['imu_used'], rospy.logwarn)
+            self.sender = sender
 
-    def surface(self):
-        """The Surface that says how far wheels and gyro are to be trusted."""
+    def surface(self, base):
+        """The Surface that says how far wheels and gyro of a node are to be trusted."""
         # a simulated base has a parameter that says what it stands on; a real one stands on carpet, as the tutorial's
-        base = self.sender['callerid']
-        name = self.parameters['surface'] or rospy.get_param(base + '/surface', CARPET)
+        name = self.parameters['surface']
         try:
+            name = name or rospy.get_param(base + '/surface', CARPET)
             surface = load_surface(name, resources.surfaces())
-        except ConfigError as error:
+        except (ConfigError, OSError) as error:     # or no answer from the master
             rospy.logwarn('%s/%s; %s instead', base, error, CARPET)
             name, surface = CARPET, load_surface(CARPET, resources.surfaces())
         rospy.loginfo('Wheels and gyro are taken to be as on %s', name)
@@ -134,6 +136,8 @@ class Ekf:
     def take(self, sensor, add, message):
         """Hand a message to the filter, and publish what comes of it."""
         now = rospy.Time.now()
+        if not now:     # simulated time that has not begun
+            return
         try:
             add(now.to_nsec(), message)
         except RefusedMessage as error:
@@ -166,7 +170,8 @@ class Ekf:
             contradicts = outliers - self.outliers.get(sensor, 0) > CONTRADICTIONS
             self.outliers[sensor] = outliers
         age = None if heard is None else (rospy.Time.now() - heard).to_sec()
-        if left_out or age is None or age > self.parameters['sensor_timeout']:
+        # less than 0: the clock went back since
+        if left_out or age is None or not -1 <= age <= self.parameters['sensor_timeout']:
             status.summary(DiagnosticStatus.WARN, 'No message yet' if age is None else 'Silent, left out')
         elif contradicts:
             status.summary(DiagnosticStatus.WARN, 'Wheels and gyro contradict each other')

@@ -11,7 +11,7 @@ import rospy
 from geometry_msgs.msg import Twist
 
 from rbx1_nav import driver, node
-from rbx1_nav.maneuver import StuckError, out_and_back_by_odometry
+from rbx1_nav.maneuver import out_and_back_by_odometry
 from rbx1_nav.whereabouts import LostTransform, Whereabouts
 
 
@@ -94,7 +94,7 @@ if __name__ == '__main__':
         OutAndBack()
     except rospy.ROSInterruptException:
         rospy.loginfo('Out-and-Back node terminated.')
-    except (rospy.ROSException, StuckError) as error:
+    except (rospy.ROSException, ValueError) as error:     # or stuck
         rospy.logerr('%s', error)
         status = 1
     node.leave(status)

@@ -39,7 +39,7 @@ def read_arguments():
     parser.add_argument('--seed', type=int, default=0, metavar='S',
                         help='the runs are drawn from S, S+1, ...; default: 0')
     parser.add_argument('--config', default=resources.path('config', 'turtlebot.yaml'), metavar='FILE',
-                        help="ArbotiX YAML file of the base; default: the TurtleBot's")
+                        help="ArbotiX YAML file of the base, its rate apart: a tick is 1/50 s; default: the TurtleBot's")
     parser.add_argument('--plot', metavar='FILE', help='draw the ways and the end poses, side by side (PNG, PDF, SVG)')
     parser.add_argument('--jobs', type=int, default=os.cpu_count(), metavar='N',
                         help='processes; default: as many as there are processor cores')
@@ -156,8 +156,8 @@ def main():
     """Simulate, print, draw. Returns the exit status."""
     signal.signal(signal.SIGPIPE, signal.SIG_DFL)               # whoever reads may have seen enough
     signal.signal(signal.SIGTERM, signal.default_int_handler)   # as Ctrl-C: no process is left behind
-    arguments = read_arguments()
     try:
+        arguments = read_arguments()
         surface = load_surface(arguments.surface, resources.surfaces())
         seeds = range(read_seed(arguments.seed), read_seed(arguments.seed + arguments.runs - 1) + 1)
         config = read_robot(arguments.config)

@@ -19,6 +19,7 @@ import numpy
 
 from rbx1_nav.base import SECOND
 from rbx1_nav.diff_drive import Pose
+from rbx1_nav.wheels import LEAST_VARIANCE
 
 X, Y, YAW, BIAS, SCALE, STRAIGHT, TURNING, ROUNDING = range(8)
 
@@ -27,7 +28,6 @@ BIAS_WALK = radians(0.002)  # rad/s for each root of a second: no gyro's bias is
 OUTLIER = 5.0               # standard deviations between wheels and gyro, from which on one of them must be wrong
 
 MOST = 1e6              # m or rad/s that a message may tell
-LEAST_VARIANCE = 1e-12  # m^2, rad^2, or those per second squared: a micrometre
 MOST_SPEED = 2.0        # m/s: odometry that moves faster has jumped
 MOST_TURN = 5.0         # rad/s: or turns faster
 SLACK = 0.02            # m and rad that it may be off besides
@@ -218,6 +218,7 @@ class CombinedOdometry:
         self.gyro_used = gyro_used
         self.say = say
         self.now = 0
+        self.last = {'odom': None, 'imu_data': None}        # ns, stamp of the last message
         self.restart()
 
     def restart(self, reason=None):
@@ -232,7 +233,6 @@ class CombinedOdometry:
         self.odom = None            # the last Odom of a step
         self.odom_yaw = None        # rad, the filter's yaw at that time
         self.suspect = None         # an Odom that was too far away to be believed
-        self.last = {'odom': None, 'imu_data': None}        # ns, stamp of the last message
         self.silent = {'odom': False, 'imu_data': False}    # who is left out
 
     # what comes in
@@ -263,7 +263,7 @@ class CombinedOdometry:
         check_variance('angular_velocity_covariance[8]', imu.variance)
         before = self._heard('imu_data', now, imu.stamp)
         # after a silence it tells of a time whose begin nobody knows
-        if before is not None and imu.stamp - before <= self.timeout:
+        if (self.filter or self.waiting) and before is not None and imu.stamp - before <= self.timeout:
             self.readings.append((before, imu))
         self._advance()
 
@@ -271,6 +271,7 @@ class CombinedOdometry:
         """Check a stamp, and keep it; returns the one before, or None."""
         if now < self.now - FUTURE:
             self.restart('The clock went back by %.3f s' % ((self.now - now) / SECOND))
+            self.last = {'odom': None, 'imu_data': None}
         self.now = now
         before = self.last[sensor]
         for good, expected, time in ((stamp <= now + FUTURE, 'none later than now', now),
@@ -310,6 +311,8 @@ class CombinedOdometry:
         return self.silent['imu_data']
 
     def _step(self, odom):
+        if self.odom and odom.stamp <= self.odom.stamp:
+            return
         # one message from another place is a mistake; a second one from there is another place
         suspect, self.suspect = self.suspect, None
         if suspect and not jumped(suspect, odom) and distance(suspect, odom) <= distance(self.odom, odom):
@@ -329,8 +332,12 @@ class CombinedOdometry:
         turned = wrapped(odom.pose.yaw - self.odom.pose.yaw)
         gyro = self._gyro_turn(odom.stamp)
         wheels = None
-        if not gyro or self.time == self.odom.stamp:
-            wheels = (wrapped(turned - (self.filter.state[YAW] - self.odom_yaw)), odom.angular_variance * elapsed ** 2)
+        if self.time == self.odom.stamp:
+            wheels = turned, odom.angular_variance * elapsed ** 2
+        elif duration and not gyro:
+            # the gyro went on alone, but not as far as this: the rest of the turn is the wheels'
+            already = (self.filter.state[YAW] - self.odom_yaw) / (1 - self.filter.state[TURNING])
+            wheels = wrapped(turned - already), odom.angular_variance * elapsed ** 2
         turn = self.filter.turn(duration, wheels, gyro)
 
         # the displacement, seen from the heading that the wheels had half way

@@ -6,7 +6,7 @@ from collections import namedtuple
 import random
 
 from rbx1_nav.base import clamp
-from rbx1_nav.wheels import MEASURED
+from rbx1_nav.wheels import LEAST_VARIANCE, MEASURED
 
 NOISE_RATE = 50.0   # Hz, at which the surface's file gives the noise: it grows with the root of the rate, as white noise does
 
@@ -70,7 +70,7 @@ class Gyro:
         bias = min(density / self._rest, surface.gyro_bias ** 2) if self._rest else surface.gyro_bias ** 2
         variance = (MEASURED + density * self._time + bias * self._time ** 2
                     + (surface.gyro_scale_error * self._turned) ** 2)
-        return Reading(rate, noise ** 2, self._yaw, variance)
+        return Reading(rate, max(noise ** 2, LEAST_VARIANCE), self._yaw, variance)
 
     def reset(self):
         """Start again with a robot at the origin, with bias and scale error as they are."""

@@ -53,13 +53,14 @@ class Leg:
         self.start = self.last = None   # Pose
         self.turned = 0.0       # rad
         self.nearest = goal     # m or rad
+        self.most_patience = max(2, int(STUCK * rate))      # ticks
         self.patience = 0       # ticks left
 
     def next_speed(self, pose):
         """The speed for the next tick, now that the robot is at `pose`; 0 at the goal. Raises StuckError."""
         if self.start is None:
             self.start = self.last = pose
-            self.patience = int(STUCK * self.rate)
+            self.patience = self.most_patience
         self.turned += remainder(pose.yaw - self.last.yaw, 2 * pi)
         self.last = pose
         to_go = self.goal - self.done()
@@ -69,7 +70,7 @@ class Leg:
         self.patience -= 1
         if to_go < self.nearest - self.slowest / self.rate:
             self.nearest = to_go
-            self.patience = int(STUCK * self.rate)
+            self.patience = self.most_patience
         if self.patience < 0:
             raise StuckError('%s: no nearer for %g s, %.3f of %.3f to go' % (self.name, STUCK, to_go, self.goal))
         # the nearer, the slower: but no faster than it can brake, and never past the goal in one tick or two
@@ -111,7 +112,12 @@ class Turn(Leg):
 
 def out_and_back_by_odometry(linear_speed, goal_distance, angular_speed, goal_angle, rate, min_linear_speed,
                              min_angular_speed):
-    """The same exercise as four Legs that ask where the robot is: m/s, m, rad/s, rad, Hz, m/s and rad/s."""
+    """The same exercise as four Legs that ask where the robot is: m/s, m, rad/s, rad, Hz, m/s and rad/s.
+
+    Raises ValueError, see out_and_back().
+    """
+    # at its slowest
+    out_and_back(min(linear_speed, min_linear_speed), goal_distance, min(angular_speed, min_angular_speed), goal_angle, rate)
     def legs():
         yield Straight('forward', goal_distance, linear_speed, min_linear_speed, rate)
         yield Turn('turn left', goal_angle, angular_speed, min_angular_speed, rate)

@@ -3,10 +3,15 @@ import os
 
 import rospkg
 
+from rbx1_nav.config import ConfigError
+
 
 def path(*parts):
-    """The path of a file or folder of this package."""
-    return os.path.join(rospkg.RosPack().get_path('rbx1_nav'), *parts)
+    """The path of a file or folder of this package. Raises ConfigError."""
+    try:
+        return os.path.join(rospkg.RosPack().get_path('rbx1_nav'), *parts)
+    except rospkg.ResourceNotFound:
+        raise ConfigError('rbx1_nav: not found: expected a terminal that has sourced the setup.bash of its workspace')
 
 
 def surfaces():

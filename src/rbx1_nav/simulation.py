@@ -21,6 +21,7 @@ METHODS = ('timed', 'odom', 'ekf')
 EXERCISE = dict(linear_speed=0.2, goal_distance=1.0, angular_speed=1.0, goal_angle=pi, rate=50)
 SLOWEST = dict(min_linear_speed=0.05, min_angular_speed=0.2)
 TICK = SECOND // EXERCISE['rate']   # ns
+SLOWEST_WINDOW = 0.1    # s
 REST = 50       # ticks between two motions
 CALIBRATION = 100   # ticks that the robot stands before the first motion, for the filter to learn the gyro's bias
 
@@ -38,7 +39,9 @@ def make_robot(config, surface, seed):
         wheels, gyro = IdealWheels(config.base_width), IdealGyro()
     else:
         run = draw(surface, seed)
-        wheels, gyro = Wheels(config.base_width, surface, run), Gyro(surface, run, seed)
+        # odometry tells the speed since its last message
+        wheels = Wheels(config.base_width, surface, run, min(1 / config.rate, SLOWEST_WINDOW))
+        gyro = Gyro(surface, run, seed)
     return Base(wheels, config.limits, config.timeout), gyro
 
 

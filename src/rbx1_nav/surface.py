@@ -14,24 +14,29 @@ import yaml
 from rbx1_nav.config import ConfigError, Section
 
 FRACTION = dict(low=0.0, high=0.5, closed=True, expected='a part from 0 to 0.5')
-ABOVE = dict(low=0.0, expected='a finite number above 0')
-NOT_BELOW = dict(low=0.0, closed=True, expected='a finite number not below 0')
+
+
+def between(low, high):
+    """A number in that range."""
+    return dict(low=low, high=high, closed=True, expected='a number from %g to %g' % (low, high))
+
+
 
 # key: what it may be, and what turns it into SI units
 KEYS = {
-    'lag': (ABOVE, float),
-    'accel_limit': (ABOVE, float),
-    'drag_straight': (ABOVE, float),
-    'drag_turning': (ABOVE, float),
+    'lag': (between(1e-4, 60), float),
+    'accel_limit': (between(1e-3, 1000), float),
+    'drag_straight': (between(1e-6, 10), float),
+    'drag_turning': (between(1e-6, 10), float),
     'slip_straight': (FRACTION, float),
     'slip_straight_spread': (FRACTION, float),
     'slip_turning': (FRACTION, float),
     'slip_turning_spread': (FRACTION, float),
-    'ticks_meter': (ABOVE, float),
-    'gyro_noise': (ABOVE, radians),
-    'gyro_bias': (NOT_BELOW, radians),
+    'ticks_meter': (between(1, 1e6), float),
+    'gyro_noise': (between(1e-3, 1000), radians),
+    'gyro_bias': (between(0, 1000), radians),
     'gyro_scale_error': (FRACTION, float),
-    'gyro_measurement_range': (ABOVE, radians)}
+    'gyro_measurement_range': (between(1, 1e5), radians)}
 
 Surface = namedtuple('Surface', ['name'] + list(KEYS))
 Surface.__doc__ = 'A surface, by the keys of its file, in s, m/s, m/s^2 and (not as in the file) rad/s.'

@@ -15,7 +15,8 @@ from math import copysign, exp, floor, hypot, log
 
 from rbx1_nav.diff_drive import ORIGIN, Odometry
 
-MEASURED = 1e-6     # variance in m^2 or rad^2 (and their squares per second): a millimetre, a milliradian
+MEASURED = 1e-6     # variance in m^2 or rad^2 (or those per s^2): a millimetre, a milliradian
+LEAST_VARIANCE = 1e-12      # the same: a micrometre; nobody measures better, and nobody believes it
 
 Uncertainty = namedtuple('Uncertainty', 'position yaw linear angular')
 Uncertainty.__doc__ = 'Variances of an odometry: of x and y (m^2), yaw (rad^2), linear (m^2/s^2), angular speed (rad^2/s^2).'
@@ -123,10 +124,10 @@ class Wheels:
     not touch each other; each is followed with the drag and the slip of its own.
     """
 
-    WINDOW = 0.02       # s, over which the encoders' counts are taken together to tell a speed
-
-    def __init__(self, base_width, surface, run):
-        """base_width: m; surface: a Surface; run: the Run drawn from it."""
+    def __init__(self, base_width, surface, run, window):
+        """base_width: m; surface: a Surface; run: the Run drawn from it; window: s, over which the encoders' counts are
+        taken together to tell a speed, about."""
+        self.window = window
         self.base_width = base_width
         self.surface = surface
         self.run = run
@@ -166,7 +167,7 @@ class Wheels:
         self._distance += (left + right) / 2
         self._angle += (right - left) / self.base_width
         self._time += duration
-        if self._time >= self.WINDOW:
+        if self._time > 0.75 * self.window:     # no time is quite what it should be
             self._velocity = self._distance / self._time, self._angle / self._time
             self._path += abs(self._distance)
             self._turned += abs(self._angle)
@@ -177,7 +178,7 @@ class Wheels:
         """Pose: what slip, not known to be there, adds up to; an upper bound, since the way back may undo it.
 
         Speeds: rounding to whole ticks, each of variance 1/6 tick^2 as the difference of two roundings (1/12 each),
-        over WINDOW; a robot that stands is known to stand.
+        over the window; a robot that stands is known to stand.
         """
         surface = self.surface
         yaw = hypot(surface.slip_turning, surface.slip_turning_spread) * self._turned
@@ -186,7 +187,7 @@ class Wheels:
         position, yaw = position ** 2 + tick ** 2, yaw ** 2 + (tick / self.base_width) ** 2
         if self.at_rest:
             return Uncertainty(position, yaw, MEASURED, MEASURED)
-        wheel = tick ** 2 / 6 / self.WINDOW ** 2
+        wheel = tick ** 2 / 6 / self.window ** 2
         return Uncertainty(position, yaw, MEASURED + wheel / 2, MEASURED + 2 * wheel / self.base_width ** 2)
 
     def reset(self):

@@ -29,14 +29,14 @@ class Whereabouts:
         self.speed = Pose(0.0, 0.0, 0.0)    # of the last two, m/s and rad/s
 
     def pose(self):
-        """The Pose now; its yaw is wrapped, or a little over that. Raises LostTransform.
+        """The Pose now, its yaw within two turns of 0. Raises LostTransform.
 
         A transform tells where the robot was when it was stamped. Since then it went on as before, or nearly so.
         """
         transform = self._look_up()
         stamp = transform.header.stamp.to_sec()
         age = rospy.get_time() - stamp
-        if age > STALE:
+        if not -STALE <= age <= STALE:
             raise LostTransform('The last transform from %s to %s is %.2f s old'
                                 % (self.odom_frame, transform.child_frame_id, age))
         place, rotation = transform.transform.translation, transform.transform.rotation

@@ -204,8 +204,9 @@ def refused(make, field, sent=False):
     assert not robot.said
 
 
-@given(st.lists(st.tuples(st.sampled_from(['odom', 'imu']), st.floats(), st.floats(), st.integers(-10 ** 10, 10 ** 10)),
-                max_size=40))
+@given(st.lists(st.tuples(st.sampled_from(['odom', 'imu']), st.floats() | st.sampled_from([0.0, 0.001, 5.0, 5.001]),
+                          st.floats() | st.sampled_from([1e-12, 1e-6, 1.0, 1e12]),
+                          st.integers(-10 ** 10, 10 ** 10) | st.sampled_from([0, -STEP])), max_size=40))
 def test_whatever_comes_the_state_stays_finite(messages):
     robot = Robot()
     robot.send(10)
@@ -274,6 +275,40 @@ def test_odometry_that_falls_silent_leaves_the_turn_to_the_gyro_and_is_taken_bac
     # the way back in is a straight line to where the wheels say; the gyro told the turn
     assert exact(robot.combined.estimate, robot.pose) and not robot.combined.silent['odom']
     assert robot.combined.estimate.covariance[X, X] < 1e-3
+
+
+@pytest.mark.parametrize('odom_first', [True, False])
+def test_odometry_that_comes_back_in_a_turn_finds_the_turn_of_the_gyro(odom_first):
+    robot = Robot()     # its wheels slip by the 3 % that the filter expects, and it turns 0.5 rad/s
+    for tick in range(300):
+        robot.now += STEP
+        wheels = Odom(robot.now, Pose(0.0, 0.0, 0.5 * 0.02 * tick / 0.97), 1e-6, 1e-5)
+        odom = (robot.combined.add_odom, wheels, VARIANCES)
+        imu = (robot.combined.add_imu, Imu(robot.now, 0.5 if tick else 0.0, 3e-6))
+        for add, *message in (odom, imu) if odom_first else (imu, odom):
+            if add is imu[0] or not 50 < tick < 200:
+                add(robot.now, *message)
+    assert robot.combined.filter.state[YAW] == pytest.approx(0.5 * 0.02 * tick, abs=1e-3)
+    assert len(robot.said) == 2
+
+
+def test_readings_are_not_kept_for_odometry_that_never_comes():
+    robot = Robot()
+    robot.send(1000, odom=False)
+    assert not robot.combined.readings
+
+
+def test_a_stamp_that_was_there_before_a_new_beginning_is_still_old():
+    robot = Robot()
+    robot.send(10)
+    robot.combined.restart('test')
+    with pytest.raises(RefusedMessage, match='later than the last'):
+        robot.combined.add_odom(robot.now, robot.odom(), VARIANCES)
+    robot.send(2)
+    robot.pose = Pose(5.0, 0.0, 0.0)
+    robot.send(2)
+    with pytest.raises(RefusedMessage, match='later than the last'):
+        robot.combined.add_odom(robot.now, robot.odom(), VARIANCES)
 
 
 def test_a_gyro_at_the_end_of_its_range_is_not_believed():

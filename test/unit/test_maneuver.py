@@ -77,7 +77,7 @@ def test_it_slows_down_early_enough_to_brake():
     assert all(before - after < 2.1 * 0.4 / 50 for before, after in zip(speeds, speeds[1:])) and speeds[0] == 2.0
 
 
-@pytest.mark.parametrize('rate', [1, 2, 5])
+@pytest.mark.parametrize('rate', [0.1, 1, 5])
 def test_a_slow_rate_does_not_carry_it_past_its_goal(rate):
     for leg, slowest in zip(out_and_back_by_odometry(**dict(LEGS, rate=rate)), (0.05, 0.2)):
         pose = ORIGIN
@@ -87,6 +87,13 @@ def test_a_slow_rate_does_not_carry_it_past_its_goal(rate):
                 break
             pose = arc(pose, *(value / rate for value in leg.velocity(speed)))
         assert abs(leg.goal - leg.done()) <= 0.5001 * slowest / rate
+
+
+@pytest.mark.parametrize('change', [dict(goal_distance=1e-4), dict(rate=1e-300), dict(goal_angle=inf),
+                                    dict(linear_speed=1e-9)])
+def test_legs_that_make_no_sense(change):
+    with pytest.raises(ValueError, match='expected between 1 tick and a day'):
+        out_and_back_by_odometry(**dict(LEGS, **change))
 
 
 def test_a_turn_of_more_than_a_full_one():

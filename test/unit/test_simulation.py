@@ -74,7 +74,7 @@ def test_the_filter_is_better_than_the_wheels_and_knows_how_good_it_is():
         ends.append(error @ numpy.linalg.solve(run.covariance, error))
     heading_odom, heading, position_odom, position = squares ** 0.5
     assert heading < heading_odom / 3 and position < position_odom
-    # chi-square of 3 a run; the mean of 40 is good to 0.39 (1 sigma). bench/filter.py has the figure over 200 seeds
+    # chi-square of 3 a run; the mean of 40 is good to 0.39 (1 sigma). bench/surfaces.py has the figure over 200 seeds
     assert 1.5 < numpy.mean(ends) < 5
 
 

@@ -57,7 +57,8 @@ def test_a_file_that_is_no_surface(tmp_path, text):
 
 @pytest.mark.parametrize('key, value', [
     ('lag', 0), ('lag', -1), ('accel_limit', nan), ('drag_turning', 0), ('slip_straight', -0.1), ('slip_turning', 0.6),
-    ('slip_turning_spread', 'much'), ('ticks_meter', 0), ('gyro_noise', 0), ('gyro_bias', -1), ('gyro_scale_error', True),
+    ('slip_turning_spread', 'much'), ('ticks_meter', 0), ('ticks_meter', 1e308),
+    ('gyro_noise', 0), ('gyro_noise', 1e-9), ('gyro_bias', 1e200), ('lag', 1e9), ('gyro_bias', -1), ('gyro_scale_error', True),
     ('gyro_measurement_range', [])])
 def test_a_bad_value_is_named_with_its_key(key, value):
     with pytest.raises(ConfigError, match='^surface x/%s: .*expected a ' % key):

@@ -105,7 +105,7 @@ def test_an_encoder_counts_whole_ticks_and_loses_none(ways, ticks_meter):
 
 
 def make_base(timeout=1.0):
-    return Base(Wheels(WIDTH, SURFACE, RUN), Limits(10, 10), round(timeout * SECOND))
+    return Base(Wheels(WIDTH, SURFACE, RUN, 0.02), Limits(10, 10), round(timeout * SECOND))
 
 
 def drive(base, linear, angular, seconds, step=SECOND // 50):
@@ -200,6 +200,15 @@ def test_a_robot_that_stands_knows_it_and_one_that_went_far_knows_less():
     after = base.wheels.uncertainty
     assert moving.linear > after.linear == before.linear and moving.angular > after.angular == before.angular
     assert after.position > before.position and after.yaw > before.yaw
+
+
+def test_a_speed_over_a_shorter_time_is_known_less_well():
+    often, seldom = (Wheels(WIDTH, SURFACE, RUN, window) for window in (0.005, 0.02))
+    for wheels in (often, seldom):
+        for _ in range(10):
+            wheels.travel(0.2, 0.0, 0.005)
+    # but for the millimetre that both have
+    assert often.uncertainty.linear - 1e-6 == pytest.approx(16 * (seldom.uncertainty.linear - 1e-6))
 
 
 def test_on_no_surface_truth_is_what_is_counted_bit_for_bit():
