@@ -116,7 +116,8 @@ class Ekf:
         if self.sender is None or not any(connection.header is self.sender for connection in connections):
             if self.sender is not None:
                 rospy.logwarn('odom comes from another sender: starting again')
-            self.combined = CombinedOdometry(priors(self.surface(sender['callerid'])), round(SECOND * self.parameters['sensor_timeout']),
+            self.combined = CombinedOdometry(priors(self.surface(sender['callerid'])),
+                                             round(SECOND * self.parameters['sensor_timeout']),
                                              self.parameters['imu_used'], rospy.logwarn)
             self.sender = sender
 
@@ -159,7 +160,7 @@ class Ekf:
             # a frame has one parent: where the base frame has its own, odom, that one gets ours
             child, pose = ((base_frame, estimate.pose) if frame == odom_frame
                            else (odom_frame, between(estimate.pose, estimate.odom.pose)))
-            self.tf_pub.publish([messages.planar_transform(stamp, frame, child, pose)])
+            self.tf_pub.publish([messages.transform(stamp, frame, child, pose)])
 
     def diagnose(self, sensor, status):
         """Fill in the DiagnosticStatus of a sensor."""

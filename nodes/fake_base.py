@@ -25,6 +25,7 @@ from rbx1_nav.lockstep import Lockstep
 from rbx1_nav.schedule import Schedule
 from rbx1_nav.simulation import make_robot
 from rbx1_nav.surface import load_surface, read_seed
+from rbx1_nav.wheels import IdealWheels
 
 TICK = SECOND // 50     # ns, the step of the simulated clock
 
@@ -135,16 +136,17 @@ class FakeBase:
             self.last_stamp = stamp
             timed_out = self.base.advance(now)
             base = self.base
-            odom = messages.odometry(stamp, self.config, base.odometry.pose, base.velocity, base.wheels.uncertainty)
+            pose = base.odometry.pose
+            odom = messages.odometry(stamp, self.config, pose, base.velocity, base.wheels.uncertainty)
             imu = self.read_gyro(now, stamp)
             truth = None
             if self.truth_pub.get_num_connections():
                 truth = messages.odometry(stamp, self.config, base.wheels.truth.pose, base.true_velocity,
-                                          messages.EXACT)
+                                          IdealWheels.uncertainty)
             joints = self.joint_states(now, stamp) if self.joint_schedule.due(now) else None
         self.odom_pub.publish(odom)
         if self.config.publish_tf:
-            self.tf_pub.publish([messages.transform(odom)])
+            self.tf_pub.publish([messages.transform(stamp, odom.header.frame_id, odom.child_frame_id, pose)])
         if imu:
             self.imu_pub.publish(imu)
         if truth:

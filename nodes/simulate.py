@@ -18,7 +18,6 @@ import yaml
 
 from rbx1_nav import resources
 from rbx1_nav.config import ConfigError, read_config
-from rbx1_nav.maneuver import StuckError
 from rbx1_nav.simulation import METHODS, simulate_many
 from rbx1_nav.surface import known_surfaces, load_surface, read_seed
 
@@ -173,7 +172,7 @@ def main():
         if arguments.plot:
             draw(arguments.plot, arguments.surface, results)
             print('Picture: %s' % arguments.plot)
-    except (ConfigError, StuckError, OSError, ValueError, yaml.YAMLError) as error:
+    except (OSError, ValueError, yaml.YAMLError) as error:     # or a robot that is stuck
         print('simulate.py: %s' % ' '.join(str(error).split()), file=sys.stderr)
         return 1
     except KeyboardInterrupt:

@@ -111,7 +111,7 @@ class Filter:
                     (share - 1) * duration / scale, (share - 1) * angle / scale, -share * wheels[0])
 
     def move(self, duration, turn, direction=0.0, forward=0.0, left=0.0, variance=0.0):
-        """Make a step of `duration` (s): a Turn of turn()'s, and travel; returns how far forward (m).
+        """Make a step of `duration` (s): a Turn of turn()'s, and travel.
 
         forward, left: displacement (m) as the wheels tell it, in a frame that is turned against the robot's half way
         through the turn by `direction` (rad); variance: of the displacement, m^2.
@@ -149,7 +149,6 @@ class Filter:
             [dx * dy * noise + c * s * rounded, dy * dy * noise + s * s * rounded, dy * noise],
             [dx * noise, dy * noise, noise]])
         covariance[BIAS, BIAS] += BIAS_WALK ** 2 * duration
-        return made * forward
 
 
 Odom = namedtuple('Odom', 'stamp pose linear_variance angular_variance')
@@ -158,9 +157,9 @@ Odom.__doc__ = "Wheel odometry: stamp in ns, Pose in its frame, variances of its
 Imu = namedtuple('Imu', 'stamp rate variance')
 Imu.__doc__ = 'A reading: stamp in ns, mean angular velocity since the one before (rad/s), its variance (rad^2/s^2).'
 
-Estimate = namedtuple('Estimate', 'stamp pose covariance linear angular odom')
-Estimate.__doc__ = """What is known: stamp in ns, Pose, 3x3 covariance of x, y (m) and yaw (rad), speeds of the last step
-(m/s, rad/s), and the Odom that it goes with, the last one."""
+Estimate = namedtuple('Estimate', 'stamp pose covariance odom')
+Estimate.__doc__ = """What is known: stamp in ns, Pose, 3x3 covariance of x, y (m) and yaw (rad), and the Odom that it goes
+with, the last one."""
 
 
 def wrapped(angle):
@@ -323,7 +322,7 @@ class CombinedOdometry:
             return
         if not self.filter:
             self.filter = Filter(self.prior, odom.pose)
-            self._finish(odom.stamp, odom, 0.0, 0.0)
+            self._finish(odom.stamp, odom)
             return
 
         elapsed = (odom.stamp - self.odom.stamp) / SECOND
@@ -347,16 +346,15 @@ class CombinedOdometry:
         # and that heading for us: half way from where we were when the wheels reported last
         since = self.filter.state[YAW] - self.odom_yaw
         ahead = turned + wrapped(since + turn.angle - turned)
-        made = self.filter.move(duration, turn, ahead / 2 - since - turn.angle / 2, forward, left,
-                                odom.linear_variance * elapsed ** 2)
-        self._finish(max(odom.stamp, self.time), odom, made / elapsed, turn.angle / duration if duration else 0.0)
+        self.filter.move(duration, turn, ahead / 2 - since - turn.angle / 2, forward, left,
+                         odom.linear_variance * elapsed ** 2)
+        self._finish(max(odom.stamp, self.time), odom)
 
     def _step_by_gyro(self, end):
         duration = (end - self.time) / SECOND
         if duration > 0:
-            turn = self.filter.turn(duration, None, self._gyro_turn(end))
-            self.filter.move(duration, turn)
-            self._finish(end, None, 0.0, turn.angle / duration)
+            self.filter.move(duration, self.filter.turn(duration, None, self._gyro_turn(end)))
+            self._finish(end, None)
 
     def _gyro_turn(self, end):
         """(angle, variance) that the gyro read until `end` (ns); None where it does not know all of it."""
@@ -375,7 +373,7 @@ class CombinedOdometry:
                 self.readings.popleft()
         return (angle, variance) if good and time == end and variance else None
 
-    def _finish(self, time, odom, linear, angular):
+    def _finish(self, time, odom):
         """Keep what a step came to."""
         self.time = time
         state = self.filter.state
@@ -385,4 +383,4 @@ class CombinedOdometry:
         unseen = UNSEEN_SPEED * (time - self.odom.stamp) / SECOND
         covariance[X, X] += unseen ** 2
         covariance[Y, Y] += unseen ** 2
-        self.estimate = Estimate(time, Pose(*state[:3]), covariance, linear, angular, self.odom)
+        self.estimate = Estimate(time, Pose(*state[:3]), covariance, self.odom)

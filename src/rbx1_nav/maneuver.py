@@ -44,7 +44,7 @@ class Leg:
     """One motion that ends where the pose says so: slower and slower, so that it can stop on its goal."""
 
     def __init__(self, name, goal, speed, slowest, rate):
-        """goal: m or rad; speed, slowest: m/s or rad/s; rate: how often it is asked, Hz."""
+        """goal: m or rad; speed, slowest: m/s or rad/s; rate: how often it is asked, Hz. Raises ValueError, see ticks()."""
         self.name = name
         self.goal = goal
         self.speed = speed
@@ -54,13 +54,16 @@ class Leg:
         self.turned = 0.0       # rad
         self.nearest = goal     # m or rad
         self.most_patience = max(2, int(STUCK * rate))      # ticks
-        self.patience = 0       # ticks left
+        self.patience = self.most_patience      # ticks left
+        try:
+            ticks(goal, self.slowest, rate)
+        except ValueError as error:
+            raise ValueError('%s: at its slowest, %s' % (self.keys, error))
 
     def next_speed(self, pose):
         """The speed for the next tick, now that the robot is at `pose`; 0 at the goal. Raises StuckError."""
         if self.start is None:
             self.start = self.last = pose
-            self.patience = self.most_patience
         self.turned += remainder(pose.yaw - self.last.yaw, 2 * pi)
         self.last = pose
         to_go = self.goal - self.done()
@@ -82,6 +85,7 @@ class Straight(Leg):
     """Forward, in m and m/s."""
 
     unit = 'm'
+    keys = 'goal_distance, min_linear_speed'
     deceleration = 0.4      # m/s^2, of a robot that need not hurry
 
     def done(self):
@@ -98,6 +102,7 @@ class Turn(Leg):
     """To the left on the spot, in rad and rad/s."""
 
     unit = 'rad'
+    keys = 'goal_angle, min_angular_speed'
     deceleration = 2.0      # rad/s^2
 
     def done(self):
@@ -114,11 +119,8 @@ def out_and_back_by_odometry(linear_speed, goal_distance, angular_speed, goal_an
                              min_angular_speed):
     """The same exercise as four Legs that ask where the robot is: m/s, m, rad/s, rad, Hz, m/s and rad/s.
 
-    Raises ValueError, see out_and_back().
+    Raises ValueError, see ticks().
     """
-    # at its slowest
-    out_and_back(min(linear_speed, min_linear_speed), goal_distance, min(angular_speed, min_angular_speed), goal_angle, rate)
-    def legs():
-        yield Straight('forward', goal_distance, linear_speed, min_linear_speed, rate)
-        yield Turn('turn left', goal_angle, angular_speed, min_angular_speed, rate)
-    return [*legs(), *legs()]
+    return [leg for _ in range(2)
+            for leg in (Straight('forward', goal_distance, linear_speed, min_linear_speed, rate),
+                        Turn('turn left', goal_angle, angular_speed, min_angular_speed, rate))]

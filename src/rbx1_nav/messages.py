@@ -7,10 +7,9 @@ from sensor_msgs.msg import Imu, JointState
 
 from rbx1_nav.diff_drive import Pose
 from rbx1_nav.ekf import Imu as ImuInput, Odom
-from rbx1_nav.wheels import MEASURED, Uncertainty
+from rbx1_nav.wheels import MEASURED
 
 UNKNOWN = 1e6       # variance of what nobody measures, as diff_drive_controller and robot_pose_ekf have it
-EXACT = Uncertainty(MEASURED, MEASURED, MEASURED, MEASURED)
 
 
 def diagonal(*variances):
@@ -71,14 +70,15 @@ def imu(stamp, frame_id, reading):
     return message
 
 
-def transform(odom):
-    """The TransformStamped that says the same as an Odometry message."""
+def transform(stamp, frame_id, child_frame_id, pose):
+    """A TransformStamped of a Pose of the child frame."""
     message = TransformStamped()
-    message.header = odom.header
-    message.child_frame_id = odom.child_frame_id
-    message.transform.translation.x = odom.pose.pose.position.x
-    message.transform.translation.y = odom.pose.pose.position.y
-    message.transform.rotation = odom.pose.pose.orientation
+    message.header.stamp = stamp
+    message.header.frame_id = frame_id
+    message.child_frame_id = child_frame_id
+    message.transform.translation.x = pose.x
+    message.transform.translation.y = pose.y
+    message.transform.rotation = quaternion(pose.yaw % (2 * pi))
     return message
 
 
@@ -122,18 +122,6 @@ def planar_pose(stamp, frame_id, pose, covariance):
         for column, value in zip((0, 1, 5), values):
             matrix[6 * row + column] = value
     message.pose.covariance = matrix
-    return message
-
-
-def planar_transform(stamp, frame_id, child_frame_id, pose):
-    """A TransformStamped of a Pose of the child frame."""
-    message = TransformStamped()
-    message.header.stamp = stamp
-    message.header.frame_id = frame_id
-    message.child_frame_id = child_frame_id
-    message.transform.translation.x = pose.x
-    message.transform.translation.y = pose.y
-    message.transform.rotation = quaternion(pose.yaw % (2 * pi))
     return message
 
 

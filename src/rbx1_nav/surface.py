@@ -21,7 +21,6 @@ def between(low, high):
     return dict(low=low, high=high, closed=True, expected='a number from %g to %g' % (low, high))
 
 
-
 # key: what it may be, and what turns it into SI units
 KEYS = {
     'lag': (between(1e-4, 60), float),
