@@ -8,10 +8,10 @@ import time
 import numpy
 import yaml
 
-from rbx1_nav import resources
-from rbx1_nav.config import read_config
+from rbx1_nav.ros import resources
+from rbx1_nav.model.robot import read_robot
 from rbx1_nav.simulation import METHODS, simulate, simulate_many
-from rbx1_nav.surface import load_surface
+from rbx1_nav.model.surfaces import load_surface
 
 
 def distance(pose, other=(0.0, 0.0)):
@@ -71,7 +71,7 @@ def main():
     arguments = parser.parse_args()
     surface = load_surface(arguments.surface, resources.surfaces())
     with open(resources.path('config', 'turtlebot.yaml'), encoding='utf-8') as file:
-        config = read_config(yaml.safe_load(file))
+        robot = read_robot(yaml.safe_load(file))
 
     figures = {}
 

@@ -1,41 +1,60 @@
 #!/usr/bin/env python3
-"""Makes the combined odometry visible: odom_combined, a pose, becomes /odom_ekf, an odometry that RViz draws as arrows.
+"""Republishes the combined odometry, a pose, as the odometry /odom_ekf, which RViz draws as arrows.
 
-Both odometries begin where the robot does, so both are told in the frame of the wheels' own: to see them side by side.
+usage: odom_ekf.py [topic:=new_topic ...]      usually started by odom_ekf.launch; it has no parameters
+
+Both odometries start where the robot does, so /odom_ekf has the frames of odom: RViz shows them side by side.
 """
+import rbx1_nav.ros.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded
+
+import time
+
 import rospy
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from nav_msgs.msg import Odometry
 
-from rbx1_nav import messages, node
+from rbx1_nav.ros import messages, node
+
+PATIENCE = 5    # s of wall time without a message before a warning
 
 
 class OdomEkf:
     """Republishes each pose."""
 
     def __init__(self):
-        node.init_node('odom_ekf')
-        self.frames = None      # (frame_id, child_frame_id) of the wheels' odometry
+        node.init_node('odom_ekf', __doc__)
+        self.frames = None      # (frame_id, child_frame_id) of the wheel odometry
         self.last = None        # PoseWithCovarianceStamped
         self.publisher = rospy.Publisher('/odom_ekf', Odometry, queue_size=10)
         rospy.Subscriber('odom', Odometry, self.on_odom)
         rospy.Subscriber('odom_combined', PoseWithCovarianceStamped, self.on_pose)
 
     def on_odom(self, odom):
-        """The wheels' odometry tells the names of the frames."""
+        """The wheel odometry gives the names of the frames."""
         self.frames = odom.header.frame_id.lstrip('/'), odom.child_frame_id.lstrip('/')
 
     def on_pose(self, pose):
-        """A combined pose, and the speed since the one before."""
+        """Republish a combined pose, with the mean velocity since the previous one."""
         if self.frames:
             self.publisher.publish(messages.odometry_of_pose(pose, self.last, *self.frames))
         self.last = pose
 
+    def run(self):
+        """Until the node is to end. Warns once if there is nothing to republish."""
+        deadline = time.monotonic() + PATIENCE
+        while time.monotonic() < deadline and not (self.frames and self.last) and not node.end_requested.is_set():
+            node.sleep(deadline - time.monotonic())
+        received = {'odom': self.frames, 'odom_combined': self.last}
+        missing = [rospy.resolve_name(topic) for topic in received if not received[topic]]
+        if missing and not node.end_requested.is_set():
+            rospy.logwarn('No message on %s after %d s: /odom_ekf is published as soon as there is a base and a filter',
+                          ' and '.join(missing), PATIENCE)
+        node.end_requested.wait()
+
 
 def main():
-    """Run until the node is told to end. Returns the exit status."""
-    OdomEkf()
-    node.end_requested.wait()
+    """Run. Returns the exit status."""
+    OdomEkf().run()
     return 0
 
 

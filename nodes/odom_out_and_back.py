@@ -1,88 +1,118 @@
 #!/usr/bin/env python3
-"""Out and back by odometry: forward 1 m, turn left 180 degrees, and the same again, asking the robot how far it is.
+"""Out and back by odometry: forward 1 m, turn left 180 degrees, and the same again, measured by the robot's pose.
 
-The robot's wheels count how far they turn, and its base makes a position of that: the transform from the frame odom to
-the frame of the base. So do not drive for a time: drive until you are there.
+usage: odom_out_and_back.py [_parameter:=value ...]      for example _odom_frame:=odom_combined
+
+Parameters:
+    ~rate               commands per second, Hz (default: 50)
+    ~linear_speed       forward speed, m/s (default: 0.2)
+    ~goal_distance      length of the way out, m (default: 1)
+    ~angular_speed      turning speed, rad/s (default: 1)
+    ~goal_angle         angle of a turn to the left, rad (default: pi)
+    ~min_linear_speed   lowest speed near the goal, m/s; less may not move your robot (default: 0.05)
+    ~min_angular_speed  the same in a turn, rad/s (default: 0.2)
+    ~odom_frame         frame that the pose is measured in; odom_combined: by wheels and gyro (default: odom)
+    ~base_frame         frame of the robot (default: base_footprint or base_link, whichever exists)
+    ~wait_timeout       how long to wait for a base that subscribes to /cmd_vel, and for its pose, s (default: 30)
+    ~transform_timeout  how long the robot stands and waits if its pose is lost, s (default: 5)
+
+The base counts how far its wheels turn, and publishes a pose: the transform from the frame odom to its own frame. So do
+not drive for a time: drive until you are there.
 """
-from math import pi
+import rbx1_nav.ros.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded
+
+from math import degrees, hypot, pi
 import time
 
 import rospy
 from geometry_msgs.msg import Twist
+from tqdm import tqdm
 
-from rbx1_nav import driver, node
-from rbx1_nav.maneuver import out_and_back_by_odometry
-from rbx1_nav.whereabouts import LostTransform, Whereabouts
+from rbx1_nav.control.legs import out_and_back_by_odometry
+from rbx1_nav.ros import node
+from rbx1_nav.ros.params import frame_param, positive_param
+from rbx1_nav.ros.pose_listener import LostTransform, PoseListener
+from rbx1_nav.ros.rate import Rate, pause
+from rbx1_nav.ros.subscribers import wait_for_subscribers
+from rbx1_nav.units import wrap_angle
 
 
 class OutAndBack:
-    """Drives the robot once out and back; making one is running it."""
+    """Drives the robot once out and back; creating one runs it."""
 
     def __init__(self):
-        # Join ROS under this name. From here on Ctrl-C leads to stop() below.
-        node.init_node('out_and_back')
+        # Start the node under this name. From here on Ctrl-C leads to stop() below.
+        node.init_node('out_and_back', __doc__)
 
-        # How often to look, and to say what to do, in Hz.
-        self.rate = driver.positive_param('rate', 50)
+        # How often to look at the pose and to publish a command, in Hz.
+        self.rate = positive_param('rate', 50)
 
-        # How far to go, and how fast. Near the goal it goes slower and slower, down to the least speed that moves it.
+        # How far to go, and how fast. Near the goal the robot slows down, to the lowest speed that moves it.
         legs = out_and_back_by_odometry(
-            linear_speed=driver.positive_param('linear_speed', 0.2),            # m/s
-            goal_distance=driver.positive_param('goal_distance', 1.0),          # m
-            angular_speed=driver.positive_param('angular_speed', 1.0),          # rad/s
-            goal_angle=driver.positive_param('goal_angle', pi),                 # rad
+            linear_speed=positive_param('linear_speed', 0.2),               # m/s
+            goal_distance=positive_param('goal_distance', 1.0),             # m
+            angular_speed=positive_param('angular_speed', 1.0),             # rad/s
+            goal_angle=positive_param('goal_angle', pi),                    # rad
             rate=self.rate,
-            min_linear_speed=driver.positive_param('min_linear_speed', 0.05),   # m/s
-            min_angular_speed=driver.positive_param('min_angular_speed', 0.2))  # rad/s
-        wait_timeout = driver.positive_param('wait_timeout', 30)                # s
-        self.transform_timeout = driver.positive_param('transform_timeout', 5)  # s
+            min_linear_speed=positive_param('min_linear_speed', 0.05),      # m/s
+            min_angular_speed=positive_param('min_angular_speed', 0.2))     # rad/s
+        wait_timeout = positive_param('wait_timeout', 30)                   # s
+        self.transform_timeout = positive_param('transform_timeout', 5)     # s
 
-        # Where the robot is: its base, which some call base_footprint and some base_link, in the frame of its odometry.
-        self.whereabouts = Whereabouts(driver.frame_param('odom_frame', 'odom'),
-                                       driver.frame_param('base_frame', None))
+        # Where the robot is: the pose of its base in the frame of its odometry.
+        self.poses = PoseListener(frame_param('odom_frame', 'odom'), frame_param('base_frame', None))
 
-        # The robot's base listens here. A queue lets a slow listener lag behind without holding up the others.
+        # The robot's base subscribes to this topic. With a queue, a slow subscriber does not hold up the others.
         self.cmd_vel = rospy.Publisher('/cmd_vel', Twist, queue_size=5)
 
         try:
-            # What is said before anyone listens is lost.
-            driver.wait_for_subscribers(self.cmd_vel, wait_timeout)
-            self.whereabouts.wait(wait_timeout)
+            # What is published before anyone subscribes is lost.
+            wait_for_subscribers(self.cmd_vel, wait_timeout)
+            start = self.poses.wait(wait_timeout)
+            rospy.loginfo('Measuring the pose of %s in the frame %s', self.poses.base_frame, self.poses.odom_frame)
 
             for leg in legs:
                 self.drive(leg)
                 # Stop, and come to rest, before the next leg.
                 self.cmd_vel.publish(Twist())
-                driver.pause(1, self.cmd_vel)
+                pause(1, self.cmd_vel)
 
             self.cmd_vel.publish(Twist())
         finally:
-            # However it ended: the one thing a mobile robot must do.
+            # However it ended: the most important thing that a mobile robot must do.
             self.stop()
 
-    def drive(self, leg):
-        """One leg: look where the robot is, and go on, until it is there."""
-        rospy.loginfo('%s: %.2f %s', leg.name, leg.goal, leg.unit)
-        rate = driver.Rate(self.rate, self.cmd_vel)
-        command = Twist()
-        speed = leg.next_speed(self.where())
-        while speed:
-            command.linear.x, command.angular.z = leg.velocity(speed)
-            self.cmd_vel.publish(command)
-            rate.sleep()
-            speed = leg.next_speed(self.where())
+        end = self.poses.wait(self.transform_timeout)
+        rospy.loginfo('Done: by the frame %s, the robot stands %.3f m from where it started, turned by %.1f degrees.',
+                      self.poses.odom_frame, hypot(end.x - start.x, end.y - start.y),
+                      degrees(wrap_angle(end.yaw - start.yaw)))
 
-    def where(self):
-        """The robot's pose. As long as nobody knows it, the robot stands."""
+    def drive(self, leg):
+        """One leg: look at the pose, and drive on until the goal is reached."""
+        rospy.loginfo('%s: %.2f %s', leg.name, leg.goal, leg.unit)
+        rate = Rate(self.rate, self.cmd_vel)
+        command = Twist()
+        with tqdm(total=leg.goal, desc=leg.name, unit=leg.unit, disable=None,
+                  bar_format='{desc:9}: |{bar}| {n:.2f} of {total:.2f} {unit}') as bar:
+            speed = leg.next_speed(self.pose())
+            while speed:
+                command.linear.x, command.angular.z = leg.velocity(speed)
+                self.cmd_vel.publish(command)
+                rate.sleep()
+                speed = leg.next_speed(self.pose())
+                bar.update(min(leg.done(), leg.goal) - bar.n)
+
+    def pose(self):
+        """The robot's pose. If it is lost, the robot stands and waits for it."""
         try:
-            return self.whereabouts.pose()
+            return self.poses.pose()
         except LostTransform as error:
             self.cmd_vel.publish(Twist())
             rospy.logwarn('%s: the robot waits for a new one', error)
-            return self.whereabouts.wait(self.transform_timeout)
+            return self.poses.wait(self.transform_timeout)
 
     def stop(self):
-        """Tell the robot to stop, and give it the time to do so."""
+        """Stop the robot, and give it the time to do so."""
         self.cmd_vel.publish(Twist())
         rospy.loginfo('Stopping the robot...')
         time.sleep(1)   # wall time: a simulated clock may have stopped
@@ -94,7 +124,7 @@ if __name__ == '__main__':
         OutAndBack()
     except rospy.ROSInterruptException:
         rospy.loginfo('Out-and-Back node terminated.')
-    except (rospy.ROSException, ValueError) as error:     # or stuck
+    except (rospy.ROSException, ValueError) as error:     # StuckError is a ValueError
         rospy.logerr('%s', error)
         status = 1
     node.leave(status)

@@ -1,8 +1,20 @@
 #!/usr/bin/env python3
 """Out and back, by time alone: forward 1 m, turn left 180 degrees, and the same again.
 
-Nobody asks the robot where it is. Drive at a known speed for a known time, and it should end where it began.
+usage: timed_out_and_back.py [_parameter:=value ...]      for example _goal_distance:=0.5
+
+Parameters:
+    ~rate               commands per second, Hz (default: 50)
+    ~linear_speed       forward speed, m/s (default: 0.2)
+    ~goal_distance      length of the way out, m (default: 1)
+    ~angular_speed      turning speed, rad/s (default: 1)
+    ~goal_angle         angle of a turn to the left, rad (default: pi)
+    ~wait_timeout       how long to wait for a base that subscribes to /cmd_vel, s (default: 30)
+
+The script never asks where the robot is. Drive at a known speed for a known time, and it should end where it began.
 """
+import rbx1_nav.ros.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded
+
 from math import pi
 import time
 
@@ -10,49 +22,56 @@ import rospy
 from geometry_msgs.msg import Twist
 from tqdm import tqdm
 
-from rbx1_nav import driver, node
-from rbx1_nav.maneuver import out_and_back
+from rbx1_nav.control.motions import out_and_back
+from rbx1_nav.ros import node
+from rbx1_nav.ros.params import positive_param
+from rbx1_nav.ros.rate import Rate, pause
+from rbx1_nav.ros.subscribers import wait_for_subscribers
 
 
 class OutAndBack:
-    """Drives the robot once out and back; making one is running it."""
+    """Drives the robot once out and back; creating one runs it."""
 
     def __init__(self):
-        # Join ROS under this name. From here on Ctrl-C leads to stop() below.
-        node.init_node('out_and_back')
+        # Start the node under this name. From here on Ctrl-C leads to stop() below.
+        node.init_node('out_and_back', __doc__)
 
-        # How often to say what to do, in Hz. Some robots stop when they hear nothing, so say it on every tick.
-        self.rate = driver.positive_param('rate', 50)
+        # How often to publish a command, in Hz. Some robots stop when they receive none, so publish on every tick.
+        self.rate = positive_param('rate', 50)
 
-        # Speed times time is distance: what we want to cover, and how fast, gives the number of ticks.
+        # Distance is speed times time: what to cover, and how fast, gives the number of ticks.
         motions = out_and_back(
-            linear_speed=driver.positive_param('linear_speed', 0.2),    # m/s
-            goal_distance=driver.positive_param('goal_distance', 1.0),  # m
-            angular_speed=driver.positive_param('angular_speed', 1.0),  # rad/s
-            goal_angle=driver.positive_param('goal_angle', pi),         # rad
+            linear_speed=positive_param('linear_speed', 0.2),       # m/s
+            goal_distance=positive_param('goal_distance', 1.0),     # m
+            angular_speed=positive_param('angular_speed', 1.0),     # rad/s
+            goal_angle=positive_param('goal_angle', pi),            # rad
             rate=self.rate)
-        wait_timeout = driver.positive_param('wait_timeout', 30)        # s
+        wait_timeout = positive_param('wait_timeout', 30)           # s
 
-        # The robot's base listens here. A queue lets a slow listener lag behind without holding up the others.
+        # The robot's base subscribes to this topic. With a queue, a slow subscriber does not hold up the others.
         self.cmd_vel = rospy.Publisher('/cmd_vel', Twist, queue_size=5)
 
         try:
-            # What is said before anyone listens is lost.
-            driver.wait_for_subscribers(self.cmd_vel, wait_timeout)
+            # What is published before anyone subscribes is lost.
+            wait_for_subscribers(self.cmd_vel, wait_timeout)
 
             for motion in motions:
                 self.drive(motion)
                 # Stop, and come to rest, before the next motion.
                 self.cmd_vel.publish(Twist())
-                driver.pause(1, self.cmd_vel)
+                pause(1, self.cmd_vel)
 
             self.cmd_vel.publish(Twist())
         finally:
-            # However it ended: the one thing a mobile robot must do.
+            # However it ended: the most important thing that a mobile robot must do.
             self.stop()
 
+        rospy.loginfo('Done: commanded %.2f m forward and %.2f rad to the left; the pose was not measured.',
+                      sum(motion.ticks * motion.linear for motion in motions) / self.rate,
+                      sum(motion.ticks * motion.angular for motion in motions) / self.rate)
+
     def drive(self, motion):
-        """One motion: the same command on every tick, for as many ticks as it takes."""
+        """One motion: the same command on every tick, for a number of ticks."""
         command = Twist()
         command.linear.x = motion.linear        # forward, m/s
         command.angular.z = motion.angular      # to the left, rad/s
@@ -60,16 +79,16 @@ class OutAndBack:
         speed, unit = (motion.linear, 'm') if motion.linear else (motion.angular, 'rad')
         rospy.loginfo('%s: %.2f %s at %g %s/s', motion.name, motion.ticks * speed / self.rate, unit, speed, unit)
 
-        # The bar is for people: tqdm leaves it out where nobody looks (disable=None).
+        # The progress bar is for a terminal: with disable=None, tqdm leaves it out elsewhere.
         ticks = tqdm(range(motion.ticks), desc=motion.name, unit_scale=speed / self.rate, unit=unit, disable=None,
                      bar_format='{desc:9}: |{bar}| {n_fmt} of {total_fmt} {unit}')
-        rate = driver.Rate(self.rate, self.cmd_vel)
+        rate = Rate(self.rate, self.cmd_vel)
         for _ in ticks:
             self.cmd_vel.publish(command)
             rate.sleep()
 
     def stop(self):
-        """Tell the robot to stop, and give it the time to do so."""
+        """Stop the robot, and give it the time to do so."""
         self.cmd_vel.publish(Twist())
         rospy.loginfo('Stopping the robot...')
         time.sleep(1)   # wall time: a simulated clock may have stopped

@@ -8,9 +8,9 @@ import rospkg
 import rospy
 import yaml
 
-from rbx1_nav.config import read_config
+from rbx1_nav.model.robot import read_robot
 from rbx1_nav.simulation import simulate
-from rbx1_nav.surface import load_surface, read_seed
+from rbx1_nav.model.surfaces import load_surface, read_seed
 
 import support
 
@@ -37,7 +37,7 @@ class TestCarpet(unittest.TestCase):
         # the same pieces with the same seed, and no ROS: 1e-9 is far over what floats lose in a thousand steps
         folder = os.path.join(rospkg.RosPack().get_path('rbx1_nav'), 'config')
         with open(os.path.join(folder, 'turtlebot.yaml')) as file:
-            config = read_config(yaml.safe_load(file))
+            config = read_robot(yaml.safe_load(file))
         surface = load_surface('low_ply_carpet', os.path.join(folder, 'surfaces'))
         end = simulate('timed', config, surface, read_seed(rospy.get_param('/arbotix/seed'))).end
         for told, offline in (((x, y, yaw), end.truth), (support.pose(odom.last), end.odometry)):

@@ -1,1 +1,1 @@
-"""Out and back with a differential drive: a core that knows nothing of ROS, and what its nodes share."""
+"""Out and back with a differential drive. Only the subpackage `ros` may import rospy."""

@@ -1,9 +1,9 @@
 """When something periodic is due, on any clock."""
-from rbx1_nav.base import SECOND
+from rbx1_nav.units import SECOND
 
 
 class Schedule:
-    """Says when something periodic is due, also on a clock that jumps."""
+    """Tells when something periodic is due, also on a clock that jumps."""
 
     def __init__(self, rate):
         """rate: Hz."""
@@ -11,11 +11,11 @@ class Schedule:
         self.last = self.next = 0
 
     def due(self, now):
-        """Whether it is time (ns). Asks for being called about once a period or more often."""
-        back = now < self.last
+        """Whether it is due at `now` (ns). To be called about once per period or more often."""
+        jumped_back = now < self.last
         self.last = now
-        if now < self.next and not back:
+        if now < self.next and not jumped_back:
             return False
-        late = back or now >= self.next + self.period
+        late = jumped_back or now >= self.next + self.period
         self.next = (now if late else self.next) + self.period
         return True

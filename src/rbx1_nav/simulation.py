@@ -1,4 +1,4 @@
-"""The exercise without ROS: maneuver, base and filter are the nodes' own, and a tick takes no longer than its sums.
+"""The exercise without ROS: the same motions, base and filter as in the nodes, as fast as they can be computed.
 
 Metres, radians, seconds.
 """
@@ -8,60 +8,50 @@ from math import pi
 import multiprocessing
 import signal
 
-from rbx1_nav.base import SECOND, Base
-from rbx1_nav.ekf import CombinedOdometry, Imu, Odom, priors
-from rbx1_nav.gyro import Gyro, IdealGyro
-from rbx1_nav.maneuver import out_and_back, out_and_back_by_odometry
-from rbx1_nav.surface import draw
-from rbx1_nav.wheels import IdealWheels, Wheels
+from rbx1_nav.control.legs import out_and_back_by_odometry
+from rbx1_nav.control.motions import out_and_back
+from rbx1_nav.estimation.combined_odometry import CombinedOdometry
+from rbx1_nav.estimation.filter import priors
+from rbx1_nav.estimation.inputs import Imu, Odom
+from rbx1_nav.simulated_base import make_base
+from rbx1_nav.units import SECOND
 
 METHODS = ('timed', 'odom', 'ekf')
 
 # the tutorial's numbers, the nodes' defaults: m/s, m, rad/s, rad, Hz
 EXERCISE = dict(linear_speed=0.2, goal_distance=1.0, angular_speed=1.0, goal_angle=pi, rate=50)
-SLOWEST = dict(min_linear_speed=0.05, min_angular_speed=0.2)
+MIN_SPEEDS = dict(min_linear_speed=0.05, min_angular_speed=0.2)
 TICK = SECOND // EXERCISE['rate']   # ns
-SLOWEST_WINDOW = 0.1    # s
 REST = 50       # ticks between two motions
-CALIBRATION = 100   # ticks that the robot stands before the first motion, for the filter to learn the gyro's bias
+CALIBRATION = 100   # ticks at rest before the first motion, in which the filter estimates the gyro's bias
 
 Snapshot = namedtuple('Snapshot', 'time truth odometry estimate')
-Snapshot.__doc__ = 'Time since the start (s) and three Poses; estimate: of the filter, None where there is none.'
+Snapshot.__doc__ = 'Time since the start (s) and three Poses; estimate: of the filter, None if there is none.'
 
 Result = namedtuple('Result', 'end first_leg covariance path')
-Result.__doc__ = """A run: Snapshot of its end, true distance at the end of the first motion (m), the 3x3 covariance of the
-filter's pose (m and rad; None without a filter), and all Snapshots on the way, if they were to be kept."""
-
-
-def make_robot(config, surface, seed):
-    """(Base, gyro) of a robot (a Config) on a surface (a Surface, or None); seed: a whole number that a run is drawn from."""
-    if surface is None:
-        wheels, gyro = IdealWheels(config.base_width), IdealGyro()
-    else:
-        run = draw(surface, seed)
-        # odometry tells the speed since its last message
-        wheels = Wheels(config.base_width, surface, run, min(1 / config.rate, SLOWEST_WINDOW))
-        gyro = Gyro(surface, run, seed)
-    return Base(wheels, config.limits, config.timeout), gyro
+Result.__doc__ = """A run: Snapshot of its end, true distance at the end of the first motion (m), the 3x3 covariance of
+the filter's pose (m and rad; None without a filter), and the Snapshots of all ticks (None if not kept)."""
 
 
 class Simulation:
-    """A robot, and a filter that watches it, on a clock that nobody waits for."""
+    """A robot, and a filter that receives its odometry and gyro readings."""
 
-    def __init__(self, config, surface, seed, filtered, keep):
-        """filtered: whether there is a filter; keep: whether to keep a Snapshot of each tick, in `path`."""
-        self.base, self.gyro = make_robot(config, surface, seed)
+    def __init__(self, robot, surface, seed, filtered, keep):
+        """filtered: whether there is a filter; keep: whether to keep a Snapshot of each tick in `path`."""
+        self.base = make_base(robot, surface, seed)
         self.filter = CombinedOdometry(priors(surface), SECOND) if filtered else None
+        if filtered:
+            self.base.read_gyro()       # readings begin now
         self.path = [] if keep else None
         self.now = 0
 
     def tick(self):
-        """Let a tick pass."""
+        """Advance by one tick."""
         base = self.base
         self.now += TICK
         base.advance(self.now)
         if self.filter:
-            reading = self.gyro.read(base.wheels.truth.pose.yaw, TICK / SECOND, base.standing)
+            reading = base.read_gyro()
             uncertainty = base.wheels.uncertainty
             self.filter.add_imu(self.now, Imu(self.now, reading.rate, reading.rate_variance))
             self.filter.add_odom(self.now, Odom(self.now, base.odometry.pose, uncertainty.linear, uncertainty.angular),
@@ -70,13 +60,13 @@ class Simulation:
             self.path.append(self.snapshot())
 
     def rest(self, ticks):
-        """Stand for so many ticks."""
+        """Stand still for a number of ticks."""
         self.base.command(self.now, 0.0, 0.0)
         for _ in range(ticks):
             self.tick()
 
     def snapshot(self):
-        """How it is now."""
+        """The present Snapshot."""
         return Snapshot(self.now / SECOND, self.base.wheels.truth.pose, self.base.odometry.pose,
                         self.filter.estimate.pose if self.filter else None)
 
@@ -86,28 +76,28 @@ class Simulation:
             self.base.command(self.now, motion.linear, motion.angular)
             self.tick()
 
-    def drive_by_pose(self, leg, where):
-        """One leg of odom_out_and_back.py; where(): the Pose that it asks for."""
+    def drive_by_pose(self, leg, get_pose):
+        """One leg of odom_out_and_back.py; get_pose(): the Pose that it is controlled by."""
         while True:
-            speed = leg.next_speed(where())
+            speed = leg.next_speed(get_pose())
             if not speed:
                 return
             self.base.command(self.now, *leg.velocity(speed))
             self.tick()
 
 
-def simulate(method, config, surface, seed, filtered=False, keep=False):
+def simulate(method, robot, surface, seed, filtered=False, keep=False):
     """The exercise by one of METHODS; returns a Result. Raises StuckError.
 
-    config: a Config; surface: a Surface, or None; seed: what is drawn for the run; filtered: whether a filter watches, as it
-    always does for `ekf`; keep: whether to keep the path.
+    robot: a Robot; surface: a Surface, or None; seed: of the run's random errors; filtered: whether to run the filter,
+    as `ekf` always does; keep: whether to keep the path.
     """
-    simulation = Simulation(config, surface, seed, filtered or method == 'ekf', keep)
+    simulation = Simulation(robot, surface, seed, filtered or method == 'ekf', keep)
     simulation.rest(CALIBRATION)
     if method == 'timed':
         motions, drive = out_and_back(**EXERCISE), simulation.drive_by_time
     else:
-        motions = out_and_back_by_odometry(**EXERCISE, **SLOWEST)
+        motions = out_and_back_by_odometry(**EXERCISE, **MIN_SPEEDS)
 
         def drive(leg):
             simulation.drive_by_pose(leg, lambda: (simulation.filter.estimate if method == 'ekf'
@@ -118,13 +108,13 @@ def simulate(method, config, surface, seed, filtered=False, keep=False):
         simulation.rest(REST)
         if first_leg is None:
             first_leg = simulation.base.wheels.truth.pose.x
-    return Result(simulation.snapshot(), first_leg, simulation.filter.estimate.covariance if simulation.filter else None,
-                  simulation.path)
+    covariance = simulation.filter.estimate.covariance if simulation.filter else None
+    return Result(simulation.snapshot(), first_leg, covariance, simulation.path)
 
 
-def simulate_many(method, config, surface, seeds, keep=0, jobs=1):
-    """Yields the Results of all seeds in their order; keep: of how many to keep the path; jobs: number of processes."""
-    work = partial(_simulate_one, method, config, surface)
+def simulate_many(method, robot, surface, seeds, keep=0, jobs=1):
+    """Yields the Results of all seeds in their order; keep: the number of paths to keep; jobs: number of processes."""
+    work = partial(_simulate_one, method, robot, surface)
     tasks = ((seed, number < keep) for number, seed in enumerate(seeds))
     if jobs == 1:
         yield from map(work, tasks)
@@ -138,6 +128,6 @@ def _leave_signals_to_the_parent():
     signal.signal(signal.SIGTERM, signal.SIG_DFL)   # by which the parent ends it
 
 
-def _simulate_one(method, config, surface, task):
+def _simulate_one(method, robot, surface, task):
     seed, keep = task
-    return simulate(method, config, surface, seed, keep=keep)
+    return simulate(method, robot, surface, seed, keep=keep)

@@ -7,8 +7,9 @@ from math import inf, nan, radians
 import pytest
 import yaml
 
-from rbx1_nav.base import SECOND
-from rbx1_nav.config import ConfigError, read_config
+from rbx1_nav.units import SECOND
+from rbx1_nav.config import ConfigError
+from rbx1_nav.model.robot import read_robot
 
 CONFIG = os.path.join(os.path.dirname(__file__), '..', '..', 'config')
 
@@ -19,7 +20,7 @@ def load(name):
 
 
 def test_turtlebot():
-    config = read_config(load('turtlebot.yaml'))
+    config = read_robot(load('turtlebot.yaml'))
     assert (config.name, config.odom_frame_id, config.base_frame_id) == ('base_controller', 'odom', 'base_footprint')
     # the driver's own rate is for its hardware: the controller's is the odometry's
     assert (config.base_width, config.rate, config.timeout) == (0.26, 50, SECOND)
@@ -29,7 +30,7 @@ def test_turtlebot():
 
 
 def test_pi_robot():
-    config = read_config(load('pi_robot.yaml'))
+    config = read_robot(load('pi_robot.yaml'))
     assert config.base_frame_id == 'base_link' and config.unknown == []
     assert [joint.name for joint in config.joints] == [
         'arm_shoulder_pan_joint', 'arm_shoulder_lift_joint', 'arm_elbow_flex_joint', 'arm_wrist_flex_joint',
@@ -40,14 +41,14 @@ def test_pi_robot():
 def test_old_frame_names_lose_their_slash():
     params = load('turtlebot.yaml')
     params['controllers']['base_controller'].update(base_frame_id='/base_footprint', odom_frame_id='/odom')
-    config = read_config(params)
+    config = read_robot(params)
     assert (config.odom_frame_id, config.base_frame_id) == ('odom', 'base_footprint')
 
 
 def test_unknown_keys_are_told():
     params = load('turtlebot.yaml')
     params['controllers']['base_controller']['time_out'] = 2
-    assert read_config(params).unknown == ['controllers/base_controller/time_out']
+    assert read_robot(params).unknown == ['controllers/base_controller/time_out']
 
 
 @pytest.mark.parametrize('key, value, expected', [
@@ -61,7 +62,7 @@ def test_a_bad_value_is_named_with_its_key_and_what_is_expected(key, value, expe
     params = load('turtlebot.yaml')
     params['controllers']['base_controller'][key] = value
     with pytest.raises(ConfigError) as error:
-        read_config(params)
+        read_robot(params)
     text = str(error.value)
     assert text.startswith('controllers/base_controller/%s: %r' % (key, value))
     assert expected in text and '\n' not in text
@@ -76,7 +77,7 @@ def test_a_missing_key_is_named(path):
         parent = parent[key]
     del parent[path[-1]]
     with pytest.raises(ConfigError, match='^%s: missing' % '/'.join(path)):
-        read_config(params)
+        read_robot(params)
 
 
 @pytest.mark.parametrize('params', [
@@ -84,7 +85,7 @@ def test_a_missing_key_is_named(path):
     {'controllers': {'a': {'type': 'diff_controller'}, 'b': {'type': 'diff_controller'}}}])
 def test_what_is_no_configuration_at_all(params):
     with pytest.raises(ConfigError, match='expected'):
-        read_config(params)
+        read_robot(params)
 
 
 @pytest.mark.parametrize('joint, expected', [
@@ -94,34 +95,34 @@ def test_bad_joints(joint, expected):
     params = load('turtlebot.yaml')
     params['joints'] = {'pan': joint}
     with pytest.raises(ConfigError, match=expected):
-        read_config(params)
+        read_robot(params)
 
 
 def test_a_joint_needs_a_name_that_can_be_a_topic():
     params = load('turtlebot.yaml')
     params['joints'] = {'my joint': {}}
     with pytest.raises(ConfigError, match="'my joint'.*expected a name"):
-        read_config(params)
+        read_robot(params)
     params['joints'] = {'base_l_wheel_joint': {}}
     with pytest.raises(ConfigError, match="'base_l_wheel_joint'.*expected a name"):
-        read_config(params)
+        read_robot(params)
 
 
 def test_a_number_that_yaml_takes_for_text_gets_a_hint():
     params = load('turtlebot.yaml')
     params['controllers']['base_controller']['base_width'] = '1e-1'
     with pytest.raises(ConfigError, match='write it like 1.0e-3'):
-        read_config(params)
+        read_robot(params)
 
 
 def test_sim_false_is_no_simulation():
     with pytest.raises(ConfigError, match='sim: False'):
-        read_config(dict(load('turtlebot.yaml'), sim=False))
+        read_robot(dict(load('turtlebot.yaml'), sim=False))
 
 
 def test_reading_does_not_change_what_is_read():
     for path in glob.glob(os.path.join(CONFIG, '*.yaml')):
         params = load(os.path.basename(path))
         before = copy.deepcopy(params)
-        read_config(params)
+        read_robot(params)
         assert params == before

@@ -2,7 +2,7 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rbx1_nav.base import SECOND
+from rbx1_nav.units import SECOND
 from rbx1_nav.schedule import Schedule
 
 

@@ -7,15 +7,15 @@ import numpy
 import pytest
 import yaml
 
-from rbx1_nav.config import read_config
+from rbx1_nav.model.robot import read_robot
 from rbx1_nav.simulation import METHODS, simulate, simulate_many
-from rbx1_nav.surface import load_surface
+from rbx1_nav.model.surfaces import load_surface
 
 CONFIG = os.path.join(os.path.dirname(__file__), '..', '..', 'config')
 SEEDS = range(20)
 CARPET = load_surface('low_ply_carpet', os.path.join(CONFIG, 'surfaces'))
 with open(os.path.join(CONFIG, 'turtlebot.yaml')) as robot:
-    TURTLEBOT = read_config(yaml.safe_load(robot))
+    TURTLEBOT = read_robot(yaml.safe_load(robot))
 
 
 def angle(pose):

@@ -1,0 +1,1 @@
+"""What the robot is to do: motions, legs, and the gate that every command passes."""

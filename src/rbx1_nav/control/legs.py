@@ -1,0 +1,95 @@
+"""The exercise by odometry: a list of legs, each of which ends when the robot's pose says so."""
+from math import cos, sin, sqrt
+
+from rbx1_nav.control.motions import ticks
+from rbx1_nav.units import wrap_angle
+
+SLOW_DOWN = 0.5     # s: the distance at which a leg begins to slow down, as a travel time
+STUCK_TIME = 5.0    # s without progress: something holds the robot, or turns it the wrong way
+
+
+class StuckError(ValueError):
+    """A leg that makes no progress towards its goal."""
+
+
+class Leg:
+    """One motion, slower and slower towards its goal, so that the robot can stop there."""
+
+    def __init__(self, name, goal, speed, min_speed, rate):
+        """goal: m or rad; speed, min_speed: m/s or rad/s; rate: of the calls, Hz. Raises ValueError, see ticks()."""
+        self.name = name
+        self.goal = goal
+        self.speed = speed
+        self.min_speed = min(min_speed, speed)
+        self.rate = rate
+        self.start = self.last = None   # Pose
+        self.turned = 0.0       # rad
+        self.nearest = goal     # m or rad
+        self.patience = self.stuck_ticks = max(2, int(STUCK_TIME * rate))
+        try:
+            ticks(goal, self.min_speed, rate)
+        except ValueError as error:
+            raise ValueError('%s: at the lowest speed, %s' % (self.keys, error))
+
+    def next_speed(self, pose):
+        """The speed for the next tick, with the robot at `pose`; 0 at the goal. Raises StuckError."""
+        if self.start is None:
+            self.start = self.last = pose
+        self.turned += wrap_angle(pose.yaw - self.last.yaw)
+        self.last = pose
+        to_go = self.goal - self.done()
+        # half of the slowest tick's travel is as near as it can get
+        if to_go < self.min_speed / self.rate / 2:
+            return 0.0
+        self.patience -= 1
+        if to_go < self.nearest - self.min_speed / self.rate:
+            self.nearest = to_go
+            self.patience = self.stuck_ticks
+        if self.patience < 0:
+            raise StuckError('%s: no progress for %g s, %.3f of %.3f %s to go'
+                             % (self.name, STUCK_TIME, to_go, self.goal, self.unit))
+        # no faster than it can brake, and never past the goal within two ticks
+        limit = min(to_go / max(SLOW_DOWN, 2 / self.rate), sqrt(2 * self.deceleration * to_go))
+        return min(self.speed, max(self.min_speed, limit))
+
+
+class Straight(Leg):
+    """Forward, in m and m/s."""
+
+    unit = 'm'
+    keys = 'goal_distance, min_linear_speed'
+    deceleration = 0.4      # m/s^2
+
+    def done(self):
+        """The distance covered in the direction of the start, m."""
+        return ((self.last.x - self.start.x) * cos(self.start.yaw) + (self.last.y - self.start.y) * sin(self.start.yaw))
+
+    @staticmethod
+    def velocity(speed):
+        """(linear, angular) for a speed."""
+        return speed, 0.0
+
+
+class Turn(Leg):
+    """To the left on the spot, in rad and rad/s."""
+
+    unit = 'rad'
+    keys = 'goal_angle, min_angular_speed'
+    deceleration = 2.0      # rad/s^2
+
+    def done(self):
+        """The angle turned, rad."""
+        return self.turned
+
+    @staticmethod
+    def velocity(speed):
+        """(linear, angular) for a speed."""
+        return 0.0, speed
+
+
+def out_and_back_by_odometry(linear_speed, goal_distance, angular_speed, goal_angle, rate, min_linear_speed,
+                             min_angular_speed):
+    """The same exercise as four Legs; in m/s, m, rad/s, rad, Hz, m/s and rad/s. Raises ValueError, see ticks()."""
+    return [leg for _ in range(2)
+            for leg in (Straight('forward', goal_distance, linear_speed, min_linear_speed, rate),
+                        Turn('turn left', goal_angle, angular_speed, min_angular_speed, rate))]

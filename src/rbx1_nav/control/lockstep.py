@@ -1,0 +1,108 @@
+"""Keeps a simulated clock in step with the nodes that drive by it.
+
+A driver on simulated time answers each tick of the clock with one command. If the clock holds the next tick until that
+command has arrived, a run has the same result on every machine and at every speed. A publisher that does not drive by
+this clock (a person at a keyboard, another rate, wall time) never gives such an answer. Three rules detect it, once per
+connection; from then on its commands take effect as they arrive.
+"""
+from collections import deque
+from threading import Condition
+from time import monotonic
+
+COMMAND_TIMEOUT = 1.0   # s of wall time that a tick waits for its command
+FIRST_QUIET = 0.1       # s of wall time without a command that end a driver's first burst
+QUIET = 0.03            # s, the same at the start of each later stream
+SLOW_ANSWER = 0.05      # s of wall time: a later command may not be an answer to the tick at all
+MAX_BACKLOG = 25        # commands: more of them in the queue than at the start mean more than one per tick
+
+
+class Driver:
+    """One connection that brings commands."""
+
+    def __init__(self, connection, name):
+        self.connection = connection
+        self.name = name
+        self.queue = deque()        # one per tick; longer where the clock ran ahead of the driver at first
+        self.received = 0
+        self.heard_before = False
+        self.lag = 0                # length of the queue when the stream began
+        self.streaming = False      # its last command was a motion: the next tick will bring another
+        self.released = False       # does not drive by this clock
+
+
+class Lockstep:
+    """Applies one command per driver and tick: tuples that begin with linear (m/s) and angular (rad/s)."""
+
+    def __init__(self, apply, warn):
+        """apply(command): puts a command in force; warn(text): logs a warning."""
+        self.apply = apply
+        self.warn = warn
+        self.drivers = {}       # by the id of the connection, which the Driver keeps alive: so the id stays unique
+        self.changed = Condition()
+
+    def has_driver(self, connection):
+        """Whether a command has arrived by this connection (any object)."""
+        return id(connection) in self.drivers
+
+    def retain(self, connections):
+        """Remove all drivers except those of these connections."""
+        with self.changed:
+            live = set(map(id, connections))
+            self.drivers = {key: driver for key, driver in self.drivers.items() if key in live}
+
+    def receive(self, connection, name, command):
+        """Accept a command that just arrived, in any thread. connection: any object; name: of the node that sent it."""
+        with self.changed:
+            driver = self.drivers.setdefault(id(connection), Driver(connection, name))
+            driver.received += 1
+            if driver.released:
+                self.apply(command)
+            else:
+                driver.queue.append(command)
+            self.changed.notify()
+
+    def collect(self):
+        """Call before each tick: applies this tick's commands, and waits for those that are still to come."""
+        with self.changed:
+            for driver in list(self.drivers.values()):
+                if not driver.released:
+                    self._collect_from(driver)
+
+    def _collect_from(self, driver):
+        if driver.queue and not driver.streaming:
+            # the clock ran freely until now: let the driver answer all ticks that it has seen
+            self._wait_until_quiet(driver, QUIET if driver.heard_before else FIRST_QUIET)
+            driver.heard_before = True
+            driver.lag = len(driver.queue)
+        elif driver.streaming:
+            start = monotonic()
+            if not self.changed.wait_for(lambda: driver.queue, COMMAND_TIMEOUT):
+                self._release(driver, 'sent no command for a tick within %g s' % COMMAND_TIMEOUT)
+            waited = monotonic() - start
+            if not driver.released and waited > SLOW_ANSWER:
+                # a slow answer to this tick, or a stream that ignores the clock?
+                self._wait_until_quiet(driver, 2 * waited)
+        if driver.queue:
+            command = driver.queue.popleft()
+            linear, angular, *_ = command
+            driver.streaming = linear != 0 or angular != 0
+            self.apply(command)
+        if len(driver.queue) > driver.lag + MAX_BACKLOG:
+            self._release(driver, 'sends more than one command per tick')
+
+    def _wait_until_quiet(self, driver, quiet):
+        """Hold the clock until the driver has sent nothing for `quiet` seconds of wall time."""
+        deadline = monotonic() + max(COMMAND_TIMEOUT, 3 * quiet)
+        while monotonic() < deadline:
+            received = driver.received
+            if not self.changed.wait_for(lambda: driver.received > received, quiet):
+                return
+        self._release(driver, 'sends commands while the clock is held')
+
+    def _release(self, driver, reason):
+        driver.released = True
+        self.warn('%s %s: the clock no longer waits for it, its commands take effect as they arrive'
+                  % (driver.name, reason))
+        if driver.queue:
+            self.apply(driver.queue[-1])
+            driver.queue.clear()

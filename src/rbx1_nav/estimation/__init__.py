@@ -1,0 +1,1 @@
+"""Where the robot is: an extended Kalman filter of odometry and gyro."""

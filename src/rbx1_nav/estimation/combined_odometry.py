@@ -1,0 +1,218 @@
+"""The combined odometry: puts messages in order, handles dropouts and jumps, and steps the filter."""
+from collections import deque, namedtuple
+from math import cos, hypot, sin
+
+from rbx1_nav.estimation.filter import TURNING, X, Y, YAW, Filter
+from rbx1_nav.estimation.inputs import check, check_imu, check_odom
+from rbx1_nav.model.kinematics import Pose
+from rbx1_nav.units import SECOND, wrap_angle
+
+MAX_SPEED = 2.0         # m/s: odometry that moves faster has jumped
+MAX_TURN_RATE = 5.0     # rad/s: or turns faster
+JUMP_TOLERANCE = 0.02   # m and rad in addition
+DROPOUT_SPEED = 0.5     # m/s: how fast the robot may move (1 sigma) while no odometry arrives
+MAX_LEAD = SECOND // 2  # ns that a stamp may be ahead of the clock: clocks differ
+MAX_AGE = 10 * SECOND   # ns that it may be behind
+
+Estimate = namedtuple('Estimate', 'stamp pose covariance odom')
+Estimate.__doc__ = """The estimated pose: stamp in ns, Pose, 3x3 covariance of x, y (m) and yaw (rad), and the last Odom
+that
+it is based on."""
+
+
+def format_pose(odom):
+    """The pose of an Odom as text."""
+    return '(%.3f m, %.3f m, %.3f rad)' % odom.pose
+
+
+def distance(one, other):
+    """The distance between two Odoms, m."""
+    return hypot(other.pose.x - one.pose.x, other.pose.y - one.pose.y)
+
+
+def has_jumped(before, odom):
+    """Whether no robot could have moved from the one Odom to the other in the time between them."""
+    elapsed = (odom.stamp - before.stamp) / SECOND
+    return (distance(before, odom) > MAX_SPEED * elapsed + JUMP_TOLERANCE
+            or abs(wrap_angle(odom.pose.yaw - before.pose.yaw)) > MAX_TURN_RATE * elapsed + JUMP_TOLERANCE)
+
+
+class CombinedOdometry:
+    """Runs the filter on messages in the order of their stamps: one step per odometry message.
+
+    Only stamps (ns) count, so the result does not depend on when messages arrive. A step waits until the gyro has
+    reported up to its end. A sensor that sends nothing for `timeout` while the other one does has timed out, and is not
+    used until it recovers: without the gyro, the turn is measured by the wheels; without odometry, by the gyro, and the
+    uncertainty of the position grows. The travel during a dropout of the odometry counts when it recovers.
+   
+    """
+
+    def __init__(self, prior, timeout, gyro_used=True, warn=lambda text: None):
+        """prior: Priors; timeout: ns; gyro_used: whether to wait for a gyro at all; warn(text): logs a warning."""
+        self.prior = prior
+        self.timeout = timeout
+        self.gyro_used = gyro_used
+        self.warn = warn
+        self.now = 0
+        self.last_stamp = {'odom': None, 'imu_data': None}      # ns
+        self.restart()
+
+    def restart(self, reason=None):
+        """Forget everything; the next odometry message gives the initial pose."""
+        if reason:
+            self.warn('%s: restarting at the pose of the odometry' % reason)
+        self.filter = None
+        self.estimate = None        # the latest Estimate
+        self.pending = deque()      # Odoms, until the gyro has caught up
+        self.readings = deque()     # (ns at the start of the reading, Imu), not used yet
+        self.time = None            # ns, the end of the last step
+        self.odom = None            # the last Odom of a step
+        self.odom_yaw = None        # rad, the filter's yaw at that time
+        self.suspect = None         # an Odom that has jumped, until the next one confirms it
+        self.timed_out = {'odom': False, 'imu_data': False}
+
+    # input
+
+    def add_odom(self, now, odom, pose_variances):
+        """Process an Odom that arrived at `now` (ns). Raises RejectedMessage.
+
+        pose_variances: of x, y (m^2) and yaw (rad^2). They are used if the sender gives none for its speeds (0): as
+        those of one second's travel, like in robot_pose_ekf.
+        """
+        check_odom(odom, pose_variances)
+        if not (odom.linear_variance and odom.angular_variance):
+            odom = odom._replace(linear_variance=pose_variances[0], angular_variance=pose_variances[2])
+        self._check_stamp('odom', now, odom.stamp)
+        if not self.timed_out['odom']:
+            self.pending.append(odom)
+        self._make_steps()
+
+    def add_imu(self, now, imu):
+        """Process an Imu that arrived at `now` (ns). Raises RejectedMessage."""
+        check_imu(imu)
+        before = self._check_stamp('imu_data', now, imu.stamp)
+        # the first reading after a dropout covers a time whose start is unknown
+        if (self.filter or self.pending) and before is not None and imu.stamp - before <= self.timeout:
+            self.readings.append((before, imu))
+        self._make_steps()
+
+    def _check_stamp(self, sensor, now, stamp):
+        """Check and store a stamp; returns the previous one, or None."""
+        if now < self.now - MAX_LEAD:
+            self.restart('The clock jumped back by %.3f s' % ((self.now - now) / SECOND))
+            self.last_stamp = {'odom': None, 'imu_data': None}
+        self.now = now
+        before = self.last_stamp[sensor]
+        for good, expected, time in ((stamp <= now + MAX_LEAD, 'a stamp not later than now', now),
+                                     (stamp >= now - MAX_AGE, 'a stamp not much older than now', now),
+                                     (before is None or stamp > before, 'a stamp later than the last', before or 0)):
+            check('header.stamp', '%.9f' % (stamp / SECOND), good, '%s, %.9f' % (expected, time / SECOND))
+        self.last_stamp[sensor] = stamp
+        other = self.last_stamp['odom' if sensor == 'imu_data' else 'imu_data']
+        # not if it is still as late as when it timed out
+        if self.timed_out[sensor] and (other or 0) - stamp <= self.timeout:
+            self.timed_out[sensor] = False
+            self.warn('%s has recovered' % sensor)
+        return before
+
+    def _set_timed_out(self, sensor):
+        if not self.timed_out[sensor]:
+            self.timed_out[sensor] = True
+            self.warn('%s has timed out: no message for more than %g s; not used until it recovers'
+                      % (sensor, self.timeout / SECOND))
+
+    # steps
+
+    def _make_steps(self):
+        """Make all steps for which there are messages."""
+        while self.pending and self._gyro_is_ready():
+            self._step(self.pending.popleft())
+        if self.filter and not self.pending and (self.last_stamp['imu_data'] or 0) - self.odom.stamp > self.timeout:
+            self._set_timed_out('odom')
+            self._step_by_gyro(self.last_stamp['imu_data'])
+
+    def _gyro_is_ready(self):
+        """Whether the gyro has reported up to the first pending odometry, or need not be waited for."""
+        first, last, reported = self.pending[0].stamp, self.pending[-1].stamp, self.last_stamp['imu_data']
+        if not self.gyro_used or self.timed_out['imu_data'] or reported is not None and reported >= first:
+            return True
+        if last - (first if reported is None else reported) > self.timeout:
+            self._set_timed_out('imu_data')
+        return self.timed_out['imu_data']
+
+    def _step(self, odom):
+        if self.odom and odom.stamp <= self.odom.stamp:
+            return
+        # one message that jumps is an outlier; a second one that agrees with it is a new place
+        suspect, self.suspect = self.suspect, None
+        if suspect and not has_jumped(suspect, odom) and distance(suspect, odom) <= distance(self.odom, odom):
+            self.restart('odom: jumped from %s to %s' % (format_pose(self.odom), format_pose(odom)))
+        elif self.filter and has_jumped(self.odom, odom):
+            self.warn('odom: %s is too far from %s for the time between them: ignored'
+                      % (format_pose(odom), format_pose(self.odom)))
+            self.suspect = odom
+            return
+        if not self.filter:
+            self.filter = Filter(self.prior, odom.pose)
+            self._finish(odom.stamp, odom)
+            return
+
+        elapsed = (odom.stamp - self.odom.stamp) / SECOND
+        dx, dy = odom.pose.x - self.odom.pose.x, odom.pose.y - self.odom.pose.y
+        duration = max(0, odom.stamp - self.time) / SECOND      # less than elapsed if the gyro was used alone
+        turned = wrap_angle(odom.pose.yaw - self.odom.pose.yaw)
+        gyro = self._gyro_turn(odom.stamp)
+        wheels = None
+        if self.time == self.odom.stamp:
+            wheels = turned, odom.angular_variance * elapsed ** 2
+        elif duration and not gyro:
+            # the gyro was used alone, but not up to here: the wheels measured the rest of the turn
+            already = (self.filter.state[YAW] - self.odom_yaw) / (1 - self.filter.state[TURNING])
+            wheels = wrap_angle(turned - already), odom.angular_variance * elapsed ** 2
+        turn = self.filter.turn(duration, wheels, gyro)
+
+        # the displacement in the wheels' heading half way
+        heading = self.odom.pose.yaw + turned / 2
+        c, s = cos(heading), sin(heading)
+        forward, left = dx * c + dy * s, dy * c - dx * s
+        # that heading in the filter's frame: half way from the yaw at the last odometry
+        since = self.filter.state[YAW] - self.odom_yaw
+        ahead = turned + wrap_angle(since + turn.angle - turned)
+        self.filter.move(duration, turn, ahead / 2 - since - turn.angle / 2, forward, left,
+                         odom.linear_variance * elapsed ** 2)
+        self._finish(max(odom.stamp, self.time), odom)
+
+    def _step_by_gyro(self, end):
+        duration = (end - self.time) / SECOND
+        if duration > 0:
+            self.filter.move(duration, self.filter.turn(duration, None, self._gyro_turn(end)))
+            self._finish(end, None)
+
+    def _gyro_turn(self, end):
+        """(angle, variance) of the readings up to `end` (ns); None if they do not cover all of that time."""
+        angle = variance = 0.0
+        time, good = self.time, True
+        while self.readings and time < end:
+            start, imu = self.readings[0]
+            if imu.stamp > time:
+                good = good and start <= time and abs(imu.rate) < self.prior.gyro_measurement_range
+                stop = min(imu.stamp, end)
+                part = (stop - time) / SECOND
+                angle += imu.rate * part
+                variance += imu.variance * part * (imu.stamp - start) / SECOND
+                time = stop
+            if imu.stamp <= end:
+                self.readings.popleft()
+        return (angle, variance) if good and time == end and variance else None
+
+    def _finish(self, time, odom):
+        """Store the result of a step."""
+        self.time = time
+        state = self.filter.state
+        if odom:
+            self.odom, self.odom_yaw = odom, state[YAW]
+        covariance = self.filter.covariance[:3, :3].copy()
+        unknown_travel = DROPOUT_SPEED * (time - self.odom.stamp) / SECOND
+        covariance[X, X] += unknown_travel ** 2
+        covariance[Y, Y] += unknown_travel ** 2
+        self.estimate = Estimate(time, Pose(*state[:3]), covariance, self.odom)

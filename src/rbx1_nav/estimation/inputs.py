@@ -1,0 +1,55 @@
+"""What the filter accepts: odometry and gyro readings, and the checks that reject invalid ones."""
+from collections import namedtuple
+
+from rbx1_nav.model.wheels import MIN_VARIANCE
+
+MAX_NUMBER = 1e6        # m or rad/s: above this, sums lose what is small
+MAX_VARIANCE = 1 / MIN_VARIANCE
+
+Odom = namedtuple('Odom', 'stamp pose linear_variance angular_variance')
+Odom.__doc__ = 'Wheel odometry: stamp in ns, Pose in its frame, variances of its speeds (m^2/s^2, rad^2/s^2).'
+
+Imu = namedtuple('Imu', 'stamp rate variance')
+Imu.__doc__ = 'A reading: stamp in ns, mean angular velocity since the previous one (rad/s), its variance (rad^2/s^2).'
+
+
+class RejectedMessage(ValueError):
+    """A message that must not reach the filter. The text names the field, the value and what is expected."""
+
+
+def check(field, value, good, expected):
+    """Raises RejectedMessage if a value is not good."""
+    if not good:
+        raise RejectedMessage('%s: %s: expected %s' % (field, value, expected))
+
+
+def check_number(field, value):
+    """Raises RejectedMessage if a value is not finite, or above MAX_NUMBER."""
+    check(field, value, abs(value) <= MAX_NUMBER, 'a number of at most %g' % MAX_NUMBER)
+
+
+def check_variance(field, value):
+    """Raises RejectedMessage if a variance is not between MIN_VARIANCE and MAX_VARIANCE."""
+    check(field, value, MIN_VARIANCE <= value <= MAX_VARIANCE,
+          'a variance above 0, from %g to %g' % (MIN_VARIANCE, MAX_VARIANCE))
+
+
+def check_odom(odom, pose_variances):
+    """Raises RejectedMessage if an Odom cannot be used.
+
+    pose_variances: of x, y (m^2) and yaw (rad^2). A variance of 0 of a speed means that the sender does not give it.
+   
+    """
+    for field, value in zip(('position.x', 'position.y', 'orientation'), odom.pose):
+        check_number('pose.pose.' + field, value)
+    for index, variance in zip((0, 7, 35), pose_variances):
+        check_variance('pose.covariance[%d]' % index, variance)
+    for index, variance in ((0, odom.linear_variance), (35, odom.angular_variance)):
+        if variance != 0:
+            check_variance('twist.covariance[%d]' % index, variance)
+
+
+def check_imu(imu):
+    """Raises RejectedMessage if an Imu cannot be used."""
+    check_number('angular_velocity.z', imu.rate)
+    check_variance('angular_velocity_covariance[8]', imu.variance)

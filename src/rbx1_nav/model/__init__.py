@@ -1,0 +1,1 @@
+"""What a robot is: kinematics, wheels, gyro, joints, and the surface below them."""

@@ -1,0 +1,46 @@
+"""A position-controlled joint, as simple as the ArbotiX driver's simulation of its servos."""
+from math import isfinite
+
+from rbx1_nav.units import SECOND, clamp
+
+
+class Joint:
+    """Moves towards its goal at its maximum speed and stays within its limits. Radians and seconds."""
+
+    def __init__(self, name, lower, upper, max_speed):
+        """lower, upper: limits, rad; max_speed: rad/s."""
+        self.name = name
+        self.lower = lower
+        self.upper = upper
+        self.max_speed = max_speed
+        self.position = self.goal = min(max(0.0, lower), upper)
+        self.velocity = 0.0
+
+    def command(self, goal):
+        """Set the goal (rad), limited to the joint's range. Raises ValueError if it is not finite."""
+        if not isfinite(goal):
+            raise ValueError('%s: expected a finite angle in rad' % goal)
+        self.goal = min(max(goal, self.lower), self.upper)
+
+    def advance(self, duration):
+        """Move for `duration` seconds."""
+        step = clamp(self.goal - self.position, self.max_speed * duration)
+        self.velocity = step / duration if duration > 0 else 0.0
+        # end at the goal itself, not a rounding error beside it
+        self.position = self.goal if step == self.goal - self.position else self.position + step
+
+
+class JointGroup:
+    """Advances joints together, on a clock in ns."""
+
+    def __init__(self, joints):
+        """joints: Joint objects."""
+        self.joints = joints
+        self.now = None
+
+    def advance(self, now):
+        """Move up to `now`. A clock that jumped back moves nothing."""
+        elapsed = max(0, now - self.now) if self.now is not None else 0
+        self.now = now
+        for joint in self.joints:
+            joint.advance(elapsed / SECOND)

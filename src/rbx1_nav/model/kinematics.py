@@ -1,0 +1,48 @@
+"""Differential-drive kinematics: how wheel travel becomes a pose.
+
+Metres, radians, seconds; x forward, y left, counter-clockwise positive (REP 103).
+"""
+from collections import namedtuple
+from math import cos, sin
+
+Pose = namedtuple('Pose', 'x y yaw')
+Pose.__doc__ = 'A pose in the odom frame: x and y in m, yaw in rad, not wrapped (a full turn left is 2 pi).'
+
+ORIGIN = Pose(0.0, 0.0, 0.0)
+
+
+def relative_frame(pose, other):
+    """The Pose of the frame of `other` in the frame of `pose`, where both are the pose of the same robot."""
+    yaw = pose.yaw - other.yaw
+    return Pose(pose.x - other.x * cos(yaw) + other.y * sin(yaw), pose.y - other.x * sin(yaw) - other.y * cos(yaw), yaw)
+
+
+def arc(pose, distance, angle):
+    """The pose after a circular arc of length `distance` (m) through `angle` (rad).
+
+    Exact for any pair: the chord of an arc is distance * sin(angle/2) / (angle/2), and it points half the angle
+    further than the first heading (plane geometry; the same closed form as Siegwart, Nourbakhsh and Scaramuzza,
+    Introduction to Autonomous Mobile Robots, 2nd ed., section 5.2.4, without its straight-line approximation).
+   
+    """
+    half = angle / 2
+    # below 1e-4 rad the next term of the series is below the resolution of a float
+    chord = distance * (sin(half) / half if abs(half) > 1e-4 else 1 - half * half / 6)
+    return Pose(pose.x + chord * cos(pose.yaw + half), pose.y + chord * sin(pose.yaw + half), pose.yaw + angle)
+
+
+class Odometry:
+    """Integrates the travel of two wheels to a pose."""
+
+    def __init__(self, base_width):
+        """base_width: distance between the wheels, m."""
+        self.base_width = base_width
+        self.pose = ORIGIN
+
+    def update(self, left, right):
+        """Add the travel (m) of both wheels, each at a constant speed."""
+        self.move((left + right) / 2, (right - left) / self.base_width)
+
+    def move(self, distance, angle):
+        """Add an arc of length `distance` (m) through `angle` (rad)."""
+        self.pose = arc(self.pose, distance, angle)

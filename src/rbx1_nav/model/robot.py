@@ -1,0 +1,83 @@
+"""A robot as the YAML files of ArbotiX users describe it."""
+from collections import namedtuple
+from math import inf, radians
+import re
+
+from rbx1_nav.config import ConfigError, Section
+from rbx1_nav.model.joints import Joint
+from rbx1_nav.units import SECOND
+
+# what only the hardware needs: accepted and ignored
+DRIVER_KEYS = {'port', 'baud', 'rate', 'sync_write', 'sync_read', 'read_rate', 'write_rate'}
+CONTROLLER_KEYS = {'ticks_meter', 'Kp', 'Kd', 'Ki', 'Ko', 'accel_limit'}
+JOINT_KEYS = {'id', 'neutral', 'invert', 'ticks', 'range'}
+
+WHEEL_JOINTS = ('base_l_wheel_joint', 'base_r_wheel_joint')
+
+Limits = namedtuple('Limits', 'linear angular')
+Limits.__doc__ = 'Maximum speeds, m/s and rad/s; infinite where there is no limit.'
+
+Robot = namedtuple('Robot', 'name odom_frame_id base_frame_id base_width wheel_radius rate timeout limits publish_tf '
+                            'joints hardware unknown')
+Robot.__doc__ = """A robot's configuration. base_width and wheel_radius in m, rate in Hz, timeout in ns; limits: Limits;
+joints: Joint objects; hardware, unknown: sorted names of keys
+without effect, those that only hardware needs and those in the sections below that nobody knows."""
+
+
+def read_joint(name, section):
+    """A Joint from its Section, which is in degrees. Raises ConfigError."""
+    lower = section.number('min_angle', -150.0, -inf, expected='a finite angle in degrees')
+    upper = section.number('max_angle', 150.0, -inf, expected='a finite angle in degrees')
+    if lower >= upper:
+        raise ConfigError('%s: %r: expected an angle below max_angle, %r' % (section.path('min_angle'), lower, upper))
+    speed = section.number('max_speed', 90.0, expected='a finite speed above 0 in degrees per second')
+    return Joint(name, radians(lower), radians(upper), radians(speed))
+
+
+def read_robot(params):
+    """The Robot that a dictionary of ArbotiX parameters describes. Raises ConfigError."""
+    top = Section(params, hardware=DRIVER_KEYS)
+    if not top.flag('sim', True):
+        raise ConfigError('sim: False: expected true, this base is a simulation')
+    publish_tf = top.flag('publish_tf', True)
+
+    controllers = top.section('controllers', expected='a mapping with one diff_controller')
+    if len(controllers.values) != 1:
+        raise ConfigError('controllers: %s: expected exactly one, of type diff_controller'
+                          % (', '.join(map(str, controllers.values)) or 'none'))
+    name, = controllers.values
+    base = controllers.section(name, CONTROLLER_KEYS)
+    kind = base.get('type', expected='diff_controller')
+    if kind != 'diff_controller':
+        raise ConfigError('%s: %r: unknown controller type, expected one of: diff_controller'
+                          % (base.path('type'), kind))
+    sections = [base]
+
+    joints = []
+    all_joints = top.section('joints', default={})
+    for joint in all_joints.values:
+        if not (isinstance(joint, str) and re.match(r'^[A-Za-z]\w*$', joint)) or joint in WHEEL_JOINTS:
+            raise ConfigError('joints: %r: expected a name of letters, digits and underscores, other than %s'
+                              % (joint, ' and '.join(WHEEL_JOINTS)))
+        section = all_joints.section(joint, JOINT_KEYS)
+        joints.append(read_joint(joint, section))
+        sections.append(section)
+
+    fields = dict(
+        name=str(name),
+        odom_frame_id=base.frame('odom_frame_id', 'odom'),
+        base_frame_id=base.frame('base_frame_id', 'base_link'),
+        base_width=base.number('base_width', expected='a finite width above 0 in m'),
+        wheel_radius=base.number('wheel_radius', 0.033, expected='a finite radius above 0 in m'),
+        rate=base.number('rate', 50.0, high=1000.0, expected='a rate above 0 and up to 1000 in Hz'),
+        timeout=round(SECOND * base.number('timeout', 1.0, high=1e6, closed=True,
+                                           expected='a time from 0 (never) to 1000000 in s')),
+        limits=Limits(base.number('max_linear_speed', inf, expected='a finite speed above 0 in m/s'),
+                      base.number('max_angular_speed', inf, expected='a finite speed above 0 in rad/s')),
+        publish_tf=publish_tf,
+        joints=joints)
+    if fields['odom_frame_id'] == fields['base_frame_id']:
+        raise ConfigError('%s: %r: expected a frame other than odom_frame_id'
+                          % (base.path('base_frame_id'), fields['base_frame_id']))
+    return Robot(hardware=sorted(key for s in [top] + sections for key in s.ignored()),
+                 unknown=sorted(key for s in sections for key in s.unknown()), **fields)

@@ -1,0 +1,99 @@
+"""The surface below the robot: reads config/surfaces/*.yaml, and draws one run's random errors from it.
+
+One file serves both the simulated base, which draws its slip and its gyro's errors from it, and the filter, which takes
+its initial uncertainties from it.
+"""
+from collections import namedtuple
+from math import radians
+import os
+import random
+import re
+
+import yaml
+
+from rbx1_nav.config import ConfigError, Section
+
+FRACTION = dict(low=0.0, high=0.5, closed=True, expected='a fraction from 0 to 0.5')
+
+
+def number_between(low, high):
+    """The range of a key, as Section.number() takes it."""
+    return dict(low=low, high=high, closed=True, expected='a number from %g to %g' % (low, high))
+
+
+# key: its range, and the conversion to SI units
+KEYS = {
+    'lag': (number_between(1e-4, 60), float),
+    'accel_limit': (number_between(1e-3, 1000), float),
+    'drag_straight': (number_between(1e-6, 10), float),
+    'drag_turning': (number_between(1e-6, 10), float),
+    'slip_straight': (FRACTION, float),
+    'slip_straight_spread': (FRACTION, float),
+    'slip_turning': (FRACTION, float),
+    'slip_turning_spread': (FRACTION, float),
+    'ticks_meter': (number_between(1, 1e6), float),
+    'gyro_noise': (number_between(1e-3, 1000), radians),
+    'gyro_bias': (number_between(0, 1000), radians),
+    'gyro_scale_error': (FRACTION, float),
+    'gyro_measurement_range': (number_between(1, 1e5), radians)}
+
+Surface = namedtuple('Surface', ['name'] + list(KEYS))
+Surface.__doc__ = 'A surface, with the keys of its file as fields, in s, m/s, m/s^2 and (unlike the file) rad/s.'
+
+Run = namedtuple('Run', 'slip_straight slip_turning gyro_bias gyro_scale_error')
+Run.__doc__ = 'The random errors of one run: fractions of the travel, rad/s, fraction of the rate.'
+
+
+def known_surfaces(folder):
+    """Names of the surfaces that have a file in a folder, sorted."""
+    return sorted(name[:-len('.yaml')] for name in os.listdir(folder) if name.endswith('.yaml'))
+
+
+def load_surface(name, folder):
+    """The Surface of this name in a folder, or of the file with this absolute path; None for the ideal surface.
+
+    Raises ConfigError.
+   
+    """
+    is_path = isinstance(name, str) and os.path.isabs(name)
+    path = name if is_path else os.path.join(folder, '%s.yaml' % name)
+    if is_path and not os.path.isfile(path):
+        raise ConfigError('surface: %r: no such file: expected the absolute path of a surface file, or one of %s'
+                          % (name, ', '.join(known_surfaces(folder))))
+    if not is_path and name not in known_surfaces(folder):
+        raise ConfigError('surface: %r: expected one of %s, or the absolute path of a surface file'
+                          % (name, ', '.join(known_surfaces(folder))))
+    try:
+        with open(path, encoding='utf-8') as file:
+            values = yaml.safe_load(file)
+    except (OSError, ValueError, yaml.YAMLError) as error:
+        raise ConfigError('surface: %s: expected a YAML file: %s' % (path, ' '.join(str(error).split())))
+    return read_surface(values, os.path.basename(path)[:-len('.yaml')] if path.endswith('.yaml') else name)
+
+
+def read_surface(values, name):
+    """The Surface of a mapping with all KEYS; None, the ideal surface, for an empty mapping. Raises ConfigError."""
+    section = Section(values, 'surface %s' % name)
+    if not values:
+        return None
+    surface = Surface(name, *(convert(section.number(key, **limits)) for key, (limits, convert) in KEYS.items()))
+    if section.unknown():
+        raise ConfigError('%s: unknown: expected only %s' % (section.unknown()[0], ', '.join(KEYS)))
+    return surface
+
+
+def read_seed(value):
+    """A seed: an integer from 0 to 2147483647, or its digits as text. Raises ConfigError."""
+    seed = int(value) if isinstance(value, str) and re.match(r'^\d{1,10}$', value, re.ASCII) else value
+    if not isinstance(seed, int) or isinstance(seed, bool) or not 0 <= seed < 2 ** 31:
+        raise ConfigError('seed: %r: expected an integer from 0 to %d' % (value, 2 ** 31 - 1))
+    return seed
+
+
+def draw_run(surface, seed):
+    """The Run that a seed (an integer) stands for."""
+    normal = random.Random(seed).gauss
+    return Run(normal(surface.slip_straight, surface.slip_straight_spread),
+               normal(surface.slip_turning, surface.slip_turning_spread),
+               normal(0.0, surface.gyro_bias),
+               normal(0.0, surface.gyro_scale_error))

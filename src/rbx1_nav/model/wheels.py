@@ -1,0 +1,202 @@
+"""Wheels: how they follow a command, what their encoders count, and where they take the robot.
+
+All wheels have
+
+    travel(linear, angular, duration)   the travel (left, right) that the encoders count, m, while a command is in force
+    velocity(linear, angular)           the speeds that the encoders report meanwhile, m/s and rad/s
+    true_velocity(linear, angular)      the speeds of the robot itself
+    at_rest         whether they stand still, and will until there is a command to move
+    truth           Odometry of the robot itself, which no encoder knows
+    uncertainty     Uncertainty of the odometry
+    reset()         puts the robot back at the origin, at rest
+"""
+from collections import namedtuple
+from math import copysign, exp, floor, hypot, log
+
+from rbx1_nav.model.kinematics import ORIGIN, Odometry
+
+MEASURED = 1e-6         # variance of a good measurement, m^2 or rad^2 (or per s^2): 1 mm, 1 mrad
+MIN_VARIANCE = 1e-12    # smallest variance that a sensor may report, same units: 1 um, 1 urad
+
+Uncertainty = namedtuple('Uncertainty', 'position yaw linear angular')
+Uncertainty.__doc__ = 'Variances: of x and y (m^2), yaw (rad^2), linear speed (m^2/s^2), angular speed (rad^2/s^2).'
+
+
+class IdealWheels:
+    """Wheels that follow every command at once and exactly: no inertia, no slip."""
+
+    at_rest = True
+    uncertainty = Uncertainty(MEASURED, MEASURED, MEASURED, MEASURED)
+
+    def __init__(self, base_width):
+        """base_width: distance between the wheels, m."""
+        self.base_width = base_width
+        self.truth = Odometry(base_width)
+
+    @staticmethod
+    def velocity(linear, angular):
+        """The commanded speeds."""
+        return linear, angular
+
+    true_velocity = velocity
+
+    def travel(self, linear, angular, duration):
+        """(left, right) travel in m while `linear` (m/s) and `angular` (rad/s) are in force for `duration` (s)."""
+        difference = angular * self.base_width / 2
+        left, right = (linear - difference) * duration, (linear + difference) * duration
+        self.truth.update(left, right)
+        return left, right
+
+    def reset(self):
+        """Put the robot back at the origin."""
+        self.truth.pose = ORIGIN
+
+
+class Motor:
+    """A speed that follows a command with a lag and a limited acceleration, and stays below it because of drag.
+
+    The acceleration is (command - speed -+ drag) / lag, limited to accel_limit. Drag always acts against the motion: it
+    slows the start, shortens the stop, and holds a standing wheel while the command does not exceed it. Solved in
+    closed form, so the result does not depend on the number of steps.
+    """
+
+    def __init__(self, lag, accel_limit, drag):
+        """lag: s, accel_limit: m/s^2, drag: m/s; all above 0."""
+        self.lag = lag
+        self.accel_limit = accel_limit
+        self.drag = drag
+        self.speed = 0.0        # m/s
+
+    def travel(self, command, duration):
+        """The travel (m) while a speed (m/s) is commanded for `duration` (s)."""
+        travel = 0.0
+        while duration > 0:
+            target = command - copysign(self.drag, self.speed or command)
+            if not self.speed and target * command <= 0:
+                break       # drag holds it
+            gap = target - self.speed
+            limited = self.accel_limit * self.lag   # m/s: above this gap the acceleration is limited
+            if abs(gap) > limited + 1e-12 * (abs(self.speed) + abs(target)):    # by more than rounding
+                acceleration = copysign(self.accel_limit, gap)
+                time = (abs(gap) - limited) / self.accel_limit
+                if self.speed and (self.speed > 0) != (gap > 0):
+                    stop = -self.speed / acceleration
+                    if stop <= min(time, duration):
+                        travel += self.speed * stop / 2
+                        self.speed = 0.0
+                        duration -= stop
+                        continue
+                time = min(time, duration)
+                travel += (self.speed + acceleration * time / 2) * time
+                self.speed += acceleration * time
+            else:
+                time = duration
+                if self.speed and target and (self.speed > 0) != (target > 0):
+                    time = min(time, self.lag * log(1 - self.speed / target))
+                closed = gap * (1 - exp(-time / self.lag))
+                travel += target * time - closed * self.lag
+                # a wheel that stops before the end of the duration stops exactly
+                self.speed = self.speed + closed if time == duration else 0.0
+            duration -= time
+        return travel
+
+
+class Encoder:
+    """Counts whole ticks, rounded to the nearest."""
+
+    def __init__(self, ticks_meter):
+        """ticks_meter: ticks per metre."""
+        self.ticks_meter = ticks_meter
+        self.total = 0.0    # m, of the wheel
+        self.ticks = 0
+
+    def count(self, travel):
+        """The counted travel (m) while the wheel travels `travel` (m)."""
+        self.total += travel
+        before, self.ticks = self.ticks, floor(self.total * self.ticks_meter + 0.5)
+        return (self.ticks - before) / self.ticks_meter
+
+
+class Wheels:
+    """Two wheels with inertia, drag and slip, and encoders that count whole ticks.
+
+    Both motors are alike, so their common motion (straight) and their opposite motion (turning) are independent; each
+    has its own drag and slip.
+   
+    """
+
+    def __init__(self, base_width, surface, run, window):
+        """base_width: m; surface: a Surface; run: the Run drawn from it; window: s, the time over which encoder counts
+        are averaged to report a speed."""
+        self.window = window
+        self.base_width = base_width
+        self.surface = surface
+        self.run = run
+        self.straight = Motor(surface.lag, surface.accel_limit, surface.drag_straight)
+        self.turning = Motor(surface.lag, surface.accel_limit, surface.drag_turning)
+        self.left = Encoder(surface.ticks_meter)
+        self.right = Encoder(surface.ticks_meter)
+        self.truth = Odometry(base_width)
+        self.reset()
+
+    def travel(self, linear, angular, duration):
+        """(left, right) travel in m that the encoders count while `linear` (m/s) and `angular` (rad/s) are in force."""
+        straight = self.straight.travel(linear, duration)
+        turning = self.turning.travel(angular * self.base_width / 2, duration)
+        self._rolling = bool(straight or turning or self.straight.speed or self.turning.speed)
+        run = self.run
+        self.truth.move(straight * (1 - run.slip_straight), 2 * turning / self.base_width * (1 - run.slip_turning))
+        left, right = self.left.count(straight - turning), self.right.count(straight + turning)
+        self._update_velocity(left, right, duration)
+        return left, right
+
+    def velocity(self, *_):
+        """The speeds by the encoders' latest counts, whatever is commanded."""
+        return self._velocity
+
+    def true_velocity(self, *_):
+        """The motors' speeds less slip, whatever is commanded."""
+        return (self.straight.speed * (1 - self.run.slip_straight),
+                2 * self.turning.speed / self.base_width * (1 - self.run.slip_turning))
+
+    @property
+    def at_rest(self):
+        """Whether nothing moved in the last step, and the reported speeds are 0."""
+        return not (self._rolling or any(self._velocity))
+
+    def _update_velocity(self, left, right, duration):
+        self._distance += (left + right) / 2
+        self._angle += (right - left) / self.base_width
+        self._time += duration
+        if self._time > 0.75 * self.window:     # steps differ a little from their nominal length
+            self._velocity = self._distance / self._time, self._angle / self._time
+            self._path += abs(self._distance)
+            self._turned += abs(self._angle)
+            self._time = self._distance = self._angle = 0.0
+
+    @property
+    def uncertainty(self):
+        """Uncertainty of the odometry.
+
+        Of the pose: the sum of all slip, an upper bound, since the way back may undo it. Of the speeds: rounding to
+        whole ticks over the window, with a variance of 1/6 tick^2 as the difference of two roundings (1/12 each). The
+        speeds of a standing robot are known.
+        """
+        surface = self.surface
+        yaw = hypot(surface.slip_turning, surface.slip_turning_spread) * self._turned
+        position = hypot(hypot(surface.slip_straight, surface.slip_straight_spread), yaw) * self._path
+        tick = 1 / surface.ticks_meter
+        position, yaw = position ** 2 + tick ** 2, yaw ** 2 + (tick / self.base_width) ** 2
+        if self.at_rest:
+            return Uncertainty(position, yaw, MEASURED, MEASURED)
+        wheel = tick ** 2 / 6 / self.window ** 2
+        return Uncertainty(position, yaw, MEASURED + wheel / 2, MEASURED + 2 * wheel / self.base_width ** 2)
+
+    def reset(self):
+        """Put the robot back at the origin, at rest."""
+        self.straight.speed = self.turning.speed = 0.0
+        self._rolling = False
+        self._velocity = 0.0, 0.0
+        self._time = self._distance = self._angle = 0.0     # s, m and rad since the last velocity
+        self._path = self._turned = 0.0     # m and rad, both directions counted positive
+        self.truth.pose = ORIGIN

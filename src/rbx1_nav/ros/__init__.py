@@ -1,0 +1,1 @@
+"""What the nodes share and what depends on ROS. The only subpackage that may import rospy."""

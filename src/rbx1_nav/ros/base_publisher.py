@@ -1,0 +1,40 @@
+"""What every base publishes: odometry and its transform, the gyro, and joint states."""
+import rospy
+from nav_msgs.msg import Odometry
+from sensor_msgs.msg import Imu, JointState
+from tf2_msgs.msg import TFMessage
+
+from rbx1_nav.model.robot import WHEEL_JOINTS
+from rbx1_nav.ros import messages
+
+
+class BasePublisher:
+    """The publishers of a base."""
+
+    def __init__(self, robot):
+        """robot: a Robot."""
+        self.robot = robot
+        self.odom = rospy.Publisher('odom', Odometry, queue_size=10, tcp_nodelay=True)
+        self.imu = rospy.Publisher('imu/data', Imu, queue_size=10, tcp_nodelay=True)
+        # tf2_ros' broadcaster does just this, and needs 5 MB more
+        self.tf = rospy.Publisher('/tf', TFMessage, queue_size=100, tcp_nodelay=True)
+        self.joint_states = rospy.Publisher('joint_states', JointState, queue_size=10)
+
+    def publish_odometry(self, stamp, pose, velocity, uncertainty):
+        """Publish a Pose, a velocity (m/s, rad/s) and an Uncertainty as odometry, and the pose as a transform."""
+        odom = messages.odometry(stamp, self.robot, pose, velocity, uncertainty)
+        self.odom.publish(odom)
+        if self.robot.publish_tf:
+            self.tf.publish([messages.transform(stamp, odom.header.frame_id, odom.child_frame_id, pose)])
+
+    def publish_imu(self, stamp, reading):
+        """Publish a gyro's Reading."""
+        self.imu.publish(messages.imu(stamp, self.robot.base_frame_id, reading))
+
+    def publish_joints(self, stamp, travel, velocity):
+        """Publish the joints, and the wheels' angles from their travel (left, right; m) and velocity (m/s, rad/s)."""
+        linear, angular = velocity
+        difference = angular * self.robot.base_width / 2
+        wheels = [(name, distance / self.robot.wheel_radius, speed / self.robot.wheel_radius) for name, distance, speed
+                  in zip(WHEEL_JOINTS, travel, (linear - difference, linear + difference))]
+        self.joint_states.publish(messages.joint_states(stamp, self.robot.joints, wheels))

@@ -1,0 +1,77 @@
+"""The commands that a base subscribes to, on their way through its gate."""
+import rospy
+from geometry_msgs.msg import Twist
+from std_msgs.msg import Float64
+
+from rbx1_nav.control.gate import RejectedCommand
+from rbx1_nav.ros import messages
+from rbx1_nav.units import SECOND
+
+
+class VelocityCommands:
+    """Subscribes to cmd_vel, and logs what the gate does to a command."""
+
+    def __init__(self, base, gate, clock, lock):
+        """base: has command(now, linear, angular, others); gate: its CommandGate; clock: see clocks.py; lock: of the
+        base."""
+        self.base = base
+        self.gate = gate
+        self.clock = clock
+        self.lock = lock
+        self.topic = rospy.resolve_name('cmd_vel')
+        self.subscriber = None      # a command may arrive before the next line is done
+        clock.set_driver(self.apply, self.connections)
+        self.subscriber = rospy.Subscriber('cmd_vel', Twist, self.on_twist, queue_size=None, tcp_nodelay=True)
+
+    def connections(self):
+        """rospy's present connections to publishers of cmd_vel."""
+        return self.subscriber.impl.connections if self.subscriber else []
+
+    def on_twist(self, twist):
+        """A command arrives: the clock decides when it is put in force."""
+        command = messages.from_twist(twist)
+        if any(command[2]):
+            rospy.logwarn_throttle(5, '%s: linear.y, linear.z, angular.x, angular.y = %s: a differential drive cannot '
+                                      'follow these, expected 0; ignored' % (self.topic, command[2]))
+        self.clock.command(twist, command)
+
+    def apply(self, command):
+        """Put a command in force: (linear in m/s, angular in rad/s, the velocities that the base cannot follow)."""
+        try:
+            with self.lock:
+                clamped = self.base.command(self.clock.now(), *command)
+        except RejectedCommand as error:
+            rospy.logerr_throttle(1, '%s: %s; rejected, and the base stopped' % (self.topic, error))
+            return
+        if clamped:
+            rospy.logwarn_throttle(5, '%s: %g m/s, %g rad/s: expected at most %g and %g; clamped'
+                                   % ((self.topic,) + command[:2] + self.gate.limits))
+
+    def log_timeout(self):
+        """Log that the command in force timed out."""
+        rospy.logwarn_throttle(10, '%s: no command for %g s: stopped' % (self.topic, self.gate.timeout / SECOND))
+
+    def diagnose(self, status):
+        """Add the gate's values to a DiagnosticStatus."""
+        gate, now = self.gate, self.clock.now()
+        age = 'never' if gate.command_time is None else '%.3f' % ((now - gate.command_time) / SECOND)
+        status.add('dX', gate.linear)
+        status.add('dR', gate.angular)
+        status.add('Age of the last command (s)', age)
+        status.add('Rejected commands', gate.rejected)
+        status.add('Clamped commands', gate.clamped)
+
+
+def subscribe_joints(joints, lock):
+    """Subscribe to the goals of Joint objects: <joint>/command, in rad. lock: held while a goal is set."""
+    for joint in joints:
+        rospy.Subscriber(joint.name + '/command', Float64, _on_goal, (joint, lock), queue_size=10)
+
+
+def _on_goal(message, joint_and_lock):
+    joint, lock = joint_and_lock
+    try:
+        with lock:
+            joint.command(message.data)
+    except ValueError as error:
+        rospy.logerr_throttle(1, '%s: %s; rejected' % (rospy.resolve_name(joint.name + '/command'), error))

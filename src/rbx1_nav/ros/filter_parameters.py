@@ -1,0 +1,43 @@
+"""The parameters of the filter node, and the surface that its initial uncertainties come from."""
+import rospy
+
+from rbx1_nav.config import ConfigError, Section
+from rbx1_nav.model.surfaces import load_surface
+from rbx1_nav.ros import resources
+
+DEFAULT_SURFACE = 'low_ply_carpet'
+
+
+def read_parameters():
+    """The private parameters as a dictionary, with the names that robot_pose_ekf gives them. Raises ConfigError."""
+    section = Section(rospy.get_param(rospy.get_name(), {}))
+    values = dict(
+        freq=section.number('freq', 10.0, high=1000.0, expected='a rate above 0 and up to 1000 in Hz'),
+        sensor_timeout=section.number('sensor_timeout', 1.0, high=1e6, expected='a time above 0 in s'),
+        publish_tf=section.flag('publish_tf', True),
+        imu_used=section.flag('imu_used', True),
+        output_frame=section.frame('output_frame', 'odom'),
+        surface=section.get('surface', ''))
+    if not section.flag('odom_used', True):
+        raise ConfigError('odom_used: False: expected true, nothing else measures the distance')
+    if section.flag('vo_used', False):
+        raise ConfigError('vo_used: True: expected false, visual odometry is not supported')
+    if values['surface']:
+        load_surface(values['surface'], resources.surfaces())
+    return values
+
+
+def find_surface(name, base):
+    """The Surface of this name; if the name is empty, that of the node `base`, or else DEFAULT_SURFACE.
+
+    A simulated base has a parameter `surface`; a real one is taken to stand on carpet, like the tutorial's.
+   
+    """
+    try:
+        name = name or rospy.get_param(base + '/surface', DEFAULT_SURFACE)
+        surface = load_surface(name, resources.surfaces())
+    except (ConfigError, OSError) as error:     # or no answer from the master
+        rospy.logwarn('%s/%s; using %s instead', base, error, DEFAULT_SURFACE)
+        name, surface = DEFAULT_SURFACE, load_surface(DEFAULT_SURFACE, resources.surfaces())
+    rospy.loginfo('Initial uncertainties of wheels and gyro: as on %s', name)
+    return surface

@@ -1,0 +1,145 @@
+"""Conversion between the core's types and ROS messages."""
+from math import atan2, cos, nan, pi, sin
+
+from geometry_msgs.msg import PoseWithCovarianceStamped, Quaternion, TransformStamped
+from nav_msgs.msg import Odometry
+from sensor_msgs.msg import Imu, JointState
+
+from rbx1_nav.estimation.inputs import Imu as ImuInput, Odom
+from rbx1_nav.model.kinematics import Pose
+from rbx1_nav.model.wheels import MEASURED
+from rbx1_nav.units import wrap_angle
+
+UNKNOWN = 1e6       # variance of what is not measured, as in diff_drive_controller and robot_pose_ekf
+
+
+def diagonal(*variances):
+    """A 6x6 covariance, row by row, from the variances of x, y, z, roll, pitch and yaw."""
+    matrix = [0.0] * 36
+    matrix[::7] = variances
+    return matrix
+
+
+def from_twist(twist):
+    """(linear, angular, others) of a Twist: m/s forward, rad/s to the left, and the four velocities that a differential
+    drive cannot follow."""
+    return (twist.linear.x, twist.angular.z,
+            (twist.linear.y, twist.linear.z, twist.angular.x, twist.angular.y))
+
+
+def yaw_of(rotation):
+    """The yaw (rad) of a Quaternion; nan if it is not normalized."""
+    norm = rotation.x ** 2 + rotation.y ** 2 + rotation.z ** 2 + rotation.w ** 2
+    if not 0.9 < norm < 1.1:
+        return nan
+    return atan2(2 * (rotation.w * rotation.z + rotation.x * rotation.y),
+                 norm - 2 * (rotation.y ** 2 + rotation.z ** 2))
+
+
+def quaternion(yaw):
+    """The rotation by yaw (rad) about z."""
+    return Quaternion(0.0, 0.0, sin(yaw / 2), cos(yaw / 2))
+
+
+def odometry(stamp, robot, pose, velocity, uncertainty):
+    """An Odometry message: the Pose in the odom frame, the velocity (m/s, rad/s) in the base frame, an Uncertainty."""
+    message = Odometry()
+    message.header.stamp = stamp
+    message.header.frame_id = robot.odom_frame_id
+    message.child_frame_id = robot.base_frame_id
+    message.pose.pose.position.x = pose.x
+    message.pose.pose.position.y = pose.y
+    message.pose.pose.orientation = quaternion(pose.yaw % (2 * pi))
+    position, yaw, linear, angular = uncertainty
+    message.pose.covariance = diagonal(position, position, UNKNOWN, UNKNOWN, UNKNOWN, yaw)
+    message.twist.twist.linear.x, message.twist.twist.angular.z = velocity
+    # wheels do not roll sideways: the lateral speed is known
+    message.twist.covariance = diagonal(linear, MEASURED, UNKNOWN, UNKNOWN, UNKNOWN, angular)
+    return message
+
+
+def imu(stamp, frame_id, reading):
+    """An Imu message of a gyro's Reading, which measures the vertical axis only."""
+    message = Imu()
+    message.header.stamp = stamp
+    message.header.frame_id = frame_id
+    message.orientation = quaternion(reading.yaw % (2 * pi))
+    message.orientation_covariance = [UNKNOWN, 0, 0, 0, UNKNOWN, 0, 0, 0, reading.yaw_variance]
+    message.angular_velocity.z = reading.rate
+    message.angular_velocity_covariance = [UNKNOWN, 0, 0, 0, UNKNOWN, 0, 0, 0, reading.rate_variance]
+    message.linear_acceleration_covariance[0] = -1      # not measured, by the message's definition
+    return message
+
+
+def transform(stamp, frame_id, child_frame_id, pose):
+    """A TransformStamped with the Pose of the child frame."""
+    message = TransformStamped()
+    message.header.stamp = stamp
+    message.header.frame_id = frame_id
+    message.child_frame_id = child_frame_id
+    message.transform.translation.x = pose.x
+    message.transform.translation.y = pose.y
+    message.transform.rotation = quaternion(pose.yaw % (2 * pi))
+    return message
+
+
+def joint_states(stamp, joints, wheels):
+    """A JointState. joints: Joint objects; wheels: (name, angle in rad, speed in rad/s) of each wheel."""
+    message = JointState()
+    message.header.stamp = stamp
+    message.name = [joint.name for joint in joints] + [name for name, _, _ in wheels]
+    message.position = [joint.position for joint in joints] + [angle for _, angle, _ in wheels]
+    message.velocity = [joint.velocity for joint in joints] + [speed for _, _, speed in wheels]
+    return message
+
+
+def from_odometry(message):
+    """(Odom, variances of the pose's x, y and yaw) of an Odometry message, for the filter."""
+    pose = message.pose.pose
+    covariance = message.pose.covariance
+    return (Odom(message.header.stamp.to_nsec(),
+                 Pose(pose.position.x, pose.position.y, yaw_of(pose.orientation)),
+                 message.twist.covariance[0], message.twist.covariance[35]),
+            (covariance[0], covariance[7], covariance[35]))
+
+
+def from_imu(message):
+    """The filter's input from an Imu message."""
+    return ImuInput(message.header.stamp.to_nsec(), message.angular_velocity.z, message.angular_velocity_covariance[8])
+
+
+def planar_pose(stamp, frame_id, pose, covariance):
+    """A PoseWithCovarianceStamped of a Pose and the 3x3 covariance of x, y (m) and yaw (rad)."""
+    message = PoseWithCovarianceStamped()
+    message.header.stamp = stamp
+    message.header.frame_id = frame_id
+    message.pose.pose.position.x = pose.x
+    message.pose.pose.position.y = pose.y
+    message.pose.pose.orientation = quaternion(pose.yaw % (2 * pi))
+    matrix = diagonal(0.0, 0.0, UNKNOWN, UNKNOWN, UNKNOWN, 0.0)
+    for row, values in zip((0, 1, 5), covariance.tolist()):
+        for column, value in zip((0, 1, 5), values):
+            matrix[6 * row + column] = value
+    message.pose.covariance = matrix
+    return message
+
+
+def odometry_of_pose(pose, before, frame_id, child_frame_id):
+    """An Odometry message of a PoseWithCovarianceStamped. Its velocity is the mean since the pose `before` (may be
+    None), with an unknown variance."""
+    message = Odometry()
+    message.header.stamp = pose.header.stamp
+    message.header.frame_id = frame_id
+    message.child_frame_id = child_frame_id
+    message.pose = pose.pose
+    message.twist.covariance = diagonal(UNKNOWN, UNKNOWN, UNKNOWN, UNKNOWN, UNKNOWN, UNKNOWN)
+    elapsed = (pose.header.stamp - before.header.stamp).to_sec() if before else 0.0
+    if elapsed > 0:
+        yaw = yaw_of(pose.pose.pose.orientation)
+        turned = wrap_angle(yaw - yaw_of(before.pose.pose.orientation))
+        x = pose.pose.pose.position.x - before.pose.pose.position.x
+        y = pose.pose.pose.position.y - before.pose.pose.position.y
+        middle = yaw - turned / 2
+        message.twist.twist.linear.x = (x * cos(middle) + y * sin(middle)) / elapsed
+        message.twist.twist.angular.z = turned / elapsed
+    return message

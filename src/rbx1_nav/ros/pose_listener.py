@@ -1,0 +1,105 @@
+"""The robot's pose by tf2, for a driving script that measures its way."""
+from math import atan2, hypot
+import time
+
+import rospy
+import tf2_ros
+import yaml
+
+from rbx1_nav.model.kinematics import Pose
+from rbx1_nav.ros.node import end_requested, sleep
+from rbx1_nav.units import wrap_angle
+
+MAX_AGE = 0.5       # s: older transforms are not used
+BASE_FRAMES = ('base_footprint', 'base_link')   # usual names of a robot's base, REP 105 and REP 120
+MAX_SPEED, MAX_TURN_RATE = 2.0, 5.0     # m/s and rad/s: a pose that moves faster has jumped
+JUMP_TOLERANCE = 0.05   # m and rad in addition
+
+
+class LostTransform(Exception):
+    """There is no recent transform. The text names the frames."""
+
+
+class PoseListener:
+    """Looks up the pose of the robot's base in a frame."""
+
+    def __init__(self, odom_frame, base_frame):
+        """base_frame: a name; None for the first of BASE_FRAMES that exists."""
+        self.odom_frame = odom_frame
+        self.base_frames = [base_frame] if base_frame else BASE_FRAMES
+        self.buffer = tf2_ros.Buffer()
+        self.listener = tf2_ros.TransformListener(self.buffer)
+        self.last = None    # (stamp in s, Pose)
+        self.velocity = Pose(0.0, 0.0, 0.0)     # between the last two transforms, m/s and rad/s
+
+    @property
+    def base_frame(self):
+        """The robot's frame, or the frames that it may be."""
+        return ' or '.join(self.base_frames)
+
+    def pose(self):
+        """The Pose now, extrapolated from the last two transforms; yaw within two turns of 0.
+
+        Raises LostTransform, and ROSException if the pose has jumped.
+       
+        """
+        transform = self._look_up()
+        stamp = transform.header.stamp.to_sec()
+        age = rospy.get_time() - stamp
+        if not -MAX_AGE <= age <= MAX_AGE:
+            raise LostTransform('The last transform from %s to %s is %.2f s old'
+                                % (self.odom_frame, transform.child_frame_id, age))
+        position, rotation = transform.transform.translation, transform.transform.rotation
+        self._update(stamp, Pose(position.x, position.y, 2 * atan2(rotation.z, rotation.w)))
+        return Pose(*(value + rate * max(age, 0.0) for value, rate in zip(self.last[1], self.velocity)))
+
+    def wait(self, timeout):
+        """pose() as soon as there is one. Raises ROSException after `timeout` s of wall time, ROSInterruptException."""
+        deadline = time.monotonic() + timeout
+        log_time = time.monotonic() + 0.5
+        while True:
+            try:
+                return self.pose()
+            except LostTransform as error:
+                if time.monotonic() > deadline:
+                    raise rospy.ROSException("Timed out after %g s waiting for the robot's pose: %s" % (timeout, error))
+                if time.monotonic() > log_time:
+                    log_time += 5
+                    rospy.loginfo("Waiting for the robot's pose: %s", error)
+            sleep(0.02)
+            if end_requested.is_set():
+                raise rospy.ROSInterruptException('shutdown requested')
+
+    def _update(self, stamp, pose):
+        elapsed = stamp - self.last[0] if self.last else -1.0
+        if elapsed < 0:
+            self.velocity = Pose(0.0, 0.0, 0.0)
+        elif elapsed > 0:
+            before = self.last[1]
+            turned = wrap_angle(pose.yaw - before.yaw)
+            if (hypot(pose.x - before.x, pose.y - before.y) > MAX_SPEED * elapsed + JUMP_TOLERANCE
+                    or abs(turned) > MAX_TURN_RATE * elapsed + JUMP_TOLERANCE):
+                text = '(%.3f m, %.3f m, %.3f rad)'
+                raise rospy.ROSException('The pose in %s jumped from %s to %s: was the base, or its odometry, reset?'
+                                         % (self.odom_frame, text % before, text % pose))
+            self.velocity = Pose((pose.x - before.x) / elapsed, (pose.y - before.y) / elapsed, turned / elapsed)
+        self.last = stamp, pose
+
+    def _look_up(self):
+        for frame in self.base_frames:
+            try:
+                transform = self.buffer.lookup_transform(self.odom_frame, frame, rospy.Time(0))
+            except tf2_ros.TransformException:
+                continue
+            self.base_frames = [frame]      # from now on this one
+            return transform
+        raise LostTransform('There is no transform from %s to %s%s' % (
+            self.odom_frame, self.base_frame, self._known_frames()))
+
+    def _known_frames(self):
+        """The end of a message that lists the frames that exist, if one of ours does not."""
+        tree = yaml.safe_load(self.buffer.all_frames_as_yaml()) or {}
+        frames = set(tree) | {frame['parent'] for frame in tree.values()} if tree else set()
+        if not frames or self.odom_frame in frames and frames.intersection(self.base_frames):
+            return ''
+        return '; frames that exist: %s' % ', '.join(sorted(frames))

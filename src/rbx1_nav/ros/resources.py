@@ -1,0 +1,19 @@
+"""Where the package's own files are, in a source tree as in an install space."""
+import os
+
+import rospkg
+
+from rbx1_nav.config import ConfigError
+
+
+def path(*parts):
+    """The path of a file or folder of this package. Raises ConfigError."""
+    try:
+        return os.path.join(rospkg.RosPack().get_path('rbx1_nav'), *parts)
+    except rospkg.ResourceNotFound:
+        raise ConfigError("rbx1_nav: not found: expected a terminal in which the workspace's setup.bash was sourced")
+
+
+def surfaces():
+    """The folder of the surfaces that come with the package."""
+    return path('config', 'surfaces')

@@ -1,0 +1,17 @@
+"""Units and the arithmetic of single numbers. Metres, radians and seconds (REP 103) unless a name says otherwise.
+
+Times that are compared or added up are whole nanoseconds, so that fifty steps of 20 ms are exactly one second.
+"""
+from math import copysign, pi, remainder
+
+SECOND = 10 ** 9    # ns
+
+
+def clamp(value, limit):
+    """value, limited to the range from -limit to limit."""
+    return copysign(min(abs(value), limit), value)
+
+
+def wrap_angle(angle):
+    """The equivalent angle between -pi and pi, rad."""
+    return remainder(angle, 2 * pi)

@@ -1,0 +1,83 @@
+"""Legs that end when the pose says so."""
+from math import hypot, inf, pi, remainder
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rbx1_nav.control.legs import StuckError, out_and_back_by_odometry
+from rbx1_nav.model.kinematics import ORIGIN, Pose, arc
+
+LEGS = dict(linear_speed=0.2, goal_distance=1.0, angular_speed=1.0, goal_angle=pi, rate=50, min_linear_speed=0.05,
+            min_angular_speed=0.2)
+
+
+def drive(leg, pose, part=1.0):
+    """Follow a leg with a robot that does a part of what it is told; (where it ends, the speeds of all ticks)."""
+    speeds = []
+    while True:
+        speed = leg.next_speed(pose._replace(yaw=remainder(pose.yaw, 2 * pi)))
+        if not speed:
+            return pose, speeds
+        speeds.append(speed)
+        linear, angular = leg.velocity(speed)
+        pose = arc(pose, part * linear / 50, part * angular / 50)
+
+
+def test_four_legs():
+    assert [(leg.name, leg.goal, leg.unit) for leg in out_and_back_by_odometry(**LEGS)] == [
+        ('forward', 1.0, 'm'), ('turn left', pi, 'rad')] * 2
+
+
+@given(st.floats(-10, 10), st.floats(-10, 10), st.floats(-10, 10), st.floats(0.5, 1.0))
+def test_it_stops_on_its_goal_wherever_it_starts_and_however_slow_the_robot_is(x, y, yaw, part):
+    forward, turn, *_ = out_and_back_by_odometry(**LEGS)
+    pose, speeds = drive(forward, Pose(x, y, yaw), part)
+    # half of the slowest tick's travel: 0.05 m/s and 0.2 rad/s, 1/50 s
+    assert hypot(pose.x - x, pose.y - y) == pytest.approx(1.0, abs=0.5001 * 0.001)
+    assert min(speeds) >= 0.05 and max(speeds) == 0.2 == speeds[0]
+    pose, speeds = drive(turn, pose, part)
+    assert pose.yaw - yaw == pytest.approx(pi, abs=0.5001 * 0.004)
+    assert min(speeds) >= 0.2 and max(speeds) == 1.0 == speeds[0]
+
+
+def test_it_slows_down_before_its_goal():
+    _, speeds = drive(out_and_back_by_odometry(**LEGS)[0], ORIGIN)
+    assert sorted(speeds, reverse=True) == speeds and speeds[-1] == pytest.approx(0.05, abs=0.005)
+
+
+def test_it_slows_down_early_enough_to_brake():
+    pose, speeds = drive(out_and_back_by_odometry(**dict(LEGS, linear_speed=2.0, goal_distance=5.0))[0], ORIGIN)
+    assert pose.x == pytest.approx(5.0, abs=0.5001 * 0.001)
+    # 0.4 m/s^2, a fiftieth of a second at a time, and twice that for a moment, where the half second takes over
+    assert all(before - after < 2.1 * 0.4 / 50 for before, after in zip(speeds, speeds[1:])) and speeds[0] == 2.0
+
+
+@pytest.mark.parametrize('rate', [0.1, 1, 5])
+def test_a_slow_rate_does_not_carry_it_past_its_goal(rate):
+    for leg, slowest in zip(out_and_back_by_odometry(**dict(LEGS, rate=rate)), (0.05, 0.2)):
+        pose = ORIGIN
+        while True:
+            speed = leg.next_speed(pose._replace(yaw=remainder(pose.yaw, 2 * pi)))
+            if not speed:
+                break
+            pose = arc(pose, *(value / rate for value in leg.velocity(speed)))
+        assert abs(leg.goal - leg.done()) <= 0.5001 * slowest / rate
+
+
+@pytest.mark.parametrize('change', [dict(goal_distance=1e-4), dict(rate=1e-300), dict(goal_angle=inf),
+                                    dict(linear_speed=1e-9)])
+def test_legs_that_make_no_sense(change):
+    with pytest.raises(ValueError, match='expected between 1 tick and a day'):
+        out_and_back_by_odometry(**dict(LEGS, **change))
+
+
+def test_a_turn_of_more_than_a_full_one():
+    pose, _ = drive(out_and_back_by_odometry(**dict(LEGS, goal_angle=7.0))[1], ORIGIN)
+    assert pose.yaw == pytest.approx(7.0, abs=0.002001)
+
+
+@pytest.mark.parametrize('part', [0.0, -1.0])
+def test_a_robot_that_gets_no_nearer_is_given_up(part):
+    with pytest.raises(StuckError, match='forward: no nearer for 5 s, .* of 1.000 to go'):
+        drive(out_and_back_by_odometry(**LEGS)[0], ORIGIN, part)

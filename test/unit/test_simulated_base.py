@@ -1,0 +1,113 @@
+"""The base: each command counts for just as long as it is in force."""
+from math import cos, inf, nan, sin
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rbx1_nav.control.gate import CommandGate, RejectedCommand
+from rbx1_nav.model.gyro import IdealGyro
+from rbx1_nav.model.robot import Limits
+from rbx1_nav.simulated_base import SimulatedBase
+from rbx1_nav.units import SECOND
+from rbx1_nav.model.kinematics import ORIGIN, arc
+from rbx1_nav.control.motions import out_and_back
+from rbx1_nav.model.wheels import IdealWheels
+
+STEP = SECOND // 50
+
+
+def make_base(timeout=1.0, linear=inf, angular=inf):
+    return SimulatedBase(IdealWheels(0.26), CommandGate(Limits(linear, angular), round(timeout * SECOND)), IdealGyro())
+
+
+def test_the_exercise_ends_where_the_tutorial_says():
+    base, now = make_base(), SECOND
+    for motion in out_and_back(0.2, 1.0, 1.0, 3.141592653589793, 50):
+        for _ in range(motion.ticks):
+            base.command(now, motion.linear, motion.angular)
+            now += STEP
+        base.command(now, 0.0, 0.0)
+        now += SECOND
+    pose = base.odometry.pose
+    assert pose == pytest.approx((1 + cos(3.14), sin(3.14), 6.28), abs=1e-12)
+    assert (round(pose.x, 7), round(pose.y, 7)) == (0.0000013, 0.0015927)
+
+
+@given(st.lists(st.integers(0, 3 * SECOND), min_size=1, max_size=20))
+def test_when_it_is_asked_does_not_matter(moments):
+    asked, alone = make_base(), make_base()
+    for base in (asked, alone):
+        base.command(0, 0.2, 0.5)
+    for now in sorted(moments):
+        asked.advance(now)
+        alone_pose = arc(ORIGIN, 0.2 * min(now, SECOND) / SECOND, 0.5 * min(now, SECOND) / SECOND)
+        assert asked.odometry.pose == pytest.approx(alone_pose, abs=1e-12)
+    alone.advance(max(moments))
+    assert asked.odometry.pose == pytest.approx(alone.odometry.pose, abs=1e-12)
+
+
+def test_the_timeout_stops_it_exactly_then_however_late_it_is_noticed():
+    base = make_base(timeout=0.5)
+    base.command(0, 0.2, 0.0)
+    assert not base.advance(SECOND // 2 - 1)
+    assert base.advance(3600 * SECOND)
+    assert base.odometry.pose.x == pytest.approx(0.1, abs=1e-12)
+    assert not base.gate.moving and not base.advance(3601 * SECOND)
+
+
+def test_a_timeout_of_zero_never_stops_it():
+    base = make_base(timeout=0)
+    base.command(0, 0.2, 0.0)
+    assert not base.advance(3600 * SECOND)
+    assert base.odometry.pose.x == pytest.approx(720)
+
+
+@given(st.lists(st.tuples(st.integers(-10 ** 13, 10 ** 13), st.booleans()), max_size=30))
+def test_no_clock_moves_it_by_more_than_timeout_times_speed(steps):
+    base, now, commands = make_base(), 10 ** 14, 0
+    for step, command in steps:
+        now += step
+        if command:
+            base.command(now, 0.2, 0.0)
+            commands += 1
+        else:
+            base.advance(now)
+        assert 0 <= base.odometry.pose.x <= 0.2 * commands + 1e-9
+
+
+def test_a_clock_that_goes_back_forgets_the_command():
+    base = make_base()
+    base.command(10 * SECOND, 0.2, 0.0)
+    base.advance(5 * SECOND)
+    base.advance(6 * SECOND)
+    assert base.odometry.pose == ORIGIN and not base.gate.moving
+
+
+@pytest.mark.parametrize('command', [(nan, 0.0), (0.2, inf), (-inf, nan), (0.2, 0.0, (0.0, nan)), (1e308, 1e308)])
+def test_what_is_not_finite_is_refused_and_stops_it(command):
+    base = make_base()
+    base.command(0, 0.2, 0.0)
+    with pytest.raises(RejectedCommand):
+        base.command(SECOND // 2, *command)
+    base.advance(SECOND)
+    assert base.odometry.pose.x == pytest.approx(0.1)
+    assert base.gate.rejected == 1 and not base.gate.moving
+
+
+@given(st.floats(-10, 10), st.floats(-10, 10))
+def test_limits(linear, angular):
+    base = make_base(linear=0.3, angular=0.5)
+    cut = base.command(0, linear, angular)
+    assert abs(base.gate.linear) <= 0.3 and abs(base.gate.angular) <= 0.5
+    assert base.gate.linear * linear >= 0 and base.gate.angular * angular >= 0
+    assert cut == (abs(linear) > 0.3 or abs(angular) > 0.5) == bool(base.gate.clamped)
+
+
+def test_reset_stands_at_the_origin():
+    base = make_base()
+    base.command(0, 0.2, 1.0)
+    base.advance(SECOND // 2)
+    base.reset()
+    base.advance(SECOND)
+    assert base.odometry.pose == ORIGIN
