@@ -1,6 +1,5 @@
 """Pictures of simulated runs, with matplotlib."""
 from math import cos, sin
-import os
 
 from matplotlib.figure import Figure
 import numpy

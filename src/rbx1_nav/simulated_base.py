@@ -63,7 +63,6 @@ class SimulatedBase:
         """Integrate the motion up to `now`. Returns whether the command in force timed out on the way.
 
         If the clock jumped back, the command in force is dropped: its age is no longer known.
-       
         """
         gate = self.gate
         timed_out = False

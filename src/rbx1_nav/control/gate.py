@@ -38,7 +38,6 @@ class CommandGate:
 
         others: velocities that a differential drive cannot follow; they must be finite all the same. Raises
         RejectedCommand, and halts, if a value is not finite or above MAX_COMMAND.
-       
         """
         self.command_time = now
         for value in (linear, angular, *others):

@@ -10,7 +10,6 @@ def ticks(goal, speed, rate):
     """Number of ticks, at `rate` per second, to cover `goal` (m or rad) at `speed` (m/s or rad/s), rounded down.
 
     Raises ValueError if that is less than one tick or more than a day.
-   
     """
     number = goal / speed * rate
     if not (isfinite(number) and 1 <= number + 1e-9 <= 24 * 3600 * rate):

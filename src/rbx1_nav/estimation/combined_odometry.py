@@ -44,7 +44,6 @@ class CombinedOdometry:
     reported up to its end. A sensor that sends nothing for `timeout` while the other one does has timed out, and is not
     used until it recovers: without the gyro, the turn is measured by the wheels; without odometry, by the gyro, and the
     uncertainty of the position grows. The travel during a dropout of the odometry counts when it recovers.
-   
     """
 
     def __init__(self, prior, timeout, gyro_used=True, warn=lambda text: None):

@@ -99,7 +99,6 @@ class Filter:
 
         forward, left: displacement (m) measured by the wheels, in a frame that is rotated by `direction` (rad) against
         the robot's own half way through the turn; variance: of the displacement, m^2.
-       
         """
         angle, noise, by_bias, by_scale, by_slip = turn
         x, y, yaw, bias, scale, straight, turning, rounding = self.state

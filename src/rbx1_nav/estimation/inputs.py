@@ -38,7 +38,6 @@ def check_odom(odom, pose_variances):
     """Raises RejectedMessage if an Odom cannot be used.
 
     pose_variances: of x, y (m^2) and yaw (rad^2). A variance of 0 of a speed means that the sender does not give it.
-   
     """
     for field, value in zip(('position.x', 'position.y', 'orientation'), odom.pose):
         check_number('pose.pose.' + field, value)

@@ -52,7 +52,6 @@ class Gyro:
 
         The rate is the mean over that time, as of a gyro that samples faster than it is read. standing: whether the
         wheels stood still meanwhile.
-       
         """
         surface = self.surface
         noise = surface.gyro_noise / (NOISE_RATE * duration) ** 0.5

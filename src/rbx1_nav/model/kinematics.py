@@ -23,7 +23,6 @@ def arc(pose, distance, angle):
     Exact for any pair: the chord of an arc is distance * sin(angle/2) / (angle/2), and it points half the angle
     further than the first heading (plane geometry; the same closed form as Siegwart, Nourbakhsh and Scaramuzza,
     Introduction to Autonomous Mobile Robots, 2nd ed., section 5.2.4, without its straight-line approximation).
-   
     """
     half = angle / 2
     # below 1e-4 rad the next term of the series is below the resolution of a float

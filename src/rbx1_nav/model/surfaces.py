@@ -53,7 +53,6 @@ def load_surface(name, folder):
     """The Surface of this name in a folder, or of the file with this absolute path; None for the ideal surface.
 
     Raises ConfigError.
-   
     """
     is_path = isinstance(name, str) and os.path.isabs(name)
     path = name if is_path else os.path.join(folder, '%s.yaml' % name)

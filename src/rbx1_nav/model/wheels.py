@@ -122,7 +122,6 @@ class Wheels:
 
     Both motors are alike, so their common motion (straight) and their opposite motion (turning) are independent; each
     has its own drag and slip.
-   
     """
 
     def __init__(self, base_width, surface, run, window):

@@ -31,7 +31,6 @@ def find_surface(name, base):
     """The Surface of this name; if the name is empty, that of the node `base`, or else DEFAULT_SURFACE.
 
     A simulated base has a parameter `surface`; a real one is taken to stand on carpet, like the tutorial's.
-   
     """
     try:
         name = name or rospy.get_param(base + '/surface', DEFAULT_SURFACE)

@@ -101,7 +101,6 @@ def sleep(seconds):
     """Sleep for `seconds` of wall time, at most MAX_SLEEP. To be called in a loop that checks end_requested.
 
     end_requested.wait() would not do: before Python 3.11 it follows a system clock that is stepped.
-   
     """
     time.sleep(max(0, min(seconds, MAX_SLEEP)))
 

@@ -16,7 +16,6 @@ def frame_param(name, default):
     """The private parameter `name`, a frame without a leading slash. Raises ROSException with one line if it is not.
 
     default: may also be None.
-   
     """
     if not rospy.has_param('~' + name):
         return default

@@ -41,7 +41,6 @@ class PoseListener:
         """The Pose now, extrapolated from the last two transforms; yaw within two turns of 0.
 
         Raises LostTransform, and ROSException if the pose has jumped.
-       
         """
         transform = self._look_up()
         stamp = transform.header.stamp.to_sec()

@@ -60,7 +60,6 @@ class Rate:
 
     A delay is made up for over the next ticks, each at least 0.6 periods long: otherwise a base could receive two
     commands in one step.
-   
     """
 
     def __init__(self, hz, publisher):
