@@ -66,7 +66,7 @@ class OutAndBack:
             # However it ended: the most important thing that a mobile robot must do.
             self.stop()
 
-        rospy.loginfo('Done: commanded %.2f m forward and %.2f rad to the left; the pose was not measured.',
+        rospy.loginfo('Done: commanded %.2f m forward and %.2f rad to the left.',
                       sum(motion.ticks * motion.linear for motion in motions) / self.rate,
                       sum(motion.ticks * motion.angular for motion in motions) / self.rate)
 
