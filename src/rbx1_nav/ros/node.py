@@ -19,6 +19,10 @@ EXIT_DEADLINE = 1.4         # s of wall time from the request to the end of the 
 UNREGISTER_TIMEOUT = 0.25   # s of wall time for the master to unregister the node
 MAX_SLEEP = 0.05            # s
 
+# rospy of Debian 11 calls Thread.isAlive() on shutdown, a name that Python 3.9 has removed
+if not hasattr(threading.Thread, 'isAlive'):
+    threading.Thread.isAlive = threading.Thread.is_alive
+
 end_requested = threading.Event()
 _leaving = threading.Event()
 
