@@ -1,4 +1,4 @@
-"""Legs that end when the pose says so."""
+"""The exercise by odometry: legs that end when the pose says so."""
 from math import hypot, inf, pi, remainder
 
 import pytest
@@ -12,8 +12,8 @@ LEGS = dict(linear_speed=0.2, goal_distance=1.0, angular_speed=1.0, goal_angle=p
             min_angular_speed=0.2)
 
 
-def drive(leg, pose, part=1.0):
-    """Follow a leg with a robot that does a part of what it is told; (where it ends, the speeds of all ticks)."""
+def drive(leg, pose, fraction=1.0):
+    """Drive a leg with a robot that moves by a fraction of each command; returns its last Pose and all speeds."""
     speeds = []
     while True:
         speed = leg.next_speed(pose._replace(yaw=remainder(pose.yaw, 2 * pi)))
@@ -21,40 +21,40 @@ def drive(leg, pose, part=1.0):
             return pose, speeds
         speeds.append(speed)
         linear, angular = leg.velocity(speed)
-        pose = arc(pose, part * linear / 50, part * angular / 50)
+        pose = arc(pose, fraction * linear / 50, fraction * angular / 50)
 
 
-def test_four_legs():
+def test_the_exercise_has_four_legs():
     assert [(leg.name, leg.goal, leg.unit) for leg in out_and_back_by_odometry(**LEGS)] == [
         ('forward', 1.0, 'm'), ('turn left', pi, 'rad')] * 2
 
 
 @given(st.floats(-10, 10), st.floats(-10, 10), st.floats(-10, 10), st.floats(0.5, 1.0))
-def test_it_stops_on_its_goal_wherever_it_starts_and_however_slow_the_robot_is(x, y, yaw, part):
+def test_a_leg_stops_at_its_goal_from_every_pose_and_with_a_robot_that_slips(x, y, yaw, fraction):
     forward, turn, *_ = out_and_back_by_odometry(**LEGS)
-    pose, speeds = drive(forward, Pose(x, y, yaw), part)
+    pose, speeds = drive(forward, Pose(x, y, yaw), fraction)
     # half of the slowest tick's travel: 0.05 m/s and 0.2 rad/s, 1/50 s
     assert hypot(pose.x - x, pose.y - y) == pytest.approx(1.0, abs=0.5001 * 0.001)
     assert min(speeds) >= 0.05 and max(speeds) == 0.2 == speeds[0]
-    pose, speeds = drive(turn, pose, part)
+    pose, speeds = drive(turn, pose, fraction)
     assert pose.yaw - yaw == pytest.approx(pi, abs=0.5001 * 0.004)
     assert min(speeds) >= 0.2 and max(speeds) == 1.0 == speeds[0]
 
 
-def test_it_slows_down_before_its_goal():
+def test_a_leg_slows_down_to_its_lowest_speed_before_the_goal():
     _, speeds = drive(out_and_back_by_odometry(**LEGS)[0], ORIGIN)
     assert sorted(speeds, reverse=True) == speeds and speeds[-1] == pytest.approx(0.05, abs=0.005)
 
 
-def test_it_slows_down_early_enough_to_brake():
+def test_a_fast_leg_slows_down_early_enough_to_brake():
     pose, speeds = drive(out_and_back_by_odometry(**dict(LEGS, linear_speed=2.0, goal_distance=5.0))[0], ORIGIN)
     assert pose.x == pytest.approx(5.0, abs=0.5001 * 0.001)
-    # 0.4 m/s^2, a fiftieth of a second at a time, and twice that for a moment, where the half second takes over
+    # 0.4 m/s^2 at 50 Hz; up to twice that in the tick in which the travel time becomes the lower limit
     assert all(before - after < 2.1 * 0.4 / 50 for before, after in zip(speeds, speeds[1:])) and speeds[0] == 2.0
 
 
 @pytest.mark.parametrize('rate', [0.1, 1, 5])
-def test_a_slow_rate_does_not_carry_it_past_its_goal(rate):
+def test_a_slow_rate_does_not_overshoot_the_goal(rate):
     for leg, slowest in zip(out_and_back_by_odometry(**dict(LEGS, rate=rate)), (0.05, 0.2)):
         pose = ORIGIN
         while True:
@@ -67,17 +67,17 @@ def test_a_slow_rate_does_not_carry_it_past_its_goal(rate):
 
 @pytest.mark.parametrize('change', [dict(goal_distance=1e-4), dict(rate=1e-300), dict(goal_angle=inf),
                                     dict(linear_speed=1e-9)])
-def test_legs_that_make_no_sense(change):
+def test_legs_shorter_than_a_tick_or_longer_than_a_day_are_rejected(change):
     with pytest.raises(ValueError, match='expected between 1 tick and a day'):
         out_and_back_by_odometry(**dict(LEGS, **change))
 
 
-def test_a_turn_of_more_than_a_full_one():
+def test_a_turn_can_be_more_than_a_full_one():
     pose, _ = drive(out_and_back_by_odometry(**dict(LEGS, goal_angle=7.0))[1], ORIGIN)
     assert pose.yaw == pytest.approx(7.0, abs=0.002001)
 
 
-@pytest.mark.parametrize('part', [0.0, -1.0])
-def test_a_robot_that_gets_no_nearer_is_given_up(part):
-    with pytest.raises(StuckError, match='forward: no nearer for 5 s, .* of 1.000 to go'):
-        drive(out_and_back_by_odometry(**LEGS)[0], ORIGIN, part)
+@pytest.mark.parametrize('fraction', [0.0, -1.0])
+def test_a_leg_without_progress_ends_with_an_error(fraction):
+    with pytest.raises(StuckError, match='forward: no progress for 5 s, .* of 1.000 m to go'):
+        drive(out_and_back_by_odometry(**LEGS)[0], ORIGIN, fraction)

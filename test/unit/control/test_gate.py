@@ -1,0 +1,103 @@
+"""The gate: a command in force is finite, within the limits, and has an age."""
+from collections import namedtuple
+from math import inf, nan
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rbx1_nav.control.gate import MAX_COMMAND, CommandGate, RejectedCommand
+from rbx1_nav.units import SECOND
+
+Limits = namedtuple('Limits', 'linear angular')
+
+
+def make_gate(linear=inf, angular=inf, timeout=SECOND):
+    return CommandGate(Limits(linear, angular), timeout)
+
+
+def test_a_gate_begins_without_a_command():
+    gate = make_gate()
+    assert (gate.linear, gate.angular) == (0.0, 0.0) and not gate.moving
+    assert gate.command_time is None and gate.rejected == gate.clamped == 0
+
+
+def test_a_command_within_the_limits_is_in_force_unchanged():
+    gate = make_gate(0.3, 0.5)
+    assert not gate.command(5, -0.3, 0.5)
+    assert (gate.linear, gate.angular, gate.command_time) == (-0.3, 0.5, 5)
+    assert gate.moving and gate.clamped == 0
+
+
+@pytest.mark.parametrize('linear, angular, moving', [(0.1, 0.0, True), (0.0, -0.1, True), (0.0, 0.0, False)])
+def test_any_speed_other_than_0_is_a_motion(linear, angular, moving):
+    gate = make_gate()
+    gate.command(0, linear, angular)
+    assert gate.moving is moving
+
+
+@pytest.mark.parametrize('command, value', [
+    ((nan, 0.0), 'nan'), ((0.2, inf), 'inf'), ((-inf, nan), '-inf'), ((0.2, 0.0, (0.0, nan)), 'nan'),
+    ((1e308, 1e308), '1e+308'), ((0.0, -1.0001 * MAX_COMMAND), '-1000100.0'), ((0.0, 0.0, (-inf,)), '-inf')])
+def test_values_that_are_not_finite_or_too_large_are_rejected(command, value):
+    gate = make_gate()
+    gate.command(0, 0.2, 0.3)
+    with pytest.raises(RejectedCommand) as error:
+        gate.command(7, *command)
+    assert str(error.value) == '%s: expected finite numbers of at most 1e+06' % value
+    assert (gate.linear, gate.angular) == (0.0, 0.0) and not gate.moving
+    assert (gate.rejected, gate.command_time) == (1, 7)
+
+
+def test_the_largest_command_is_accepted():
+    gate = make_gate()
+    assert not gate.command(0, MAX_COMMAND, -MAX_COMMAND, (MAX_COMMAND,))
+    assert (gate.linear, gate.angular) == (MAX_COMMAND, -MAX_COMMAND)
+
+
+def test_velocities_that_the_base_cannot_follow_do_not_change_the_command():
+    gate = make_gate()
+    assert not gate.command(0, 0.2, 0.3, (1.0, -2.0, 0.0, 4.0))
+    assert (gate.linear, gate.angular, gate.rejected) == (0.2, 0.3, 0)
+
+
+@given(st.floats(-10, 10), st.floats(-10, 10))
+def test_a_command_above_the_limits_is_clamped_with_its_sign(linear, angular):
+    gate = make_gate(0.3, 0.5)
+    clamped = gate.command(0, linear, angular)
+    assert abs(gate.linear) <= 0.3 and abs(gate.angular) <= 0.5
+    assert gate.linear * linear >= 0 and gate.angular * angular >= 0
+    assert clamped == (abs(linear) > 0.3 or abs(angular) > 0.5) == bool(gate.clamped)
+
+
+def test_a_clamped_command_has_the_speed_of_the_limit():
+    gate = make_gate(0.3, 0.5)
+    assert gate.command(0, -1.0, 0.1) and (gate.linear, gate.angular) == (-0.3, 0.1)
+    assert gate.command(0, 0.1, 2.0) and (gate.linear, gate.angular) == (0.1, 0.5)
+    assert gate.clamped == 2
+
+
+def test_a_command_expires_a_timeout_after_its_arrival():
+    gate = make_gate(timeout=SECOND // 2)
+    gate.command(3 * SECOND, 0.2, 0.0)
+    assert gate.expiry == 3 * SECOND + SECOND // 2
+
+
+def test_without_a_timeout_a_command_never_expires():
+    gate = make_gate(timeout=0)
+    gate.command(3 * SECOND, 0.2, 0.0)
+    assert gate.expiry == inf
+
+
+def test_halt_ends_the_motion_and_keeps_the_age_of_the_command():
+    gate = make_gate()
+    gate.command(7, 0.2, 0.3)
+    gate.halt()
+    assert (gate.linear, gate.angular, gate.command_time) == (0.0, 0.0, 7)
+
+
+def test_forget_ends_the_motion_and_drops_the_age_of_the_command():
+    gate = make_gate()
+    gate.command(7, 0.2, 0.3)
+    gate.forget()
+    assert (gate.linear, gate.angular, gate.command_time) == (0.0, 0.0, None)
