@@ -1,4 +1,4 @@
-"""Finds the package in its source folder: the core's tests need neither ROS nor a build."""
+"""Imports the package from its source folder: these tests need neither ROS nor a build."""
 import os
 import sys
 
@@ -6,6 +6,6 @@ from hypothesis import HealthCheck, settings
 
 sys.path.insert(0, os.path.join(os.path.dirname(__file__), '..', '..', 'src'))
 
-# a busy machine is slow: no test of ours is about time
+# no test here is about time, and a busy machine is slow
 settings.register_profile('any_machine', deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile('any_machine')

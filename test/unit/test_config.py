@@ -1,128 +1,81 @@
-"""The YAML files that ArbotiX users have: read as they are, and told apart from nonsense in one line."""
-import copy
-import glob
-import os
-from math import inf, nan, radians
+"""Reading configuration: values as they are, and one line that names the key, the value and what is expected."""
+from math import inf, nan
 
 import pytest
-import yaml
 
-from rbx1_nav.units import SECOND
-from rbx1_nav.config import ConfigError
-from rbx1_nav.model.robot import read_robot
-
-CONFIG = os.path.join(os.path.dirname(__file__), '..', '..', 'config')
+from rbx1_nav.config import ConfigError, Section, positive
 
 
-def load(name):
-    with open(os.path.join(CONFIG, name)) as file:
-        return yaml.safe_load(file)
-
-
-def test_turtlebot():
-    config = read_robot(load('turtlebot.yaml'))
-    assert (config.name, config.odom_frame_id, config.base_frame_id) == ('base_controller', 'odom', 'base_footprint')
-    # the driver's own rate is for its hardware: the controller's is the odometry's
-    assert (config.base_width, config.rate, config.timeout) == (0.26, 50, SECOND)
-    assert config.limits == (inf, inf) and config.publish_tf is True
-    assert config.joints == [] and config.unknown == []
-    assert {'port', 'rate', 'controllers/base_controller/Kp'} <= set(config.ignored)
-
-
-def test_pi_robot():
-    config = read_robot(load('pi_robot.yaml'))
-    assert config.base_frame_id == 'base_link' and config.unknown == []
-    assert [joint.name for joint in config.joints] == [
-        'arm_shoulder_pan_joint', 'arm_shoulder_lift_joint', 'arm_elbow_flex_joint', 'arm_wrist_flex_joint',
-        'gripper_joint', 'head_pan_joint', 'head_tilt_joint']
-    assert config.joints[-1].upper == radians(60) and config.joints[-1].max_speed == radians(90)
-
-
-def test_old_frame_names_lose_their_slash():
-    params = load('turtlebot.yaml')
-    params['controllers']['base_controller'].update(base_frame_id='/base_footprint', odom_frame_id='/odom')
-    config = read_robot(params)
-    assert (config.odom_frame_id, config.base_frame_id) == ('odom', 'base_footprint')
-
-
-def test_unknown_keys_are_told():
-    params = load('turtlebot.yaml')
-    params['controllers']['base_controller']['time_out'] = 2
-    assert read_robot(params).unknown == ['controllers/base_controller/time_out']
-
-
-@pytest.mark.parametrize('key, value, expected', [
-    ('base_width', 0, 'above 0'), ('base_width', '0.26', 'width'), ('base_width', nan, 'finite'),
-    ('base_width', True, 'width'), ('rate', -5, 'above 0'), ('rate', 0, 'above 0'), ('rate', inf, 'up to 1000'),
-    ('timeout', -1, '0 (never)'), ('max_linear_speed', 0, 'above 0'), ('max_angular_speed', 'fast', 'speed'),
-    ('wheel_radius', [], 'radius'), ('base_frame_id', '', 'frame'), ('base_frame_id', 7, 'frame'),
-    ('base_frame_id', 'odom', 'other than odom_frame_id'),
-    ('type', 'follow_controller', 'one of: diff_controller')])
-def test_a_bad_value_is_named_with_its_key_and_what_is_expected(key, value, expected):
-    params = load('turtlebot.yaml')
-    params['controllers']['base_controller'][key] = value
+def rejection(function, *arguments, **options):
+    """The text of the ConfigError that a call raises."""
     with pytest.raises(ConfigError) as error:
-        read_robot(params)
-    text = str(error.value)
-    assert text.startswith('controllers/base_controller/%s: %r' % (key, value))
-    assert expected in text and '\n' not in text
+        function(*arguments, **options)
+    assert '\n' not in str(error.value)
+    return str(error.value)
 
 
-@pytest.mark.parametrize('path', [('controllers',), ('controllers', 'base_controller', 'base_width'),
-                                  ('controllers', 'base_controller', 'type')])
-def test_a_missing_key_is_named(path):
-    params = load('turtlebot.yaml')
-    parent = params
-    for key in path[:-1]:
-        parent = parent[key]
-    del parent[path[-1]]
-    with pytest.raises(ConfigError, match='^%s: missing' % '/'.join(path)):
-        read_robot(params)
+@pytest.mark.parametrize('text, number', [
+    ('1e-1', '1.0e-1'), ('1e5', '1.0e+5'), ('-2.5e3', '-2.5e+3'), (' 3E2', '3.0e+2'), ('0.26', '0.26 without quotes')])
+def test_a_number_that_is_text_to_yaml_gets_a_hint(text, number):
+    expected = 'base_width: %r (text to YAML: write %s): expected a finite number above 0' % (text, number)
+    assert rejection(positive, 'base_width', text) == expected
 
 
-@pytest.mark.parametrize('params', [
-    7, [], 'text', {'controllers': 'base'}, {'controllers': {}}, {'controllers': {'base': None}},
-    {'controllers': {'a': {'type': 'diff_controller'}, 'b': {'type': 'diff_controller'}}}])
-def test_what_is_no_configuration_at_all(params):
-    with pytest.raises(ConfigError, match='expected'):
-        read_robot(params)
+@pytest.mark.parametrize('text', ['wide', 'nan', '', '1e999'])
+def test_other_text_gets_no_hint(text):
+    assert rejection(positive, 'base_width', text) == 'base_width: %r: expected a finite number above 0' % text
 
 
-@pytest.mark.parametrize('joint, expected', [
-    ({'min_angle': 10, 'max_angle': -10}, 'under max_angle'), ({'max_speed': 0}, 'above 0'),
-    ({'min_angle': nan}, 'finite angle'), (None, 'mapping')])
-def test_bad_joints(joint, expected):
-    params = load('turtlebot.yaml')
-    params['joints'] = {'pan': joint}
-    with pytest.raises(ConfigError, match=expected):
-        read_robot(params)
+@pytest.mark.parametrize('value', [0, -1, nan, inf, True, None, [1.0]])
+def test_positive_rejects_everything_but_finite_numbers_above_0(value):
+    assert rejection(positive, 'rate', value) == 'rate: %r: expected a finite number above 0' % value
 
 
-def test_a_joint_needs_a_name_that_can_be_a_topic():
-    params = load('turtlebot.yaml')
-    params['joints'] = {'my joint': {}}
-    with pytest.raises(ConfigError, match="'my joint'.*expected a name"):
-        read_robot(params)
-    params['joints'] = {'base_l_wheel_joint': {}}
-    with pytest.raises(ConfigError, match="'base_l_wheel_joint'.*expected a name"):
-        read_robot(params)
+def test_positive_returns_a_float():
+    assert positive('rate', 5) == 5.0 and isinstance(positive('rate', 5), float)
 
 
-def test_a_number_that_yaml_takes_for_text_gets_a_hint():
-    params = load('turtlebot.yaml')
-    params['controllers']['base_controller']['base_width'] = '1e-1'
-    with pytest.raises(ConfigError, match='write it like 1.0e-3'):
-        read_robot(params)
+def test_a_closed_range_includes_its_lower_end():
+    assert Section({'timeout': 0}).number('timeout', closed=True, high=2.0) == 0.0
+    assert Section({'timeout': 2.0}).number('timeout', closed=True, high=2.0) == 2.0
+    rejection(Section({'timeout': 2.1}).number, 'timeout', closed=True, high=2.0)
 
 
-def test_sim_false_is_no_simulation():
-    with pytest.raises(ConfigError, match='sim: False'):
-        read_robot(dict(load('turtlebot.yaml'), sim=False))
+def test_only_a_default_may_be_infinite():
+    assert Section({}).number('max_speed', inf) == inf
+    rejection(Section({'max_speed': inf}).number, 'max_speed', inf)
 
 
-def test_reading_does_not_change_what_is_read():
-    for path in glob.glob(os.path.join(CONFIG, '*.yaml')):
-        params = load(os.path.basename(path))
-        before = copy.deepcopy(params)
-        read_robot(params)
-        assert params == before
+def test_a_key_is_named_as_rosparam_spells_it():
+    section = Section({'a': {'b': {'c': -1}}}).section('a').section('b')
+    assert rejection(section.number, 'c').startswith('a/b/c: -1: expected')
+    assert rejection(section.number, 'd').startswith('a/b/d: missing: expected')
+
+
+@pytest.mark.parametrize('value', ['true', 1, 0, None])
+def test_a_flag_is_true_or_false(value):
+    assert Section({'flag': False}).flag('flag', True) is False and Section({}).flag('flag', True) is True
+    assert rejection(Section({'flag': value}).flag, 'flag', True) == 'flag: %r: expected true or false' % value
+
+
+def test_a_frame_loses_its_leading_slash():
+    assert Section({'frame': '/robot/odom'}).frame('frame', 'odom') == 'robot/odom'
+    assert Section({}).frame('frame', 'odom') == 'odom'
+
+
+@pytest.mark.parametrize('value', ['', '/', 'a b', 7, 'odom/', None])
+def test_a_name_that_no_frame_can_have_is_rejected(value):
+    assert rejection(Section({'frame': value}).frame, 'frame', 'odom') == (
+        'frame: %r: expected the name of a frame' % value)
+
+
+def test_keys_are_sorted_into_read_hardware_and_unknown():
+    section = Section({'rate': 50, 'port': '/dev/ttyUSB0', 'time_out': 2}, 'base', hardware={'port', 'baud'})
+    section.number('rate')
+    assert section.ignored() == ['base/port'] and section.unknown() == ['base/time_out']
+
+
+@pytest.mark.parametrize('values', [7, [], 'text', None])
+def test_a_section_is_a_mapping(values):
+    assert rejection(Section, values) == 'configuration: %r: expected a mapping of keys to values' % (values,)
+    assert rejection(Section, values, 'joints') == 'joints: %r: expected a mapping of keys to values' % (values,)

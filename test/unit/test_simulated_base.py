@@ -1,4 +1,4 @@
-"""The base: each command counts for just as long as it is in force."""
+"""The base on the ideal surface: each command counts for exactly as long as it is in force."""
 from math import cos, inf, nan, sin
 
 import pytest
@@ -6,19 +6,19 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rbx1_nav.control.gate import CommandGate, RejectedCommand
+from rbx1_nav.control.motions import out_and_back
 from rbx1_nav.model.gyro import IdealGyro
+from rbx1_nav.model.kinematics import ORIGIN, arc
 from rbx1_nav.model.robot import Limits
+from rbx1_nav.model.wheels import IdealWheels
 from rbx1_nav.simulated_base import SimulatedBase
 from rbx1_nav.units import SECOND
-from rbx1_nav.model.kinematics import ORIGIN, arc
-from rbx1_nav.control.motions import out_and_back
-from rbx1_nav.model.wheels import IdealWheels
 
 STEP = SECOND // 50
 
 
-def make_base(timeout=1.0, linear=inf, angular=inf):
-    return SimulatedBase(IdealWheels(0.26), CommandGate(Limits(linear, angular), round(timeout * SECOND)), IdealGyro())
+def make_base(timeout=1.0, limits=Limits(inf, inf)):
+    return SimulatedBase(IdealWheels(0.26), CommandGate(limits, round(timeout * SECOND)), IdealGyro())
 
 
 def test_the_exercise_ends_where_the_tutorial_says():
@@ -35,19 +35,19 @@ def test_the_exercise_ends_where_the_tutorial_says():
 
 
 @given(st.lists(st.integers(0, 3 * SECOND), min_size=1, max_size=20))
-def test_when_it_is_asked_does_not_matter(moments):
-    asked, alone = make_base(), make_base()
-    for base in (asked, alone):
+def test_the_pose_does_not_depend_on_when_it_is_asked_for(moments):
+    often, once = make_base(), make_base()
+    for base in (often, once):
         base.command(0, 0.2, 0.5)
     for now in sorted(moments):
-        asked.advance(now)
-        alone_pose = arc(ORIGIN, 0.2 * min(now, SECOND) / SECOND, 0.5 * min(now, SECOND) / SECOND)
-        assert asked.odometry.pose == pytest.approx(alone_pose, abs=1e-12)
-    alone.advance(max(moments))
-    assert asked.odometry.pose == pytest.approx(alone.odometry.pose, abs=1e-12)
+        often.advance(now)
+        expected = arc(ORIGIN, 0.2 * min(now, SECOND) / SECOND, 0.5 * min(now, SECOND) / SECOND)
+        assert often.odometry.pose == pytest.approx(expected, abs=1e-12)
+    once.advance(max(moments))
+    assert often.odometry.pose == pytest.approx(once.odometry.pose, abs=1e-12)
 
 
-def test_the_timeout_stops_it_exactly_then_however_late_it_is_noticed():
+def test_a_timeout_stops_the_base_exactly_then_even_if_noticed_late():
     base = make_base(timeout=0.5)
     base.command(0, 0.2, 0.0)
     assert not base.advance(SECOND // 2 - 1)
@@ -56,7 +56,7 @@ def test_the_timeout_stops_it_exactly_then_however_late_it_is_noticed():
     assert not base.gate.moving and not base.advance(3601 * SECOND)
 
 
-def test_a_timeout_of_zero_never_stops_it():
+def test_a_timeout_of_zero_never_stops_the_base():
     base = make_base(timeout=0)
     base.command(0, 0.2, 0.0)
     assert not base.advance(3600 * SECOND)
@@ -64,7 +64,7 @@ def test_a_timeout_of_zero_never_stops_it():
 
 
 @given(st.lists(st.tuples(st.integers(-10 ** 13, 10 ** 13), st.booleans()), max_size=30))
-def test_no_clock_moves_it_by_more_than_timeout_times_speed(steps):
+def test_on_every_clock_a_command_moves_the_base_by_at_most_timeout_times_speed(steps):
     base, now, commands = make_base(), 10 ** 14, 0
     for step, command in steps:
         now += step
@@ -76,7 +76,7 @@ def test_no_clock_moves_it_by_more_than_timeout_times_speed(steps):
         assert 0 <= base.odometry.pose.x <= 0.2 * commands + 1e-9
 
 
-def test_a_clock_that_goes_back_forgets_the_command():
+def test_a_clock_that_jumps_back_ends_the_command():
     base = make_base()
     base.command(10 * SECOND, 0.2, 0.0)
     base.advance(5 * SECOND)
@@ -85,7 +85,7 @@ def test_a_clock_that_goes_back_forgets_the_command():
 
 
 @pytest.mark.parametrize('command', [(nan, 0.0), (0.2, inf), (-inf, nan), (0.2, 0.0, (0.0, nan)), (1e308, 1e308)])
-def test_what_is_not_finite_is_refused_and_stops_it(command):
+def test_a_rejected_command_stops_the_base_at_its_arrival(command):
     base = make_base()
     base.command(0, 0.2, 0.0)
     with pytest.raises(RejectedCommand):
@@ -95,19 +95,28 @@ def test_what_is_not_finite_is_refused_and_stops_it(command):
     assert base.gate.rejected == 1 and not base.gate.moving
 
 
-@given(st.floats(-10, 10), st.floats(-10, 10))
-def test_limits(linear, angular):
-    base = make_base(linear=0.3, angular=0.5)
-    cut = base.command(0, linear, angular)
-    assert abs(base.gate.linear) <= 0.3 and abs(base.gate.angular) <= 0.5
-    assert base.gate.linear * linear >= 0 and base.gate.angular * angular >= 0
-    assert cut == (abs(linear) > 0.3 or abs(angular) > 0.5) == bool(base.gate.clamped)
+def test_a_command_above_the_limits_moves_the_base_at_the_limits():
+    base = make_base(limits=Limits(0.3, 0.5))
+    assert not base.command(0, 0.3, 0.0) and base.command(0, 1.0, 0.0)
+    base.advance(SECOND // 2)
+    assert base.odometry.pose.x == pytest.approx(0.15)
 
 
-def test_reset_stands_at_the_origin():
+def test_reset_puts_the_base_at_the_origin_at_a_standstill():
     base = make_base()
     base.command(0, 0.2, 1.0)
     base.advance(SECOND // 2)
     base.reset()
     base.advance(SECOND)
     assert base.odometry.pose == ORIGIN
+
+
+def test_the_true_pose_is_that_of_the_odometry_bit_for_bit():
+    base, step = make_base(), SECOND // 49
+    while base.now < 2 * SECOND:
+        base.command(base.now, 0.2, 0.7)
+        base.advance(base.now + step)
+    base.command(base.now, 0.0, 0.0)
+    for _ in range(100):
+        base.advance(base.now + step)
+    assert base.wheels.truth.pose == base.odometry.pose != ORIGIN

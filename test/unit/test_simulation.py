@@ -1,4 +1,4 @@
-"""The exercise offline: what the surfaces were made for, over twenty seeds, and what nodes and offline runs share."""
+"""The exercise without ROS: the distances that each method misses by, over twenty seeds."""
 import os
 from math import cos, degrees, hypot, pi, remainder, sin
 from statistics import median
@@ -8,8 +8,8 @@ import pytest
 import yaml
 
 from rbx1_nav.model.robot import read_robot
-from rbx1_nav.simulation import METHODS, simulate, simulate_many
 from rbx1_nav.model.surfaces import load_surface
+from rbx1_nav.simulation import METHODS, simulate, simulate_many
 
 CONFIG = os.path.join(os.path.dirname(__file__), '..', '..', 'config')
 SEEDS = range(20)
@@ -19,73 +19,74 @@ with open(os.path.join(CONFIG, 'turtlebot.yaml')) as robot:
 
 
 def angle(pose):
-    """Degrees off the first heading."""
+    """Between the heading at the start and that of a pose, degrees."""
     return abs(degrees(remainder(pose.yaw, 2 * pi)))
 
 
 def distance(pose, other=(0.0, 0.0)):
-    """From the start, or another place, m."""
+    """From the start, or from another pose, m."""
     return hypot(pose[0] - other[0], pose[1] - other[1])
 
 
-def test_the_picture_of_the_tutorial():
+def test_by_time_it_misses_as_in_the_picture_of_the_tutorial():
     headings = []
     for run in simulate_many('timed', TURTLEBOT, CARPET, SEEDS):
         truth, odometry = run.end.truth, run.end.odometry
         assert 0.85 < run.first_leg < 0.97
         assert 0.35 < truth.y < 0.65 and distance(truth) < 0.65
         assert 20 < angle(truth) < 90 and truth.yaw < 2 * pi
-        # the robot knows, all but
+        # most of the error is known to the odometry
         assert distance(truth, odometry) < 0.20
         headings.append(degrees(abs(truth.yaw - odometry.yaw)))
     assert median(headings) > 3
 
 
-def test_by_odometry_it_comes_nearer():
+def test_by_odometry_it_ends_nearer_to_the_start():
     for run in simulate_many('odom', TURTLEBOT, CARPET, SEEDS):
         assert distance(run.end.truth) < 0.20 and angle(run.end.truth) < 25
 
 
-def test_with_the_gyro_it_comes_home():
+def test_by_odometry_and_gyro_it_ends_at_the_start():
     for run in simulate_many('ekf', TURTLEBOT, CARPET, SEEDS):
         assert distance(run.end.truth) < 0.04 and angle(run.end.truth) < 4
 
 
 @pytest.mark.parametrize('method', ['odom', 'ekf'])
-def test_on_no_surface_by_pose(method):
+def test_on_the_ideal_surface_it_ends_at_the_start_by_pose(method):
     run = simulate(method, TURTLEBOT, None, 0)
     assert distance(run.end.truth) < 0.005 and angle(run.end.truth) < 0.5
 
 
-def test_on_no_surface_by_time_it_is_the_exact_sum():
+def test_on_the_ideal_surface_it_ends_at_the_exact_pose_by_time():
     run = simulate('timed', TURTLEBOT, None, 0)
     assert run.end.truth == run.end.odometry == pytest.approx((1 + cos(3.14), sin(3.14), 6.28), abs=1e-12)
 
 
-def test_the_filter_is_better_than_the_wheels_and_knows_how_good_it_is():
+def test_the_estimate_has_a_smaller_error_than_the_odometry_and_an_honest_covariance():
     squares, ends = numpy.zeros(4), []
     for seed in range(40):
         run = simulate('timed', TURTLEBOT, CARPET, seed, filtered=True, keep=True)
         for _, truth, odometry, estimate in run.path[::5]:
-            squares += [remainder(odometry.yaw - truth.yaw, 2 * pi) ** 2, remainder(estimate.yaw - truth.yaw, 2 * pi) ** 2,
+            squares += [remainder(odometry.yaw - truth.yaw, 2 * pi) ** 2,
+                        remainder(estimate.yaw - truth.yaw, 2 * pi) ** 2,
                         distance(odometry, truth) ** 2, distance(estimate, truth) ** 2]
         error = numpy.subtract(run.end.estimate, run.end.truth)
         error[2] = remainder(error[2], 2 * pi)
         ends.append(error @ numpy.linalg.solve(run.covariance, error))
     heading_odom, heading, position_odom, position = squares ** 0.5
     assert heading < heading_odom / 3 and position < position_odom
-    # chi-square of 3 a run; the mean of 40 is good to 0.39 (1 sigma). bench/surfaces.py has the figure over 200 seeds
+    # chi-square with 3 degrees of freedom; 1 sigma of the mean of 40 is 0.39. bench/surfaces.py has it over 200 seeds
     assert 1.5 < numpy.mean(ends) < 5
 
 
 @pytest.mark.parametrize('method', METHODS)
-def test_a_seed_is_a_run(method):
+def test_a_run_depends_on_the_seed_only(method):
     one, again, other = (simulate(method, TURTLEBOT, CARPET, seed).end for seed in (5, 5, 6))
     assert one == again and one.truth != other.truth
 
 
-def test_many_at_once_are_the_same_in_the_same_order():
-    alone = list(simulate_many('timed', TURTLEBOT, CARPET, SEEDS, keep=2))
-    together = list(simulate_many('timed', TURTLEBOT, CARPET, SEEDS, keep=2, jobs=2))
-    assert alone == together
-    assert [run.path is not None for run in alone] == [True] * 2 + [False] * 18
+def test_several_processes_return_the_same_runs_in_the_same_order():
+    single = list(simulate_many('timed', TURTLEBOT, CARPET, SEEDS, keep=2))
+    parallel = list(simulate_many('timed', TURTLEBOT, CARPET, SEEDS, keep=2, jobs=2))
+    assert single == parallel
+    assert [run.path is not None for run in single] == [True] * 2 + [False] * 18

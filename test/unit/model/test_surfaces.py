@@ -1,4 +1,4 @@
-"""Surfaces: read as they are written, and told apart from nonsense in one line."""
+"""Surface files: read in SI units, and rejected with one line if a value makes no sense."""
 import os
 from math import nan, radians
 from statistics import mean, stdev
@@ -17,14 +17,14 @@ def carpet():
         return yaml.safe_load(file)
 
 
-def test_the_known_ones_can_all_be_read():
+def test_all_surfaces_of_the_package_can_be_read():
     assert known_surfaces(FOLDER) == ['hard_floor', 'ideal', 'low_ply_carpet']
     assert load_surface('ideal', FOLDER) is None
     for name in ('hard_floor', 'low_ply_carpet'):
         assert load_surface(name, FOLDER).name == name
 
 
-def test_the_priors_of_carpet():
+def test_the_values_of_carpet():
     surface = load_surface('low_ply_carpet', FOLDER)
     assert surface[5:9] == (0.02, 0.01, 0.03, 0.01)
     assert (surface.gyro_noise, surface.gyro_bias) == (radians(0.1), radians(0.5))
@@ -32,14 +32,20 @@ def test_the_priors_of_carpet():
     assert surface.ticks_meter == 4100
 
 
-@pytest.mark.parametrize('name', ['sand', '', 'ideal.yaml', '../turtlebot', 7, None, '/no/such/file.yaml', [1]])
-def test_an_unknown_one_is_refused_with_the_list_of_known_ones(name):
+@pytest.mark.parametrize('name', ['sand', '', 'ideal.yaml', '../turtlebot', 7, None, [1]])
+def test_an_unknown_surface_is_rejected_with_the_list_of_known_ones(name):
     with pytest.raises(ConfigError, match='^surface: .*expected one of hard_floor, ideal, low_ply_carpet') as error:
         load_surface(name, FOLDER)
     assert '\n' not in str(error.value)
 
 
-def test_a_file_of_ones_own(tmp_path):
+def test_a_path_without_a_file_is_rejected_as_such():
+    with pytest.raises(ConfigError, match="^surface: '/no/such/file.yaml': no such file: expected .*, or one of "
+                                          'hard_floor, ideal, low_ply_carpet$'):
+        load_surface('/no/such/file.yaml', FOLDER)
+
+
+def test_a_file_of_the_user_is_read(tmp_path):
     path = tmp_path / 'parquet.yaml'
     path.write_text(yaml.safe_dump(dict(carpet(), lag=0.2)))
     surface = load_surface(str(path), FOLDER)
@@ -47,7 +53,7 @@ def test_a_file_of_ones_own(tmp_path):
 
 
 @pytest.mark.parametrize('text', ['a: [', 'lag', '', '- 1', '\x00'])
-def test_a_file_that_is_no_surface(tmp_path, text):
+def test_a_file_without_a_surface_is_rejected(tmp_path, text):
     path = tmp_path / 'broken.yaml'
     path.write_text(text)
     with pytest.raises(ConfigError, match='expected') as error:
@@ -56,11 +62,11 @@ def test_a_file_that_is_no_surface(tmp_path, text):
 
 
 @pytest.mark.parametrize('key, value', [
-    ('lag', 0), ('lag', -1), ('accel_limit', nan), ('drag_turning', 0), ('slip_straight', -0.1), ('slip_turning', 0.6),
-    ('slip_turning_spread', 'much'), ('ticks_meter', 0), ('ticks_meter', 1e308),
-    ('gyro_noise', 0), ('gyro_noise', 1e-9), ('gyro_bias', 1e200), ('lag', 1e9), ('gyro_bias', -1), ('gyro_scale_error', True),
+    ('lag', 0), ('lag', -1), ('lag', 1e9), ('accel_limit', nan), ('drag_turning', 0), ('slip_straight', -0.1),
+    ('slip_turning', 0.6), ('slip_turning_spread', 'much'), ('ticks_meter', 0), ('ticks_meter', 1e308),
+    ('gyro_noise', 0), ('gyro_noise', 1e-9), ('gyro_bias', 1e200), ('gyro_bias', -1), ('gyro_scale_error', True),
     ('gyro_measurement_range', [])])
-def test_a_bad_value_is_named_with_its_key(key, value):
+def test_an_invalid_value_is_named_with_its_key(key, value):
     with pytest.raises(ConfigError, match='^surface x/%s: .*expected a ' % key):
         read_surface(dict(carpet(), **{key: value}), 'x')
 
@@ -73,30 +79,30 @@ def test_a_missing_key_is_named(key):
         read_surface(values, 'x')
 
 
-def test_an_unknown_key_is_refused():
+def test_an_unknown_key_is_rejected():
     with pytest.raises(ConfigError, match='surface x/friction: unknown'):
         read_surface(dict(carpet(), friction=1), 'x')
 
 
 @pytest.mark.parametrize('seed', [-1, 2 ** 31, 1.5, '-7', '99999999999', '7.0', '', True, None])
-def test_a_seed_is_a_whole_number(seed):
-    with pytest.raises(ConfigError, match='^seed: .*expected a whole number'):
+def test_a_seed_that_is_no_integer_in_its_range_is_rejected(seed):
+    with pytest.raises(ConfigError, match='^seed: .*expected an integer from 0 to 2147483647'):
         read_seed(seed)
 
 
-def test_a_seed_may_be_text_as_a_launch_file_has_it():
+def test_a_seed_may_be_text_as_in_a_launch_file():
     assert read_seed('7') == read_seed(7) == 7
 
 
-def test_a_seed_draws_the_same_again_and_another_seed_something_else():
+def test_the_errors_of_a_run_depend_on_the_seed_only():
     surface = load_surface('low_ply_carpet', FOLDER)
     assert draw_run(surface, 7) == draw_run(surface, 7) != draw_run(surface, 8)
 
 
-def test_what_is_drawn_has_mean_and_spread_of_the_file():
+def test_the_errors_of_runs_have_mean_and_spread_of_the_file():
     surface = load_surface('low_ply_carpet', FOLDER)
     columns = list(zip(*[draw_run(surface, seed) for seed in range(2000)]))
-    # over 2000 draws the mean is good to 0.022 spreads (1 sigma), the spread to 1.6 %: five of those
+    # over 2000 runs, 1 sigma of the mean is 0.022 spreads, of the spread 1.6 %: five of those
     for values, middle, spread in zip(columns, (0.02, 0.03, 0, 0), (0.01, 0.01, radians(0.5), 0.003)):
         assert abs(mean(values) - middle) < 0.11 * spread
         assert stdev(values) == pytest.approx(spread, rel=0.08)

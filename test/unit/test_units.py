@@ -1,0 +1,41 @@
+"""Units, and the arithmetic of single numbers."""
+from math import copysign, cos, inf, pi, sin
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rbx1_nav.units import SECOND, clamp, wrap_angle
+
+
+def test_fifty_ticks_are_a_second():
+    assert 50 * round(0.02 * SECOND) == SECOND == 10 ** 9
+
+
+@given(st.floats(allow_nan=False), st.floats(0, inf))
+def test_a_clamped_value_is_within_the_limit_and_keeps_its_sign(value, limit):
+    clamped = clamp(value, limit)
+    assert -limit <= clamped <= limit and copysign(1, clamped) == copysign(1, value)
+    if abs(value) <= limit:
+        assert clamped == value
+    else:
+        assert abs(clamped) == limit
+
+
+def test_values_are_clamped_on_both_sides():
+    assert [clamp(value, 2.0) for value in (-5.0, -2.0, -1.0, 0.0, 1.0, 2.0, 5.0)] == [
+        -2.0, -2.0, -1.0, 0.0, 1.0, 2.0, 2.0]
+
+
+@given(st.floats(-100, 100))
+def test_a_wrapped_angle_has_the_same_direction(angle):
+    wrapped = wrap_angle(angle)
+    assert -pi <= wrapped <= pi
+    # an angle of 100 rad has a resolution of 1.4e-14
+    assert (cos(wrapped), sin(wrapped)) == pytest.approx((cos(angle), sin(angle)), abs=1e-13)
+
+
+@pytest.mark.parametrize('angle, wrapped', [(0.0, 0.0), (3.0, 3.0), (-3.0, -3.0), (4.0, 4.0 - 2 * pi),
+                                            (-4.0, 2 * pi - 4.0), (2 * pi, 0.0), (7 * pi / 2, -pi / 2)])
+def test_angles_wrap_at_pi(angle, wrapped):
+    assert wrap_angle(angle) == pytest.approx(wrapped, abs=1e-14)
