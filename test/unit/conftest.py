@@ -1,4 +1,4 @@
-"""Imports the package from its source folder: these tests need neither ROS nor a build."""
+"""Imports the package from its source folder, so that these tests need no build."""
 import os
 import sys
 

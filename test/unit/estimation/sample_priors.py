@@ -1,0 +1,9 @@
+"""The priors that the filter's tests begin with."""
+import os
+
+from rbx1_nav.estimation.filter import priors
+from rbx1_nav.model.surfaces import load_surface
+
+SURFACES = os.path.join(os.path.dirname(__file__), '..', '..', '..', 'config', 'surfaces')
+PRIORS = priors(load_surface('low_ply_carpet', SURFACES))
+IDEAL = priors(None)
