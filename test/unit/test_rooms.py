@@ -1,0 +1,163 @@
+"""The rooms of the package: which of them may import which, where ROS may be imported, and how long a node may be."""
+import ast
+import importlib.util
+import os
+import sysconfig
+
+import pytest
+
+ROOT = os.path.normpath(os.path.join(os.path.dirname(__file__), '..', '..'))
+SOURCE = os.path.join(ROOT, 'src')
+
+# room, a folder or a module of rbx1_nav: the rooms that it may import besides itself
+ALLOWED = {
+    '__init__': set(),
+    'units': set(),
+    'config': set(),
+    'schedule': {'units'},
+    'plots': set(),
+    'control': {'units'},
+    'model': {'config', 'units'},
+    'estimation': {'model', 'units'},
+    'simulated_base': {'control', 'model', 'units'},
+    'simulation': {'control', 'estimation', 'model', 'simulated_base', 'units'},
+    'ros': {'config', 'control', 'estimation', 'model', 'schedule', 'units'},
+}
+ALLOWED['nodes'] = set(ALLOWED) - {'__init__'}
+WITH_ROS = {'ros', 'nodes'}
+THIRD_PARTY = {'matplotlib', 'numpy', 'yaml'}   # what the other rooms may import besides Python's own modules
+MAX_NODE_LINES = 149
+
+
+def python_files(folder):
+    """The paths of all Python files below a folder."""
+    return sorted(os.path.join(parent, file) for parent, _, files in os.walk(folder)
+                  for file in files if file.endswith('.py'))
+
+
+def room_of(module):
+    """The room of a module, or of the package below rbx1_nav that it is in."""
+    return (module + '.__init__').split('.')[1]
+
+
+def imported_modules(source, module, is_package):
+    """The full names of all modules that a source imports. A dynamic import without a literal name counts as '?'."""
+    package = module if is_package else module.rpartition('.')[0]
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            parent = node.module or ''
+            if node.level:
+                parent = importlib.util.resolve_name('.' * node.level + parent, package)
+            # what is imported from the package itself is a module: `from rbx1_nav import units`
+            yield from (['%s.%s' % (parent, alias.name) for alias in node.names] if parent == 'rbx1_nav' else [parent])
+        elif isinstance(node, ast.Call):
+            function = getattr(node.func, 'attr', getattr(node.func, 'id', None))
+            if function in ('__import__', 'import_module'):
+                name = node.args[0].value if node.args and isinstance(node.args[0], ast.Constant) else '?'
+                yield importlib.util.resolve_name(name, package)
+
+
+def is_standard(module):
+    """Whether a module is part of Python."""
+    spec = importlib.util.find_spec(module) if module.isidentifier() else None
+    if spec is None or spec.origin is None:
+        return False
+    return spec.origin in ('built-in', 'frozen') or (
+        spec.origin.startswith(sysconfig.get_path('stdlib') + os.sep) and 'site-packages' not in spec.origin)
+
+
+def violations(source, module, is_package=False):
+    """What a module imports although its room must not. module: full name; that of a node is nodes.<name>."""
+    room = room_of(module) if module.startswith('rbx1_nav') else 'nodes'
+    found = []
+    for name in imported_modules(source, module, is_package):
+        top = name.split('.')[0]
+        if top == 'rbx1_nav':
+            allowed = room_of(name) in ALLOWED[room] | {room}
+        else:
+            allowed = top != '?' and (room in WITH_ROS or top in THIRD_PARTY or is_standard(top))
+        if not allowed:
+            found.append(name)
+    return found
+
+
+def modules():
+    """(path, full name, whether it is a package) of all modules and nodes."""
+    for path in python_files(SOURCE):
+        parts = os.path.relpath(path, SOURCE)[:-len('.py')].split(os.sep)
+        is_package = parts[-1] == '__init__'
+        yield path, '.'.join(parts[:-1] if is_package else parts), is_package
+    for path in python_files(os.path.join(ROOT, 'nodes')):
+        yield path, 'nodes.' + os.path.basename(path)[:-len('.py')], False
+
+
+@pytest.mark.parametrize('path, module, is_package', [pytest.param(*each, id=each[1]) for each in modules()])
+def test_a_module_imports_only_what_its_room_may(path, module, is_package):
+    with open(path, encoding='utf-8') as file:
+        assert violations(file.read(), module, is_package) == []
+
+
+def test_every_module_is_found_and_every_room_is_in_the_table():
+    names = {module for _, module, _ in modules()}
+    assert {'rbx1_nav', 'rbx1_nav.units', 'rbx1_nav.control.gate', 'rbx1_nav.ros.node', 'nodes.fake_base'} <= names
+    assert {room_of(name) for name in names if name.startswith('rbx1_nav')} == set(ALLOWED) - {'nodes'}
+
+
+def test_no_two_rooms_import_each_other():
+    remaining = dict(ALLOWED)
+    while remaining:
+        free = [room for room, imports in remaining.items() if not imports & set(remaining)]
+        assert free, 'a circle among %s' % sorted(remaining)
+        for room in free:
+            del remaining[room]
+
+
+@pytest.mark.parametrize('module, source', [
+    ('rbx1_nav.model.wheels', 'import rospy'),
+    ('rbx1_nav.model.wheels', 'import tf2_ros.buffer'),
+    ('rbx1_nav.control.gate', 'from geometry_msgs.msg import Twist'),
+    ('rbx1_nav.estimation.filter', 'from diagnostic_updater import Updater'),
+    ('rbx1_nav.simulation', 'def path():\n    import rospkg'),
+    ('rbx1_nav.units', 'import rosgraph'),
+    ('rbx1_nav.plots', 'import importlib\nimportlib.import_module("rospy")'),
+    ('rbx1_nav.plots', '__import__("rospy")'),
+    ('rbx1_nav.plots', 'name = "rospy"\n__import__(name)'),
+    ('rbx1_nav.model.wheels', 'from rbx1_nav.control.gate import CommandGate'),
+    ('rbx1_nav.model.wheels', 'from rbx1_nav import control'),
+    ('rbx1_nav.model.wheels', 'from ..control import gate'),
+    ('rbx1_nav.model.wheels', 'from .. import control'),
+    ('rbx1_nav.model.wheels', 'import rbx1_nav.control.gate'),
+    ('rbx1_nav.model.wheels', 'import rbx1_nav'),
+    ('rbx1_nav.model.wheels', 'import importlib\nimportlib.import_module("rbx1_nav.control.gate")'),
+    ('rbx1_nav.model.wheels', 'import importlib\nimportlib.import_module("..control.gate", __package__)'),
+    ('rbx1_nav.model.wheels', 'from rbx1_nav.estimation.filter import Filter'),
+    ('rbx1_nav.model.wheels', 'from rbx1_nav.ros import messages'),
+    ('rbx1_nav.estimation.filter', 'from rbx1_nav.control.gate import CommandGate'),
+    ('rbx1_nav.estimation.filter', 'from rbx1_nav.simulation import simulate'),
+    ('rbx1_nav.estimation.filter', 'from rbx1_nav.plots import draw'),
+    ('rbx1_nav.control.legs', 'from rbx1_nav.model.kinematics import Pose'),
+    ('rbx1_nav.units', 'from rbx1_nav.config import Section'),
+    ('rbx1_nav.ros.clocks', 'from rbx1_nav.simulated_base import make_base'),
+    ('nodes.ekf', 'from rbx1_nav.no_such_room import anything'),
+])
+def test_an_import_that_is_not_allowed_is_found(module, source):
+    assert len(violations(source, module)) == 1
+
+
+@pytest.mark.parametrize('module, source', [
+    ('rbx1_nav.model.wheels', 'from . import kinematics\nfrom .gyro import Gyro\nfrom ..units import SECOND'),
+    ('rbx1_nav.model.wheels', 'from rbx1_nav import config, units'),
+    ('rbx1_nav.estimation.filter', 'import os.path, numpy.linalg\nfrom math import pi\nimport importlib'),
+    ('rbx1_nav.ros.node', 'import rospy\nfrom rbx1_nav.ros import messages'),
+    ('nodes.ekf', 'import rospy\nfrom rbx1_nav.simulation import simulate\nfrom tqdm import tqdm'),
+])
+def test_an_import_that_is_allowed_is_not_reported(module, source):
+    assert violations(source, module) == []
+
+
+@pytest.mark.parametrize('path', python_files(os.path.join(ROOT, 'nodes')), ids=os.path.basename)
+def test_a_node_is_short(path):
+    with open(path, encoding='utf-8') as file:
+        assert len(file.readlines()) <= MAX_NODE_LINES
