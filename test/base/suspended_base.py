@@ -10,7 +10,7 @@ import support
 
 class TestAsleep(unittest.TestCase):
     def test_asleep(self):
-        support.init_node('asleep')
+        support.init_node('suspended_base')
         odom = support.OdomWatch()
         base = support.pid_of('/arbotix')
         support.Commander().send(0.2)
@@ -24,4 +24,4 @@ class TestAsleep(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('asleep', TestAsleep)
+    support.main('suspended_base', TestAsleep)

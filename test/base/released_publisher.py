@@ -10,7 +10,7 @@ import support
 
 class TestOtherStreams(unittest.TestCase):
     def test_released(self):
-        support.init_node('other_streams')
+        support.init_node('released_publisher')
         odom = support.OdomWatch()
         log = support.Watch('/rosout', Log)
         releases = lambda: [m.msg for m in log.messages if 'the clock no longer waits for it' in m.msg]
@@ -34,4 +34,4 @@ class TestOtherStreams(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('other_streams', TestOtherStreams)
+    support.main('released_publisher', TestOtherStreams)

@@ -12,7 +12,7 @@ WIDTH, RADIUS = 0.26, 0.033     # m, of the TurtleBot's configuration
 
 class TestAgreement(unittest.TestCase):
     def test_agreement(self):
-        support.init_node('agreement')
+        support.init_node('consistent_outputs')
         odom = support.OdomWatch()
         transforms = support.Watch('/tf', TFMessage)
         joints = support.Watch('/joint_states', JointState)
@@ -51,4 +51,4 @@ class TestAgreement(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('agreement', TestAgreement)
+    support.main('consistent_outputs', TestAgreement)

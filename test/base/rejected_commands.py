@@ -10,7 +10,7 @@ import support
 
 class TestRefusedNaN(unittest.TestCase):
     def test_refused(self):
-        support.init_node('refused_nan')
+        support.init_node('rejected_commands')
         odom = support.OdomWatch()
         diagnostics = support.Watch('/diagnostics', DiagnosticArray)
         commander = support.Commander()
@@ -35,4 +35,4 @@ class TestRefusedNaN(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('refused_nan', TestRefusedNaN)
+    support.main('rejected_commands', TestRefusedNaN)

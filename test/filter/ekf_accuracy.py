@@ -8,7 +8,7 @@ import support
 
 class TestEkfBetter(unittest.TestCase):
     def test_errors(self):
-        support.init_node('ekf_better')
+        support.init_node('ekf_accuracy')
         odom = support.OdomWatch()
         truth = support.Watch('/ground_truth', support.Odometry)
         ekf = support.Watch('/odom_ekf', support.Odometry)
@@ -34,4 +34,4 @@ class TestEkfBetter(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('ekf_better', TestEkfBetter)
+    support.main('ekf_accuracy', TestEkfBetter)

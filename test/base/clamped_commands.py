@@ -9,7 +9,7 @@ import support
 
 class TestClamping(unittest.TestCase):
     def test_clamped(self):
-        support.init_node('clamping')
+        support.init_node('clamped_commands')
         odom = support.OdomWatch()
         log = support.Watch('/rosout', Log)
         commander = support.Commander()
@@ -22,4 +22,4 @@ class TestClamping(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('clamping', TestClamping)
+    support.main('clamped_commands', TestClamping)

@@ -14,7 +14,7 @@ BASE = {'controllers': {'base': {'type': 'diff_controller', 'base_width': 0.26, 
 class TestLostListener(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        support.init_node('lost_listener')
+        support.init_node('lost_subscriber')
 
     def test_lost(self):
         listener = support.Process('rostopic', 'echo', '/cmd_vel')
@@ -50,4 +50,4 @@ class TestLostListener(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('lost_listener', TestLostListener)
+    support.main('lost_subscriber', TestLostListener)

@@ -9,7 +9,7 @@ import support
 
 class TestSensors(unittest.TestCase):
     def test_agreement(self):
-        support.init_node('sensors')
+        support.init_node('ideal_sensors')
         odom = support.OdomWatch()
         truth = support.Watch('/ground_truth', support.Odometry)
         imu = support.Watch('/imu/data', Imu)
@@ -48,4 +48,4 @@ class TestSensors(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('sensors', TestSensors)
+    support.main('ideal_sensors', TestSensors)

@@ -17,7 +17,7 @@ import support
 
 class TestCarpet(unittest.TestCase):
     def test_timed(self):
-        support.init_node('carpet')
+        support.init_node('timed_on_carpet')
         odom = support.OdomWatch()
         truth = support.Watch('/ground_truth', support.Odometry)
         support.wait_for(lambda: truth.last, '/ground_truth')
@@ -47,4 +47,4 @@ class TestCarpet(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('carpet', TestCarpet)
+    support.main('timed_on_carpet', TestCarpet)

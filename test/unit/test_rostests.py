@@ -1,0 +1,39 @@
+"""The rostests can be told apart: roslaunch runs the first script of a name that it finds anywhere in the package, and
+rostest overwrites the result of another test of the same name."""
+import collections
+import os
+import xml.etree.ElementTree as ElementTree
+
+import pytest
+
+ROOT = os.path.normpath(os.path.join(os.path.dirname(__file__), '..', '..'))
+FILES = sorted(os.path.join(folder, file) for folder, _, files in os.walk(os.path.join(ROOT, 'test'))
+               for file in files if file.endswith('.test'))
+NAMES = collections.Counter(map(os.path.basename, FILES))
+
+
+def elements(path):
+    """The <test> elements of a .test file."""
+    return list(ElementTree.parse(path).iter('test'))
+
+
+def test_files_are_found():
+    assert len(FILES) > 30
+
+
+@pytest.mark.parametrize('path', FILES, ids=os.path.basename)
+def test_a_test_has_the_name_of_its_file(path):
+    folder, name = os.path.split(os.path.splitext(path)[0])
+    unique = NAMES[os.path.basename(path)] == 1
+    assert [test.get('test-name') for test in elements(path)] == [
+        name if unique else '%s_%s' % (os.path.basename(folder), name)]
+
+
+@pytest.mark.parametrize('path', FILES, ids=os.path.basename)
+def test_there_is_one_script_of_its_name(path):
+    for test in elements(path):
+        if test.get('pkg') == 'rbx1_nav':
+            scripts = [os.path.join(folder, test.get('type')) for folder, _, files in os.walk(ROOT)
+                       if test.get('type') in files]
+            assert scripts == [os.path.join(os.path.dirname(path), test.get('type'))]
+            assert os.access(scripts[0], os.X_OK)
