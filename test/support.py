@@ -1,4 +1,4 @@
-"""What the rostests share: a watch on what the nodes say, and the nodes under test as processes."""
+"""What the rostests share: keeping the messages of a topic, and running the nodes under test as processes."""
 import math
 import os
 import re
@@ -14,27 +14,27 @@ from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
 
-LIMIT = 60      # s of wall time after which a test gives up; no test asserts less
+LIMIT = 60      # s of wall time after which a wait fails; no test asserts less
 
-# the exact end of the exercise: 157 ticks of 1/50 s turn 3.14 rad, a little less than pi (the sum is in the README)
+# the exact end of the exercise: 157 ticks of 1/50 s at 1 rad/s turn by 3.14 rad, a little less than pi
 EXACT_X, EXACT_Y, EXACT_TURN = 1 + math.cos(3.14), math.sin(3.14), 6.28
 MICROMETRE = 1e-6
 
 
 def init_node(name):
-    """Join ROS without caring about simulated time: tests wait in wall time, for conditions."""
+    """Start a node that ignores simulated time: tests wait for conditions, on the wall clock."""
     rospy.init_node(name, disable_rostime=True, anonymous=True)
 
 
 def wait_for(condition, what, limit=LIMIT):
-    """The first true value of condition(); AssertionError after so many seconds of wall time."""
+    """Return the first true value of condition(). Raises AssertionError after `limit` seconds of wall time."""
     end = time.monotonic() + limit
     while time.monotonic() < end:
         value = condition()
         if value:
             return value
         time.sleep(0.005)
-    raise AssertionError('waited %g s in vain for %s' % (limit, what))
+    raise AssertionError('timed out after %g s waiting for %s' % (limit, what))
 
 
 def twist(linear=0.0, angular=0.0):
@@ -45,20 +45,20 @@ def twist(linear=0.0, angular=0.0):
 
 
 def pid_of(node):
-    """Process id of a running node."""
+    """The process id of a running node."""
     uri = rospy.get_master().lookupNode(node)[2]
     with ServerProxy(uri) as server:
         return server.getPid('/test')[2]
 
 
 def yaw(odom):
-    """Heading of an Odometry message, rad."""
+    """The heading of an Odometry message, rad."""
     rotation = odom.pose.pose.orientation
     return 2 * math.atan2(rotation.z, rotation.w)
 
 
 def wrapped(angle):
-    """The same angle between -pi and pi, rad."""
+    """The equivalent angle between -pi and pi, rad."""
     return math.atan2(math.sin(angle), math.cos(angle))
 
 
@@ -66,6 +66,7 @@ class Watch:
     """Keeps all messages of a topic."""
 
     def __init__(self, topic, kind):
+        """topic: a name; kind: the class of its messages."""
         self.messages = []
         self.subscriber = rospy.Subscriber(topic, kind, self.messages.append, queue_size=None, tcp_nodelay=True)
 
@@ -75,14 +76,14 @@ class Watch:
         return self.messages[-1] if self.messages else None
 
     def next(self):
-        """Wait for a message that comes after this call."""
+        """Wait for the next message, and return the latest."""
         count = len(self.messages)
         wait_for(lambda: len(self.messages) > count, 'a message on ' + self.subscriber.name)
         return self.messages[-1]
 
 
 class OdomWatch(Watch):
-    """Keeps all odometry."""
+    """Keeps all odometry of the base."""
 
     def __init__(self):
         super().__init__('/odom', Odometry)
@@ -94,7 +95,7 @@ class OdomWatch(Watch):
         return point.x, point.y
 
     def wait_for_twist(self, linear, angular=0.0):
-        """Wait until the base says that it moves so; the message that says it."""
+        """Wait until the base reports exactly this velocity, m/s and rad/s; returns the message."""
         def check():
             message = self.messages[-1]
             velocity = message.twist.twist
@@ -103,11 +104,11 @@ class OdomWatch(Watch):
 
 
 class Commander:
-    """Publishes commands, after the base is there to hear them."""
+    """Publishes commands once the base is connected."""
 
     def __init__(self):
         self.publisher = rospy.Publisher('/cmd_vel', Twist, queue_size=100, tcp_nodelay=True)
-        wait_for(lambda: self.publisher.get_num_connections() > 0, 'the base to listen')
+        wait_for(lambda: self.publisher.get_num_connections() > 0, 'the base to subscribe to /cmd_vel')
 
     def send(self, linear=0.0, angular=0.0):
         """Publish a Twist, m/s and rad/s."""
@@ -115,12 +116,12 @@ class Commander:
 
 
 class OwnClock:
-    """/clock, for a test that is itself the owner of simulated time."""
+    """Publishes /clock, for a test that controls simulated time itself."""
 
     def __init__(self, start):
         """start: seconds."""
         self.publisher = rospy.Publisher('/clock', Clock, queue_size=100, tcp_nodelay=True)
-        wait_for(lambda: self.publisher.get_num_connections() > 0, 'somebody to listen to /clock')
+        wait_for(lambda: self.publisher.get_num_connections() > 0, 'a subscriber of /clock')
         self.now = start
 
     def publish(self, now):
@@ -130,10 +131,10 @@ class OwnClock:
 
 
 class Process:
-    """A node under test as a process of its own. Its output is kept, line by line."""
+    """A node under test in a process of its own. Keeps the lines of its output."""
 
     def __init__(self, *command):
-        # unbuffered, so that a line is seen when it is said
+        # unbuffered, so that a line arrives when it is printed
         self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                                         start_new_session=True, env=dict(os.environ, PYTHONUNBUFFERED='1'))
         self.lines = []
@@ -146,28 +147,28 @@ class Process:
 
     @property
     def output(self):
-        """All that it said so far."""
+        """All output so far."""
         return '\n'.join(self.lines)
 
     def wait_for_line(self, pattern):
-        """Wait until it says something that matches."""
+        """Wait until the output matches a regular expression."""
         try:
             return wait_for(lambda: re.search(pattern, self.output), repr(pattern))
         except AssertionError as error:
             raise AssertionError('%s, in:\n%s' % (error, self.output))
 
     def signal(self, number):
-        """Send it a signal."""
+        """Send a signal."""
         self.process.send_signal(number)
 
     def wait(self):
-        """Its exit status, when it has ended."""
+        """Wait for the end; returns the exit status."""
         wait_for(lambda: self.process.poll() is not None, 'the end of:\n%s' % self.output)
         self.reader.join(5)
         return self.process.returncode
 
     def kill(self):
-        """End it, whatever it does."""
+        """Kill it, with all its children."""
         try:
             os.killpg(self.process.pid, signal.SIGKILL)
         except ProcessLookupError:
@@ -176,12 +177,12 @@ class Process:
 
 
 def out_and_back(*arguments):
-    """The exercise as a Process."""
+    """The exercise by time, as a Process."""
     return Process('rosrun', 'rbx1_nav', 'timed_out_and_back.py', *arguments)
 
 
 def by_odometry(*arguments):
-    """The exercise by odometry as a Process."""
+    """The exercise by odometry, as a Process."""
     return Process('rosrun', 'rbx1_nav', 'odom_out_and_back.py', *arguments)
 
 
@@ -192,5 +193,5 @@ def pose(odom):
 
 
 def main(name, case):
-    """Run a test case under rostest."""
+    """Run a TestCase under rostest. name: that of the .test file."""
     rostest.rosrun('rbx1_nav', name, case)

@@ -1,12 +1,12 @@
 #!/usr/bin/python3
-"""A command is in force for exactly the timeout, then the base stops by itself."""
+"""A command is in force for exactly the timeout; then the base stops."""
 import unittest
 
 import support
 
 
 class TestBaseTimeout(unittest.TestCase):
-    def test_one_command(self):
+    def test_a_command_lasts_for_the_timeout(self):
         support.init_node('base_timeout')
         odom = support.OdomWatch()
         support.Commander().send(0.2)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Commands over the limits of the YAML file are cut to them, with their sign, and a warning."""
+"""Commands above the limits of the YAML file are clamped, keep their sign, and cause a warning."""
 import unittest
 
 from rosgraph_msgs.msg import Log
@@ -7,19 +7,19 @@ from rosgraph_msgs.msg import Log
 import support
 
 
-class TestClamping(unittest.TestCase):
-    def test_clamped(self):
+class TestClampedCommands(unittest.TestCase):
+    def test_commands_are_clamped_to_the_limits(self):
         support.init_node('clamped_commands')
         odom = support.OdomWatch()
         log = support.Watch('/rosout', Log)
         commander = support.Commander()
-        for asked, given in [((0.2, 0.1), (0.2, 0.1)), ((1.0, 0.1), (0.3, 0.1)), ((-1.0, 2.0), (-0.3, 0.5)),
-                             ((0.1, -2.0), (0.1, -0.5))]:
-            commander.send(*asked)
-            odom.wait_for_twist(*given)
+        for commanded, clamped in [((0.2, 0.1), (0.2, 0.1)), ((1.0, 0.1), (0.3, 0.1)), ((-1.0, 2.0), (-0.3, 0.5)),
+                                   ((0.1, -2.0), (0.1, -0.5))]:
+            commander.send(*commanded)
+            odom.wait_for_twist(*clamped)
         support.wait_for(lambda: any('/cmd_vel: 1 m/s, 0.1 rad/s: expected at most 0.3 and 0.5; clamped' in m.msg
                                      for m in log.messages), 'the warning')
 
 
 if __name__ == '__main__':
-    support.main('clamped_commands', TestClamping)
+    support.main('clamped_commands', TestClampedCommands)

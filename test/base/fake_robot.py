@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A robot's launch file brings up its base, its frames and its joints, in real time."""
+"""The launch file of a robot starts its base, its frames and its joints, in real time."""
 import sys
 import unittest
 
@@ -18,7 +18,7 @@ BASE_FRAME = {'turtlebot': 'base_footprint', 'pi_robot': 'base_link'}
 
 
 class TestFakeRobot(unittest.TestCase):
-    def test_robot(self):
+    def test_base_frames_and_joints(self):
         robot = next(name for name in SERVOS if name in sys.argv)
         support.init_node('fake_robot')
         self.assertIs(rospy.get_param('/use_sim_time'), False)
@@ -28,13 +28,13 @@ class TestFakeRobot(unittest.TestCase):
         self.assertEqual(odom.last.child_frame_id, BASE_FRAME[robot])
         self.assertEqual(odom.position(), (0.0, 0.0))
 
-        # robot_state_publisher has joined the frames of base and wheels
+        # robot_state_publisher connects the frames of base and wheels
         frames = set()
 
-        def wheels_known():
+        def has_wheels():
             frames.update(t.child_frame_id for m in list(transforms.messages) for t in m.transforms)
             return {'base_l_wheel_link', 'base_r_wheel_link', BASE_FRAME[robot]} <= frames
-        support.wait_for(wheels_known, 'the frames of the wheels')
+        support.wait_for(has_wheels, 'the frames of the wheels')
         self.assertFalse([frame for frame in frames if frame.startswith('/')])
 
         joints.next()
@@ -43,14 +43,14 @@ class TestFakeRobot(unittest.TestCase):
             self.check_servos(joints)
 
     def check_servos(self, joints):
-        goals = {'head_pan_joint': (0.5, 0.5), 'head_tilt_joint': (9.0, 1.0471975511965976)}   # the limit is 60 degrees
+        goals = {'head_pan_joint': (0.5, 0.5), 'head_tilt_joint': (9.0, 1.0471975511965976)}   # its limit is 60 degrees
         for name, (goal, _) in goals.items():
             command = rospy.Publisher('/%s/command' % name, Float64, queue_size=1, latch=True)
             command.publish(goal)
         for name, (_, end) in goals.items():
             index = joints.last.name.index(name)
             support.wait_for(lambda i=index, e=end: abs(joints.last.position[i] - e) < 1e-9, name + ' at its goal')
-            # 90 degrees per second; a float's rounding over
+            # 90 degrees per second, and rounding
             self.assertLessEqual(max(abs(m.velocity[index]) for m in joints.messages), 1.5708)
 
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""On the ideal surface too there are a gyro and the ground truth, and all that is told is true."""
+"""On the ideal surface, ground truth and gyro agree with the odometry."""
 import unittest
 
 from sensor_msgs.msg import Imu
@@ -7,8 +7,8 @@ from sensor_msgs.msg import Imu
 import support
 
 
-class TestSensors(unittest.TestCase):
-    def test_agreement(self):
+class TestIdealSensors(unittest.TestCase):
+    def test_ground_truth_and_gyro_agree_with_the_odometry(self):
         support.init_node('ideal_sensors')
         odom = support.OdomWatch()
         truth = support.Watch('/ground_truth', support.Odometry)
@@ -23,9 +23,9 @@ class TestSensors(unittest.TestCase):
         support.wait_for(lambda: min(truth.last.header.stamp, imu.last.header.stamp) >= end, 'all messages')
 
         odometry = {m.header.stamp: m for m in list(odom.messages)}
-        told = [m for m in list(truth.messages) if m.header.stamp in odometry]
-        self.assertGreater(len(told), 50)
-        for message in told:
+        true = [m for m in list(truth.messages) if m.header.stamp in odometry]
+        self.assertGreater(len(true), 50)
+        for message in true:
             other = odometry[message.header.stamp]
             self.assertEqual(message.pose.pose, other.pose.pose)
             self.assertEqual(message.twist.twist, other.twist.twist)
@@ -37,7 +37,7 @@ class TestSensors(unittest.TestCase):
         for message in readings:
             self.assertEqual(message.header.frame_id, 'base_footprint')
             self.assertEqual(message.orientation, odometry[message.header.stamp].pose.pose.orientation)
-            # a mean over the time since the last reading, as long as the rounding of a quotient of floats leaves it
+            # the mean over the time since the last reading, which lies in between where the command has changed
             rate = message.angular_velocity.z
             self.assertTrue(any(abs(rate - each) < 1e-9 for each in rates) or -0.4 < rate < 0.7, rate)
             for covariance in (message.orientation_covariance, message.angular_velocity_covariance):
@@ -48,4 +48,4 @@ class TestSensors(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('ideal_sensors', TestSensors)
+    support.main('ideal_sensors', TestIdealSensors)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""With publish_tf false the base leaves the transform to somebody else, and publishes odometry all the same."""
+"""With publish_tf false, the base publishes odometry but no transform."""
 import unittest
 
 from tf2_msgs.msg import TFMessage
@@ -8,7 +8,7 @@ import support
 
 
 class TestPublishTF(unittest.TestCase):
-    def test_no_transform(self):
+    def test_odometry_without_a_transform(self):
         support.init_node('publish_tf')
         transforms = support.Watch('/tf', TFMessage)
         odom = support.OdomWatch()

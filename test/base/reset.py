@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""~reset puts the base back at the origin, at rest, also while it drives."""
+"""~reset puts the base back at the origin, at a standstill, even while it drives."""
 import unittest
 
 import rospy
@@ -10,7 +10,7 @@ import support
 
 
 class TestReset(unittest.TestCase):
-    def test_reset(self):
+    def test_reset_while_driving(self):
         support.init_node('reset')
         odom = support.OdomWatch()
         commander = support.Commander()
@@ -18,14 +18,14 @@ class TestReset(unittest.TestCase):
         odom.wait_for_twist(0.2, 0.5)
         support.wait_for(lambda: odom.position()[0] > 0.05, 'the base to move')
         rospy.wait_for_service('/arbotix/reset', support.LIMIT)
-        told = support.Watch('/reset_odometry', EmptyMessage)
-        support.wait_for(lambda: told.subscriber.get_num_connections(), 'the base to connect')
+        resets = support.Watch('/reset_odometry', EmptyMessage)
+        support.wait_for(lambda: resets.subscriber.get_num_connections(), 'the base to connect')
         rospy.ServiceProxy('/arbotix/reset', Empty)()
-        support.wait_for(lambda: told.last, '/reset_odometry')
+        support.wait_for(lambda: resets.last, '/reset_odometry')
         odom.wait_for_twist(0.0)
         self.assertEqual(odom.position(), (0.0, 0.0))
         self.assertEqual(support.yaw(odom.last), 0.0)
-        # and it drives again
+        # and it can drive again
         commander.send(0.2)
         support.wait_for(lambda: odom.position()[0] > 0.05, 'the base to move again')
 

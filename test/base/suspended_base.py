@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The timeout counts from the command, also when the base's process was asleep as it ended."""
+"""The timeout counts from the arrival of the command, even if the process of the base is suspended as it ends."""
 import os
 import signal
 import time
@@ -8,8 +8,8 @@ import unittest
 import support
 
 
-class TestAsleep(unittest.TestCase):
-    def test_asleep(self):
+class TestSuspendedBase(unittest.TestCase):
+    def test_the_timeout_ends_while_the_base_is_suspended(self):
         support.init_node('suspended_base')
         odom = support.OdomWatch()
         base = support.pid_of('/arbotix')
@@ -24,4 +24,4 @@ class TestAsleep(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('suspended_base', TestAsleep)
+    support.main('suspended_base', TestSuspendedBase)

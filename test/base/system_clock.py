@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A system clock that is stepped by hours does not move the robot, and the stamps follow it."""
+"""A step of the system clock by hours does not move the robot; the stamps follow the clock."""
 import os
 import tempfile
 import unittest
@@ -9,8 +9,8 @@ from tf2_msgs.msg import TFMessage
 
 import support
 
-# The node as it is, on a time of day that is this far from the real one. libfaketime would do it one level deeper, but
-# Debian 12's makes Python's sleep fail.
+# The node itself, with a time of day that is off by the number in a file. libfaketime would do it without a change in
+# Python, but that of Debian 12 breaks time.sleep().
 STEPPED = """
 import runpy, sys, time
 real, (node, offset) = time.time, sys.argv[1:]
@@ -22,7 +22,7 @@ runpy.run_path(node, run_name='__main__')
 
 
 class TestSystemClock(unittest.TestCase):
-    def test_steps(self):
+    def test_steps_forward_and_back(self):
         support.init_node('system_clock')
         scratch = tempfile.NamedTemporaryFile('w', delete=False)
         self.addCleanup(os.remove, scratch.name)
@@ -44,11 +44,11 @@ class TestSystemClock(unittest.TestCase):
             start = odom.position()[0]
             before = odom.last.header.stamp.to_sec()
             step(offset)
-            # the message after the step shows it; an hour is far more than a test takes
+            # an hour is far more than the test takes
             support.wait_for(lambda: abs(odom.last.header.stamp.to_sec() - before) > 3600, 'a stamp that has stepped')
             self.assertEqual(odom.last.header.stamp.to_sec() > before, hours > 0)
             odom.wait_for_twist(0.0)
-            # the timeout of 1.0 s ended it, and 0.2 m/s for 1.0 s is all that it moved
+            # the timeout of 1.0 s ended the command, so it moved at 0.2 m/s for at most 1.0 s
             self.assertLessEqual(odom.position()[0] - start, 0.2 + support.MICROMETRE)
         self.assertAlmostEqual(odom.position()[0], 0.4, delta=support.MICROMETRE)
         stamps = [t.header.stamp for m in transforms.messages for t in m.transforms]

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Simulated time that leaps, stands or goes back never moves the robot by more than timeout times its speed."""
+"""Simulated time that jumps, stands still or jumps back never moves the robot by more than timeout times speed."""
 import math
 import unittest
 
@@ -8,56 +8,56 @@ from tf2_msgs.msg import TFMessage
 
 import support
 
-MOST = 1.0 * 0.2 + support.MICROMETRE    # timeout times speed, m
+MAX_TRAVEL = 1.0 * 0.2 + support.MICROMETRE     # timeout times speed, m
 
 
 class TestTimeJumps(unittest.TestCase):
-    def test_jumps(self):
+    def test_jumps_of_simulated_time(self):
         support.init_node('time_jumps')
         clock = support.OwnClock(1000.0)
         commander = support.Commander()
         transforms = support.Watch('/tf', TFMessage)
-        # subscribing waits for odometry, and there is none before there is time
+        # OdomWatch would wait for odometry, and there is none before simulated time begins
         odom = support.Watch('/odom', support.Odometry)
-        # rospy listens to /clock once for itself and once for the base: wait for the base's
+        # rospy subscribes to /clock for itself, and the base once more: wait for the second
         support.wait_for(lambda: clock.publish(clock.now + 0.02) or odom.last, '/odom')
 
         def jump(seconds):
-            """Publish a time that much later; the odometry that answers."""
+            """Publish a time that is later by this much; returns the odometry that follows."""
             count = len(odom.messages)
             clock.publish(clock.now + seconds)
             support.wait_for(lambda: len(odom.messages) > count, 'odometry')
             return odom.last
 
         def drive():
-            """Bring a command into force; where the robot is then, m."""
+            """Send a command; returns the position as soon as it is in force, m."""
             commander.send(0.2)
-            support.wait_for(lambda: jump(0.02).twist.twist.linear.x == 0.2, 'the command to be in force')
+            support.wait_for(lambda: jump(0.02).twist.twist.linear.x == 0.2, 'the command in force')
             return odom.last.pose.pose.position.x
 
-        # forward by an hour: the timeout ends the command
+        # forward by an hour: the command times out
         start = drive()
         message = jump(3600)
-        self.assertLessEqual(message.pose.pose.position.x - start, MOST)
+        self.assertLessEqual(message.pose.pose.position.x - start, MAX_TRAVEL)
         self.assertEqual(message.twist.twist.linear.x, 0)
 
-        # back by half an hour: the command is forgotten
+        # back by half an hour: the command is dropped
         start = drive()
         message = jump(-1800)
         self.assertAlmostEqual(message.pose.pose.position.x, start, delta=support.MICROMETRE)
         self.assertEqual(message.twist.twist.linear.x, 0)
         self.assertAlmostEqual(message.header.stamp.to_sec(), clock.now, delta=1e-6)
 
-        # standing still: the same time again and again says nothing new
+        # standing still: the same time again does not lead to odometry
         start = drive()
         count = len(odom.messages)
         for _ in range(50):
             clock.publish(clock.now)
-        message = jump(0.02)    # comes after the fifty
+        message = jump(0.02)    # arrives after the fifty
         self.assertEqual(len(odom.messages), count + 1)
         self.assertAlmostEqual(message.pose.pose.position.x - start, 0.2 * 0.02, delta=support.MICROMETRE)
 
-        # it drives on after all that
+        # after all that it still drives
         self.assertGreater(drive(), message.pose.pose.position.x)
 
         values = [v for m in odom.messages for v in (m.pose.pose.position.x, m.pose.pose.position.y,
@@ -65,7 +65,7 @@ class TestTimeJumps(unittest.TestCase):
         self.assertTrue(all(map(math.isfinite, values)))
         stamps = [t.header.stamp for m in transforms.messages for t in m.transforms]
         backwards = [b - a for a, b in zip(stamps, stamps[1:]) if b <= a]
-        self.assertEqual(len(backwards), 1, 'only the jump back goes back')
+        self.assertEqual(len(backwards), 1, 'only the stamp after the jump back is earlier')
         self.assertLess(backwards[0], rospy.Duration(-1700))
         self.assertEqual(len(stamps), len(set(stamps)), 'no two transforms with one stamp')
 

@@ -1,7 +1,10 @@
 #!/usr/bin/python3
-"""odom_out_and_back.py comes back: by_odometry.py FRAME METRES DEGREES [TOPIC...]: how far off it may end.
+"""odom_out_and_back.py returns to the start.
 
-The end is that of /ground_truth. TOPICs are waited for before the start.
+usage: by_odometry.py FRAME METRES DEGREES [TOPIC...] --
+
+It measures the pose in FRAME, and must end at most METRES and DEGREES from the start, by /ground_truth. The test waits
+for a message on each TOPIC first.
 """
 import math
 import sys
@@ -13,14 +16,14 @@ import support
 
 
 class TestByOdometry(unittest.TestCase):
-    def test_end(self):
+    def test_it_ends_near_the_start(self):
         frame, metres, degrees, *topics = sys.argv[1:sys.argv.index('--')]
         support.init_node('by_odometry')
         truth = support.Watch('/ground_truth', support.Odometry)
         support.wait_for(lambda: truth.last, '/ground_truth')
         for topic in topics:
             rospy.wait_for_message(topic, rospy.AnyMsg, support.LIMIT)
-        # the filter learns the gyro's bias while the robot stands: 2 s, as offline
+        # the filter estimates the bias of the gyro at standstill, for 2 s as in simulation.py
         start = truth.last.header.stamp
         support.wait_for(lambda: (truth.last.header.stamp - start).to_sec() > 2, 'two seconds')
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A terminal that is closed in mid-motion: the robot stops, and /rosout hears both lines that nobody can read any more."""
+"""A terminal is closed while the robot drives: the robot stops, and /rosout still receives the last two lines."""
 import fcntl
 import os
 import pty
@@ -13,7 +13,7 @@ import support
 
 
 class TestClosedTerminal(unittest.TestCase):
-    def test_closed(self):
+    def test_the_robot_stops(self):
         support.init_node('closed_terminal')
         odom = support.OdomWatch()
         log = support.Watch('/rosout', Log)

@@ -1,12 +1,12 @@
 #!/usr/bin/python3
-"""The exercise ends where the sum says, to a micrometre, every time."""
+"""Every run of the exercise ends at the exact pose, to a micrometre."""
 import unittest
 
 import support
 
 
 class TestFinalPose(unittest.TestCase):
-    def test_three_runs(self):
+    def test_three_runs_end_at_the_exact_pose(self):
         support.init_node('final_pose')
         odom = support.OdomWatch()
         for run in range(1, 4):
@@ -19,7 +19,7 @@ class TestFinalPose(unittest.TestCase):
                 x, y = odom.position()
                 self.assertAlmostEqual(x, support.EXACT_X, delta=support.MICROMETRE)
                 self.assertAlmostEqual(y, support.EXACT_Y, delta=support.MICROMETRE)
-            # the heading adds up over runs; 1e-6 rad, over the metre it drives, is the micrometre again
+            # the heading adds up over the runs; 1e-6 rad is a micrometre at the distance of 1 m
             self.assertAlmostEqual(support.wrapped(support.yaw(message) - run * support.EXACT_TURN), 0, delta=1e-6)
 
 

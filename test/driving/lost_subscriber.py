@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""When the base dies in mid-motion the driver says so and ends with an error."""
+"""If the base ends while the robot drives, the driving script ends with an error."""
 import signal
 import unittest
 
@@ -7,26 +7,25 @@ import rospy
 
 import support
 
-
 BASE = {'controllers': {'base': {'type': 'diff_controller', 'base_width': 0.26, 'base_frame_id': 'base_footprint'}}}
 
 
-class TestLostListener(unittest.TestCase):
+class TestLostSubscriber(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         support.init_node('lost_subscriber')
 
-    def test_lost(self):
-        listener = support.Process('rostopic', 'echo', '/cmd_vel')
-        self.addCleanup(listener.kill)
+    def test_the_last_subscriber_ends(self):
+        subscriber = support.Process('rostopic', 'echo', '/cmd_vel')
+        self.addCleanup(subscriber.kill)
         driver = support.out_and_back('_linear_speed:=0.01')
         self.addCleanup(driver.kill)
         driver.wait_for_line('forward: 1.00 m')
-        listener.wait_for_line('x: 0.01')
-        listener.signal(signal.SIGKILL)
+        subscriber.wait_for_line('x: 0.01')
+        subscriber.signal(signal.SIGKILL)
         self.check(driver)
 
-    def test_lost_with_the_clock(self):
+    def test_the_base_ends_and_the_clock_with_it(self):
         rospy.set_param('/use_sim_time', True)
         self.addCleanup(rospy.set_param, '/use_sim_time', False)
         rospy.set_param('/arbotix', dict(BASE, real_time_factor=5))
@@ -42,12 +41,12 @@ class TestLostListener(unittest.TestCase):
             self.check(driver)
 
     def check(self, driver):
-        """It has noticed, stopped, and ended with an error."""
+        """The driving script has noticed, sent a stop, and ended with an error."""
         self.assertEqual(driver.wait(), 1, driver.output)
-        self.assertIn('Nobody listens on /cmd_vel any more', driver.output)
+        self.assertIn('/cmd_vel: the last subscriber has gone: expected a base', driver.output)
         self.assertIn('Stopping the robot...', driver.output)
         self.assertNotIn('Traceback', driver.output)
 
 
 if __name__ == '__main__':
-    support.main('lost_subscriber', TestLostListener)
+    support.main('lost_subscriber', TestLostSubscriber)

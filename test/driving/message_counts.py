@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A listener hears every command of the exercise in its order, and silence after the last stop."""
+"""A subscriber receives every command of the exercise in order, and none after the last stop."""
 import itertools
 import unittest
 
@@ -9,7 +9,7 @@ import support
 
 
 class TestMessageCounts(unittest.TestCase):
-    def test_counts(self):
+    def test_commands_of_the_exercise(self):
         support.init_node('message_counts')
         odom = support.OdomWatch()
         commands = support.Watch('/cmd_vel', Twist)
@@ -17,17 +17,17 @@ class TestMessageCounts(unittest.TestCase):
         self.addCleanup(driver.kill)
         self.assertEqual(driver.wait(), 0, driver.output)
 
-        heard = [(m.linear.x, m.angular.z) for m in commands.messages]
-        groups = [(command, len(list(same))) for command, same in itertools.groupby(heard)]
+        received = [(m.linear.x, m.angular.z) for m in commands.messages]
+        groups = [(command, len(list(same))) for command, same in itertools.groupby(received)]
         forward, turn, stop = (0.2, 0.0), (0.0, 1.0), (0.0, 0.0)
-        # the last motion ends with its own stop, the exercise's and the one of the shutdown
+        # the last motion ends with a stop, so does the exercise, and so does the node
         self.assertEqual(groups, [(forward, 250), (stop, 1), (turn, 157), (stop, 1),
                                   (forward, 250), (stop, 1), (turn, 157), (stop, 3)])
 
-        # two seconds of simulated time later, still nothing
+        # and no more in two seconds of simulated time
         end = odom.last.header.stamp.to_sec() + 2
         support.wait_for(lambda: odom.last.header.stamp.to_sec() > end, 'two seconds of simulated time')
-        self.assertEqual(len(commands.messages), len(heard))
+        self.assertEqual(len(commands.messages), len(received))
 
 
 if __name__ == '__main__':

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Ctrl-C, kill and a closed terminal in mid-motion: the robot stops, nothing follows, both lines are said."""
+"""Signals and `rosnode kill` while the robot drives: one command to stop, none after it, and both lines are logged."""
 import os
 import signal
 import subprocess
@@ -18,6 +18,7 @@ class TestStopOnSignal(unittest.TestCase):
         cls.odom = support.OdomWatch()
 
     def check(self, end):
+        """end(driver) ends the driving script while the robot moves."""
         commands = support.Watch('/cmd_vel', Twist)
         self.addCleanup(commands.subscriber.unregister)
         # slow, so that the motion lasts until it is ended
@@ -30,11 +31,11 @@ class TestStopOnSignal(unittest.TestCase):
         self.assertIn('Out-and-Back node terminated.', driver.output)
         self.assertNotIn('Traceback', driver.output)
         moves = [m.linear.x != 0 for m in commands.messages]
-        self.assertEqual(moves[-2:], [True, False], 'one stop after the last command, and nothing after that')
+        self.assertEqual(moves[-2:], [True, False], 'a stop after the last command to move, and nothing after it')
         self.assertEqual(moves.count(False), 1)
 
-    def check_frozen(self, pid):
-        """SIGINT while some process stands still; wakes it up again."""
+    def check_suspended(self, pid):
+        """SIGINT while another process is suspended."""
         def end(driver):
             os.kill(pid, signal.SIGSTOP)
             driver.signal(signal.SIGINT)
@@ -46,7 +47,7 @@ class TestStopOnSignal(unittest.TestCase):
         self.odom.wait_for_twist(0.0)
 
     def check_end(self, end):
-        """A regular end: exit status 0, and the robot stands."""
+        """The exit status is 0, and the robot stands still."""
         status = []
         self.check(lambda driver: (end(driver), status.append(driver.wait())))
         self.assertEqual(status, [0])
@@ -64,11 +65,11 @@ class TestStopOnSignal(unittest.TestCase):
     def test_rosnode_kill(self):
         self.check_end(lambda driver: subprocess.run(['rosnode', 'kill', '/out_and_back'], check=True))
 
-    def test_sigint_while_the_master_is_frozen(self):
-        self.check_frozen(rospy.get_master().getPid()[2])
+    def test_sigint_while_the_master_is_suspended(self):
+        self.check_suspended(rospy.get_master().getPid()[2])
 
-    def test_sigint_while_the_simulated_clock_stands(self):
-        self.check_frozen(support.pid_of('/arbotix'))
+    def test_sigint_while_the_simulated_clock_stands_still(self):
+        self.check_suspended(support.pid_of('/arbotix'))
 
 
 if __name__ == '__main__':

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""On carpet the timed script misses, as in the tutorial's picture, and just as the offline simulation of the seed says."""
+"""On carpet the timed script misses as in the picture of the tutorial, and exactly as the simulation without ROS."""
 import math
 import os
 import unittest
@@ -9,14 +9,13 @@ import rospy
 import yaml
 
 from rbx1_nav.model.robot import read_robot
-from rbx1_nav.simulation import simulate
 from rbx1_nav.model.surfaces import load_surface, read_seed
-
+from rbx1_nav.simulation import simulate
 import support
 
 
-class TestCarpet(unittest.TestCase):
-    def test_timed(self):
+class TestTimedOnCarpet(unittest.TestCase):
+    def test_it_misses_as_simulated(self):
         support.init_node('timed_on_carpet')
         odom = support.OdomWatch()
         truth = support.Watch('/ground_truth', support.Odometry)
@@ -27,24 +26,24 @@ class TestCarpet(unittest.TestCase):
         odom.next()
         x, y, yaw = support.pose(truth.next())
 
-        # the tutorial's picture: about half a metre to the left of the start, and facing elsewhere
+        # the picture of the tutorial: about half a metre to the left of the start, with another heading
         self.assertGreater(y, 0.35)
         self.assertLess(math.hypot(x, y), 0.65)
         self.assertTrue(20 < abs(math.degrees(support.wrapped(yaw))) < 90, math.degrees(yaw))
-        # the robot knows, all but
+        # most of the error is known to the odometry
         self.assertLess(math.hypot(x - odom.position()[0], y - odom.position()[1]), 0.20)
 
-        # the same pieces with the same seed, and no ROS: 1e-9 is far over what floats lose in a thousand steps
+        # 1e-9 is far above the rounding in a thousand steps
         folder = os.path.join(rospkg.RosPack().get_path('rbx1_nav'), 'config')
         with open(os.path.join(folder, 'turtlebot.yaml')) as file:
-            config = read_robot(yaml.safe_load(file))
+            robot = read_robot(yaml.safe_load(file))
         surface = load_surface('low_ply_carpet', os.path.join(folder, 'surfaces'))
-        end = simulate('timed', config, surface, read_seed(rospy.get_param('/arbotix/seed'))).end
-        for told, offline in (((x, y, yaw), end.truth), (support.pose(odom.last), end.odometry)):
-            self.assertAlmostEqual(told[0], offline.x, delta=1e-9)
-            self.assertAlmostEqual(told[1], offline.y, delta=1e-9)
-            self.assertAlmostEqual(support.wrapped(told[2] - offline.yaw), 0, delta=1e-9)
+        end = simulate('timed', robot, surface, read_seed(rospy.get_param('/arbotix/seed'))).end
+        for pose, simulated in (((x, y, yaw), end.truth), (support.pose(odom.last), end.odometry)):
+            self.assertAlmostEqual(pose[0], simulated.x, delta=1e-9)
+            self.assertAlmostEqual(pose[1], simulated.y, delta=1e-9)
+            self.assertAlmostEqual(support.wrapped(pose[2] - simulated.yaw), 0, delta=1e-9)
 
 
 if __name__ == '__main__':
-    support.main('timed_on_carpet', TestCarpet)
+    support.main('timed_on_carpet', TestTimedOnCarpet)

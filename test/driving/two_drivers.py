@@ -1,12 +1,12 @@
 #!/usr/bin/python3
-"""A second driver takes the name of the first, which stops the robot and leaves; the second one drives to the end."""
+"""A second driving script takes over the name of the first, which stops the robot and ends; the second one finishes."""
 import unittest
 
 import support
 
 
 class TestTwoDrivers(unittest.TestCase):
-    def test_second_takes_over(self):
+    def test_the_second_one_takes_over(self):
         support.init_node('two_drivers')
         odom = support.OdomWatch()
         first = support.out_and_back('_linear_speed:=0.01')

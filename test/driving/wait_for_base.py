@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The driver waits for all live listeners, names those that do not answer, and gives up when there is no base."""
+"""The driving script waits for all live subscribers, ignores those that do not answer, and times out without a base."""
 import signal
 import unittest
 
@@ -19,10 +19,10 @@ class TestWaitForBase(unittest.TestCase):
         self.addCleanup(process.kill)
         return process
 
-    def listen(self):
-        heard = support.Watch('/cmd_vel', Twist)
-        self.addCleanup(heard.subscriber.unregister)
-        return heard
+    def subscribe(self):
+        commands = support.Watch('/cmd_vel', Twist)
+        self.addCleanup(commands.subscriber.unregister)
+        return commands
 
     def base(self, name):
         rospy.set_param(name, {'controllers': {'base': {'type': 'diff_controller', 'base_width': 0.26}}})
@@ -31,35 +31,35 @@ class TestWaitForBase(unittest.TestCase):
         process.wait_for_line('at the origin')
         return process
 
-    def test_gives_up_without_a_base(self):
-        self.addCleanup(rospy.delete_param, '/out_and_back')    # or the next driver finds it too
+    def test_without_a_base_it_times_out(self):
+        self.addCleanup(rospy.delete_param, '/out_and_back')    # the next test must not find it
         driver = self.start('_wait_timeout:=1')
         self.assertNotEqual(driver.wait(), 0)
-        self.assertRegex(driver.output, r'Waited 1 s in vain for a base to listen on /cmd_vel')
+        self.assertRegex(driver.output, r'Timed out after 1 s waiting for a base that subscribes to /cmd_vel')
         self.assertNotIn('Traceback', driver.output)
 
-    def test_waits_and_then_drives(self):
+    def test_it_waits_and_then_drives(self):
         driver = self.start()
-        driver.wait_for_line('Waiting for a base to listen on /cmd_vel')
-        heard = self.listen()
+        driver.wait_for_line('Waiting for a base that subscribes to /cmd_vel')
+        commands = self.subscribe()
         driver.wait_for_line('forward: 1.00 m')
         driver.signal(signal.SIGTERM)
         driver.wait()
-        # the very first command was heard
-        self.assertEqual(heard.messages[0].linear.x, 0.2)
+        # the very first command has arrived
+        self.assertEqual(commands.messages[0].linear.x, 0.2)
 
-    def test_names_and_skips_a_frozen_listener(self):
-        frozen = self.base('frozen')
-        frozen.signal(signal.SIGSTOP)
-        # it ends as a node should, so that the master forgets it
-        self.addCleanup(frozen.wait)
-        self.addCleanup(frozen.signal, signal.SIGTERM)
-        self.addCleanup(frozen.signal, signal.SIGCONT)
-        heard = self.listen()
+    def test_a_subscriber_that_does_not_answer_is_named_and_ignored(self):
+        suspended = self.base('suspended')
+        suspended.signal(signal.SIGSTOP)
+        # a regular end, so that the node is unregistered
+        self.addCleanup(suspended.wait)
+        self.addCleanup(suspended.signal, signal.SIGTERM)
+        self.addCleanup(suspended.signal, signal.SIGCONT)
+        commands = self.subscribe()
         driver = self.start()
-        driver.wait_for_line(r'/frozen is registered as a subscriber of /cmd_vel but does not answer: skipped')
+        driver.wait_for_line(r'/suspended is registered as a subscriber of /cmd_vel but does not answer: ignored')
         driver.wait_for_line('forward: 1.00 m')
-        support.wait_for(lambda: heard.messages, 'a command')
+        support.wait_for(lambda: commands.messages, 'a command')
         driver.signal(signal.SIGTERM)
         driver.wait()
 

@@ -1,18 +1,18 @@
 #!/usr/bin/python3
-"""While the timed script misses, /odom_ekf knows better than /odom where the robot is."""
+"""While the timed script misses, the errors of /odom_ekf are smaller than those of /odom."""
 import math
 import unittest
 
 import support
 
 
-class TestEkfBetter(unittest.TestCase):
-    def test_errors(self):
+class TestEkfAccuracy(unittest.TestCase):
+    def test_errors_of_position_and_heading(self):
         support.init_node('ekf_accuracy')
         odom = support.OdomWatch()
         truth = support.Watch('/ground_truth', support.Odometry)
         ekf = support.Watch('/odom_ekf', support.Odometry)
-        # the filter learns the gyro's bias while the robot stands, for 2 s at 10 poses a second
+        # the filter estimates the bias of the gyro at standstill, for 2 s at 10 poses per second
         support.wait_for(lambda: truth.last and len(ekf.messages) > 20, '/odom_ekf')
         driver = support.out_and_back()
         self.addCleanup(driver.kill)
@@ -28,10 +28,10 @@ class TestEkfBetter(unittest.TestCase):
             return (math.sqrt(sum((a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2 for a, b in pairs) / len(pairs)),
                     math.sqrt(sum(support.wrapped(a[2] - b[2]) ** 2 for a, b in pairs) / len(pairs)))
         position, heading = errors(odom.messages)
-        better_position, better_heading = errors(ekf.messages)
-        self.assertLess(better_heading, heading / 3)
-        self.assertLess(better_position, position)
+        ekf_position, ekf_heading = errors(ekf.messages)
+        self.assertLess(ekf_heading, heading / 3)
+        self.assertLess(ekf_position, position)
 
 
 if __name__ == '__main__':
-    support.main('ekf_accuracy', TestEkfBetter)
+    support.main('ekf_accuracy', TestEkfAccuracy)

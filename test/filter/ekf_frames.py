@@ -1,5 +1,8 @@
 #!/usr/bin/python3
-"""The filter's transform: ekf_frames.py PARENT CHILD. One parent for each frame, and the pose at the end of the way."""
+"""The transform of the filter leads from PARENT to CHILD, and with the others of the tree to the estimated pose.
+
+usage: ekf_frames.py PARENT CHILD --
+"""
 import math
 import sys
 import unittest
@@ -17,14 +20,14 @@ def pose(transform):
 
 
 class TestEkfFrames(unittest.TestCase):
-    def test_frames(self):
+    def test_each_frame_has_one_parent_and_the_tree_ends_at_the_estimate(self):
         parent, child, _ = sys.argv[1:4]
         support.init_node('ekf_frames')
         odom = support.OdomWatch()
         transforms = support.Watch('/tf', TFMessage)
         combined = support.Watch('odom_combined', PoseWithCovarianceStamped)
-        visible = support.Watch('/odom_ekf', support.Odometry)
-        support.wait_for(lambda: visible.last, '/odom_ekf')
+        republished = support.Watch('/odom_ekf', support.Odometry)
+        support.wait_for(lambda: republished.last, '/odom_ekf')
         commander = support.Commander()
         for linear, angular in [(0.2, 0.7), (-0.1, 0.9)]:
             commander.send(linear, angular)
@@ -33,39 +36,40 @@ class TestEkfFrames(unittest.TestCase):
         count = len(combined.messages)
         support.wait_for(lambda: len(combined.messages) > count + 10, 'combined poses after the motion')
 
-        told, parents = [], {}
+        sent, parents = [], {}
         for message in list(transforms.messages):
             for transform in message.transforms:
-                told.append(transform)
+                sent.append(transform)
                 parents.setdefault(transform.child_frame_id, set()).add(
                     (transform.header.frame_id, message._connection_header['callerid']))
         self.assertEqual(parents[child], {(parent, '/robot_pose_ekf')})
         self.assertTrue(all(len(each) == 1 for each in parents.values()), parents)
 
-        odometry = {m.header.stamp: m for m in list(odom.messages)}
-        ours = {t.header.stamp: t for t in told if t.child_frame_id == child}
-        seen = {m.header.stamp: m for m in list(visible.messages)}
+        odom_by_stamp = {m.header.stamp: m for m in list(odom.messages)}
+        transform_by_stamp = {t.header.stamp: t for t in sent if t.child_frame_id == child}
+        republished_by_stamp = {m.header.stamp: m for m in list(republished.messages)}
         compared = 0
         for message in list(combined.messages):
             stamp = message.header.stamp
             self.assertEqual(message.header.frame_id, parent)
-            if not (stamp in odometry and stamp in ours and stamp in seen):
+            if not (stamp in odom_by_stamp and stamp in transform_by_stamp and stamp in republished_by_stamp):
                 continue
             compared += 1
-            x, y, yaw = pose(ours[stamp].transform)
+            x, y, yaw = pose(transform_by_stamp[stamp].transform)
             if child == 'odom':
-                there = support.pose(odometry[stamp])
-                x, y, yaw = (x + there[0] * math.cos(yaw) - there[1] * math.sin(yaw),
-                             y + there[0] * math.sin(yaw) + there[1] * math.cos(yaw), yaw + there[2])
-            # 1e-9: what floats lose in a rotation and back
+                base = support.pose(odom_by_stamp[stamp])
+                x, y, yaw = (x + base[0] * math.cos(yaw) - base[1] * math.sin(yaw),
+                             y + base[0] * math.sin(yaw) + base[1] * math.cos(yaw), yaw + base[2])
+            # 1e-9 is far above the rounding of two rotations
             self.assertAlmostEqual(x, message.pose.pose.position.x, delta=1e-9)
             self.assertAlmostEqual(y, message.pose.pose.position.y, delta=1e-9)
             self.assertAlmostEqual(support.wrapped(yaw - support.yaw(message)), 0, delta=1e-9)
-            # made visible: the same pose and covariance, in the frames that RViz shows the wheels' odometry in
-            self.assertEqual(seen[stamp].pose, message.pose)
-            self.assertEqual((seen[stamp].header.frame_id, seen[stamp].child_frame_id), ('odom', 'base_footprint'))
+            # /odom_ekf has the same pose and covariance, and the frames of the odometry
+            visible = republished_by_stamp[stamp]
+            self.assertEqual(visible.pose, message.pose)
+            self.assertEqual((visible.header.frame_id, visible.child_frame_id), ('odom', 'base_footprint'))
         self.assertGreater(compared, 20)
-        self.assertGreater(max(m.twist.twist.linear.x for m in visible.messages), 0.1)
+        self.assertGreater(max(m.twist.twist.linear.x for m in republished.messages), 0.1)
 
 
 if __name__ == '__main__':

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What the filter node makes of bad messages, of sensors that fall silent, and of a new sender."""
+"""The filter node and its messages: invalid ones are rejected, sensors time out and recover, and resets restart it."""
 import math
 import threading
 import unittest
@@ -16,10 +16,10 @@ import support
 
 
 def make_odom():
-    """A standing robot's odometry, of now."""
+    """The odometry of a robot that stands still, with the present time."""
     message = Odometry()
     message.header.stamp = rospy.Time.now()
-    message.header.frame_id, message.child_frame_id = '/odom', '/base_footprint'    # as old senders write it
+    message.header.frame_id, message.child_frame_id = '/odom', '/base_footprint'    # with the slash of old senders
     message.pose.pose.position.x = 0.5
     message.pose.pose.orientation.w = 1.0
     message.pose.covariance[::7] = message.twist.covariance[::7] = [1e-6] * 6
@@ -27,7 +27,7 @@ def make_odom():
 
 
 def make_imu():
-    """A standing robot's gyro, of now."""
+    """The gyro reading of a robot that stands still, with the present time."""
     message = Imu()
     message.header.stamp = rospy.Time.now()
     message.angular_velocity_covariance[8] = 1e-6
@@ -35,32 +35,33 @@ def make_imu():
 
 
 class Sender(threading.Thread):
-    """Sends a sensor's good messages at about 50 Hz, and others in between."""
+    """Sends the valid messages of a sensor at about 50 Hz, and others on request."""
 
     def __init__(self, topic, make):
+        """make(): the next valid message."""
         super().__init__(daemon=True)
         self.publisher = rospy.Publisher(topic, type(make()), queue_size=100)
         self.make = make
         self.lock = threading.Lock()
-        self.speaking = True
+        self.active = True
         self.done = threading.Event()
         self.start()
 
     def run(self):
         while not self.done.wait(0.02):
             with self.lock:
-                if self.speaking:
+                if self.active:
                     self.publisher.publish(self.make())
 
     def send(self, change):
-        """One more message, with something changed in it."""
+        """Send one more message, after change(message)."""
         with self.lock:
             message = self.make()
             change(message)
             self.publisher.publish(message)
 
     def end(self):
-        """Be gone."""
+        """Unregister the publisher."""
         self.done.set()
         self.join()
         self.publisher.unregister()
@@ -76,18 +77,18 @@ class TestEkfMessages(unittest.TestCase):
         cls.odom, cls.imu = Sender('odom', make_odom), Sender('imu_data', make_imu)
         support.wait_for(lambda: cls.poses.last, 'a combined pose')
 
-    def said(self, *texts):
-        """Wait for a line of the filter with all these in it."""
+    def wait_for_log(self, *texts):
+        """Wait until the filter has logged a line with all these texts."""
         support.wait_for(lambda: any(m.name == '/robot_pose_ekf' and all(text in m.msg for text in texts)
-                                     for m in list(self.log.messages)), 'the filter to say %s' % (texts,))
+                                     for m in list(self.log.messages)), 'a line of the filter with %s' % (texts,))
 
-    def status(self, sensor, level):
-        """Wait for the diagnostics to say so of a sensor."""
+    def wait_for_status(self, sensor, level):
+        """Wait until /diagnostics has this level for a sensor."""
         support.wait_for(lambda: self.diagnostics.messages and any(
             status.name.endswith(sensor) and status.level == level
             for m in self.diagnostics.messages[-3:] for status in m.status), '%s in /diagnostics: %s' % (sensor, level))
 
-    def test_bad_messages_are_refused_by_name(self):
+    def test_invalid_messages_are_rejected_by_the_name_of_the_field(self):
         nan = float('nan')
         before = self.poses.next().pose.pose.position.x
         for sender, change, words in [
@@ -97,78 +98,79 @@ class TestEkfMessages(unittest.TestCase):
                 (self.odom, lambda m: setattr(m.header, 'stamp', m.header.stamp - rospy.Duration(5)),
                  ('/odom: header.stamp', 'later than the last')),
                 (self.odom, lambda m: setattr(m.header, 'stamp', m.header.stamp + rospy.Duration(5)),
-                 ('/odom: header.stamp', 'none later than now')),
+                 ('/odom: header.stamp', 'not later than now')),
                 (self.imu, lambda m: setattr(m.angular_velocity, 'z', nan), ('/imu_data: angular_velocity.z: nan',)),
                 (self.imu, lambda m: setattr(m, 'angular_velocity_covariance', [0.0] * 9),
                  ('/imu_data: angular_velocity_covariance[8]: 0.0',)),
                 (self.imu, lambda m: setattr(m.header, 'stamp', m.header.stamp + rospy.Duration(3600)),
-                 ('/imu_data: header.stamp', 'none later than now'))]:
+                 ('/imu_data: header.stamp', 'not later than now'))]:
             sender.send(change)
-            self.said(*words, 'expected', 'refused')
+            self.wait_for_log(*words, 'expected', 'rejected')
         pose = self.poses.next().pose
         self.assertAlmostEqual(pose.pose.position.x, before, delta=1e-6)
         self.assertTrue(all(math.isfinite(value) for value in pose.covariance))
 
-    def test_frames_without_a_name_are_refused(self):
+    def test_a_frame_without_a_name_is_rejected(self):
         self.odom.send(lambda m: setattr(m, 'child_frame_id', ''))
-        self.said("/odom: child_frame_id: ''", 'expected', 'refused')
+        self.wait_for_log("/odom: child_frame_id: ''", 'expected', 'rejected')
         self.poses.next()
 
-    def test_reset_odometry_is_a_new_beginning(self):
+    def test_reset_odometry_restarts_the_filter(self):
         reset = rospy.Publisher('reset_odometry', Empty, queue_size=1)
-        support.wait_for(reset.get_num_connections, 'the filter to listen')
+        support.wait_for(reset.get_num_connections, 'the filter to subscribe to reset_odometry')
         reset.publish()
-        self.said('reset_odometry', 'starting again')
+        self.wait_for_log('reset_odometry: restarting')
         self.poses.next()
 
-    def test_a_gyro_that_contradicts_the_wheels_is_diagnosed(self):
-        turning = [0]
+    def test_wheels_and_gyro_that_disagree_are_diagnosed(self):
+        count = [0]
 
         def make():
             message = make_odom()
-            turning[0] += 1
-            message.pose.pose.orientation.z = math.sin(turning[0] * 0.01)
-            message.pose.pose.orientation.w = math.cos(turning[0] * 0.01)
+            count[0] += 1
+            message.pose.pose.orientation.z = math.sin(count[0] * 0.01)
+            message.pose.pose.orientation.w = math.cos(count[0] * 0.01)
             return message
         standing, self.odom.make = self.odom.make, make
-        support.wait_for(lambda: any('contradict' in status.message for m in self.diagnostics.messages[-3:]
-                                     for status in m.status), 'a contradiction in /diagnostics')
+        support.wait_for(lambda: any(status.message == 'Wheels and gyro disagree'
+                                     for m in self.diagnostics.messages[-3:] for status in m.status),
+                         'the disagreement in /diagnostics')
         self.odom.make = standing
-        self.status('odom', DiagnosticStatus.OK)
+        self.wait_for_status('odom', DiagnosticStatus.OK)
 
-    def test_a_silent_gyro_is_left_out_and_taken_back(self):
-        self.status('imu_data', DiagnosticStatus.OK)
-        self.imu.speaking = False
-        self.said('imu_data: no message', 'left out')
-        self.status('imu_data', DiagnosticStatus.WARN)
+    def test_the_gyro_times_out_and_recovers(self):
+        self.wait_for_status('imu_data', DiagnosticStatus.OK)
+        self.imu.active = False
+        self.wait_for_log('imu_data has timed out')
+        self.wait_for_status('imu_data', DiagnosticStatus.WARN)
         self.poses.next()
-        self.imu.speaking = True
-        self.said('imu_data is back')
-        self.status('imu_data', DiagnosticStatus.OK)
+        self.imu.active = True
+        self.wait_for_log('imu_data has recovered')
+        self.wait_for_status('imu_data', DiagnosticStatus.OK)
         self.poses.next()
 
-    def test_silent_odometry_is_left_out_and_taken_back(self):
+    def test_the_odometry_times_out_and_recovers(self):
         before = self.poses.next().pose.covariance[0]
-        self.odom.speaking = False
-        self.said('odom: no message', 'left out')
-        self.status('odom', DiagnosticStatus.WARN)
-        # nobody tells where the robot goes meanwhile
+        self.odom.active = False
+        self.wait_for_log('odom has timed out')
+        self.wait_for_status('odom', DiagnosticStatus.WARN)
+        # meanwhile no sensor measures the distance
         support.wait_for(lambda: self.poses.last.pose.covariance[0] > 0.2, 'a growing uncertainty')
-        self.odom.speaking = True
-        self.said('odom is back')
-        support.wait_for(lambda: self.poses.last.pose.covariance[0] < 2 * before + 1e-6, 'the old uncertainty')
-        self.status('odom', DiagnosticStatus.OK)
+        self.odom.active = True
+        self.wait_for_log('odom has recovered')
+        support.wait_for(lambda: self.poses.last.pose.covariance[0] < 2 * before + 1e-6, 'the previous uncertainty')
+        self.wait_for_status('odom', DiagnosticStatus.OK)
 
-    def test_a_new_sender_is_a_new_beginning(self):
+    def test_another_sender_restarts_the_filter(self):
         self.odom.end()
 
         def make():
             message = make_odom()
-            message.pose.pose.position.x = 0.48     # near enough to be the same robot
+            message.pose.pose.position.x = 0.48     # too near for a jump
             return message
         type(self).odom = Sender('odom', make)
-        self.said('another sender')
-        support.wait_for(lambda: abs(self.poses.last.pose.pose.position.x - 0.48) < 1e-9, 'the new place')
+        self.wait_for_log('odom comes from another node: restarting')
+        support.wait_for(lambda: abs(self.poses.last.pose.pose.position.x - 0.48) < 1e-9, 'the new pose')
 
 
 if __name__ == '__main__':

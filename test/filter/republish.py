@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""With start_filter false, somebody else's combined pose becomes /odom_ekf, and no filter runs."""
+"""With start_filter false, the combined pose of another filter is republished as /odom_ekf."""
 import unittest
 
 import rosnode
@@ -10,9 +10,9 @@ import support
 
 
 class TestRepublish(unittest.TestCase):
-    def test_republish(self):
+    def test_the_pose_of_another_filter_is_republished(self):
         support.init_node('republish')
-        visible = support.Watch('/odom_ekf', support.Odometry)
+        republished = support.Watch('/odom_ekf', support.Odometry)
         odom = rospy.Publisher('odom', support.Odometry, queue_size=1, latch=True)
         frames = support.Odometry()
         frames.header.frame_id, frames.child_frame_id = 'odom', 'base_link'
@@ -28,9 +28,9 @@ class TestRepublish(unittest.TestCase):
             pose.header.stamp = rospy.Time.from_sec(pose.header.stamp.to_sec() + 0.1)
             pose.pose.pose.position.x += 0.02
             poses.publish(pose)
-            return len(visible.messages) > 5
+            return len(republished.messages) > 5
         support.wait_for(send, '/odom_ekf')
-        message = visible.last
+        message = republished.last
         self.assertEqual((message.header.frame_id, message.child_frame_id), ('odom', 'base_link'))
         self.assertEqual(message.pose.covariance[0], 0.25)
         # 0.02 m in 0.1 s

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What makes no sense ends a node with one line that names key, value and expectation."""
+"""An invalid parameter ends a node with one line that names the key, the value and what is expected."""
 import unittest
 
 import rospy
@@ -16,16 +16,17 @@ class TestBadParameters(unittest.TestCase):
         support.init_node('bad_parameters')
 
     def check(self, process, expected):
+        """The process ends with status 1, and with one error that contains all the expected texts."""
         self.addCleanup(process.kill)
         self.assertEqual(process.wait(), 1, process.output)
-        complaints = [line for line in process.lines if '[ERROR]' in line or '[FATAL]' in line]
-        self.assertEqual(len(complaints), 1, process.output)
+        errors = [line for line in process.lines if '[ERROR]' in line or '[FATAL]' in line]
+        self.assertEqual(len(errors), 1, process.output)
         for text in expected:
-            self.assertIn(text, complaints[0])
+            self.assertIn(text, errors[0])
         self.assertNotIn('Traceback', process.output)
 
-    def test_driver(self):
-        heard = support.Watch('/cmd_vel', Twist)
+    def test_driving_by_time(self):
+        commands = support.Watch('/cmd_vel', Twist)
         for argument, name, value in [('_rate:=0', '/rate', '0'), ('_linear_speed:=-0.2', '/linear_speed', '-0.2'),
                                       ('_angular_speed:=.nan', '/angular_speed', 'nan'),
                                       ('_goal_distance:=far', '/goal_distance', "'far'"),
@@ -33,16 +34,17 @@ class TestBadParameters(unittest.TestCase):
                                       ('_linear_speed:=1.0e+300', '1e+300', 'between 1 tick and a day')]:
             self.check(support.out_and_back(argument), [name, value, 'expected'])
             rospy.delete_param('/out_and_back')
-        self.assertFalse(heard.messages)
+        self.assertFalse(commands.messages)
 
-    def test_driver_by_odometry(self):
-        heard = support.Watch('/cmd_vel', Twist)
+    def test_driving_by_odometry(self):
+        commands = support.Watch('/cmd_vel', Twist)
         for argument, name, value in [('_min_linear_speed:=-1', '/min_linear_speed', '-1'),
                                       ('_transform_timeout:=0', '/transform_timeout', '0'),
-                                      ('_odom_frame:=7', '/odom_frame', '7'), ('_base_frame:=a b', '/base_frame', "'a b'")]:
+                                      ('_odom_frame:=7', '/odom_frame', '7'),
+                                      ('_base_frame:=a b', '/base_frame', "'a b'")]:
             self.check(support.by_odometry(argument), [name, value, 'expected'])
             rospy.delete_param('/out_and_back')
-        self.assertFalse(heard.messages)
+        self.assertFalse(commands.messages)
 
     def test_filter(self):
         for params, expected in [
@@ -63,7 +65,7 @@ class TestBadParameters(unittest.TestCase):
                 ({'controllers': {'base': dict(BASE, type='arm')}}, ['base/type', "'arm'", 'diff_controller']),
                 ({'controllers': {'base': BASE}, 'surface': 'sand'},
                  ['/arbotix/surface', "'sand'", 'hard_floor, ideal, low_ply_carpet']),
-                ({'controllers': {'base': BASE}, 'seed': -1}, ['/arbotix/seed', '-1', 'whole number']),
+                ({'controllers': {'base': BASE}, 'seed': -1}, ['/arbotix/seed', '-1', 'integer']),
                 ({'controllers': {'base': BASE}, 'real_time_factor': 5}, ['real_time_factor', '5', '/use_sim_time'])]:
             if params:
                 rospy.set_param('/arbotix', params)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""simulate.py at the command line: numbers, a picture, and one line for what makes no sense."""
+"""simulate.py at the command line: numbers, a picture, and one line for an invalid argument."""
 import os
 import re
 import tempfile
@@ -12,7 +12,7 @@ import support
 
 
 def simulate(*arguments):
-    """Run it; (exit status, output)."""
+    """Run it; returns the exit status and the output."""
     process = support.Process('rosrun', 'rbx1_nav', 'simulate.py', *arguments)
     try:
         return process.wait(), process.output
@@ -31,29 +31,30 @@ class TestSimulateCommand(unittest.TestCase):
         self.assertEqual([method for method, _ in rows], ['timed', 'odom', 'ekf'], output)
         by_time, by_odometry, by_both = (float(distance) for _, distance in rows)
         self.assertTrue(by_time > by_odometry > by_both, output)
-        # three panels side by side, each with ways in blue and an end in red
+        # three panels side by side, each with paths in blue and an end in red
         for panel in numpy.array_split(pixels[:len(pixels) // 2], 3, axis=1):
             red, green, blue = (panel[..., i] for i in range(3))
             self.assertGreater(((blue > 150) & (red < 120)).sum(), 50)
             self.assertGreater(((red > 150) & (green < 60) & (blue < 60)).sum(), 50)
 
-    def test_one_method_on_no_surface(self):
+    def test_one_method_on_the_ideal_surface(self):
         status, output = simulate('--method', 'timed', '--runs', '1')
         self.assertEqual(status, 0, output)
-        # 157 ticks are a little less than pi seconds: 1.6 mm to the left, 0.18 degrees short
+        # 157 ticks are a little less than pi seconds: 1.6 mm to the left, and 0.18 degrees short
         self.assertRegex(output, r'timed +truth +0\.000 \+- 0\.000 +0\.002 \+- 0\.000 +-0\.18 \+- +0\.00 +0\.002')
         self.assertNotIn('ekf', output)
 
-    def test_what_makes_no_sense(self):
+    def test_invalid_arguments(self):
         for arguments, status, text in [
                 (['--surface', 'sand'], 1, "'sand': expected one of hard_floor, ideal, low_ply_carpet"),
                 (['--method', 'luck'], 2, 'luck'), (['--runs', '0'], 2, '--runs: 0: expected'),
-                (['--plot', 'picture.doc'], 2, '--plot: picture.doc: expected'), (['--plot', '/'], 2, '--plot: /: expected'),
+                (['--plot', 'picture.doc'], 2, '--plot: picture.doc: expected'),
+                (['--plot', '/'], 2, '--plot: /: expected'),
                 (['--config', '/dev/null'], 1, '/dev/null: configuration: None: expected'),
                 (['--seed', '-1'], 1, 'seed: -1: expected'), (['--config', '/nowhere.yaml'], 1, '/nowhere.yaml'),
                 (['--plot', '/nowhere/picture.png'], 2, '--plot: /nowhere/picture.png: expected')]:
-            got, output = simulate(*arguments)
-            self.assertEqual(got, status, output)
+            actual, output = simulate(*arguments)
+            self.assertEqual(actual, status, output)
             self.assertIn(text, output.splitlines()[-1])
             self.assertNotIn('Traceback', output)
 
