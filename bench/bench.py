@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Measure any base with any driver from outside, given the shell commands that start them. See README.md beside it.
+"""Measure any base with any driver from outside, given the shell commands that start them. See README.md.
 
-Each run has a roscore of its own on a free port of the loopback interface, a fresh base, and a fresh probe that records
-every command and every odometry message. Nothing is left behind, also after Ctrl-C.
+Each run starts a roscore on a free port of the loopback interface, the base, and a probe that records every command and
+every odometry message. No process is left behind, not even after Ctrl-C.
 """
 import argparse
 import contextlib
@@ -24,23 +24,23 @@ import processes
 from probe import Probe
 
 START = 30  # s of wall time for a roscore or a base to come up
-SETTLE = 5  # s of wall time for the robot to stand still after the driver's end
-SAMPLE = 0.25  # s between two looks at the base's CPU time and memory
+SETTLE = 5  # s of wall time for the robot to come to a standstill after the driver has ended
+SAMPLE = 0.25  # s between two samples of CPU time and memory
 SIGNALS = signal.SIGINT, signal.SIGTERM, signal.SIGHUP
 # Where the exercise ends when each command is in force for exactly 1/50 s: out 1 m, 3.14 rad, back 1 m, 3.14 rad.
 TUTORIAL = figures.arc(figures.arc(figures.arc(figures.arc((0, 0, 0), 1, 0, 1), 0, 1, 3.14), 1, 0, 1), 0, 1, 3.14)
 
 
 class Failure(Exception):
-    """A run that could not be measured; the message says why."""
+    """A run that could not be measured; the text says why."""
 
 
 class Interrupted(BaseException):
-    """A signal asked the program to end."""
+    """A signal ended the program."""
 
 
 class Transport(xmlrpc.client.Transport):
-    """XML-RPC that gives up after 5 s: a node that hangs must not hang the benchmark."""
+    """XML-RPC with a timeout of 5 s: a node that hangs must not block the benchmark."""
 
     def make_connection(self, host):
         connection = super().make_connection(host)
@@ -49,7 +49,7 @@ class Transport(xmlrpc.client.Transport):
 
 
 class Session:
-    """A roscore of its own and what was started beside it; leaving it stops everything."""
+    """A roscore and the commands that were started with it; leaving the context stops all of them."""
 
     def __init__(self):
         self.folder = tempfile.mkdtemp(prefix='bench_')
@@ -62,7 +62,7 @@ class Session:
         self.environment.pop('ROS_HOSTNAME', None)  # it would win over ROS_IP
         try:
             self.start(f'roscore -p {port}')
-            # rosout is the last that roscore starts
+            # rosout is the last node that roscore starts
             self.wait(lambda: self.node_uri('/rosout'), 'the roscore')
         except BaseException:
             self.close()
@@ -75,23 +75,23 @@ class Session:
         self.close()
 
     def close(self):
-        """Stop what was started, the last first, by Ctrl-C and, if that does not help, by force."""
+        """Stop all commands in reverse order, by SIGINT or, if one does not end, by SIGKILL."""
         with uninterrupted():
             for process, command, _ in reversed(self.started):
                 if not processes.stop(process):
-                    print(f'bench: "{command}" does not end on Ctrl-C; killed', file=sys.stderr)
+                    print(f'bench: "{command}" did not end on SIGINT: killed', file=sys.stderr)
             processes.kill_rest()
             shutil.rmtree(self.folder, ignore_errors=True)
 
     def start(self, command):
-        """Start a shell command; what it prints goes to a file that is shown when it fails."""
+        """Start a shell command, with its output in a file for error messages."""
         log = os.path.join(self.folder, f'output_{len(self.started)}')
         process = processes.start(command, self.environment, log)
         self.started.append((process, command, log))
         return process
 
     def wait(self, condition, what):
-        """Wait until the condition is true, return its value; Failure after START seconds or when a command ended."""
+        """Return the first true value of condition(). Raises Failure after START seconds, or if a command ends."""
         end = time.monotonic() + START
         while True:
             value = condition()
@@ -99,17 +99,17 @@ class Session:
                 return value
             ended = [command for process, command, _ in self.started if process.poll() is not None]
             if ended or time.monotonic() > end:
-                reason = f'"{ended[0]}" ended' if ended else f'nothing within {START} s'
+                reason = f'"{ended[0]}" ended' if ended else f'timed out after {START} s'
                 raise Failure(f'waiting for {what}: {reason}\n{self.output()}')
             time.sleep(0.05)
 
     def output(self):
-        """The last lines that the last started command printed."""
+        """The last lines of output of the command that was started last."""
         with open(self.started[-1][2], errors='replace') as file:
             return ''.join(file.readlines()[-15:])
 
     def call(self, uri, method, *arguments):
-        """The value of an XML-RPC call to the master or a node; None when it fails."""
+        """The result of an XML-RPC call to the master or a node; None if it fails."""
         try:
             with xmlrpc.client.ServerProxy(uri, Transport()) as server:
                 code, _, value = getattr(server, method)('/bench', *arguments)
@@ -118,7 +118,7 @@ class Session:
         return value if code == 1 else None
 
     def node_uri(self, name):
-        """The XML-RPC address of a node; None if the master does not know it."""
+        """The XML-RPC address of a node; None if it is not registered."""
         return self.call(self.changes['ROS_MASTER_URI'], 'lookupNode', name)
 
     def parameter(self, name):
@@ -126,14 +126,14 @@ class Session:
         return self.call(self.changes['ROS_MASTER_URI'], 'getParam', name)
 
     def node_process(self, name):
-        """The process id of a node, once it is up."""
+        """The process id of a node, as soon as it runs."""
         uri = self.wait(lambda: self.node_uri(name), f'the node {name}')
         return self.wait(lambda: self.call(uri, 'getPid'), f'the process id of {name}')
 
 
 @contextlib.contextmanager
 def uninterrupted():
-    """No Ctrl-C meanwhile: stopping has to come to its end."""
+    """Ignore signals meanwhile: stopping must be completed."""
     before = [signal.signal(number, signal.SIG_IGN) for number in SIGNALS]
     yield
     for number, handler in zip(SIGNALS, before):
@@ -141,12 +141,12 @@ def uninterrupted():
 
 
 def interrupt(number, _):
-    """Any signal that asks the program to end does so by way of an exception, so that everything is stopped."""
-    raise Interrupted(f'ended by {signal.Signals(number).name}')
+    """Signal handler that ends the program by an exception, so that all commands are stopped."""
+    raise Interrupted(f'interrupted by {signal.Signals(number).name}')
 
 
 def bring_up(session, args, publish=False):
-    """Start base and probe, wait until odometry arrives; the probe and the process ids of the base's nodes."""
+    """Start base and probe, and wait for odometry; returns the probe and the process ids of the nodes of the base."""
     session.start(args.base)
     probe = Probe(session.changes, args.cmd_vel, args.odom, publish)
     pids = [session.node_process(name) for name in args.base_node]
@@ -155,7 +155,7 @@ def bring_up(session, args, publish=False):
 
 
 def measure_run(args, load):
-    """One run, with that many busy loops beside it: its figures, and its periods (s) for pooling."""
+    """One run with `load` busy loops beside it; returns its figures, and its periods (s) for pooling."""
     with Session() as session:
         probe, pids = bring_up(session, args)
         simulated = bool(session.parameter('/use_sim_time'))
@@ -168,7 +168,7 @@ def measure_run(args, load):
             if time.monotonic() > end:
                 raise Failure(f'the driver did not end within {args.limit:g} s\n{session.output()}')
             if session.started[1][0].poll() is not None:
-                raise Failure(f'"{args.base}" ended in the middle of the run')
+                raise Failure(f'"{args.base}" ended during the run')
             time.sleep(SAMPLE)
         proportional = processes.proportional(pids)
         settled = probe.ask('settled', SETTLE)
@@ -176,7 +176,7 @@ def measure_run(args, load):
             loop.kill()
         commands, odometry = probe.ask('record')
         if driver.returncode:
-            print(f'bench: the driver ended with {driver.returncode}:\n{session.output()}', file=sys.stderr)
+            print(f'bench: the driver ended with status {driver.returncode}:\n{session.output()}', file=sys.stderr)
     row, periods, odom_periods = figures.run_figures(commands, odometry, samples, args.timeout,
                                                      args.exact if simulated else None)
     row.update(load=load, simulated_time=simulated, driver_exit=driver.returncode, settled=settled,
@@ -185,7 +185,7 @@ def measure_run(args, load):
 
 
 def measure_latency(args):
-    """The delays from commands at random phases to the first odometry that shows them, of a fresh base at rest."""
+    """The delays between commands at random phases and the first odometry that shows them, with a base at rest."""
     with Session() as session:
         probe, _ = bring_up(session, args, publish=True)
         time.sleep(1)
@@ -195,7 +195,7 @@ def measure_latency(args):
 
 
 def host():
-    """What the numbers depend on besides base and driver."""
+    """The machine and software that the numbers depend on."""
     model = 'unknown'
     with contextlib.suppress(OSError), open('/proc/cpuinfo') as file:
         model = next((line.split(':')[1].strip() for line in file if line.startswith('model name')), model)
@@ -205,7 +205,7 @@ def host():
             'time': time.strftime('%Y-%m-%dT%H:%M:%SZ', time.gmtime())}
 
 
-# heading, where it is in a run's figures, factor to the unit shown, decimals
+# heading, path in the figures of a run, factor to the unit shown, decimals
 COLUMNS = [
     ('fwd', 'forward', 1, 0), ('turn', 'turning', 1, 0), ('zero', 'zero', 1, 0), ('all', 'total', 1, 0),
     ('dist mm', 'distance_m', 1e3, 3), ('angle deg', 'angle_deg', 1, 3),
@@ -217,26 +217,26 @@ COLUMNS = [
     ('RSS MB', 'rss_peak_mb', 1, 1), ('PSS MB', 'pss_mb', 1, 1), ('x real', 'real_time_factor', 1, 2),
 ]
 
-WIDTH = 6  # of a column, at least
+WIDTH = 6  # least width of a column
 
 
 def look_up(row, path):
-    """The figure at a dotted path; None if the run has none."""
+    """The figure at a dotted path; None if it does not exist."""
     for key in path.split('.'):
         row = row.get(key) if row else None
     return row
 
 
 def remarks(row):
-    """What was special about a run, in words."""
+    """Anything unusual about a run, as text."""
     words = [f'{row["load"]} loops'] if row['load'] else []
-    words += [f'driver exit {row["driver_exit"]}'] if row['driver_exit'] else []
+    words += [f'driver exit status {row["driver_exit"]}'] if row['driver_exit'] else []
     words += [] if row['settled'] else ['still moving at the end']
     return ', '.join(words)
 
 
 def line(name, values, remark=''):
-    """One line of the table; values are in the units of the run's figures."""
+    """One line of the table; values in the units of the figures of a run."""
     cells = []
     for (heading, _, factor, decimals), value in zip(COLUMNS, values):
         width = max(len(heading), WIDTH)
@@ -245,19 +245,19 @@ def line(name, values, remark=''):
 
 
 def header():
-    """The table's first line."""
+    """The first line of the table."""
     return f'{"run":>6} ' + ' '.join(f'{heading:>{max(len(heading), WIDTH)}}' for heading, *_ in COLUMNS)
 
 
 def summary(rows):
-    """The lines below the runs: each column's least, middle, nine-of-ten and greatest value, as {name: [value...]}."""
+    """The lines below the runs: minimum, median, 90th percentile and maximum of each column, as {name: [value...]}."""
     kept = [[v for v in (look_up(row, path) for row in rows) if v is not None] for _, path, *_ in COLUMNS]
     return {name: [figures.percentile(values, percent) if values else None for values in kept]
-            for name, percent in (('least', 0), ('median', 50), ('90 %', 90), ('most', 100))}
+            for name, percent in (('min', 0), ('median', 50), ('90 %', 90), ('max', 100))}
 
 
-def say_spread(name, values):
-    """One line for pooled values (s), in ms."""
+def print_spread(name, values):
+    """Print one line for pooled values (s), in ms."""
     if values:
         numbers = ', '.join(f'{key} {1e3 * values[key]:.2f}' for key in ('min', 'p1', 'p50', 'p99', 'max'))
         print(f'{name}, {values["count"]} pooled (ms): {numbers}')
@@ -267,28 +267,30 @@ def arguments():
     """The command line."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument('--base', required=True, help='shell command that starts the base, without a roscore')
-    parser.add_argument('--driver', help='shell command that drives it, and ends')
-    parser.add_argument('--runs', type=int, default=10, help='how often (default 10; 0: none)')
-    parser.add_argument('--latency', type=int, default=0, metavar='N', help='then measure the latency of N commands')
-    parser.add_argument('--latency-speed', type=float, default=0.1, help='m/s commanded in that (default 0.1)')
-    parser.add_argument('--load', type=int, default=0, metavar='N', help='N busy loops beside every second run')
-    parser.add_argument('--json', metavar='FILE', help='write all figures there')
+    parser.add_argument('--driver', help='shell command that drives the base, and ends')
+    parser.add_argument('--runs', type=int, default=10, help='number of runs (default 10)')
+    parser.add_argument('--latency', type=int, default=0, metavar='N',
+                        help='after the runs, measure the latency of N commands')
+    parser.add_argument('--latency-speed', type=float, default=0.1, help='speed of these commands, m/s (default 0.1)')
+    parser.add_argument('--load', type=int, default=0, metavar='N', help='run N busy loops beside every second run')
+    parser.add_argument('--json', metavar='FILE', help='write all figures to this file')
     parser.add_argument('--timeout', type=float, default=1.0,
-                        help='for how long the base follows a command, s (default 1.0; 0: for ever)')
+                        help='timeout of a command in the base, s (default 1.0; 0: none)')
     parser.add_argument('--exact', type=float, nargs=3, default=TUTORIAL, metavar=('X', 'Y', 'HEADING'),
-                        help='on simulated time: the exact final pose, m and rad (default: that of the exercise)')
-    parser.add_argument('--limit', type=float, default=120, help='s of wall time for a run (default 120)')
-    parser.add_argument('--cmd-vel', default='/cmd_vel')
-    parser.add_argument('--odom', default='/odom')
-    parser.add_argument('--base-node', nargs='+', default=['/arbotix'], help='nodes whose CPU and memory count')
+                        help='on simulated time: the exact final pose, m and rad (default: of the exercise)')
+    parser.add_argument('--limit', type=float, default=120, help='timeout of a run, s of wall time (default 120)')
+    parser.add_argument('--cmd-vel', default='/cmd_vel', help='topic of the commands (default /cmd_vel)')
+    parser.add_argument('--odom', default='/odom', help='topic of the odometry (default /odom)')
+    parser.add_argument('--base-node', nargs='+', default=['/arbotix'],
+                        help='nodes whose CPU time and memory are measured')
     args = parser.parse_args()
     if args.runs and not args.driver:
-        parser.error('--driver is needed, unless --runs 0')
+        parser.error('--driver: missing: expected a shell command, or --runs 0')
     return args
 
 
 def measure(args, result):
-    """Do what the command line asks for: fill in result, and print it as it comes."""
+    """Measure what the command line asks for: print the figures, and add them to `result`."""
     paths = [path for _, path, *_ in COLUMNS]
     periods, odom_periods = [], []
     if args.runs:
@@ -304,19 +306,19 @@ def measure(args, result):
             print(line(name, values))
             result['summary'][name] = dict(zip(paths, values))
         result.update(command_period_s=figures.spread(periods), odom_period_s=figures.spread(odom_periods))
-        say_spread('command period', result['command_period_s'])
-        say_spread('odometry period', result['odom_period_s'])
+        print_spread('command period', result['command_period_s'])
+        print_spread('odometry period', result['odom_period_s'])
     if args.latency:
         result['latency'] = measure_latency(args)
-        say_spread('command to odometry', result['latency']['latency_s'])
+        print_spread('command to odometry', result['latency']['latency_s'])
         if result['latency']['not_shown']:
-            print(f'{result["latency"]["not_shown"]} of {args.latency} commands were never shown')
+            print(f'{result["latency"]["not_shown"]} of {args.latency} commands were never shown by the odometry')
 
 
 def main():
     args = arguments()
     if not importlib.util.find_spec('rospy'):
-        sys.exit(f'bench: {sys.executable} has no rospy; run this with the Python of your ROS, as in\n'
+        sys.exit(f'bench: {sys.executable} has no rospy: expected the Python of your ROS, as in\n'
                  '  /usr/bin/python3 bench/bench.py ...')
     processes.adopt_orphans()
     for number in SIGNALS:

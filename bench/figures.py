@@ -1,33 +1,33 @@
-"""The figures of a run, from what was recorded. Pure arithmetic: no ROS, no files, no clock.
+"""The figures of a run, computed from the recorded messages, without ROS, files or a clock.
 
 Units: metres, radians, seconds. Headings are counter-clockwise positive.
-A command is (received, v, w): when it was received (s), forward speed (m/s), turning speed (rad/s).
+A command is (received, v, w): time of arrival (s), forward speed (m/s), turning speed (rad/s).
 An odometry record is (received, stamp, x, y, heading, v, w). A pose is (x, y, heading).
 """
 import math
 
-GAP = 0.5  # s; a longer pause between two commands is the end of a stream, not its period
+GAP = 0.5  # s: a longer pause between two commands is the end of a stream
 
 
 def wrap(angle):
-    """The same angle (rad) within -pi to pi."""
+    """The equivalent angle between -pi and pi, rad."""
     return math.remainder(angle, 2 * math.pi)
 
 
 def yaw(x, y, z, w):
-    """Heading (rad) of a quaternion that turns about the vertical."""
+    """The heading (rad) of a quaternion about the vertical axis."""
     return math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
 
 
 def relative(pose, start):
-    """The pose as seen from start: x ahead of it, y to its left, heading wrapped."""
+    """The pose in the frame of the pose `start`: x ahead of it, y to its left; the heading is wrapped."""
     dx, dy = pose[0] - start[0], pose[1] - start[1]
     c, s = math.cos(start[2]), math.sin(start[2])
     return c * dx + s * dy, c * dy - s * dx, wrap(pose[2] - start[2])
 
 
 def arc(pose, v, w, duration):
-    """The pose after driving at constant v, w for a duration: along a circle, so its chord halves the turn."""
+    """The pose after `duration` (s) at constant v and w: along an arc, whose chord points half of the turn further."""
     x, y, heading = pose
     half = w * duration / 2
     chord = v * duration * (math.sin(half) / half if abs(half) > 1e-6 else 1 - half * half / 6)
@@ -35,7 +35,7 @@ def arc(pose, v, w, duration):
 
 
 def integrate(commands, end, timeout):
-    """The exact pose at time end (s) from (0, 0, 0); a command holds until the next, at most timeout (s; 0: no end)."""
+    """The exact pose at the time `end` (s). A command lasts until the next, at most `timeout` (s; 0: no limit)."""
     pose = 0.0, 0.0, 0.0
     ends = [received for received, _, _ in commands[1:]] + [end]
     for (received, v, w), until in zip(commands, ends):
@@ -45,18 +45,18 @@ def integrate(commands, end, timeout):
 
 
 def deviation(pose, reference):
-    """How far pose is from reference: (m, rad), both positive."""
+    """The distance (m) and angle (rad, not negative) between two poses."""
     return math.hypot(pose[0] - reference[0], pose[1] - reference[1]), abs(wrap(pose[2] - reference[2]))
 
 
 def percentile(values, percent):
-    """The smallest of the values that has at least that many percent of them at or below it (nearest rank)."""
+    """The smallest value that at least `percent` of the values do not exceed (nearest rank)."""
     ordered = sorted(values)
     return ordered[max(math.ceil(percent / 100 * len(ordered)), 1) - 1]
 
 
 def spread(values):
-    """The values' count, min, p1, p50, p99 and max; None without values."""
+    """Count, min, p1, p50, p99 and max of the values; None if there are none."""
     if not values:
         return None
     row = {'count': len(values), 'min': min(values)}
@@ -66,16 +66,16 @@ def spread(values):
 
 
 def command_periods(commands):
-    """For how long each moving command was the newest (s); pauses and what follows a zero command are left out."""
+    """How long each moving command was the latest (s), without pauses and without what follows a zero command."""
     return [after[0] - before[0] for before, after in zip(commands, commands[1:])
             if (before[1] or before[2]) and after[0] - before[0] <= GAP]
 
 
 def shown_after(published, odometry):
-    """From each published (time, v) to the receipt of the first odometry that shows it, before the next one (s).
+    """The delay (s) from each published (time, v) to the first odometry that shows it; None if the next comes first.
 
-    An odometry message shows a command when its forward speed is nearer to the new one than to the old one, or, for a
-    start from rest, when its position has moved by 0.1 mm. A command that is never shown gives None.
+    An odometry message shows a command if its forward speed is nearer to the new speed than to the old one or, for a
+    start from rest, if the position has changed by 0.1 mm.
     """
     delays = []
     ends = [time for time, _ in published[1:]] + [math.inf]
@@ -94,7 +94,7 @@ def shown_after(published, odometry):
 
 
 def usage(samples, begin, end):
-    """Share of a core between the first and the last sample in the interval; a sample is (time, CPU seconds, ...)."""
+    """Share of a core between the first and the last sample in an interval; a sample is (time, CPU time, ...), s."""
     inside = [sample for sample in samples if begin <= sample[0] <= end]
     if len(inside) < 2:
         return None
@@ -102,7 +102,7 @@ def usage(samples, begin, end):
 
 
 def run_figures(commands, odometry, samples, timeout, exact):
-    """All figures of one run, and its periods (s) for pooling; exact is the pose to end at, or None to integrate."""
+    """All figures of a run, and its periods (s) for pooling. exact: the expected pose; None: integrate the commands."""
     moving = [c for c in commands if c[1] or c[2]]
     row = {'forward': sum(1 for c in commands if c[1]), 'turning': sum(1 for c in commands if c[2]),
            'zero': len(commands) - len(moving), 'total': len(commands)}

@@ -1,7 +1,7 @@
-"""The probe: a process of its own that listens to one run, so that every run meets a fresh ROS node.
+"""The probe: a process that records the messages of one run, so that every run has a new ROS node.
 
-It stamps each receipt with the monotonic wall clock (the same for all processes of a machine), keeps the bytes, and
-decodes them when the run is over: a callback that does next to nothing is never late for the following message.
+It stores each message as bytes, with its time of arrival on the monotonic clock that all processes of a machine share,
+and decodes it after the run: a callback that does hardly anything does not delay the next message.
 """
 import gc
 import multiprocessing
@@ -13,12 +13,12 @@ import time
 
 import figures
 
-QUIET = 0.5  # s; the robot has settled when its odometry stood still for so long
-STILL = 1e-4  # m and rad; less is standing still, also for odometry with noise in the last digits
+QUIET = 0.5  # s: the robot is at a standstill if its odometry has not changed for this time
+STILL = 1e-4  # m and rad: smaller changes are noise
 
 
 class Probe:
-    """The parent's handle: starts the process, asks it for things, takes the record."""
+    """The side of the parent: starts the process, and sends it requests."""
 
     def __init__(self, environment, cmd_vel, odom, publish=False):
         self.pipe, theirs = multiprocessing.Pipe()
@@ -28,7 +28,7 @@ class Probe:
         theirs.close()
 
     def ask(self, *request):
-        """Send (what, arguments...) and wait for the answer; an exception over there is raised here."""
+        """Send a request (name, arguments...) and return the answer. Raises the exception that it caused."""
         self.pipe.send(request)
         answer = self.pipe.recv()
         if isinstance(answer, Exception):
@@ -37,16 +37,16 @@ class Probe:
 
 
 def listen(ours, pipe, environment, cmd_vel, odom, publish):
-    """The process: subscribe (or, for the latency, publish) /cmd_vel, subscribe /odom, and answer the parent."""
+    """The process: subscribes to odometry and to the commands (or publishes them, for the latency), answers requests."""
     ours.close()
-    # A Ctrl-C at the terminal reaches this process too; the parent decides when it ends.
+    # Ctrl-C at the terminal reaches this process too, but the parent decides when it ends.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     signal.signal(signal.SIGHUP, signal.SIG_IGN)
     os.environ.update(environment)
     import rospy
     from geometry_msgs.msg import Twist
-    # No ROS time: a probe that followed a simulated clock would be one more listener that the clock waits for.
+    # No ROS time: the base would have to serve one more subscriber of /clock.
     rospy.init_node('bench_probe', anonymous=True, disable_rostime=True, disable_rosout=True, disable_signals=True)
     gc.disable()
     sys.setswitchinterval(1e-4)
@@ -76,13 +76,13 @@ def listen(ours, pipe, environment, cmd_vel, odom, publish):
             what, *arguments = pipe.recv()
             pipe.send(answers[what](*arguments))
         except EOFError:
-            os._exit(0)  # rospy's own shutdown would talk to a master that is being stopped
+            os._exit(0)  # rospy's shutdown would call a master that is being stopped
         except Exception as error:
             pipe.send(RuntimeError(f'{what}: {error}'))
 
 
 def wait(condition, timeout):
-    """Whether the condition came true within timeout (s of wall time)."""
+    """Whether condition() became true within `timeout` (s of wall time)."""
     end = time.monotonic() + timeout
     while not condition():
         if time.monotonic() > end:
@@ -92,7 +92,7 @@ def wait(condition, timeout):
 
 
 def stands_still(odometry):
-    """Whether the poses of the last QUIET seconds are all the same."""
+    """Whether all poses of the last QUIET seconds are the same."""
     since = time.monotonic() - QUIET
     recent = []
     for received, message in reversed(odometry):
@@ -106,10 +106,10 @@ def stands_still(odometry):
 
 
 def measure_latency(publisher, twist, odometry, count, speed):
-    """Publish speed (m/s) and zero in turn, at random phases; the delays (s) until odometry shows each command."""
+    """Publish `speed` (m/s) and 0 alternately, at random phases; returns the delays (s) until odometry shows each."""
     published = []
     for index in range(count):
-        # Longer than the slowest odometry takes to show it, shorter than any base's timeout.
+        # Longer than any odometry takes to show a command, and shorter than the timeout of a base.
         time.sleep(random.uniform(0.3, 0.6))
         message = twist()
         message.linear.x = 0.0 if index % 2 else speed
@@ -122,10 +122,10 @@ def measure_latency(publisher, twist, odometry, count, speed):
 
 
 def decode(received, kind):
-    """The message of that class, from the bytes that were received; TypeError when the topic carries another type."""
+    """The message in the received bytes. Raises TypeError if the topic has another type than `kind`."""
     name = received._connection_header['type']
     if name != kind._type:
-        raise TypeError(f'expected {kind._type}, the topic carries {name}')
+        raise TypeError(f'{name}: expected a topic of type {kind._type}')
     return kind().deserialize(received._buff)
 
 

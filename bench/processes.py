@@ -1,4 +1,4 @@
-"""Processes: start commands, measure a process with all its children, and leave none behind. Linux only (/proc)."""
+"""Processes: starting commands, measuring a process with all its children, stopping all of them. Linux only (/proc)."""
 import ctypes
 import os
 import signal
@@ -9,30 +9,30 @@ TICK = os.sysconf('SC_CLK_TCK')
 
 
 def adopt_orphans():
-    """Make this process the parent of every orphan below it, so that nothing it started can escape it."""
+    """Make this process the parent of every orphan below it, so that it can stop all that it has started."""
     ctypes.CDLL(None).prctl(36, 1, 0, 0, 0)  # 36: PR_SET_CHILD_SUBREAPER of linux/prctl.h
 
 
 def start(command, environment, log):
-    """Run a shell command in a session of its own, where a Ctrl-C at our terminal does not reach it."""
+    """Start a shell command in a session of its own, so that Ctrl-C at the terminal does not reach it."""
     with open(log, 'wb') as output:
         return subprocess.Popen(command, shell=True, env=environment, stdin=subprocess.DEVNULL, stdout=output,
                                 stderr=subprocess.STDOUT, start_new_session=True)
 
 
-def stop(process, patience=5):
-    """Ctrl-C for a started command, and patience (s) for it to end; whether it did."""
+def stop(process, timeout=5):
+    """Send SIGINT to a started command; returns whether it ends within `timeout` (s)."""
     if process.poll() is None:
         os.killpg(process.pid, signal.SIGINT)
     try:
-        process.wait(patience)
+        process.wait(timeout)
     except subprocess.TimeoutExpired:
         return False
     return True
 
 
 def kill_rest():
-    """Kill every process below this one that is still there; their number."""
+    """Kill every process below this one; returns their number."""
     killed = set()
     while True:
         rest = tree([os.getpid()]) - {os.getpid()}
@@ -45,25 +45,25 @@ def kill_rest():
                     killed.add(pid)
                 os.waitpid(pid, os.WNOHANG)
             except (OSError, ValueError):
-                pass  # gone meanwhile, or not yet ours to wait for: the next round sees
+                pass  # it has ended, or is not yet a child of this process: the next round checks again
         time.sleep(0.01)
 
 
 def stat(pid):
-    """The fields of /proc/<pid>/stat from the state on (field 3 of proc(5) is item 0)."""
+    """The fields of /proc/<pid>/stat from the state on: item 0 is field 3 of proc(5)."""
     with open(f'/proc/{pid}/stat', 'rb') as file:
         return file.read().rpartition(b')')[2].split()
 
 
 def tree(roots):
-    """The set of these processes and all that descend from them."""
+    """The set of these processes and all their descendants."""
     children = {}
     for name in os.listdir('/proc'):
         if name.isdigit():
             try:
                 children.setdefault(int(stat(name)[1]), []).append(int(name))
             except OSError:
-                pass  # it ended while we looked
+                pass  # it has just ended
     found, new = set(), list(roots)
     while new:
         pid = new.pop()
@@ -73,12 +73,12 @@ def tree(roots):
 
 
 def sample(roots):
-    """(monotonic time, CPU seconds used so far, resident bytes) of the processes and all their children together."""
+    """(monotonic time in s, CPU time so far in s, resident memory in bytes) of the processes and all their children."""
     cpu = resident = 0
     now = time.monotonic()
     for pid in tree(roots):
         try:
-            # utime, stime, and those of children that ended (cutime, cstime)
+            # utime and stime, and those of children that have ended (cutime and cstime)
             cpu += sum(int(field) for field in stat(pid)[11:15])
             resident += memory(pid, 'status', 'VmRSS')
         except OSError:
@@ -87,7 +87,7 @@ def sample(roots):
 
 
 def proportional(roots):
-    """Proportional set size (bytes) of the processes and all their children; None where it may not be read."""
+    """The proportional set size (bytes) of the processes and all their children; None if it cannot be read."""
     try:
         return sum(memory(pid, 'smaps_rollup', 'Pss') for pid in tree(roots))
     except OSError:

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Measure the three methods on a surface, and the filter, offline: ends, errors, consistency, speed. See README.md."""
+"""Simulate the three methods and the filter on a surface: end poses, errors, consistency, speed. See README.md."""
 import argparse
 import json
 import math
@@ -8,39 +8,39 @@ import time
 import numpy
 import yaml
 
-from rbx1_nav.ros import resources
 from rbx1_nav.model.robot import read_robot
-from rbx1_nav.simulation import METHODS, simulate, simulate_many
 from rbx1_nav.model.surfaces import load_surface
+from rbx1_nav.ros import resources
+from rbx1_nav.simulation import METHODS, simulate, simulate_many
 
 
 def distance(pose, other=(0.0, 0.0)):
-    """Between two poses, m."""
+    """The distance between two poses, m."""
     return math.hypot(pose[0] - other[0], pose[1] - other[1])
 
 
 def turned(pose, other=(0.0, 0.0, 0.0)):
-    """Between two headings, degrees, the short way round."""
+    """The angle between two headings, 0 to 180 degrees."""
     return abs(math.degrees(math.remainder(pose[2] - other[2], 2 * math.pi)))
 
 
-def ends(config, surface, seeds):
-    """Where the robot is at the end by each method, and what the odometry says there."""
+def ends(robot, surface, seeds):
+    """(name, values) of the end poses of each method: the true one, and the error of the odometry."""
     for method in METHODS:
-        runs = list(simulate_many(method, config, surface, seeds))
+        runs = list(simulate_many(method, robot, surface, seeds))
         yield method + ': true end, from the start (m)', [distance(r.end.truth) for r in runs]
         yield method + ': true end, to the left (m)', [r.end.truth.y for r in runs]
         yield method + ': true end, angle (degrees)', [turned(r.end.truth) for r in runs]
         yield method + ': true first leg (m)', [r.first_leg for r in runs]
-        yield method + ': /odom off the truth (m)', [distance(r.end.truth, r.end.odometry) for r in runs]
-        yield method + ': /odom off the truth (degrees)', [turned(r.end.truth, r.end.odometry) for r in runs]
+        yield method + ': error of /odom at the end (m)', [distance(r.end.truth, r.end.odometry) for r in runs]
+        yield method + ': error of /odom at the end (degrees)', [turned(r.end.truth, r.end.odometry) for r in runs]
 
 
-def errors(method, config, surface, seeds):
-    """Root mean square errors over all ticks of all runs, and the consistency at their ends."""
+def errors(method, robot, surface, seeds):
+    """Root mean square errors over all ticks of all runs, and the consistency of the filter at their ends."""
     squares, number, consistency = numpy.zeros(4), 0, []
     for seed in seeds:
-        run = simulate(method, config, surface, seed, filtered=True, keep=True)
+        run = simulate(method, robot, surface, seed, filtered=True, keep=True)
         for _, truth, odometry, estimate in run.path:
             squares += [turned(truth, odometry) ** 2, turned(truth, estimate) ** 2,
                         distance(truth, odometry) ** 2, distance(truth, estimate) ** 2]
@@ -50,14 +50,14 @@ def errors(method, config, surface, seeds):
         consistency.append(error @ numpy.linalg.solve(run.covariance, error))
     return {**dict(zip(('/odom heading RMSE (degrees)', '/odom_ekf heading RMSE (degrees)',
                         '/odom position RMSE (m)', '/odom_ekf position RMSE (m)'), (squares / number) ** 0.5)),
-            'mean normalised estimation error squared': numpy.mean(consistency)}
+            'mean normalized estimation error squared': numpy.mean(consistency)}
 
 
-def speed(method, config, surface, seeds):
-    """Simulated time over wall time of each run, on one core."""
+def speed(method, robot, surface, seeds):
+    """Simulated time divided by wall time, for each run, on one core."""
     for seed in seeds:
         start = time.perf_counter()
-        simulated = simulate(method, config, surface, seed).end.time
+        simulated = simulate(method, robot, surface, seed).end.time
         yield simulated / (time.perf_counter() - start)
 
 
@@ -75,21 +75,21 @@ def main():
 
     figures = {}
 
-    def tell(name, **values):
+    def report(name, **values):
         figures[name] = {key: float(value) for key, value in values.items()}
         print('%-50s %s' % (name, '  '.join('%s %.4g' % pair for pair in values.items())), flush=True)
-    for name, values in ends(config, surface, range(arguments.seeds)):
-        tell(name, min=min(values), median=numpy.median(values), max=max(values))
+    for name, values in ends(robot, surface, range(arguments.seeds)):
+        report(name, min=min(values), median=numpy.median(values), max=max(values))
     for method in METHODS:
-        for name, value in errors(method, config, surface, range(arguments.filter_seeds)).items():
-            tell('%s: %s' % (method, name), value=value)
+        for name, value in errors(method, robot, surface, range(arguments.filter_seeds)).items():
+            report('%s: %s' % (method, name), value=value)
     for method in METHODS:
-        values = list(speed(method, config, surface, range(arguments.seeds)))
-        tell(method + ': times real time, one core', min=min(values), median=numpy.median(values), max=max(values))
+        values = list(speed(method, robot, surface, range(arguments.seeds)))
+        report(method + ': times real time, one core', min=min(values), median=numpy.median(values), max=max(values))
     start = time.perf_counter()
-    for _ in simulate_many('timed', config, surface, range(10000)):
+    for _ in simulate_many('timed', robot, surface, range(10000)):
         pass
-    tell('10,000 timed runs, one core (s)', value=time.perf_counter() - start)
+    report('10,000 timed runs, one core (s)', value=time.perf_counter() - start)
     if arguments.json:
         with open(arguments.json, 'w', encoding='utf-8') as file:
             json.dump(figures, file, indent=1)
