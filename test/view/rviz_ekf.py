@@ -1,44 +1,61 @@
 #!/usr/bin/python3
-"""What a reader sees on carpet: nav_ekf.rviz shows /odom_ekf and the ground truth in colours of their own, and not /odom.
+"""nav_ekf.rviz on carpet: odometry, estimate and ground truth in their colours, the true robot solid, the other a ghost.
 
-Keeps its pictures where the environment variable RBX1_PICTURE_DIR says, if it is set.
+Keeps its pictures in the directory that the environment variable RBX1_PICTURE_DIR names, if it is set.
 """
 import os
 import subprocess
 
+import numpy
 import rospy
 import rostest
+from nav_msgs.msg import Odometry
 
+import support
 from rviz_smoke import ARROW, PACKAGE, WAIT, RvizTest
 
-SEEN = ('Odometry EKF', 'Ground truth')
+ARROWS = ('Odometry (red)', 'Odometry EKF (green)', 'Ground truth (blue)')
+RADIUS = 0.165      # m, of the robot's disc
 
 
-def pixels(picture, name, where):
+def arrow_pixels(picture, name, where):
     """How many pixels an odometry's arrows have there."""
     return int((picture.arrows[name] & where).sum())
+
+
+def distance(picture, odom):
+    """Of each pixel from the position in an Odometry message, m."""
+    return numpy.hypot(picture.x - odom.pose.pose.position.x, picture.y - odom.pose.pose.position.y)
 
 
 class RvizEkf(RvizTest):
     FILE = 'nav_ekf.rviz'
 
     def test_the_miss(self):
+        truth, reported = support.Watch('/ground_truth', Odometry), support.Watch('/odom', Odometry)
         self.start_rviz(os.path.join(self.path, self.FILE))
         before = self.wait_for('ekf_before', lambda picture: picture.ready)
         ahead = before.x > 0.4
-        for name in SEEN:
-            self.assertEqual(pixels(before, name, ahead), 0, 'arrows before the run: ' + name)
+        for name in ARROWS:
+            self.assertEqual(arrow_pixels(before, name, ahead), 0, 'arrows before the run: ' + name)
 
         subprocess.run(['rosrun', PACKAGE, 'timed_out_and_back.py'], check=True, timeout=WAIT)
-        # out to 0.92 m and a half-star there; back to the left of the start, where the robot's picture hides some of it
+        # out to 0.92 m and a half-star there; back to the left of the start, where the robot hides some of the arrows
         star = (before.x > 0.6) & (before.y > 0.05)
         home = (before.x < 0.4) & (before.y > 0.15)
         after = self.wait_for('ekf_after', lambda picture: all(
-            pixels(picture, name, where) > ARROW for name in SEEN for where in (star, home)))
+            arrow_pixels(picture, name, where) > ARROW for name in ARROWS for where in (star, home)))
         self.assertFalse(after.warnings or after.errors, after.status)
-        self.assertFalse(pixels(after, 'Odometry', star), 'the arrows of /odom are not ticked')
-        for name in SEEN:
-            self.assertFalse(pixels(after, name, before.y < -0.05), 'arrows to the right: ' + name)
+        for name in ARROWS:
+            self.assertFalse(arrow_pixels(after, name, before.y < -0.05), 'arrows to the right: ' + name)
+
+        # the solid robot is white on its rim; the ghost is seen where the other one does not cover it
+        from_truth, from_odometry = distance(after, truth.last), distance(after, reported.last)
+        rim = (from_truth > 0.6 * RADIUS) & (from_truth < 0.95 * RADIUS)
+        self.assertGreater((after.white & rim).sum(), 0.4 * rim.sum(), 'the true robot is not solid')
+        crescent = (from_odometry < 0.95 * RADIUS) & (from_truth > 1.2 * RADIUS)
+        self.assertGreater(crescent.sum(), 500, 'odometry and truth are too near each other to tell the robots apart')
+        self.assertGreater((after.ghost & crescent).sum(), 0.8 * crescent.sum(), 'the robot by odometry is no ghost')
         self.assertEqual(self.console_errors(), [])
         self.assertEqual(self.rosout, [])
 

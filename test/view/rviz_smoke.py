@@ -84,7 +84,10 @@ class Picture:
         self.marks = lit(view, MARKS)
         self.arrows = {each['Name']: lit(view, colour(each['Shape']['Color']))
                        for each in manager['Displays'] if each['Class'] == 'rviz/Odometry'}
-        self.red = self.arrows['Odometry']
+        self.red = self.arrows['Odometry (red)']
+        # a solid base is white; a ghost lets the background (48) and the arrows (0 in some channel) shine through
+        self.white = view.min(axis=-1) > 200
+        self.ghost = (view.min(axis=-1) > 54) & ~self.white
 
     @property
     def status(self):
@@ -233,7 +236,7 @@ class RvizSmoke(RvizTest):
     def test_trouble_is_seen(self):
         """The other test can fail: a copy of the file with two mistakes in it shows up in all three places."""
         config = copy.deepcopy(self.config)
-        display(config, 'RobotModel')['Robot Description'] = 'no_such_parameter'
+        display(config, 'Robot by odometry')['Robot Description'] = 'no_such_parameter'
         config['Visualization Manager']['Displays'].append({'Class': 'rviz/NoSuchDisplay', 'Name': 'No such display'})
         path = os.path.join(self.scratch, 'broken.rviz')
         with open(path, 'w') as file:

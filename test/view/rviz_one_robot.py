@@ -1,0 +1,37 @@
+#!/usr/bin/python3
+"""nav_ekf.rviz where there is no surface: one solid robot, and nothing in trouble.
+
+Keeps its pictures in the directory that the environment variable RBX1_PICTURE_DIR names, if it is set.
+"""
+import os
+import subprocess
+import sys
+
+import rospy
+import rostest
+
+from rviz_ekf import arrow_pixels
+from rviz_smoke import ARROW, PACKAGE, WAIT, RvizTest
+
+
+class RvizOneRobot(RvizTest):
+    FILE = 'nav_ekf.rviz'
+
+    def test_one_solid_robot(self):
+        self.start_rviz(os.path.join(self.path, self.FILE))
+        before = self.wait_for(NAME + '_before', lambda picture: picture.ready)
+        subprocess.run(['rosrun', PACKAGE, 'timed_out_and_back.py'], check=True, timeout=WAIT)
+        star = (before.x > 0.6) & (before.y > 0.05)
+        after = self.wait_for(NAME + '_after', lambda picture: picture.ready and all(
+            arrow_pixels(picture, name, star) > ARROW for name in ('Odometry (red)', 'Odometry EKF (green)')))
+        # all of its marks are where it is ready: there is no other robot
+        self.assertLess(after.marks.sum(), 1.5 * after.robot())
+        self.assertFalse(after.errors, after.status)
+        self.assertEqual(self.console_errors(), [])
+        self.assertEqual(self.rosout, [])
+
+
+if __name__ == '__main__':
+    NAME = sys.argv[1]
+    rospy.init_node('rviz_one_robot')
+    rostest.rosrun(PACKAGE, 'rviz_one_robot', RvizOneRobot)
