@@ -16,8 +16,7 @@ MAX_AGE = 10 * SECOND   # ns that it may be behind
 
 Estimate = namedtuple('Estimate', 'stamp pose covariance odom')
 Estimate.__doc__ = """The estimated pose: stamp in ns, Pose, 3x3 covariance of x, y (m) and yaw (rad), and the last Odom
-that
-it is based on."""
+that it is based on."""
 
 
 def format_pose(odom):

@@ -105,7 +105,7 @@ class Filter:
         middle = yaw + angle / 2 + direction
         c, s = cos(middle), sin(middle)
         grip = 1 - straight
-        moved = bool(forward or left)       # the rounding is grip up for by the next travel
+        moved = bool(forward or left)       # the next travel makes up for the rounding
         if moved:
             forward, rounding = forward + rounding, 0.0
         along, across = forward * c - left * s, forward * s + left * c

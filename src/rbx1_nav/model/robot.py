@@ -20,8 +20,8 @@ Limits.__doc__ = 'Maximum speeds, m/s and rad/s; infinite where there is no limi
 Robot = namedtuple('Robot', 'name odom_frame_id base_frame_id base_width wheel_radius rate timeout limits publish_tf '
                             'joints hardware unknown')
 Robot.__doc__ = """A robot's configuration. base_width and wheel_radius in m, rate in Hz, timeout in ns; limits: Limits;
-joints: Joint objects; hardware, unknown: sorted names of keys
-without effect, those that only hardware needs and those in the sections below that nobody knows."""
+joints: Joint objects; hardware, unknown: sorted names of keys without effect: those that only hardware needs, and those
+of a controller or joint that are unknown."""
 
 
 def read_joint(name, section):

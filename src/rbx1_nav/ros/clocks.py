@@ -1,10 +1,10 @@
 """The three clocks that a simulated base may run on. All have
 
-    now()           ns on the clock that motion is measured by
-    stamp()         the same moment as a rospy.Time, for message headers
-    set_driver(apply, connections)  apply(command) puts a command in force; connections(): those to publishers of
-    cmd_vel command(twist, command)         calls apply(command) when a received command is to take effect run(step)
-    calls step() at the rate of the odometry until the node is to end
+    now()                           ns on the clock that motion is measured by
+    stamp()                         the same moment as a rospy.Time, for message headers
+    set_driver(apply, connections)  apply(command): puts a command in force; connections(): to publishers of cmd_vel
+    command(twist, command)         calls apply(command) when a received command is to take effect
+    run(step)                       calls step() at the rate of the odometry until the node is to end
 """
 import time
 
