@@ -23,7 +23,7 @@ class Probe:
     def __init__(self, environment, cmd_vel, odom, publish=False):
         self.pipe, theirs = multiprocessing.Pipe()
         fork = multiprocessing.get_context('fork')
-        self.process = fork.Process(target=listen, args=(self.pipe, theirs, environment, cmd_vel, odom, publish))
+        self.process = fork.Process(target=run_probe, args=(self.pipe, theirs, environment, cmd_vel, odom, publish))
         self.process.start()
         theirs.close()
 
@@ -36,8 +36,8 @@ class Probe:
         return answer
 
 
-def listen(ours, pipe, environment, cmd_vel, odom, publish):
-    """The process: subscribes to odometry and to the commands (or publishes them, for the latency), answers requests."""
+def run_probe(ours, pipe, environment, cmd_vel, odom, publish):
+    """The process: subscribes to odometry, subscribes to or publishes commands, and answers the requests."""
     ours.close()
     # Ctrl-C at the terminal reaches this process too, but the parent decides when it ends.
     signal.signal(signal.SIGINT, signal.SIG_IGN)

@@ -1,5 +1,8 @@
-"""The rostests can be told apart: roslaunch runs the first script of a name that it finds anywhere in the package, and
-rostest overwrites the result of another test of the same name."""
+"""No two rostests share a name or a script.
+
+roslaunch runs the first script of a name that it finds in the package, and rostest overwrites the result of a test of
+the same name.
+"""
 import collections
 import os
 import xml.etree.ElementTree as ElementTree

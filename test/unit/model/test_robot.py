@@ -1,4 +1,4 @@
-"""The YAML files of ArbotiX users: read as they are, and rejected with one line if a value makes no sense."""
+"""The YAML files of ArbotiX users: read as they are, and rejected with one line if a value is invalid."""
 import copy
 import glob
 import os

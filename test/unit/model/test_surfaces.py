@@ -1,4 +1,4 @@
-"""Surface files: read in SI units, and rejected with one line if a value makes no sense."""
+"""Surface files: read in SI units, and rejected with one line if a value is invalid."""
 import os
 from math import nan, radians
 from statistics import mean, stdev
