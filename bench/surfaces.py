@@ -50,7 +50,7 @@ def errors(method, robot, surface, seeds):
         consistency.append(error @ numpy.linalg.solve(run.covariance, error))
     return {**dict(zip(('/odom heading RMSE (degrees)', '/odom_ekf heading RMSE (degrees)',
                         '/odom position RMSE (m)', '/odom_ekf position RMSE (m)'), (squares / number) ** 0.5)),
-            'mean normalized estimation error squared': numpy.mean(consistency)}
+            'mean normalised estimation error squared': numpy.mean(consistency)}
 
 
 def speed(method, robot, surface, seeds):
