@@ -1,0 +1,72 @@
+#!/usr/bin/python3
+"""Prints the running system as Mermaid text: the graph of its nodes and topics, and the tree of its tf2 frames."""
+import argparse
+import re
+import time
+
+import rosgraph
+import rospy
+import tf2_ros
+import yaml
+
+LOGGING = {'/rosout', '/rosout_agg'}    # the node of this name, and the topics that all nodes publish
+
+
+def identifier(kind, name):
+    """A name as Mermaid can use it: a node, a topic and a frame may share one."""
+    return '%s_%s' % (kind, re.sub(r'\W', '_', name.lstrip('/')))
+
+
+def node_graph(publishers, subscribers, hidden):
+    """The graph as Mermaid text.
+
+    publishers, subscribers: as of the master's getSystemState, lists of [topic, names of nodes]; hidden: names of nodes.
+    """
+    shapes, arrows = set(), set()
+    for pairs, arrow in ((publishers, '{0} --> {1}'), (subscribers, '{1} --> {0}')):
+        for topic, nodes in pairs:
+            for node in set(nodes) - LOGGING - set(hidden) if topic not in LOGGING else ():
+                ids = identifier('node', node), identifier('topic', topic)
+                shapes.update(('%s(["%s"])' % (ids[0], node), '%s["%s"]' % (ids[1], topic)))
+                arrows.add(arrow.format(*ids))
+    return '\n    '.join(['flowchart LR'] + sorted(shapes) + sorted(arrows))
+
+
+def frame_tree(frames):
+    """The tree as Mermaid text, each transform with the node that publishes it. frames: all_frames_as_yaml() of tf2."""
+    tree = yaml.safe_load(frames) or {}
+    names = set(tree).union(frame['parent'] for frame in tree.values())
+    shapes = ['%s["%s"]' % (identifier('frame', name), name) for name in sorted(names)]
+    arrows = ['%s -->|"%s"| %s' % (identifier('frame', frame['parent']), frame['broadcaster'], identifier('frame', name))
+              for name, frame in sorted(tree.items())]
+    return '\n    '.join(['flowchart LR'] + shapes + arrows)
+
+
+class RunningSystem:
+    """Asks the master and listens to /tf. Needs a node."""
+
+    def __init__(self):
+        self.master = rosgraph.Master(rospy.get_name())
+        self.buffer = tf2_ros.Buffer()
+        self.listener = tf2_ros.TransformListener(self.buffer)
+
+    def draw(self):
+        """Both pictures, as Mermaid texts."""
+        publishers, subscribers, _ = self.master.getSystemState()
+        return node_graph(publishers, subscribers, [rospy.get_name()]), frame_tree(self.buffer.all_frames_as_yaml())
+
+
+def main():
+    """Print both pictures as Markdown blocks."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument('seconds', type=float, nargs='?', default=3.0, help='how long to listen to /tf; default: 3')
+    seconds = parser.parse_args().seconds
+    rospy.init_node('graph', anonymous=True, disable_rostime=True)
+    system = RunningSystem()
+    time.sleep(seconds)
+    for picture in system.draw():
+        print('```mermaid\n%s\n```\n' % picture)
+
+
+if __name__ == '__main__':
+    main()

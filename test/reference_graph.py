@@ -1,0 +1,34 @@
+#!/usr/bin/python3
+"""The pictures of the running system in docs/reference.md are what script/graph.py draws of it."""
+import os
+import re
+import sys
+import unittest
+
+import rospkg
+
+import support
+
+PACKAGE = rospkg.RosPack().get_path('rbx1_nav')
+sys.path.insert(0, os.path.join(PACKAGE, 'script'))
+import graph        # noqa: E402  (found there)
+
+
+class TestReferenceGraph(unittest.TestCase):
+    maxDiff = None
+
+    def test_pictures(self):
+        with open(os.path.join(PACKAGE, 'docs', 'reference.md'), encoding='utf-8') as page:
+            expected = re.findall('```mermaid\n(.*?)\n```', page.read(), re.DOTALL)
+        self.assertEqual(len(expected), 2)
+        support.init_node('reference_graph')
+        system = graph.RunningSystem()
+        try:
+            # nodes come up one after the other
+            support.wait_for(lambda: list(system.draw()) == expected, 'the pictures of docs/reference.md')
+        except AssertionError:
+            self.assertEqual('\n'.join(system.draw()), '\n'.join(expected), 'draw them anew, see CONTRIBUTING.md')
+
+
+if __name__ == '__main__':
+    support.main('reference_graph', TestReferenceGraph)
