@@ -2,6 +2,7 @@
 """Prints the running system as Mermaid text: the graph of its nodes and topics, and the tree of its tf2 frames."""
 import argparse
 import re
+import socket
 import time
 
 import rosgraph
@@ -10,6 +11,13 @@ import tf2_ros
 import yaml
 
 LOGGING = {'/rosout', '/rosout_agg'}    # the node of this name, and the topics that all nodes publish
+# what roslaunch, rospy and roscpp append to an anonymous name: host, process id, random number or time
+ANONYMOUS = re.compile(r'(_%s)?(_\d+)?_\d{9,}$' % re.sub(r'\W', '_', socket.gethostname()))
+
+
+def plain(node):
+    """The name of a node without what makes it anonymous."""
+    return ANONYMOUS.sub('', node)
 
 
 def identifier(kind, name):
@@ -25,7 +33,9 @@ def node_graph(publishers, subscribers, hidden):
     shapes, arrows = set(), set()
     for pairs, arrow in ((publishers, '{0} --> {1}'), (subscribers, '{1} --> {0}')):
         for topic, nodes in pairs:
-            for node in set(nodes) - LOGGING - set(hidden) if topic not in LOGGING else ():
+            if topic in LOGGING:
+                continue
+            for node in map(plain, set(nodes) - LOGGING - set(hidden)):
                 ids = identifier('node', node), identifier('topic', topic)
                 shapes.update(('%s(["%s"])' % (ids[0], node), '%s["%s"]' % (ids[1], topic)))
                 arrows.add(arrow.format(*ids))
@@ -37,8 +47,8 @@ def frame_tree(frames):
     tree = yaml.safe_load(frames) or {}
     names = set(tree).union(frame['parent'] for frame in tree.values())
     shapes = ['%s["%s"]' % (identifier('frame', name), name) for name in sorted(names)]
-    arrows = ['%s -->|"%s"| %s' % (identifier('frame', frame['parent']), frame['broadcaster'], identifier('frame', name))
-              for name, frame in sorted(tree.items())]
+    arrows = ['%s -->|"%s"| %s' % (identifier('frame', frame['parent']), plain(frame['broadcaster']),
+                                   identifier('frame', name)) for name, frame in sorted(tree.items())]
     return '\n    '.join(['flowchart LR'] + shapes + arrows)
 
 

@@ -27,7 +27,8 @@ class TestReferenceGraph(unittest.TestCase):
             # nodes come up one after the other
             support.wait_for(lambda: list(system.draw()) == expected, 'the pictures of docs/reference.md')
         except AssertionError:
-            self.assertEqual('\n'.join(system.draw()), '\n'.join(expected), 'draw them anew, see CONTRIBUTING.md')
+            self.assertEqual('\n'.join(system.draw()), '\n'.join(expected),
+                             '\nThe lines with - are drawn now, those with + are on the page')
 
 
 if __name__ == '__main__':
