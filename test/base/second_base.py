@@ -1,0 +1,73 @@
+#!/usr/bin/python3
+"""A base that is started while another one runs takes its place, and leaves one whole robot."""
+import os
+import signal
+import tempfile
+import unittest
+
+import rosnode
+import rospy
+import tf2_ros
+
+import support
+
+# as in a launch file of somebody's own, with the usual name of the node that publishes the links
+OTHER_NAME = '''<launch>
+  <rosparam command="load" file="$(find rbx1_nav)/config/turtlebot.yaml" ns="my_base"/>
+  <param name="robot_description" textfile="$(find rbx1_nav)/urdf/turtlebot.urdf"/>
+  <node name="my_base" pkg="rbx1_nav" type="fake_base.py"/>
+  <node name="robot_state_publisher" pkg="robot_state_publisher" type="robot_state_publisher"/>
+</launch>'''
+
+
+class TestSecondBase(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        support.init_node('second_base')
+
+    def launch(self, *arguments):
+        """A roslaunch that has started its nodes; it ends with the test."""
+        process = support.Process('roslaunch', *arguments)
+        self.addCleanup(process.kill)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.signal, signal.SIGINT)
+        process.wait_for_line('at the origin of odom' if arguments[0] == 'rbx1_nav' else 'process\\[my_base-')
+        return process
+
+    def assert_whole(self, *links):
+        """Somebody who connects now, as RViz would, finds the way to all links."""
+        buffer = tf2_ros.Buffer(debug=False)
+        listener = tf2_ros.TransformListener(buffer)
+        for link in links:
+            support.wait_for(lambda: buffer.can_transform('odom', link, rospy.Time(0)), 'a transform to ' + link)
+        listener.unregister()
+
+    def test_the_same_base_twice(self):
+        first = self.launch('rbx1_nav', 'fake_turtlebot.launch')
+        self.launch('rbx1_nav', 'fake_turtlebot.launch', 'surface:=low_ply_carpet')
+        first.wait()
+        self.assert_whole('base_l_wheel_link', 'laptop_link')
+        publishers = [name for name in rosnode.get_node_names() if 'robot_state_publisher' in name]
+        self.assertEqual(len(publishers), 1)
+
+    def test_another_robot(self):
+        first = self.launch('rbx1_nav', 'fake_turtlebot.launch')
+        self.launch('rbx1_nav', 'fake_pi_robot.launch')
+        first.wait()
+        self.assert_whole('base_l_wheel_link', 'gripper_link')
+
+    def test_a_base_of_another_name(self):
+        file = tempfile.NamedTemporaryFile('w', suffix='.launch')
+        self.addCleanup(file.close)
+        file.write(OTHER_NAME)
+        file.flush()
+        self.launch('rbx1_nav', 'fake_turtlebot.launch')
+        self.launch(os.path.realpath(file.name))
+        support.wait_for(lambda: '/robot_state_publisher' in rosnode.get_node_names(), 'the second publisher')
+        self.assert_whole('base_l_wheel_link', 'laptop_link')
+        # and the first one's goes on
+        self.assertEqual(len([name for name in rosnode.get_node_names() if 'robot_state_publisher' in name]), 2)
+
+
+if __name__ == '__main__':
+    support.main('second_base', TestSecondBase)
