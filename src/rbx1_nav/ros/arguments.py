@@ -4,10 +4,15 @@ A usage text lists the node's parameters, each on a line of its own that begins 
 follow after commas.
 """
 import difflib
+import os
 import re
 import sys
 
+from rosgraph.names import is_legal_name
 import rospy
+import yaml
+
+EXPECTED = 'expected _parameter:=value or topic:=new_topic'
 
 
 def parameter_names(usage):
@@ -22,44 +27,64 @@ def check_command_line(usage):
     if '-h' in arguments or '--help' in arguments:
         print(usage.strip())
         sys.exit(0)
-    problem = next(filter(None, (_problem(each, parameter_names(usage)) for each in arguments)), None)
-    if problem:
-        print('%s\n\n%s' % (problem, usage.strip()), file=sys.stderr)
-        sys.exit(2)
+    for argument in arguments:
+        problem = find_problem(argument, parameter_names(usage))
+        if problem:
+            # last, so that it stands just above the prompt, as with argparse
+            print('%s\n\n%s: error: %s: %s' % (usage.strip(), os.path.basename(sys.argv[0]), argument, problem),
+                  file=sys.stderr)
+            sys.exit(2)
 
 
-def _problem(argument, names):
-    """What is wrong with an argument, or None."""
-    left, assigned, value = argument.partition(':=')
+def find_problem(argument, names):
+    """What is wrong with a command-line argument, or None. names: of the node's parameters."""
+    left, assigned, right = argument.partition(':=')
     if not assigned:
-        return '%s: unknown argument: expected none but _parameter:=value and name:=new_name' % argument
-    if left.startswith('__'):
+        left, _, right = argument.partition('=')
+        return 'unknown argument' + (_suggestion(left, right, names, 0.6) or ': ' + EXPECTED)
+    if left.startswith('__'):       # __name and the like, for rospy
         return None
     if left.startswith('_'):
-        if left[1:].split('/')[0] in names:
-            return None
-        close = difflib.get_close_matches(left[1:], names, 1)
-        return '%s: unknown parameter%s' % (argument, ': did you mean _%s:=%s?' % (close[0], value) if close else '')
-    if left.lstrip('~/') in names:
-        return '%s is a remapping, not a parameter: write _%s:=%s' % (argument, left.lstrip('~/'), value)
-    return None
+        if left[1:].split('/')[0] not in names:
+            return 'unknown parameter' + _suggestion(left, right, names, 0.6)
+        return None if _is_value(right) else 'expected a value'
+    # a remapping: only a name very close to a parameter's is a mistake
+    suggestion = _suggestion(left, right, names, 0.8)
+    if suggestion:
+        return 'this renames a topic' + suggestion
+    return None if right and is_legal_name(right) else EXPECTED
+
+
+def _suggestion(left, value, names, cutoff):
+    close = difflib.get_close_matches(left.lstrip('-_~/').replace('-', '_'), names, 1, cutoff)
+    return ': did you mean _%s:=%s?' % (close[0], value or 'VALUE') if close else ''
+
+
+def _is_value(text):
+    try:
+        yaml.safe_load(text)
+    except yaml.YAMLError:
+        return False
+    return text and ':=' not in text
 
 
 def report_parameters(usage):
-    """Log the private parameters that have no effect, and those that an earlier run left on the parameter server."""
+    """Log the private parameters that have no effect, and those that an earlier command left on the master."""
     name, names = rospy.get_name(), parameter_names(usage)
     stored = rospy.get_param(name, {})
     if not isinstance(stored, dict):
         return
     unknown = sorted(set(map(str, stored)) - set(names))
-    if unknown:
-        rospy.logwarn('Unknown parameters, without effect: %s (`rosparam delete %s` removes all)',
-                      ', '.join('%s/%s' % (name, each) for each in unknown), name)
-    # roslaunch sets parameters on purpose, and starts its nodes with __log
-    if any(each.startswith('__log:=') for each in sys.argv):
+    if any(argument.startswith('__log:=') for argument in sys.argv):    # by roslaunch, which sets parameters on purpose
+        if unknown:
+            rospy.logwarn('Unknown parameters, without effect: %s', ', '.join(unknown))
         return
-    given = {each.split(':=')[0][1:] for each in sys.argv if each.startswith('_')}
-    remembered = sorted(set(stored) & set(names) - given)
-    if remembered:
-        rospy.logwarn('Set by an earlier command and still in force: %s (`rosparam delete %s` removes all)',
-                      ', '.join('%s = %s' % (each, stored[each]) for each in remembered), name)
+    given = {argument.split(':=')[0][1:].split('/')[0] for argument in sys.argv[1:] if argument.startswith('_')}
+    in_force = ['%s = %s' % (each, stored[each]) for each in sorted(set(stored) & set(names) - given)]
+    # a mapping was loaded from a file, on purpose too
+    if in_force and not any(isinstance(value, dict) for value in stored.values()):
+        rospy.logwarn('Left by an earlier command, still in force: %s (`rosparam delete %s` removes all)',
+                      ', '.join(in_force), name)
+    if unknown:
+        rospy.logwarn('Left by an earlier command, without effect here: %s (`rosparam delete %s` removes all)',
+                      ', '.join(unknown), name)
