@@ -3,8 +3,8 @@
 
 usage: pose.py [topic:=new_topic ...]      it has no parameters
 
-The start is the origin of the odometry's frame. Only a simulated base publishes /ground_truth, and only
-odom_ekf.launch /odom_ekf.
+The start is the origin of the frame odom, where a simulated base stands after its launch and after each reset. Only a
+simulated base publishes /ground_truth, and only odom_ekf.launch /odom_ekf.
 """
 import rbx1_nav.ros.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded
 
@@ -15,47 +15,54 @@ import rospy
 from nav_msgs.msg import Odometry
 
 from rbx1_nav.ros import messages, node
+from rbx1_nav.units import rounded
 
-TOPICS = ('ground_truth', 'odom', 'odom_ekf')
-TIMEOUT = 5.0       # s of wall time for the first message of a topic that has a publisher
-
-
-def number(value, width, digits):
-    """A number as text, with a plain 0 instead of -0."""
-    return '%*.*f' % (width, digits, round(value, digits) + 0.0)
+TOPICS = {'ground_truth': 'truth', 'odom': 'odometry', 'odom_ekf': 'estimate'}
+TIMEOUT = 5.0       # s of wall time to wait for a base, and for a message on each topic that is published
 
 
-def receive(topics):
-    """The latest Odometry of each topic that has one, as a dictionary."""
+def receive():
+    """The latest Odometry of each topic in TOPICS, as a dictionary: None without a message, left out if not published.
+    """
     latest = {}
-    published = {name for name, _ in rospy.get_published_topics()}
-    wanted = [topic for topic in topics if rospy.resolve_name(topic) in published]
-    for topic in wanted:
-        rospy.Subscriber(topic, Odometry, lambda message, topic=topic: latest.__setitem__(topic, message))
+    subscribers = {}
     deadline = time.monotonic() + TIMEOUT
-    while len(latest) < len(wanted) and time.monotonic() < deadline and not node.end_requested.is_set():
-        node.sleep(0.02)
+    while time.monotonic() < deadline and not node.end_requested.is_set():
+        published = {name for name, _ in rospy.get_published_topics()}
+        for topic in TOPICS:
+            if rospy.resolve_name(topic) in published and topic not in subscribers:
+                latest[topic] = None
+                subscribers[topic] = rospy.Subscriber(topic, Odometry, lambda message, topic=topic:
+                                                      latest.__setitem__(topic, message))
+        if latest and all(latest.values()):
+            break
+        node.sleep(0.05)
     return latest
+
+
+def row(topic, latest):
+    """One line of the table."""
+    text = '%-9s %-14s' % (TOPICS[topic], rospy.resolve_name(topic))
+    if topic not in latest:
+        return text + ' not published'
+    if latest[topic] is None:
+        return text + ' no message for %g s' % TIMEOUT
+    pose = latest[topic].pose.pose
+    x, y, yaw = pose.position.x, pose.position.y, messages.yaw_of(pose.orientation)
+    return text + ' %7.3f %7.3f %19.1f %20.3f' % (rounded(x, 3), rounded(y, 3), rounded(degrees(yaw), 1), hypot(x, y))
 
 
 def main():
     """Print a table. Returns the exit status."""
-    node.init_node('pose', __doc__)
-    latest = receive(TOPICS)
-    if not latest:
-        rospy.logerr('No message on %s: expected a running base', ', '.join(map(rospy.resolve_name, TOPICS)))
+    node.init_node('pose', __doc__, wait_for_master=False)
+    latest = receive()
+    if not any(latest.values()):
+        rospy.logerr('No message on %s for %g s: expected a running base',
+                     ', '.join(map(rospy.resolve_name, TOPICS)), TIMEOUT)
         return 1
-    print('%-14s %8s %8s %18s %19s' % ('', 'x (m)', 'y (m)', 'heading (degrees)', 'from the start (m)'))
+    print('%-24s %7s %7s %19s %20s' % ('', 'x (m)', 'y (m)', 'heading (degrees)', 'from the start (m)'))
     for topic in TOPICS:
-        name = rospy.resolve_name(topic)
-        if topic in latest:
-            pose = latest[topic].pose.pose
-            x, y = pose.position.x, pose.position.y
-            print('%-14s %s %s %s %s' % (name, number(x, 8, 3), number(y, 8, 3),
-                                         number(degrees(messages.yaw_of(pose.orientation)), 18, 1),
-                                         number(hypot(x, y), 19, 3)))
-        else:
-            print('%-14s not published' % name)
+        print(row(topic, latest))
     return 0
 
 

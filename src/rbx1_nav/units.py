@@ -15,3 +15,8 @@ def clamp(value, limit):
 def wrap_angle(angle):
     """The equivalent angle between -pi and pi, rad."""
     return remainder(angle, 2 * pi)
+
+
+def rounded(value, digits):
+    """value, rounded to be printed with so many decimals: 0 in place of -0."""
+    return round(value, digits) + 0.0

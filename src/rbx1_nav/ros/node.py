@@ -14,6 +14,7 @@ import rospy
 from rospy.impl.paramserver import get_param_server_cache
 
 from rbx1_nav.ros.arguments import check_command_line, report_parameters
+from rbx1_nav.ros.master import require_master
 
 EXIT_DEADLINE = 1.4         # s of wall time from the request to the end of the process, whatever hangs
 UNREGISTER_TIMEOUT = 0.25   # s of wall time for the master to unregister the node
@@ -52,14 +53,17 @@ class _Terminal:
             os.dup2(os.open(os.devnull, os.O_WRONLY), self._stream.fileno())
 
 
-def init_node(name, usage):
+def init_node(name, usage, wait_for_master=True):
     """Start the node `name`. From here on, Ctrl-C, kill, a closed terminal and `rosnode kill` set end_requested.
 
     usage: printed for --help, and for a command line that does not fit the parameters it lists; both end the process.
+    wait_for_master: whether to wait, as rospy does, for a master that is not running yet.
     Raises ROSInterruptException if the node is to end before it is registered, ROSException if the master does not
     answer.
     """
     check_command_line(usage)
+    if not wait_for_master:
+        require_master()
     read_end, write_end = os.pipe()
     os.set_blocking(write_end, False)
     signal.set_wakeup_fd(write_end)     # a signal writes to the pipe; the handler itself does nothing

@@ -1,29 +1,12 @@
 """Waits for the subscribers of a topic: what is published before they are connected is lost."""
 import threading
 import time
-from xmlrpc.client import ServerProxy, Transport
 
 import rosgraph
 import rospy
 
+from rbx1_nav.ros.master import call
 from rbx1_nav.ros.node import end_requested, sleep
-
-CALL_TIMEOUT = 2.0      # s of wall time in which the master, or a live node, answers a call
-
-
-class _TimeoutTransport(Transport):
-    """XML-RPC with a timeout."""
-
-    def make_connection(self, host):
-        connection = super().make_connection(host)
-        connection.timeout = CALL_TIMEOUT
-        return connection
-
-
-def _call(uri, method, *args):
-    """The result of a call to the master or a node. Raises OSError or xmlrpc.client.Error if it fails."""
-    with ServerProxy(uri, transport=_TimeoutTransport()) as server:
-        return getattr(server, method)(rospy.get_name(), *args)[2]
 
 
 class _SubscriberMonitor(threading.Thread):
@@ -40,7 +23,7 @@ class _SubscriberMonitor(threading.Thread):
         master = rosgraph.get_master_uri()
         while not self.done.is_set():
             try:
-                _, subscribers, _ = _call(master, 'getSystemState')
+                _, subscribers, _ = call(master, 'getSystemState')
                 names = {name for topic, nodes in subscribers if topic == self.topic for name in nodes}
                 self.live = {name for name in names if self.is_alive_node(master, name)}
             except Exception as error:      # pylint: disable=broad-except
@@ -51,7 +34,7 @@ class _SubscriberMonitor(threading.Thread):
         """Whether a node answers; one that did not is not called again."""
         if name not in self.dead:
             try:
-                _call(_call(master, 'lookupNode', name), 'getPid')
+                call(call(master, 'lookupNode', name), 'getPid')
                 return True
             except Exception:       # pylint: disable=broad-except
                 self.dead.add(name)
