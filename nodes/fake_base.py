@@ -7,7 +7,7 @@ Parameters:
     ~controllers        one diff_controller, see config/turtlebot.yaml
     ~joints             servos, see config/pi_robot.yaml (default: none)
     ~surface            ideal, hard_floor, low_ply_carpet, or the absolute path of a surface file (default: ideal)
-    ~seed               integer that slip and gyro errors are drawn from (default: random, the log shows it)
+    ~seed               integer that slip and gyro errors are drawn from, or random; the log shows it (default: random)
     ~real_time_factor   simulated time, at most so many times as fast as real time (default: real time)
     ~publish_tf         whether to publish the transform to the base frame (default: true)
     ~sim, ~diagnostic_period, ~port, ~baud, ~rate, ~sync_write, ~sync_read, ~read_rate, ~write_rate
@@ -15,7 +15,6 @@ Parameters:
 """
 import rbx1_nav.ros.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded
 
-import random
 import threading
 
 import rospy
@@ -28,7 +27,7 @@ from std_srvs.srv import Empty as EmptyService, EmptyResponse
 from rbx1_nav.config import ConfigError, positive
 from rbx1_nav.model.joints import JointGroup
 from rbx1_nav.model.robot import read_robot
-from rbx1_nav.model.surfaces import load_surface, read_seed
+from rbx1_nav.model.surfaces import RANDOM, load_surface, read_seed
 from rbx1_nav.model.wheels import IdealWheels
 from rbx1_nav.ros import messages, node, resources
 from rbx1_nav.ros.base_publisher import BasePublisher
@@ -93,13 +92,13 @@ class FakeBase:
         """Put the robot back at the origin, at rest."""
         with self.lock:
             self.base.advance(self.clock.now())
-            moving = self.base.gate.moving
             self.base.reset()
         self.reset_pub.publish()
-        if moving:
-            rospy.logwarn('Reset while driving: back at the origin, but the rest of this run will not lead home.')
+        driver = self.commands.driver()
+        if driver:
+            rospy.logwarn('Reset in mid-run: %s will not end where it started. Reset again after it has ended', driver)
         else:
-            rospy.loginfo('Back at the origin.')
+            rospy.loginfo('Reset: %s is back at the origin of %s', self.robot.base_frame_id, self.robot.odom_frame_id)
         return EmptyResponse()
 
     def diagnose(self, status):
@@ -126,18 +125,18 @@ def main():
     try:
         robot = read_robot(rospy.get_param(rospy.get_name(), {}))
         surface = load_surface(rospy.get_param('~surface', 'ideal'), resources.surfaces())
-        seed = read_seed(rospy.get_param('~seed', random.randrange(10 ** 6)))
+        seed = read_seed(rospy.get_param('~seed', RANDOM))
         factor = read_factor()
     except ConfigError as error:
         rospy.logfatal('%s/%s', rospy.get_name(), error)
         return 1
     if robot.hardware:
-        rospy.loginfo('Simulated: %d keys that only hardware needs are ignored', len(robot.hardware))
+        rospy.loginfo('Simulated base: %d parameters that only hardware needs are ignored', len(robot.hardware))
     if robot.unknown:
         rospy.logwarn('Unknown parameters, without effect: %s', ', '.join(robot.unknown))
     rospy.loginfo('Surface: %s', '%s; seed:=%d repeats this run' % (surface.name, seed) if surface else 'ideal')
     base = FakeBase(robot, make_base(robot, surface, seed), make_clock(factor, robot.rate))
-    rospy.loginfo('%s at the origin of %s', robot.base_frame_id, robot.odom_frame_id)
+    rospy.loginfo('Ready: %s stands at the origin of %s', robot.base_frame_id, robot.odom_frame_id)
     base.clock.run(base.step)
     return 0
 

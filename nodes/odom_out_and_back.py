@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Out and back by odometry: forward 1 m, turn left 180 degrees, and the same again, measured by the robot's pose.
 
-usage: odom_out_and_back.py [_parameter:=value ...]      for example _odom_frame:=odom_combined
+usage: odom_out_and_back.py [_parameter:=value ...] [topic:=new_topic ...]
+example: rosrun rbx1_nav odom_out_and_back.py _odom_frame:=odom_combined
 
 Parameters:
     ~rate               commands per second, Hz (default: 50)
@@ -83,9 +84,9 @@ class OutAndBack:
             self.stop()
 
         end = self.poses.wait(self.transform_timeout)
-        rospy.loginfo('Done: by the frame %s, the robot stands %.3f m from where it started, turned by %.1f degrees.',
+        rospy.loginfo('Done: measured in %s, the robot is %.3f m from its start and %.1f degrees off its first heading',
                       self.poses.odom_frame, hypot(end.x - start.x, end.y - start.y),
-                      degrees(wrap_angle(end.yaw - start.yaw)))
+                      degrees(abs(wrap_angle(end.yaw - start.yaw))))
 
     def drive(self, leg):
         """One leg: look at the pose, and drive on until the goal is reached."""

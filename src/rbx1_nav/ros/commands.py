@@ -8,6 +8,9 @@ from rbx1_nav.ros import messages
 from rbx1_nav.units import SECOND
 
 
+RECENT = SECOND * 3 // 2    # ns: a node whose last command is older than that does not drive; rests last 1 s
+
+
 class VelocityCommands:
     """Subscribes to cmd_vel, and logs what the gate does to a command."""
 
@@ -19,6 +22,7 @@ class VelocityCommands:
         self.clock = clock
         self.lock = lock
         self.topic = rospy.resolve_name('cmd_vel')
+        self.sender = None          # the connection header of the last command
         self.subscriber = None      # a command may arrive before the next line is done
         clock.set_driver(self.apply, self.connections)
         self.subscriber = rospy.Subscriber('cmd_vel', Twist, self.on_twist, queue_size=None, tcp_nodelay=True)
@@ -29,6 +33,7 @@ class VelocityCommands:
 
     def on_twist(self, twist):
         """A command arrives: the clock decides when it is put in force."""
+        self.sender = twist._connection_header
         command = messages.from_twist(twist)
         if any(command[2]):
             rospy.logwarn_throttle(5, '%s: linear.y, linear.z, angular.x, angular.y = %s: a differential drive cannot '
@@ -46,6 +51,14 @@ class VelocityCommands:
         if clamped:
             rospy.logwarn_throttle(5, '%s: %g m/s, %g rad/s: expected at most %g and %g; clamped'
                                    % ((self.topic,) + command[:2] + self.gate.limits))
+
+    def driver(self):
+        """The name of the node that drives the base now, also while it rests between two motions; None if none does."""
+        last = self.gate.command_time
+        if last is None or self.clock.now() - last > RECENT:
+            return None
+        return next((connection.header['callerid'] for connection in self.connections()
+                     if connection.header is self.sender), None)
 
     def log_timeout(self):
         """Log that the command in force timed out."""

@@ -1,8 +1,9 @@
 """The robot's pose by tf2, for a driving script that measures its way."""
-from math import atan2, hypot
+from math import atan2
 import time
 
 import rospy
+from std_msgs.msg import Empty
 import tf2_ros
 import yaml
 
@@ -12,8 +13,6 @@ from rbx1_nav.units import wrap_angle
 
 MAX_AGE = 0.5       # s: older transforms are not used
 BASE_FRAMES = ('base_footprint', 'base_link')   # usual names of a robot's base, REP 105 and REP 120
-MAX_SPEED, MAX_TURN_RATE = 2.0, 5.0     # m/s and rad/s: a pose that moves faster has jumped
-JUMP_TOLERANCE = 0.05   # m and rad in addition
 
 
 class LostTransform(Exception):
@@ -29,6 +28,8 @@ class PoseListener:
         self.base_frames = [base_frame] if base_frame else BASE_FRAMES
         self.buffer = tf2_ros.Buffer()
         self.listener = tf2_ros.TransformListener(self.buffer)
+        self.reset = False  # whether the base was reset
+        self.reset_sub = rospy.Subscriber('reset_odometry', Empty, self._on_reset)
         self.last = None    # (stamp in s, Pose)
         self.velocity = Pose(0.0, 0.0, 0.0)     # between the last two transforms, m/s and rad/s
 
@@ -40,8 +41,10 @@ class PoseListener:
     def pose(self):
         """The Pose now, extrapolated from the last two transforms; yaw within two turns of 0.
 
-        Raises LostTransform, and ROSException if the pose has jumped.
+        Raises LostTransform, and ROSException if the base was reset since the first pose.
         """
+        if self.reset:
+            raise rospy.ROSException('The base was reset in mid-run: its pose is no longer measured from the start')
         transform = self._look_up()
         stamp = transform.header.stamp.to_sec()
         age = rospy.get_time() - stamp
@@ -69,19 +72,17 @@ class PoseListener:
             if end_requested.is_set():
                 raise rospy.ROSInterruptException('shutdown requested')
 
+    def _on_reset(self, _):
+        self.reset = self.last is not None
+
     def _update(self, stamp, pose):
         elapsed = stamp - self.last[0] if self.last else -1.0
         if elapsed < 0:
             self.velocity = Pose(0.0, 0.0, 0.0)
         elif elapsed > 0:
             before = self.last[1]
-            turned = wrap_angle(pose.yaw - before.yaw)
-            if (hypot(pose.x - before.x, pose.y - before.y) > MAX_SPEED * elapsed + JUMP_TOLERANCE
-                    or abs(turned) > MAX_TURN_RATE * elapsed + JUMP_TOLERANCE):
-                text = '(%.3f m, %.3f m, %.3f rad)'
-                raise rospy.ROSException('The pose in %s jumped from %s to %s: was the base, or its odometry, reset?'
-                                         % (self.odom_frame, text % before, text % pose))
-            self.velocity = Pose((pose.x - before.x) / elapsed, (pose.y - before.y) / elapsed, turned / elapsed)
+            self.velocity = Pose((pose.x - before.x) / elapsed, (pose.y - before.y) / elapsed,
+                                 wrap_angle(pose.yaw - before.yaw) / elapsed)
         self.last = stamp, pose
 
     def _look_up(self):
