@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Out and back, by time alone: forward 1 m, turn left 180 degrees, and the same again.
 
-usage: timed_out_and_back.py [_parameter:=value ...]      for example _goal_distance:=0.5
+usage: timed_out_and_back.py [_parameter:=value ...] [topic:=new_topic ...]
+example: rosrun rbx1_nav timed_out_and_back.py _goal_distance:=0.5
 
 Parameters:
     ~rate               commands per second, Hz (default: 50)
@@ -66,7 +67,8 @@ class OutAndBack:
             # However it ended: the most important thing that a mobile robot must do.
             self.stop()
 
-        rospy.loginfo('Done: commanded %.2f m forward and %.2f rad to the left.',
+        rospy.loginfo('Done: commanded %.2f m forward and %.2f rad to the left. To see where that led: '
+                      'rosrun rbx1_nav pose.py',
                       sum(motion.ticks * motion.linear for motion in motions) / self.rate,
                       sum(motion.ticks * motion.angular for motion in motions) / self.rate)
 
@@ -80,8 +82,8 @@ class OutAndBack:
         rospy.loginfo('%s: %.2f %s at %g %s/s', motion.name, motion.ticks * speed / self.rate, unit, speed, unit)
 
         # The progress bar is for a terminal: with disable=None, tqdm leaves it out elsewhere.
-        ticks = tqdm(range(motion.ticks), desc=motion.name, unit_scale=speed / self.rate, unit=unit, disable=None,
-                     bar_format='{desc:9}: |{bar}| {n_fmt} of {total_fmt} {unit}')
+        ticks = tqdm(range(motion.ticks), desc=motion.name, disable=None,
+                     bar_format='{desc:9}: |{bar}| {n} of {total} commands')
         rate = Rate(self.rate, self.cmd_vel)
         for _ in ticks:
             self.cmd_vel.publish(command)
