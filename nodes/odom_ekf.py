@@ -7,6 +7,7 @@ Both odometries start where the robot does, so /odom_ekf has the frames of odom:
 """
 import rbx1_nav.ros.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded
 
+from math import inf
 import time
 
 import rospy
@@ -42,13 +43,17 @@ class OdomEkf:
     def run(self):
         """Until the node is to end. Warns once if there is nothing to republish."""
         deadline = time.monotonic() + PATIENCE
-        while time.monotonic() < deadline and not (self.frames and self.last) and not node.end_requested.is_set():
-            node.sleep(deadline - time.monotonic())
-        received = {'odom': self.frames, 'odom_combined': self.last}
-        missing = [rospy.resolve_name(topic) for topic in received if not received[topic]]
-        if missing and not node.end_requested.is_set():
-            rospy.logwarn('No message on %s after %d s: /odom_ekf is published as soon as there is a base and a filter',
-                          ' and '.join(missing), PATIENCE)
+        while not (self.frames and self.last):
+            if node.end_requested.is_set():
+                return
+            if time.monotonic() > deadline:
+                deadline = inf      # one warning is enough
+                # the filter needs odometry too: without a base both topics are silent
+                topic, source = ('odom_combined', 'filter') if self.frames else ('odom', 'base')
+                rospy.logwarn('No message on %s for %d s: expected a running %s; %s follows as soon as there is one',
+                              rospy.resolve_name(topic), PATIENCE, source, self.publisher.resolved_name)
+            node.sleep(1)
+        rospy.loginfo('Publishing %s', self.publisher.resolved_name)
         node.end_requested.wait()
 
 
