@@ -20,10 +20,10 @@ import yaml
 from rbx1_nav.config import ConfigError
 from rbx1_nav.model.robot import read_robot
 from rbx1_nav.model.surfaces import known_surfaces, load_surface, read_seed
-from rbx1_nav.plots import PATHS, draw, file_formats
+from rbx1_nav.plots import PATHS, check_picture, draw
 from rbx1_nav.ros import resources
 from rbx1_nav.simulation import METHODS, simulate_many
-from rbx1_nav.units import wrap_angle
+from rbx1_nav.units import rounded, wrap_angle
 
 MOMENT = 1.0    # s: what takes longer gets a progress bar and all processor cores
 
@@ -51,12 +51,11 @@ def read_arguments():
             parser.error('--%s: %d: expected 1 to a million' % (name, getattr(arguments, name)))
     if os.path.splitext(arguments.surface)[1]:      # a name has none
         arguments.surface = os.path.abspath(arguments.surface)
-    if arguments.plot:
-        known = file_formats()
-        if os.path.splitext(arguments.plot)[1][1:] not in known:
-            parser.error('--plot: %s: expected a name that ends in one of .%s' % (arguments.plot, ', .'.join(known)))
-        if not os.path.isdir(os.path.dirname(os.path.abspath(arguments.plot))):
-            parser.error('--plot: %s: expected a folder that exists' % arguments.plot)
+    if arguments.plot is not None:
+        try:
+            check_picture(arguments.plot)
+        except ConfigError as error:
+            parser.error('--plot: %s: %s' % (arguments.plot, error))
     arguments.method = list(dict.fromkeys(arguments.method or METHODS))
     return arguments
 
@@ -75,14 +74,14 @@ def run_all(method, robot, surface, seeds, arguments):
 
 def spread(values):
     """Mean and standard deviation, as text."""
-    return '%8.3f +- %5.3f' % (numpy.mean(values), numpy.std(values))
+    return '%8.3f +- %5.3f' % (rounded(numpy.mean(values), 3), numpy.std(values))
 
 
 def spread_of_angles(angles):
     """The same for angles in rad, in degrees: their mean is that of their directions."""
     mean = atan2(sum(map(sin, angles)), sum(map(cos, angles)))
     around = [degrees(wrap_angle(angle - mean)) for angle in angles]
-    return '%8.2f +- %5.2f' % (degrees(mean) + numpy.mean(around), numpy.std(around))
+    return '%8.2f +- %5.2f' % (rounded(degrees(mean) + numpy.mean(around), 2), numpy.std(around))
 
 
 def report(method, results):
@@ -112,7 +111,8 @@ def load_robot(path):
 def main():
     """Simulate, print, draw. Returns the exit status."""
     signal.signal(signal.SIGPIPE, signal.SIG_DFL)               # the reader of a pipe may have seen enough
-    signal.signal(signal.SIGTERM, signal.default_int_handler)   # as Ctrl-C: no process is left behind
+    for number in (signal.SIGINT, signal.SIGTERM):              # either ends the other processes too
+        signal.signal(number, signal.default_int_handler)
     try:
         arguments = read_arguments()
         surface = load_surface(arguments.surface, resources.surfaces())

@@ -1,16 +1,30 @@
 """Pictures of simulated runs, with matplotlib."""
 from math import cos, sin
+import os
 
 from matplotlib.figure import Figure
 import numpy
+
+from rbx1_nav.config import ConfigError
 
 PATHS = 20      # paths in a picture; more would hide each other
 TITLES = {'timed': 'by time', 'odom': 'by odometry', 'ekf': 'by odometry and gyro'}
 
 
-def file_formats():
-    """The file name extensions that a picture can have, sorted."""
-    return sorted(Figure().canvas.get_supported_filetypes())
+def check_picture(path):
+    """Try whether a picture can be written to this path. Raises ConfigError."""
+    formats = sorted(set(Figure().canvas.get_supported_filetypes()) - {'pgf'})      # that one needs LaTeX
+    if os.path.splitext(path)[1][1:].lower() not in formats:
+        raise ConfigError('expected a name that ends in one of .%s' % ', .'.join(formats))
+    if not os.path.isdir(os.path.dirname(os.path.abspath(path))):
+        raise ConfigError('expected a folder that exists')
+    new = not os.path.lexists(path)
+    try:
+        open(path, 'ab').close()        # the permissions alone do not say all
+        if new:
+            os.remove(path)
+    except OSError as error:
+        raise ConfigError('expected a file that can be written: %s' % error.strerror)
 
 
 def draw(file, surface, results):
