@@ -11,7 +11,8 @@ Parameters:
     ~odom_used          only true is accepted
     ~vo_used            only false is accepted
     ~output_frame       frame of the combined pose (default: odom)
-    ~surface            where the initial uncertainties come from (default: the simulated base's, or low_ply_carpet)
+    ~surface            where the initial uncertainties come from, as of the base, or auto: the simulated base's own,
+                        and low_ply_carpet for a real one (default: auto)
     ~diagnostic_period  of /diagnostics, s (default: 1)
 """
 import rbx1_nav.ros.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded

@@ -13,6 +13,7 @@ import yaml
 
 from rbx1_nav.config import ConfigError, Section
 
+RANDOM = 'random'   # the word for a seed that is drawn anew
 FRACTION = dict(low=0.0, high=0.5, closed=True, expected='a fraction from 0 to 0.5')
 
 
@@ -82,10 +83,12 @@ def read_surface(values, name):
 
 
 def read_seed(value):
-    """A seed: an integer from 0 to 2147483647, or its digits as text. Raises ConfigError."""
+    """A seed: an integer from 0 to 2147483647, its digits as text, or `random` for a new one. Raises ConfigError."""
+    if value == RANDOM:
+        return random.randrange(10 ** 6)
     seed = int(value) if isinstance(value, str) and re.match(r'^\d{1,10}$', value, re.ASCII) else value
     if not isinstance(seed, int) or isinstance(seed, bool) or not 0 <= seed < 2 ** 31:
-        raise ConfigError('seed: %r: expected an integer from 0 to %d' % (value, 2 ** 31 - 1))
+        raise ConfigError('seed: %r: expected %s, or an integer from 0 to %d' % (value, RANDOM, 2 ** 31 - 1))
     return seed
 
 

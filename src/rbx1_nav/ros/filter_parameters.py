@@ -5,6 +5,7 @@ from rbx1_nav.config import ConfigError, Section
 from rbx1_nav.model.surfaces import load_surface
 from rbx1_nav.ros import resources
 
+AUTO = 'auto'       # the surface of the simulated base, or else
 DEFAULT_SURFACE = 'low_ply_carpet'
 
 
@@ -17,23 +18,24 @@ def read_parameters():
         publish_tf=section.flag('publish_tf', True),
         imu_used=section.flag('imu_used', True),
         output_frame=section.frame('output_frame', 'odom'),
-        surface=section.get('surface', ''))
+        surface=section.get('surface', AUTO))
     if not section.flag('odom_used', True):
         raise ConfigError('odom_used: False: expected true, nothing else measures the distance')
     if section.flag('vo_used', False):
         raise ConfigError('vo_used: True: expected false, visual odometry is not supported')
-    if values['surface']:
+    if values['surface'] != AUTO:
         load_surface(values['surface'], resources.surfaces())
     return values
 
 
 def find_surface(name, base):
-    """The Surface of this name; if the name is empty, that of the node `base`, or else DEFAULT_SURFACE.
+    """The Surface of this name; for AUTO, that of the node `base`, or else DEFAULT_SURFACE.
 
     A simulated base has a parameter `surface`; a real one is taken to stand on carpet, like the tutorial's.
     """
     try:
-        name = name or rospy.get_param(base + '/surface', DEFAULT_SURFACE)
+        if name == AUTO:
+            name = rospy.get_param(base + '/surface', DEFAULT_SURFACE)
         surface = load_surface(name, resources.surfaces())
     except (ConfigError, OSError) as error:     # or no answer from the master
         rospy.logwarn('%s/%s; using %s instead', base, error, DEFAULT_SURFACE)
