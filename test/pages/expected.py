@@ -1,0 +1,41 @@
+"""Compares what a page says that a terminal shows with what it does show."""
+import re
+
+NUMBER = r'[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?'
+TOKEN = re.compile(r'(?P<any>\.\.\.)|(?P<number>' + NUMBER + r')|(?P<space>\s+)|.')
+
+
+def pattern(expected):
+    """The regular expression for a line of the page, and its numbers."""
+    parts, numbers = [], []
+    for token in TOKEN.finditer(expected.strip()):
+        if token['any']:
+            parts.append('.*')
+        elif token['number']:
+            parts.append('(%s)' % NUMBER)
+            numbers.append(float(token['number']))
+        else:
+            parts.append(r'\s+' if token['space'] else re.escape(token[0]))
+    return re.compile(r'\s*' + ''.join(parts) + r'\s*'), numbers
+
+
+def same(expected, line, tolerance=None):
+    """Whether a line of a terminal is as expected. ... matches any text, a number any number within the tolerance."""
+    regex, numbers = pattern(expected)
+    match = regex.fullmatch(line)
+    return bool(match) and (tolerance is None or all(
+        # 1e-9 for what decimals lose in binary
+        abs(float(shown) - number) <= tolerance + 1e-9 for shown, number in zip(match.groups(), numbers)))
+
+
+def find(expected, lines, tolerance=None):
+    """Look for the expected lines in their order. Returns (indices of those found, the first line missing or None)."""
+    found, ahead = [], iter(enumerate(lines))
+    for wanted in expected:
+        if wanted.strip() in ('', '...'):
+            continue
+        index = next((index for index, line in ahead if same(wanted, line, tolerance)), None)
+        if index is None:
+            return found, wanted
+        found.append(index)
+    return found, None
