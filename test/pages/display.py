@@ -1,0 +1,24 @@
+"""A virtual display."""
+import contextlib
+import os
+import subprocess
+
+
+@contextlib.contextmanager
+def virtual_display():
+    """An X server for the time of this context. The value is its DISPLAY."""
+    ours, its = os.pipe()
+    # displayfd: it chooses a free number and reports it. noreset: it keeps running when its last client leaves
+    server = subprocess.Popen(
+        ['Xvfb', '-displayfd', str(its), '-screen', '0', '1280x800x24', '+extension', 'GLX', '-nolisten', 'tcp',
+         '-noreset'], pass_fds=[its], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    os.close(its)
+    try:
+        with open(ours) as answer:
+            number = answer.readline().strip()
+        if not number:
+            raise RuntimeError('Xvfb does not start')
+        yield ':' + number
+    finally:
+        server.terminate()
+        server.wait()

@@ -1,0 +1,185 @@
+"""Follows a Markdown page as a reader does, with a home directory, terminals and a ROS master of its own."""
+import os
+import re
+import socket
+import time
+
+from . import blocks, expected, processes
+from .master import Master
+from .terminal import BASHRC, PROMPT, Terminal
+
+LIMIT = 300             # s after which a step counts as hanging; generous, for a machine under load
+AFTER_CTRL_C = (0, 130)         # exit status: 130 is 128 + SIGINT
+
+# Output that fails the page unless the page shows it. The last one is roslaunch's, of a node that ended by itself.
+ERROR = re.compile(r'\[ *(ERROR|FATAL)\]|Traceback \(most|RLException|\] process has (died|finished)')
+
+# roscore ignores the port in ROS_MASTER_URI
+ROSCORE = 'roscore() { command roscore -p "${ROS_MASTER_URI##*:}" "$@"; }\n'
+
+
+class PageFailed(AssertionError):
+    """The page and what happens differ. The text includes what the terminals show."""
+
+
+class Session:
+    """A context in which the steps of a page are followed. On exit, processes that are left are killed."""
+
+    def __init__(self, page, home, display='', limit=LIMIT):
+        """page: its name. home: a directory for this page alone. display: DISPLAY. limit: s that a step may take."""
+        self.page, self.home, self.limit = page, home, limit
+        self.line = 0               # of the page
+        self.setup = []             # commands that are typed first in each new terminal
+        self.terminals = {}         # by name
+        self.last = None            # name of the terminal used last
+        self.first = {}             # by name: index of the first line in which output is searched
+        self.shown = set()          # (name, index) of the lines that the page shows
+        with socket.socket() as free:
+            free.bind(('127.0.0.1', 0))
+            uri = 'http://127.0.0.1:%d' % free.getsockname()[1]
+        self.master = Master(uri)
+        # nothing is inherited: the page has to set up what its commands need
+        self.env = {
+            'HOME': home, 'PATH': '/usr/sbin:/usr/bin:/sbin:/bin', 'TERM': 'xterm-256color', 'LANG': 'C.UTF-8',
+            'ROS_MASTER_URI': uri, 'ROS_IP': '127.0.0.1', 'PYTHONDONTWRITEBYTECODE': '1', 'DISPLAY': display,
+            'LIBGL_ALWAYS_SOFTWARE': '1', 'QT_X11_NO_MITSHM': '1', 'QT_QPA_PLATFORM': 'xcb', 'XDG_RUNTIME_DIR': home}
+
+    def __enter__(self):
+        with open(os.path.join(self.home, '.bashrc'), 'w') as file:
+            file.write(BASHRC + ROSCORE)
+        return self
+
+    def __exit__(self, *_):
+        processes.kill(self.home)
+        self.close_terminals()
+
+    def follow(self, steps):
+        """Follow all steps, then end what still runs. Raises PageFailed."""
+        begin = time.monotonic()
+        for step, following in zip(steps, steps[1:] + [None]):
+            self.line = step.line
+            print('%6.1f s  %s:%d %s %s' % (time.monotonic() - begin, self.page, step.line, type(step).__name__,
+                                            ' '.join(map(str, step[1:]))), flush=True)
+            if isinstance(step, blocks.Output):
+                self.check_output(step)
+                continue
+            self.check_errors()
+            if isinstance(step, blocks.Setup):
+                self.set_up(step)
+            elif isinstance(step, blocks.Run):
+                self.open(blocks.RUN)
+                self.run(blocks.RUN, step.commands, step.status)
+            elif isinstance(step, blocks.Interrupt):
+                self.interrupt(step.terminal)
+            else:
+                # output that the page shows is the better sign that a program is up
+                self.start(step, wait=not isinstance(following, blocks.Output))
+        self.end()
+
+    # the steps
+
+    def set_up(self, step):
+        """Type commands in every terminal: now in the open ones, later in the others."""
+        self.setup += step.commands
+        for name, terminal in self.terminals.items():
+            if terminal.status is not None:
+                self.run(name, step.commands)
+
+    def start(self, step, wait):
+        """Type a command that stays in the foreground."""
+        terminal = self.open(step.terminal)
+        before = self.master.nodes()
+        terminal.type(step.command)
+        if wait:
+            self.wait_for(lambda: terminal.status is not None or self.master.is_up(
+                before, terminal.lines[self.first[step.terminal]:]), step.terminal, '%s is not up' % step.command)
+            if terminal.status is not None:
+                self.fail('%s ended with status %d' % (step.command, terminal.status), step.terminal)
+
+    def check_output(self, step):
+        """Wait until a terminal shows all lines."""
+        name = step.terminal or self.last
+        terminal, first = self.terminals[name], self.first[name]
+
+        def complete():
+            # read before the lines: once a command has ended, its output is complete
+            ended = terminal.status is not None
+            found, missing = expected.find(step.lines, terminal.lines[first:], step.tolerance)
+            if missing is None:
+                self.shown.update((name, first + index) for index in found)
+                self.first[name] = first + found[-1] + 1 if found else first
+            elif ended:
+                self.fail('ended with status %d, and no line %r' % (terminal.status, missing), name)
+            return missing is None
+        self.wait_for(complete, name, 'the output does not appear')
+
+    def interrupt(self, name):
+        """Press Ctrl-C."""
+        terminal = self.terminals[name]
+        if terminal.status is not None:
+            self.fail('ended before Ctrl-C, with status %d' % terminal.status, name)
+        self.last, self.first[name] = name, len(terminal.lines) - 1
+        terminal.interrupt()
+        self.wait_for(lambda: terminal.status is not None, name, 'Ctrl-C does not end it')
+        if terminal.status not in AFTER_CTRL_C:
+            self.fail('status %d after Ctrl-C' % terminal.status, name)
+
+    def end(self):
+        """Press Ctrl-C in all terminals where a command runs, the newest first. No process may be left."""
+        for name in reversed(list(self.terminals)):
+            if self.terminals[name].status is None:
+                self.interrupt(name)
+        self.check_errors()
+        self.close_terminals()
+        deadline = time.monotonic() + self.limit
+        while processes.find(self.home):
+            if time.monotonic() > deadline:
+                raise PageFailed('%s: processes left at the end: %s' % (self.page, processes.find(self.home)))
+            time.sleep(0.05)
+
+    # the terminals
+
+    def open(self, name):
+        """Select the terminal of that name; a new one if there is none. Its command has ended."""
+        if name not in self.terminals:
+            terminal = self.terminals[name] = Terminal(self.env)
+            self.wait_for(lambda: terminal.status is not None, name, 'the shell does not start')
+            self.run(name, self.setup)
+        # the last line is the prompt: the command will be on it
+        self.last, self.first[name] = name, len(self.terminals[name].lines) - 1
+        return self.terminals[name]
+
+    def close_terminals(self):
+        """Close all."""
+        while self.terminals:
+            self.terminals.popitem()[1].close()
+
+    def run(self, name, commands, status=0):
+        """Type commands and wait for the end of each."""
+        terminal = self.terminals[name]
+        for command in commands:
+            terminal.type(command)
+            self.wait_for(lambda: terminal.status is not None, name, '%s does not end' % command)
+            if terminal.status != status:
+                self.fail('%s ended with status %d, expected %d' % (command, terminal.status, status), name)
+
+    def wait_for(self, condition, name, trouble):
+        """Wait for a condition of a terminal, or fail."""
+        deadline = time.monotonic() + self.limit
+        while not condition():
+            if time.monotonic() > deadline:
+                self.fail('%s after %g s' % (trouble, self.limit), name)
+            time.sleep(0.05)
+
+    def check_errors(self):
+        """Fail if a command printed an error that the page does not show."""
+        for name, terminal in self.terminals.items():
+            for index, line in enumerate(terminal.lines):
+                if ERROR.search(line) and not line.startswith(PROMPT) and (name, index) not in self.shown:
+                    self.fail('the page does not show %r' % line, name)
+
+    def fail(self, trouble, name):
+        """Fail with what the terminals show, the one in question last."""
+        names = [each for each in self.terminals if each != name] + [name]
+        raise PageFailed('%s:%d: %s\n%s' % (self.page, self.line, trouble, '\n'.join(
+            '--- terminal %s\n%s' % (each, self.terminals[each].screen) for each in names)))
