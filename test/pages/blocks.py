@@ -14,7 +14,7 @@ Directly above each text block a comment says what it is compared with:
     <!-- output -->                   the output of the last block or Ctrl-C: these lines appear in this order, others
                                       may come between. A number matches any number, ... matches any text
     <!-- output of base -->           the output in that terminal, from the last line compared on
-    <!-- output, within 0.05 -->      each number differs by 0.05 or less. exact instead of within 0.05: not at all
+    <!-- output, within 5 -->         each number differs by at most 5 units of its last decimal; exact: not at all
     <!-- not output -->               nothing
 
 Directly above a line of prose that contains "Ctrl-C":
@@ -35,7 +35,7 @@ MARKERS = {kind: re.compile(pattern) for kind, pattern in {
     'terminals': r'terminals?: (?P<names>[\w-]+(?:, [\w-]+)*)',
     'every terminal': r'every terminal',
     'not run': r'not run: (?P<reason>.+)',
-    'output': r'output(?: of (?P<of>[\w-]+))?(?:, (?:within (?P<tolerance>\d+(?:\.\d+)?)|(?P<exact>exact)))?',
+    'output': r'output(?: of (?P<of>[\w-]+))?(?:, (?:within (?P<tolerance>\d+)|(?P<exact>exact)))?',
     'not output': r'not output',
     'Ctrl-C': r'Ctrl-C: (?P<names>[\w-]+(?:, [\w-]+)*)'}.items()}
 FOR_SHELL, FOR_OUTPUT = ('run', 'terminals', 'every terminal', 'not run'), ('output', 'not output')
@@ -169,5 +169,5 @@ class _Reader:
             raise PageError(number, 'output without a command before')
         if values['of'] and not any(isinstance(each, Start) and each.terminal == values['of'] for each in self.steps):
             raise PageError(number, 'no terminal %r before', values['of'])
-        tolerance = 0.0 if values['exact'] else float(values['tolerance']) if values['tolerance'] else None
+        tolerance = 0 if values['exact'] else int(values['tolerance']) if values['tolerance'] else None
         self.steps.append(Output(number, lines, values['of'], tolerance))

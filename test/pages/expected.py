@@ -6,26 +6,30 @@ TOKEN = re.compile(r'(?P<any>\.\.\.)|(?P<number>' + NUMBER + r')|(?P<space>\s+)|
 
 
 def pattern(expected):
-    """The regular expression for a line of the page, and its numbers."""
+    """The regular expression for a line of the page, and (number, unit of its last decimal) for each of its numbers."""
     parts, numbers = [], []
     for token in TOKEN.finditer(expected.strip()):
         if token['any']:
             parts.append('.*')
         elif token['number']:
             parts.append('(%s)' % NUMBER)
-            numbers.append(float(token['number']))
+            decimals = len(token['number'].partition('e')[0].partition('.')[2])
+            numbers.append((float(token['number']), 10 ** -decimals))
         else:
             parts.append(r'\s+' if token['space'] else re.escape(token[0]))
     return re.compile(r'\s*' + ''.join(parts) + r'\s*'), numbers
 
 
 def same(expected, line, tolerance=None):
-    """Whether a line of a terminal is as expected. ... matches any text, a number any number within the tolerance."""
+    """Whether a line of a terminal is as expected. ... matches any text, a number any number within the tolerance.
+
+    tolerance: in units of the last decimal of each number; None for any number.
+    """
     regex, numbers = pattern(expected)
     match = regex.fullmatch(line)
     return bool(match) and (tolerance is None or all(
         # 1e-9 for what decimals lose in binary
-        abs(float(shown) - number) <= tolerance + 1e-9 for shown, number in zip(match.groups(), numbers)))
+        abs(float(shown) - number) <= tolerance * unit + 1e-9 for shown, (number, unit) in zip(match.groups(), numbers)))
 
 
 def find(expected, lines, tolerance=None):

@@ -36,7 +36,7 @@ source ws/setup.bash
    rosrun pkg drive.py
    ```
 
-   <!-- output of base, within 0.5 -->
+   <!-- output of base, within 5 -->
    ```text
    at 1.0 m
      ...
@@ -79,7 +79,7 @@ def test_steps():
         Start(27, 'roslaunch base.launch', 'base'),
         Start(27, 'rosrun rviz rviz', 'rviz'),
         Run(27, ['rosrun pkg drive.py'], 0),
-        Output(34, ['at 1.0 m', '  ...'], 'base', 0.5),
+        Output(34, ['at 1.0 m', '  ...'], 'base', 5),
         Interrupt(39, 'rviz'), Interrupt(39, 'base'),
         Start(43, 'roslaunch base.launch surface:=carpet', 'base'),
         Output(48, ['On carpet'], None, 0.0),

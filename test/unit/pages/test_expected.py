@@ -28,10 +28,9 @@ def test_not_same(expected, line):
 
 @pytest.mark.parametrize('line, tolerance, result', [
     ('0.10 m and 12 degrees', 0, True), ('0.1 m and 12.0 degrees', 0, True), ('0.11 m and 12 degrees', 0, False),
-    ('0.15 m and 11.95 degrees', 0.05, True), ('0.16 m and 12 degrees', 0.05, False),
-    ('0.10 m and 12.1 degrees', 0.05, False)])
+    ('0.15 m and 7.5 degrees', 5, True), ('0.16 m and 12 degrees', 5, False), ('0.10 m and 17.1 degrees', 5, False)])
 def test_tolerance(line, tolerance, result):
-    """It holds for each number of the line."""
+    """In units of the last decimal of each number of the line."""
     assert same('0.10 m and 12 degrees', line, tolerance) is result
 
 
