@@ -101,7 +101,7 @@ class OutAndBack:
                 self.cmd_vel.publish(command)
                 rate.sleep()
                 speed = leg.next_speed(self.pose())
-                bar.update(min(leg.done(), leg.goal) - bar.n)
+                bar.update(max(0, min(leg.done(), leg.goal) - bar.n))
 
     def pose(self):
         """The robot's pose. If it is lost, the robot stands and waits for it."""

@@ -7,7 +7,6 @@ from rbx1_nav.control.gate import RejectedCommand
 from rbx1_nav.ros import messages
 from rbx1_nav.units import SECOND
 
-
 RECENT = SECOND * 3 // 2    # ns: a node whose last command is older than that does not drive; rests last 1 s
 
 

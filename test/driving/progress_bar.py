@@ -1,0 +1,66 @@
+#!/usr/bin/python3
+"""Both driving scripts draw a progress bar for each motion in a terminal, and none in a pipe."""
+import fcntl
+import os
+import re
+import struct
+import subprocess
+import termios
+import threading
+import unittest
+
+import support
+
+
+def output_in_a_terminal(*command):
+    """Run a command in a terminal of its own; returns its exit status and all that it wrote."""
+    terminal, child_end = os.openpty()
+    fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack('HHHH', 24, 80, 0, 0))    # rows and columns
+    process = subprocess.Popen(command, stdin=child_end, stdout=child_end, stderr=child_end, start_new_session=True)
+    os.close(child_end)
+    timer = threading.Timer(support.LIMIT, process.kill)
+    timer.start()
+    output = b''
+    try:
+        while True:
+            output += os.read(terminal, 65536)
+    except OSError:     # the other end is closed
+        pass
+    finally:
+        timer.cancel()
+        os.close(terminal)
+    return process.wait(), output.decode()
+
+
+class TestProgressBar(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        support.init_node('progress_bar')
+
+    def check(self, script, forward, turn):
+        status, output = output_in_a_terminal('rosrun', 'rbx1_nav', script, '_goal_distance:=0.5')
+        self.assertEqual(status, 0, output)
+        bars = re.findall(r'(forward  |turn left): \|[^|]*\| (\S+) of (\S+) (\w+)', output)
+        for name, total, unit in ('forward  ', *forward), ('turn left', *turn):
+            shown = [float(number) for *bar, number, goal, of in bars if bar == [name] and (goal, of) == (total, unit)]
+            # twice from 0 to the goal, with something to see on the way
+            self.assertEqual((shown[0], max(shown), shown[-1]), (0, float(total), float(total)), output)
+            self.assertEqual(sum(number > following for number, following in zip(shown, shown[1:])), 1, output)
+            self.assertTrue([number for number in shown if 0 < number < float(total)], output)
+
+    def test_by_time(self):
+        self.check('timed_out_and_back.py', ('125', 'commands'), ('157', 'commands'))
+
+    def test_by_odometry(self):
+        self.check('odom_out_and_back.py', ('0.50', 'm'), ('3.14', 'rad'))
+
+    def test_in_a_pipe(self):
+        for start in support.out_and_back, support.by_odometry:
+            driver = start('_goal_distance:=0.1')
+            self.addCleanup(driver.kill)
+            self.assertEqual(driver.wait(), 0, driver.output)
+            self.assertFalse([line for line in driver.lines if not line.startswith('[INFO]') and 'WARN' not in line])
+
+
+if __name__ == '__main__':
+    support.main('progress_bar', TestProgressBar)

@@ -1,0 +1,69 @@
+#!/usr/bin/python3
+"""Parameters that an earlier command left on the master are named, with the command that forgets them."""
+import signal
+import subprocess
+import tempfile
+import unittest
+
+import rospy
+
+import support
+
+LAUNCH = """<launch>
+  <node name="out_and_back" pkg="rbx1_nav" type="timed_out_and_back.py" output="screen" required="true">
+    <param name="goal_distance" value="0.1"/>
+    %s
+  </node>
+</launch>"""
+FORGET = 'rosparam delete /out_and_back'
+
+
+class TestRememberedParameters(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        support.init_node('remembered_parameters')
+
+    def tearDown(self):
+        if rospy.has_param('/out_and_back'):
+            rospy.delete_param('/out_and_back')
+
+    def warnings(self, driver):
+        """The warnings of a script until it has looked at its parameters, without time stamps."""
+        self.addCleanup(driver.kill)
+        driver.wait_for_line('forward: ')
+        driver.signal(signal.SIGINT)
+        driver.wait()
+        return [line.split(']: ', 1)[1] for line in driver.lines if '[WARN]' in line]
+
+    def roslaunch(self, more):
+        """Run the script by roslaunch, with one parameter and `more`."""
+        file = tempfile.NamedTemporaryFile('w', suffix='.launch')
+        self.addCleanup(file.close)
+        file.write(LAUNCH % more)
+        file.flush()
+        return support.Process('roslaunch', file.name)
+
+    def test_what_is_still_in_force(self):
+        self.assertEqual(self.warnings(support.out_and_back('_goal_distance:=0.2', '_rate:=40')), [])
+        expected = 'Left by an earlier command, still in force: goal_distance = 0.2%s (`%s` removes all)'
+        # what this command line sets again is no surprise
+        self.assertEqual(self.warnings(support.by_odometry('_rate:=50')), [expected % ('', FORGET)])
+        self.assertEqual(self.warnings(support.out_and_back()), [expected % (', rate = 50', FORGET)])
+        subprocess.run(FORGET.split(), check=True)
+        self.assertEqual(self.warnings(support.out_and_back()), [])
+
+    def test_what_has_no_effect(self):
+        # both scripts have one name: the parameters of the one are on the master when the other one runs
+        self.assertEqual(self.warnings(support.by_odometry('_odom_frame:=odom')), [])
+        rospy.set_param('/out_and_back/goal_distanc', 0.2)
+        expected = 'Left by an earlier command, without effect here: %s (`%s` removes all)'
+        self.assertEqual(self.warnings(support.out_and_back()), [expected % ('goal_distanc, odom_frame', FORGET)])
+
+    def test_what_a_launch_file_sets_is_no_surprise(self):
+        self.assertEqual(self.warnings(self.roslaunch('')), [])
+        self.assertEqual(self.warnings(self.roslaunch('<param name="goal_angl" value="1"/>')),
+                         ['Unknown parameters, without effect: goal_angl'])
+
+
+if __name__ == '__main__':
+    support.main('remembered_parameters', TestRememberedParameters)

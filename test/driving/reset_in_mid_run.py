@@ -1,0 +1,75 @@
+#!/usr/bin/python3
+"""A reset in mid-run: the base names the node that was driving, and the script that measures its way ends with an error."""
+import unittest
+
+import rospy
+from geometry_msgs.msg import Twist
+from rosgraph_msgs.msg import Log
+from std_srvs.srv import Empty
+
+import support
+
+
+class TestResetInMidRun(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        support.init_node('reset_in_mid_run')
+        cls.odom = support.OdomWatch()
+        cls.logs = support.Watch('/rosout', Log)
+        cls.commands = support.Watch('/cmd_vel', Twist)
+        rospy.wait_for_service('/arbotix/reset', support.LIMIT)
+        cls.reset_base = rospy.ServiceProxy('/arbotix/reset', Empty)
+        rospy.wait_for_message('/odom_ekf', rospy.AnyMsg, support.LIMIT)
+
+    def reset(self):
+        """Reset the base; returns the level and text of what it logs."""
+        start = len(self.logs.messages)
+
+        def logged():
+            return next((log for log in self.logs.messages[start:] if log.name == '/arbotix' and 'Reset' in log.msg), None)
+        self.reset_base()
+        log = support.wait_for(logged, 'a line of the base')
+        return log.level, log.msg
+
+    def start(self, script, *arguments):
+        """Run a script until the robot has moved."""
+        driver = script(*arguments)
+        self.addCleanup(driver.kill)
+        support.wait_for(lambda: self.odom.position()[0] > 0.1, 'the robot to move')
+        return driver
+
+    def check_warning(self):
+        self.assertEqual(self.reset(), (Log.WARN, 'Reset in mid-run: /out_and_back will not end where it started. '
+                                                  'Reset again after it has ended'))
+
+    def check_script(self, *arguments):
+        driver = self.start(support.by_odometry, *arguments)
+        self.check_warning()
+        self.assertEqual(driver.wait(), 1, driver.output)
+        errors = [line for line in driver.lines if '[INFO]' not in line and '[WARN]' not in line]
+        self.assertEqual(len(errors), 1, driver.output)
+        self.assertRegex(errors[0], r'\[ERROR\].*: The base was reset in mid-run: '
+                                    'its pose is no longer measured from the start$')
+        self.assertEqual(self.commands.last, Twist())
+        self.check_without_a_driver()
+
+    def check_without_a_driver(self):
+        self.assertEqual(self.reset(), (Log.INFO, 'Reset: base_footprint is back at the origin of odom'))
+
+    def test_by_odometry(self):
+        self.check_script('_odom_frame:=odom')
+
+    def test_by_combined_odometry(self):
+        self.check_script('_odom_frame:=odom_combined')
+
+    def test_by_time(self):
+        driver = self.start(support.out_and_back, '_goal_distance:=0.2')
+        # also while it rests between two motions
+        support.wait_for(lambda: self.odom.last.twist.twist.linear.x == 0, 'a rest')
+        self.check_warning()
+        self.assertEqual(driver.wait(), 0, driver.output)
+        self.check_without_a_driver()
+
+
+if __name__ == '__main__':
+    support.main('reset_in_mid_run', TestResetInMidRun)

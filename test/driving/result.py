@@ -1,0 +1,46 @@
+#!/usr/bin/python3
+"""Each driving script ends with its result: by time what it commanded, by odometry where the robot stands."""
+import math
+import unittest
+
+import rospy
+
+import support
+
+
+class TestResult(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        support.init_node('result')
+        cls.odom = support.OdomWatch()
+
+    def tearDown(self):
+        rospy.delete_param('/out_and_back')     # the next test must not find it
+
+    def last_line(self, driver):
+        self.addCleanup(driver.kill)
+        self.assertEqual(driver.wait(), 0, driver.output)
+        return driver.lines[-1]
+
+    def test_by_time(self):
+        self.assertRegex(self.last_line(support.out_and_back('_goal_distance:=0.5')),
+                         r'^\[INFO\] .*: Done: commanded 1\.00 m forward and 6\.28 rad to the left\. '
+                         'To see where that led: rosrun rbx1_nav pose.py$')
+
+    def test_by_odometry(self):
+        # not from the origin: half a turn, so that the script starts somewhere else than it ends
+        start = support.pose(self.odom.last)
+        driver = support.by_odometry('_goal_distance:=0.5', '_goal_angle:=2.0')
+        line = self.last_line(driver)
+        self.assertIn('Measuring the pose of base_footprint in the frame odom', driver.output)
+        end = support.pose(self.odom.next())
+        distance = math.hypot(end[0] - start[0], end[1] - start[1])
+        turned = math.degrees(abs(support.wrapped(end[2] - start[2])))
+        self.assertGreater(distance, 0.1)
+        self.assertGreater(turned, 100)
+        self.assertIn('Done: measured in odom, the robot is %.3f m from its start and %.1f degrees off its first heading'
+                      % (distance, turned), line)
+
+
+if __name__ == '__main__':
+    support.main('result', TestResult)

@@ -1,0 +1,42 @@
+#!/usr/bin/python3
+"""Ctrl-C while modules are loaded ends each executable at once and without a traceback."""
+import fcntl
+import os
+import signal
+import subprocess
+import unittest
+
+import support
+
+NODES = ['ekf.py', 'fake_base.py', 'odom_ekf.py', 'odom_out_and_back.py', 'pose.py', 'simulate.py',
+         'timed_out_and_back.py']
+F_SETPIPE_SZ = 1031     # fcntl has this name since Python 3.10
+
+
+class TestInterruptedStart(unittest.TestCase):
+    def interrupt(self, name):
+        """Interrupt an executable while it loads its modules; returns its exit status and what it wrote after that."""
+        # Python writes a line for each module that it has loaded. Where nobody reads these lines, it waits with the next
+        # module as soon as the pipe is full: after some 50 of more than 300.
+        read_end, write_end = os.pipe()
+        fcntl.fcntl(write_end, F_SETPIPE_SZ, 4096)
+        process = subprocess.Popen(['rosrun', 'rbx1_nav', name], stdout=write_end, stderr=write_end,
+                                   env=dict(os.environ, PYTHONPROFILEIMPORTTIME='1'))
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)
+        os.close(write_end)
+        with open(read_end, 'rb', buffering=0) as lines:
+            while not lines.readline().rstrip().endswith(b'rbx1_nav.ros.early_interrupt'):
+                self.assertIsNone(process.poll())
+            process.send_signal(signal.SIGINT)
+            return process.wait(support.LIMIT), lines.read().decode()
+
+    def test_interrupt(self):
+        for name in NODES:
+            status, rest = self.interrupt(name)
+            self.assertEqual(status, -signal.SIGINT, rest)
+            self.assertNotIn('Traceback', rest)
+
+
+if __name__ == '__main__':
+    support.main('interrupted_start', TestInterruptedStart)

@@ -1,0 +1,116 @@
+#!/usr/bin/python3
+"""pose.py prints truth, odometry and estimate side by side, and ends by itself, whatever is running."""
+import math
+import re
+import signal
+import unittest
+
+import rospy
+from nav_msgs.msg import Odometry
+
+import support
+
+BASE = {'controllers': {'base': {'type': 'diff_controller', 'base_width': 0.26}},
+        'surface': 'low_ply_carpet', 'seed': 3, 'real_time_factor': 10}
+HEADER = r' +x \(m\) +y \(m\) +heading \(degrees\) +from the start \(m\)'
+ROW = r'(?:truth|odometry|estimate) +(/\w+) +(-?\d+\.\d{3}) +(-?\d+\.\d{3}) +(-?\d+\.\d) +(\d+\.\d{3})'
+
+
+class TestPoseTable(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        support.init_node('pose_table')
+
+    def pose(self, *prefix):
+        """Run pose.py; returns its exit status and its lines."""
+        process = support.Process(*prefix, 'rosrun', 'rbx1_nav', 'pose.py')
+        self.addCleanup(process.kill)
+        return process.wait(), process.lines
+
+    def start(self, node):
+        """Start a node; it is ended, and unregistered, after the test."""
+        process = support.Process('rosrun', 'rbx1_nav', node)
+        self.addCleanup(process.kill)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.signal, signal.SIGTERM)
+        return process
+
+    def publish_odometry(self, x, y, yaw):
+        """Publish the odometry of a robot that stands; returns the message."""
+        publisher = rospy.Publisher('/odom', Odometry, queue_size=1, latch=True)
+        self.addCleanup(publisher.unregister)
+        odom = Odometry()
+        odom.pose.pose.position.x, odom.pose.pose.position.y = x, y
+        odom.pose.pose.orientation.z, odom.pose.pose.orientation.w = math.sin(yaw / 2), math.cos(yaw / 2)
+        publisher.publish(odom)
+        return odom
+
+    def check(self, line, message):
+        """A line of the table against the message that it shows: half a digit more or less."""
+        row = re.fullmatch(ROW, line)
+        self.assertTrue(row, line)
+        x, y, yaw = support.pose(message)
+        shown = list(map(float, row.groups()[1:]))
+        for value, number, tolerance in zip((x, y, math.degrees(support.wrapped(yaw)), math.hypot(x, y)), shown,
+                                            (0.00051, 0.00051, 0.051, 0.00051)):
+            self.assertAlmostEqual(value, number, delta=tolerance, msg=line)
+        self.assertNotRegex(line, r'-0\.0+ ')
+
+    def test_without_a_master(self):
+        status, lines = self.pose('env', 'ROS_MASTER_URI=http://127.0.0.1:1')
+        self.assertEqual(status, 1)
+        self.assertEqual(len(lines), 1, lines)
+        self.assertRegex(lines[0], r'^The master at http://127\.0\.0\.1:1 does not answer .*: expected a running roscore$')
+
+    def test_without_a_base(self):
+        status, lines = self.pose()
+        self.assertEqual(status, 1)
+        self.assertEqual(len(lines), 1, lines)
+        self.assertRegex(lines[0], r'\[ERROR\] .*: No message on /ground_truth, /odom, /odom_ekf for 5 s: '
+                                   'expected a running base$')
+
+    def test_base_and_filter(self):
+        rospy.set_param('/arbotix', BASE)
+        for node in 'fake_base.py', 'ekf.py', 'odom_ekf.py':
+            self.start(node)
+        topics = ['/ground_truth', '/odom', '/odom_ekf']
+        watches = [support.Watch(topic, Odometry) for topic in topics]
+        support.wait_for(lambda: all(watch.last for watch in watches), 'all three poses')
+        driver = support.out_and_back('_goal_distance:=0.3', '_goal_angle:=2.0')
+        self.addCleanup(driver.kill)
+        self.assertEqual(driver.wait(), 0, driver.output)
+        # the robot stands: these are the poses that the table shows
+        for watch in watches:
+            watch.next()
+        status, lines = self.pose()
+        self.assertEqual(status, 0, lines)
+        self.assertRegex(lines[0], HEADER)
+        self.assertEqual([re.match(ROW, line).group(1) for line in lines[1:]], topics, lines)
+        for line, watch in zip(lines[1:], watches):
+            self.check(line, watch.last)
+            self.assertEqual(len(line), len(lines[0]), 'columns that end below each other')
+
+    def test_a_base_that_starts_later(self):
+        process = support.Process('rosrun', 'rbx1_nav', 'pose.py')
+        self.addCleanup(process.kill)
+        support.wait_for(lambda: '/pose' in str(rospy.get_master().getSystemState()), 'pose.py to start')
+        # not a real one, which may need more time to start than pose.py waits
+        odom = self.publish_odometry(1.0, 0.0, 0.0)
+        self.assertEqual(process.wait(), 0, process.output)
+        self.assertRegex(process.lines[1], 'truth +/ground_truth +not published')
+        self.check(process.lines[2], odom)
+        self.assertRegex(process.lines[3], 'estimate +/odom_ekf +not published')
+
+    def test_a_filter_without_messages(self):
+        # of a robot almost where it started, so that there is a -0.0004 to be rounded
+        odom = self.publish_odometry(-0.0004, -0.1, -2.0)
+        silent = rospy.Publisher('/odom_ekf', Odometry, queue_size=1)
+        self.addCleanup(silent.unregister)
+        status, lines = self.pose()
+        self.assertEqual(status, 0, lines)
+        self.check(lines[2], odom)
+        self.assertRegex(lines[3], 'estimate +/odom_ekf +no message for 5 s')
+
+
+if __name__ == '__main__':
+    support.main('pose_table', TestPoseTable)

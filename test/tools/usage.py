@@ -1,0 +1,39 @@
+#!/usr/bin/python3
+"""Each executable prints its usage for -h and --help, also without a master, and rejects arguments that it does not know."""
+import os
+import unittest
+
+import rospkg
+
+import support
+
+NODES = ['ekf.py', 'fake_base.py', 'odom_ekf.py', 'odom_out_and_back.py', 'pose.py', 'timed_out_and_back.py']
+NO_MASTER = 'ROS_MASTER_URI=http://127.0.0.1:1'
+
+
+class TestUsage(unittest.TestCase):
+    def run_to_its_end(self, name, argument):
+        node = os.path.join(rospkg.RosPack().get_path('rbx1_nav'), 'nodes', name)
+        process = support.Process('env', NO_MASTER, '/usr/bin/python3', node, argument)
+        self.addCleanup(process.kill)
+        return process.wait(), process
+
+    def test_help(self):
+        for name in NODES + ['simulate.py']:
+            for argument in '-h', '--help':
+                status, process = self.run_to_its_end(name, argument)
+                self.assertEqual(status, 0, process.output)
+                self.assertIn('usage: ' + name, process.output)
+                self.assertNotIn('master', process.output)
+
+    def test_unknown_arguments(self):
+        for name in NODES:
+            status, process = self.run_to_its_end(name, '0.1')
+            self.assertEqual(status, 2, process.output)
+            self.assertIn('usage: ' + name, process.output)
+            self.assertEqual(process.lines[-1], '%s: error: 0.1: unknown argument: expected _parameter:=value or '
+                                                'topic:=new_topic' % name)
+
+
+if __name__ == '__main__':
+    support.main('usage', TestUsage)

@@ -1,0 +1,52 @@
+"""The usage text of a node lists just the parameters that it reads, with their defaults: unknown ones are rejected by it."""
+import ast
+from math import pi
+import os
+import re
+
+import pytest
+
+from rbx1_nav.model.robot import DRIVER_KEYS
+from rbx1_nav.ros.arguments import parameter_names
+
+ROOT = os.path.join(os.path.dirname(__file__), '..', '..', '..')
+SCRIPTS = ['timed_out_and_back.py', 'odom_out_and_back.py']
+
+
+def read(*path):
+    with open(os.path.join(ROOT, *path), encoding='utf-8') as file:
+        return file.read()
+
+
+def usage(node):
+    """The parameters that the usage text of a node lists, sorted."""
+    return sorted(parameter_names(ast.get_docstring(ast.parse(read('nodes', node)))))
+
+
+@pytest.mark.parametrize('script', SCRIPTS)
+def test_the_driving_scripts(script):
+    read_here = re.findall(r"(?:positive|frame)_param\('(\w+)', ('?[\w.]+'?)\)", read('nodes', script))
+    assert usage(script) == sorted(name for name, _ in read_here)
+    for name, default in read_here:
+        listed, = re.findall(r'~%s .*\(default: (.*)\)' % name, read('nodes', script))
+        if default == 'None':
+            continue
+        assert (pi if listed == 'pi' else float(listed) if listed[0].isdigit() else listed) == (
+            pi if default == 'pi' else ast.literal_eval(default)), name
+
+
+def test_the_filter():
+    read_there = re.findall(r"section\.\w+\('(\w+)'", read('src', 'rbx1_nav', 'ros', 'filter_parameters.py'))
+    # the one that diagnostic_updater reads
+    assert usage('ekf.py') == sorted(set(read_there) | {'diagnostic_period'})
+
+
+def test_the_base():
+    read_here = re.findall(r"get_param\('~(\w+)'", read('nodes', 'fake_base.py'))
+    read_there = re.findall(r"top\.\w+\('(\w+)'", read('src', 'rbx1_nav', 'model', 'robot.py'))
+    assert usage('fake_base.py') == sorted(set(read_here) | set(read_there) | DRIVER_KEYS | {'diagnostic_period'})
+
+
+@pytest.mark.parametrize('node', ['odom_ekf.py', 'pose.py'])
+def test_nodes_without_parameters(node):
+    assert usage(node) == [] and 'no parameters' in read('nodes', node) and 'get_param' not in read('nodes', node)
