@@ -85,10 +85,10 @@ def spread_of_angles(angles):
 
 
 def report(method, results):
-    """Print where the robot is at the end, and where it believes that it is."""
-    rows = [('truth', [r.end.truth for r in results]), ('/odom says', [r.end.odometry for r in results])]
+    """Print where the robot is at the end, and where odometry and estimate put it."""
+    rows = [('truth', [r.end.truth for r in results]), ('/odom', [r.end.odometry for r in results])]
     if results[0].end.estimate:
-        rows.append(('/odom_ekf says', [r.end.estimate for r in results]))
+        rows.append(('/odom_ekf', [r.end.estimate for r in results]))
     for name, poses in rows:
         x, y, yaw = zip(*poses)
         print('%-6s %-14s  %s  %s  %s  %s' % (method, name, spread(x), spread(y), spread_of_angles(yaw),
@@ -128,7 +128,7 @@ def main():
             simulated = sum(r.end.time for r in results[method])
             print('%-6s %.0f s of the robot in %.2f s, %.0f times real time' % ('', simulated, took, simulated / took))
         if arguments.plot:
-            draw(arguments.plot, arguments.surface, results)
+            draw(arguments.plot, arguments.surface, results, seeds)
             print('Picture: %s' % arguments.plot)
     except (OSError, ValueError, yaml.YAMLError) as error:     # or a robot that is stuck
         print('simulate.py: %s' % ' '.join(str(error).split()), file=sys.stderr)

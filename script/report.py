@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Prints where a recorded run ended, and draws it as arrows: report.py BAG PICTURE"""
+"""Prints where a recorded run ended, and draws it as arrows: report.py BAG PICTURE [SURFACE]"""
 import sys
 from math import atan2, cos, degrees, hypot, pi, sin
 
@@ -10,8 +10,9 @@ matplotlib.use('Agg')
 from matplotlib import pyplot       # noqa: E402  (the backend comes first)
 
 SPACING, TURN = 0.1, 0.15       # m and rad between two arrows, as in sim.rviz
-TOPICS = {'/ground_truth': ('truth', 'royalblue'), '/odom': ('/odom says', 'firebrick'),
-          '/odom_ekf': ('/odom_ekf says', 'seagreen')}
+# in the order in which they are drawn: the truth last, on top; colours that colour-blind readers can tell apart
+TOPICS = {'/odom': ('odometry', '#d55e00'), '/odom_ekf': ('estimate from wheels and gyro', '#009e73'),
+          '/ground_truth': ('truth', '#0072b2')}
 
 
 def read_paths(bag):
@@ -29,7 +30,7 @@ def read_paths(bag):
 
 
 def arrows(path):
-    """The poses that are far enough from the one before to get an arrow of their own."""
+    """The poses that are far enough from the previous one to get an arrow of their own."""
     chosen = path[:1]
     for x, y, yaw in path:
         if hypot(x - chosen[-1][0], y - chosen[-1][1]) >= SPACING or abs(yaw - chosen[-1][2]) >= TURN:
@@ -37,31 +38,43 @@ def arrows(path):
     return chosen
 
 
-def draw(paths, picture):
-    """The arrows, seen from above."""
-    figure, axes = pyplot.subplots(figsize=(9, 6))
+def draw(paths, picture, surface):
+    """The arrows, seen from above, and where the robot really started and ended."""
+    figure, axes = pyplot.subplots(figsize=(9, 6.5))
     for topic, path in paths.items():
         name, color = TOPICS[topic]
         x, y, yaw = zip(*arrows(path))
         axes.quiver(x, y, [cos(a) for a in yaw], [sin(a) for a in yaw], color=color, label=name, angles='xy',
-                    scale_units='xy', scale=1 / 0.3, width=0.004)
-    axes.set(title='Out and back', xlabel='x (m)', ylabel='y (m)', xlim=(-0.5, 1.5), ylim=(-0.6, 0.9),
-             aspect='equal', xticks=[-0.5, 0, 0.5, 1, 1.5], yticks=[-0.5, 0, 0.5])
+                    scale_units='xy', scale=1 / 0.3, width=0.003)
+    start, end = path[0], path[-1]
+    axes.plot(*start[:2], 'o', color='black', markersize=9, label='start')
+    axes.plot(*end[:2], 's', color='black', markerfacecolor='white', markersize=9, label='end')
+    points = [point for path in paths.values() for point in path]
+    for axis, index, low, high in (('x', 0, -0.5, 1.5), ('y', 1, -0.6, 0.9)):
+        values = [point[index] for point in points]
+        axes.set(**{axis + 'lim': (min(low, min(values) - 0.4), max(high, max(values) + 0.4))})
+    axes.set(title='Out and back on %s' % surface, xlabel='x (m)', ylabel='y (m)', aspect='equal')
     axes.grid(True)
-    axes.legend(loc='upper right')
+    axes.legend(loc='upper center', bbox_to_anchor=(0.5, -0.1), ncol=5, frameon=False)
     figure.savefig(picture, dpi=100, bbox_inches='tight')
 
 
-def main(bag, picture):
+def rounded(value, digits):
+    """value with so many decimals, as text; 0 in place of -0."""
+    return '%.*f' % (digits, round(value, digits) + 0.0)
+
+
+def main(bag, picture, surface='an unknown surface'):
     """Report one run."""
     paths = read_paths(bag)
     if '/odom' not in paths:
         sys.exit('%s: no odometry: expected messages on /odom' % bag)
-    for topic, path in paths.items():
+    for topic, path in reversed(list(paths.items())):
         (x0, y0, yaw0), (x, y, yaw) = path[0], path[-1]
-        print('Final pose, %-15s x %.4f m, y %.4f m, heading %.2f degrees; %.4f m from the start, %.2f degrees turned' % (
-            TOPICS[topic][0] + ':', x, y, degrees(atan2(sin(yaw), cos(yaw))), hypot(x - x0, y - y0), degrees(yaw - yaw0)))
-    draw(paths, picture)
+        print('End by %-14s x %s m, y %s m, heading %s degrees; %s m from the start, %s degrees turned' % (
+            topic + ':', rounded(x, 4), rounded(y, 4), rounded(degrees(atan2(sin(yaw), cos(yaw))), 2),
+            rounded(hypot(x - x0, y - y0), 4), rounded(degrees(yaw - yaw0), 2)))
+    draw(paths, picture, surface)
     print('Bag:     %s' % bag)
     print('Picture: %s' % picture)
 

@@ -2,10 +2,12 @@
 from math import cos, sin
 import os
 
+from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 import numpy
 
 from rbx1_nav.config import ConfigError
+from rbx1_nav.units import rounded
 
 PATHS = 20      # paths in a picture; more would hide each other
 TITLES = {'timed': 'by time', 'odom': 'by odometry', 'ekf': 'by odometry and gyro'}
@@ -27,46 +29,91 @@ def check_picture(path):
         raise ConfigError('expected a file that can be written: %s' % error.strerror)
 
 
-def draw(file, surface, results):
-    """A picture: for each method a column, above the ways to scale, below the end poses from near by."""
-    figure = Figure(figsize=(5.6 * len(results), 9), constrained_layout=True)
+def draw(file, surface, results, seeds):
+    """Draw a column for each method: above, true paths; below, the end poses of all runs, on one scale.
+
+    surface: its name; results: the Results of each method; seeds: a range.
+    """
+    figure = Figure(figsize=(5.6 * len(results), 9.4), constrained_layout=True)
     panels = figure.subplots(2, len(results), squeeze=False)
-    number = len(next(iter(results.values())))
-    figure.suptitle('Out and back on %s, %d %s' % (surface, number, 'run' if number == 1 else 'runs'))
-    for (above, below), (method, runs) in zip(panels.T, results.items()):
-        poses = numpy.array([r.end.truth for r in runs])
-        x, y = poses[:, 0], poses[:, 1]
-        yaw = numpy.degrees(numpy.angle(numpy.exp(1j * poses[:, 2])))
-        draw_paths(above, [r.path for r in runs if r.path])
-        draw_arrow(above, (0.0, 0.0, 0.0), 'black')
-        draw_arrow(above, runs[0].end.truth, 'firebrick')
+    runs = '1 run (seed %d)' % seeds[0] if len(seeds) == 1 else '%d runs (seeds %d to %d)' % (
+        len(seeds), seeds[0], seeds[-1])
+    figure.suptitle('Out and back on %s, %s' % (surface, runs))
+    ends = {method: end_poses(each) for method, each in results.items()}
+    extent, norm = common_extent(ends.values()), common_norm(ends.values())
+    for (above, below), method in zip(panels.T, results):
+        draw_paths(above, results[method])
         above.set_title('%s: %.1f cm from the start, %.1f degrees off' % (
-            TITLES[method], 100 * numpy.hypot(x, y).mean(), abs(yaw).mean()))
-        few = number <= 500
-        points = below.scatter(x, y, c=yaw, s=12 if few else 3, alpha=0.8 if few else 0.4, linewidths=0)
-        figure.colorbar(points, ax=below, format='%.4g').solids.set(alpha=1)
-        # square, around them all, and never so near that rounding shows
-        half = max(0.005, 0.6 * numpy.ptp(x), 0.6 * numpy.ptp(y))
-        below.set(title='where they end; colour: heading (degrees)', xlabel='x (m)', ylabel='y (m)', aspect='equal',
-                  xlim=((x.min() + x.max()) / 2 - half, (x.min() + x.max()) / 2 + half),
-                  ylim=((y.min() + y.max()) / 2 - half, (y.min() + y.max()) / 2 + half))
-        below.grid(True, alpha=0.5)
+            TITLES[method], 100 * numpy.hypot(*ends[method].T[:2]).mean(), ends[method][:, 2].mean()), fontsize='medium')
+        points = draw_ends(below, ends[method], extent, norm)
+    if norm:
+        figure.colorbar(points, ax=list(panels[1]), label='heading error (degrees)').solids.set(alpha=1)
     figure.savefig(file, dpi=90, bbox_inches='tight')
 
 
-def draw_paths(axes, paths):
-    """True ways, on a floor with a grid of 0.5 m as in RViz."""
-    for path in paths:
-        x, y, _ = zip(*[snapshot.truth for snapshot in path])
-        axes.plot(x, y, color='tab:blue', linewidth=0.8, alpha=0.5)
+def end_poses(results):
+    """An array with a row for each Result: true x and y (m), and the absolute heading error (degrees)."""
+    poses = numpy.array([result.end.truth for result in results])
+    poses[:, 2] = abs(numpy.degrees(numpy.angle(numpy.exp(1j * poses[:, 2]))))
+    return poses
+
+
+def common_extent(ends):
+    """The square (xmin, xmax, ymin, ymax) around the start and all end poses, m; at least 10 cm wide."""
+    points = numpy.vstack([poses[:, :2] for poses in ends] + [numpy.zeros((1, 2))])
+    low, high = points.min(axis=0), points.max(axis=0)
+    half = max(0.05, 0.6 * (high - low).max())
+    (x, y) = (low + high) / 2
+    return x - half, x + half, y - half, y + half
+
+
+def common_norm(ends):
+    """The colour scale of heading errors, from 0 to the largest; None if they are too small to tell apart."""
+    largest = max(poses[:, 2].max() for poses in ends)
+    return Normalize(0, largest) if largest > 1 else None
+
+
+def draw_paths(axes, results):
+    """The true paths that were kept, on a floor with a grid of 0.5 m as in RViz; the first run's start and end."""
+    for result in results:
+        if result.path:
+            x, y, _ = zip(*[snapshot.truth for snapshot in result.path])
+            axes.plot(x, y, color='tab:blue', linewidth=0.8, alpha=0.5)
+    draw_robot(axes, (0.0, 0.0, 0.0), 'black', 'start')
+    draw_robot(axes, results[0].end.truth, 'firebrick', 'end of the first run')
     axes.set(xlabel='x (m)', ylabel='y (m)', aspect='equal', xlim=(-0.35, 1.25), ylim=(-0.45, 0.85),
              xticks=[0, 0.5, 1], yticks=[0, 0.5])
     axes.grid(True, alpha=0.5)
+    axes.legend(loc='lower right')
 
 
-def draw_arrow(axes, pose, color):
-    """The robot at a pose."""
+def draw_robot(axes, pose, color, label):
+    """The robot at a pose: a dot, and an arrow of 0.2 m."""
     x, y, yaw = pose
-    axes.plot(x, y, marker='o', color=color, zorder=4)
+    axes.plot(x, y, marker='o', linestyle='', color=color, zorder=4, label=label)
     axes.quiver(x, y, 0.2 * cos(yaw), 0.2 * sin(yaw), color=color, angles='xy', scale_units='xy', scale=1,
                 width=0.012, zorder=4)
+
+
+def draw_ends(axes, poses, extent, norm):
+    """End poses in an extent (m), with an inset if their cloud is small in it. Returns the points, for a colour bar."""
+    x, y, error = poses.T
+    few = len(x) <= 500
+    style = dict(s=12 if few else 3, alpha=0.8 if few else 0.4, linewidths=0)
+    style.update(dict(c=error, norm=norm) if norm else dict(color='tab:blue'))
+    points = axes.scatter(x, y, **style)
+    axes.plot(0, 0, marker='+', markersize=14, color='black')
+    size = max(numpy.ptp(x), numpy.ptp(y))
+    axes.set(title='end poses (+ start)' if size > 1e-4 else 'all end at (%.1f mm, %.1f mm)' % (
+        1000 * rounded(x.mean(), 4), 1000 * rounded(y.mean(), 4)),
+             xlabel='x (m)', ylabel='y (m)', aspect='equal', xlim=extent[:2], ylim=extent[2:])
+    axes.grid(True, alpha=0.5)
+    if 1e-4 < size < 0.15 * (extent[1] - extent[0]):
+        inset = axes.inset_axes([0.55, 0.5, 0.42, 0.42])
+        inset.scatter(100 * x, 100 * y, **style)
+        half = 60 * size
+        inset.set(aspect='equal', xlim=(50 * (x.min() + x.max()) - half, 50 * (x.min() + x.max()) + half),
+                  ylim=(50 * (y.min() + y.max()) - half, 50 * (y.min() + y.max()) + half))
+        inset.set_title('the same, enlarged (cm)', fontsize='small')
+        inset.tick_params(labelsize='small')
+    return points

@@ -15,7 +15,7 @@ ALLOWED = {
     'units': set(),
     'config': set(),
     'schedule': {'units'},
-    'plots': {'config'},
+    'plots': {'config', 'units'},
     'control': {'units'},
     'model': {'config', 'units'},
     'estimation': {'model', 'units'},

@@ -1,0 +1,85 @@
+"""The picture of simulated runs: one scale for what is to be compared, and none where there is nothing to see."""
+from math import pi, radians
+
+import numpy
+import pytest
+from matplotlib.figure import Figure
+
+from rbx1_nav.model.kinematics import Pose
+from rbx1_nav.plots import common_extent, common_norm, draw, draw_ends, end_poses
+from rbx1_nav.simulation import Result, Snapshot
+
+
+def result(*poses):
+    """A Result with this path, the last pose of which is its end."""
+    snapshots = [Snapshot(0.02 * number, Pose(*pose), Pose(*pose), None) for number, pose in enumerate(poses)]
+    return Result(snapshots[-1], 1.0, None, snapshots)
+
+
+FAR = [result((0, 0, 0), (0.1, y, 2 * pi - radians(60))) for y in (0.4, 0.5, 0.6)]
+NEAR = [result((0, 0, 0), (0.0, y, 2 * pi + radians(10))) for y in (-0.01, 0.0, 0.02)]
+EQUAL = [result((0, 0, 0), (0.0, 0.0016, 6.28))] * 3
+
+
+def test_end_poses_have_the_absolute_heading_error_in_degrees():
+    assert end_poses(FAR)[:, 2] == pytest.approx([60] * 3) and end_poses(NEAR)[:, 2] == pytest.approx([10] * 3)
+
+
+def test_the_extent_is_square_and_holds_the_start_and_all_ends():
+    xmin, xmax, ymin, ymax = common_extent([end_poses(FAR), end_poses(NEAR)])
+    assert xmax - xmin == pytest.approx(ymax - ymin)
+    assert xmin < 0 < 0.1 < xmax and ymin < -0.01 and 0.6 < ymax
+
+
+def test_equal_ends_are_not_enlarged_until_rounding_shows():
+    xmin, xmax, _, _ = common_extent([end_poses(EQUAL)])
+    assert xmax - xmin == pytest.approx(0.1)
+
+
+def test_one_colour_scale_from_zero_for_all_methods():
+    norm = common_norm([end_poses(FAR), end_poses(NEAR)])
+    assert (norm.vmin, norm.vmax) == (0, pytest.approx(60))
+
+
+def test_no_colour_scale_for_headings_that_are_all_right():
+    assert common_norm([end_poses(EQUAL)]) is None
+
+
+@pytest.fixture
+def drawn(monkeypatch, tmp_path):
+    """draw(results) returns the Figure that it saves."""
+    figures = []
+    monkeypatch.setattr(Figure, 'savefig', lambda figure, *_, **__: figures.append(figure))
+
+    def call(results):
+        draw(str(tmp_path / 'a.png'), 'test', results, range(3))
+        return figures[-1]
+    return call
+
+
+def test_the_lower_row_has_one_scale_and_one_colour_bar(drawn):
+    figure = drawn({'timed': FAR, 'ekf': NEAR})
+    *panels, bar = figure.axes
+    lower = panels[2:]
+    assert len(panels) == 4 and bar.get_ylabel() == 'heading error (degrees)'
+    assert lower[0].get_xlim() == lower[1].get_xlim() and lower[0].get_ylim() == lower[1].get_ylim()
+    assert lower[0].collections[0].norm is lower[1].collections[0].norm
+
+
+def test_without_a_colour_scale_there_is_no_colour_bar(drawn):
+    figure = drawn({'timed': EQUAL})
+    assert len(figure.axes) == 2
+    assert figure.axes[1].get_title() == 'all end at (0.0 mm, 1.6 mm)'
+
+
+@pytest.mark.parametrize('results, insets', [(FAR, 0), (NEAR, 1), (EQUAL, 0)])
+def test_only_a_small_cloud_has_an_inset(results, insets):
+    axes = Figure().subplots()
+    draw_ends(axes, end_poses(results), (-0.5, 0.5, -0.3, 0.7), None)
+    assert len(axes.child_axes) == insets
+
+
+def test_a_title_names_surface_runs_and_seeds(drawn):
+    # _suptitle: matplotlib before 3.8 has no get_suptitle()
+    assert drawn({'timed': FAR})._suptitle.get_text() == 'Out and back on test, 3 runs (seeds 0 to 2)'
+    assert numpy.isclose(drawn({'timed': FAR}).axes[0].get_xlim()[0], -0.35)
