@@ -6,6 +6,7 @@
 test/pages/blocks.py describes the comments that say how. Source a built workspace first.
 """
 import os
+import re
 import sys
 import tempfile
 import unittest
@@ -70,7 +71,9 @@ class Documents(unittest.TestCase):
         """Add the tests of the pages with one of these in their name; no names: of all pages."""
         cls.pages = [page for page in markdown.documents(ROOT) if any(name in page for name in names or [''])]
         for page in cls.pages:
-            setattr(cls, 'test_' + page, lambda self, page=page: self.check(page))
+            # no dots or slashes: rosunit would cut the name there
+            name = re.sub(r'\W+', '_', os.path.splitext(page)[0])
+            setattr(cls, 'test_' + name, lambda self, page=page: self.check(page))
 
     def check(self, page):
         """Fail with the message of the page, without the traceback of its thread."""
