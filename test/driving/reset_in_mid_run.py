@@ -19,6 +19,7 @@ class TestResetInMidRun(unittest.TestCase):
         cls.commands = support.Watch('/cmd_vel', Twist)
         rospy.wait_for_service('/arbotix/reset', support.LIMIT)
         cls.reset_base = rospy.ServiceProxy('/arbotix/reset', Empty)
+        cls.idle = support.Commander()      # somebody else who could drive, but does not
         rospy.wait_for_message('/odom_ekf', rospy.AnyMsg, support.LIMIT)
 
     def reset(self):
@@ -55,6 +56,12 @@ class TestResetInMidRun(unittest.TestCase):
 
     def check_without_a_driver(self):
         self.assertEqual(self.reset(), (Log.INFO, 'Reset: base_footprint is back at the origin of odom'))
+
+    def test_a_driver_that_rests_for_long(self):
+        self.idle.send()
+        start = self.odom.next().header.stamp
+        support.wait_for(lambda: (self.odom.last.header.stamp - start).to_sec() > 2, '2 s')
+        self.check_without_a_driver()
 
     def test_by_odometry(self):
         self.check_script('_odom_frame:=odom')
