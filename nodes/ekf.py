@@ -77,7 +77,8 @@ class Ekf:
         """The base was reset."""
         with self.lock:
             if self.combined:
-                self.combined.restart('reset_odometry')
+                rospy.loginfo('reset_odometry: restarting at the pose of the odometry')
+                self.combined.restart()
 
     def add_odom(self, now, message):
         """Pass an Odometry to the filter."""
