@@ -88,7 +88,7 @@ def read_seed(value):
         return random.randrange(10 ** 6)
     seed = int(value) if isinstance(value, str) and re.match(r'^\d{1,10}$', value, re.ASCII) else value
     if not isinstance(seed, int) or isinstance(seed, bool) or not 0 <= seed < 2 ** 31:
-        raise ConfigError('seed: %r: expected an integer from 0 to %d, or %s' % (value, 2 ** 31 - 1, RANDOM))
+        raise ConfigError('seed: %r: expected %s, or an integer from 0 to %d' % (value, RANDOM, 2 ** 31 - 1))
     return seed
 
 
