@@ -96,7 +96,7 @@ class OutAndBack:
         with tqdm(total=leg.goal, desc=leg.name, unit=leg.unit, disable=None,
                   bar_format='{desc:9}: |{bar}| {n:.2f} of {total:.2f} {unit}') as bar:
             speed = leg.next_speed(self.pose())
-            while speed:
+            while speed is not None:
                 command.linear.x, command.angular.z = leg.velocity(speed)
                 self.cmd_vel.publish(command)
                 rate.sleep()

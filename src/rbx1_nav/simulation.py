@@ -80,7 +80,7 @@ class Simulation:
         """One leg of odom_out_and_back.py; get_pose(): the Pose that it is controlled by."""
         while True:
             speed = leg.next_speed(get_pose())
-            if not speed:
+            if speed is None:
                 return
             self.base.command(self.now, *leg.velocity(speed))
             self.tick()

@@ -1,4 +1,5 @@
 """The exercise by odometry: legs that end when the pose says so."""
+from collections import deque
 from math import hypot, inf, pi, remainder
 
 import pytest
@@ -7,9 +8,11 @@ from hypothesis import strategies as st
 
 from rbx1_nav.control.legs import StuckError, out_and_back_by_odometry
 from rbx1_nav.model.kinematics import ORIGIN, Pose, arc
+from rbx1_nav.model.wheels import Motor
 
 LEGS = dict(linear_speed=0.2, goal_distance=1.0, angular_speed=1.0, goal_angle=pi, rate=50, min_linear_speed=0.05,
             min_angular_speed=0.2)
+HALF_WIDTH = 0.13   # m, of the TurtleBot
 
 
 def drive(leg, pose, fraction=1.0):
@@ -17,7 +20,7 @@ def drive(leg, pose, fraction=1.0):
     speeds = []
     while True:
         speed = leg.next_speed(pose._replace(yaw=remainder(pose.yaw, 2 * pi)))
-        if not speed:
+        if speed is None:
             return pose, speeds
         speeds.append(speed)
         linear, angular = leg.velocity(speed)
@@ -35,22 +38,65 @@ def test_a_leg_stops_at_its_goal_from_every_pose_and_with_a_robot_that_slips(x, 
     pose, speeds = drive(forward, Pose(x, y, yaw), fraction)
     # half of the slowest tick's travel: 0.05 m/s and 0.2 rad/s, 1/50 s
     assert hypot(pose.x - x, pose.y - y) == pytest.approx(1.0, abs=0.5001 * 0.001)
-    assert min(speeds) >= 0.05 and max(speeds) == 0.2 == speeds[0]
+    assert min(filter(None, speeds)) >= 0.05 and max(speeds) == 0.2 == speeds[0]
     pose, speeds = drive(turn, pose, fraction)
     assert pose.yaw - yaw == pytest.approx(pi, abs=0.5001 * 0.004)
-    assert min(speeds) >= 0.2 and max(speeds) == 1.0 == speeds[0]
+    assert min(filter(None, speeds)) >= 0.2 and max(speeds) == 1.0 == speeds[0]
 
 
 def test_a_leg_slows_down_to_its_lowest_speed_before_the_goal():
     _, speeds = drive(out_and_back_by_odometry(**LEGS)[0], ORIGIN)
-    assert sorted(speeds, reverse=True) == speeds and speeds[-1] == pytest.approx(0.05, abs=0.005)
+    moving = [speed for speed in speeds if speed]
+    assert sorted(moving, reverse=True) == moving and moving[-1] == 0.05
+
+
+def test_a_trial_stop_of_a_fifth_of_a_second_comes_before_the_goal():
+    for leg in out_and_back_by_odometry(**LEGS)[:2]:
+        _, speeds = drive(leg, ORIGIN)
+        stop = speeds.index(0.0)
+        assert speeds[stop:].count(0.0) == 10 and not any(speeds[stop:stop + 10])
+        # from there it goes on at its lowest speed for the half second that was left
+        assert speeds[stop + 10:] == [leg.min_speed] * 25
+
+
+def roll(leg, lag, drag, delay):
+    """Drive a leg with motors to their standstill. Returns how far the robot went, m or rad."""
+    straight, turning = Motor(lag, 1.0, drag), Motor(lag, 1.0, drag)
+    pending, pose = deque([(0.0, 0.0)] * delay), ORIGIN
+    speed, ticks_left = leg.next_speed(pose), 100
+    while ticks_left:
+        pending.append(leg.velocity(speed or 0.0))
+        linear, angular = pending.popleft()
+        pose = arc(pose, straight.travel(linear, 0.02), turning.travel(angular * HALF_WIDTH, 0.02) / HALF_WIDTH)
+        if speed is None:
+            ticks_left -= 1
+        else:
+            speed = leg.next_speed(pose)
+    return pose.x or pose.yaw
+
+
+@pytest.mark.parametrize('lag', [0.001, 0.05, 0.1])
+@pytest.mark.parametrize('drag', [0.0005, 0.002, 0.015])
+@pytest.mark.parametrize('delay', [0, 2])
+def test_the_robot_comes_to_a_standstill_at_the_goal_however_far_it_rolls_on(lag, drag, delay):
+    """lag: s; drag: m/s; delay: ticks from a command to the motors."""
+    forward, turn, *_ = out_and_back_by_odometry(**LEGS)
+    # half of a tick's travel, 0.5 mm and 0.11 degrees, and a fifth of the roll-out, up to 7 mm and 1.6 degrees
+    assert roll(forward, lag, drag, delay) == pytest.approx(1.0, abs=0.002)
+    assert roll(turn, lag, drag, delay) == pytest.approx(pi, abs=0.008)
+
+
+def test_a_robot_that_rolls_past_its_goal_in_the_trial_stop_has_arrived():
+    assert roll(out_and_back_by_odometry(**LEGS)[0], 0.5, 0.0005, 0) == pytest.approx(1.05, abs=0.03)
 
 
 def test_a_fast_leg_slows_down_early_enough_to_brake():
     pose, speeds = drive(out_and_back_by_odometry(**dict(LEGS, linear_speed=2.0, goal_distance=5.0))[0], ORIGIN)
     assert pose.x == pytest.approx(5.0, abs=0.5001 * 0.001)
     # 0.4 m/s^2 at 50 Hz; up to twice that in the tick in which the travel time becomes the lower limit
-    assert all(before - after < 2.1 * 0.4 / 50 for before, after in zip(speeds, speeds[1:])) and speeds[0] == 2.0
+    braking = speeds[:speeds.index(0.0)]
+    assert all(before - after < 2.1 * 0.4 / 50 for before, after in zip(braking, braking[1:])) and speeds[0] == 2.0
+    assert braking[-1] == pytest.approx(0.05, abs=0.005)
 
 
 @pytest.mark.parametrize('rate', [0.1, 1, 5])
@@ -59,7 +105,7 @@ def test_a_slow_rate_does_not_overshoot_the_goal(rate):
         pose = ORIGIN
         while True:
             speed = leg.next_speed(pose._replace(yaw=remainder(pose.yaw, 2 * pi)))
-            if not speed:
+            if speed is None:
                 break
             pose = arc(pose, *(value / rate for value in leg.velocity(speed)))
         assert abs(leg.goal - leg.done()) <= 0.5001 * slowest / rate
