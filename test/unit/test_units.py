@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rbx1_nav.units import SECOND, clamp, wrap_angle
+from rbx1_nav.units import SECOND, clamp, rounded, wrap_angle
 
 
 def test_fifty_ticks_are_a_second():
@@ -39,3 +39,14 @@ def test_a_wrapped_angle_has_the_same_direction(angle):
                                             (-4.0, 2 * pi - 4.0), (2 * pi, 0.0), (7 * pi / 2, -pi / 2)])
 def test_angles_wrap_at_pi(angle, wrapped):
     assert wrap_angle(angle) == pytest.approx(wrapped, abs=1e-14)
+
+
+@pytest.mark.parametrize('value, text', [(-0.0, '0.000'), (-0.0004, '0.000'), (-0.0006, '-0.001'), (0.0004, '0.000'),
+                                         (-1.2345, '-1.234'), (2.0, '2.000')])
+def test_a_rounded_number_has_no_minus_before_a_zero(value, text):
+    assert '%.3f' % rounded(value, 3) == text
+
+
+@given(st.floats(-1e6, 1e6))
+def test_rounding_changes_nothing_else(value):
+    assert '%.3f' % rounded(value, 3) in ('%.3f' % value, ('%.3f' % value).lstrip('-'))

@@ -90,6 +90,13 @@ def test_a_seed_that_is_no_integer_in_its_range_is_rejected(seed):
         read_seed(seed)
 
 
+def test_random_draws_a_seed_each_time():
+    seeds = {read_seed('random') for _ in range(20)}
+    # twenty equal ones out of a million are as good as impossible
+    assert len(seeds) > 1
+    assert all(read_seed(seed) == read_seed(str(seed)) == seed for seed in seeds)
+
+
 def test_a_seed_may_be_text_as_in_a_launch_file():
     assert read_seed('7') == read_seed(7) == 7
 
