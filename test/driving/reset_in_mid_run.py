@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A reset in mid-run: the base names the node that was driving, and the script that measures its way ends with an error."""
+"""A reset in mid-run: the base names the node that was driving, and the script that measures its way ends."""
 import unittest
 
 import rospy
@@ -27,7 +27,8 @@ class TestResetInMidRun(unittest.TestCase):
         start = len(self.logs.messages)
 
         def logged():
-            return next((log for log in self.logs.messages[start:] if log.name == '/arbotix' and 'Reset' in log.msg), None)
+            return next((log for log in self.logs.messages[start:]
+                         if log.name == '/arbotix' and 'Reset' in log.msg), None)
         self.reset_base()
         log = support.wait_for(logged, 'a line of the base')
         return log.level, log.msg

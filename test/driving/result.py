@@ -38,8 +38,8 @@ class TestResult(unittest.TestCase):
         turned = math.degrees(abs(support.wrapped(end[2] - start[2])))
         self.assertGreater(distance, 0.1)
         self.assertGreater(turned, 100)
-        self.assertIn('Done: measured in odom, the robot is %.3f m from its start and %.1f degrees off its first heading'
-                      % (distance, turned), line)
+        self.assertIn('Done: measured in odom, the robot is %.3f m from its start and %.1f degrees off its first '
+                      'heading' % (distance, turned), line)
 
 
 if __name__ == '__main__':

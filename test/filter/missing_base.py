@@ -17,7 +17,8 @@ class TestMissingBase(unittest.TestCase):
         logs = support.Watch('/rosout', Log)
 
         def lines(level):
-            return [log.msg for log in logs.messages if log.name in ('/odom_ekf', '/robot_pose_ekf') and log.level == level]
+            return [log.msg for log in logs.messages
+                    if log.name in ('/odom_ekf', '/robot_pose_ekf') and log.level == level]
         missing = 'No message on /odom for 5 s: expected a running base; /odom_ekf follows as soon as there is one'
         support.wait_for(lambda: missing in lines(Log.WARN), 'the warning')
 

@@ -16,8 +16,8 @@ F_SETPIPE_SZ = 1031     # fcntl has this name since Python 3.10
 class TestInterruptedStart(unittest.TestCase):
     def interrupt(self, name):
         """Interrupt an executable while it loads its modules; returns its exit status and what it wrote after that."""
-        # Python writes a line for each module that it has loaded. Where nobody reads these lines, it waits with the next
-        # module as soon as the pipe is full: after some 50 of more than 300.
+        # Python writes a line for each module that it has loaded. If nobody reads them, it stops as soon as the pipe is
+        # full: after some 50 modules of more than 300.
         read_end, write_end = os.pipe()
         fcntl.fcntl(write_end, F_SETPIPE_SZ, 4096)
         process = subprocess.Popen(['rosrun', 'rbx1_nav', name], stdout=write_end, stderr=write_end,

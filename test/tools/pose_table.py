@@ -60,7 +60,8 @@ class TestPoseTable(unittest.TestCase):
         status, lines = self.pose('env', 'ROS_MASTER_URI=http://127.0.0.1:1')
         self.assertEqual(status, 1)
         self.assertEqual(len(lines), 1, lines)
-        self.assertRegex(lines[0], r'^The master at http://127\.0\.0\.1:1 does not answer .*: expected a running roscore$')
+        self.assertRegex(lines[0], r'^The master at http://127\.0\.0\.1:1 does not answer .*: '
+                                   'expected a running roscore$')
 
     def test_without_a_base(self):
         status, lines = self.pose()

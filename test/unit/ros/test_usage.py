@@ -1,4 +1,4 @@
-"""The usage text of a node lists just the parameters that it reads, with their defaults: unknown ones are rejected by it."""
+"""The usage text of a node lists just the parameters that it reads, with their defaults."""
 import ast
 from math import pi
 import os
