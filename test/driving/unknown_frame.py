@@ -17,8 +17,8 @@ class TestUnknownFrame(unittest.TestCase):
         self.addCleanup(driver.kill)
         self.assertEqual(driver.wait(), 1, driver.output)
         self.assertRegex(driver.lines[-1], r"\[ERROR\].*: Timed out after 5 s waiting for the robot's pose: There is "
-                                           r'no transform from odom_combine to base_footprint or base_link; frames that '
-                                           r'exist: base_footprint, base_l_wheel_link, base_link, .*, odom$')
+                                           'no transform from odom_combine to base_footprint or base_link; '
+                                           'frames that exist: base_footprint, base_l_wheel_link, base_link, .*, odom$')
         self.assertFalse([command for command in commands.messages if command != Twist()])
 
 
