@@ -5,14 +5,14 @@ usage: ekf.py [_parameter:=value ...] [topic:=new_topic ...]      usually starte
 
 Parameters:
     ~freq               of odom_combined and its transform, Hz (default: 10)
-    ~sensor_timeout     a sensor that is silent for so long is not used until it recovers, s (default: 1)
+    ~sensor_timeout     a sensor that is silent for longer is not used until it recovers, s (default: 1)
     ~publish_tf         whether to publish the transform (default: true)
     ~imu_used           whether to use the gyro (default: true)
     ~odom_used          only true is accepted
     ~vo_used            only false is accepted
     ~output_frame       frame of the combined pose (default: odom)
-    ~surface            where the initial uncertainties come from, as of the base, or auto: the simulated base's own,
-                        and low_ply_carpet for a real one (default: auto)
+    ~surface            of the initial uncertainties: a name or path as for the base, or auto: that of the simulated
+                        base, and low_ply_carpet for a real one (default: auto)
     ~diagnostic_period  of /diagnostics, s (default: 1)
 """
 import rbx1_nav.ros.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded

@@ -113,9 +113,9 @@ def read_factor():
     factor = rospy.get_param('~real_time_factor', None)
     if factor is None:
         return None
-    positive('real_time_factor', factor)
+    factor = positive('real_time_factor', factor)
     if rospy.rostime.is_wallclock():
-        raise ConfigError('real_time_factor: %r: expected /use_sim_time to be true' % factor)
+        raise ConfigError('real_time_factor: %g: expected /use_sim_time to be true' % factor)
     return factor
 
 

@@ -22,8 +22,7 @@ TIMEOUT = 5.0       # s of wall time to wait for a base, and for a message on ea
 
 
 def receive():
-    """The latest Odometry of each topic in TOPICS, as a dictionary: None without a message, left out if not published.
-    """
+    """The latest Odometry by topic: None without a message; topics that nobody publishes are absent."""
     latest = {}
     subscribers = {}
     deadline = time.monotonic() + TIMEOUT

@@ -81,7 +81,7 @@ class OutAndBack:
         speed, unit = (motion.linear, 'm') if motion.linear else (motion.angular, 'rad')
         rospy.loginfo('%s: %.2f %s at %g %s/s', motion.name, motion.ticks * speed / self.rate, unit, speed, unit)
 
-        # The progress bar is for a terminal: with disable=None, tqdm leaves it out elsewhere.
+        # With disable=None, tqdm shows its progress bar only in a terminal.
         ticks = tqdm(range(motion.ticks), desc=motion.name, disable=None,
                      bar_format='{desc:9}: |{bar}| {n} of {total} commands')
         rate = Rate(self.rate, self.cmd_vel)

@@ -43,7 +43,7 @@ class TrueRobot:
                     links[link] = self.buffer.lookup_transform(truth.child_frame_id, link, rospy.Time(0)).transform
                 except tf2_ros.TransformException:
                     pass    # robot_state_publisher has not published it yet
-            self.publisher.publish(markers.robot(truth, self.visuals, links))
+            self.publisher.publish(markers.robot_markers(truth, self.visuals, links))
 
     def remove(self):
         """Remove the robot from the screen."""

@@ -1,9 +1,9 @@
-"""When something periodic is due, on any clock."""
+"""Whether something periodic is due, on any clock."""
 from rbx1_nav.units import SECOND
 
 
 class Schedule:
-    """Tells when something periodic is due, also on a clock that jumps."""
+    """Whether something periodic is due, also on a clock that jumps."""
 
     def __init__(self, rate):
         """rate: Hz."""

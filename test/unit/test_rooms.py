@@ -20,7 +20,7 @@ ALLOWED = {
     'model': {'config', 'units'},
     'estimation': {'model', 'units'},
     'simulated_base': {'control', 'model', 'units'},
-    'simulation': {'control', 'estimation', 'model', 'simulated_base', 'units'},
+    'simulation': {'control', 'estimation', 'simulated_base', 'units'},
     'ros': {'config', 'control', 'estimation', 'model', 'schedule', 'units'},
 }
 ALLOWED['nodes'] = set(ALLOWED) - {'__init__'}

@@ -18,7 +18,7 @@ FRACTION = dict(low=0.0, high=0.5, closed=True, expected='a fraction from 0 to 0
 
 
 def number_between(low, high):
-    """The range of a key, as Section.number() takes it."""
+    """The range of a key, as keyword arguments of Section.number()."""
     return dict(low=low, high=high, closed=True, expected='a number from %g to %g' % (low, high))
 
 

@@ -4,24 +4,31 @@ import xml.etree.ElementTree as ElementTree
 
 Visual = namedtuple('Visual', 'link xyz rpy shape size mesh color')
 Visual.__doc__ = """A visual of a link: position (m) and roll, pitch, yaw (rad) in the frame of the link; shape: box, cylinder,
-sphere or mesh; size: extent along x, y and z (m; of a mesh: its scale); mesh: its URL, or ''; color: r, g, b, alpha."""
+sphere or mesh; size: extent along x, y and z (m; of a mesh: its scale); mesh: its URL, or ''; color: r, g, b, alpha,
+or None."""
 
-GREY = (0.5, 0.5, 0.5, 1.0)
+SHAPES = ('box', 'cylinder', 'sphere', 'mesh')
 
 
 def read_visuals(text):
     """The Visuals in the text of a URDF file. Raises ValueError if it is not one."""
     try:
         root = ElementTree.fromstring(text)
-        colors = {material.get('name'): material.find('color') for material in root.findall('material')}
+        if root.tag != 'robot':
+            raise ValueError('<%s>: expected <robot>' % root.tag)
+        colors = {material.get('name'): material.find('color') for material in root.iter('material')
+                  if material.find('color') is not None}
         return [_read_visual(link.get('name'), visual, colors)
                 for link in root.findall('link') for visual in link.findall('visual')]
     except (ElementTree.ParseError, AttributeError, IndexError, TypeError, ValueError) as error:
         raise ValueError('not a URDF file: %s' % error)
 
 
-def _numbers(text):
-    return tuple(float(each) for each in text.split())
+def _numbers(text, count=3):
+    numbers = tuple(float(each) for each in text.split())
+    if len(numbers) != count:
+        raise ValueError('%r: expected %d numbers' % (text, count))
+    return numbers
 
 
 def _read_visual(link, visual, colors):
@@ -31,8 +38,10 @@ def _read_visual(link, visual, colors):
     if color is None and material is not None:
         color = colors.get(material.get('name'))
     shape, = visual.find('geometry')
+    if shape.tag not in SHAPES:
+        raise ValueError('<%s>: expected one of %s' % (shape.tag, ', '.join(SHAPES)))
     return Visual(link, _numbers(values.get('xyz', '0 0 0')), _numbers(values.get('rpy', '0 0 0')), shape.tag,
-                  _size(shape), shape.get('filename', ''), GREY if color is None else _numbers(color.get('rgba')))
+                  _size(shape), shape.get('filename', ''), None if color is None else _numbers(color.get('rgba'), 4))
 
 
 def _size(shape):

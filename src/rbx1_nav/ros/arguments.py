@@ -63,9 +63,9 @@ def _suggestion(left, value, names, cutoff):
 def _is_value(text):
     try:
         yaml.safe_load(text)
-    except yaml.YAMLError:
+    except (ValueError, yaml.YAMLError):    # ValueError: a date that does not exist, for example
         return False
-    return text and ':=' not in text
+    return bool(text) and ':=' not in text
 
 
 def report_parameters(usage):

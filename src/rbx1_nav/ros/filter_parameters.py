@@ -31,7 +31,7 @@ def read_parameters():
 def find_surface(name, base):
     """The Surface of this name; for AUTO, that of the node `base`, or else DEFAULT_SURFACE.
 
-    A simulated base has a parameter `surface`; a real one is taken to stand on carpet, like the tutorial's.
+    A simulated base has a parameter `surface`; a real one is assumed to stand on carpet, like the tutorial's.
     """
     try:
         if name == AUTO:

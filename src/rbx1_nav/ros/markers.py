@@ -7,6 +7,7 @@ from tf.transformations import (concatenate_matrices, euler_matrix, quaternion_f
 from visualization_msgs.msg import Marker, MarkerArray
 
 SHAPES = {'box': Marker.CUBE, 'cylinder': Marker.CYLINDER, 'sphere': Marker.SPHERE, 'mesh': Marker.MESH_RESOURCE}
+GREY = (0.5, 0.5, 0.5, 1.0)
 LIFETIME = 10       # s: a robot that is not updated any more disappears
 
 
@@ -16,7 +17,7 @@ def matrix(position, rotation):
                                 quaternion_matrix((rotation.x, rotation.y, rotation.z, rotation.w)))
 
 
-def robot(odometry, visuals, links):
+def robot_markers(odometry, visuals, links):
     """A MarkerArray of Visuals at the pose of an Odometry. links: the Transform of each link in the robot's frame."""
     pose = odometry.pose.pose
     base = matrix(pose.position, pose.orientation)
@@ -26,15 +27,17 @@ def robot(odometry, visuals, links):
     for number, visual in enumerate(visuals):
         if visual.link in links:
             link = links[visual.link]
-            array.markers.append(marker(header, number, visual, concatenate_matrices(
+            array.markers.append(visual_marker(header, number, visual, concatenate_matrices(
                 base, matrix(link.translation, link.rotation), translation_matrix(visual.xyz),
                 euler_matrix(*visual.rpy))))
     return array
 
 
-def marker(header, number, visual, place):
-    """A Marker of a Visual at a place (4x4 matrix). number: its id."""
+def visual_marker(header, number, visual, transform):
+    """A Marker of a Visual with a transform (4x4 matrix). number: its id."""
+    # RViz shows a mesh in its own colours if the marker has none
+    color = visual.color or ((0, 0, 0, 0) if visual.mesh else GREY)
     return Marker(header=header, ns='true_robot', id=number, type=SHAPES[visual.shape],
-                  pose=Pose(Point(*translation_from_matrix(place)), Quaternion(*quaternion_from_matrix(place))),
-                  scale=Vector3(*visual.size), color=ColorRGBA(*visual.color), lifetime=rospy.Duration(LIFETIME),
-                  mesh_resource=visual.mesh, mesh_use_embedded_materials=bool(visual.mesh))
+                  pose=Pose(Point(*translation_from_matrix(transform)), Quaternion(*quaternion_from_matrix(transform))),
+                  scale=Vector3(*visual.size), color=ColorRGBA(*color), lifetime=rospy.Duration(LIFETIME),
+                  mesh_resource=visual.mesh, mesh_use_embedded_materials=visual.color is None)

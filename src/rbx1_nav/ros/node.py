@@ -135,4 +135,7 @@ def run(main):
     except rospy.ROSException as error:
         rospy.logfatal('%s', error)
         status = 1
+    except OSError as error:
+        rospy.logfatal('The master at %s does not answer (%s)', rosgraph.get_master_uri(), error)
+        status = 1
     leave(status)

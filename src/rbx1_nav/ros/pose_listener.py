@@ -39,7 +39,7 @@ class PoseListener:
         return ' or '.join(self.base_frames)
 
     def pose(self):
-        """The Pose now, extrapolated from the last two transforms; yaw within two turns of 0.
+        """The Pose now, extrapolated from the last two transforms; yaw not wrapped.
 
         Raises LostTransform, and ROSException if the base was reset since the first pose.
         """

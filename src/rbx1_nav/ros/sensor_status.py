@@ -16,7 +16,7 @@ class SensorStatus:
         self.outliers = 0       # at the last diagnosis
 
     def diagnose(self, status, timed_out, outliers):
-        """Fill in a DiagnosticStatus. timed_out: whether the filter goes without this sensor; outliers: steps so far in
+        """Fill in a DiagnosticStatus. timed_out: whether the filter does not use this sensor; outliers: steps so far in
         which wheels and gyro disagreed."""
         disagree = outliers - self.outliers > MAX_OUTLIERS
         self.outliers = outliers

@@ -3,8 +3,9 @@ import os
 
 import pytest
 
-from rbx1_nav.model.urdf import GREY, Visual, read_visuals
+from rbx1_nav.model.urdf import Visual, read_visuals
 
+GEOMETRY = '<robot><link name="a"><visual><geometry>%s</geometry></visual></link></robot>'
 FOLDER = os.path.join(os.path.dirname(__file__), '..', '..', '..', 'urdf')
 
 
@@ -42,13 +43,14 @@ def test_shapes_sizes_and_colors():
     origin = (0, 0, 0)
     assert visuals == [
         Visual('body', (1, 2, 3), (0, 0, 1.5), 'cylinder', (0.2, 0.2, 0.3), '', (1, 0, 0, 0.5)),
-        Visual('body', origin, origin, 'sphere', (0.4, 0.4, 0.4), '', GREY),
+        Visual('body', origin, origin, 'sphere', (0.4, 0.4, 0.4), '', None),
         Visual('body', origin, origin, 'box', (1, 2, 3), '', (0, 1, 0, 1)),
         Visual('body', origin, origin, 'mesh', (2, 2, 2), 'package://a/b.dae', (0, 0, 1, 1))]
 
 
-@pytest.mark.parametrize('text', ['', 'robot', '<robot><link name="a"><visual/></link></robot>',
-                                  '<robot><link name="a"><visual><geometry><box size="b"/></geometry></visual></link></robot>'])
+@pytest.mark.parametrize('text', ['', 'robot', '<html/>', '<robot><link name="a"><visual/></link></robot>',
+                                  GEOMETRY % '<box size="b"/>', GEOMETRY % '<box size="1 2"/>',
+                                  GEOMETRY % '<capsule radius="1" length="2"/>'])
 def test_other_text_is_rejected(text):
     with pytest.raises(ValueError, match='not a URDF file'):
         read_visuals(text)
