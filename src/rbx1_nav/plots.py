@@ -43,8 +43,9 @@ def draw(file, surface, results, seeds):
     extent, norm = common_extent(ends.values()), common_norm(ends.values())
     for (above, below), method in zip(panels.T, results):
         draw_paths(above, results[method])
+        distances, errors = numpy.hypot(*ends[method].T[:2]), ends[method][:, 2]
         above.set_title('%s: %.1f cm from the start, %.1f degrees off' % (
-            TITLES[method], 100 * numpy.hypot(*ends[method].T[:2]).mean(), ends[method][:, 2].mean()), fontsize='medium')
+            TITLES[method], 100 * distances.mean(), errors.mean()), fontsize='medium')
         points = draw_ends(below, ends[method], extent, norm)
     if norm:
         figure.colorbar(points, ax=list(panels[1]), label='heading error (degrees)').solids.set(alpha=1)

@@ -3,9 +3,8 @@ from collections import namedtuple
 import xml.etree.ElementTree as ElementTree
 
 Visual = namedtuple('Visual', 'link xyz rpy shape size mesh color')
-Visual.__doc__ = """A visual of a link: position (m) and roll, pitch, yaw (rad) in the frame of the link; shape: box, cylinder,
-sphere or mesh; size: extent along x, y and z (m; of a mesh: its scale); mesh: its URL, or ''; color: r, g, b, alpha,
-or None."""
+Visual.__doc__ = """A visual of a link: position (m) and roll, pitch, yaw (rad) in the frame of the link; shape: one of
+SHAPES; size: extent along x, y and z (m; of a mesh: its scale); mesh: its URL, or ''; color: r, g, b, alpha, or None."""
 
 SHAPES = ('box', 'cylinder', 'sphere', 'mesh')
 
