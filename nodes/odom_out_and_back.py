@@ -73,10 +73,14 @@ class OutAndBack:
             rospy.loginfo('Measuring the pose of %s in the frame %s', self.poses.base_frame, self.poses.odom_frame)
 
             for leg in legs:
-                self.drive(leg)
-                # Stop, and come to rest, before the next leg.
-                self.cmd_vel.publish(Twist())
-                pause(1, self.cmd_vel)
+                rospy.loginfo('%s: %.2f %s', leg.name, leg.goal, leg.unit)
+                with tqdm(total=leg.goal, desc=leg.name, unit=leg.unit, disable=None,
+                          bar_format='{desc:9}: |{bar}| {n:.2f} of {total:.2f} {unit}') as bar:
+                    # A leg stops twice: just before its goal, to see how far the robot rolls on, and at its goal.
+                    self.drive(leg, bar)
+                    self.rest(0.5)
+                    self.drive(leg, bar)
+                self.rest(1)
 
             self.cmd_vel.publish(Twist())
         finally:
@@ -88,20 +92,23 @@ class OutAndBack:
                       self.poses.odom_frame, hypot(end.x - start.x, end.y - start.y),
                       degrees(abs(wrap_angle(end.yaw - start.yaw))))
 
-    def drive(self, leg):
-        """One leg: look at the pose, and drive on until the goal is reached."""
-        rospy.loginfo('%s: %.2f %s', leg.name, leg.goal, leg.unit)
+    def drive(self, leg, bar):
+        """Look at the pose, and drive on until the leg is to stop. Shows its progress."""
         rate = Rate(self.rate, self.cmd_vel)
         command = Twist()
-        with tqdm(total=leg.goal, desc=leg.name, unit=leg.unit, disable=None,
-                  bar_format='{desc:9}: |{bar}| {n:.2f} of {total:.2f} {unit}') as bar:
+        speed = leg.next_speed(self.pose())
+        while speed:
+            command.linear.x, command.angular.z = leg.velocity(speed)
+            self.cmd_vel.publish(command)
+            rate.sleep()
             speed = leg.next_speed(self.pose())
-            while speed is not None:
-                command.linear.x, command.angular.z = leg.velocity(speed)
-                self.cmd_vel.publish(command)
-                rate.sleep()
-                speed = leg.next_speed(self.pose())
-                bar.update(max(0, min(leg.done(), leg.goal) - bar.n))
+            bar.update(max(0, min(leg.done(), leg.goal) - bar.n))
+
+    def rest(self, seconds):
+        """Stop, and come to rest."""
+        self.cmd_vel.publish(Twist())
+        pause(seconds, self.cmd_vel)
+        self.poses.forget_velocity()
 
     def pose(self):
         """The robot's pose. If it is lost, the robot stands and waits for it."""

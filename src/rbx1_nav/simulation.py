@@ -23,6 +23,7 @@ EXERCISE = dict(linear_speed=0.2, goal_distance=1.0, angular_speed=1.0, goal_ang
 MIN_SPEEDS = dict(min_linear_speed=0.05, min_angular_speed=0.2)
 TICK = SECOND // EXERCISE['rate']   # ns
 REST = 50       # ticks between two motions
+TRIAL_REST = 25     # ticks at the trial stop of a leg
 CALIBRATION = 100   # ticks at rest before the first motion, in which the filter estimates the gyro's bias
 
 Snapshot = namedtuple('Snapshot', 'time truth odometry estimate')
@@ -78,9 +79,14 @@ class Simulation:
 
     def drive_by_pose(self, leg, get_pose):
         """One leg of odom_out_and_back.py; get_pose(): the Pose that it is controlled by."""
+        self._drive_to_stop(leg, get_pose)
+        self.rest(TRIAL_REST)
+        self._drive_to_stop(leg, get_pose)
+
+    def _drive_to_stop(self, leg, get_pose):
         while True:
             speed = leg.next_speed(get_pose())
-            if speed is None:
+            if not speed:
                 return
             self.base.command(self.now, *leg.velocity(speed))
             self.tick()

@@ -6,7 +6,6 @@ from rbx1_nav.control.motions import ticks
 from rbx1_nav.units import wrap_angle
 
 SLOW_DOWN = 0.5     # s: the distance at which a leg begins to slow down, as a travel time
-TRIAL_TIME = 0.2    # s without progress after which a stopped robot is at a standstill
 SPEED_WINDOW = 0.1  # s over which the robot's speed is measured: a few counts of the encoders, a message or two
 STUCK_TIME = 5.0    # s without progress: something holds the robot, or turns it the wrong way
 
@@ -19,7 +18,8 @@ class Leg:
     """One motion, slower and slower towards its goal, with a trial stop just before it.
 
     A robot rolls on after a stop. How far depends on the robot, the floor, and all delays in between. The trial stop
-    measures it. Then the robot goes on at its lowest speed, and stops that far before the goal.
+    measures it. Then the robot goes on at its lowest speed, and stops that far before the goal. So a leg is driven in two
+    parts, with a rest between them.
     """
 
     def __init__(self, name, goal, speed, min_speed, rate):
@@ -32,56 +32,55 @@ class Leg:
         self.start = self.last = None   # Pose
         self.turned = 0.0       # rad
         self.nearest = goal     # m or rad
-        self.idle = 0           # ticks without progress
+        self.patience = self.stuck_ticks = max(2, int(min(STUCK_TIME * rate, 1e9)))
         self.recent = deque(maxlen=1 + round(min(max(1, SPEED_WINDOW * rate), 1000)))   # m or rad to go
         self.trial = None       # m or rad to go, and travel per tick, when the trial stop began
         self.roll_out = None    # m or rad from there to the standstill
+        self.finished = False
         try:
             ticks(goal, self.min_speed, rate)
         except ValueError as error:
             raise ValueError('%s: at the lowest speed, %s' % (self.keys, error))
 
     def next_speed(self, pose):
-        """The speed for the next tick, with the robot at `pose`: 0 in the trial stop, None at the goal.
+        """The speed for the next tick, with the robot at `pose`. Raises StuckError.
 
-        Raises StuckError.
+        0 is a stop: first the trial stop, after which it is called again when the robot is at a standstill; then the goal.
         """
         if self.start is None:
             self.start = self.last = pose
         self.turned += wrap_angle(pose.yaw - self.last.yaw)
         self.last = pose
         to_go = self.goal - self.done()
+        if self.trial and self.roll_out is None:
+            self.roll_out = max(0.0, self.trial[0] - to_go)
+            self.recent.clear()
         self.recent.append(to_go)
         travel = max(0.0, self.recent[0] - to_go) / max(1, len(self.recent) - 1)    # m or rad per tick
-        min_travel = self.min_speed / self.rate
         # half of a tick's travel is as near as it can get
-        if to_go - self._expected_roll_out(travel) <= min(travel, min_travel) / 2:
-            return None
-        self.idle += 1
-        if to_go < self.nearest - min_travel:
+        if self.finished or to_go - self._expected_roll_out(travel) <= min(travel, self.min_speed / self.rate) / 2:
+            self.finished = True
+            return 0.0
+        self.patience -= 1
+        if to_go < self.nearest - self.min_speed / self.rate:
             self.nearest = to_go
-            self.idle = 0
-        if self.idle > max(2, STUCK_TIME * self.rate):
+            self.patience = self.stuck_ticks
+        if self.patience < 0:
             raise StuckError('%s: no progress for %g s, %.3f of %.3f %s to go'
                              % (self.name, STUCK_TIME, to_go, self.goal, self.unit))
         # it has reached its lowest speed, with SLOW_DOWN left to go on at it
-        if to_go < SLOW_DOWN * self.min_speed and self._is_on_trial(to_go, travel):
+        if not self.trial and to_go < SLOW_DOWN * self.min_speed:
+            self.trial = to_go, max(travel, 1e-9)   # never divide by 0
             return 0.0
         # no faster than it can brake, and never past the goal within two ticks
         limit = min(to_go / max(SLOW_DOWN, 2 / self.rate), sqrt(2 * self.deceleration * to_go))
         return min(self.speed, max(self.min_speed, limit))
 
-    def _is_on_trial(self, to_go, travel):
-        """Whether the robot is still to stand, so that its roll-out is measured."""
-        if self.trial is None:
-            self.trial = to_go, max(travel, 1e-9)   # never divide by 0
-            self.idle = 0
-        if self.roll_out is None and self.idle >= TRIAL_TIME * self.rate:
-            self.roll_out = max(0.0, self.trial[0] - to_go)
-        return self.roll_out is None
-
     def _expected_roll_out(self, travel):
-        """How far the robot would roll on (m or rad): as in the trial stop, or less if it is slower now."""
+        """How far the robot would roll on (m or rad): as in the trial stop, or less if it is slower now.
+
+        travel: per tick, m or rad.
+        """
         return self.roll_out * min(1.0, travel / self.trial[1]) if self.roll_out else 0.0
 
 

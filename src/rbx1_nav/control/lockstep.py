@@ -16,12 +16,6 @@ SLOW_ANSWER = 0.05      # s of wall time: a later command may not be an answer t
 MAX_BACKLOG = 25        # commands: more of them in the queue than at the start mean more than one per tick
 
 
-def is_motion(command):
-    """Whether a command moves the robot."""
-    linear, angular, *_ = command
-    return linear != 0 or angular != 0
-
-
 class Driver:
     """One connection that brings commands."""
 
@@ -75,9 +69,6 @@ class Lockstep:
                     self._collect_from(driver)
 
     def _collect_from(self, driver):
-        # a stop after a stop answers no tick: kept for one, it would delay the stream that follows
-        while driver.queue and not driver.streaming and not is_motion(driver.queue[0]):
-            self.apply(driver.queue.popleft())
         if driver.queue and not driver.streaming:
             # the clock ran freely until now: let the driver answer all ticks that it has seen
             self._wait_until_quiet(driver, QUIET if driver.heard_before else FIRST_QUIET)
@@ -93,7 +84,8 @@ class Lockstep:
                 self._wait_until_quiet(driver, 2 * waited)
         if driver.queue:
             command = driver.queue.popleft()
-            driver.streaming = is_motion(command)
+            linear, angular, *_ = command
+            driver.streaming = linear != 0 or angular != 0
             self.apply(command)
         if len(driver.queue) > driver.lag + MAX_BACKLOG:
             self._release(driver, 'sends more than one command per tick')

@@ -30,6 +30,7 @@ class PoseListener:
         self.listener = tf2_ros.TransformListener(self.buffer)
         self.reset = False  # whether the base was reset
         self.reset_sub = rospy.Subscriber('reset_odometry', Empty, self._on_reset)
+        self.started = False    # whether a pose was returned
         self.last = None    # (stamp in s, Pose)
         self.velocity = Pose(0.0, 0.0, 0.0)     # between the last two transforms, m/s and rad/s
 
@@ -55,6 +56,10 @@ class PoseListener:
         self._update(stamp, Pose(position.x, position.y, 2 * atan2(rotation.z, rotation.w)))
         return Pose(*(value + rate * max(age, 0.0) for value, rate in zip(self.last[1], self.velocity)))
 
+    def forget_velocity(self):
+        """To be called when the robot was stopped: it does not move on as it did before."""
+        self.last = None
+
     def wait(self, timeout):
         """pose() as soon as there is one. Raises ROSException after `timeout` s of wall time, ROSInterruptException."""
         deadline = time.monotonic() + timeout
@@ -73,7 +78,7 @@ class PoseListener:
                 raise rospy.ROSInterruptException('shutdown requested')
 
     def _on_reset(self, _):
-        self.reset = self.last is not None
+        self.reset = self.started
 
     def _update(self, stamp, pose):
         elapsed = stamp - self.last[0] if self.last else -1.0
@@ -84,6 +89,7 @@ class PoseListener:
             self.velocity = Pose((pose.x - before.x) / elapsed, (pose.y - before.y) / elapsed,
                                  wrap_angle(pose.yaw - before.yaw) / elapsed)
         self.last = stamp, pose
+        self.started = True
 
     def _look_up(self):
         for frame in self.base_frames:

@@ -20,7 +20,7 @@ def drive(leg, pose, fraction=1.0):
     speeds = []
     while True:
         speed = leg.next_speed(pose._replace(yaw=remainder(pose.yaw, 2 * pi)))
-        if speed is None:
+        if leg.finished:
             return pose, speeds
         speeds.append(speed)
         linear, angular = leg.velocity(speed)
@@ -50,28 +50,36 @@ def test_a_leg_slows_down_to_its_lowest_speed_before_the_goal():
     assert sorted(moving, reverse=True) == moving and moving[-1] == 0.05
 
 
-def test_a_trial_stop_of_a_fifth_of_a_second_comes_before_the_goal():
+def test_a_trial_stop_comes_just_before_the_goal_and_then_the_lowest_speed():
     for leg in out_and_back_by_odometry(**LEGS)[:2]:
         _, speeds = drive(leg, ORIGIN)
-        stop = speeds.index(0.0)
-        assert speeds[stop:].count(0.0) == 10 and not any(speeds[stop:stop + 10])
-        # from there it goes on at its lowest speed for the half second that was left
-        assert speeds[stop + 10:] == [leg.min_speed] * 25
+        # for the half second that was left
+        assert speeds.count(0.0) == 1 and speeds[speeds.index(0.0) + 1:] == [leg.min_speed] * 25
+
+
+def test_a_leg_that_has_ended_stays_so():
+    leg = out_and_back_by_odometry(**LEGS)[0]
+    drive(leg, ORIGIN)
+    assert [leg.next_speed(ORIGIN) for _ in range(3)] == [0.0] * 3
 
 
 def roll(leg, lag, drag, delay):
     """Drive a leg with motors to their standstill. Returns how far the robot went, m or rad."""
     straight, turning = Motor(lag, 1.0, drag), Motor(lag, 1.0, drag)
     pending, pose = deque([(0.0, 0.0)] * delay), ORIGIN
-    speed, ticks_left = leg.next_speed(pose), 100
-    while ticks_left:
-        pending.append(leg.velocity(speed or 0.0))
+
+    def tick(speed):
+        pending.append(leg.velocity(speed))
         linear, angular = pending.popleft()
-        pose = arc(pose, straight.travel(linear, 0.02), turning.travel(angular * HALF_WIDTH, 0.02) / HALF_WIDTH)
-        if speed is None:
-            ticks_left -= 1
-        else:
+        return arc(pose, straight.travel(linear, 0.02), turning.travel(angular * HALF_WIDTH, 0.02) / HALF_WIDTH)
+
+    for rest in 25, 100:    # ticks: of the trial stop, and until it stands still in any case
+        speed = leg.next_speed(pose)
+        while speed:
+            pose = tick(speed)
             speed = leg.next_speed(pose)
+        for _ in range(rest):
+            pose = tick(0.0)
     return pose.x or pose.yaw
 
 
@@ -105,7 +113,7 @@ def test_a_slow_rate_does_not_overshoot_the_goal(rate):
         pose = ORIGIN
         while True:
             speed = leg.next_speed(pose._replace(yaw=remainder(pose.yaw, 2 * pi)))
-            if speed is None:
+            if leg.finished:
                 break
             pose = arc(pose, *(value / rate for value in leg.velocity(speed)))
         assert abs(leg.goal - leg.done()) <= 0.5001 * slowest / rate

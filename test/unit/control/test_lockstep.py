@@ -30,13 +30,6 @@ def test_each_tick_applies_one_command_however_many_are_queued():
     assert not recorder.warnings
 
 
-def test_stops_before_a_stream_do_not_delay_it():
-    recorder = Recorder()
-    recorder.send(STOP, STOP, MOVE, MOVE)
-    recorder.lockstep.collect()
-    assert recorder.applied == [STOP, STOP, MOVE]
-
-
 def test_a_tick_waits_for_its_command():
     recorder = Recorder()
     recorder.send(MOVE)
