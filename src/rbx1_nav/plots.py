@@ -109,7 +109,7 @@ def draw_ends(axes, poses, extent, norm):
         1000 * rounded(x.mean(), 4), 1000 * rounded(y.mean(), 4)),
              xlabel='x (m)', ylabel='y (m)', aspect='equal', xlim=extent[:2], ylim=extent[2:])
     axes.grid(True, alpha=0.5)
-    if 1e-4 < size < 0.15 * (extent[1] - extent[0]):
+    if 1e-4 < size < 0.1 * (extent[1] - extent[0]):
         inset = axes.inset_axes([0.55, 0.5, 0.42, 0.42])
         inset.scatter(100 * x, 100 * y, **style)
         half = 60 * size
