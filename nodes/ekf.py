@@ -113,7 +113,7 @@ class Ekf:
             rospy.logerr_throttle_identical(1, '%s: %s; rejected' % (rospy.resolve_name(sensor), error))
             return
         self.sensors[sensor].received = now
-        if self.combined.estimate:
+        if self.combined.estimate and not node.end_requested.is_set():      # topics are closed at the end
             self.publisher.update(self.combined.estimate, *self.frames)
 
     def diagnose(self, sensor, status):

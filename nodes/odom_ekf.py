@@ -36,7 +36,7 @@ class OdomEkf:
 
     def on_pose(self, pose):
         """Republish a combined pose, with the mean velocity since the previous one."""
-        if self.frames:
+        if self.frames and not node.end_requested.is_set():     # topics are closed at the end
             self.publisher.publish(messages.odometry_of_pose(pose, self.last, *self.frames))
         self.last = pose
 

@@ -36,6 +36,8 @@ class TrueRobot:
 
     def on_truth(self, truth):
         """Publish the robot at its true pose."""
+        if node.end_requested.is_set():     # topics are closed at the end
+            return
         if self.publisher.get_num_connections() and self.schedule.due(time.monotonic_ns()):
             links = {}
             for link in {visual.link for visual in self.visuals}:
