@@ -133,10 +133,11 @@ class OwnClock:
 class Process:
     """A node under test in a process of its own. Keeps the lines of its output."""
 
-    def __init__(self, *command):
+    def __init__(self, *command, **environment):
+        """environment: variables to set."""
         # unbuffered, so that a line arrives when it is printed
         self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-                                        start_new_session=True, env=dict(os.environ, PYTHONUNBUFFERED='1'))
+                                        start_new_session=True, env=dict(os.environ, PYTHONUNBUFFERED='1', **environment))
         self.lines = []
         self.reader = threading.Thread(target=self._read, daemon=True)
         self.reader.start()

@@ -1,0 +1,107 @@
+"""Runs one row of the fault suite, in a process of its own: row.py NAME TIMES SEED. The last line is its result.
+
+A row is a module in rows/ with
+
+    FAULT       what is done, for the table
+    PROMISE     what is promised
+    FULL, SHORT how many faults in the full suite and in its short form (0: none)
+    ROOT        whether it needs root
+    ALONE       whether it measures durations, so that no other row may run beside it
+    run(row)    tries row.times faults; row: a Row
+"""
+from contextlib import contextmanager
+import importlib
+import json
+import os
+import random
+import signal
+import sys
+import time
+import traceback
+
+FOLDER = os.path.dirname(os.path.abspath(__file__))
+sys.path[:0] = [FOLDER, os.path.dirname(FOLDER)]
+
+import support      # noqa: E402, pylint: disable=wrong-import-position
+
+
+class Row:
+    """What a row works with: its faults, its processes, and its figures."""
+
+    def __init__(self, name, times, seed):
+        self.name = name
+        self.times = times
+        self.random = random.Random('%s %d' % (name, seed))
+        self.faults = 0
+        self.failures = []
+        self.figures = {}
+        self.processes = []
+
+    @contextmanager
+    def fault(self, text):
+        """One fault: what is wrong inside, an AssertionError or another error, is a failure of this row."""
+        self.faults += 1
+        try:
+            yield
+        except AssertionError as error:
+            self.failures.append('%s: %s' % (text, error or traceback.format_exc().splitlines()[-2].strip()))
+        except Exception:       # pylint: disable=broad-except
+            self.failures.append('%s: %s' % (text, traceback.format_exc()))
+
+    def figure(self, name, value):
+        """A measured value; the table shows the spread of all values of one name."""
+        self.figures.setdefault(name, []).append(float(value))
+
+    def start(self, *command, **environment):
+        """Start a command as a support.Process, which ends with the row. environment: variables to set."""
+        process = support.Process(*command, **environment)
+        self.processes.append(process)
+        return process
+
+    def roscore(self):
+        """Start a master, at the address that this row was given, and wait for it."""
+        port = os.environ['ROS_MASTER_URI'].rpartition(':')[2]
+        core = self.start('roscore', '-p', port)
+        core.wait_for_line('started core service')
+        return core
+
+    def base(self, *arguments):
+        """Start the simulated base with `name:=value` arguments of its launch file, and wait until it is ready."""
+        base = self.start('roslaunch', '--wait', 'rbx1_nav', 'fake_turtlebot.launch', *arguments)
+        base.wait_for_line('Ready: ')
+        return base
+
+    def end(self, *processes):
+        """End processes as Ctrl-C does, and kill those that do not end."""
+        for process in processes or reversed(self.processes):
+            if process.process.poll() is None:
+                process.signal(signal.SIGINT)
+        limit = time.monotonic() + 10
+        for process in processes or self.processes:
+            while process.process.poll() is None and time.monotonic() < limit:
+                time.sleep(0.02)
+            process.kill()
+
+    def result(self):
+        """The outcome, as written to the suite."""
+        return dict(name=self.name, faults=self.faults, skipped='', failures=self.failures, figures=self.figures)
+
+
+def main():
+    """Run the row, and print its result."""
+    name, times, seed = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
+    row = Row(name, times, seed)
+    try:
+        importlib.import_module('rows.' + name).run(row)
+    except Exception:   # pylint: disable=broad-except
+        row.failures.append(traceback.format_exc())
+    finally:
+        row.end()
+        sys.stdout.write('\n%s\n' % json.dumps(row.result()))
+        sys.stdout.flush()
+        os._exit(0)     # rospy's threads may wait for a master that has gone
+
+
+if __name__ == '__main__':
+    main()

@@ -1,0 +1,197 @@
+#!/usr/bin/env python3
+"""Runs the fault suite: the rows below rows/, each in a process and with a ROS master of its own.
+
+A row that fails is repeated once, with the same seed, before it counts as failed.
+"""
+import argparse
+import importlib
+import json
+import os
+import random
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+
+FOLDER = os.path.dirname(os.path.abspath(__file__))
+sys.path[:0] = [FOLDER, os.path.dirname(FOLDER)]
+LIMIT = 20 * 60     # s of wall time for a row: longer means that it hangs
+
+
+def read_arguments(names):
+    """The command line."""
+    parser = argparse.ArgumentParser(prog='script/test --faults', description=__doc__.split('\n')[0])
+    parser.add_argument('rows', nargs='*', metavar='ROW', help='one of %s; default: all' % ', '.join(names))
+    parser.add_argument('--short', action='store_true', help='fewer faults of each kind')
+    parser.add_argument('--seed', type=int, default=random.randrange(10 ** 6), metavar='S',
+                        help='repeats the same random faults; default: a new one')
+    parser.add_argument('--times', type=int, metavar='N', help='how many faults of each row, whatever the row says')
+    parser.add_argument('--table', metavar='FILE', help='write the table of docs/reliability.md')
+    arguments = parser.parse_args()
+    for name in arguments.rows:
+        if name not in names:
+            parser.error('%s: expected one of %s' % (name, ', '.join(names)))
+    return arguments
+
+
+def free_port():
+    """A TCP port of the loopback interface that nobody uses."""
+    with socket.socket() as sock:
+        sock.bind(('127.0.0.1', 0))
+        return sock.getsockname()[1]
+
+
+def run_row(name, module, times, seed):
+    """Run a row in a process of its own. Returns its result as a dictionary, see Row.result()."""
+    if module.ROOT and os.geteuid() != 0:
+        return dict(name=name, faults=times, skipped='needs root', failures=[], figures={}, seconds=0)
+    start = time.monotonic()
+    with tempfile.TemporaryDirectory(prefix='rbx1_nav-faults.') as folder:
+        environment = dict(os.environ, ROS_MASTER_URI='http://127.0.0.1:%d' % free_port(), ROS_IP='127.0.0.1',
+                           ROS_HOME=folder, ROS_LOG_DIR=os.path.join(folder, 'log'))
+        environment.pop('ROS_NAMESPACE', None)
+        process = subprocess.Popen([sys.executable, os.path.join(FOLDER, 'row.py'), name, str(times), str(seed)],
+                                   stdout=subprocess.PIPE, text=True, env=environment, start_new_session=True, cwd=folder)
+        try:
+            output, _ = process.communicate(timeout=LIMIT)
+        except subprocess.TimeoutExpired:
+            output = ''
+        finally:
+            end_row(process, environment['ROS_MASTER_URI'])
+    try:
+        result = json.loads(output.splitlines()[-1])
+    except (IndexError, ValueError):
+        result = dict(name=name, faults=0, skipped='', failures=['the row itself ended without a result'], figures={})
+    return dict(result, seconds=round(time.monotonic() - start))
+
+
+def end_row(process, master):
+    """End a row, and what it has left behind: roslaunch starts its nodes in sessions of their own."""
+    if process.poll() is None:
+        process.terminate()
+        try:
+            process.wait(15)
+        except subprocess.TimeoutExpired:
+            pass
+    for pid in filter(str.isdigit, os.listdir('/proc')):
+        try:
+            with open('/proc/%s/environ' % pid, 'rb') as file:
+                if ('ROS_MASTER_URI=' + master).encode() in file.read().split(b'\0'):
+                    os.kill(int(pid), signal.SIGKILL)
+        except OSError:     # it has ended, or is somebody else's
+            pass
+    process.wait()
+
+
+class Suite:
+    """Runs rows side by side, and prints what came out."""
+
+    def __init__(self, modules, arguments):
+        self.modules = modules
+        self.arguments = arguments
+        self.results = {}
+        self.lock = threading.Lock()
+
+    def times(self, module):
+        """How many faults a row is to try."""
+        return self.arguments.times or (module.SHORT if self.arguments.short else module.FULL)
+
+    def run(self):
+        """Run all rows: two side by side, then those that measure durations, one at a time. Returns the results."""
+        names = [name for name in self.modules if self.times(self.modules[name])]
+        self.work([name for name in names if not self.modules[name].ALONE], 2)
+        self.work([name for name in names if self.modules[name].ALONE], 1)
+        return [self.results[name] for name in names]
+
+    def work(self, names, jobs):
+        """Run rows, so many at a time."""
+        waiting = list(names)
+
+        def worker():
+            while True:
+                with self.lock:
+                    if not waiting:
+                        return
+                    name = waiting.pop(0)
+                self.run_twice(name)
+        threads = [threading.Thread(target=worker) for _ in range(jobs)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+
+    def run_twice(self, name):
+        """Run a row; once more if it fails."""
+        module = self.modules[name]
+        result = run_row(name, module, self.times(module), self.arguments.seed)
+        repeated = bool(result['failures'])
+        if repeated:
+            self.show(result, 'failed, and is repeated')
+            result = run_row(name, module, self.times(module), self.arguments.seed)
+        result['repeated'] = repeated
+        self.results[name] = result
+        self.show(result, 'skipped: ' + result['skipped'] if result['skipped'] else
+                  'FAILED' if result['failures'] else 'passed')
+
+    def show(self, result, word):
+        """Print the outcome of a row."""
+        with self.lock:
+            print('%-18s %5d faults in %4d s: %s' % (result['name'], result['faults'], result['seconds'], word))
+            for text in result['failures'][:5]:
+                print('    %s' % text.replace('\n', '\n    '))
+            if len(result['failures']) > 5:
+                print('    and %d more' % (len(result['failures']) - 5))
+            for figure, values in sorted(result['figures'].items()):
+                print('    %s: %s' % (figure, spread(values)))
+            sys.stdout.flush()
+
+
+def spread(values):
+    """Numbers as text: one, or smallest, median and largest."""
+    values = sorted(values)
+    if len(values) == 1:
+        return '%.4g' % values[0]
+    return '%.3g to %.3g, median %.3g' % (values[0], values[-1], values[len(values) // 2])
+
+
+def write_table(path, modules, results, seed):
+    """Write the rows as a Markdown table."""
+    with open(path, 'w', encoding='utf-8') as file:
+        file.write('Seed %d.\n\n| row | what was done | times | what is promised | what happened |\n|---|---|---|---|---|\n'
+                   % seed)
+        for result in results:
+            module = modules[result['name']]
+            happened = ('skipped: %s' % result['skipped'] if result['skipped'] else
+                        'all held' if not result['failures'] else '%d failed' % len(result['failures']))
+            if result['repeated'] and not result['failures']:
+                happened += ', at the second try'
+            for figure, values in sorted(result['figures'].items()):
+                happened += '; %s: %s' % (figure, spread(values))
+            file.write('| `%s` | %s | %d | %s | %s |\n' % (result['name'], module.FAULT, result['faults'],
+                                                         module.PROMISE, happened))
+
+
+def main():
+    """Run the rows. Returns the exit status."""
+    names = sorted(name[:-len('.py')] for name in os.listdir(os.path.join(FOLDER, 'rows')) if name.endswith('.py'))
+    arguments = read_arguments(names)
+    modules = {name: importlib.import_module('rows.' + name) for name in arguments.rows or names}
+    print('Seed %d: `script/test --faults --seed %d%s ROW` repeats a row' % (
+        arguments.seed, arguments.seed, ' --short' if arguments.short else ''), flush=True)
+    results = Suite(modules, arguments).run()
+    if arguments.table:
+        write_table(arguments.table, modules, results, arguments.seed)
+    failed = [result['name'] for result in results if result['failures']]
+    skipped = [result['name'] for result in results if result['skipped']]
+    print('%d faults in %d rows: %d passed, %d failed%s, %d skipped%s' % (
+        sum(result['faults'] for result in results if not result['skipped']), len(results),
+        len(results) - len(failed) - len(skipped), len(failed), ' (%s)' % ', '.join(failed) if failed else '',
+        len(skipped), ' (%s)' % ', '.join(skipped) if skipped else ''))
+    return 1 if failed or not results else 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())
