@@ -122,7 +122,11 @@ class Session:
         if terminal.status is not None:
             self.fail('ended before Ctrl-C, with status %d' % terminal.status, name)
         self.last, self.first[name] = name, len(terminal.lines) - 1
-        terminal.interrupt()
+        deadline = time.monotonic() + self.limit
+        # bash may miss the key between two commands of one line: a reader presses it again
+        while terminal.status is None and time.monotonic() < deadline:
+            terminal.interrupt()
+            self.wait(lambda: terminal.status is not None, 10)
         self.wait_for(lambda: terminal.status is not None, name, 'Ctrl-C does not end it')
         if terminal.status not in AFTER_CTRL_C:
             self.fail('status %d after Ctrl-C' % terminal.status, name)
@@ -168,11 +172,18 @@ class Session:
 
     def wait_for(self, condition, name, trouble):
         """Wait for a condition of a terminal, or fail."""
-        deadline = time.monotonic() + self.limit
+        if not self.wait(condition, self.limit):
+            self.fail('%s after %g s' % (trouble, self.limit), name)
+
+    @staticmethod
+    def wait(condition, limit):
+        """Wait for a condition for at most `limit` s; returns whether it came true."""
+        deadline = time.monotonic() + limit
         while not condition():
             if time.monotonic() > deadline:
-                self.fail('%s after %g s' % (trouble, self.limit), name)
+                return False
             time.sleep(0.05)
+        return True
 
     def check_errors(self):
         """Fail if a command printed an error that the page does not show."""
