@@ -68,7 +68,7 @@ class OutAndBack:
 
         try:
             # What is published before anyone subscribes is lost.
-            wait_for_subscribers(self.cmd_vel, wait_timeout)
+            self.listeners = wait_for_subscribers(self.cmd_vel, wait_timeout)
             start = self.poses.wait(wait_timeout)
             rospy.loginfo('Measuring the pose of %s in the frame %s', self.poses.base_frame, self.poses.odom_frame)
 
@@ -87,6 +87,8 @@ class OutAndBack:
             # However it ended: the most important thing that a mobile robot must do.
             self.stop()
 
+        # Say so if the base did not get every command.
+        self.listeners.check_delivery()
         end = self.poses.wait(self.transform_timeout)
         rospy.loginfo('Done: measured in %s, the robot is %.3f m from its start and %.1f degrees off its first heading',
                       self.poses.odom_frame, hypot(end.x - start.x, end.y - start.y),
@@ -94,7 +96,7 @@ class OutAndBack:
 
     def drive(self, leg, bar):
         """Look at the pose, and drive on until the leg is to stop. Shows its progress."""
-        rate = Rate(self.rate, self.cmd_vel)
+        rate = Rate(self.rate, self.listeners)
         command = Twist()
         speed = leg.next_speed(self.pose())
         while speed:
@@ -107,7 +109,7 @@ class OutAndBack:
     def rest(self, seconds):
         """Stop, and come to rest."""
         self.cmd_vel.publish(Twist())
-        pause(seconds, self.cmd_vel)
+        pause(seconds, self.listeners)
         self.poses.forget_velocity()
 
     def pose(self):
@@ -117,7 +119,7 @@ class OutAndBack:
         except LostTransform as error:
             self.cmd_vel.publish(Twist())
             rospy.logwarn('%s: the robot waits for a new one', error)
-            return self.poses.wait(self.transform_timeout)
+            return self.poses.wait(self.transform_timeout, self.listeners.check)
 
     def stop(self):
         """Stop the robot, and give it the time to do so."""

@@ -54,19 +54,21 @@ class OutAndBack:
 
         try:
             # What is published before anyone subscribes is lost.
-            wait_for_subscribers(self.cmd_vel, wait_timeout)
+            self.listeners = wait_for_subscribers(self.cmd_vel, wait_timeout)
 
             for motion in motions:
                 self.drive(motion)
                 # Stop, and come to rest, before the next motion.
                 self.cmd_vel.publish(Twist())
-                pause(1, self.cmd_vel)
+                pause(1, self.listeners)
 
             self.cmd_vel.publish(Twist())
         finally:
             # However it ended: the most important thing that a mobile robot must do.
             self.stop()
 
+        # Say so if the base did not get every command.
+        self.listeners.check_delivery()
         rospy.loginfo('Done: commanded %.2f m forward and %.2f rad to the left. To see where that led: '
                       'rosrun rbx1_nav pose.py',
                       sum(motion.ticks * motion.linear for motion in motions) / self.rate,
@@ -84,7 +86,7 @@ class OutAndBack:
         # With disable=None, tqdm shows its progress bar only in a terminal.
         ticks = tqdm(range(motion.ticks), desc=motion.name, disable=None,
                      bar_format='{desc:9}: |{bar}| {n} of {total} commands')
-        rate = Rate(self.rate, self.cmd_vel)
+        rate = Rate(self.rate, self.listeners)
         for _ in ticks:
             self.cmd_vel.publish(command)
             rate.sleep()

@@ -6,10 +6,13 @@ this clock (a person at a keyboard, another rate, wall time) never gives such an
 connection; from then on its commands take effect as they arrive.
 """
 from collections import deque
+from math import inf
 from threading import Condition
 from time import monotonic
 
 COMMAND_TIMEOUT = 1.0   # s of wall time that a tick waits for its command
+PATIENCE = 5.0          # s, the same for a driver that has answered PROOF ticks: its machine is busy
+PROOF = 25
 FIRST_QUIET = 0.1       # s of wall time without a command that end a driver's first burst
 QUIET = 0.03            # s, the same at the start of each later stream
 SLOW_ANSWER = 0.05      # s of wall time: a later command may not be an answer to the tick at all
@@ -27,33 +30,31 @@ class Driver:
         self.heard_before = False
         self.lag = 0                # length of the queue when the stream began
         self.streaming = False      # its last command was a motion: the next tick will bring another
+        self.answered = 0           # ticks
         self.released = False       # does not drive by this clock
 
 
 class Lockstep:
     """Applies one command per driver and tick: tuples that begin with linear (m/s) and angular (rad/s)."""
 
-    def __init__(self, apply, warn):
-        """apply(command): puts a command in force; warn(text): logs a warning."""
+    def __init__(self, apply, warn, connected, ended=lambda: False):
+        """apply(command): puts a command in force; warn(text): logs a warning; connected(connection): whether a
+        connection still exists; ended(): whether not to wait any more."""
         self.apply = apply
         self.warn = warn
+        self.connected = connected
+        self.ended = ended
         self.drivers = {}       # by the id of the connection, which the Driver keeps alive: so the id stays unique
         self.changed = Condition()
-
-    def has_driver(self, connection):
-        """Whether a command has arrived by this connection (any object)."""
-        return id(connection) in self.drivers
-
-    def retain(self, connections):
-        """Remove all drivers except those of these connections."""
-        with self.changed:
-            live = set(map(id, connections))
-            self.drivers = {key: driver for key, driver in self.drivers.items() if key in live}
 
     def receive(self, connection, name, command):
         """Accept a command that just arrived, in any thread. connection: any object; name: of the node that sent it."""
         with self.changed:
-            driver = self.drivers.setdefault(id(connection), Driver(connection, name))
+            driver = self.drivers.get(id(connection))
+            if not driver:
+                self.drivers = {key: each for key, each in self.drivers.items()
+                                if each.queue or self.connected(each.connection)}
+                driver = self.drivers[id(connection)] = Driver(connection, name)
             driver.received += 1
             if driver.released:
                 self.apply(command)
@@ -76,16 +77,22 @@ class Lockstep:
             driver.lag = len(driver.queue)
         elif driver.streaming:
             start = monotonic()
-            if not self.changed.wait_for(lambda: driver.queue, COMMAND_TIMEOUT):
-                self._release(driver, 'sent no command for a tick within %g s' % COMMAND_TIMEOUT)
+            patience = PATIENCE if driver.answered >= PROOF else COMMAND_TIMEOUT
+            if not self._wait_for(driver, lambda: driver.queue, patience):
+                if not self.connected(driver.connection):
+                    del self.drivers[id(driver.connection)]
+                elif not self.ended():
+                    self._release(driver, 'sent no command for a tick within %g s' % patience)
+                return
             waited = monotonic() - start
-            if not driver.released and waited > SLOW_ANSWER:
+            if waited > SLOW_ANSWER and driver.answered < PROOF:
                 # a slow answer to this tick, or a stream that ignores the clock?
                 self._wait_until_quiet(driver, 2 * waited)
         if driver.queue:
             command = driver.queue.popleft()
             linear, angular, *_ = command
-            driver.streaming = linear != 0 or angular != 0
+            driver.streaming = 0 < abs(linear) < inf or 0 < abs(angular) < inf      # neither is true of nan
+            driver.answered += driver.streaming
             self.apply(command)
         if len(driver.queue) > driver.lag + MAX_BACKLOG:
             self._release(driver, 'sends more than one command per tick')
@@ -95,9 +102,20 @@ class Lockstep:
         deadline = monotonic() + max(COMMAND_TIMEOUT, 3 * quiet)
         while monotonic() < deadline:
             received = driver.received
-            if not self.changed.wait_for(lambda: driver.received > received, quiet):
+            if not self._wait_for(driver, lambda: driver.received > received, quiet):
                 return
         self._release(driver, 'sends commands while the clock is held')
+
+    def _wait_for(self, driver, condition, timeout):
+        """Wait until condition(), for at most `timeout` s of wall time, or until the driver has gone or all is to end.
+        Returns condition()."""
+        deadline = monotonic() + timeout
+        while not condition() and self.connected(driver.connection) and not self.ended():
+            left = deadline - monotonic()
+            if left <= 0:
+                break
+            self.changed.wait(min(left, 0.1))
+        return condition()
 
     def _release(self, driver, reason):
         driver.released = True

@@ -111,14 +111,16 @@ class OwnClock(FollowedClock):
     def set_driver(self, apply, connections):
         """See above."""
         super().set_driver(apply, connections)
-        self.lockstep = Lockstep(apply, rospy.logwarn)
+        self.lockstep = Lockstep(apply, rospy.logwarn, self.is_connected, node.end_requested.is_set)
 
     def command(self, twist, command):
         """See above: with the tick that it answers."""
         header = twist._connection_header       # one object per connection
-        if not self.lockstep.has_driver(header):
-            self.lockstep.retain([connection.header for connection in self.connections()] + [header])
         self.lockstep.receive(header, header['callerid'], command)
+
+    def is_connected(self, header):
+        """Whether a connection to a publisher of cmd_vel still exists."""
+        return any(connection.header is header for connection in self.connections())
 
     def run(self, step):
         """See above."""

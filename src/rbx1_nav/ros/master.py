@@ -11,15 +11,19 @@ TIMEOUT = 2.0       # s of wall time in which the master, or a live node, answer
 class _TimeoutTransport(Transport):
     """XML-RPC with a timeout."""
 
+    def __init__(self, timeout):
+        super().__init__()
+        self.timeout = timeout
+
     def make_connection(self, host):
         connection = super().make_connection(host)
-        connection.timeout = TIMEOUT
+        connection.timeout = self.timeout
         return connection
 
 
-def call(uri, method, *args):
-    """The result of a call to the master or a node. Raises OSError or xmlrpc.client.Error if it fails."""
-    with ServerProxy(uri, transport=_TimeoutTransport()) as server:
+def call(uri, method, *args, timeout=TIMEOUT):
+    """The result of a call to the master or a node; timeout: s. Raises OSError or xmlrpc.client.Error if it fails."""
+    with ServerProxy(uri, transport=_TimeoutTransport(timeout)) as server:
         return getattr(server, method)(rospy.get_name(), *args)[2]
 
 

@@ -60,8 +60,11 @@ class PoseListener:
         """To be called when the robot was stopped: it does not move on as it did before."""
         self.last = None
 
-    def wait(self, timeout):
-        """pose() as soon as there is one. Raises ROSException after `timeout` s of wall time, ROSInterruptException."""
+    def wait(self, timeout, check=lambda: None):
+        """pose() as soon as there is one. check(): called again and again, and may raise.
+
+        Raises ROSException after `timeout` s of wall time, ROSInterruptException.
+        """
         deadline = time.monotonic() + timeout
         log_time = time.monotonic() + 0.5
         while True:
@@ -74,6 +77,7 @@ class PoseListener:
                     log_time += 5
                     rospy.loginfo("Waiting for the robot's pose: %s", error)
             sleep(0.02)
+            check()
             if end_requested.is_set():
                 raise rospy.ROSInterruptException('shutdown requested')
 

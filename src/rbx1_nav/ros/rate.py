@@ -8,8 +8,10 @@ import time
 import rospy
 
 from rbx1_nav.ros.node import end_requested, sleep
-from rbx1_nav.ros.subscribers import connected_nodes
 from rbx1_nav.units import SECOND
+
+MAX_DELAY = SECOND      # ns
+FREE_TICKS = 25     # at the start of a motion, simulated time may run ahead until the base has seen that it begins
 
 
 def now():
@@ -17,19 +19,19 @@ def now():
     return time.monotonic_ns() if rospy.rostime.is_wallclock() else rospy.get_rostime().to_nsec()
 
 
-def _wait_until(end, longest, publisher):
+def _wait_until(end, longest, listeners):
     """Wait until now() is `end` (ns), but no longer than `longest` (ns) on a clock that jumped back.
 
-    Raises ROSException as soon as nobody subscribes to the publisher: a clock that stands still may have ended with
-    them.
+    Raises ROSInterruptException as soon as the node is to end, and ROSException as Listeners.check(): a clock that stands
+    still may have ended with the base.
     """
+    listeners.wait_for_room()
     warn_time = time.monotonic() + 5
     last = None
     while True:
         if end_requested.is_set():
             raise rospy.ROSInterruptException('shutdown requested')
-        if not connected_nodes(publisher):
-            raise rospy.ROSException('%s: the last subscriber has gone: expected a base' % publisher.resolved_name)
+        listeners.check()
         time_now = now()
         end = min(end, time_now + longest)
         if time_now >= end:
@@ -48,29 +50,38 @@ def _wait_until(end, longest, publisher):
             rospy.logwarn('/use_sim_time is true, but the time on /clock stands still')
 
 
-def pause(seconds, publisher):
-    """Wait for `seconds` of ROS time. Raises ROSInterruptException as soon as the node is to end, and ROSException as
-    soon as nobody subscribes to the publisher."""
+def pause(seconds, listeners):
+    """Wait for `seconds` of ROS time. listeners: see wait_for_subscribers().
+
+    Raises ROSInterruptException as soon as the node is to end, and ROSException if a listener no longer takes commands.
+    """
     duration = round(seconds * SECOND)
-    _wait_until(now() + duration, duration, publisher)
+    _wait_until(now() + duration, duration, listeners)
 
 
 class Rate:
     """rospy.Rate for commands: ends as soon as the node is to end, and never lets two ticks follow at once.
 
     A delay is made up for over the next ticks, each at least 0.6 periods long: otherwise a base could receive two
-    commands in one step.
+    commands in one step. A delay of more than MAX_DELAY is an error: the base has stopped meanwhile.
     """
 
-    def __init__(self, hz, publisher):
-        """hz: ticks per second of ROS time, the first one a period from now; publisher: of the commands."""
-        self.publisher = publisher
+    def __init__(self, hz, listeners):
+        """hz: ticks per second of ROS time, the first one a period from now; listeners: see wait_for_subscribers()."""
+        self.listeners = listeners
         self.period = round(SECOND / hz)
-        self.next = now() + self.period
+        self.due = self.next = now() + self.period      # without delays, and with them
+        self.free_ticks = 0 if rospy.rostime.is_wallclock() else FREE_TICKS
 
     def sleep(self):
-        """Wait for the next tick. Raises ROSInterruptException as soon as the node is to end, and ROSException as soon
-        as nobody subscribes to the publisher."""
-        _wait_until(self.next, self.period, self.publisher)
+        """Wait for the next tick. Raises as pause(), and ROSException for a delay that is too long."""
+        _wait_until(self.next, self.period, self.listeners)
         time_now = now()
-        self.next = min(max(self.next + self.period, time_now + self.period * 6 // 10), time_now + self.period)
+        if self.free_ticks:
+            self.free_ticks -= 1
+            self.due = time_now
+        if time_now - self.due > MAX_DELAY:
+            raise rospy.ROSException('A command is %.1f s late: expected at most %g s, after which a base stops'
+                                     % ((time_now - self.due) / SECOND, MAX_DELAY / SECOND))
+        self.due = min(self.due, time_now) + self.period
+        self.next = max(self.due, time_now + self.period * 6 // 10)

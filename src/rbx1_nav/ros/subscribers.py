@@ -5,6 +5,7 @@ import time
 import rosgraph
 import rospy
 
+from rbx1_nav.ros.listeners import Listeners, Peer
 from rbx1_nav.ros.master import call
 from rbx1_nav.ros.node import end_requested, sleep
 
@@ -15,32 +16,43 @@ class _SubscriberMonitor(threading.Thread):
     def __init__(self, topic):
         super().__init__(daemon=True)
         self.topic = topic
-        self.live = None        # names of the live subscribers; None until the master has answered
+        self.live = None        # address of each live subscriber by its name; None until the master has answered
         self.dead = set()
+        self.publishers = {}    # names of the nodes that publish a topic
+        self.odometry = []      # topics
         self.done = threading.Event()
 
     def run(self):
         master = rosgraph.get_master_uri()
         while not self.done.is_set():
             try:
-                _, subscribers, _ = call(master, 'getSystemState')
+                publishers, subscribers, _ = call(master, 'getSystemState')
+                self.publishers = dict(publishers)
+                self.odometry = [topic for topic, kind in call(master, 'getTopicTypes') if kind == 'nav_msgs/Odometry']
                 names = {name for topic, nodes in subscribers if topic == self.topic for name in nodes}
-                self.live = {name for name in names if self.is_alive_node(master, name)}
+                live = {name: self.find_address(master, name) for name in names}
+                self.live = {name: address for name, address in live.items() if address}
             except Exception as error:      # pylint: disable=broad-except
                 rospy.logwarn_throttle(5, 'The master at %s does not answer: %s' % (master, error))
             self.done.wait(0.1)
 
-    def is_alive_node(self, master, name):
-        """Whether a node answers; one that did not is not called again."""
+    def find_address(self, master, name):
+        """The address of a node if it answers, or None; one that did not answer is not called again."""
         if name not in self.dead:
             try:
-                call(call(master, 'lookupNode', name), 'getPid')
-                return True
+                address = call(master, 'lookupNode', name)
+                call(address, 'getPid')
+                return address
             except Exception:       # pylint: disable=broad-except
                 self.dead.add(name)
                 rospy.logwarn('%s is registered as a subscriber of %s but does not answer: ignored '
                               '(`rosnode cleanup` removes it)', name, self.topic)
-        return False
+        return None
+
+    def peer(self, name):
+        """The Peer of this name."""
+        return Peer(name, self.live.get(name), any(name in self.publishers.get(topic, ()) for topic in self.odometry),
+                    name in self.publishers.get('/clock', ()))
 
 
 def connected_nodes(publisher):
@@ -51,7 +63,7 @@ def connected_nodes(publisher):
 def wait_for_subscribers(publisher, timeout):
     """Wait until all live subscribers of a publisher's topic are connected to it, and simulated time has begun.
 
-    All of them and not just the first: a recorder is not a base. Raises ROSException if there is none, or one is
+    All of them and not just the first: a recorder is not a base. Returns them as Listeners. Raises ROSException if there is none, or one is
     missing, after `timeout` seconds of wall time, and ROSInterruptException as soon as the node is to end.
     """
     topic = publisher.resolved_name
@@ -62,9 +74,9 @@ def wait_for_subscribers(publisher, timeout):
     try:
         while True:
             connected = connected_nodes(publisher)
-            if connected and monitor.live is not None and monitor.live <= connected and rospy.get_rostime():
-                return
-            missing = ', '.join(sorted((monitor.live or set()) - connected))
+            if connected and monitor.live is not None and monitor.live.keys() <= connected and rospy.get_rostime():
+                return Listeners(publisher, [monitor.peer(name) for name in connected])
+            missing = ', '.join(sorted((monitor.live or {}).keys() - connected))
             what = ('the master to list the subscribers of %s' % topic if monitor.live is None
                     else '%s to connect to %s' % (missing, topic) if missing
                     else 'a base that subscribes to %s' % topic if not connected else 'the time on /clock')

@@ -14,7 +14,10 @@ class Recorder:
     def __init__(self):
         self.applied = []
         self.warnings = []
-        self.lockstep = Lockstep(self.applied.append, self.warnings.append)
+        self.closed = set()
+        self.ended = threading.Event()
+        self.lockstep = Lockstep(self.applied.append, self.warnings.append,
+                                 lambda connection: connection not in self.closed, self.ended.is_set)
 
     def send(self, *commands, connection='first'):
         for command in commands:
@@ -99,14 +102,58 @@ def test_each_connection_has_its_own_queue():
     assert recorder.applied == [MOVE, (0.0, 1.0), STOP, STOP]
 
 
-def test_a_closed_connection_is_not_waited_for(monkeypatch):
-    monkeypatch.setattr(lockstep, 'COMMAND_TIMEOUT', 0.2)
+def answer_ticks(recorder, ticks):
+    """Let a driver answer so many ticks, one command each."""
+    for _ in range(ticks):
+        recorder.send(MOVE)
+        recorder.lockstep.collect()
+
+
+def test_a_driver_that_has_answered_many_ticks_is_waited_for_longer(monkeypatch):
+    monkeypatch.setattr(lockstep, 'COMMAND_TIMEOUT', 0.1)
     recorder = Recorder()
-    recorder.send(MOVE, connection='killed')
+    answer_ticks(recorder, lockstep.PROOF)
+    late = threading.Timer(0.4, recorder.send, [STOP])
+    late.start()
     recorder.lockstep.collect()
-    recorder.lockstep.retain(['first'])
-    assert not recorder.lockstep.has_driver('killed')
+    late.join()
+    assert recorder.applied[-1] == STOP and not recorder.warnings
+
+
+def test_a_driver_whose_connection_has_closed_is_not_waited_for():
+    recorder = Recorder()
+    answer_ticks(recorder, lockstep.PROOF)
+    recorder.closed.add('first')
+    for _ in range(1000):
+        recorder.lockstep.collect()
+    assert not recorder.warnings and not recorder.lockstep.drivers
+
+
+def test_commands_of_a_closed_connection_are_not_lost():
+    recorder = Recorder()
+    recorder.send(MOVE, MOVE, STOP)
+    recorder.closed.add('first')
     recorder.lockstep.collect()
+    recorder.send((0.0, 1.0), connection='second')
+    for _ in range(2):
+        recorder.lockstep.collect()
+    assert recorder.applied.count(MOVE) == 2 and STOP in recorder.applied
+
+
+def test_nobody_is_waited_for_at_the_end(monkeypatch):
+    recorder = Recorder()
+    answer_ticks(recorder, lockstep.PROOF)
+    recorder.ended.set()
+    recorder.lockstep.collect()
+    assert not recorder.warnings
+
+
+def test_a_command_that_is_not_finite_is_no_motion():
+    recorder = Recorder()
+    for value in (float('nan'), float('inf')):
+        recorder.send((value, 0.0))
+        recorder.lockstep.collect()
+        recorder.lockstep.collect()
     assert not recorder.warnings
 
 

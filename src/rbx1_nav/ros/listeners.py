@@ -1,0 +1,183 @@
+"""Whether the nodes that a driving script began with still receive its commands.
+
+A script that drives by time cannot know where the robot is. But it can know that a command was lost, or that a node which
+took its commands at the start no longer does. A thread for each of these nodes looks at three things: the connection; the
+bytes that the node's machine has not acknowledged; and whether the node answers a call. rospy itself notices none of
+them for minutes, because the kernel takes tens of thousands of commands for a node that is silent.
+"""
+from collections import namedtuple
+import threading
+import time
+
+import rosgraph
+import rospy
+
+from rbx1_nav.ros.master import call
+from rbx1_nav.ros.node import end_requested, sleep
+from rbx1_nav.ros.tcp import CLOSED_WINDOW, AcknowledgementTimer, read_connection
+
+LINK_TIMEOUT = 1.0      # s without an acknowledgement: TCP repeats after 0.2, 0.6 and 1.4 s, so 0.3 s without a link pass
+ANSWER_TIMEOUT = 1.4    # s in which a node answers a call; together with ASK_PERIOD less than 2 s
+ASK_PERIOD = 0.4        # s from an answer to the next call
+LOOK_PERIOD = 0.05      # s
+UNREGISTER_TIME = 0.5   # s from the end of a connection to that of the registration, if a node ends as it should
+STOP_TIME = 1.0         # s that a script waits after its last command
+ROOM_TIMEOUT = 1.0      # s that a command waits for the one before it to be sent
+
+Peer = namedtuple('Peer', 'name uri essential keeps_time')
+Peer.__doc__ = """A node that listens: its name; the address that it answers at, or None if it does not; whether the robot is
+lost without it; whether it publishes /clock."""
+
+
+class Listener(threading.Thread):
+    """Watches one connection, until `problem` is a text that says what is wrong with it, or it has ended properly."""
+
+    def __init__(self, topic, connection, peer, sent):
+        """connection: of rospy; sent: number of commands that were published on the topic before now."""
+        super().__init__(daemon=True)
+        self.topic = topic
+        self.connection = connection
+        self.peer = peer
+        self.offset = sent - connection.stat_num_msg
+        self.answered = 0.0     # s of the monotonic clock: when the last call began that the node answered
+        self.problem = None
+
+    def run(self):
+        """Watch."""
+        if self.peer.uri:
+            threading.Thread(target=self.ask, daemon=True).start()
+        timer = AcknowledgementTimer()
+        while not self.problem:
+            try:
+                state = read_connection(self.connection.socket)
+            except (OSError, AttributeError):   # closed at this end
+                state = None
+            if not (state and state.established):
+                self.problem = self.why_it_closed()
+                return
+            if timer.silence(time.monotonic(), state) > LINK_TIMEOUT:
+                self.problem = '%s acknowledges nothing that is sent to it' % self.peer.name
+            time.sleep(LOOK_PERIOD)
+
+    def ask(self):
+        """Call the node again and again."""
+        silent_since = None
+        while not self.problem:
+            start, before = time.monotonic(), rospy.get_rostime()
+            try:
+                call(self.peer.uri, 'getPid', timeout=ANSWER_TIMEOUT)
+            except ConnectionRefusedError:      # it has ended, and so will its connection
+                return
+            except Exception:   # pylint: disable=broad-except
+                silent_since = silent_since or start
+                # a busy node whose clock goes on is alive
+                if self.peer.keeps_time and rospy.get_rostime() != before:
+                    silent_since = None
+                elif time.monotonic() - silent_since > ANSWER_TIMEOUT:
+                    self.problem = self.problem or '%s no longer answers' % self.peer.name
+                time.sleep(LOOK_PERIOD)
+                continue
+            silent_since, self.answered = None, start
+            time.sleep(ASK_PERIOD)
+
+    def why_it_closed(self):
+        """The problem with a connection that has closed; None if the node has ended properly and is not essential."""
+        deadline = time.monotonic() + UNREGISTER_TIME
+        while self.is_registered():
+            if time.monotonic() > deadline:
+                return '%s has gone' % self.peer.name
+            time.sleep(LOOK_PERIOD)
+        if self.peer.essential:
+            return '%s, which publishes the odometry, has gone' % self.peer.name
+        if not end_requested.is_set():
+            rospy.logwarn('%s: %s has gone: the others go on', self.topic, self.peer.name)
+        return None
+
+    def is_registered(self):
+        """Whether the master lists the node as a subscriber. If the master does not answer, nobody knows: yes."""
+        try:
+            _, subscribers, _ = call(rosgraph.get_master_uri(), 'getSystemState', timeout=LINK_TIMEOUT)
+        except Exception:       # pylint: disable=broad-except
+            return True
+        return any(self.peer.name in nodes for topic, nodes in subscribers if topic == self.topic)
+
+    @property
+    def waiting(self):
+        """Number of commands that rospy has not begun to send."""
+        return len(self.connection._queue)
+
+    def lost(self, published):
+        """How many of all commands that were published on the topic were not sent."""
+        return published - self.offset - self.connection.stat_num_msg
+
+    def has_all(self, published, last):
+        """Whether there is nothing more to wait for: the node has acknowledged all commands, and has answered since the
+        last one; last: s of the monotonic clock. A node that does not read is not waited for."""
+        try:
+            state = read_connection(self.connection.socket)
+        except (OSError, AttributeError):
+            return True
+        return (state.window < CLOSED_WINDOW or not state.unacknowledged and (self.answered > last or not self.peer.uri)
+                and not (self.peer.keeps_time and self.lost(published)))
+
+
+class Listeners:
+    """All listeners of a publisher."""
+
+    def __init__(self, publisher, peers):
+        """peers: the Peers that are connected."""
+        self.publisher = publisher
+        self.topic = publisher.resolved_name
+        peers = {peer.name: peer for peer in peers}
+        self.listeners = [Listener(self.topic, connection, peers[connection.endpoint_id], publisher.impl.seq)
+                          for connection in publisher.impl.connections if connection.endpoint_id in peers]
+        for listener in self.listeners:
+            listener.start()
+
+    def check(self):
+        """Raises ROSException if one of them no longer takes the commands, or if none is left."""
+        if not self.publisher.impl.connections:
+            raise rospy.ROSException('%s: the last subscriber has gone: expected a base' % self.topic)
+        for listener in self.listeners:
+            if listener.problem:
+                raise rospy.ROSException('%s: %s: expected all nodes that listened at the start'
+                                         % (self.topic, listener.problem))
+
+    def wait_for_room(self):
+        """Wait until the node that publishes /clock has been sent all commands: none may be lost in lockstep.
+
+        rospy deletes the oldest command if more wait than the size of the queue. Other nodes are never waited for.
+        Raises ROSException after ROOM_TIMEOUT, ROSInterruptException.
+        """
+        if rospy.rostime.is_wallclock():
+            return
+        deadline = time.monotonic() + ROOM_TIMEOUT
+        for listener in self.listeners:
+            while listener.peer.keeps_time and listener.waiting:
+                if end_requested.is_set():
+                    raise rospy.ROSInterruptException('shutdown requested')
+                self.check()
+                if time.monotonic() > deadline:
+                    raise rospy.ROSException('%s: %s took no command for %g s' % (
+                        self.topic, listener.peer.name, ROOM_TIMEOUT))
+                time.sleep(0.001)
+
+    def check_delivery(self):
+        """To be called after the last command: logs which listener was not sent all commands.
+
+        Raises ROSException if that is the one that publishes /clock, and as check().
+        """
+        published, last = self.publisher.impl.seq, time.monotonic() - STOP_TIME
+        deadline = time.monotonic() + ANSWER_TIMEOUT + ASK_PERIOD
+        while time.monotonic() < deadline and not all(each.has_all(published, last) for each in self.listeners):
+            self.check()
+            sleep(0.02)
+        self.check()
+        for listener in self.listeners:
+            lost = listener.lost(published)
+            if lost and listener.connection in self.publisher.impl.connections:
+                text = '%s: %d of %d commands to %s were lost' % (self.topic, lost, published - listener.offset,
+                                                                 listener.peer.name)
+                if listener.peer.keeps_time:
+                    raise rospy.ROSException(text)
+                rospy.logwarn(text)

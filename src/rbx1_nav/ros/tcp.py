@@ -1,0 +1,48 @@
+"""What the kernel knows of a TCP connection: whether the peer still acknowledges what it is sent."""
+from collections import namedtuple
+import fcntl
+import socket
+import struct
+import sys
+import termios
+
+ESTABLISHED = 1     # include/net/tcp_states.h
+CLOSED_WINDOW = 512     # bytes: a peer with less room than this does not read; a Twist takes 52
+
+# struct tcp_info, include/uapi/linux/tcp.h: tcpi_state at 0, tcpi_bytes_acked at 120, tcpi_snd_wnd at 228 (since Linux 5.4)
+_INFO = struct.Struct('=B119xQ100xI')
+
+Connection = namedtuple('Connection', 'established unacknowledged acknowledged window')
+Connection.__doc__ = """A TCP connection: whether it is established at both ends; bytes that were sent, or wait to be
+sent, and are not acknowledged; bytes acknowledged so far; bytes that the peer has room for."""
+
+
+def read_connection(sock):
+    """The Connection of a socket. Raises OSError if it is closed."""
+    info = sock.getsockopt(socket.IPPROTO_TCP, socket.TCP_INFO, _INFO.size)
+    # an older kernel does not tell the window: assume that it is open
+    state, acknowledged, window = _INFO.unpack(info) if len(info) == _INFO.size else (info[0], 0, CLOSED_WINDOW)
+    unacknowledged = bytearray(4)
+    fcntl.ioctl(sock, termios.TIOCOUTQ, unacknowledged)     # SIOCOUTQ, tcp(7)
+    return Connection(state == ESTABLISHED, int.from_bytes(unacknowledged, sys.byteorder), acknowledged, window)
+
+
+class AcknowledgementTimer:
+    """How long a peer has acknowledged nothing, although there was something to acknowledge."""
+
+    def __init__(self):
+        self.since = None       # s: when the present silence began; None if there is none
+        self.acknowledged = 0
+
+    def silence(self, now, connection):
+        """The duration of the silence, s. now: s; connection: a Connection.
+
+        A peer that has closed its window is there, and does not read: that is no silence.
+        """
+        if (not connection.unacknowledged or connection.acknowledged != self.acknowledged
+                or connection.window < CLOSED_WINDOW):
+            self.since = None
+        elif self.since is None:
+            self.since = now
+        self.acknowledged = connection.acknowledged
+        return 0.0 if self.since is None else now - self.since

@@ -1,0 +1,89 @@
+#!/usr/bin/python3
+"""A node that took the commands at the start and no longer does: the run ends with an error that names it."""
+import os
+import signal
+import subprocess
+import unittest
+
+import rospy
+
+import support
+
+BASE = {'controllers': {'base': {'type': 'diff_controller', 'base_width': 0.26, 'base_frame_id': 'base_footprint'}}}
+
+
+class TestLostListener(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        support.init_node('lost_listener')
+        rospy.set_param('/arbotix', BASE)
+
+    def setUp(self):
+        self.base = self.start('rosrun', 'rbx1_nav', 'fake_base.py')
+        self.base.wait_for_line('at the origin')
+        self.recorder = self.start('rosrun', 'topic_tools', 'drop', '/cmd_vel', '0', '1', '__name:=recorder')
+        support.wait_for(lambda: '/recorder' in self.subscribers(), 'the recorder')
+
+    def start(self, *command):
+        process = support.Process(*command)
+        self.addCleanup(process.kill)
+        return process
+
+    @staticmethod
+    def subscribers():
+        """Names of the nodes that subscribe to /cmd_vel."""
+        return dict(rospy.get_master().getSystemState()[2][1]).get('/cmd_vel', ())
+
+    def drive(self, *arguments, script=support.out_and_back):
+        """Run a script until the robot moves."""
+        driver = script(*arguments)
+        self.addCleanup(driver.kill)
+        driver.wait_for_line('forward: ')
+        odom = support.OdomWatch()
+        self.addCleanup(odom.subscriber.unregister)
+        support.wait_for(lambda: odom.last.twist.twist.linear.x > 0, 'a motion')
+        return driver
+
+    def check_error(self, driver, text):
+        self.assertEqual(driver.wait(), 1, driver.output)
+        self.assertRegex(driver.output, r'\[ERROR\].*: /cmd_vel: ' + text)
+        self.assertIn('Stopping the robot...', driver.output)
+        self.assertNotIn('Traceback', driver.output)
+
+    def test_the_base_is_killed(self):
+        for script in (support.out_and_back, support.by_odometry):
+            driver = self.drive('_linear_speed:=0.02', script=script)
+            self.base.kill()
+            self.check_error(driver, '/arbotix has gone')
+            self.base = self.start('rosrun', 'rbx1_nav', 'fake_base.py')
+            self.base.wait_for_line('at the origin')
+
+    def test_the_base_ends(self):
+        driver = self.drive('_linear_speed:=0.02')
+        self.base.signal(signal.SIGINT)
+        self.check_error(driver, '/arbotix, which publishes the odometry, has gone')
+
+    def test_the_base_is_suspended(self):
+        pid = support.pid_of('/arbotix')
+        driver = self.drive('_linear_speed:=0.02')
+        self.addCleanup(os.kill, pid, signal.SIGCONT)
+        os.kill(pid, signal.SIGSTOP)
+        self.check_error(driver, '/arbotix no longer answers')
+        os.kill(pid, signal.SIGCONT)
+
+    def test_another_listener_is_killed(self):
+        driver = self.drive('_linear_speed:=0.02')
+        self.recorder.kill()
+        self.check_error(driver, '/recorder has gone')
+        subprocess.run(['rosnode', 'cleanup'], input=b'y\n', check=True)
+
+    def test_another_listener_ends(self):
+        driver = self.drive('_linear_speed:=0.5', '_angular_speed:=2')
+        self.recorder.signal(signal.SIGINT)
+        driver.wait_for_line(r'\[WARN\].*: /cmd_vel: /recorder has gone: the others go on')
+        self.assertEqual(driver.wait(), 0, driver.output)
+        self.assertIn('Done: ', driver.output)
+
+
+if __name__ == '__main__':
+    support.main('lost_listener', TestLostListener)

@@ -1,0 +1,69 @@
+#!/usr/bin/python3
+"""On a busy machine the thread that sends commands may starve: none is lost in lockstep, and a loss is named."""
+import unittest
+
+import rospkg
+import rospy
+from geometry_msgs.msg import Twist
+
+import support
+
+# The script itself; what it sends to the node `peer` is delayed, by a number of seconds for each command.
+STARVED = """
+import runpy, sys, time
+from rospy.impl.tcpros_base import TCPROSTransport
+send, (node, peer, delay) = TCPROSTransport.write_data, sys.argv[1:]
+def write_data(self, data):
+    if (self.name, self.endpoint_id) == ('/cmd_vel', peer):
+        time.sleep(float(delay))
+    return send(self, data)
+TCPROSTransport.write_data = write_data
+sys.argv = [node]
+runpy.run_path(node, run_name='__main__')
+"""
+
+
+class TestStarvedSender(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        support.init_node('starved_sender')
+        cls.odom = support.OdomWatch()
+        cls.turned = 0.0
+
+    def drive(self, peer, delay):
+        """Run the exercise; returns the Process when it has ended."""
+        node = rospkg.RosPack().get_path('rbx1_nav') + '/nodes/timed_out_and_back.py'
+        driver = support.Process('/usr/bin/python3', '-c', STARVED, node, peer, str(delay))
+        self.addCleanup(driver.kill)
+        driver.wait()
+        self.assertNotIn('Traceback', driver.output)
+        return driver
+
+    def check_end(self, driver, before):
+        """The exercise ended with status 0, and turned the robot by as much as it should; before: heading, rad."""
+        self.assertEqual(driver.process.returncode, 0, driver.output)
+        turn = support.wrapped(support.yaw(self.odom.next()) - before - support.EXACT_TURN)
+        self.assertAlmostEqual(turn, 0, delta=1e-6)     # far less than the 0.02 rad of one command
+
+    def test_to_the_base(self):
+        before = support.yaw(self.odom.next())
+        driver = self.drive('/arbotix', 0.01)
+        self.check_end(driver, before)
+        self.assertNotIn('lost', driver.output)
+
+    def test_to_the_base_for_too_long(self):
+        driver = self.drive('/arbotix', 3)
+        self.assertEqual(driver.process.returncode, 1, driver.output)
+        self.assertRegex(driver.output, '/cmd_vel: /arbotix took no command for 1 s')
+
+    def test_to_another_listener(self):
+        recorder = support.Watch('/cmd_vel', Twist)
+        self.addCleanup(recorder.subscriber.unregister)
+        before = support.yaw(self.odom.next())
+        driver = self.drive(rospy.get_name(), 0.2)
+        self.check_end(driver, before)
+        self.assertRegex(driver.output, r'\[WARN\].*: /cmd_vel: \d+ of 820 commands to /starved_sender\S* were lost')
+
+
+if __name__ == '__main__':
+    support.main('starved_sender', TestStarvedSender)
