@@ -12,6 +12,7 @@ A row is a module in rows/ with
 from contextlib import contextmanager
 import importlib
 import json
+import math
 import os
 import random
 import signal
@@ -22,7 +23,11 @@ import traceback
 FOLDER = os.path.dirname(os.path.abspath(__file__))
 sys.path[:0] = [FOLDER, os.path.dirname(FOLDER)]
 
-import support      # noqa: E402, pylint: disable=wrong-import-position
+import roslib.packages                  # noqa: E402, pylint: disable=wrong-import-position
+import rospy                            # noqa: E402, pylint: disable=wrong-import-position
+from std_srvs.srv import Empty          # noqa: E402, pylint: disable=wrong-import-position
+
+import support                          # noqa: E402, pylint: disable=wrong-import-position
 
 
 class Row:
@@ -70,6 +75,27 @@ class Row:
         base = self.start('roslaunch', '--wait', 'rbx1_nav', 'fake_turtlebot.launch', *arguments)
         base.wait_for_line('Ready: ')
         return base
+
+    def node(self, name, *arguments):
+        """Start an executable of the package, without the shell script that rosrun is: a signal is to reach the node."""
+        return self.start(roslib.packages.find_node('rbx1_nav', name)[0], *arguments)
+
+    @staticmethod
+    def reset():
+        """Put the robot back at the origin, at rest."""
+        rospy.ServiceProxy('/arbotix/reset', Empty)()
+
+    @staticmethod
+    def check_home(driver, odom):
+        """Assert that a driving script ended with status 0, and the robot where it ends on the ideal surface."""
+        assert driver.wait() == 0, driver.output
+        x, y, yaw = support.pose(odom.next())
+        if 'Measuring the pose' in driver.output:   # by odometry: as in odom_on_ideal.test
+            assert math.hypot(x, y) < 0.005 and abs(math.degrees(support.wrapped(yaw))) < 0.5, (x, y, yaw)
+        else:
+            off = math.hypot(x - support.EXACT_X, y - support.EXACT_Y)
+            turn = support.wrapped(yaw - support.EXACT_TURN)
+            assert off < support.MICROMETRE and abs(turn) < 1e-6, '%g m and %g rad off' % (off, turn)
 
     def end(self, *processes):
         """End processes as Ctrl-C does, and kill those that do not end."""
