@@ -1,0 +1,98 @@
+"""Subscribers that hardly read do not delay the commands to another one."""
+from itertools import product
+import time
+
+import rospy
+from geometry_msgs.msg import Twist
+
+from slow_subscriber import SlowSubscriber
+import support
+
+FAULT = '3 subscribers to /cmd_vel with small buffers that never read, or read a byte a second, connected before the ' \
+        'start or in mid-run'
+PROMISE = "another subscriber's command period: its p99 within 5 ms of that of a run beside it; memory and threads of " \
+          'the script do not grow; it names a listener of its start and ends with 1'
+FULL, SHORT = 8, 2
+ROOT, ALONE = False, True
+
+CASES = list(product((True, False), (False, True)))     # (connected before the start, reads a byte a second)
+P99_LIMIT = 0.005       # s
+REST = 0.5              # s: longer periods are rests between motions
+MEMORY_LIMIT = 1024     # KB
+
+
+def run(row):
+    """See FAULT."""
+    row.roscore()
+    support.init_node('faults')
+    for count in range(row.times):
+        before, reads = CASES[count * 3 % 4] if row.times == 2 else CASES[count % 4]
+        with row.fault('subscribers that %s, connected %s' % (
+                'read a byte a second' if reads else 'never read', 'before the start' if before else 'in mid-run')):
+            slow_subscribers(row, before, reads)
+
+
+def slow_subscribers(row, before, reads):
+    """One fault: a run with them, and another one beside it on a topic of its own."""
+    subscribers = []
+
+    def connect():
+        subscribers.extend(SlowSubscriber('/slow_%d' % number, '/cmd_vel', reads) for number in range(3))
+    probe, control_probe = Probe('/cmd_vel'), Probe('/control_cmd_vel')
+    try:
+        if before:
+            connect()
+        control = row.node('timed_out_and_back.py', '/cmd_vel:=/control_cmd_vel', '__name:=control', '_goal_distance:=0.5')
+        driver = row.node('timed_out_and_back.py', '_goal_distance:=0.5')
+        support.wait_for(lambda: len(probe.times) > 50 and len(control_probe.times) > 50, 'commands')
+        if not before:
+            connect()
+        support.wait_for(lambda: all(each.sockets for each in subscribers), 'the connections')
+        time.sleep(0.5)     # for what a connection allocates at first
+        first = last = usage(driver), usage(control)
+        while driver.process.poll() is None and control.process.poll() is None:
+            last = usage(driver) or last[0], usage(control) or last[1]
+            time.sleep(0.1)
+        status = driver.wait()
+        period, control_period = probe.p99(), control_probe.p99()
+        row.figure('p99 of the period, ms', 1000 * period)
+        row.figure('p99 of the control, ms', 1000 * control_period)
+        assert period <= control_period + P99_LIMIT, 'the p99 of the period is %.4f s, of the control %.4f s' % (
+            period, control_period)
+        grown, control_grown = (end[0] - start[0] for start, end in zip(first, last))
+        row.figure('growth of the memory, KB', grown)
+        assert grown <= max(control_grown, 0) + MEMORY_LIMIT, 'the memory grew by %d KB' % grown
+        assert last[0][1] <= first[0][1], 'the threads grew from %d to %d' % (first[0][1], last[0][1])
+        if before:
+            assert (status, '/slow_' in driver.output) == (1, True), 'exit status %d\n%s' % (status, driver.output)
+        else:
+            assert status == 0, driver.output
+    finally:
+        for each in subscribers:
+            each.close()
+        probe.subscriber.unregister()
+        control_probe.subscriber.unregister()
+        row.end(driver, control)
+
+
+def usage(driver):
+    """(memory in KB, number of threads) of a process; None if it has ended."""
+    try:
+        with open('/proc/%d/status' % driver.process.pid, encoding='utf-8') as file:
+            values = dict(line.split(':', 1) for line in file)
+        return int(values['VmRSS'].split()[0]), int(values['Threads'])
+    except (OSError, KeyError):
+        return None
+
+
+class Probe:
+    """Keeps the times at which commands arrive, on the monotonic clock."""
+
+    def __init__(self, topic):
+        self.times = []
+        self.subscriber = rospy.Subscriber(topic, Twist, lambda _: self.times.append(time.monotonic()), tcp_nodelay=True)
+
+    def p99(self):
+        """The 99th percentile of the period during motions, s."""
+        periods = sorted(period for period in (b - a for a, b in zip(self.times, self.times[1:])) if period < REST)
+        return periods[len(periods) * 99 // 100]
