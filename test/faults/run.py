@@ -9,7 +9,6 @@ import json
 import os
 import random
 import signal
-import socket
 import subprocess
 import sys
 import tempfile
@@ -18,6 +17,9 @@ import time
 
 FOLDER = os.path.dirname(os.path.abspath(__file__))
 sys.path[:0] = [FOLDER, os.path.dirname(FOLDER)]
+
+import support      # noqa: E402, pylint: disable=wrong-import-position
+
 LIMIT = 20 * 60     # s of wall time for a row: longer means that it hangs
 
 
@@ -37,20 +39,13 @@ def read_arguments(names):
     return arguments
 
 
-def free_port():
-    """A TCP port of the loopback interface that nobody uses."""
-    with socket.socket() as sock:
-        sock.bind(('127.0.0.1', 0))
-        return sock.getsockname()[1]
-
-
 def run_row(name, module, times, seed):
     """Run a row in a process of its own. Returns its result as a dictionary, see Row.result()."""
     if module.ROOT and os.geteuid() != 0:
         return dict(name=name, faults=times, skipped='needs root', failures=[], figures={}, seconds=0)
     start = time.monotonic()
     with tempfile.TemporaryDirectory(prefix='rbx1_nav-faults.') as folder:
-        environment = dict(os.environ, ROS_MASTER_URI='http://127.0.0.1:%d' % free_port(), ROS_IP='127.0.0.1',
+        environment = dict(os.environ, ROS_MASTER_URI='http://127.0.0.1:%d' % support.free_port(), ROS_IP='127.0.0.1',
                            ROS_HOME=folder, ROS_LOG_DIR=os.path.join(folder, 'log'))
         environment.pop('ROS_NAMESPACE', None)
         process = subprocess.Popen([sys.executable, os.path.join(FOLDER, 'row.py'), name, str(times), str(seed)],
@@ -60,7 +55,7 @@ def run_row(name, module, times, seed):
         except subprocess.TimeoutExpired:
             output = ''
         finally:
-            end_row(process, environment['ROS_MASTER_URI'])
+            end_row(process, folder)
     try:
         result = json.loads(output.splitlines()[-1])
     except (IndexError, ValueError):
@@ -68,8 +63,9 @@ def run_row(name, module, times, seed):
     return dict(result, seconds=round(time.monotonic() - start))
 
 
-def end_row(process, master):
-    """End a row, and what it has left behind: roslaunch starts its nodes in sessions of their own."""
+def end_row(process, folder):
+    """End a row, and what it has left behind: roslaunch starts its nodes in sessions of their own, but all have the same
+    ROS_HOME."""
     if process.poll() is None:
         process.terminate()
         try:
@@ -79,7 +75,7 @@ def end_row(process, master):
     for pid in filter(str.isdigit, os.listdir('/proc')):
         try:
             with open('/proc/%s/environ' % pid, 'rb') as file:
-                if ('ROS_MASTER_URI=' + master).encode() in file.read().split(b'\0'):
+                if ('ROS_HOME=' + folder).encode() in file.read().split(b'\0'):
                     os.kill(int(pid), signal.SIGKILL)
         except OSError:     # it has ended, or is somebody else's
             pass

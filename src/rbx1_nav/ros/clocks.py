@@ -13,6 +13,7 @@ from rosgraph_msgs.msg import Clock as ClockMessage
 
 from rbx1_nav.control.lockstep import Lockstep
 from rbx1_nav.ros import node
+from rbx1_nav.ros.tcp import unread_bytes
 from rbx1_nav.schedule import Schedule
 from rbx1_nav.units import SECOND
 
@@ -111,7 +112,7 @@ class OwnClock(FollowedClock):
     def set_driver(self, apply, connections):
         """See above."""
         super().set_driver(apply, connections)
-        self.lockstep = Lockstep(apply, rospy.logwarn, self.is_connected, node.end_requested.is_set)
+        self.lockstep = Lockstep(apply, rospy.logwarn, self.is_connected, self.has_unread, node.end_requested.is_set)
 
     def command(self, twist, command):
         """See above: with the tick that it answers."""
@@ -121,6 +122,10 @@ class OwnClock(FollowedClock):
     def is_connected(self, header):
         """Whether a connection to a publisher of cmd_vel still exists."""
         return any(connection.header is header for connection in self.connections())
+
+    def has_unread(self, header):
+        """Whether bytes have arrived by a connection that were not read yet."""
+        return any(unread_bytes(connection.socket) for connection in self.connections() if connection.header is header)
 
     def run(self, step):
         """See above."""

@@ -103,8 +103,9 @@ class Listener(threading.Thread):
 
     @property
     def waiting(self):
-        """Number of commands that rospy has not begun to send."""
-        return len(self.connection._queue)
+        """Number of commands that rospy has not begun to send. A connection made while the publisher was being made has no
+        queue: it sends at once."""
+        return len(getattr(self.connection, '_queue', ()))
 
     def lost(self, published):
         """How many of all commands that were published on the topic were not sent."""

@@ -22,9 +22,22 @@ def read_connection(sock):
     info = sock.getsockopt(socket.IPPROTO_TCP, socket.TCP_INFO, _INFO.size)
     # an older kernel does not tell the window: assume that it is open
     state, acknowledged, window = _INFO.unpack(info) if len(info) == _INFO.size else (info[0], 0, CLOSED_WINDOW)
-    unacknowledged = bytearray(4)
-    fcntl.ioctl(sock, termios.TIOCOUTQ, unacknowledged)     # SIOCOUTQ, tcp(7)
-    return Connection(state == ESTABLISHED, int.from_bytes(unacknowledged, sys.byteorder), acknowledged, window)
+    return Connection(state == ESTABLISHED, _read_number(sock, termios.TIOCOUTQ), acknowledged, window)
+
+
+def unread_bytes(sock):
+    """How many bytes have arrived at a socket that were not read yet; 0 if it is closed."""
+    try:
+        return _read_number(sock, termios.FIONREAD)
+    except (OSError, TypeError, ValueError):     # closed, or None
+        return 0
+
+
+def _read_number(sock, request):
+    """What the kernel answers to a request of tcp(7): SIOCOUTQ and SIOCINQ are TIOCOUTQ and FIONREAD."""
+    number = bytearray(4)
+    fcntl.ioctl(sock, request, number)
+    return int.from_bytes(number, sys.byteorder)
 
 
 class AcknowledgementTimer:

@@ -15,9 +15,11 @@ class Recorder:
         self.applied = []
         self.warnings = []
         self.closed = set()
+        self.unread = set()
         self.ended = threading.Event()
         self.lockstep = Lockstep(self.applied.append, self.warnings.append,
-                                 lambda connection: connection not in self.closed, self.ended.is_set)
+                                 lambda connection: connection not in self.closed,
+                                 lambda connection: connection in self.unread, self.ended.is_set)
 
     def send(self, *commands, connection='first'):
         for command in commands:
@@ -138,6 +140,23 @@ def test_commands_of_a_closed_connection_are_not_lost():
     for _ in range(2):
         recorder.lockstep.collect()
     assert recorder.applied.count(MOVE) == 2 and STOP in recorder.applied
+
+
+def test_a_burst_that_is_received_late_is_not_lost():
+    """The first command of a burst is received; then the thread that receives starves for longer than a pause."""
+    recorder = Recorder()
+    recorder.unread.add('first')
+    recorder.send(MOVE)
+
+    def go_on():
+        recorder.unread.clear()
+        recorder.send(*[MOVE] * 40, STOP)
+    late = threading.Timer(3 * lockstep.FIRST_QUIET, go_on)
+    late.start()
+    for _ in range(50):
+        recorder.lockstep.collect()
+    late.join()
+    assert recorder.applied == [MOVE] * 41 + [STOP] and not recorder.warnings
 
 
 def test_nobody_is_waited_for_at_the_end(monkeypatch):
