@@ -1,0 +1,127 @@
+"""Commands that no driver should send: the base goes on, reports finite numbers, and then obeys an ordinary command."""
+import itertools
+import math
+import os
+import time
+
+import rospy
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from geometry_msgs.msg import Twist
+
+import support
+
+FAULT = 'Twists with NaN, infinities, 1e308, denormals, lateral and vertical parts; random ones; 5,000 a second for 10 ' \
+        's; two publishers that contradict each other'
+PROMISE = '/odom stays finite, the base then obeys exactly; its memory does not grow, it logs at most 2 lines a second; ' \
+          'it names the two publishers, in a warning and in /diagnostics'
+FULL, SHORT = 10000, 500        # random Twists
+ROOT = ALONE = False
+
+FIELDS = list(itertools.product(('linear', 'angular'), 'xyz'))
+VALUES = (math.nan, math.inf, -math.inf, 1e308, -1e308, 5e-324, -5e-324, 1.0, -0.0)
+FLOOD = 5000            # commands a second
+LINES = 2               # a second
+MEMORY_LIMIT = 4096     # KB
+
+
+def run(row):
+    """See FAULT."""
+    row.roscore()
+    # not real time, so that the exercise ends exactly; hardly faster than that, for the base limits its lines on its clock
+    base = row.base('real_time_factor:=1.01')
+    support.init_node('faults')
+    odom = support.OdomWatch()
+    pid = support.pid_of('/arbotix')
+    seconds = 10 * row.times / FULL
+    for text, fault in (('each value in each field', each_value), ('random Twists', random_twists),
+                        ('%d a second for %g s' % (FLOOD, seconds), flood), ('two publishers', two_publishers)):
+        with row.fault(text):
+            commander = support.Commander()
+            start, lines, memory = time.monotonic(), len(base.lines), rss(pid)
+            fault(row, commander, base)
+            commander.send()
+            odom.wait_for_twist(0.0)
+            limit = LINES * (time.monotonic() - start) + 3      # and one of each kind at once
+            assert len(base.lines) - lines <= limit, '\n'.join(base.lines[lines:])
+            row.figure('growth of the memory, KB', rss(pid) - memory)
+            assert rss(pid) <= memory + MEMORY_LIMIT, 'the memory grew by %d KB' % (rss(pid) - memory)
+            for message in odom.messages:
+                assert all(map(math.isfinite, numbers(message))), message
+            del odom.messages[:-1]
+            commander.publisher.unregister()
+            row.reset()
+            if row.times >= FULL or fault is two_publishers:    # it takes 8 s
+                check_obeys(row, odom)
+
+
+def check_obeys(row, odom):
+    """A run of 0.1 m and 0.5 rad each ends exactly."""
+    driver = row.node('timed_out_and_back.py', '_goal_distance:=0.1', '_goal_angle:=0.5')
+    assert driver.wait() == 0, driver.output
+    x, y, yaw = support.pose(odom.next())
+    off = math.hypot(x - 0.1 - 0.1 * math.cos(0.5), y - 0.1 * math.sin(0.5))
+    assert off < support.MICROMETRE and abs(yaw - 1) < 1e-6, '%g m and %g rad off' % (off, yaw - 1)
+
+
+def each_value(row, commander, _):
+    """Every special value in every field of a Twist, after an ordinary motion."""
+    for (part, axis), value in itertools.product(FIELDS, VALUES):
+        message = support.twist(0.2, 0.5)
+        setattr(getattr(message, part), axis, value)
+        commander.publisher.publish(message)
+        row.faults += 1
+        time.sleep(0.01)
+
+
+def random_twists(row, commander, _):
+    """Twists of numbers of all magnitudes."""
+    for _ in range(row.times):
+        message = Twist()
+        for part, axis in FIELDS:
+            value = row.random.choice((0.0, row.random.uniform(-1, 1), row.random.choice(VALUES),
+                                       row.random.choice((-1, 1)) * 10 ** row.random.uniform(-320, 308)))
+            setattr(getattr(message, part), axis, value)
+        commander.publisher.publish(message)
+        row.faults += 1
+        time.sleep(0.001)
+
+
+def flood(row, commander, _):
+    """More commands than any driver sends."""
+    start = time.monotonic()
+    for count in range(round(FLOOD * 10 * row.times / FULL)):
+        commander.send(0.2 if count % 2 else -0.2)
+        time.sleep(max(0, start + count / FLOOD - time.monotonic()))
+    row.figure('commands a second in the flood', (count + 1) / (time.monotonic() - start))
+
+
+def two_publishers(row, commander, base):
+    """Forward at 20 Hz from here, and backward from a node of its own."""
+    diagnostics = support.Watch('/diagnostics', DiagnosticArray)
+    other = row.start('rostopic', 'pub', '-r', '20', '/cmd_vel', 'geometry_msgs/Twist', '{linear: {x: -0.2}}')
+    try:
+        end = time.monotonic() + 6
+        while time.monotonic() < end:
+            commander.send(0.2)
+            time.sleep(0.05)
+        warnings = [line for line in base.lines if 'WARN' in line]
+        texts = [str(status) for message in diagnostics.messages for status in message.status
+                 if status.level == DiagnosticStatus.WARN]
+    finally:
+        row.end(other)
+        diagnostics.subscriber.unregister()
+    for where, lines in (('a warning', warnings), ('/diagnostics', texts)):
+        assert any('/rostopic_' in line and rospy.get_name() in line for line in lines), 'not named in ' + where
+
+
+def numbers(message):
+    """All numbers of an Odometry."""
+    pose, speed = message.pose.pose, message.twist.twist
+    return [getattr(part, axis) for part in (pose.position, pose.orientation, speed.linear, speed.angular) for axis in 'xyz'] \
+        + [pose.orientation.w, *message.pose.covariance, *message.twist.covariance]
+
+
+def rss(pid):
+    """The memory of a process, KB."""
+    with open('/proc/%d/statm' % pid, encoding='utf-8') as file:
+        return int(file.read().split()[1]) * os.sysconf('SC_PAGE_SIZE') // 1024
