@@ -17,7 +17,7 @@ ROOT, ALONE = False, True
 
 CASES = list(product((True, False), (False, True)))     # (connected before the start, reads a byte a second)
 P99_LIMIT = 0.005       # s
-REST = 0.5              # s: longer periods are rests between motions
+LONGEST_LIMIT = 0.5     # s
 MEMORY_LIMIT = 1024     # KB
 
 
@@ -44,21 +44,23 @@ def slow_subscribers(row, before, reads):
             connect()
         control = row.node('timed_out_and_back.py', '/cmd_vel:=/control_cmd_vel', '__name:=control', '_goal_distance:=0.5')
         driver = row.node('timed_out_and_back.py', '_goal_distance:=0.5')
-        support.wait_for(lambda: len(probe.times) > 50 and len(control_probe.times) > 50, 'commands')
+        support.wait_for(lambda: len(probe.commands) > 50 and len(control_probe.commands) > 50, 'commands')
         if not before:
             connect()
         support.wait_for(lambda: all(each.sockets for each in subscribers), 'the connections')
         time.sleep(0.5)     # for what a connection allocates at first
         first = last = usage(driver), usage(control)
-        while driver.process.poll() is None and control.process.poll() is None:
+        while driver.process.poll() is None:
             last = usage(driver) or last[0], usage(control) or last[1]
             time.sleep(0.1)
         status = driver.wait()
-        period, control_period = probe.p99(), control_probe.p99()
+        (period, longest), (control_period, control_longest) = probe.periods(), control_probe.periods()
         row.figure('p99 of the period, ms', 1000 * period)
         row.figure('p99 of the control, ms', 1000 * control_period)
         assert period <= control_period + P99_LIMIT, 'the p99 of the period is %.4f s, of the control %.4f s' % (
             period, control_period)
+        assert longest <= control_longest + LONGEST_LIMIT, 'the longest period is %.3f s, of the control %.3f s' % (
+            longest, control_longest)
         grown, control_grown = (end[0] - start[0] for start, end in zip(first, last))
         row.figure('growth of the memory, KB', grown)
         assert grown <= max(control_grown, 0) + MEMORY_LIMIT, 'the memory grew by %d KB' % grown
@@ -86,13 +88,17 @@ def usage(driver):
 
 
 class Probe:
-    """Keeps the times at which commands arrive, on the monotonic clock."""
+    """Keeps the times at which commands arrive, on the monotonic clock, and whether they move the robot."""
 
     def __init__(self, topic):
-        self.times = []
-        self.subscriber = rospy.Subscriber(topic, Twist, lambda _: self.times.append(time.monotonic()), tcp_nodelay=True)
+        self.commands = []
+        self.subscriber = rospy.Subscriber(topic, Twist, self.on_twist, tcp_nodelay=True)
 
-    def p99(self):
-        """The 99th percentile of the period during motions, s."""
-        periods = sorted(period for period in (b - a for a, b in zip(self.times, self.times[1:])) if period < REST)
-        return periods[len(periods) * 99 // 100]
+    def on_twist(self, twist):
+        """A command arrives."""
+        self.commands.append((time.monotonic(), twist.linear.x != 0 or twist.angular.z != 0))
+
+    def periods(self):
+        """(99th percentile, longest) of the period during motions, s."""
+        periods = sorted(later - time for (time, moves), (later, _) in zip(self.commands, self.commands[1:]) if moves)
+        return periods[len(periods) * 99 // 100], periods[-1]
