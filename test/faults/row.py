@@ -77,7 +77,7 @@ class Row:
         return base
 
     def node(self, name, *arguments):
-        """Start an executable of the package, without the shell script that rosrun is: a signal is to reach the node."""
+        """Start an executable of the package; not by rosrun, a shell script, so that a signal reaches the node."""
         return self.start(roslib.packages.find_node('rbx1_nav', name)[0], *arguments)
 
     @staticmethod

@@ -13,7 +13,7 @@ import rospy
 import support
 
 FAULT = 'random, truncated and silent connections to the TCPROS and XML-RPC ports of base, script and filter'
-PROMISE = 'the nodes go on, the run ends where it should, no thread or file descriptor is left, and new peers can connect'
+PROMISE = 'the nodes go on, the run ends where it should, no thread or file descriptor is left, new peers can connect'
 FULL, SHORT = 600, 60
 ROOT = ALONE = False
 
@@ -96,12 +96,14 @@ def bad_bytes(random, node):
     header = b''.join(struct.pack('<I', len(field)) + field for field in (
         b'callerid=/stranger', b'topic=' + TOPICS[node.name].encode(), b'md5sum=0', b'type=std_msgs/Empty'))
     tcpros = (noise, struct.pack('<I', 2 ** 32 - 1) + noise, struct.pack('<I', 10000) + noise, struct.pack('<I', 0),
-              struct.pack('<I', len(header)) + header, struct.pack('<I', len(header)) + header[:-random.randrange(1, 90)],
+              struct.pack('<I', len(header)) + header,
+              struct.pack('<I', len(header)) + header[:-random.randrange(1, len(header))],
               struct.pack('<I', len(noise)) + noise, b'GET / HTTP/1.1\r\n\r\n')
-    call = CALL % (random.choice((b'getPid', b'noMethod', b'__init__', b'requestTopic', b'publisherUpdate', b'paramUpdate')),
+    call = CALL % (random.choice((b'getPid', b'noMethod', b'__init__', b'requestTopic', b'publisherUpdate')),
                    random.choice((b'', b'<param><value><int>9e99</int></value></param>', b'<param>' * 2000)))
     xmlrpc = (noise, b'POST / HTTP/9.9\r\n\r\n', POST % (len(call), call), POST % (10 ** 9, call), POST % (-1, call),
-              POST % (len(call), call[:-random.randrange(1, len(call))]), POST % (len(noise), noise), b'GET /' + b'x' * 70000)
+              POST % (len(call), call[:-random.randrange(1, len(call))]), POST % (len(noise), noise),
+              b'GET /' + b'x' * 70000)
     port = random.choice((node.tcpros, node.xmlrpc))
     with contextlib.suppress(OSError), socket.create_connection(port, 5) as sock:
         sock.sendall(random.choice(tcpros if port == node.tcpros else xmlrpc))

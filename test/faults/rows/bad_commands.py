@@ -10,10 +10,10 @@ from geometry_msgs.msg import Twist
 
 import support
 
-FAULT = 'Twists with NaN, infinities, 1e308, denormals, lateral and vertical parts; random ones; 5,000 a second for 10 ' \
-        's; two publishers that contradict each other'
-PROMISE = '/odom stays finite, the base then obeys exactly; its memory does not grow, it logs at most 2 lines a second; ' \
-          'it names the two publishers, in a warning and in /diagnostics'
+FAULT = 'Twists with NaN, infinities, 1e308, denormals, lateral and vertical parts; random ones; 5,000 a second for ' \
+        '10 s; two publishers that contradict each other'
+PROMISE = '/odom stays finite, the base then obeys exactly; its memory does not grow, it logs at most 2 lines a ' \
+          'second; it names the two publishers, in a warning and in /diagnostics'
 FULL, SHORT = 10000, 500        # random Twists
 ROOT = ALONE = False
 
@@ -27,7 +27,7 @@ MEMORY_LIMIT = 4096     # KB
 def run(row):
     """See FAULT."""
     row.roscore()
-    # not real time, so that the exercise ends exactly; hardly faster than that, for the base limits its lines on its clock
+    # simulated time, so that a run ends exactly; hardly faster than real time, because the base limits its lines on it
     base = row.base('real_time_factor:=1.01')
     support.init_node('faults')
     odom = support.OdomWatch()
@@ -117,8 +117,9 @@ def two_publishers(row, commander, base):
 def numbers(message):
     """All numbers of an Odometry."""
     pose, speed = message.pose.pose, message.twist.twist
-    return [getattr(part, axis) for part in (pose.position, pose.orientation, speed.linear, speed.angular) for axis in 'xyz'] \
-        + [pose.orientation.w, *message.pose.covariance, *message.twist.covariance]
+    parts = pose.position, pose.orientation, speed.linear, speed.angular
+    return [getattr(part, axis) for part in parts for axis in 'xyz'] + [
+        pose.orientation.w, *message.pose.covariance, *message.twist.covariance]
 
 
 def rss(pid):

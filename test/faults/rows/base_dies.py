@@ -8,8 +8,8 @@ from geometry_msgs.msg import Twist
 
 import support
 
-FAULT = 'SIGKILL to the base in mid-motion; each with and without respawn, a second listener, and simulated time, for ' \
-        'both scripts'
+FAULT = 'SIGKILL to the base in mid-motion; each with and without respawn, a second listener, and simulated time, ' \
+        'for both scripts'
 PROMISE = 'the script does not exit with 0; its last command is a stop'
 FULL, SHORT = 32, 5
 ROOT = ALONE = False
@@ -60,8 +60,8 @@ def kill_base(row, script, moment, listener, settings):
         pose = support.pose(odom.last)
         os.kill(support.pid_of('/arbotix'), signal.SIGKILL)
         support.wait_for(lambda: driver.process.poll() is not None, 'the end of the script', LIMIT)
-        assert driver.wait() != 0, 'exit status 0, and the robot was at %.3f m, %.3f m, %.3f rad when its base died:\n%s' % (
-            pose + (driver.output,))
+        assert driver.wait() != 0, 'exit status 0; its base died at %.3f m, %.3f m, %.3f rad:\n%s' % (
+            *pose, driver.output)
         assert 'Traceback' not in driver.output, driver.output
         if commands:
             support.wait_for(lambda: not commands.subscriber.get_num_connections(), 'the end of the connection')

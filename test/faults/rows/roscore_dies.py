@@ -38,7 +38,8 @@ def run(row):
             row.check_home(driver, odom)
             assert base.process.poll() is None, 'roslaunch ended:\n%s' % base.output
             # the new master knows neither the base nor its topics
-            known = {node for kind in rosgraph.Master('/faults').getSystemState() for _, nodes in kind for node in nodes}
+            state = rosgraph.Master('/faults').getSystemState()
+            known = {node for kind in state for _, nodes in kind for node in nodes}
             row.figure('nodes of before that the new master knows', len(known - {'/rosout'}))
             row.end(driver, base)
             odom.subscriber.unregister()

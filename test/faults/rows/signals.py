@@ -10,10 +10,10 @@ from geometry_msgs.msg import Twist
 
 import support
 
-FAULT = 'SIGINT, SIGTERM or SIGHUP to a driving script at a random moment, a third each with a frozen master and with a ' \
-        'stopped /clock'
-PROMISE = 'if a command was sent, the last one is a stop; the robot stands within 0.1 s of simulated time; the process ' \
-          'has gone within 1.5 s of wall time'
+FAULT = 'SIGINT, SIGTERM or SIGHUP to a driving script at a random moment, a third each with a frozen master and ' \
+        'with a stopped /clock'
+PROMISE = 'if a command was sent, the last one is a stop; the robot stands within 0.1 s of simulated time; the ' \
+          'process has gone within 1.5 s of wall time'
 FULL, SHORT = 120, 9
 ROOT = ALONE = False
 
@@ -52,7 +52,7 @@ def run(row):
     support.init_node('faults')
     odom = support.OdomWatch()
     commands = support.Watch('/cmd_vel', Twist)
-    python_start = max([PYTHON_START] + [2 * seconds(support.Process('/usr/bin/python3', '-c', 'pass')) for _ in range(5)])
+    python_start = max([PYTHON_START] + [2 * seconds(row.start('/usr/bin/python3', '-c', 'pass')) for _ in range(5)])
     pids = (None, rospy.get_master().getPid()[2], support.pid_of('/arbotix'))
     for count in range(row.times):
         script, number, pid = SCRIPTS[count % 2], SIGNALS[count // 2 % 3], pids[(count + count // 6) % 3]

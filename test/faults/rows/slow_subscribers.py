@@ -10,8 +10,8 @@ import support
 
 FAULT = '3 subscribers to /cmd_vel with small buffers that never read, or read a byte a second, connected before the ' \
         'start or in mid-run'
-PROMISE = "another subscriber's command period: its p99 within 5 ms of that of a run beside it; memory and threads of " \
-          'the script do not grow; it names a listener of its start and ends with 1'
+PROMISE = "another subscriber's command period: its p99 within 5 ms of that of a run beside it; memory and threads " \
+          'of the script do not grow; it names a listener of its start and ends with 1'
 FULL, SHORT = 8, 2
 ROOT, ALONE = False, True
 
@@ -42,8 +42,9 @@ def slow_subscribers(row, before, reads):
     try:
         if before:
             connect()
-        control = row.node('timed_out_and_back.py', '/cmd_vel:=/control_cmd_vel', '__name:=control', '_goal_distance:=0.5')
-        driver = row.node('timed_out_and_back.py', '_goal_distance:=0.5')
+        run = 'timed_out_and_back.py', '_goal_distance:=0.5'
+        control = row.node(*run, '/cmd_vel:=/control_cmd_vel', '__name:=control')
+        driver = row.node(*run)
         support.wait_for(lambda: len(probe.commands) > 50 and len(control_probe.commands) > 50, 'commands')
         if not before:
             connect()
