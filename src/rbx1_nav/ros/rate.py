@@ -10,6 +10,7 @@ import rospy
 from rbx1_nav.ros.node import end_requested, sleep
 from rbx1_nav.units import SECOND
 
+SIMULATED_RATE = 50     # Hz, of the base's own clock
 MAX_DELAY = SECOND      # ns
 FREE_TICKS = 25     # at the start of a motion, simulated time may run ahead until the base has seen that it begins
 
@@ -67,7 +68,13 @@ class Rate:
     """
 
     def __init__(self, hz, listeners):
-        """hz: ticks per second of ROS time, the first one a period from now; listeners: see wait_for_subscribers()."""
+        """hz: ticks per second of ROS time, the first one a period from now; listeners: see wait_for_subscribers().
+
+        Raises ROSException if simulated time does not tick as often.
+        """
+        if hz > SIMULATED_RATE and not rospy.rostime.is_wallclock():
+            raise rospy.ROSException('%s/rate: %g: expected at most %d Hz on simulated time, whose clock ticks no faster'
+                                     % (rospy.get_name(), hz, SIMULATED_RATE))
         self.listeners = listeners
         self.period = round(SECOND / hz)
         self.due = self.next = now() + self.period      # without delays, and with them

@@ -9,6 +9,9 @@ import time
 FOLDER = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 sys.path[:0] = [FOLDER, os.path.dirname(FOLDER)]    # as a station, this is a program of its own
 
+import rospy            # noqa: E402, pylint: disable=wrong-import-position
+from nav_msgs.msg import Odometry   # noqa: E402, pylint: disable=wrong-import-position
+
 from row import Row     # noqa: E402, pylint: disable=wrong-import-position
 import support          # noqa: E402, pylint: disable=wrong-import-position
 
@@ -48,11 +51,9 @@ def station(seed, count):
     row.roscore()
     launch = row.base('real_time_factor:=%d' % FACTOR)
     support.init_node('faults')
-    odom = support.OdomWatch()
     base = support.pid_of('/arbotix')
     for number in range(count):
         row.reset()
-        odom.messages.clear()
         driver = row.node('timed_out_and_back.py')
         text = 'run %d of the station with seed %d' % (number, seed)
         if number % 4 == 0:
@@ -62,7 +63,8 @@ def station(seed, count):
             suspend(driver.process.pid if who == 'script' else base, length)
         driver.process.wait()
         driver.reader.join(5)
-        x, y, yaw = support.pose(odom.next())
+        # by a new connection: in that of a busy subscriber, old messages may wait
+        x, y, yaw = support.pose(rospy.wait_for_message('/odom', Odometry))
         error = max(abs(x - support.EXACT_X), abs(y - support.EXACT_Y),
                     abs(support.wrapped(yaw - support.EXACT_TURN)))
         trouble = '' if error < support.MICROMETRE and driver.process.returncode == 0 else \
