@@ -8,6 +8,7 @@ import importlib
 import json
 import os
 import random
+import shutil
 import signal
 import subprocess
 import sys
@@ -21,6 +22,8 @@ sys.path[:0] = [FOLDER, os.path.dirname(FOLDER)]
 import support      # noqa: E402, pylint: disable=wrong-import-position
 
 LIMIT = 20 * 60     # s of wall time for a row: longer means that it hangs
+
+running = {}        # the processes of the rows that run now, by their ROS_HOME
 
 
 def read_arguments(names):
@@ -48,7 +51,7 @@ def run_row(name, module, times, seed):
         environment = dict(os.environ, ROS_MASTER_URI='http://127.0.0.1:%d' % support.free_port(), ROS_IP='127.0.0.1',
                            ROS_HOME=folder, ROS_LOG_DIR=os.path.join(folder, 'log'))
         environment.pop('ROS_NAMESPACE', None)
-        process = subprocess.Popen([sys.executable, os.path.join(FOLDER, 'row.py'), name, str(times), str(seed)],
+        process = running[folder] = subprocess.Popen([sys.executable, os.path.join(FOLDER, 'row.py'), name, str(times), str(seed)],
                                    stdout=subprocess.PIPE, text=True, env=environment, start_new_session=True, cwd=folder)
         try:
             output, _ = process.communicate(timeout=LIMIT)
@@ -56,6 +59,7 @@ def run_row(name, module, times, seed):
             output = ''
         finally:
             end_row(process, folder)
+            del running[folder]
     try:
         result = json.loads(output.splitlines()[-1])
     except (IndexError, ValueError):
@@ -80,6 +84,14 @@ def end_row(process, folder):
         except OSError:     # it has ended, or is somebody else's
             pass
     process.wait()
+
+
+def on_signal(number, _):
+    """End all rows, and the suite."""
+    for folder, process in list(running.items()):
+        end_row(process, folder)
+        shutil.rmtree(folder, ignore_errors=True)
+    os._exit(128 + number)
 
 
 class Suite:
@@ -175,6 +187,8 @@ def main():
     names = sorted(name[:-len('.py')] for name in os.listdir(os.path.join(FOLDER, 'rows')) if name.endswith('.py'))
     arguments = read_arguments(names)
     modules = {name: importlib.import_module('rows.' + name) for name in arguments.rows or names}
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, on_signal)
     print('Seed %d: `script/test --faults --seed %d%s ROW` repeats a row' % (
         arguments.seed, arguments.seed, ' --short' if arguments.short else ''), flush=True)
     results = Suite(modules, arguments).run()
