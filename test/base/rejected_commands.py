@@ -4,6 +4,7 @@ import math
 import unittest
 
 from diagnostic_msgs.msg import DiagnosticArray
+from rosgraph_msgs.msg import Log
 
 import support
 
@@ -13,9 +14,11 @@ class TestRejectedCommands(unittest.TestCase):
         support.init_node('rejected_commands')
         odom = support.OdomWatch()
         diagnostics = support.Watch('/diagnostics', DiagnosticArray)
+        logs = support.Watch('/rosout', Log)
         commander = support.Commander()
-        bad = [support.twist(math.nan), support.twist(0.2, math.inf), support.twist(0.2)]
+        bad = [support.twist(math.nan), support.twist(0.2, math.inf), support.twist(0.2), support.twist(0.2)]
         bad[2].linear.y = -math.inf
+        bad[3].linear.y = math.nan
 
         for count, message in enumerate(bad, 1):
             commander.send(0.2)
@@ -30,6 +33,14 @@ class TestRejectedCommands(unittest.TestCase):
                 return values.get('Rejected commands') == str(count)
             support.wait_for(counted, '%d rejected commands in /diagnostics' % count)
             self.assertGreater(len(odom.messages), start)
+
+        # what is rejected is not reported as ignored too
+        lateral = support.twist(0.1)
+        lateral.linear.y = 0.1
+        commander.publisher.publish(lateral)
+        odom.wait_for_twist(0.1)
+        support.wait_for(lambda: any('ignored' in log.msg for log in logs.messages), 'the line on a lateral velocity')
+        self.assertEqual([log.msg for log in logs.messages if 'linear.y' in log.msg and '0.1' not in log.msg], [])
 
 
 if __name__ == '__main__':

@@ -33,11 +33,7 @@ class VelocityCommands:
     def on_twist(self, twist):
         """A command arrives: the clock decides when it is put in force."""
         self.sender = twist._connection_header
-        command = messages.from_twist(twist)
-        if any(command[2]):
-            rospy.logwarn_throttle(5, '%s: linear.y, linear.z, angular.x, angular.y = %s: a differential drive cannot '
-                                      'follow these, expected 0; ignored' % (self.topic, command[2]))
-        self.clock.command(twist, command)
+        self.clock.command(twist, messages.from_twist(twist))
 
     def apply(self, command):
         """Put a command in force: (linear in m/s, angular in rad/s, the velocities that the base cannot follow)."""
@@ -50,6 +46,9 @@ class VelocityCommands:
         if clamped:
             rospy.logwarn_throttle(5, '%s: %g m/s, %g rad/s: expected at most %g and %g; clamped'
                                    % ((self.topic,) + command[:2] + self.gate.limits))
+        if any(command[2]):
+            rospy.logwarn_throttle(5, '%s: linear.y, linear.z, angular.x, angular.y = %s: a differential drive cannot '
+                                      'follow these, expected 0; ignored' % (self.topic, command[2]))
 
     def driver(self):
         """The name of the node that drives the base now, also while it rests between two motions; None if none does."""
