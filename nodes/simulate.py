@@ -6,6 +6,7 @@ The motions, the base and the filter are those of the nodes.
 import rbx1_nav.ros.early_interrupt     # Ctrl-C ends it quietly even while the rest is loaded
 
 import argparse
+from concurrent.futures.process import BrokenProcessPool
 from functools import partial
 from math import atan2, cos, degrees, hypot, sin
 import os
@@ -132,6 +133,10 @@ def main():
             print('Picture: %s' % arguments.plot)
     except (OSError, ValueError, yaml.YAMLError) as error:     # or a robot that is stuck
         print('simulate.py: %s' % ' '.join(str(error).split()), file=sys.stderr)
+        return 1
+    except BrokenProcessPool:
+        print('simulate.py: a process was killed, perhaps because memory ran out: expected all of --jobs %d to run'
+              % arguments.jobs, file=sys.stderr)
         return 1
     except KeyboardInterrupt:
         return 130

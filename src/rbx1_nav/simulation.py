@@ -2,11 +2,14 @@
 
 Metres, radians, seconds.
 """
-from collections import namedtuple
+from collections import deque, namedtuple
+from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 from math import pi
 import multiprocessing
+import os
 import signal
+import threading
 
 from rbx1_nav.control.legs import out_and_back_by_odometry
 from rbx1_nav.control.motions import out_and_back
@@ -24,6 +27,7 @@ MIN_SPEEDS = dict(min_linear_speed=0.05, min_angular_speed=0.2)
 TICK = SECOND // EXERCISE['rate']   # ns
 REST = 50       # ticks between two motions
 TRIAL_REST = 25     # ticks at the trial stop of a leg
+END_SIGNALS = {signal.SIGINT, signal.SIGTERM}
 CALIBRATION = 100   # ticks at rest before the first motion, in which the filter estimates the gyro's bias
 
 Snapshot = namedtuple('Snapshot', 'time truth odometry estimate')
@@ -119,21 +123,56 @@ def simulate(method, robot, surface, seed, filtered=False, keep=False):
 
 
 def simulate_many(method, robot, surface, seeds, keep=0, jobs=1):
-    """Yields the Results of all seeds in their order; keep: the number of paths to keep; jobs: number of processes."""
-    work = partial(_simulate_one, method, robot, surface)
-    tasks = ((seed, number < keep) for number, seed in enumerate(seeds))
+    """Yields the Results of all seeds in their order; keep: the number of paths to keep; jobs: number of processes.
+
+    Raises BrokenProcessPool if one of the processes is killed.
+    """
+    work = partial(_simulate_some, method, robot, surface)
+    tasks = [(seed, number < keep) for number, seed in enumerate(seeds)]
     if jobs == 1:
-        yield from map(work, tasks)
+        for task in tasks:
+            yield from work([task])
         return
-    with multiprocessing.Pool(jobs, _leave_signals_to_the_parent) as pool:
-        yield from pool.imap(work, tasks, chunksize=max(1, min(50, len(seeds) // 100)))
+    size = max(1, min(50, len(tasks) // 100))
+    chunks = [tasks[start:start + size] for start in range(0, len(tasks), size)]
+    jobs = min(jobs, len(chunks))
+    with ProcessPoolExecutor(max(1, jobs), initializer=_follow_the_parent) as pool:
+        results = deque()
+        try:
+            for chunk in chunks:
+                results.append(_submit(pool, work, chunk))
+                if len(results) > 4 * jobs:     # enough for all processes, and not everything in memory
+                    yield from results.popleft().result()
+            while results:
+                yield from results.popleft().result()
+        except BaseException:       # an interrupt does not wait for runs that nobody will see
+            for process in multiprocessing.active_children():
+                process.terminate()
+            raise
 
 
-def _leave_signals_to_the_parent():
+def _submit(pool, work, chunk):
+    """pool.submit(), which may start processes: a signal must not find one that still has the parent's handlers."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, END_SIGNALS)
+    try:
+        return pool.submit(work, chunk)
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def _follow_the_parent():
+    """In a new process: leave Ctrl-C to the parent, and end when it ends, even if it was killed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)   # by which the parent ends it
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, END_SIGNALS)
+    threading.Thread(target=_end_with_the_parent, daemon=True).start()
 
 
-def _simulate_one(method, robot, surface, task):
-    seed, keep = task
-    return simulate(method, robot, surface, seed, keep=keep)
+def _end_with_the_parent():
+    multiprocessing.parent_process().join()
+    os._exit(1)
+
+
+def _simulate_some(method, robot, surface, tasks):
+    """The Results of some tasks: pairs of a seed and whether to keep the path."""
+    return [simulate(method, robot, surface, seed, keep=keep) for seed, keep in tasks]

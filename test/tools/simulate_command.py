@@ -2,6 +2,7 @@
 """simulate.py at the command line: numbers, a picture, and one line for an invalid argument."""
 import os
 import re
+import signal
 import tempfile
 import unittest
 
@@ -18,6 +19,21 @@ def simulate(*arguments):
         return process.wait(), process.output
     finally:
         process.kill()
+
+
+def children(pid):
+    """The process ids of a process' children."""
+    with open('/proc/%d/task/%d/children' % (pid, pid)) as file:
+        return [int(child) for child in file.read().split()]
+
+
+def runs(pid):
+    """Whether a process exists, and is no zombie."""
+    try:
+        with open('/proc/%d/stat' % pid) as file:
+            return file.read().rpartition(')')[2].split()[0] != 'Z'
+    except (FileNotFoundError, ProcessLookupError):
+        return False
 
 
 class TestSimulateCommand(unittest.TestCase):
@@ -43,6 +59,35 @@ class TestSimulateCommand(unittest.TestCase):
         # 157 ticks are a little less than pi seconds: 1.6 mm to the left, and 0.18 degrees short
         self.assertRegex(output, r'timed +truth +0\.000 \+- 0\.000 +0\.002 \+- 0\.000 +-0\.18 \+- +0\.00 +0\.002')
         self.assertNotIn('ekf', output)
+
+    def start_long(self):
+        """Simulate for long; returns the Process and the process ids of its children."""
+        process = support.Process('rosrun', 'rbx1_nav', 'simulate.py', '--method', 'ekf', '--runs', '1000000', '--jobs',
+                                  '2')
+        self.addCleanup(process.kill)
+        return process, support.wait_for(
+            lambda: len(children(process.process.pid)) == 2 and children(process.process.pid), 'two processes')
+
+    def check_children_end(self, pids):
+        support.wait_for(lambda: not any(map(runs, pids)), 'the end of the processes %s' % pids)
+
+    def test_a_process_that_is_killed(self):
+        process, pids = self.start_long()
+        os.kill(pids[0], signal.SIGKILL)
+        self.assertEqual(process.wait(), 1, process.output)
+        self.assertRegex(process.lines[-1], '^simulate.py: a process was killed, .*: expected all of --jobs 2 to run$')
+        self.assertNotIn('Traceback', process.output)
+        self.check_children_end(pids)
+
+    def test_an_end_by_signal_is_that_of_all_processes(self):
+        # more than once, for an end at the start of the processes is special
+        for number, status in 5 * [(signal.SIGINT, 130), (signal.SIGTERM, 130)] + [
+                (signal.SIGKILL, -signal.SIGKILL), (signal.SIGPIPE, -signal.SIGPIPE)]:
+            process, pids = self.start_long()
+            process.signal(number)
+            self.assertEqual(process.wait(), status, process.output)
+            self.assertNotIn('Traceback', process.output)
+            self.check_children_end(pids)
 
     def test_invalid_arguments(self):
         for arguments, status, text in [
