@@ -126,7 +126,7 @@ class Ekf:
 
     def run(self):
         """Until the node is to end."""
-        schedule = Schedule(1)
+        schedule = Schedule(1 / self.parameters['diagnostic_period'])
         while not node.end_requested.is_set():
             if schedule.due(time.monotonic_ns()):   # wall time: a clock that stands still is worth a diagnosis too
                 self.diagnostics.force_update()
@@ -137,7 +137,7 @@ def main():
     """Read the parameters, and run. Returns the exit status."""
     node.init_node('robot_pose_ekf', __doc__)
     try:
-        parameters = read_parameters()
+        parameters = read_parameters(rospy.get_param(rospy.get_name(), {}))
     except ConfigError as error:
         rospy.logfatal('%s/%s', rospy.get_name(), error)
         return 1

@@ -24,7 +24,7 @@ from nav_msgs.msg import Odometry
 from std_msgs.msg import Empty
 from std_srvs.srv import Empty as EmptyService, EmptyResponse
 
-from rbx1_nav.config import ConfigError, positive
+from rbx1_nav.config import ConfigError, Section
 from rbx1_nav.model.joints import JointGroup
 from rbx1_nav.model.robot import read_robot
 from rbx1_nav.model.surfaces import RANDOM, load_surface, read_seed
@@ -113,7 +113,7 @@ def read_factor():
     factor = rospy.get_param('~real_time_factor', None)
     if factor is None:
         return None
-    factor = positive('real_time_factor', factor)
+    factor = Section({'real_time_factor': factor}).number('real_time_factor', 0.01, 1000)
     if rospy.rostime.is_wallclock():
         raise ConfigError('real_time_factor: %g: expected /use_sim_time to be true' % factor)
     return factor

@@ -16,11 +16,10 @@ import time
 
 import numpy
 from tqdm import tqdm
-import yaml
 
-from rbx1_nav.config import ConfigError
+from rbx1_nav.config import ConfigError, load_yaml, show, show_name
 from rbx1_nav.model.robot import read_robot
-from rbx1_nav.model.surfaces import known_surfaces, load_surface, read_seed
+from rbx1_nav.model.surfaces import MAX_SEED, known_surfaces, load_surface
 from rbx1_nav.plots import PATHS, check_picture, draw
 from rbx1_nav.ros import resources
 from rbx1_nav.simulation import METHODS, simulate_many
@@ -47,16 +46,16 @@ def read_arguments():
     parser.add_argument('--jobs', type=int, default=os.cpu_count(), metavar='N',
                         help='processes; default: as many as there are processor cores')
     arguments = parser.parse_args()
-    for name in ('runs', 'jobs'):
-        if not 1 <= getattr(arguments, name) <= 10 ** 6:
-            parser.error('--%s: %d: expected 1 to a million' % (name, getattr(arguments, name)))
+    for name, low, high in (('runs', 1, 10 ** 6), ('jobs', 1, 10 ** 6), ('seed', 0, MAX_SEED + 1 - arguments.runs)):
+        if not low <= getattr(arguments, name) <= high:
+            parser.error('--%s: %s: expected an integer from %d to %d' % (name, show(getattr(arguments, name)), low, high))
     if os.path.splitext(arguments.surface)[1]:      # a name has none
         arguments.surface = os.path.abspath(arguments.surface)
     if arguments.plot is not None:
         try:
             check_picture(arguments.plot)
         except ConfigError as error:
-            parser.error('--plot: %s: %s' % (arguments.plot, error))
+            parser.error('--plot: %s: %s' % (show_name(arguments.plot), error))
     arguments.method = list(dict.fromkeys(arguments.method or METHODS))
     return arguments
 
@@ -100,13 +99,11 @@ def report(method, results):
 
 
 def load_robot(path):
-    """The Robot of an ArbotiX YAML file. Raises ConfigError, OSError, yaml.YAMLError."""
-    with open(path, encoding='utf-8') as file:
-        values = yaml.safe_load(file)
+    """The Robot of an ArbotiX YAML file. Raises ConfigError."""
     try:
-        return read_robot(values)
+        return read_robot(load_yaml(path))
     except ConfigError as error:
-        raise ConfigError('%s: %s' % (path, error))
+        raise ConfigError('%s: %s' % (show_name(path), error))
 
 
 def main():
@@ -117,7 +114,7 @@ def main():
     try:
         arguments = read_arguments()
         surface = load_surface(arguments.surface, resources.surfaces())
-        seeds = range(read_seed(arguments.seed), read_seed(arguments.seed + arguments.runs - 1) + 1)
+        seeds = range(arguments.seed, arguments.seed + arguments.runs)
         robot = load_robot(arguments.config)
         print('Runs of each method on %s: %d. Mean and spread (1 sigma) at the end:\n'
               '%-6s %-14s  %17s  %17s  %17s  %17s' % (arguments.surface, arguments.runs, 'method', '', 'x (m)', 'y (m)',
@@ -131,7 +128,7 @@ def main():
         if arguments.plot:
             draw(arguments.plot, arguments.surface, results, seeds)
             print('Picture: %s' % arguments.plot)
-    except (OSError, ValueError, yaml.YAMLError) as error:     # or a robot that is stuck
+    except (OSError, ValueError) as error:     # or a robot that is stuck
         print('simulate.py: %s' % ' '.join(str(error).split()), file=sys.stderr)
         return 1
     except BrokenProcessPool:

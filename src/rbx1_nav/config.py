@@ -1,20 +1,40 @@
 """Reads configuration: mappings of keys to values, and one clear line for each value that makes no sense."""
-from math import inf, isfinite
+from math import isfinite
 import re
 import reprlib
+
+import yaml
+
+_short = reprlib.Repr()
+_short.maxstring = _short.maxother = 200    # characters
 
 
 class ConfigError(ValueError):
     """A value that makes no sense. The text names the key, the value and what is expected."""
 
 
+def show(value):
+    """Any value as short text of one line."""
+    if isinstance(value, int) and value.bit_length() > 1000:
+        return 'an integer of %d bits' % value.bit_length()
+    try:
+        return _short.repr(value)
+    except ValueError:      # such an integer inside of it: Python does not print more than 4300 digits
+        return 'a %s with huge numbers' % type(value).__name__
+
+
+def show_name(name):
+    """A key, a frame, a path or an argument: as it is if it is text of one line, else as show()."""
+    return name if isinstance(name, str) and name.isprintable() and len(name) <= 200 else show(name)
+
+
 def describe(value):
     """A value as it stands in the YAML file, with a hint where YAML reads a number as text."""
     try:
-        is_number = isinstance(value, str) and isfinite(float(value))
+        is_number = isinstance(value, str) and len(value) < 100 and isfinite(float(value))
     except ValueError:
         is_number = False
-    return repr(value) + (' (text to YAML: write %s)' % as_yaml_number(value) if is_number else '')
+    return show(value) + (' (text to YAML: write %s)' % as_yaml_number(value) if is_number else '')
 
 
 def as_yaml_number(text):
@@ -25,9 +45,14 @@ def as_yaml_number(text):
     return '%s%se%s%s' % (mantissa, '' if '.' in mantissa else '.0', '' if exponent[0] in '+-' else '+', exponent)
 
 
-def positive(key, value, expected='a finite number above 0'):
-    """The value of a key as a float. Raises ConfigError if it is not a number above 0."""
-    return Section({key: value}).number(key, expected=expected)
+def load_yaml(path):
+    """The content of a YAML file. Raises ConfigError, which does not name the file."""
+    try:
+        with open(path, encoding='utf-8') as file:
+            return yaml.safe_load(file)
+    except Exception as error:      # pylint: disable=broad-except
+        # besides its own errors, yaml raises Python's: KeyError for `!!bool x`, RecursionError for `[[[[...`
+        raise ConfigError('expected a YAML file: %s' % (' '.join(str(error).split()) or type(error).__name__))
 
 
 class Section:
@@ -38,14 +63,14 @@ class Section:
         self.key = key
         if not isinstance(values, dict):
             raise ConfigError('%s: %s: expected a mapping of keys to values'
-                              % (key or 'configuration', reprlib.repr(values)))
+                              % (key or 'configuration', show(values)))
         self.values = values
         self.hardware = set(hardware)
         self.known = set(hardware)
 
     def path(self, key):
         """The full name of a key, as rosparam spells it."""
-        return '%s/%s' % (self.key, key) if self.key else key
+        return '%s/%s' % (self.key, show_name(key)) if self.key else show_name(key)
 
     def get(self, key, default=None, expected='a value'):
         """The value of a key. Raises ConfigError if it is missing and has no default."""
@@ -56,14 +81,13 @@ class Section:
             raise ConfigError('%s: missing: expected %s' % (self.path(key), expected))
         return default
 
-    def number(self, key, default=None, low=0.0, high=inf, expected='a finite number above 0', closed=False):
-        """A finite number above `low` (or equal to it if `closed`) and at most `high`."""
+    def number(self, key, low, high, default=None, what='a number', unit=''):
+        """A number from `low` to `high`; only the default may be outside. what, unit: for the text of the error."""
+        expected = '%s from %.7g to %.7g%s' % (what, low, high, unit and ' in ' + unit)
         value = self.get(key, default, expected)
-        # bool is a subclass of int, and a mistake here; only the default may be infinite
-        good = isinstance(value, (int, float)) and not isinstance(value, bool)
-        if key in self.values or not good:
-            good = good and isfinite(value) and (low < value or closed and low == value) and value <= high
-        if not good:
+        # bool is a subclass of int, and a mistake here; nan fails the comparison
+        if key in self.values and not (isinstance(value, (int, float)) and not isinstance(value, bool)
+                                       and low <= value <= high):
             raise ConfigError('%s: %s: expected %s' % (self.path(key), describe(value), expected))
         return float(value)
 
@@ -71,14 +95,14 @@ class Section:
         """True or false."""
         value = self.get(key, default)
         if not isinstance(value, bool):
-            raise ConfigError('%s: %r: expected true or false' % (self.path(key), value))
+            raise ConfigError('%s: %s: expected true or false' % (self.path(key), show(value)))
         return value
 
     def frame(self, key, default):
         """A tf2 frame name. A leading slash, as in old files, is removed."""
         value = self.get(key, default)
-        if not isinstance(value, str) or not re.match(r'^/?[^/\s]+(/[^/\s]+)*$', value):
-            raise ConfigError('%s: %r: expected the name of a frame' % (self.path(key), value))
+        if not (isinstance(value, str) and re.fullmatch(r'/?[^/\s]+(/[^/\s]+)*', value) and value.isprintable()):
+            raise ConfigError('%s: %s: expected the name of a frame' % (self.path(key), show(value)))
         return value.lstrip('/')
 
     def section(self, key, hardware=(), default=None, expected='a mapping'):
@@ -91,4 +115,4 @@ class Section:
 
     def unknown(self):
         """Full names of the keys that were never read."""
-        return [self.path(str(key)) for key in self.values if key not in self.known]
+        return [self.path(key) for key in self.values if key not in self.known]

@@ -1,6 +1,8 @@
 """Pictures of simulated runs, with matplotlib."""
+import io
 from math import cos, sin
 import os
+import shutil
 
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
@@ -49,7 +51,28 @@ def draw(file, surface, results, seeds):
         points = draw_ends(below, ends[method], extent, norm)
     if norm:
         figure.colorbar(points, ax=list(panels[1]), label='heading error (degrees)').solids.set(alpha=1)
-    figure.savefig(file, dpi=90, bbox_inches='tight')
+    # drawn in memory: a full disk is an OSError, and not one of all that the libraries below matplotlib may raise
+    picture = io.BytesIO()
+    figure.savefig(picture, dpi=90, bbox_inches='tight', format=os.path.splitext(file)[1][1:].lower())
+    write_file(file, picture.getvalue())
+
+
+def write_file(path, content):
+    """Write a file as a whole or not at all: what was there before survives an error. Raises OSError."""
+    path = os.path.realpath(path)       # not in the place of a link to it
+    new = os.path.join(os.path.dirname(path), '.rbx1_nav-%d.tmp' % os.getpid())
+    try:
+        with open(new, 'wb') as file:
+            file.write(content)
+            file.flush()
+            os.fsync(file.fileno())     # some disks are full only now
+        if os.path.exists(path):
+            shutil.copymode(path, new)
+        os.replace(new, path)
+    except BaseException:
+        if os.path.exists(new):
+            os.remove(new)
+        raise
 
 
 def end_poses(results):

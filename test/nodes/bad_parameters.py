@@ -31,7 +31,8 @@ class TestBadParameters(unittest.TestCase):
                                       ('_angular_speed:=.nan', '/angular_speed', 'nan'),
                                       ('_goal_distance:=far', '/goal_distance', "'far'"),
                                       ('_goal_angle:=true', '/goal_angle', 'True'),
-                                      ('_linear_speed:=1.0e+300', '1e+300', 'between 1 tick and a day')]:
+                                      ('_linear_speed:=1.0e+5', '/ speed 100000', 'between 1 tick and a day'),
+                                      ('_linear_speed:=1.0e+300', '/linear_speed', '1e+300')]:
             self.check(support.out_and_back(argument), [name, value, 'expected'])
             rospy.delete_param('/out_and_back')
         self.assertFalse(commands.messages)
@@ -48,7 +49,7 @@ class TestBadParameters(unittest.TestCase):
 
     def test_filter(self):
         for params, expected in [
-                ({'freq': 0}, ['freq', '0', 'above 0']), ({'sensor_timeout': 'long'}, ['sensor_timeout', "'long'"]),
+                ({'freq': 1e-300}, ['/freq: 1e-300: expected a rate from 0.1 to 1000 in Hz']), ({'sensor_timeout': 'long'}, ['sensor_timeout', "'long'"]),
                 ({'imu_used': 1}, ['imu_used', '1', 'true or false']), ({'output_frame': ''}, ['output_frame', "''"]),
                 ({'odom_used': False}, ['odom_used', 'False', 'expected true']),
                 ({'vo_used': True}, ['vo_used', 'True', 'expected false']),
@@ -60,13 +61,15 @@ class TestBadParameters(unittest.TestCase):
     def test_base(self):
         for params, expected in [
                 ({}, ['/arbotix/controllers', 'missing']),
-                ({'controllers': {'base': dict(BASE, base_width=0)}}, ['base/base_width', '0', 'above 0']),
-                ({'controllers': {'base': dict(BASE, rate=-1)}}, ['base/rate', '-1', 'above 0']),
+                ({'controllers': {'base': dict(BASE, base_width=0)}}, ['base/base_width', '0', 'from 0.001']),
+                ({'controllers': {'base': dict(BASE, rate=1e-320)}}, ['base/rate', '1e-320', 'from 0.1']),
                 ({'controllers': {'base': dict(BASE, type='arm')}}, ['base/type', "'arm'", 'diff_controller']),
+                ({'controllers': {'two\nlines': 7}}, [r"/arbotix/controllers/'two\nlines'", '7', 'a mapping']),
                 ({'controllers': {'base': BASE}, 'surface': 'sand'},
                  ['/arbotix/surface', "'sand'", 'hard_floor, ideal, low_ply_carpet']),
                 ({'controllers': {'base': BASE}, 'seed': -1}, ['/arbotix/seed', '-1', 'integer']),
-                ({'controllers': {'base': BASE}, 'real_time_factor': 5}, ['real_time_factor', '5', '/use_sim_time'])]:
+                ({'controllers': {'base': BASE}, 'real_time_factor': 5}, ['real_time_factor', '5', '/use_sim_time']),
+                ({'controllers': {'base': BASE}, 'real_time_factor': 1e-300}, ['1e-300: expected a number from 0.01'])]:
             if params:
                 rospy.set_param('/arbotix', params)
             self.check(support.Process('rosrun', 'rbx1_nav', 'fake_base.py'), expected)

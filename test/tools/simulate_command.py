@@ -21,6 +21,16 @@ def simulate(*arguments):
         process.kill()
 
 
+def simulate_with_limit(picture):
+    """Run it with a picture, where no file may have more than a kilobyte: as on a full disk, but without root."""
+    process = support.Process('bash', '-c', 'trap "" XFSZ; ulimit -f 1; exec rosrun rbx1_nav simulate.py --method timed '
+                                            '--runs 1 --plot "$0"', picture)
+    try:
+        return process.wait(), process.output
+    finally:
+        process.kill()
+
+
 def children(pid):
     """The process ids of a process' children."""
     with open('/proc/%d/task/%d/children' % (pid, pid)) as file:
@@ -89,6 +99,14 @@ class TestSimulateCommand(unittest.TestCase):
             self.assertNotIn('Traceback', process.output)
             self.check_children_end(pids)
 
+    def test_a_full_disk(self):
+        for kind in 'png', 'pdf', 'svg':
+            with tempfile.TemporaryDirectory() as folder:
+                status, output = simulate_with_limit(os.path.join(folder, 'a.' + kind))
+                self.assertEqual((status, os.listdir(folder)), (1, []), output)
+            self.assertEqual(output.splitlines()[-1], 'simulate.py: [Errno 27] File too large')
+            self.assertNotIn('Traceback', output)
+
     def test_invalid_arguments(self):
         for arguments, status, text in [
                 (['--surface', 'sand'], 1, "'sand': expected one of hard_floor, ideal, low_ply_carpet"),
@@ -96,7 +114,7 @@ class TestSimulateCommand(unittest.TestCase):
                 (['--plot', 'picture.doc'], 2, '--plot: picture.doc: expected'),
                 (['--plot', '/'], 2, '--plot: /: expected'),
                 (['--config', '/dev/null'], 1, '/dev/null: configuration: None: expected'),
-                (['--seed', '-1'], 1, 'seed: -1: expected'), (['--config', '/nowhere.yaml'], 1, '/nowhere.yaml'),
+                (['--seed', '-1'], 2, '--seed: -1: expected an integer from 0 to 2147483548'), (['--config', '/nowhere.yaml'], 1, '/nowhere.yaml'),
                 (['--plot', '/nowhere/picture.png'], 2, '--plot: /nowhere/picture.png: expected')]:
             actual, output = simulate(*arguments)
             self.assertEqual(actual, status, output)

@@ -3,53 +3,59 @@ from math import inf, nan
 
 import pytest
 
-from rbx1_nav.config import ConfigError, Section, positive
+from rbx1_nav.config import ConfigError, Section, load_yaml, show, show_name
 
 
 def rejection(function, *arguments, **options):
     """The text of the ConfigError that a call raises."""
     with pytest.raises(ConfigError) as error:
         function(*arguments, **options)
-    assert '\n' not in str(error.value)
+    assert str(error.value).isprintable() and len(str(error.value)) < 1000
     return str(error.value)
 
 
-@pytest.mark.parametrize('text, number', [
+def number(key, value):
+    """A number from 0.5 to 10."""
+    return Section({key: value}).number(key, 0.5, 10, what='a width', unit='m')
+
+
+@pytest.mark.parametrize('text, hint', [
     ('1e-1', '1.0e-1'), ('1e5', '1.0e+5'), ('-2.5e3', '-2.5e+3'), (' 3E2', '3.0e+2'), ('0.26', '0.26 without quotes')])
-def test_a_number_that_is_text_to_yaml_gets_a_hint(text, number):
-    expected = 'base_width: %r (text to YAML: write %s): expected a finite number above 0' % (text, number)
-    assert rejection(positive, 'base_width', text) == expected
+def test_a_number_that_is_text_to_yaml_gets_a_hint(text, hint):
+    expected = 'base_width: %r (text to YAML: write %s): expected a width from 0.5 to 10 in m' % (text, hint)
+    assert rejection(number, 'base_width', text) == expected
 
 
 @pytest.mark.parametrize('text', ['wide', 'nan', '', '1e999'])
 def test_other_text_gets_no_hint(text):
-    assert rejection(positive, 'base_width', text) == 'base_width: %r: expected a finite number above 0' % text
+    assert rejection(number, 'base_width', text) == 'base_width: %r: expected a width from 0.5 to 10 in m' % text
 
 
-@pytest.mark.parametrize('value', [0, -1, nan, inf, True, None, [1.0]])
-def test_positive_rejects_everything_but_finite_numbers_above_0(value):
-    assert rejection(positive, 'rate', value) == 'rate: %r: expected a finite number above 0' % value
+@pytest.mark.parametrize('value', [0, 0.49, 11, -1, nan, inf, -inf, 1e-320, True, None, [1.0]])
+def test_a_number_is_in_its_range(value):
+    assert rejection(number, 'rate', value) == 'rate: %r: expected a width from 0.5 to 10 in m' % value
 
 
-def test_positive_returns_a_float():
-    assert positive('rate', 5) == 5.0 and isinstance(positive('rate', 5), float)
+@pytest.mark.parametrize('value', [10 ** 400, -10 ** 400, 1 << 20000, 'x' * 10 ** 6, '1' * 400, [[1] * 10 ** 6] * 1000],
+                         ids=lambda value: type(value).__name__)
+def test_a_huge_value_is_shown_in_short(value):
+    assert len(rejection(number, 'rate', value)) < 400
 
 
-def test_a_closed_range_includes_its_lower_end():
-    assert Section({'timeout': 0}).number('timeout', closed=True, high=2.0) == 0.0
-    assert Section({'timeout': 2.0}).number('timeout', closed=True, high=2.0) == 2.0
-    rejection(Section({'timeout': 2.1}).number, 'timeout', closed=True, high=2.0)
+def test_a_number_is_a_float_and_both_ends_belong_to_the_range():
+    for value in (0.5, 5, 10):
+        assert number('rate', value) == value and isinstance(number('rate', value), float)
 
 
-def test_only_a_default_may_be_infinite():
-    assert Section({}).number('max_speed', inf) == inf
-    rejection(Section({'max_speed': inf}).number, 'max_speed', inf)
+def test_only_a_default_may_be_out_of_range():
+    assert Section({}).number('max_speed', 1, 2, inf) == inf
+    rejection(Section({'max_speed': inf}).number, 'max_speed', 1, 2, inf)
 
 
 def test_a_key_is_named_as_rosparam_spells_it():
     section = Section({'a': {'b': {'c': -1}}}).section('a').section('b')
-    assert rejection(section.number, 'c').startswith('a/b/c: -1: expected')
-    assert rejection(section.number, 'd').startswith('a/b/d: missing: expected')
+    assert rejection(section.number, 'c', 0, 1).startswith('a/b/c: -1: expected')
+    assert rejection(section.number, 'd', 0, 1).startswith('a/b/d: missing: expected')
 
 
 @pytest.mark.parametrize('value', ['true', 1, 0, None])
@@ -63,7 +69,7 @@ def test_a_frame_loses_its_leading_slash():
     assert Section({}).frame('frame', 'odom') == 'odom'
 
 
-@pytest.mark.parametrize('value', ['', '/', 'a b', 7, 'odom/', None])
+@pytest.mark.parametrize('value', ['', '/', 'a b', 7, 'odom/', None, 'odom\n', 'a\0b', 'a\x1b[1m'])
 def test_a_name_that_no_frame_can_have_is_rejected(value):
     assert rejection(Section({'frame': value}).frame, 'frame', 'odom') == (
         'frame: %r: expected the name of a frame' % value)
@@ -71,7 +77,7 @@ def test_a_name_that_no_frame_can_have_is_rejected(value):
 
 def test_keys_are_sorted_into_read_hardware_and_unknown():
     section = Section({'rate': 50, 'port': '/dev/ttyUSB0', 'time_out': 2}, 'base', hardware={'port', 'baud'})
-    section.number('rate')
+    section.number('rate', 1, 100)
     assert section.ignored() == ['base/port'] and section.unknown() == ['base/time_out']
 
 
@@ -79,3 +85,28 @@ def test_keys_are_sorted_into_read_hardware_and_unknown():
 def test_a_section_is_a_mapping(values):
     assert rejection(Section, values) == 'configuration: %r: expected a mapping of keys to values' % (values,)
     assert rejection(Section, values, 'joints') == 'joints: %r: expected a mapping of keys to values' % (values,)
+
+
+@pytest.mark.parametrize('key, shown', [
+    ('two\nlines', r"'two\nlines'"), ('\x1b[31m', r"'\x1b[31m'"), (7, '7'), ('radius of the wheel', 'radius of the wheel'),
+    (1 << 20000, 'an integer of 20001 bits')], ids=lambda value: type(value).__name__)
+def test_a_key_is_shown_in_one_line(key, shown):
+    assert Section({key: 1}, 'base').unknown() == ['base/' + shown] and show_name(key) == shown
+    assert rejection(Section({key: 0}).flag, key, True).startswith(shown + ': 0: ')
+
+
+def test_a_mapping_that_contains_itself_is_shown():
+    values = {}
+    values['self'] = [values]
+    assert len(show(values)) < 200
+
+
+@pytest.mark.parametrize('text', ['a: [', '\0', '!!bool x', "!!int ''", '!!timestamp x', '? {a: b}', '[' * 10 ** 5, '\udcff'])
+def test_a_file_that_is_not_yaml(tmp_path, text):
+    path = tmp_path / 'a.yaml'
+    path.write_bytes(text.encode('utf-8', 'surrogateescape'))
+    assert rejection(load_yaml, str(path)).startswith('expected a YAML file: ')
+
+
+def test_a_file_that_does_not_exist(tmp_path):
+    assert rejection(load_yaml, str(tmp_path / 'a.yaml')).startswith('expected a YAML file: ')

@@ -1,5 +1,7 @@
 """The picture of simulated runs: one scale for what is to be compared, and none where there is nothing to see."""
 from math import pi, radians
+import resource
+import signal
 
 import numpy
 import pytest
@@ -84,6 +86,44 @@ def test_a_title_names_surface_runs_and_seeds(drawn):
     # _suptitle: matplotlib before 3.8 has no get_suptitle()
     assert drawn({'timed': FAR})._suptitle.get_text() == 'Out and back on test, 3 runs (seeds 0 to 2)'
     assert numpy.isclose(drawn({'timed': FAR}).axes[0].get_xlim()[0], -0.35)
+
+
+@pytest.fixture
+def full_disk():
+    """Files cannot have more than 1000 bytes. Needs no root, unlike a small file system, and is an OSError too."""
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    handler = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1000, before[1]))
+    yield
+    resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    signal.signal(signal.SIGXFSZ, handler)
+
+
+@pytest.mark.parametrize('kind', ['png', 'pdf', 'svg'])
+def test_a_full_disk_is_an_oserror_and_leaves_no_file(tmp_path, full_disk, kind):
+    with pytest.raises(OSError):
+        draw(str(tmp_path / ('a.' + kind)), 'test', {'timed': FAR}, range(3))
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize('kind', ['png', 'pdf', 'svg'])
+def test_an_older_picture_survives_a_full_disk(tmp_path, full_disk, kind):
+    path = tmp_path / ('a.' + kind)
+    path.write_bytes(b'an older picture')
+    with pytest.raises(OSError):
+        draw(str(path), 'test', {'timed': FAR}, range(3))
+    assert list(tmp_path.iterdir()) == [path] and path.read_bytes() == b'an older picture'
+
+
+@pytest.mark.parametrize('kind, start', [('png', b'\x89PNG'), ('PDF', b'%PDF'), ('svg', b'<?xml')])
+def test_a_picture_takes_the_place_of_an_older_one(tmp_path, kind, start):
+    path = tmp_path / ('a.' + kind)
+    path.write_bytes(b'an older picture')
+    path.chmod(0o640)
+    (tmp_path / ('link.' + kind)).symlink_to(path)
+    draw(str(tmp_path / ('link.' + kind)), 'test', {'timed': FAR}, range(3))
+    assert path.read_bytes().startswith(start) and path.stat().st_mode & 0o777 == 0o640
+    assert len(list(tmp_path.iterdir())) == 2
 
 
 # whether a picture can be written is known before the runs

@@ -3,7 +3,7 @@ from collections import namedtuple
 from math import inf, radians
 import re
 
-from rbx1_nav.config import ConfigError, Section
+from rbx1_nav.config import ConfigError, Section, show, show_name
 from rbx1_nav.model.joints import Joint
 from rbx1_nav.units import SECOND
 
@@ -11,6 +11,9 @@ from rbx1_nav.units import SECOND
 DRIVER_KEYS = {'port', 'baud', 'rate', 'sync_write', 'sync_read', 'read_rate', 'write_rate'}
 CONTROLLER_KEYS = {'ticks_meter', 'Kp', 'Kd', 'Ki', 'Ko', 'accel_limit'}
 JOINT_KEYS = {'id', 'neutral', 'invert', 'ticks', 'range'}
+
+MAX_ANGLE = 36000   # degrees: a joint of 100 turns
+MIN_TIMEOUT = 0.01  # s
 
 WHEEL_JOINTS = ('base_l_wheel_joint', 'base_r_wheel_joint')
 
@@ -26,11 +29,11 @@ of a controller or joint that are unknown."""
 
 def read_joint(name, section):
     """A Joint from its Section, which is in degrees. Raises ConfigError."""
-    lower = section.number('min_angle', -150.0, -inf, expected='a finite angle in degrees')
-    upper = section.number('max_angle', 150.0, -inf, expected='a finite angle in degrees')
+    lower = section.number('min_angle', -MAX_ANGLE, MAX_ANGLE, -150.0, 'an angle', 'degrees')
+    upper = section.number('max_angle', -MAX_ANGLE, MAX_ANGLE, 150.0, 'an angle', 'degrees')
     if lower >= upper:
         raise ConfigError('%s: %r: expected an angle below max_angle, %r' % (section.path('min_angle'), lower, upper))
-    speed = section.number('max_speed', 90.0, expected='a finite speed above 0 in degrees per second')
+    speed = section.number('max_speed', 0.01, MAX_ANGLE, 90.0, 'a speed', 'degrees per second')
     return Joint(name, radians(lower), radians(upper), radians(speed))
 
 
@@ -44,40 +47,42 @@ def read_robot(params):
     controllers = top.section('controllers', expected='a mapping with one diff_controller')
     if len(controllers.values) != 1:
         raise ConfigError('controllers: %s: expected exactly one, of type diff_controller'
-                          % (', '.join(map(str, controllers.values)) or 'none'))
+                          % show(list(controllers.values)))
     name, = controllers.values
     base = controllers.section(name, CONTROLLER_KEYS)
     kind = base.get('type', expected='diff_controller')
     if kind != 'diff_controller':
-        raise ConfigError('%s: %r: unknown controller type, expected one of: diff_controller'
-                          % (base.path('type'), kind))
+        raise ConfigError('%s: %s: unknown controller type, expected one of: diff_controller'
+                          % (base.path('type'), show(kind)))
     sections = [base]
 
     joints = []
     all_joints = top.section('joints', default={})
     for joint in all_joints.values:
-        if not (isinstance(joint, str) and re.match(r'^[A-Za-z]\w*$', joint)) or joint in WHEEL_JOINTS:
-            raise ConfigError('joints: %r: expected a name of letters, digits and underscores, other than %s'
-                              % (joint, ' and '.join(WHEEL_JOINTS)))
+        if not (isinstance(joint, str) and re.fullmatch(r'[A-Za-z]\w*', joint, re.ASCII)) or joint in WHEEL_JOINTS:
+            raise ConfigError('joints: %s: expected a name of letters, digits and underscores, other than %s'
+                              % (show(joint), ' and '.join(WHEEL_JOINTS)))
         section = all_joints.section(joint, JOINT_KEYS)
         joints.append(read_joint(joint, section))
         sections.append(section)
 
+    timeout = base.number('timeout', 0, 1e6, 1.0, 'a time', 's')
+    if 0 < timeout < MIN_TIMEOUT:   # less would become 0, which is no timeout at all
+        raise ConfigError('%s: %r: expected 0 (never), or at least %g s' % (base.path('timeout'), timeout, MIN_TIMEOUT))
     fields = dict(
-        name=str(name),
+        name=show_name(name),
         odom_frame_id=base.frame('odom_frame_id', 'odom'),
         base_frame_id=base.frame('base_frame_id', 'base_link'),
-        base_width=base.number('base_width', expected='a finite width above 0 in m'),
-        wheel_radius=base.number('wheel_radius', 0.033, expected='a finite radius above 0 in m'),
-        rate=base.number('rate', 50.0, high=1000.0, expected='a rate above 0 and up to 1000 in Hz'),
-        timeout=round(SECOND * base.number('timeout', 1.0, high=1e6, closed=True,
-                                           expected='a time from 0 (never) to 1000000 in s')),
-        limits=Limits(base.number('max_linear_speed', inf, expected='a finite speed above 0 in m/s'),
-                      base.number('max_angular_speed', inf, expected='a finite speed above 0 in rad/s')),
+        base_width=base.number('base_width', 0.001, 100, what='a width', unit='m'),
+        wheel_radius=base.number('wheel_radius', 0.001, 100, 0.033, 'a radius', 'm'),
+        rate=base.number('rate', 0.1, 1000, 50.0, 'a rate', 'Hz'),
+        timeout=round(SECOND * timeout),
+        limits=Limits(base.number('max_linear_speed', 0.001, 1000, inf, 'a speed', 'm/s'),
+                      base.number('max_angular_speed', 0.001, 1000, inf, 'a speed', 'rad/s')),
         publish_tf=publish_tf,
         joints=joints)
     if fields['odom_frame_id'] == fields['base_frame_id']:
-        raise ConfigError('%s: %r: expected a frame other than odom_frame_id'
-                          % (base.path('base_frame_id'), fields['base_frame_id']))
+        raise ConfigError('%s: %s: expected a frame other than odom_frame_id'
+                          % (base.path('base_frame_id'), show(fields['base_frame_id'])))
     return Robot(hardware=sorted(key for s in [top] + sections for key in s.ignored()),
                  unknown=sorted(key for s in sections for key in s.unknown()), **fields)

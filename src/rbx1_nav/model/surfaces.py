@@ -9,17 +9,16 @@ import os
 import random
 import re
 
-import yaml
-
-from rbx1_nav.config import ConfigError, Section
+from rbx1_nav.config import ConfigError, Section, load_yaml, show, show_name
 
 RANDOM = 'random'   # the word for a seed that is drawn anew
-FRACTION = dict(low=0.0, high=0.5, closed=True, expected='a fraction from 0 to 0.5')
+MAX_SEED = 2 ** 31 - 1
+FRACTION = dict(low=0.0, high=0.5, what='a fraction')
 
 
 def number_between(low, high):
     """The range of a key, as keyword arguments of Section.number()."""
-    return dict(low=low, high=high, closed=True, expected='a number from %g to %g' % (low, high))
+    return dict(low=low, high=high)
 
 
 # key: its range, and the conversion to SI units
@@ -58,22 +57,21 @@ def load_surface(name, folder):
     is_path = isinstance(name, str) and os.path.isabs(name)
     path = name if is_path else os.path.join(folder, '%s.yaml' % name)
     if is_path and not os.path.isfile(path):
-        raise ConfigError('surface: %r: no such file: expected the absolute path of a surface file, or one of %s'
-                          % (name, ', '.join(known_surfaces(folder))))
+        raise ConfigError('surface: %s: no such file: expected the absolute path of a surface file, or one of %s'
+                          % (show(name), ', '.join(known_surfaces(folder))))
     if not is_path and name not in known_surfaces(folder):
-        raise ConfigError('surface: %r: expected one of %s, or the absolute path of a surface file'
-                          % (name, ', '.join(known_surfaces(folder))))
+        raise ConfigError('surface: %s: expected one of %s, or the absolute path of a surface file'
+                          % (show(name), ', '.join(known_surfaces(folder))))
     try:
-        with open(path, encoding='utf-8') as file:
-            values = yaml.safe_load(file)
-    except (OSError, ValueError, yaml.YAMLError) as error:
-        raise ConfigError('surface: %s: expected a YAML file: %s' % (path, ' '.join(str(error).split())))
+        values = load_yaml(path)
+    except ConfigError as error:
+        raise ConfigError('surface: %s: %s' % (show_name(path), error))
     return read_surface(values, os.path.basename(path)[:-len('.yaml')] if path.endswith('.yaml') else name)
 
 
 def read_surface(values, name):
     """The Surface of a mapping with all KEYS; None, the ideal surface, for an empty mapping. Raises ConfigError."""
-    section = Section(values, 'surface %s' % name)
+    section = Section(values, 'surface %s' % show_name(name))
     if not values:
         return None
     surface = Surface(name, *(convert(section.number(key, **limits)) for key, (limits, convert) in KEYS.items()))
@@ -86,9 +84,9 @@ def read_seed(value):
     """A seed: an integer from 0 to 2147483647, its digits as text, or `random` for a new one. Raises ConfigError."""
     if value == RANDOM:
         return random.randrange(10 ** 6)
-    seed = int(value) if isinstance(value, str) and re.match(r'^\d{1,10}$', value, re.ASCII) else value
-    if not isinstance(seed, int) or isinstance(seed, bool) or not 0 <= seed < 2 ** 31:
-        raise ConfigError('seed: %r: expected %s, or an integer from 0 to %d' % (value, RANDOM, 2 ** 31 - 1))
+    seed = int(value) if isinstance(value, str) and re.fullmatch(r'\d{1,10}', value, re.ASCII) else value
+    if not isinstance(seed, int) or isinstance(seed, bool) or not 0 <= seed <= MAX_SEED:
+        raise ConfigError('seed: %s: expected %s, or an integer from 0 to %d' % (show(value), RANDOM, MAX_SEED))
     return seed
 
 

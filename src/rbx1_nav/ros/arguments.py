@@ -7,10 +7,13 @@ import difflib
 import os
 import re
 import sys
+import xmlrpc.client
 
 from rosgraph.names import is_legal_name
 import rospy
 import yaml
+
+from rbx1_nav.config import show_name
 
 EXPECTED = 'expected _parameter:=value or topic:=new_topic'
 
@@ -31,7 +34,7 @@ def check_command_line(usage):
         problem = find_problem(argument, parameter_names(usage))
         if problem:
             # last, so that it stands just above the prompt, as with argparse
-            print('%s\n\n%s: error: %s: %s' % (usage.strip(), os.path.basename(sys.argv[0]), argument, problem),
+            print('%s\n\n%s: error: %s: %s' % (usage.strip(), os.path.basename(sys.argv[0]), show_name(argument), problem),
                   file=sys.stderr)
             sys.exit(2)
 
@@ -57,14 +60,15 @@ def find_problem(argument, names):
 
 def _suggestion(left, value, names, cutoff):
     close = difflib.get_close_matches(left.lstrip('-_~/').replace('-', '_'), names, 1, cutoff)
-    return ': did you mean _%s:=%s?' % (close[0], value or 'VALUE') if close else ''
+    return ': did you mean _%s:=%s?' % (close[0], show_name(value or 'VALUE')) if close else ''
 
 
 def _is_value(text):
+    """Whether rospy can read a text as YAML, and send its value to the master."""
     try:
-        yaml.safe_load(text)
-    except (ValueError, yaml.YAMLError):    # ValueError: a date that does not exist, for example
-        return False
+        xmlrpc.client.dumps((yaml.safe_load(text),))
+    except Exception:   # pylint: disable=broad-except
+        return False    # yaml raises many kinds of errors, see config.load_yaml(); integers may have 32 bits
     return bool(text) and ':=' not in text
 
 
@@ -74,13 +78,13 @@ def report_parameters(usage):
     stored = rospy.get_param(name, {})
     if not isinstance(stored, dict):
         return
-    unknown = sorted(set(map(str, stored)) - set(names))
+    unknown = sorted(show_name(each) for each in set(stored) - set(names))
     if any(argument.startswith('__log:=') for argument in sys.argv):    # by roslaunch, which sets parameters on purpose
         if unknown:
             rospy.logwarn('Unknown parameters, without effect: %s', ', '.join(unknown))
         return
     given = {argument.split(':=')[0][1:].split('/')[0] for argument in sys.argv[1:] if argument.startswith('_')}
-    in_force = ['%s = %s' % (each, stored[each]) for each in sorted(set(stored) & set(names) - given)]
+    in_force = ['%s = %s' % (each, show_name(stored[each])) for each in sorted(set(stored) & set(names) - given)]
     # a mapping was loaded from a file, on purpose too
     if in_force and not any(isinstance(value, dict) for value in stored.values()):
         rospy.logwarn('Left by an earlier command, still in force: %s (`rosparam delete %s` removes all)',

@@ -9,12 +9,16 @@ AUTO = 'auto'       # the surface of the simulated base, or else
 DEFAULT_SURFACE = 'low_ply_carpet'
 
 
-def read_parameters():
-    """The private parameters as a dictionary, with the names that robot_pose_ekf gives them. Raises ConfigError."""
-    section = Section(rospy.get_param(rospy.get_name(), {}))
+def read_parameters(params):
+    """A dictionary of all parameters, with the names that robot_pose_ekf gives them, from those that are set.
+
+    Raises ConfigError.
+    """
+    section = Section(params)
     values = dict(
-        freq=section.number('freq', 10.0, high=1000.0, expected='a rate above 0 and up to 1000 in Hz'),
-        sensor_timeout=section.number('sensor_timeout', 1.0, high=1e6, expected='a time above 0 in s'),
+        freq=section.number('freq', 0.1, 1000, 10.0, 'a rate', 'Hz'),
+        sensor_timeout=section.number('sensor_timeout', 0.01, 1e6, 1.0, 'a time', 's'),
+        diagnostic_period=section.number('diagnostic_period', 0.1, 1e6, 1.0, 'a time', 's'),
         publish_tf=section.flag('publish_tf', True),
         imu_used=section.flag('imu_used', True),
         output_frame=section.frame('output_frame', 'odom'),

@@ -1,13 +1,13 @@
 """Private parameters of a node, checked as they are read."""
 import rospy
 
-from rbx1_nav.config import ConfigError, Section, positive
+from rbx1_nav.config import ConfigError, Section
 
 
-def positive_param(name, default):
-    """The private parameter `name`, a finite number above 0. Raises ROSException with one line if it is not."""
+def positive_param(name, default, low=1e-6, high=1e6):
+    """The private parameter `name`, a number from `low` to `high`. Raises ROSException with one line if it is not."""
     try:
-        return positive(name, rospy.get_param('~' + name, default))
+        return Section({name: rospy.get_param('~' + name, default)}).number(name, low, high)
     except ConfigError as error:
         raise rospy.ROSException('%s/%s' % (rospy.get_name(), error))
 

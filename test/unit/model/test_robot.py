@@ -52,10 +52,12 @@ def test_unknown_keys_are_reported():
 
 
 @pytest.mark.parametrize('key, value, expected', [
-    ('base_width', 0, 'above 0'), ('base_width', '0.26', 'width'), ('base_width', nan, 'finite'),
-    ('base_width', True, 'width'), ('rate', -5, 'above 0'), ('rate', 0, 'above 0'), ('rate', inf, 'up to 1000'),
-    ('timeout', -1, '0 (never)'), ('max_linear_speed', 0, 'above 0'), ('max_angular_speed', 'fast', 'speed'),
-    ('wheel_radius', [], 'radius'), ('base_frame_id', '', 'frame'), ('base_frame_id', 7, 'frame'),
+    ('base_width', 0, 'from 0.001 to 100 in m'), ('base_width', '0.26', 'width'), ('base_width', nan, 'a width from'),
+    ('base_width', True, 'width'), ('rate', -5, 'from 0.1 to 1000 in Hz'), ('rate', 0, 'from 0.1'),
+    ('rate', inf, 'to 1000'), ('rate', 1e-320, 'from 0.1'), ('rate', 1e-9, 'from 0.1'),
+    ('timeout', -1, 'from 0 to'), ('timeout', 1e-9, '0 (never), or at least 0.01 s'),
+    ('max_linear_speed', 0, 'from 0.001'), ('max_angular_speed', 'fast', 'speed'),
+    ('wheel_radius', [], 'radius'), ('wheel_radius', 1e-320, 'from 0.001'), ('base_frame_id', '', 'frame'), ('base_frame_id', 7, 'frame'),
     ('base_frame_id', 'odom', 'other than odom_frame_id'),
     ('type', 'follow_controller', 'one of: diff_controller')])
 def test_an_invalid_value_is_named_with_its_key_and_what_is_expected(key, value, expected):
@@ -89,8 +91,8 @@ def test_a_configuration_without_one_controller_is_rejected(params):
 
 
 @pytest.mark.parametrize('joint, expected', [
-    ({'min_angle': 10, 'max_angle': -10}, 'below max_angle'), ({'max_speed': 0}, 'above 0'),
-    ({'min_angle': nan}, 'finite angle'), (None, 'mapping')])
+    ({'min_angle': 10, 'max_angle': -10}, 'below max_angle'), ({'max_speed': 0}, 'from 0.01'),
+    ({'min_angle': nan}, 'an angle from -36000 to 36000 in degrees'), (None, 'mapping')])
 def test_an_invalid_joint_is_rejected(joint, expected):
     params = load('turtlebot.yaml')
     params['joints'] = {'pan': joint}
@@ -98,7 +100,7 @@ def test_an_invalid_joint_is_rejected(joint, expected):
         read_robot(params)
 
 
-@pytest.mark.parametrize('name', ['my joint', 'base_l_wheel_joint'])
+@pytest.mark.parametrize('name', ['my joint', 'base_l_wheel_joint', 'gel\u00e4nk'])
 def test_a_joint_needs_a_name_of_its_own_that_can_be_a_topic(name):
     params = load('turtlebot.yaml')
     params['joints'] = {name: {}}

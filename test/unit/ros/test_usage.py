@@ -25,7 +25,7 @@ def usage(node):
 
 @pytest.mark.parametrize('script', SCRIPTS)
 def test_the_driving_scripts(script):
-    read_here = re.findall(r"(?:positive|frame)_param\('(\w+)', ('?[\w.]+'?)\)", read('nodes', script))
+    read_here = re.findall(r"(?:positive|frame)_param\('(\w+)', ('?[\w.]+'?)(?:, [\d., ]+)?\)", read('nodes', script))
     assert usage(script) == sorted(name for name, _ in read_here)
     for name, default in read_here:
         listed, = re.findall(r'~%s .*\(default: (.*)\)' % name, read('nodes', script))
