@@ -49,10 +49,12 @@ class OutAndBack:
         self.rate = positive_param('rate', 50, 0.1, 1000)
 
         # How far to go, and how fast. Near the goal the robot slows down, to the lowest speed that moves it.
+        linear_speed = positive_param('linear_speed', 0.2)                  # m/s
+        angular_speed = positive_param('angular_speed', 1.0)                # rad/s
         legs = out_and_back_by_odometry(
-            linear_speed=positive_param('linear_speed', 0.2),               # m/s
+            linear_speed=linear_speed,
             goal_distance=positive_param('goal_distance', 1.0),             # m
-            angular_speed=positive_param('angular_speed', 1.0),             # rad/s
+            angular_speed=angular_speed,
             goal_angle=positive_param('goal_angle', pi),                    # rad
             rate=self.rate,
             min_linear_speed=positive_param('min_linear_speed', 0.05),      # m/s
@@ -61,7 +63,8 @@ class OutAndBack:
         self.transform_timeout = positive_param('transform_timeout', 5)     # s
 
         # Where the robot is: the pose of its base in the frame of its odometry.
-        self.poses = PoseListener(frame_param('odom_frame', 'odom'), frame_param('base_frame', None))
+        self.poses = PoseListener(frame_param('odom_frame', 'odom'), frame_param('base_frame', None),
+                                  linear_speed, angular_speed)
 
         # The robot's base subscribes to this topic. With a queue, a slow subscriber does not hold up the others.
         self.cmd_vel = rospy.Publisher('/cmd_vel', Twist, queue_size=5)

@@ -45,7 +45,7 @@ def one_line(text):
     return text.isprintable() and len(text) < 3000
 
 
-@settings(max_examples=500)
+@settings(max_examples=200)
 @given(st.data())
 def test_a_robot(data):
     params = data.draw(VALUES) if not data.draw(st.integers(0, 9)) else with_change(data, data.draw(

@@ -1,13 +1,30 @@
 """The exercise by odometry: a list of legs, each of which ends when the robot's pose says so."""
 from collections import deque
-from math import cos, sin, sqrt
+from math import cos, pi, sin, sqrt
 
 from rbx1_nav.control.motions import ticks
 from rbx1_nav.units import wrap_angle
 
 SLOW_DOWN = 0.5     # s: the distance at which a leg begins to slow down, as a travel time
 SPEED_WINDOW = 0.1  # s over which the robot's speed is measured: a few counts of the encoders, a message or two
+COASTING = 1.0      # s: how long a robot that is no longer commanded may go on
+POSE_TOLERANCE = 0.1    # m, and twice as many rad: what a pose may be corrected by at once
 STUCK_TIME = 5.0    # s without progress: something holds the robot, or turns it the wrong way
+
+
+def is_reachable(before, after, elapsed, linear_speed, angular_speed):
+    """Whether a robot that drives forward (m/s) and turns left (rad/s) can get from one Pose to another in `elapsed` s.
+
+    Half as fast again is allowed. A robot whose pose is lost for long is stopped, so no more than COASTING counts.
+    """
+    time = 1.5 * min(max(elapsed, 0.0), COASTING)
+    x, y = after.x - before.x, after.y - before.y
+    forward = x * cos(before.yaw) + y * sin(before.yaw)
+    left = y * cos(before.yaw) - x * sin(before.yaw)
+    turned = (after.yaw - before.yaw + 2 * POSE_TOLERANCE) % (2 * pi)
+    return (-POSE_TOLERANCE <= forward <= linear_speed * time + POSE_TOLERANCE
+            and abs(left) <= linear_speed * time + POSE_TOLERANCE
+            and turned <= angular_speed * time + 4 * POSE_TOLERANCE)
 
 
 class StuckError(ValueError):

@@ -7,12 +7,18 @@ from std_msgs.msg import Empty
 import tf2_ros
 import yaml
 
+from rbx1_nav.control.legs import is_reachable
 from rbx1_nav.model.kinematics import Pose
 from rbx1_nav.ros.node import end_requested, sleep
 from rbx1_nav.units import wrap_angle
 
 MAX_AGE = 0.5       # s: older transforms are not used
 BASE_FRAMES = ('base_footprint', 'base_link')   # usual names of a robot's base, REP 105 and REP 120
+
+
+def format_pose(pose):
+    """A Pose as text."""
+    return '(%.3f m, %.3f m, %.3f rad)' % (pose.x, pose.y, wrap_angle(pose.yaw))
 
 
 class LostTransform(Exception):
@@ -22,16 +28,17 @@ class LostTransform(Exception):
 class PoseListener:
     """Looks up the pose of the robot's base in a frame."""
 
-    def __init__(self, odom_frame, base_frame):
-        """base_frame: a name; None for the first of BASE_FRAMES that exists."""
+    def __init__(self, odom_frame, base_frame, linear_speed, angular_speed):
+        """base_frame: a name; None for the first of BASE_FRAMES that exists; the robot's speeds: m/s, rad/s."""
+        self.speeds = linear_speed, angular_speed
         self.odom_frame = odom_frame
         self.base_frames = [base_frame] if base_frame else BASE_FRAMES
         self.buffer = tf2_ros.Buffer()
         self.listener = tf2_ros.TransformListener(self.buffer)
         self.reset = False  # whether the base was reset
         self.reset_sub = rospy.Subscriber('reset_odometry', Empty, self._on_reset)
-        self.started = False    # whether a pose was returned
-        self.last = None    # (stamp in s, Pose)
+        self.before = None  # (stamp in s, Pose) of the last transform, None until a pose was returned
+        self.last = None    # the same, None also after a rest
         self.velocity = Pose(0.0, 0.0, 0.0)     # between the last two transforms, m/s and rad/s
 
     @property
@@ -42,7 +49,7 @@ class PoseListener:
     def pose(self):
         """The Pose now, extrapolated from the last two transforms; yaw not wrapped.
 
-        Raises LostTransform, and ROSException if the base was reset since the first pose.
+        Raises LostTransform, and ROSException if the base was reset since the first pose, or the pose has jumped.
         """
         if self.reset:
             raise rospy.ROSException('The base was reset in mid-run: its pose is no longer measured from the start')
@@ -53,7 +60,9 @@ class PoseListener:
             raise LostTransform('The last transform from %s to %s is %.2f s old'
                                 % (self.odom_frame, transform.child_frame_id, age))
         position, rotation = transform.transform.translation, transform.transform.rotation
-        self._update(stamp, Pose(position.x, position.y, 2 * atan2(rotation.z, rotation.w)))
+        pose = Pose(position.x, position.y, 2 * atan2(rotation.z, rotation.w))
+        self._check_jump(stamp, pose)
+        self._update(stamp, pose)
         return Pose(*(value + rate * max(age, 0.0) for value, rate in zip(self.last[1], self.velocity)))
 
     def forget_velocity(self):
@@ -82,7 +91,7 @@ class PoseListener:
                 raise rospy.ROSInterruptException('shutdown requested')
 
     def _on_reset(self, _):
-        self.reset = self.started
+        self.reset = self.before is not None
 
     def _update(self, stamp, pose):
         elapsed = stamp - self.last[0] if self.last else -1.0
@@ -93,7 +102,13 @@ class PoseListener:
             self.velocity = Pose((pose.x - before.x) / elapsed, (pose.y - before.y) / elapsed,
                                  wrap_angle(pose.yaw - before.yaw) / elapsed)
         self.last = stamp, pose
-        self.started = True
+
+    def _check_jump(self, stamp, pose):
+        """Raises ROSException if the robot cannot have got here since the last transform."""
+        if self.before and not is_reachable(self.before[1], pose, stamp - self.before[0], *self.speeds):
+            raise rospy.ROSException('The pose of %s in %s jumped from %s to %s: was the base restarted?' % (
+                self.base_frame, self.odom_frame, format_pose(self.before[1]), format_pose(pose)))
+        self.before = stamp, pose
 
     def _look_up(self):
         for frame in self.base_frames:

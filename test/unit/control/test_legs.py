@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rbx1_nav.control.legs import StuckError, out_and_back_by_odometry
+from rbx1_nav.control.legs import StuckError, is_reachable, out_and_back_by_odometry
 from rbx1_nav.model.kinematics import ORIGIN, Pose, arc
 from rbx1_nav.model.wheels import Motor
 
@@ -135,3 +135,23 @@ def test_a_turn_can_be_more_than_a_full_one():
 def test_a_leg_without_progress_ends_with_an_error(fraction):
     with pytest.raises(StuckError, match='forward: no progress for 5 s, .* of 1.000 m to go'):
         drive(out_and_back_by_odometry(**LEGS)[0], ORIGIN, fraction)
+
+
+# poses that a robot cannot have reached
+
+@pytest.mark.parametrize('before, after, elapsed, reachable', [
+    ((0.0, 0.0, 0.0), (0.004, 0.0, 0.0), 0.02, True), ((0.5, 0.0, 0.0), (0.0, 0.0, 0.0), 0.02, False),
+    # the whole speed for the time, half as fast again, and 0.1 m
+    ((0.5, 0.0, 0.0), (0.89, 0.0, 0.0), 1.0, True), ((0.5, 0.0, 0.0), (0.91, 0.0, 0.0), 1.0, False),
+    # a pose that was lost for long: the robot was stopped
+    ((0.5, 0.0, 0.0), (0.91, 0.0, 0.0), 100.0, False), ((0.5, 0.0, 0.0), (0.5, 0.0, 0.0), 100.0, True),
+    # a clock that jumped back gives it no time
+    ((0.5, 0.0, 0.0), (0.59, 0.0, 0.0), -5.0, True), ((0.5, 0.0, 0.0), (0.61, 0.0, 0.0), -5.0, False),
+    # forward is where it looks
+    ((1.0, 0.0, pi), (0.7, 0.0, pi), 1.0, True), ((0.7, 0.0, pi), (1.0, 0.0, pi), 1.0, False),
+    ((0.0, 0.0, 0.0), (0.0, 0.15, 0.0), 0.1, False),
+    # it turns left, across pi too
+    ((0.0, 0.0, 3.0), (0.0, 0.0, -2.5), 1.0, True), ((0.0, 0.0, -2.5), (0.0, 0.0, 3.0), 1.0, False),
+    ((1.0, 0.0, 2.0), (1.0, 0.0, 0.0), 0.02, False), ((1.0, 0.0, 0.0), (1.0, 0.0, -0.19), 0.02, True)])
+def test_a_pose_that_jumps_is_not_reachable(before, after, elapsed, reachable):
+    assert is_reachable(Pose(*before), Pose(*after), elapsed, 0.2, 1.0) is reachable
