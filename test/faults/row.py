@@ -51,7 +51,7 @@ class Row:
         except AssertionError as error:
             self.failures.append('%s: %s' % (text, error or traceback.format_exc().splitlines()[-2].strip()))
         except Exception:       # pylint: disable=broad-except
-            self.failures.append('%s: %s' % (text, traceback.format_exc()))
+            self.failures.append('%s: %s' % (text, traceback.format_exc(limit=-5)))
 
     def figure(self, name, value):
         """A measured value; the table shows the spread of all values of one name."""

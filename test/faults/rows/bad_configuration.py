@@ -1,0 +1,121 @@
+"""Configurations that make no sense, against everything that reads one."""
+from functools import lru_cache
+import math
+import os
+
+import rospkg
+import rospy
+import yaml
+from rospy.impl.paramserver import get_param_server_cache
+
+from bad_values import TEXTS, VALUES, mutate, shown
+from rbx1_nav.config import ConfigError
+from rbx1_nav.model.robot import read_robot
+from rbx1_nav.model.surfaces import load_surface, read_seed, read_surface
+from rbx1_nav.ros.filter_parameters import read_parameters
+from rbx1_nav.ros.params import positive_param
+from rbx1_nav.simulated_base import make_base
+from rbx1_nav.units import SECOND
+
+FAULT = 'generated configurations of robot, surface, seed, filter and scripts'
+PROMISE = 'one line that names the key, or finite numbers at least once an hour'
+FULL, SHORT = 10000, 2000
+ROOT = ALONE = False
+
+CONFIG = os.path.join(rospkg.RosPack().get_path('rbx1_nav'), 'config')
+
+
+@lru_cache(None)
+def load(*path):
+    """The contents of a YAML file in config/."""
+    with open(os.path.join(CONFIG, *path), encoding='utf-8') as file:
+        return yaml.safe_load(file)
+
+
+def load_robot(name):
+    """A robot's file, with all keys that the simulated base knows."""
+    controller = dict(load(name)['controllers']['base_controller'], odom_frame_id='odom', rate=50.0, timeout=1.0,
+                      max_linear_speed=0.5, max_angular_speed=2.0, wheel_radius=0.033)
+    return dict(load(name), publish_tf=True, controllers={'base_controller': controller})
+
+
+def use_robot(values):
+    """Numbers that the base publishes after one period, and that period."""
+    robot = read_robot(values)
+    base = make_base(robot, None, 1)
+    base.command(0, min(0.2, robot.limits.linear), min(1.0, robot.limits.angular))
+    base.advance(round(SECOND / robot.rate))
+    angles = [travel / robot.wheel_radius for travel in (base.left, base.right)]
+    return [*base.odometry.pose, *base.velocity, *angles, *(joint.position for joint in robot.joints)], 1 / robot.rate
+
+
+def use_surface(values):
+    """Numbers that a base on the surface publishes after one period."""
+    base = make_base(read_robot(load('turtlebot.yaml')), read_surface(values, 'of the test') if values else None, 1)
+    base.command(0, 0.2, 1.0)
+    base.advance(SECOND // 50)
+    return [*base.odometry.pose, *base.wheels.truth.pose, *base.wheels.uncertainty], 0
+
+
+def use_text(text):
+    """The same for the text of a file."""
+    with open('surface.yaml', 'w', encoding='utf-8') as file:
+        file.write(text)
+    load_surface(os.path.abspath('surface.yaml'), os.path.join(CONFIG, 'surfaces'))
+    return [], 0
+
+
+def use_filter(values):
+    """The filter's numbers, and its period."""
+    get_param_server_cache().set(rospy.get_name(), values)
+    parameters = read_parameters()
+    return [parameters['sensor_timeout']], 1 / parameters['freq']
+
+
+def use_script(values):
+    """A script's numbers, and its period."""
+    get_param_server_cache().set(rospy.get_name(), values)
+    speed, rate = positive_param('linear_speed', 0.2), positive_param('rate', 50)
+    return [speed], 1 / rate
+
+
+def use_seed(value):
+    """A seed."""
+    return [read_seed(value)], 0
+
+
+def check(use, values, key):
+    """One configuration. key: must be named in the error, unless None."""
+    try:
+        numbers, period = use(values)
+    except (ConfigError, rospy.ROSException) as error:
+        text = str(error)
+        assert len(text.splitlines()) == 1 and 'expected' in text, 'expected one line: %r' % text[:500]
+        assert text.isprintable() and len(text) < 1000, 'unreadable: %d characters, %r' % (len(text), text[:500])
+        assert key is None or str(key) in text, '%s is not named in: %s' % (key, text)
+    else:
+        assert all(map(math.isfinite, numbers)) and period <= 3600, '%s, a period of %g s' % (numbers, period)
+
+
+def generate(row):
+    """One configuration: what uses it, and the other arguments of check()."""
+    kind = row.random.randrange(6)
+    if kind == 0:
+        return use_text, '\n'.join(text.replace('%s', 'lag') for text in row.random.sample(TEXTS, 2)), None
+    if kind == 1:
+        return use_seed, row.random.choice(VALUES), 'seed'
+    use, values = [
+        (use_robot, load_robot(row.random.choice(['turtlebot.yaml', 'pi_robot.yaml']))),
+        (use_surface, load('surfaces', row.random.choice(['hard_floor.yaml', 'low_ply_carpet.yaml']))),
+        (use_filter, dict(freq=10.0, sensor_timeout=1.0, publish_tf=True, odom_used=True, imu_used=True, vo_used=False,
+                          output_frame='odom', surface='hard_floor')),
+        (use_script, dict(rate=50, linear_speed=0.2))][kind - 2]
+    return (use,) + mutate(row.random, values)
+
+
+def run(row):
+    """See FAULT."""
+    for _ in range(row.times):
+        use, values, key = generate(row)
+        with row.fault('%s(%s)' % (use.__name__, shown(values))):
+            check(use, values, key)
