@@ -1,0 +1,133 @@
+"""simulate.py: killed workers, full disks, signals, closed pipes."""
+import os
+import resource
+import signal
+import subprocess
+import time
+
+import rospkg
+from matplotlib.figure import Figure
+
+import processes
+import support
+
+FAULT = 'simulate.py: a worker killed, a full disk for each kind of picture, signals, a pipe that closes'
+PROMISE = 'at most one line, a status that is not 0, no process left after 1 s, and no half picture'
+FULL, SHORT = 120, 14
+ROOT = ALONE = False
+
+SIMULATE = os.path.join(rospkg.RosPack().get_path('rbx1_nav'), 'nodes', 'simulate.py')
+LONG = ['--surface', 'low_ply_carpet', '--runs', '5000', '--jobs', '2']     # takes minutes
+FOLDER = 'pictures'
+MARK = 'RBX1_NAV_FAULT'
+HANGS = 20          # s of wall time without an end
+FULL_AT = 8192      # bytes: no picture is that small
+
+
+class Simulation:
+    """A run of simulate.py, with its processes found by a mark."""
+
+    count = 0
+
+    def __init__(self, row, *arguments, limit=None, stdout=subprocess.PIPE):
+        """limit: size that a file may reach, bytes."""
+        Simulation.count += 1
+        self.row = row
+        self.mark = '%d.%d' % (os.getpid(), Simulation.count)
+
+        def prepare():
+            if limit:
+                signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+                resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+        self.process = subprocess.Popen(['/usr/bin/python3', SIMULATE, *arguments], stdout=stdout, text=True,
+                                        stderr=subprocess.PIPE, preexec_fn=prepare,
+                                        env=dict(os.environ, **{MARK: self.mark}))
+
+    def pids(self):
+        """All its processes."""
+        return processes.with_variable(MARK, self.mark)
+
+    def workers(self):
+        """Those that it started itself."""
+        return [pid for pid in self.pids() if pid != self.process.pid]
+
+    def check_end(self, *statuses):
+        """It ends with one of these statuses, one line at most, and leaves no process behind."""
+        try:
+            _, errors = self.process.communicate(timeout=HANGS)
+        except subprocess.TimeoutExpired:
+            self.kill()
+            raise AssertionError('it, or a process of its, does not end')
+        try:
+            assert self.process.returncode in statuses, 'status %d: %s' % (self.process.returncode, errors[-1500:])
+            lines = [line for line in errors.splitlines() if 'PostScript' not in line]     # matplotlib's own warning
+            assert len(lines) <= 1 and 'Traceback' not in errors, errors[-1500:]
+            self.row.figure('last process after the end, s', processes.wait_for_end(self.pids, 1.0))
+        finally:
+            self.kill()
+        return errors
+
+    def kill(self):
+        """Kill all of it."""
+        for pid in self.pids():
+            os.kill(pid, signal.SIGKILL)
+
+
+def full_disk(row, kind):
+    """The disk is full in the middle of a picture."""
+    path = os.path.abspath(os.path.join(FOLDER, 'picture.' + kind))
+    errors = Simulation(row, '--method', 'timed', '--runs', '20', '--surface', 'hard_floor', '--jobs', '1',
+                        '--plot', path, limit=FULL_AT).check_end(1)
+    assert 'simulate.py: ' in errors, errors
+
+
+def full_output(row):
+    """The disk is full where the table is written to."""
+    with open('/dev/full', 'w') as full:
+        assert Simulation(row, '--method', 'timed', '--runs', '1', stdout=full).check_end(1)
+
+
+def killed_worker(row):
+    """One worker is killed, as by the kernel when memory runs out."""
+    simulation = Simulation(row, *LONG)
+    workers = support.wait_for(simulation.workers, 'workers')
+    time.sleep(row.random.uniform(0, 0.5))
+    os.kill(row.random.choice(workers), signal.SIGKILL)
+    errors = simulation.check_end(1)
+    assert errors.startswith('simulate.py: '), errors
+
+
+def signalled(row, number):
+    """A signal, at any moment: the parent's end takes the workers with it."""
+    simulation = Simulation(row, *LONG)
+    time.sleep(row.random.uniform(0, 4))
+    simulation.process.send_signal(number)
+    # its own status, or the one of a process that a signal ends: before it has handlers, or SIGKILL
+    simulation.check_end(130, -number)
+
+
+def closed_pipe(row):
+    """The reader of its output has seen enough."""
+    # it notices that when it writes, so with few runs
+    simulation = Simulation(row, '--surface', 'low_ply_carpet', '--runs', '50', '--jobs', '2')
+    simulation.process.stdout.close()
+    simulation.process.stdout = None
+    simulation.check_end(1, -signal.SIGPIPE)
+
+
+def run(row):
+    """See FAULT."""
+    os.mkdir(FOLDER)
+    kinds = sorted(set(Figure().canvas.get_supported_filetypes()) - {'pgf'})
+    faults = [(full_disk, kind) for kind in kinds] + [(full_output,), (closed_pipe,)]
+    faults += 3 * [(killed_worker,)]
+    faults += 3 * [(signalled, number) for number in (signal.SIGINT, signal.SIGTERM, signal.SIGKILL)]
+    while len(faults) < row.times:
+        faults += row.random.sample(faults, min(len(faults), row.times - len(faults)))
+    for fault, *arguments in row.random.sample(faults, row.times):
+        with row.fault(' '.join([fault.__name__, *map(str, arguments)])):
+            fault(row, *arguments)
+            left = os.listdir(FOLDER)
+            for name in left:
+                os.remove(os.path.join(FOLDER, name))
+            assert not left, 'left behind: %s' % left
