@@ -13,14 +13,14 @@ import support
 
 FAULT = 'simulate.py: a worker killed, a full disk for each kind of picture, signals, a pipe that closes'
 PROMISE = 'at most one line, a status that is not 0, no process left after 1 s, and no half picture'
-FULL, SHORT = 120, 14
+FULL, SHORT = 100, 8
 ROOT = ALONE = False
 
 SIMULATE = os.path.join(rospkg.RosPack().get_path('rbx1_nav'), 'nodes', 'simulate.py')
 LONG = ['--surface', 'low_ply_carpet', '--runs', '5000', '--jobs', '2']     # takes minutes
 FOLDER = 'pictures'
 MARK = 'RBX1_NAV_FAULT'
-HANGS = 20          # s of wall time without an end
+HANGS = 40          # s of wall time without an end
 FULL_AT = 8192      # bytes: no picture is that small
 
 
@@ -128,6 +128,6 @@ def run(row):
         with row.fault(' '.join([fault.__name__, *map(str, arguments)])):
             fault(row, *arguments)
             left = os.listdir(FOLDER)
-            for name in left:
-                os.remove(os.path.join(FOLDER, name))
             assert not left, 'left behind: %s' % left
+        for name in os.listdir(FOLDER):
+            os.remove(os.path.join(FOLDER, name))
