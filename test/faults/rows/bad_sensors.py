@@ -41,8 +41,8 @@ def faults(row):
     for field in 'xyzw':
         kind('orientation.%s = %g' % (field, value), lambda o, i, f=field: setattr(o.pose.pose.orientation, f, value))
     kind('rate = %g' % value, lambda o, i: setattr(i.angular_velocity, 'z', value))
-    kind('no orientation', lambda o, i: setattr(o.pose.pose.orientation, 'w', 0) or turn(o, math.pi) or
-         setattr(o.pose.pose.orientation, 'z', 0))
+    kind('no orientation', lambda o, i: setattr(o.pose.pose.orientation, 'w', 0.0),
+         lambda o, i: setattr(o.pose.pose.orientation, 'z', 0.0))
     for bad in 0.0, -1e-6, 5e-324, 1e308, math.nan, math.inf:
         kind('variances %g of pose and speed' % bad, lambda o, i, b=bad: setattr(o.pose, 'covariance', [b] * 36),
              lambda o, i, b=bad: setattr(o.twist, 'covariance', [b] * 36))
@@ -108,7 +108,8 @@ def run(row):
             support.wait_for(lambda: len(poses.messages) > count + 3, 'a pose after the fault')
             lines = [m.msg for m in log.messages if m.name == '/robot_pose_ekf']
             row.figure('lines of log per second', len(lines) / (time.monotonic() - start))
-            assert len(lines) <= 2 * (time.monotonic() - start) + CHANGES, '%d lines: %s' % (len(lines), '\n'.join(lines[:8]))
+            most = 2 * (time.monotonic() - start) + CHANGES
+            assert len(lines) <= most, '%d lines: %s' % (len(lines), '\n'.join(lines[:8]))
             messages = poses.messages + transforms.messages
             assert all(map(math.isfinite, (n for m in messages for n in numbers(m)))), 'a number that is not finite'
             assert ekf.process.poll() is None and 'Traceback' not in ekf.output, ekf.output[-1500:]
