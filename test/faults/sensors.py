@@ -11,9 +11,9 @@ from sensor_msgs.msg import Imu
 class Sensors(threading.Thread):
     """Sends odometry and a gyro's readings at 50 Hz: a robot on a circle. A fault may spoil what is sent."""
 
-    def __init__(self):
+    def __init__(self, odom='/odom'):
         super().__init__(daemon=True)
-        self.publishers = [rospy.Publisher('/odom', Odometry, queue_size=100),
+        self.publishers = [rospy.Publisher(odom, Odometry, queue_size=100),
                            rospy.Publisher('/imu_data', Imu, queue_size=100)]
         self.spoil = lambda odom, imu: (odom, imu)
         self.turned = 0.0       # rad

@@ -12,7 +12,7 @@ LOOPS = 4
 
 
 def drive(row, odom, commands, loops):
-    """One run, with so many busy loops beside it as soon as it moves. Returns its duration by the stamps of the odometry, s."""
+    """One run, with so many busy loops beside it as soon as it moves. Returns how long it took by the stamps, s."""
     del commands.messages[:]
     odom.wait_for_twist(0.0)
     del odom.messages[:-1]

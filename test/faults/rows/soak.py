@@ -13,7 +13,7 @@ PROMISE = 'memory, threads and file descriptors of the base stay; /odom is withi
 FULL, SHORT = 60, 0
 ROOT = ALONE = False
 
-WARM_UP = 4         # runs
+WARM_UP = 1         # runs
 GROWTH = 2048       # kB that the memory may fluctuate by
 DISTANCE, TURN = 10.0, 3.14     # m and rad of a motion: whole ticks
 
@@ -60,7 +60,7 @@ def run(row):
         usages.append(usage(pid))
     row.figure('simulated hours', elapsed / 3600)
     with row.fault('what grows'):
-        early, late = usages[WARM_UP:WARM_UP + 5], usages[-5:]
+        early, late = usages[WARM_UP:WARM_UP + 3], usages[-3:]
         row.figure('memory after warm-up and at the end, MB', min(u[0] for u in early) / 1024)
         row.figure('memory after warm-up and at the end, MB', min(u[0] for u in late) / 1024)
         growth = [min(column) - min(before) for column, before in zip(zip(*late), zip(*early))]

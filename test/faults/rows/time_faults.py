@@ -1,0 +1,104 @@
+"""Clocks that jump: the system clock as a node sees it, and simulated time."""
+import math
+import time
+
+import rospy
+import yaml
+from geometry_msgs.msg import PoseWithCovarianceStamped
+
+import support
+from sensors import Sensors
+from unsteady_time import PACKAGE, Time
+
+FAULT = 'the system clock of one node steps by an hour; simulated time jumps, stands still for 2 s, or leaps'
+PROMISE = 'at most 0.2 m of travel for a jump, finite numbers, no wrong success, and no hang'
+FULL, SHORT = 21, 2
+ROOT = ALONE = False
+
+SPEED, TIMEOUT = 0.2, 1.0
+JUMP = SPEED * TIMEOUT + support.MICROMETRE     # m: that far a command in force may go on
+NEAR = 0.03     # m and rad: an end that counts as exact in real time
+
+
+def start_base(clock, stepped):
+    """Start a base at the origin; returns its odometry. stepped: whether its system clock is the one that steps."""
+    with open(PACKAGE + '/config/turtlebot.yaml', encoding='utf-8') as file:
+        rospy.set_param('/arbotix', yaml.safe_load(file))
+    base = clock.start('fake_base.py') if stepped else clock.row.start('rosrun', 'rbx1_nav', 'fake_base.py')
+    base.wait_for_line('Ready: ')
+    odom = support.OdomWatch()
+    return odom
+
+
+def base_in_motion(row, clock, jump):
+    """The clock of a base jumps while one command is in force."""
+    odom = start_base(clock, True)
+    commander = support.Commander()
+    for _ in range(3):
+        commander.send(SPEED)
+        start = odom.wait_for_twist(SPEED).pose.pose.position.x
+        jump()
+        odom.wait_for_twist(0.0)
+        travel = odom.last.pose.pose.position.x - start
+        row.figure('travel after a jump, m', travel)
+        assert -1e-9 <= travel <= JUMP, 'it travelled %.4f m' % travel
+    assert all(math.isfinite(n) for m in odom.messages for n in support.pose(m)), 'a number that is not finite'
+
+
+def script_in_motion(row, clock, jump, script):
+    """The clock of a script, or of all nodes, jumps while it drives."""
+    odom = start_base(clock, False)
+    driver = clock.start(script, '_goal_distance:=0.3', '_goal_angle:=3.14')
+    odom.wait_for_twist(SPEED) if script.startswith('timed') else support.wait_for(
+        lambda: odom.last.twist.twist.linear.x > 0.1, 'the start')
+    time.sleep(row.random.uniform(0, 2))
+    jump()
+    status = driver.wait()
+    x, y, heading = support.pose(odom.last)
+    off = math.hypot(x - 0.3 * (1 + math.cos(3.14)), y - 0.3 * math.sin(3.14))
+    assert 'Traceback' not in driver.output, driver.output[-1500:]
+    velocity = odom.next().twist.twist
+    assert (velocity.linear.x, velocity.angular.z) == (0, 0), 'it still moves after the end'
+    row.figure('status of a script', status)
+    if status == 0:
+        row.figure('distance from the exact end with status 0, m', off)
+        turned = abs(support.wrapped(heading))
+        assert off < NEAR and turned < NEAR, 'status 0, but %.3f m and %.3f rad off' % (off, turned)
+
+
+def filter_in_use(row, clock, jump):
+    """The clock of the filter jumps while the sensors' stamps go on."""
+    clock.start('ekf.py', 'odom:=/odom_sent')
+    poses = support.Watch('/odom_combined', PoseWithCovarianceStamped)
+    if not row.sensors:
+        row.sensors = Sensors('/odom_sent')
+        row.sensors.start()
+    poses.next()
+    jump()
+    time.sleep(1)
+    clock.step(0)
+    count = len(poses.messages)
+    support.wait_for(lambda: len(poses.messages) > count + 3, 'a pose after the clock is right again')
+    assert all(math.isfinite(n) for m in poses.messages for n in [*support.pose(m), *m.pose.covariance]), \
+        'a number that is not finite'
+
+
+def run(row):
+    """See FAULT."""
+    row.roscore()
+    support.init_node('faults')
+    row.sensors = None
+    scripts = [(script_in_motion, 'timed_out_and_back.py'), (script_in_motion, 'odom_out_and_back.py')]
+    kinds = [(simulated, *kind) for simulated in (False, True) for kind in [(base_in_motion,), *scripts]]
+    kinds.append((False, filter_in_use))
+    for number in range(row.times):
+        simulated, fault, *arguments = kinds[(number + row.times) % len(kinds)]
+        clock = Time(row, simulated)
+        jump = clock.disturb if simulated else lambda: clock.step(row.random.choice([-3600, 3600]))
+        text = ' '.join(['simulated' if simulated else 'system', 'time', fault.__name__, *arguments])
+        with row.fault(text):
+            fault(row, clock, jump, *arguments)
+        row.end(*row.processes[1:])
+        del row.processes[1:]
+        clock.done.set()
+        clock.publisher.unregister()
