@@ -1,9 +1,11 @@
 """The commands that a base subscribes to, on their way through its gate."""
 import rospy
+from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import Twist
 from std_msgs.msg import Float64
 
 from rbx1_nav.control.gate import RejectedCommand
+from rbx1_nav.control.senders import Senders
 from rbx1_nav.ros import messages
 from rbx1_nav.units import SECOND
 
@@ -21,6 +23,7 @@ class VelocityCommands:
         self.clock = clock
         self.lock = lock
         self.topic = rospy.resolve_name('cmd_vel')
+        self.senders = Senders()
         self.sender = None          # the connection header of the last command
         self.subscriber = None      # a command may arrive before the next line is done
         clock.set_driver(self.apply, self.connections)
@@ -32,8 +35,13 @@ class VelocityCommands:
 
     def on_twist(self, twist):
         """A command arrives: the clock decides when it is put in force."""
-        self.sender = twist._connection_header
-        self.clock.command(twist, messages.from_twist(twist))
+        self.sender = header = twist._connection_header
+        command = messages.from_twist(twist)
+        text = self.senders.contradiction(self.clock.now(), header, header['callerid'], command[:2],
+                                          lambda: [connection.header for connection in self.connections()])
+        if text:
+            rospy.logwarn_throttle(5, '%s: %s: expected one node that drives' % (self.topic, text))
+        self.clock.command(twist, command)
 
     def apply(self, command):
         """Put a command in force: (linear in m/s, angular in rad/s, the velocities that the base cannot follow)."""
@@ -66,11 +74,15 @@ class VelocityCommands:
         """Add the gate's values to a DiagnosticStatus."""
         gate, now = self.gate, self.clock.now()
         age = 'never' if gate.command_time is None else '%.3f' % ((now - gate.command_time) / SECOND)
+        text = self.senders.recent(now, RECENT)
+        if text:
+            status.summary(DiagnosticStatus.WARN, 'Contradictory commands: ' + text)
         status.add('dX', gate.linear)
         status.add('dR', gate.angular)
         status.add('Age of the last command (s)', age)
         status.add('Rejected commands', gate.rejected)
         status.add('Clamped commands', gate.clamped)
+        status.add('Contradictory commands', self.senders.contradictions)
 
 
 def subscribe_joints(joints, lock):
