@@ -17,6 +17,7 @@ Parameters:
 """
 import rbx1_nav.ros.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded
 
+from functools import partial
 import threading
 import time
 
@@ -29,10 +30,12 @@ from std_msgs.msg import Empty
 from rbx1_nav.config import ConfigError
 from rbx1_nav.estimation.combined_odometry import CombinedOdometry
 from rbx1_nav.estimation.filter import priors
-from rbx1_nav.estimation.inputs import RejectedMessage, check
+from rbx1_nav.estimation.inputs import RejectedMessage
 from rbx1_nav.ros import messages, node
 from rbx1_nav.ros.estimate_publisher import EstimatePublisher
 from rbx1_nav.ros.filter_parameters import find_surface, read_parameters
+from rbx1_nav.ros.limited_log import LimitedLog
+from rbx1_nav.ros.one_sender import OneSender
 from rbx1_nav.ros.sensor_status import SensorStatus
 from rbx1_nav.schedule import Schedule
 from rbx1_nav.units import SECOND
@@ -45,7 +48,9 @@ class Ekf:
         self.parameters = parameters
         self.lock = threading.Lock()
         self.combined = None        # CombinedOdometry of the present publisher of odometry
-        self.sender = None          # the header of its connection
+        self.log = LimitedLog()
+        self.warn = partial(self.log.add, rospy.logwarn)
+        self.sender = OneSender('odom', parameters['sensor_timeout'], self.warn, self.restart)
         self.frames = None          # (frame_id, child_frame_id) of its odometry
         self.sensors = {name: SensorStatus(parameters['sensor_timeout'])
                         for name in ('odom', 'imu_data')[:1 + parameters['imu_used']]}
@@ -63,9 +68,9 @@ class Ekf:
     def on_odom(self, message):
         """Odometry arrives."""
         with self.lock:
-            if message._connection_header is not self.sender:
-                self.change_sender(message._connection_header)
-            self.process('odom', self.add_odom, message)
+            connections = self.odom_sub.impl.connections if self.odom_sub else []
+            if self.sender.accepts(message._connection_header, connections, rospy.Time.now()):
+                self.process('odom', self.add_odom, message)
 
     def on_imu(self, message):
         """A reading of the gyro arrives."""
@@ -77,29 +82,22 @@ class Ekf:
         """The base was reset."""
         with self.lock:
             if self.combined:
-                rospy.loginfo('reset_odometry: restarting at the pose of the odometry')
+                self.log.add(rospy.loginfo, 'reset_odometry: restarting at the pose of the odometry')
                 self.combined.restart()
 
     def add_odom(self, now, message):
         """Pass an Odometry to the filter."""
-        frames = message.header.frame_id.lstrip('/'), message.child_frame_id.lstrip('/')
-        for field, frame in zip(('header.frame_id', 'child_frame_id'), frames):
-            check(field, repr(frame), frame, 'the name of a frame')
-        check('child_frame_id', repr(frames[1]), frames[1] != self.parameters['output_frame'],
-              'a frame other than output_frame')
+        frames = messages.frames_of(message, self.parameters['output_frame'])
         self.combined.add_odom(now, *messages.from_odometry(message))
         self.frames = frames
 
-    def change_sender(self, sender):
-        """Another node publishes odometry: if the previous one has gone, it may be another robot."""
-        connections = self.odom_sub.impl.connections if self.odom_sub else []
-        if self.sender is None or not any(connection.header is self.sender for connection in connections):
-            if self.sender is not None:
-                rospy.logwarn('odom comes from another node: restarting')
-            surface = find_surface(self.parameters['surface'], sender['callerid'])
-            self.combined = CombinedOdometry(priors(surface), round(SECOND * self.parameters['sensor_timeout']),
-                                             self.parameters['imu_used'], rospy.logwarn)
-            self.sender = sender
+    def restart(self, sender):
+        """Start with the odometry of another node: it may be another robot."""
+        if self.combined:
+            self.warn('odom comes from another node: restarting')
+        surface = find_surface(self.parameters['surface'], sender, self.log.add)
+        self.combined = CombinedOdometry(priors(surface), round(SECOND * self.parameters['sensor_timeout']),
+                                         self.parameters['imu_used'], self.warn)
 
     def process(self, sensor, add, message):
         """Pass a message to the filter, and publish the result."""
@@ -110,7 +108,7 @@ class Ekf:
             add(now.to_nsec(), message)
         except RejectedMessage as error:
             self.sensors[sensor].rejected += 1
-            rospy.logerr_throttle_identical(1, '%s: %s; rejected' % (rospy.resolve_name(sensor), error))
+            self.log.add(rospy.logerr, '%s: %s; rejected' % (rospy.resolve_name(sensor), error))
             return
         self.sensors[sensor].received = now
         if self.combined.estimate and not node.end_requested.is_set():      # topics are closed at the end
@@ -130,6 +128,7 @@ class Ekf:
         while not node.end_requested.is_set():
             if schedule.due(time.monotonic_ns()):   # wall time: a clock that stands still is worth a diagnosis too
                 self.diagnostics.force_update()
+            self.log.flush(time.monotonic())
             node.sleep(0.05)
 
 

@@ -161,6 +161,32 @@ class TestEkfMessages(unittest.TestCase):
         support.wait_for(lambda: self.poses.last.pose.covariance[0] < 2 * before + 1e-6, 'the previous uncertainty')
         self.wait_for_status('odom', DiagnosticStatus.OK)
 
+    def test_a_flood_of_bad_messages_is_two_lines_a_second(self):
+        def bad(name, value):
+            def make():
+                message = make_odom()
+                setattr(message.pose.pose.position, name, value)
+                return message
+            return make
+        good = self.odom.make
+        start = len(self.log.messages)
+        for make in bad('x', math.nan), bad('y', math.inf), lambda: Odometry(header=make_odom().header):
+            self.odom.make = make
+            self.imu.send(lambda m: setattr(m, 'angular_velocity_covariance', [0.0] * 9))
+            support.wait_for(lambda: any(
+                'more of this kind' in m.msg for m in self.log.messages[start:]), 'a line that counts')
+        self.odom.make = good
+        lines = [m for m in self.log.messages[start:] if m.name == '/robot_pose_ekf']
+        # two lines a second by the wall clock of the node: not more than two within any second, less the way of a line
+        for first, third in zip(lines, lines[2:]):
+            self.assertGreater((third.header.stamp - first.header.stamp).to_sec(), 0.9)
+
+    def test_another_sender_at_the_same_time_is_ignored(self):
+        other = support.Process('rostopic', 'pub', '-r', '20', '/odom', 'nav_msgs/Odometry', '{}')
+        self.addCleanup(other.kill)
+        self.wait_for_log('/odom: messages of /rostopic', 'ignored', 'publishes it too')
+        self.assertAlmostEqual(self.poses.next().pose.pose.position.x, 0.5, delta=0.01)
+
     def test_another_sender_restarts_the_filter(self):
         self.odom.end()
 

@@ -1,9 +1,13 @@
 """The parameters of the filter node, and the surface that its initial uncertainties come from."""
+import xmlrpc.client
+
+import rosgraph
 import rospy
 
 from rbx1_nav.config import ConfigError, Section
 from rbx1_nav.model.surfaces import load_surface
 from rbx1_nav.ros import resources
+from rbx1_nav.ros.master import call
 
 AUTO = 'auto'       # the surface of the simulated base, or else
 DEFAULT_SURFACE = 'low_ply_carpet'
@@ -32,17 +36,20 @@ def read_parameters(params):
     return values
 
 
-def find_surface(name, base):
+def find_surface(name, base, log):
     """The Surface of this name; for AUTO, that of the node `base`, or else DEFAULT_SURFACE.
 
     A simulated base has a parameter `surface`; a real one is assumed to stand on carpet, like the tutorial's.
+    log(function, text): logs a line.
     """
     try:
         if name == AUTO:
-            name = rospy.get_param(base + '/surface', DEFAULT_SURFACE)
+            key, master = base + '/surface', rosgraph.get_master_uri()
+            # not by rospy, which waits for a frozen master for ever
+            name = call(master, 'getParam', key) if call(master, 'hasParam', key) else DEFAULT_SURFACE
         surface = load_surface(name, resources.surfaces())
-    except (ConfigError, OSError) as error:     # or no answer from the master
-        rospy.logwarn('%s/%s; using %s instead', base, error, DEFAULT_SURFACE)
+    except (ConfigError, OSError, xmlrpc.client.Error) as error:     # or no answer from the master
+        log(rospy.logwarn, '%s/%s; using %s instead' % (base, error, DEFAULT_SURFACE))
         name, surface = DEFAULT_SURFACE, load_surface(DEFAULT_SURFACE, resources.surfaces())
-    rospy.loginfo('Initial uncertainties of wheels and gyro: as on %s', name)
+    log(rospy.loginfo, 'Initial uncertainties of wheels and gyro: as on %s' % name)
     return surface

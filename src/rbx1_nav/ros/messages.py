@@ -5,7 +5,8 @@ from geometry_msgs.msg import PoseWithCovarianceStamped, Quaternion, TransformSt
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import Imu, JointState
 
-from rbx1_nav.estimation.inputs import Imu as ImuInput, Odom
+from rbx1_nav.config import show
+from rbx1_nav.estimation.inputs import Imu as ImuInput, Odom, check
 from rbx1_nav.model.kinematics import Pose
 from rbx1_nav.model.wheels import MEASURED
 from rbx1_nav.units import wrap_angle
@@ -101,6 +102,18 @@ def from_odometry(message):
                  Pose(pose.position.x, pose.position.y, yaw_of(pose.orientation)),
                  message.twist.covariance[0], message.twist.covariance[35]),
             (covariance[0], covariance[7], covariance[35]))
+
+
+def frames_of(message, output_frame):
+    """(frame_id, child_frame_id) of an Odometry message, without leading slashes. Raises RejectedMessage.
+
+    output_frame: that of the estimate, which the robot's own frame cannot be.
+    """
+    frames = message.header.frame_id.lstrip('/'), message.child_frame_id.lstrip('/')
+    for field, frame in zip(('header.frame_id', 'child_frame_id'), frames):
+        check(field, show(frame), frame, 'the name of a frame')
+    check('child_frame_id', show(frames[1]), frames[1] != output_frame, 'a frame other than output_frame')
+    return frames
 
 
 def from_imu(message):

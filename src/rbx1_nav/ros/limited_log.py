@@ -1,0 +1,39 @@
+"""A log of at most two lines a second, whatever happens how often."""
+import re
+from threading import Lock
+
+INTERVAL = 0.5      # s between two lines
+KIND_INTERVAL = 1.0     # s between two lines of a kind
+MAX_KINDS = 100     # that wait: more are no help to anybody
+NUMBER = re.compile(r'[-+]?\b(\d[\d.]*(e[-+]?\d+)?|nan|inf)\b')
+
+
+class LimitedLog:
+    """Keeps lines until they may be logged: of each kind the latest, and how many there were.
+
+    Lines that differ only in numbers are of a kind.
+    """
+
+    def __init__(self):
+        self.pending = {}       # by kind, the oldest first: (log, text, number of lines)
+        self.logged = {}        # by kind: s, when the last line was logged
+        self.next = 0.0         # s
+        self.lock = Lock()
+
+    def add(self, log, text):
+        """Take a line, in any thread. log: rospy.logwarn or the like."""
+        kind = NUMBER.sub('', text)
+        with self.lock:
+            if kind in self.pending or len(self.pending) < MAX_KINDS:
+                self.pending[kind] = log, text, self.pending.get(kind, (None, None, 0))[2] + 1
+
+    def flush(self, now):
+        """Log at most one line. To be called often; now: s of a clock that nobody sets."""
+        with self.lock:
+            self.logged = {kind: time for kind, time in self.logged.items() if now - time < KIND_INTERVAL}
+            kind = next((each for each in self.pending if each not in self.logged), None)
+            if kind is None or now < self.next:
+                return
+            log, text, count = self.pending.pop(kind)
+            self.logged[kind], self.next = now, now + INTERVAL
+        log('%s', text if count == 1 else '%s (and %d more of this kind)' % (text, count - 1))
