@@ -20,6 +20,7 @@ ROOT = ALONE = False
 FIELDS = list(itertools.product(('linear', 'angular'), 'xyz'))
 VALUES = (math.nan, math.inf, -math.inf, 1e308, -1e308, 5e-324, -5e-324, 1.0, -0.0)
 FLOOD = 5000            # commands a second
+LAST = 0.123            # m/s, a command that nothing else here sends
 LINES = 2               # a second
 MEMORY_LIMIT = 4096     # KB
 
@@ -39,14 +40,16 @@ def run(row):
             commander = support.Commander()
             start, lines, memory = time.monotonic(), len(base.lines), rss(pid)
             fault(row, commander, base)
-            commander.send()
-            odom.wait_for_twist(0.0)
+            for speed in (LAST, 0.0):       # the base has them in a queue: until it has come to the last
+                commander.send(speed)
+                odom.wait_for_twist(speed)
             limit = LINES * (time.monotonic() - start) + 3      # and one of each kind at once
             assert len(base.lines) - lines <= limit, '\n'.join(base.lines[lines:])
             row.figure('growth of the memory, KB', rss(pid) - memory)
             assert rss(pid) <= memory + MEMORY_LIMIT, 'the memory grew by %d KB' % (rss(pid) - memory)
             for message in odom.messages:
-                assert all(map(math.isfinite, numbers(message))), message
+                values = numbers(message)
+                assert all(map(math.isfinite, values)), 'odometry that is not finite: %s' % values[:7]
             del odom.messages[:-1]
             commander.publisher.unregister()
             row.reset()
