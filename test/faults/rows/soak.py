@@ -60,7 +60,8 @@ def run(row):
         usages.append(usage(pid))
     row.figure('simulated hours', elapsed / 3600)
     with row.fault('what grows'):
-        early, late = usages[WARM_UP:WARM_UP + 3], usages[-3:]
+        assert len(usages) >= WARM_UP + 4, 'only %d runs in this time' % len(usages)
+        early, late = usages[WARM_UP:WARM_UP + 2], usages[-2:]
         row.figure('memory after warm-up and at the end, MB', min(u[0] for u in early) / 1024)
         row.figure('memory after warm-up and at the end, MB', min(u[0] for u in late) / 1024)
         growth = [min(column) - min(before) for column, before in zip(zip(*late), zip(*early))]
