@@ -75,8 +75,9 @@ def use_filter(values):
 def use_script(values):
     """A script's numbers, and its period."""
     get_param_server_cache().set(rospy.get_name(), values)
-    speed, rate = positive_param('linear_speed', 0.2), positive_param('rate', 50)
-    return [speed], 1 / rate
+    # one that is not there would be asked for at a master
+    numbers = {name: positive_param(name, 1.0) for name in ('linear_speed', 'rate') if name in values}
+    return numbers.values(), 1 / numbers.get('rate', 50)
 
 
 def use_seed(value):
