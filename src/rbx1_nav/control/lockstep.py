@@ -16,6 +16,7 @@ PROOF = 25
 FIRST_QUIET = 0.1       # s of wall time without a command that end a driver's first burst
 QUIET = 0.03            # s, the same at the start of each later stream
 SLOW_ANSWER = 0.05      # s of wall time: a later command may not be an answer to the tick at all
+BURST_TIME = 1.0        # s of wall time: a burst answers at most the ticks of this time
 MAX_BACKLOG = 25        # commands: more of them in the queue than at the start mean more than one per tick
 
 
@@ -53,6 +54,7 @@ class Lockstep:
         self.ended = ended
         self.drivers = {}       # by the id of the connection, which the Driver keeps alive: so the id stays unique
         self.changed = Condition()
+        self.ticks = deque()    # s of the monotonic clock: the ticks of the last BURST_TIME
 
     def receive(self, connection, name, command):
         """Accept a command that just arrived, in any thread. connection: any object; name: of the node that sent it."""
@@ -72,6 +74,10 @@ class Lockstep:
     def collect(self):
         """Call before each tick: applies this tick's commands, and waits for those that are still to come."""
         with self.changed:
+            now = monotonic()
+            self.ticks.append(now)
+            while self.ticks[0] < now - BURST_TIME:
+                self.ticks.popleft()
             for driver in list(self.drivers.values()):
                 if not driver.released:
                     self._collect_from(driver)
@@ -82,6 +88,8 @@ class Lockstep:
             self._wait_until_quiet(driver, QUIET if driver.heard_before else FIRST_QUIET)
             driver.heard_before = True
             driver.lag = len(driver.queue)
+            if driver.lag > len(self.ticks) + MAX_BACKLOG:
+                self._release(driver, 'sends more than one command per tick')
         elif driver.streaming:
             start = monotonic()
             patience = PATIENCE if driver.proven else COMMAND_TIMEOUT

@@ -56,7 +56,11 @@ class Listener(threading.Thread):
                 self.problem = self.why_it_closed()
                 return
             if timer.silence(time.monotonic(), state) > LINK_TIMEOUT:
-                self.problem = '%s acknowledges nothing that is sent to it' % self.peer.name
+                # who has closed the window is there, and does not read: a recorder may, a base may not
+                if state.window >= CLOSED_WINDOW:
+                    self.problem = '%s acknowledges nothing that is sent to it' % self.peer.name
+                elif self.peer.essential:
+                    self.problem = '%s, which publishes the odometry, does not read what is sent to it' % self.peer.name
             time.sleep(LOOK_PERIOD)
 
     def ask(self):
@@ -134,6 +138,8 @@ class Listeners:
                           for connection in publisher.impl.connections if connection.endpoint_id in peers]
         for listener in self.listeners:
             listener.start()
+        # on simulated time, whether one of them publishes /clock
+        self.in_lockstep = not rospy.rostime.is_wallclock() and any(peer.keeps_time for peer in peers.values())
 
     def check(self):
         """Raises ROSException if one of them no longer takes the commands, or if none is left."""
@@ -150,7 +156,7 @@ class Listeners:
         rospy deletes the oldest command if more wait than the size of the queue. Other nodes are never waited for.
         Raises ROSException after ROOM_TIMEOUT, ROSInterruptException.
         """
-        if rospy.rostime.is_wallclock():
+        if not self.in_lockstep:
             return
         deadline = time.monotonic() + ROOM_TIMEOUT
         for listener in self.listeners:

@@ -12,7 +12,7 @@ from rbx1_nav.units import SECOND
 
 SIMULATED_RATE = 50     # Hz, of the base's own clock
 MAX_DELAY = SECOND      # ns
-FREE_TICKS = 25     # at the start of a motion, simulated time may run ahead until the base has seen that it begins
+FREE_TICKS = 25     # at the start of a motion, the base's clock may run ahead until the base has seen that it begins
 
 
 def now():
@@ -78,7 +78,7 @@ class Rate:
         self.listeners = listeners
         self.period = round(SECOND / hz)
         self.due = self.next = now() + self.period      # without delays, and with them
-        self.free_ticks = 0 if rospy.rostime.is_wallclock() else FREE_TICKS
+        self.free_ticks = FREE_TICKS if listeners.in_lockstep else 0
 
     def sleep(self):
         """Wait for the next tick. Raises as pause(), and ROSException for a delay that is too long."""

@@ -48,12 +48,8 @@ class AcknowledgementTimer:
         self.acknowledged = 0
 
     def silence(self, now, connection):
-        """The duration of the silence, s. now: s; connection: a Connection.
-
-        A peer that has closed its window is there, and does not read: that is no silence.
-        """
-        if (not connection.unacknowledged or connection.acknowledged != self.acknowledged
-                or connection.window < CLOSED_WINDOW):
+        """The duration of the silence, s. now: s; connection: a Connection."""
+        if not connection.unacknowledged or connection.acknowledged != self.acknowledged:
             self.since = None
         elif self.since is None:
             self.since = now

@@ -67,8 +67,7 @@ def use_text(text):
 
 def use_filter(values):
     """The filter's numbers, and its period."""
-    get_param_server_cache().set(rospy.get_name(), values)
-    parameters = read_parameters()
+    parameters = read_parameters(values)
     return [parameters['sensor_timeout']], 1 / parameters['freq']
 
 
@@ -116,6 +115,7 @@ def generate(row):
 
 def run(row):
     """See FAULT."""
+    row.roscore()   # which is asked for what is missing
     for _ in range(row.times):
         use, values, key = generate(row)
         with row.fault('%s(%s)' % (use.__name__, shown(values))):

@@ -145,6 +145,8 @@ def test_commands_of_a_closed_connection_are_not_lost():
 def test_a_burst_that_is_received_late_is_not_lost():
     """The first command of a burst is received; then the thread that receives starves for longer than a pause."""
     recorder = Recorder()
+    for _ in range(40):
+        recorder.lockstep.collect()     # the clock runs freely
     recorder.unread.add('first')
     recorder.send(MOVE)
 
@@ -176,8 +178,19 @@ def test_a_command_that_is_not_finite_is_no_motion():
     assert not recorder.warnings
 
 
+def test_a_driver_that_sends_far_more_than_the_clock_has_ticked_is_released():
+    """Its last command counts: a stop must not wait behind a flood."""
+    recorder = Recorder()
+    recorder.send(*[MOVE] * 500, STOP)
+    recorder.lockstep.collect()
+    assert recorder.applied == [STOP]
+    assert len(recorder.warnings) == 1 and 'more than one command per tick' in recorder.warnings[0]
+
+
 def test_a_driver_that_lags_from_the_start_is_not_released():
     recorder = Recorder()
+    for _ in range(40):
+        recorder.lockstep.collect()     # the clock runs freely
     recorder.send(*[MOVE] * 40)
     for _ in range(40):
         recorder.lockstep.collect()
