@@ -47,8 +47,9 @@ def read_arguments():
                         help='processes; default: as many as there are processor cores')
     arguments = parser.parse_args()
     for name, low, high in (('runs', 1, 10 ** 6), ('jobs', 1, 10 ** 6), ('seed', 0, MAX_SEED + 1 - arguments.runs)):
-        if not low <= getattr(arguments, name) <= high:
-            parser.error('--%s: %s: expected an integer from %d to %d' % (name, show(getattr(arguments, name)), low, high))
+        value = getattr(arguments, name)
+        if not low <= value <= high:
+            parser.error('--%s: %s: expected an integer from %d to %d' % (name, show(value), low, high))
     if os.path.splitext(arguments.surface)[1]:      # a name has none
         arguments.surface = os.path.abspath(arguments.surface)
     if arguments.plot is not None:

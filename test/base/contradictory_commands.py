@@ -23,7 +23,8 @@ class TestContradictoryCommands(unittest.TestCase):
 
         def named():
             commander.send(0.2)
-            return status() and status().level == DiagnosticStatus.WARN and any('sends' in log.msg for log in logs.messages)
+            return (status() and status().level == DiagnosticStatus.WARN
+                    and any('sends' in log.msg for log in logs.messages))
         support.wait_for(named, 'a warning')
         line = next(log.msg for log in logs.messages if 'sends' in log.msg)
         for text in (line, status().message):

@@ -49,7 +49,8 @@ class TestBadParameters(unittest.TestCase):
 
     def test_filter(self):
         for params, expected in [
-                ({'freq': 1e-300}, ['/freq: 1e-300: expected a rate from 0.1 to 1000 in Hz']), ({'sensor_timeout': 'long'}, ['sensor_timeout', "'long'"]),
+                ({'freq': 1e-300}, ['/freq: 1e-300: expected a rate from 0.1 to 1000 in Hz']),
+                ({'sensor_timeout': 'long'}, ['sensor_timeout', "'long'"]),
                 ({'imu_used': 1}, ['imu_used', '1', 'true or false']), ({'output_frame': ''}, ['output_frame', "''"]),
                 ({'odom_used': False}, ['odom_used', 'False', 'expected true']),
                 ({'vo_used': True}, ['vo_used', 'True', 'expected false']),

@@ -23,8 +23,8 @@ def simulate(*arguments):
 
 def simulate_with_limit(picture):
     """Run it with a picture, where no file may have more than a kilobyte: as on a full disk, but without root."""
-    process = support.Process('bash', '-c', 'trap "" XFSZ; ulimit -f 1; exec rosrun rbx1_nav simulate.py --method timed '
-                                            '--runs 1 --plot "$0"', picture)
+    process = support.Process('bash', '-c', 'trap "" XFSZ; ulimit -f 1; '
+                              'exec rosrun rbx1_nav simulate.py --method timed --runs 1 --plot "$0"', picture)
     try:
         return process.wait(), process.output
     finally:
@@ -114,7 +114,8 @@ class TestSimulateCommand(unittest.TestCase):
                 (['--plot', 'picture.doc'], 2, '--plot: picture.doc: expected'),
                 (['--plot', '/'], 2, '--plot: /: expected'),
                 (['--config', '/dev/null'], 1, '/dev/null: configuration: None: expected'),
-                (['--seed', '-1'], 2, '--seed: -1: expected an integer from 0 to 2147483548'), (['--config', '/nowhere.yaml'], 1, '/nowhere.yaml'),
+                (['--seed', '-1'], 2, '--seed: -1: expected an integer from 0 to 2147483548'),
+                (['--config', '/nowhere.yaml'], 1, '/nowhere.yaml'),
                 (['--plot', '/nowhere/picture.png'], 2, '--plot: /nowhere/picture.png: expected')]:
             actual, output = simulate(*arguments)
             self.assertEqual(actual, status, output)

@@ -88,7 +88,8 @@ def test_a_section_is_a_mapping(values):
 
 
 @pytest.mark.parametrize('key, shown', [
-    ('two\nlines', r"'two\nlines'"), ('\x1b[31m', r"'\x1b[31m'"), (7, '7'), ('radius of the wheel', 'radius of the wheel'),
+    ('two\nlines', r"'two\nlines'"), ('\x1b[31m', r"'\x1b[31m'"), (7, '7'),
+    ('radius of the wheel', 'radius of the wheel'),
     (1 << 20000, 'an integer of 20001 bits')], ids=lambda value: type(value).__name__)
 def test_a_key_is_shown_in_one_line(key, shown):
     assert Section({key: 1}, 'base').unknown() == ['base/' + shown] and show_name(key) == shown
@@ -101,7 +102,8 @@ def test_a_mapping_that_contains_itself_is_shown():
     assert len(show(values)) < 200
 
 
-@pytest.mark.parametrize('text', ['a: [', '\0', '!!bool x', "!!int ''", '!!timestamp x', '? {a: b}', '[' * 10 ** 5, '\udcff'])
+@pytest.mark.parametrize('text', ['a: [', '\0', '!!bool x', "!!int ''", '!!timestamp x', '? {a: b}', '[' * 10 ** 5,
+                                  '\udcff'])
 def test_a_file_that_is_not_yaml(tmp_path, text):
     path = tmp_path / 'a.yaml'
     path.write_bytes(text.encode('utf-8', 'surrogateescape'))

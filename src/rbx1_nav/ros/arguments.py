@@ -34,8 +34,8 @@ def check_command_line(usage):
         problem = find_problem(argument, parameter_names(usage))
         if problem:
             # last, so that it stands just above the prompt, as with argparse
-            print('%s\n\n%s: error: %s: %s' % (usage.strip(), os.path.basename(sys.argv[0]), show_name(argument), problem),
-                  file=sys.stderr)
+            print('%s\n\n%s: error: %s: %s' % (usage.strip(), os.path.basename(sys.argv[0]), show_name(argument),
+                                              problem), file=sys.stderr)
             sys.exit(2)
 
 

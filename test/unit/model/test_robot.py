@@ -57,7 +57,8 @@ def test_unknown_keys_are_reported():
     ('rate', inf, 'to 1000'), ('rate', 1e-320, 'from 0.1'), ('rate', 1e-9, 'from 0.1'),
     ('timeout', -1, 'from 0 to'), ('timeout', 1e-9, '0 (never), or at least 0.01 s'),
     ('max_linear_speed', 0, 'from 0.001'), ('max_angular_speed', 'fast', 'speed'),
-    ('wheel_radius', [], 'radius'), ('wheel_radius', 1e-320, 'from 0.001'), ('base_frame_id', '', 'frame'), ('base_frame_id', 7, 'frame'),
+    ('wheel_radius', [], 'radius'), ('wheel_radius', 1e-320, 'from 0.001'),
+    ('base_frame_id', '', 'frame'), ('base_frame_id', 7, 'frame'),
     ('base_frame_id', 'odom', 'other than odom_frame_id'),
     ('type', 'follow_controller', 'one of: diff_controller')])
 def test_an_invalid_value_is_named_with_its_key_and_what_is_expected(key, value, expected):
