@@ -46,7 +46,7 @@ class OutAndBack:
         node.init_node('out_and_back', __doc__)
 
         # How often to look at the pose and to publish a command, in Hz.
-        self.rate = positive_param('rate', 50, 0.1, 1000)
+        self.rate = positive_param('rate', 50, 2, 1000)
 
         # How far to go, and how fast. Near the goal the robot slows down, to the lowest speed that moves it.
         linear_speed = positive_param('linear_speed', 0.2)                  # m/s

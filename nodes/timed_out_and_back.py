@@ -38,7 +38,7 @@ class OutAndBack:
         node.init_node('out_and_back', __doc__)
 
         # How often to publish a command, in Hz. Some robots stop when they receive none, so publish on every tick.
-        self.rate = positive_param('rate', 50)
+        self.rate = positive_param('rate', 50, 2, 1000)
 
         # Distance is speed times time: what to cover, and how fast, gives the number of ticks.
         motions = out_and_back(
