@@ -5,6 +5,7 @@ from math import atan2, cos, degrees, hypot, pi, sin
 
 import matplotlib
 import rosbag
+from nav_msgs.msg import Odometry
 
 matplotlib.use('Agg')
 from matplotlib import pyplot       # noqa: E402  (the backend comes first)
@@ -14,12 +15,15 @@ SPACING, TURN = 0.1, 0.15       # m and rad between two arrows, as in sim.rviz
 TOPICS = {'/odom': ('odometry', '#d55e00'), '/odom_ekf': ('estimate from wheels and gyro', '#009e73'),
           '/ground_truth': ('truth', '#0072b2')}
 
+# otherwise rosbag generates the class, as Python code, from the definition in the bag: whoever wrote the bag wrote that
+rosbag.bag._message_types[Odometry._md5sum] = Odometry
+
 
 def read_paths(bag):
     """For each of TOPICS that was recorded, all its (x, y, yaw): m and rad, the yaw not wrapped."""
     paths = {}
     with rosbag.Bag(bag) as file:
-        for topic, message, _ in file.read_messages(list(TOPICS)):
+        for topic, message, _ in file.read_messages(list(TOPICS), connection_filter=is_odometry):
             path = paths.setdefault(topic, [])
             pose = message.pose.pose
             yaw = 2 * atan2(pose.orientation.z, pose.orientation.w)
@@ -27,6 +31,11 @@ def read_paths(bag):
                 yaw += 2 * pi * round((path[-1][2] - yaw) / (2 * pi))
             path.append((pose.position.x, pose.position.y, yaw))
     return {topic: paths[topic] for topic in TOPICS if topic in paths}
+
+
+def is_odometry(_topic, _datatype, md5sum, *_):
+    """Whether a connection of a bag has the messages that are read here."""
+    return md5sum == Odometry._md5sum
 
 
 def arrows(path):

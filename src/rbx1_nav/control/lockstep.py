@@ -11,8 +11,8 @@ from threading import Condition
 from time import monotonic
 
 COMMAND_TIMEOUT = 1.0   # s of wall time that a tick waits for its command
-PATIENCE = 5.0          # s, the same for a driver that has answered PROOF ticks: its machine is busy
-PROOF = 25
+PROOF = 25              # ticks: a driver that has answered so many drives by this clock
+PATIENCE = 5.0          # s of wall time that a tick waits for such a driver
 FIRST_QUIET = 0.1       # s of wall time without a command that end a driver's first burst
 QUIET = 0.03            # s, the same at the start of each later stream
 SLOW_ANSWER = 0.05      # s of wall time: a later command may not be an answer to the tick at all
@@ -117,8 +117,9 @@ class Lockstep:
         deadline = monotonic() + (PATIENCE if driver.proven else max(COMMAND_TIMEOUT, 3 * quiet))
         while monotonic() < deadline and not self.ended():
             received = driver.received
-            # the thread that receives may not have had its turn
-            if not self._wait_for(driver, lambda: driver.received > received, quiet) and not self.unread(driver.connection):
+            heard = self._wait_for(driver, lambda: driver.received > received, quiet)
+            # unread: the thread that receives may not have had its turn
+            if not heard and not self.unread(driver.connection):
                 return
         if not (driver.proven or self.ended()):
             self._release(driver, 'sends commands while the clock is held')

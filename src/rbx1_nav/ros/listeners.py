@@ -1,9 +1,9 @@
 """Whether the nodes that a driving script began with still receive its commands.
 
-A script that drives by time cannot know where the robot is. But it can know that a command was lost, or that a node which
-took its commands at the start no longer does. A thread for each of these nodes looks at three things: the connection; the
-bytes that the node's machine has not acknowledged; and whether the node answers a call. rospy itself notices none of
-them for minutes, because the kernel takes tens of thousands of commands for a node that is silent.
+A script that drives by time cannot know where the robot is. But it can know that a command was lost, or that a node no
+longer takes its commands. It watches three things of each node: its connection, the bytes that its machine has not
+acknowledged, and whether it answers a call. rospy notices none of them for minutes, because the kernel takes tens of
+thousands of commands for a node that is silent.
 """
 from collections import namedtuple
 import threading
@@ -25,8 +25,8 @@ STOP_TIME = 1.0         # s that a script waits after its last command
 ROOM_TIMEOUT = 1.0      # s that a command waits for the one before it to be sent
 
 Peer = namedtuple('Peer', 'name uri essential keeps_time')
-Peer.__doc__ = """A node that listens: its name; the address that it answers at, or None if it does not; whether the robot is
-lost without it; whether it publishes /clock."""
+Peer.__doc__ = """A node that listens: its name; the address that it answers at, or None if it does not; whether it is
+essential, because it publishes odometry, as a base does; whether it publishes /clock."""
 
 
 class Listener(threading.Thread):
@@ -107,8 +107,10 @@ class Listener(threading.Thread):
 
     @property
     def waiting(self):
-        """Number of commands that rospy has not begun to send. A connection made while the publisher was being made has no
-        queue: it sends at once."""
+        """Number of commands that rospy has not begun to send.
+
+        A connection that was made while the publisher was being made has no queue: it sends at once.
+        """
         return len(getattr(self.connection, '_queue', ()))
 
     def lost(self, published):
@@ -176,7 +178,8 @@ class Listeners:
         """
         published, last = self.publisher.impl.seq, time.monotonic() - STOP_TIME
         deadline = time.monotonic() + ANSWER_TIMEOUT + ASK_PERIOD
-        while time.monotonic() < deadline and not all(each.has_all(published, last) for each in self.listeners):
+        while time.monotonic() < deadline and not end_requested.is_set() and not all(
+                each.has_all(published, last) for each in self.listeners):
             self.check()
             sleep(0.02)
         self.check()

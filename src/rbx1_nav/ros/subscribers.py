@@ -63,8 +63,10 @@ def connected_nodes(publisher):
 def wait_for_subscribers(publisher, timeout):
     """Wait until all live subscribers of a publisher's topic are connected to it, and simulated time has begun.
 
-    All of them and not just the first: a recorder is not a base. Returns them as Listeners. Raises ROSException if there is none, or one is
-    missing, after `timeout` seconds of wall time, and ROSInterruptException as soon as the node is to end.
+    All of them and not just the first: a recorder is not a base. Returns them as Listeners.
+
+    Raises ROSException if there is none, or one is missing, after `timeout` seconds of wall time, and
+    ROSInterruptException as soon as the node is to end.
     """
     topic = publisher.resolved_name
     monitor = _SubscriberMonitor(topic)
