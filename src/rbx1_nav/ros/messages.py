@@ -30,7 +30,8 @@ def from_twist(twist):
 
 def yaw_of(rotation):
     """The yaw (rad) of a Quaternion; nan if it is not normalized."""
-    norm = rotation.x ** 2 + rotation.y ** 2 + rotation.z ** 2 + rotation.w ** 2
+    # not `** 2`, which raises an OverflowError for huge numbers
+    norm = sum(value * value for value in (rotation.x, rotation.y, rotation.z, rotation.w))
     if not 0.9 < norm < 1.1:
         return nan
     return atan2(2 * (rotation.w * rotation.z + rotation.x * rotation.y),
