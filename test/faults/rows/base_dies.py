@@ -11,7 +11,7 @@ import support
 FAULT = 'SIGKILL to the base in mid-motion; each with and without respawn, a second listener, and simulated time, ' \
         'for both scripts'
 PROMISE = 'the script does not exit with 0; its last command is a stop'
-FULL, SHORT = 32, 5
+FULL, SHORT = 32, 3
 ROOT = ALONE = False
 
 FACTOR = 5

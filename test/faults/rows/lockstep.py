@@ -18,7 +18,7 @@ import support          # noqa: E402, pylint: disable=wrong-import-position
 FAULT = 'the exercise at real_time_factor 20, three masters side by side with a busy loop each; in a quarter of the runs, ' \
         'script or base is stopped for 10 to 500 ms'
 PROMISE = 'the exact end, to a micrometre'
-FULL, SHORT = 200, 6
+FULL, SHORT = 200, 3
 ROOT, ALONE = False, True
 
 STATIONS = 3

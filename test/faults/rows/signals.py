@@ -14,7 +14,7 @@ FAULT = 'SIGINT, SIGTERM or SIGHUP to a driving script at a random moment, a thi
         'with a stopped /clock'
 PROMISE = 'if a command was sent, the last one is a stop; the robot stands within 0.1 s of simulated time; the ' \
           'process has gone within 1.5 s of wall time'
-FULL, SHORT = 120, 9
+FULL, SHORT = 120, 6
 ROOT = ALONE = False
 
 SCRIPTS = ('timed_out_and_back.py', 'odom_out_and_back.py')

@@ -8,7 +8,7 @@ import support
 
 FAULT = 'script on one host, base and roscore on another; the link goes down in mid-leg for 0.3 s, for 3 s, or for good'
 PROMISE = '0.3 s: exit status 0; longer: named within 2 s, exit status 1, and the robot goes on for at most its timeout of 1 s'
-FULL, SHORT = 24, 3
+FULL, SHORT = 24, 2
 ROOT, ALONE = True, True
 
 HOSTS = ('10.77.0.1', '10.77.0.2')
