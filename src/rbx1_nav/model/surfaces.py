@@ -55,13 +55,13 @@ def load_surface(name, folder):
     Raises ConfigError.
     """
     is_path = isinstance(name, str) and os.path.isabs(name)
-    path = name if is_path else os.path.join(folder, '%s.yaml' % name)
-    if is_path and not os.path.isfile(path):
+    if is_path and not os.path.isfile(name):
         raise ConfigError('surface: %s: no such file: expected the absolute path of a surface file, or one of %s'
                           % (show(name), ', '.join(known_surfaces(folder))))
     if not is_path and name not in known_surfaces(folder):
         raise ConfigError('surface: %s: expected one of %s, or the absolute path of a surface file'
                           % (show(name), ', '.join(known_surfaces(folder))))
+    path = name if is_path else os.path.join(folder, name + '.yaml')
     try:
         values = load_yaml(path)
     except ConfigError as error:

@@ -32,7 +32,8 @@ def test_the_values_of_carpet():
     assert surface.ticks_meter == 4100
 
 
-@pytest.mark.parametrize('name', ['sand', '', 'ideal.yaml', '../turtlebot', 7, None, [1]])
+@pytest.mark.parametrize('name', ['sand', '', 'ideal.yaml', '../turtlebot', 7, None, [1],
+                                  pytest.param(16 ** 5000, id='huge')])
 def test_an_unknown_surface_is_rejected_with_the_list_of_known_ones(name):
     with pytest.raises(ConfigError, match='^surface: .*expected one of hard_floor, ideal, low_ply_carpet') as error:
         load_surface(name, FOLDER)
