@@ -1,4 +1,5 @@
 """The picture of simulated runs: one scale for what is to be compared, and none where there is nothing to see."""
+from contextlib import contextmanager
 from math import pi, radians
 import resource
 import signal
@@ -88,29 +89,34 @@ def test_a_title_names_surface_runs_and_seeds(drawn):
     assert numpy.isclose(drawn({'timed': FAR}).axes[0].get_xlim()[0], -0.35)
 
 
-@pytest.fixture
+@contextmanager
 def full_disk():
-    """Files cannot have more than 1000 bytes. Needs no root, unlike a small file system, and is an OSError too."""
+    """Files cannot have more than 1000 bytes: pytest's output neither, so not for a whole test.
+
+    Needs no root, unlike a small file system, and is an OSError too.
+    """
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
     handler = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
     resource.setrlimit(resource.RLIMIT_FSIZE, (1000, before[1]))
-    yield
-    resource.setrlimit(resource.RLIMIT_FSIZE, before)
-    signal.signal(signal.SIGXFSZ, handler)
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+        signal.signal(signal.SIGXFSZ, handler)
 
 
 @pytest.mark.parametrize('kind', ['png', 'pdf', 'svg'])
-def test_a_full_disk_is_an_oserror_and_leaves_no_file(tmp_path, full_disk, kind):
-    with pytest.raises(OSError):
+def test_a_full_disk_is_an_oserror_and_leaves_no_file(tmp_path, kind):
+    with full_disk(), pytest.raises(OSError):
         draw(str(tmp_path / ('a.' + kind)), 'test', {'timed': FAR}, range(3))
     assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize('kind', ['png', 'pdf', 'svg'])
-def test_an_older_picture_survives_a_full_disk(tmp_path, full_disk, kind):
+def test_an_older_picture_survives_a_full_disk(tmp_path, kind):
     path = tmp_path / ('a.' + kind)
     path.write_bytes(b'an older picture')
-    with pytest.raises(OSError):
+    with full_disk(), pytest.raises(OSError):
         draw(str(path), 'test', {'timed': FAR}, range(3))
     assert list(tmp_path.iterdir()) == [path] and path.read_bytes() == b'an older picture'
 
