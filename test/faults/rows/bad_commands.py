@@ -38,8 +38,12 @@ def run(row):
                         ('%d a second for %g s' % (FLOOD, seconds), flood), ('two publishers', two_publishers)):
         with row.fault(text):
             commander = support.Commander()
+            for _ in range(150):    # more than a second without a pause: from now on, commands take effect as they arrive
+                commander.send(LAST)
+                time.sleep(0.01)
+            odom.wait_for_twist(LAST)
             start, lines, memory = time.monotonic(), len(base.lines), rss(pid)
-            fault(row, commander, base)
+            fault(row, commander, base, odom)
             for speed in (LAST, 0.0):       # the base has them in a queue: until it has come to the last
                 commander.send(speed)
                 odom.wait_for_twist(speed)
@@ -66,17 +70,19 @@ def check_obeys(row, odom):
     assert off < support.MICROMETRE and abs(yaw - 1) < 1e-6, '%g m and %g rad off' % (off, yaw - 1)
 
 
-def each_value(row, commander, _):
+def each_value(row, commander, _, odom):
     """Every special value in every field of a Twist, after an ordinary motion."""
     for (part, axis), value in itertools.product(FIELDS, VALUES):
         message = support.twist(0.2, 0.5)
         setattr(getattr(message, part), axis, value)
         commander.publisher.publish(message)
         row.faults += 1
+        if not abs(value) < 1e6:    # rejected, whatever the field
+            odom.wait_for_twist(0.0)
         time.sleep(0.01)
 
 
-def random_twists(row, commander, _):
+def random_twists(row, commander, *_):
     """Twists of numbers of all magnitudes."""
     for _ in range(row.times):
         message = Twist()
@@ -89,7 +95,7 @@ def random_twists(row, commander, _):
         time.sleep(0.001)
 
 
-def flood(row, commander, _):
+def flood(row, commander, *_):
     """More commands than any driver sends."""
     start = time.monotonic()
     for count in range(round(FLOOD * 10 * row.times / FULL)):
@@ -98,7 +104,7 @@ def flood(row, commander, _):
     row.figure('commands a second in the flood', (count + 1) / (time.monotonic() - start))
 
 
-def two_publishers(row, commander, base):
+def two_publishers(row, commander, base, _):
     """Forward at 20 Hz from here, and backward from a node of its own."""
     diagnostics = support.Watch('/diagnostics', DiagnosticArray)
     other = row.start('rostopic', 'pub', '-r', '20', '/cmd_vel', 'geometry_msgs/Twist', '{linear: {x: -0.2}}')
