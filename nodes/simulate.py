@@ -7,6 +7,7 @@ import rbx1_nav.ros.early_interrupt     # Ctrl-C ends it quietly even while the 
 
 import argparse
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import closing
 from functools import partial
 from math import atan2, cos, degrees, hypot, sin
 import os
@@ -68,8 +69,8 @@ def run_all(method, robot, surface, seeds, arguments):
     keep = PATHS if arguments.plot else 0
     results = list(many(seeds[:1], keep))
     long = (time.monotonic() - start) * len(seeds) > MOMENT
-    rest = many(seeds[1:], keep - 1, arguments.jobs if long else 1)
-    results += tqdm(rest, total=len(seeds), initial=1, desc=method, unit='run', disable=None if long else True)
+    with closing(many(seeds[1:], keep - 1, arguments.jobs if long else 1)) as rest:
+        results += tqdm(rest, total=len(seeds), initial=1, desc=method, unit='run', disable=None if long else True)
     return results, time.monotonic() - start
 
 

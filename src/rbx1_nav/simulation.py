@@ -125,7 +125,7 @@ def simulate(method, robot, surface, seed, filtered=False, keep=False):
 def simulate_many(method, robot, surface, seeds, keep=0, jobs=1):
     """Yields the Results of all seeds in their order; keep: the number of paths to keep; jobs: number of processes.
 
-    Raises BrokenProcessPool if one of the processes is killed.
+    To be closed after an interrupt, which ends the processes. Raises BrokenProcessPool if one of them is killed.
     """
     work = partial(_simulate_some, method, robot, surface)
     tasks = [(seed, number < keep) for number, seed in enumerate(seeds)]
@@ -147,7 +147,7 @@ def simulate_many(method, robot, surface, seeds, keep=0, jobs=1):
                 yield from results.popleft().result()
         except BaseException:       # an interrupt does not wait for runs that nobody will see
             for process in multiprocessing.active_children():
-                process.terminate()
+                process.kill()
             raise
 
 
@@ -163,7 +163,7 @@ def _submit(pool, work, chunk):
 def _follow_the_parent():
     """In a new process: leave Ctrl-C to the parent, and end when it ends, even if it was killed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    signal.signal(signal.SIGTERM, signal.SIG_DFL)   # by which the parent ends it
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
     signal.pthread_sigmask(signal.SIG_UNBLOCK, END_SIGNALS)
     threading.Thread(target=_end_with_the_parent, daemon=True).start()
 

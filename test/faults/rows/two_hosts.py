@@ -61,6 +61,8 @@ def run(row):
                 try_one(row, lambda: start(1, 'rosrun', 'rbx1_nav', 'timed_out_and_back.py', '_linear_speed:=%g' % SPEED,
                                            '_angular_speed:=3', '_goal_distance:=0.8'), poses, names, cables, outage, delay)
             ip('-n', names[0], 'link', 'set', cables[0], 'up')
+            # for some seconds the other host may still take this one for unreachable
+            support.wait_for(lambda: start(1, 'rosnode', 'list').wait() == 0, 'the link')
         row.end()
 
 
