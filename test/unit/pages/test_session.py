@@ -5,7 +5,7 @@ import subprocess
 
 import pytest
 from pages import blocks, processes
-from pages.session import PageFailed, Session
+from pages.session import PageFailed, Session, is_harmless
 
 LIMIT = 60      # s, for a machine under load; each step takes less than one
 
@@ -121,3 +121,11 @@ def test_others_live_on(tmp_path):
         failure(tmp_path, run('false'))
         assert other.poll() is None
         other.send_signal(signal.SIGKILL)
+
+
+@pytest.mark.parametrize('end, harmless', [("AttributeError: 'Thread' object has no attribute 'isAlive'", True),
+                                           ("AttributeError: 'Thread' object has no attribute 'is_alive'", False)])
+def test_a_traceback_of_debian_11_is_harmless(end, harmless):
+    lines = ['Traceback (most recent call last):', '  File "a.py", line 1, in <module>', '    a', end, '$ ']
+    assert is_harmless(lines) == harmless
+    assert not is_harmless(lines[3:])
