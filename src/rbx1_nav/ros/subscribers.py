@@ -17,7 +17,7 @@ class _SubscriberMonitor(threading.Thread):
         super().__init__(daemon=True)
         self.topic = topic
         self.live = None        # address of each live subscriber by its name; None until the master has answered
-        self.dead = set()
+        self.dead = set()       # addresses
         self.publishers = {}    # names of the nodes that publish a topic
         self.odometry = []      # topics
         self.done = threading.Event()
@@ -37,16 +37,17 @@ class _SubscriberMonitor(threading.Thread):
             self.done.wait(0.1)
 
     def find_address(self, master, name):
-        """The address of a node if it answers, or None; one that did not answer is not called again."""
-        if name not in self.dead:
-            try:
-                address = call(master, 'lookupNode', name)
+        """The address of a node if it answers, or None; an address that did not answer is not called again."""
+        address = None
+        try:
+            address = call(master, 'lookupNode', name)
+            if address not in self.dead:
                 call(address, 'getPid')
                 return address
-            except Exception:       # pylint: disable=broad-except
-                self.dead.add(name)
-                rospy.logwarn('%s is registered as a subscriber of %s but does not answer: ignored '
-                              '(`rosnode cleanup` removes it)', name, self.topic)
+        except Exception:       # pylint: disable=broad-except
+            self.dead.add(address)
+            rospy.logwarn('%s is registered as a subscriber of %s but does not answer: ignored '
+                          '(`rosnode cleanup` removes it)', name, self.topic)
         return None
 
     def peer(self, name):

@@ -69,5 +69,5 @@ def run(row):
         row.figure('memory after warm-up and at the end, MB', min(u[0] for u in late) / 1024)
         growth = [min(column) - min(before) for column, before in zip(zip(*late), zip(*early))]
         assert growth[0] <= GROWTH and growth[1] <= 0 and growth[2] <= 0, \
-            'grown by %d kB, %d threads, %d file descriptors' % tuple(growth)
+            'grown by %d kB, %d threads, %d file descriptors: %s' % (*growth, usages)
     row.faults = row.times
