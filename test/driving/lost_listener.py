@@ -71,6 +71,21 @@ class TestLostListener(unittest.TestCase):
         self.check_error(driver, '/arbotix no longer answers')
         os.kill(pid, signal.SIGCONT)
 
+    def test_a_base_that_starts_after_the_script_is_suspended(self):
+        self.base.kill()    # it stays registered
+        self.recorder.signal(signal.SIGINT)
+        self.recorder.wait()
+        driver = support.out_and_back('_linear_speed:=0.02')
+        self.addCleanup(driver.kill)
+        driver.wait_for_line('Waiting for a base')
+        self.start('rosrun', 'rbx1_nav', 'fake_base.py').wait_for_line('at the origin')
+        driver.wait_for_line('forward: ')
+        pid = support.pid_of('/arbotix')
+        self.addCleanup(os.kill, pid, signal.SIGCONT)
+        os.kill(pid, signal.SIGSTOP)
+        self.check_error(driver, '/arbotix no longer answers')
+        os.kill(pid, signal.SIGCONT)
+
     def test_another_listener_is_killed(self):
         driver = self.drive('_linear_speed:=0.02')
         self.recorder.kill()

@@ -16,7 +16,8 @@ from rbx1_nav.ros.master import call
 from rbx1_nav.ros.node import end_requested, sleep
 from rbx1_nav.ros.tcp import CLOSED_WINDOW, AcknowledgementTimer, read_connection
 
-LINK_TIMEOUT = 1.0      # s without an acknowledgement: TCP repeats after 0.2, 0.6 and 1.4 s, so 0.3 s without a link pass
+# s without an acknowledgement: TCP repeats after 0.2, 0.6 and 1.4 s, so 0.3 s without a link pass
+LINK_TIMEOUT = 1.0
 ANSWER_TIMEOUT = 1.4    # s in which a node answers a call; together with ASK_PERIOD less than 2 s
 ASK_PERIOD = 0.4        # s from an answer to the next call
 LOOK_PERIOD = 0.05      # s

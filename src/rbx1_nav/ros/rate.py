@@ -23,8 +23,8 @@ def now():
 def _wait_until(end, longest, listeners):
     """Wait until now() is `end` (ns), but no longer than `longest` (ns) on a clock that jumped back.
 
-    Raises ROSInterruptException as soon as the node is to end, and ROSException as Listeners.check(): a clock that stands
-    still may have ended with the base.
+    Raises ROSInterruptException as soon as the node is to end, and ROSException as Listeners.check(): a clock that
+    stands still may have ended with the base.
     """
     listeners.wait_for_room()
     warn_time = time.monotonic() + 5
@@ -73,7 +73,7 @@ class Rate:
         Raises ROSException if simulated time does not tick as often.
         """
         if hz > SIMULATED_RATE and not rospy.rostime.is_wallclock():
-            raise rospy.ROSException('%s/rate: %g: expected at most %d Hz on simulated time, whose clock ticks no faster'
+            raise rospy.ROSException('%s/rate: %g: expected at most %d Hz on simulated time: its clock ticks no faster'
                                      % (rospy.get_name(), hz, SIMULATED_RATE))
         self.listeners = listeners
         self.period = round(SECOND / hz)

@@ -20,6 +20,7 @@ class _SubscriberMonitor(threading.Thread):
         self.dead = set()       # addresses
         self.publishers = {}    # names of the nodes that publish a topic
         self.odometry = []      # topics
+        self.rounds = 0         # how often all of that was asked for
         self.done = threading.Event()
 
     def run(self):
@@ -32,6 +33,7 @@ class _SubscriberMonitor(threading.Thread):
                 names = {name for topic, nodes in subscribers if topic == self.topic for name in nodes}
                 live = {name: self.find_address(master, name) for name in names}
                 self.live = {name: address for name, address in live.items() if address}
+                self.rounds += 1
             except Exception as error:      # pylint: disable=broad-except
                 rospy.logwarn_throttle(5, 'The master at %s does not answer: %s' % (master, error))
             self.done.wait(0.1)
@@ -74,13 +76,17 @@ def wait_for_subscribers(publisher, timeout):
     monitor.start()
     deadline = time.monotonic() + timeout
     log_time = time.monotonic() + 0.5
+    before, known = set(), 0
     try:
         while True:
             connected = connected_nodes(publisher)
-            if connected and monitor.live is not None and monitor.live.keys() <= connected and rospy.get_rostime():
+            if connected != before:     # a round that is under way may have begun before
+                before, known = connected, monitor.rounds + 2
+            if connected and monitor.rounds >= known and monitor.live.keys() <= connected and rospy.get_rostime():
                 return Listeners(publisher, [monitor.peer(name) for name in connected])
             missing = ', '.join(sorted((monitor.live or {}).keys() - connected))
-            what = ('the master to list the subscribers of %s' % topic if monitor.live is None
+            what = ('the master to list the subscribers of %s' % topic
+                    if monitor.live is None or connected and monitor.rounds < known
                     else '%s to connect to %s' % (missing, topic) if missing
                     else 'a base that subscribes to %s' % topic if not connected else 'the time on /clock')
             if time.monotonic() > deadline:

@@ -9,7 +9,7 @@ import termios
 ESTABLISHED = 1     # include/net/tcp_states.h
 CLOSED_WINDOW = 512     # bytes: a peer with less room than this does not read; a Twist takes 52
 
-# struct tcp_info, include/uapi/linux/tcp.h: tcpi_state at 0, tcpi_bytes_acked at 120, tcpi_snd_wnd at 228 (since Linux 5.4)
+# struct tcp_info of linux/tcp.h: tcpi_state at 0, tcpi_bytes_acked at 120, tcpi_snd_wnd at 228 (since Linux 5.4)
 _INFO = struct.Struct('=B119xQ100xI')
 
 Connection = namedtuple('Connection', 'established unacknowledged acknowledged window')

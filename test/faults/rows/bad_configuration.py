@@ -75,7 +75,8 @@ def use_script(values):
     """A script's numbers, and its period."""
     get_param_server_cache().set(rospy.get_name(), values)
     # one that is not there would be asked for at a master
-    numbers = {name: positive_param(name, 1.0) for name in ('linear_speed', 'rate') if name in values}
+    ranges = {'linear_speed': (), 'rate': (2, 1000)}     # as in the script
+    numbers = {name: positive_param(name, 1.0, *ranges[name]) for name in ranges if name in values}
     return numbers.values(), 1 / numbers.get('rate', 50)
 
 

@@ -13,7 +13,7 @@ PROMISE = 'memory, threads and file descriptors of the base stay; /odom is withi
 FULL, SHORT = 60, 0
 ROOT = ALONE = False
 
-WARM_UP = 1         # runs
+WARM_UP = 4         # runs: later, nothing connects for the first time
 GROWTH = 2048       # kB that the memory may fluctuate by
 DISTANCE, TURN = 10.0, 3.14     # m and rad of a motion: whole ticks
 
