@@ -111,8 +111,8 @@ def load_robot(path):
 def main():
     """Simulate, print, draw. Returns the exit status."""
     signal.signal(signal.SIGPIPE, signal.SIG_DFL)               # the reader of a pipe may have seen enough
-    for number in (signal.SIGINT, signal.SIGTERM):              # either ends the other processes too
-        signal.signal(number, signal.default_int_handler)
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda *_: os._exit(130))         # at once; the other processes follow
     try:
         arguments = read_arguments()
         surface = load_surface(arguments.surface, resources.surfaces())
@@ -137,8 +137,6 @@ def main():
         print('simulate.py: a process was killed, perhaps because memory ran out: expected all of --jobs %d to run'
               % arguments.jobs, file=sys.stderr)
         return 1
-    except KeyboardInterrupt:
-        return 130
     return 0
 
 
