@@ -27,7 +27,6 @@ MIN_SPEEDS = dict(min_linear_speed=0.05, min_angular_speed=0.2)
 TICK = SECOND // EXERCISE['rate']   # ns
 REST = 50       # ticks between two motions
 TRIAL_REST = 25     # ticks at the trial stop of a leg
-END_SIGNALS = {signal.SIGINT, signal.SIGTERM}
 CALIBRATION = 100   # ticks at rest before the first motion, in which the filter estimates the gyro's bias
 
 Snapshot = namedtuple('Snapshot', 'time truth odometry estimate')
@@ -125,7 +124,7 @@ def simulate(method, robot, surface, seed, filtered=False, keep=False):
 def simulate_many(method, robot, surface, seeds, keep=0, jobs=1):
     """Yields the Results of all seeds in their order; keep: the number of paths to keep; jobs: number of processes.
 
-    To be closed after an interrupt, which ends the processes. Raises BrokenProcessPool if one of them is killed.
+    Closing it ends the processes. Raises BrokenProcessPool if one of them is killed.
     """
     work = partial(_simulate_some, method, robot, surface)
     tasks = [(seed, number < keep) for number, seed in enumerate(seeds)]
@@ -140,31 +139,21 @@ def simulate_many(method, robot, surface, seeds, keep=0, jobs=1):
         results = deque()
         try:
             for chunk in chunks:
-                results.append(_submit(pool, work, chunk))
+                results.append(pool.submit(work, chunk))
                 if len(results) > 4 * jobs:     # enough for all processes, and not everything in memory
                     yield from results.popleft().result()
             while results:
                 yield from results.popleft().result()
-        except BaseException:       # an interrupt does not wait for runs that nobody will see
+        except BaseException:       # do not wait for runs that nobody will see
             for process in multiprocessing.active_children():
                 process.kill()
             raise
-
-
-def _submit(pool, work, chunk):
-    """pool.submit(), which may start processes: a signal must not find one that still has the parent's handlers."""
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, END_SIGNALS)
-    try:
-        return pool.submit(work, chunk)
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _follow_the_parent():
     """In a new process: leave Ctrl-C to the parent, and end when it ends, even if it was killed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
-    signal.pthread_sigmask(signal.SIG_UNBLOCK, END_SIGNALS)
     threading.Thread(target=_end_with_the_parent, daemon=True).start()
 
 

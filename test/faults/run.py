@@ -19,6 +19,7 @@ import time
 FOLDER = os.path.dirname(os.path.abspath(__file__))
 sys.path[:0] = [FOLDER, os.path.dirname(FOLDER)]
 
+import processes    # noqa: E402, pylint: disable=wrong-import-position
 import support      # noqa: E402, pylint: disable=wrong-import-position
 
 LIMIT = 20 * 60     # s of wall time for a row: longer means that it hangs
@@ -60,8 +61,9 @@ def run_row(name, module, times, seed):
         environment = dict(os.environ, ROS_MASTER_URI='http://127.0.0.1:%d' % support.free_port(), ROS_IP='127.0.0.1',
                            ROS_HOME=folder, ROS_LOG_DIR=os.path.join(folder, 'log'))
         environment.pop('ROS_NAMESPACE', None)
-        process = running[folder] = subprocess.Popen([sys.executable, os.path.join(FOLDER, 'row.py'), name, str(times), str(seed)],
-                                   stdout=subprocess.PIPE, text=True, env=environment, start_new_session=True, cwd=folder)
+        process = running[folder] = subprocess.Popen(
+            [sys.executable, os.path.join(FOLDER, 'row.py'), name, str(times), str(seed)],
+            stdout=subprocess.PIPE, text=True, env=environment, start_new_session=True, cwd=folder)
         try:
             output, _ = process.communicate(timeout=LIMIT)
         except subprocess.TimeoutExpired:
@@ -85,12 +87,10 @@ def end_row(process, folder):
             process.wait(15)
         except subprocess.TimeoutExpired:
             pass
-    for pid in filter(str.isdigit, os.listdir('/proc')):
+    for pid in processes.with_variable('ROS_HOME', folder):
         try:
-            with open('/proc/%s/environ' % pid, 'rb') as file:
-                if ('ROS_HOME=' + folder).encode() in file.read().split(b'\0'):
-                    os.kill(int(pid), signal.SIGKILL)
-        except OSError:     # it has ended, or is somebody else's
+            os.kill(pid, signal.SIGKILL)
+        except ProcessLookupError:
             pass
     process.wait()
 

@@ -43,6 +43,7 @@ class Listener(threading.Thread):
         self.offset = publisher.impl.seq - connection.stat_num_msg
         self.answered = 0.0     # s of the monotonic clock: when the last call began that the node answered
         self.problem = None
+        self.ended = False      # properly: it is no longer watched
 
     def run(self):
         """Watch."""
@@ -75,13 +76,15 @@ class Listener(threading.Thread):
     def ask(self):
         """Call the node again and again."""
         silent_since = None
-        while not self.problem:
+        while not (self.problem or self.ended):
             start, before = time.monotonic(), rospy.get_rostime()
             try:
                 call(self.peer.uri, 'getPid', timeout=ANSWER_TIMEOUT)
             except ConnectionRefusedError:      # it has ended, and so will its connection
                 return
             except Exception:   # pylint: disable=broad-except
+                if self.ended:
+                    return
                 silent_since = silent_since or start
                 # a busy node whose clock goes on is alive
                 if self.peer.keeps_time and rospy.get_rostime() != before:
@@ -102,6 +105,7 @@ class Listener(threading.Thread):
             time.sleep(LOOK_PERIOD)
         if self.peer.essential:
             return '%s, which publishes the odometry, has gone' % self.peer.name
+        self.ended = True
         if self.publisher.impl.connections and not end_requested.is_set():
             rospy.logwarn('%s: %s has gone: the others go on', self.topic, self.peer.name)
         return None
@@ -133,7 +137,8 @@ class Listener(threading.Thread):
             state = read_connection(self.connection.socket)
         except (OSError, AttributeError):
             return True
-        return (state.window < CLOSED_WINDOW or not state.unacknowledged and (self.answered > last or not self.peer.uri)
+        return (self.ended or state.window < CLOSED_WINDOW
+                or not state.unacknowledged and (self.answered > last or not self.peer.uri)
                 and not (self.peer.keeps_time and self.lost(published)))
 
 
