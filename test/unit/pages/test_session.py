@@ -124,6 +124,7 @@ def test_others_live_on(tmp_path):
 
 
 @pytest.mark.parametrize('end, harmless', [("AttributeError: 'Thread' object has no attribute 'isAlive'", True),
+                                           ("AttributeError: 'ProcessMonitor' object has no attribute 'isAlive'", True),
                                            ("AttributeError: 'Thread' object has no attribute 'is_alive'", False)])
 def test_a_traceback_of_debian_11_is_harmless(end, harmless):
     lines = ['Traceback (most recent call last):', '  File "a.py", line 1, in <module>', '    a', end, '$ ']
