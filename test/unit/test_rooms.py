@@ -17,15 +17,16 @@ ALLOWED = {
     'schedule': {'units'},
     'plots': {'config', 'units'},
     'control': {'units'},
+    'create': {'config', 'control', 'model', 'simulated_base', 'units'},
     'model': {'config', 'units'},
     'estimation': {'model', 'units'},
     'simulated_base': {'control', 'model', 'units'},
     'simulation': {'control', 'estimation', 'simulated_base', 'units'},
-    'ros': {'config', 'control', 'estimation', 'model', 'schedule', 'units'},
+    'ros': {'config', 'control', 'create', 'estimation', 'model', 'schedule', 'units'},
 }
 ALLOWED['nodes'] = set(ALLOWED) - {'__init__'}
 WITH_ROS = {'ros', 'nodes'}
-THIRD_PARTY = {'matplotlib', 'numpy', 'yaml'}   # what the other rooms may import besides Python's own modules
+THIRD_PARTY = {'matplotlib', 'numpy', 'serial', 'yaml'}   # what the other rooms may import besides Python's own modules
 MAX_NODE_LINES = 149
 
 
