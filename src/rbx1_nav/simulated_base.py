@@ -12,13 +12,16 @@ MAX_SPEED_WINDOW = 0.1  # s: the longest time over which encoder counts are aver
 def make_base(robot, surface, seed):
     """The SimulatedBase of a Robot on a Surface (None: ideal). seed: an integer that the run's random errors depend
     on."""
-    if surface is None:
-        wheels, gyro = IdealWheels(robot.base_width), IdealGyro()
-    else:
-        run = draw_run(surface, seed)
-        wheels = Wheels(robot.base_width, surface, run, min(1 / robot.rate, MAX_SPEED_WINDOW))
-        gyro = Gyro(surface, run, seed)
+    wheels, gyro = make_wheels_and_gyro(robot.base_width, surface, seed, min(1 / robot.rate, MAX_SPEED_WINDOW))
     return SimulatedBase(wheels, CommandGate(robot.limits, robot.timeout), gyro)
+
+
+def make_wheels_and_gyro(base_width, surface, seed, window):
+    """The wheels and the gyro of a robot on a Surface. base_width: m; surface, seed: see make_base(); window: see Wheels."""
+    if surface is None:
+        return IdealWheels(base_width), IdealGyro()
+    run = draw_run(surface, seed)
+    return Wheels(base_width, surface, run, window), Gyro(surface, run, seed)
 
 
 class SimulatedBase:

@@ -1,0 +1,119 @@
+#!/usr/bin/env python3
+"""An emulated iRobot Create at the other end of a pseudo-terminal, which a driver opens as its serial port.
+
+usage: fake_create.py [_parameter:=value ...] [topic:=new_topic ...]    usually started by fake_turtlebot_create.launch
+
+Parameters:
+    ~robot_type             create or create2 (default: create)
+    ~link                   path of a symbolic link to the device (default: none; the log shows the device's name)
+    ~surface                ideal, hard_floor, low_ply_carpet, or the absolute path of a surface file (default: ideal)
+    ~seed                   integer that slip, gyro errors and corruption are drawn from, or random; the log shows it
+                            (default: random)
+    ~charge                 of the battery, from 0 to 1 (default: 1)
+    ~corruption             fraction of the bytes to the host that are flipped, lost or doubled (default: 0)
+    ~gyro_measurement_range degrees/s at the end of the gyro's scale (default: 150)
+    ~gyro_sensitivity       what the gyro's signal shows / its nominal value (default: 1)
+    ~wheel_travel           what the encoders count / what the wheels travel (default: 1)
+    ~wheel_base             true distance of the wheels / its nominal value (default: 1)
+
+Services that change what happens to the robot: ~pull_cable, ~silence, ~drop_wheel, ~cliff, ~bump, ~dock (SetBool),
+~power_cycle (Trigger). Topics: ~charge and ~corruption (Float64).
+"""
+import rbx1_nav.ros.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded
+
+from collections import namedtuple
+import time
+
+import rospy
+from nav_msgs.msg import Odometry
+from std_msgs.msg import String
+
+from rbx1_nav.config import ConfigError, Section, show
+from rbx1_nav.create.body import CAPACITY, Body, Errors
+from rbx1_nav.create.emulator import EmulatedCreate
+from rbx1_nav.create.protocol import MODELS
+from rbx1_nav.create.pseudo_terminal import PseudoTerminal
+from rbx1_nav.create.serial_line import SerialLine
+from rbx1_nav.model.surfaces import RANDOM, load_surface, read_seed
+from rbx1_nav.model.wheels import IdealWheels
+from rbx1_nav.ros import messages, node, resources
+from rbx1_nav.ros.robot_faults import RobotFaults
+from rbx1_nav.schedule import Schedule
+from rbx1_nav.units import SECOND
+
+TRUTH_RATE = 50     # Hz
+Frames = namedtuple('Frames', 'odom_frame_id base_frame_id')
+FRAMES = Frames('odom', 'base_footprint')
+
+
+class FakeCreate:
+    """Connects an EmulatedCreate with a pseudo-terminal and with ROS. Only the main thread touches the robot."""
+
+    def __init__(self, robot, terminal):
+        """robot: an EmulatedCreate; terminal: a PseudoTerminal."""
+        self.robot = robot
+        self.terminal = terminal
+        self.truth_schedule = Schedule(TRUTH_RATE)
+        self.truth_pub = rospy.Publisher('ground_truth', Odometry, queue_size=10)
+        self.line_pub = rospy.Publisher('line', String, queue_size=1000)
+        robot.on_command = self.publish_command
+        self.faults = RobotFaults(robot, terminal)
+
+    def run(self):
+        """Run until the node is to end."""
+        while not node.end_requested.is_set():
+            self.step()
+            self.terminal.wait(max(0.0, (self.robot.next_time - time.monotonic_ns()) / SECOND))
+        self.terminal.unplug()
+
+    def step(self):
+        """Bring the robot up to the present."""
+        robot, terminal, now = self.robot, self.terminal, time.monotonic_ns()
+        data = robot.advance(now)
+        self.faults.apply()
+        terminal.write(data)
+        robot.line.host_baud = terminal.baud or robot.line.host_baud
+        robot.receive(terminal.read(), now)
+        if self.truth_schedule.due(now) and self.truth_pub.get_num_connections():
+            self.publish_truth()
+
+    def publish_truth(self):
+        """Publish where the robot really is."""
+        wheels = self.robot.body.wheels
+        self.truth_pub.publish(messages.odometry(rospy.Time.now(), FRAMES, wheels.truth.pose, wheels.true_velocity(
+            *self.robot.body.velocity), IdealWheels.uncertainty))
+
+    def publish_command(self, now, data):
+        """Publish a command that arrived: its time in seconds of ROS time, and its bytes in hexadecimal."""
+        if self.line_pub.get_num_connections():
+            stamp = rospy.Time.now().to_sec() - (time.monotonic_ns() - now) / SECOND
+            self.line_pub.publish('%.6f %s' % (stamp, data.hex()))
+
+
+def main():
+    """Read the parameters, and run. Returns the exit status."""
+    node.init_node('fake_create', __doc__)
+    section = Section(rospy.get_param(rospy.get_name(), {}))
+    try:
+        robot_type = section.get('robot_type', 'create')
+        if robot_type not in MODELS:
+            raise ConfigError('robot_type: %s: expected one of %s' % (show(robot_type), ', '.join(MODELS)))
+        seed = read_seed(section.get('seed', RANDOM))
+        line = SerialLine(MODELS[robot_type].baud, seed)
+        line.corruption = section.number('corruption', 0, 1, 0.0)
+        body = Body(MODELS[robot_type], load_surface(section.get('surface', 'ideal'), resources.surfaces()), seed,
+                    Errors(*(section.number(name, 0.1, 10, 1.0, 'a factor') for name in Errors._fields)),
+                    section.number('gyro_measurement_range', 1, 1e5, 150.0, unit='degrees/s'))
+        body.charge = CAPACITY * section.number('charge', 0, 1, 1.0)
+        terminal = PseudoTerminal(section.get('link', '') or None)
+    except ConfigError as error:
+        rospy.logfatal('%s/%s', rospy.get_name(), error)
+        return 1
+    rospy.loginfo('Emulated %s: serial port %s%s; seed:=%d repeats this robot', robot_type, terminal.device,
+                  ', linked as %s' % terminal.link if terminal.link else '', seed)
+    FakeCreate(EmulatedCreate(MODELS[robot_type], body, line, time.monotonic_ns()), terminal).run()
+    return 0
+
+
+if __name__ == '__main__':
+    node.run(main)

@@ -1,0 +1,93 @@
+"""A pseudo-terminal in the place of a serial port: the robot's end of the cable."""
+import fcntl
+import os
+import select
+import struct
+import time
+import tty
+
+from rbx1_nav.config import ConfigError, show_name
+
+# termios.tcgetattr() knows the common baud rates only; this request (ioctl_tty(2)) knows all, as numbers
+TCGETS2, TERMIOS2 = 0x802c542a, struct.Struct('=4I20s2I')
+
+
+class PseudoTerminal:
+    """A serial port that a client can open by name, at the end of a cable that can be pulled."""
+
+    def __init__(self, link=None):
+        """link: the path of a symbolic link to the device, or None. Raises ConfigError if it cannot be made."""
+        self.link = link
+        self.device = None
+        self._master = None
+        self.plug()
+
+    def plug(self):
+        """Put the cable in: a new device appears."""
+        if self._master is not None:
+            return
+        self._master, slave = os.openpty()
+        self.device = os.ttyname(slave)
+        tty.setraw(slave)       # no echo, whoever opens it
+        os.close(slave)
+        os.set_blocking(self._master, False)
+        if self.link:
+            self._make_link()
+
+    def unplug(self):
+        """Pull the cable: the client gets an error, and the device is gone."""
+        if self._master is None:
+            return
+        if self.link and os.path.islink(self.link) and os.readlink(self.link) == self.device:
+            os.unlink(self.link)
+        os.close(self._master)
+        self._master = self.device = None
+
+    @property
+    def baud(self):
+        """The baud rate that the client has set, bits per second; None while the cable is out."""
+        if self._master is None:
+            return None
+        return TERMIOS2.unpack(fcntl.ioctl(self._master, TCGETS2, bytes(TERMIOS2.size)))[-1]
+
+    def read(self):
+        """The bytes that the client has sent since the last call."""
+        try:
+            return os.read(self._master, 4096) if self._master is not None else b''
+        except OSError:     # nothing there, or no client
+            return b''
+
+    def write(self, data):
+        """Send bytes to the client. They are lost without one, and if it does not read."""
+        if data and self._client(0) is not None:
+            try:
+                os.write(self._master, data)
+            except BlockingIOError:
+                pass
+
+    def wait(self, duration):
+        """Wait until the client sends something, at most `duration` (s)."""
+        if self._client(duration) is None:
+            time.sleep(duration)
+
+    def _client(self, duration):
+        """Whether the client has sent something within a time (s); None if there is none."""
+        if self._master is None:
+            return None
+        poll = select.poll()
+        poll.register(self._master, select.POLLIN)
+        events = poll.poll(1000 * duration)
+        if events and not events[0][1] & select.POLLIN:
+            return None
+        return bool(events)
+
+    def _make_link(self):
+        if os.path.lexists(self.link) and not os.path.islink(self.link):
+            raise ConfigError('link: %s: a file: expected a path where a symbolic link may be made' % show_name(self.link))
+        temporary = '%s.%d' % (self.link, os.getpid())
+        try:
+            os.symlink(self.device, temporary)
+            os.replace(temporary, self.link)
+        except OSError as error:
+            raise ConfigError('link: %s: %s: expected a path where a symbolic link may be made'
+                              % (show_name(self.link), error.strerror))

@@ -1,0 +1,97 @@
+"""The serial line of an emulated robot: bytes arrive at the line's rate, and at the wrong baud rate as garbage.
+
+All times are in ns.
+"""
+from collections import deque
+import random
+
+from rbx1_nav.units import SECOND
+
+BITS = 10           # of a byte on the line: start bit, 8 data bits, stop bit
+BUFFER_SIZE = 1024  # bytes that wait to be sent; those beyond are lost, which corrupts a stream that is too long
+
+
+def misread(data, sent_at, read_at):
+    """The bytes that a receiver at the baud rate `read_at` reads of data that was sent at `sent_at`.
+
+    It waits for a start bit, and then looks at the line in the middle of what it takes for each bit.
+    """
+    if sent_at == read_at:
+        return bytes(data)
+    levels = [level for byte in data for level in [0] + [byte >> bit & 1 for bit in range(8)] + [1]]
+    ratio = sent_at / read_at       # how many bits are sent while one is read
+    received, start = bytearray(), 0
+    while start < len(levels):
+        if levels[start]:
+            start += 1
+            continue
+        middles = [int(start + (bit + 1.5) * ratio) for bit in range(8)]
+        received.append(sum(1 << bit for bit, middle in enumerate(middles)
+                            if middle >= len(levels) or levels[middle]))
+        start += max(1, int(9.5 * ratio))
+    return bytes(received)
+
+
+class SerialLine:
+    """Both directions of a serial line between a host and the robot."""
+
+    def __init__(self, baud, seed=0):
+        """baud: of the robot, bits per second; seed: of the corruption."""
+        self.baud = baud
+        self.host_baud = baud
+        self.corruption = 0.0   # fraction of the bytes to the host that are flipped, lost or doubled
+        self.silent = False     # whether nothing comes through, either way
+        self._random = random.Random('line %d' % seed)
+        self._to_robot, self._to_host = deque(), deque()    # (when it has arrived, byte)
+        self._last_to_robot = self._last_to_host = 0
+
+    def from_host(self, data, now):
+        """The host sends bytes."""
+        if self.silent:
+            return
+        time = max(now, self._last_to_robot)
+        for byte in misread(data, self.host_baud, self.baud):
+            time += BITS * SECOND // self.host_baud
+            self._to_robot.append((time, byte))
+        self._last_to_robot = time
+
+    def from_robot(self, data, now):
+        """The robot sends bytes."""
+        period = BITS * SECOND // self.baud
+        time = max(now, self._last_to_host)
+        for byte in data[:max(0, BUFFER_SIZE - (time - now) // period)]:
+            time += period
+            self._to_host.append((time, byte))
+        self._last_to_host = time
+
+    @property
+    def next_to_robot(self):
+        """When the next byte has arrived at the robot, or None."""
+        return self._to_robot[0][0] if self._to_robot else None
+
+    @property
+    def next_to_host(self):
+        """When the next byte has arrived at the host, or None."""
+        return self._to_host[0][0] if self._to_host else None
+
+    def receive_byte(self):
+        """The next byte that arrives at the robot."""
+        return self._to_robot.popleft()[1]
+
+    def received(self, now):
+        """The bytes that have arrived at the host since the last call."""
+        data = bytearray()
+        while self._to_host and self._to_host[0][0] <= now:
+            data.append(self._to_host.popleft()[1])
+        return b'' if self.silent else self._corrupt(misread(data, self.baud, self.host_baud))
+
+    def _corrupt(self, data):
+        if not self.corruption:
+            return data
+        result = bytearray()
+        for byte in data:
+            if self._random.random() < self.corruption:
+                result += self._random.choice((b'', bytes((byte, byte)), bytes((byte ^ 1 << self._random.randrange(8),))))
+            else:
+                result.append(byte)
+        return bytes(result)

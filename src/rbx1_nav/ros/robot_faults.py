@@ -1,0 +1,59 @@
+"""What can happen to an emulated robot, as services and topics: it loses its cable, a wheel drops, and the like."""
+import queue
+import threading
+
+import rospy
+from std_msgs.msg import Float64
+from std_srvs.srv import SetBool, SetBoolResponse, Trigger, TriggerResponse
+
+from rbx1_nav.create.body import CAPACITY
+from rbx1_nav.ros import node
+
+
+class RobotFaults:
+    """The services and topics. They do nothing by themselves: the thread that owns the robot calls apply()."""
+
+    def __init__(self, robot, terminal):
+        """robot: an EmulatedCreate; terminal: a PseudoTerminal."""
+        self.requests = queue.Queue()
+        body, line = robot.body, robot.line
+        for name, switch in [('pull_cable', lambda on: terminal.unplug() if on else terminal.plug()),
+                             ('silence', lambda on: setattr(line, 'silent', on)),
+                             ('drop_wheel', lambda on: setattr(body, 'wheel_dropped', on)),
+                             ('cliff', lambda on: setattr(body, 'cliff', on)),
+                             ('bump', lambda on: setattr(body, 'bumped', on)),
+                             ('dock', lambda on: setattr(body, 'docked', on))]:
+            self._offer_switch(name, switch)
+        rospy.Service('~power_cycle', Trigger, lambda _: TriggerResponse(
+            True, self._request('power_cycle', lambda: robot.switch_on(robot.now))))
+        self._offer_fraction('charge', lambda value: setattr(body, 'charge', value * CAPACITY))
+        self._offer_fraction('corruption', lambda value: setattr(line, 'corruption', value))
+
+    def apply(self):
+        """Do what was asked for."""
+        while not self.requests.empty():
+            function, done = self.requests.get()
+            function()
+            done.set()
+
+    def _offer_switch(self, name, switch):
+        rospy.Service('~' + name, SetBool, lambda request: SetBoolResponse(
+            True, self._request('%s: %s' % (name, request.data), lambda: switch(request.data))))
+
+    def _offer_fraction(self, name, function):
+        def on_message(message):
+            if 0 <= message.data <= 1:
+                self._request('%s: %g' % (name, message.data), lambda: function(message.data))
+            else:
+                rospy.logerr('%s: %r: expected a number from 0 to 1; rejected', topic, message.data)
+        topic = rospy.resolve_name('~' + name)
+        rospy.Subscriber(topic, Float64, on_message)
+
+    def _request(self, text, function):
+        """Have a function called, and wait until it was. Returns the text, which is logged."""
+        done = threading.Event()
+        self.requests.put((function, done))
+        while not done.is_set() and not node.end_requested.is_set():
+            node.sleep(0.001)
+        rospy.loginfo('%s', text)
+        return text
