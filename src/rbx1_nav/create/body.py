@@ -90,12 +90,13 @@ class Body:
         self.distance.total += 1000 * (left + right) / 2
         self.angle.total += degrees((right - left) / self.model.wheel_separation)
 
-    def sample(self, duration):
+    def sample(self, duration, charging):
         """Sense, `duration` (s) after the last time: afterwards `values` has what the packets say, by their names.
 
-        Except distance and angle, which change as they are read.
+        Except distance and angle, which change as they are read. charging: whether a charger would charge the battery.
         """
-        current = self._use_battery(duration)
+        charging = charging and self.docked
+        current = self._use_battery(duration, charging)
         charge = max(0, min(CAPACITY, round(self.charge)))
         linear, angular = self.velocity
         rate = degrees(self.gyro.read(self.wheels.truth.pose.yaw, duration, False).rate) * self.errors.gyro_sensitivity
@@ -103,7 +104,7 @@ class Body:
             CONSTANT,
             bumps_and_wheel_drops=(BUMP_LEFT | BUMP_RIGHT) * self.bumped + WHEEL_DROP_LEFT * self.wheel_dropped,
             cliff_front_left=int(self.cliff), cliff_front_right=int(self.cliff),
-            charging_state=(3 if charge == CAPACITY else 2) if self.docked else 0,
+            charging_state=(3 if charge == CAPACITY else 2) if charging else 0,     # trickle, full charging, none
             charging_sources=2 * self.docked,
             voltage=round(1000 * (EMPTY + (FULL - EMPTY) * charge / CAPACITY)), current=current, charge=charge)
         if self.cliff:
@@ -120,9 +121,9 @@ class Body:
     def _encoder(self, travel):
         return floor(travel * self.model.counts_per_metre + 0.5) & 0xffff
 
-    def _use_battery(self, duration):
+    def _use_battery(self, duration, charging):
         """Charge or discharge the battery for `duration` (s); returns the current in mA."""
-        if self.docked:
+        if charging:
             current = 1500 if self.charge < CAPACITY else 0
         else:
             current = -300 - 700 * self.moving

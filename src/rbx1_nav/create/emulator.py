@@ -9,7 +9,7 @@ from rbx1_nav.units import SECOND, clamp
 
 TICK = round(UPDATE_PERIOD * SECOND)
 BOOT_TIME = SECOND      # the robot hears nothing for so long after it was switched on
-BOOT_TEXT = b'bl-start\r\nSTR730\r\nr3_robot/tags/release-3.5.4\r\n'     # the Create 2 names its firmware
+BOOT_TEXT = b'bl-start\r\nSTR730\r\nRoomba by iRobot!\r\nr3_robot/tags/release-3.5.4\r\n'     # the Create 2 names its firmware
 INPUT_SIZE = 512        # bytes that wait while a script does
 MAX_NOTES = 16          # of a song (Create p. 11, Create 2 p. 20)
 MAX_SCRIPT = 100        # bytes (Create p. 15)
@@ -108,7 +108,7 @@ class EmulatedCreate:
     # what happens every 15 ms
 
     def _update(self):
-        self.body.sample(UPDATE_PERIOD)
+        self.body.sample(UPDATE_PERIOD, self.mode in (OFF, PASSIVE))     # it does not charge in the others (Create 2 p. 7)
         if not self.body.charge:
             self._enter(OFF)
             self._streaming = False

@@ -1,0 +1,43 @@
+"""An emulated robot for these tests, and what they do with it."""
+from rbx1_nav.create.body import Body, Errors
+from rbx1_nav.create.emulator import EmulatedCreate
+from rbx1_nav.create.protocol import command, packets_format, single_packets
+from rbx1_nav.create.serial_line import SerialLine
+from rbx1_nav.units import SECOND
+
+
+class Robot:
+    """An EmulatedCreate with a host that reads all it sends."""
+
+    def __init__(self, model, surface=None, errors=Errors(), **options):
+        self.body = Body(model, surface, 1, errors, **options)
+        self.model = model
+        self.commands = []
+        self.now = 0
+        self.robot = EmulatedCreate(model, self.body, SerialLine(model.baud), 0,
+                                    lambda time, data: self.commands.append((time, data)))
+
+    def run(self, seconds):
+        """Let time pass. Returns the bytes that have arrived at the host."""
+        self.now += round(seconds * SECOND)
+        return self.robot.advance(self.now)
+
+    def send(self, *commands):
+        """Send commands, and wait until they were executed. Returns the bytes that have arrived meanwhile."""
+        self.robot.receive(b''.join(commands), self.now)
+        return self.run(0.05)
+
+    def read(self, number):
+        """The values of a packet or group, by the names of the packets."""
+        packets = single_packets(self.model, [number])
+        data = self.send(command('sensors', number))
+        return dict(zip((packet.name for packet in packets), packets_format(packets).unpack(data)))
+
+    @property
+    def mode(self):
+        return self.robot.mode
+
+    @property
+    def pose(self):
+        """Where the robot really is."""
+        return self.body.wheels.truth.pose

@@ -1,0 +1,407 @@
+"""The emulated robot's interface: modes, commands, and what it sends."""
+from math import pi, radians
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rbx1_nav.create.emulator import BOOT_TEXT
+from rbx1_nav.create.protocol import (
+    CREATE, CREATE_2, FULL, MODELS, OFF, PASSIVE, SAFE, command, drive_direct, encode_frame, packets_format,
+    single_packets)
+from robots import Robot
+
+both = pytest.mark.parametrize('model', list(MODELS.values()), ids=list(MODELS))
+COMMANDS = [pytest.param(model, each, id='%s-%s' % (model.name, each.name))
+            for model in MODELS.values() for each in model.commands.values()]
+ENTER = {OFF: b'', PASSIVE: command('start'), SAFE: command('start') + command('safe'),
+         FULL: command('start') + command('full')}
+
+
+def robot_in(mode, model, **options):
+    robot = Robot(model, **options)
+    robot.send(ENTER[mode])
+    assert robot.mode == mode
+    return robot
+
+
+def sample(each):
+    """The bytes of a command, with data bytes that are 0, or one item of 0."""
+    size = {'counted': 2, 'notes': 4}.get(each.size, each.size)
+    return bytes((each.opcode,)) + (bytes((1, 0)) if each.size == 'counted' else
+                                    bytes((0, 1, 60, 32)) if each.size == 'notes' else bytes(size))
+
+
+# modes
+
+@pytest.mark.parametrize('mode', [OFF, PASSIVE, SAFE, FULL])
+@pytest.mark.parametrize('model, each', COMMANDS)
+def test_each_command_leads_to_the_mode_of_the_table_where_it_is_accepted(model, each, mode):
+    robot = robot_in(mode, model)
+    robot.send(sample(each))
+    assert robot.mode == (mode if mode not in each.modes or each.mode is None else each.mode)
+
+
+@pytest.mark.parametrize('mode', [PASSIVE, SAFE, FULL])
+@pytest.mark.parametrize('model, each', COMMANDS)
+def test_each_command_takes_its_data_bytes_also_where_it_is_ignored(model, each, mode):
+    robot = robot_in(mode, model)
+    robot.commands.clear()
+    robot.send(sample(each), command('sensors', 35))
+    if robot.mode != OFF:
+        assert [data for _, data in robot.commands] == [sample(each), command('sensors', 35)] or each.name.startswith('wait')
+
+
+@both
+@pytest.mark.parametrize('mode', [OFF, PASSIVE])
+def test_it_drives_in_safe_and_full_mode_only(model, mode):
+    robot = robot_in(mode, model)
+    robot.send(drive_direct(200, 200))
+    robot.run(1)
+    assert robot.pose.x == 0
+
+
+@both
+def test_start_stops_a_moving_robot(model):
+    robot = robot_in(FULL, model)
+    robot.send(drive_direct(200, 200))
+    robot.run(0.95)
+    robot.send(command('start'))
+    stopped = robot.pose
+    robot.run(1)
+    assert robot.pose == stopped and stopped.x == pytest.approx(0.2, abs=1e-3)     # less than 5 ms of the line
+    assert robot.read(41)['requested_right_velocity'] == 0
+
+
+@both
+@pytest.mark.parametrize('fault', ['wheel_dropped', 'cliff', 'docked'])
+def test_safe_mode_ends_when_something_happens_and_full_mode_does_not(model, fault):
+    for mode, after in (SAFE, PASSIVE), (FULL, FULL):
+        robot = robot_in(mode, model)
+        robot.send(drive_direct(100, 100))
+        setattr(robot.body, fault, True)
+        robot.run(0.015)
+        assert robot.mode == after
+        stopped = robot.pose
+        robot.run(1)
+        assert (robot.pose == stopped) == (after == PASSIVE)
+        # while the cause lasts, safe mode does not
+        if after == PASSIVE and fault != 'cliff':
+            robot.send(command('safe'))
+            assert robot.mode == PASSIVE
+            setattr(robot.body, fault, False)
+            robot.send(command('safe'))
+            assert robot.mode == SAFE
+
+
+@both
+@pytest.mark.parametrize('right, left, mode', [
+    (100, 100, PASSIVE), (100, 0, PASSIVE), (-100, -100, SAFE), (0, 0, SAFE), (100, -100, PASSIVE), (-100, -90, SAFE),
+    (-100, 0, PASSIVE)])
+def test_a_cliff_counts_while_the_robot_moves_forward_or_back_in_a_small_circle(model, right, left, mode):
+    robot = robot_in(SAFE, model)
+    robot.send(drive_direct(right, left))
+    robot.body.cliff = True
+    robot.run(0.1)
+    assert robot.mode == mode
+
+
+@both
+def test_a_bump_is_reported_and_changes_nothing(model):
+    robot = robot_in(SAFE, model)
+    robot.send(drive_direct(100, 100))
+    robot.body.bumped = True
+    robot.run(0.1)
+    assert robot.read(7)['bumps_and_wheel_drops'] == 3 and robot.mode == SAFE and robot.body.moving
+
+
+@both
+def test_an_interface_that_is_off_listens_for_start_only(model):
+    robot = Robot(model)
+    assert robot.send(command('sensors', 35), command('safe'), drive_direct(100, 100)) == b'' and robot.mode == OFF
+    robot.send(command('start'))
+    assert robot.read(35) == {'mode': PASSIVE}
+
+
+def test_reset_restarts_a_create_2_which_names_its_firmware():
+    robot = robot_in(FULL, CREATE_2)
+    robot.send(drive_direct(200, 200), command('stream', 1, 7), command('baud', 10))
+    robot.robot.line.host_baud = 57600
+    robot.run(1)
+    robot.send(command('reset'))
+    robot.robot.line.host_baud = 115200
+    robot.send(command('start'))        # too early
+    assert robot.mode == OFF and not robot.body.moving
+    robot.run(1)
+    robot.send(command('start'))
+    assert robot.mode == PASSIVE
+    assert robot.read(101)['left_encoder'] == 0
+
+
+def test_reset_answers_with_the_boot_text():
+    robot = robot_in(PASSIVE, CREATE_2)
+    assert robot.send(command('reset')) == BOOT_TEXT
+
+
+def test_stop_ends_the_stream_of_a_create_2():
+    robot = robot_in(PASSIVE, CREATE_2)
+    robot.send(command('stream', 1, 7))
+    assert robot.run(0.1)
+    robot.send(command('stop'))
+    assert robot.mode == OFF and robot.run(0.1) == b''
+    robot.send(command('start'))
+    assert robot.run(0.1) == b''
+
+
+# driving
+
+@both
+@pytest.mark.parametrize('data, turn, distance', [
+    ((300, 500), 0.3 / 0.5, 0.3), ((300, -500), -0.3 / 0.5, 0.3), ((-200, 500), -0.2 / 0.5, -0.2),
+    ((200, 32767), 0, 0.2), ((200, -32768), 0, 0.2), ((-200, 32767), 0, -0.2), ((100, 1), None, 0), ((100, -1), None, 0)])
+def test_drive(model, data, turn, distance):
+    robot = robot_in(FULL, model)
+    robot.send(command('drive', *(byte for value in data for byte in value.to_bytes(2, 'big', signed=True))))
+    before = robot.pose.yaw, robot.body.distance.total
+    robot.run(1)
+    if turn is None:
+        turn = data[1] * 0.1 / (model.wheel_separation / 2)
+    assert robot.pose.yaw - before[0] == pytest.approx(turn)
+    assert robot.body.distance.total - before[1] == pytest.approx(1000 * distance)
+    assert robot.read(39)['requested_velocity'] == data[0] and robot.read(40)['requested_radius'] == data[1]
+
+
+@both
+@given(right=st.integers(-500, 500), left=st.integers(-500, 500))
+def test_drive_direct_is_exact(model, right, left):
+    robot = robot_in(FULL, model)
+    robot.send(drive_direct(right, left))
+    before = robot.pose.yaw
+    robot.run(1)
+    assert robot.pose.yaw - before == pytest.approx((right - left) / 1000 / model.wheel_separation)
+    values = robot.read(5)
+    assert (values['requested_right_velocity'], values['requested_left_velocity']) == (right, left)
+
+
+def test_speeds_beyond_the_limit_are_clamped():
+    robot = robot_in(FULL, CREATE)
+    robot.send(drive_direct(20000, -501))
+    assert (robot.body.right, robot.body.left) == (500, -500)
+
+
+def test_drive_pwm():
+    robot = robot_in(FULL, CREATE_2)
+    robot.send(command('drive_pwm', 0, 255, 255, 1))
+    assert (robot.body.right, robot.body.left) == (500, -500)
+
+
+def test_a_command_takes_effect_when_its_last_byte_has_arrived():
+    robot = robot_in(FULL, CREATE_2)
+    robot.commands.clear()
+    robot.robot.receive(drive_direct(200, 200), robot.now)
+    start = robot.now
+    robot.run(1)
+    (time, data), = robot.commands
+    assert data == drive_direct(200, 200) and time - start == pytest.approx(5 * 10 / 115200 * 1e9, abs=10)
+    assert robot.pose.x == pytest.approx(0.2 * (robot.now - time) / 1e9)
+
+
+@both
+@given(st.integers(1, 4))
+def test_half_a_command_waits_for_its_other_half(model, count):
+    robot = robot_in(FULL, model)
+    data = drive_direct(200, 200)
+    robot.send(data[:count])
+    robot.run(10)
+    assert not robot.body.moving
+    robot.send(data[count:])
+    assert robot.body.moving
+
+
+# sensors
+
+@both
+def test_every_packet_and_group_is_answered(model):
+    robot = robot_in(SAFE, model)
+    for number in [*model.packets, *model.groups]:
+        packets = single_packets(model, [number])
+        data = robot.send(command('sensors', number))
+        values = packets_format(packets).unpack(data)
+        for packet, value in zip(packets, values):
+            assert packet.low <= value <= packet.high
+
+
+@both
+def test_a_number_without_a_packet_is_not_answered(model):
+    robot = robot_in(PASSIVE, model)
+    assert robot.send(command('sensors', 99), command('query_list', 2, 7, 99)) == b''
+    assert robot.read(35) == {'mode': PASSIVE}
+
+
+@both
+def test_a_query_list_is_answered_in_its_order(model):
+    robot = robot_in(SAFE, model)
+    robot.body.bumped = True
+    robot.run(0.1)
+    assert robot.send(command('query_list', 3, 35, 7, 1)) == bytes((SAFE, 3, 3)) + bytes(9)
+
+
+@both
+def test_a_stream_sends_a_frame_every_15_ms_until_it_is_paused(model):
+    robot = robot_in(SAFE, model)
+    frame = encode_frame(model, [7, 35], {'bumps_and_wheel_drops': 0, 'mode': SAFE})
+    robot.send(command('stream', 2, 7, 35))
+    assert robot.run(1.5) == 100 * frame
+    robot.send(command('pause_resume_stream', 0))
+    assert robot.run(1) == b''
+    assert robot.read(38) == {'stream_packets': 2}
+    robot.send(command('pause_resume_stream', 1))
+    assert robot.run(0.15)[:2 * len(frame)].startswith(frame)
+    robot.send(command('stream', 0))
+    assert robot.run(1) == b''
+
+
+def test_a_stream_longer_than_the_line_can_carry_loses_bytes():
+    robot = robot_in(PASSIVE, CREATE_2)
+    robot.send(command('stream', 3, 100, 100, 100))
+    received = robot.run(10)
+    # 15 ms carry 172 bytes, and a frame has 246
+    assert len(received) == pytest.approx(115200, rel=0.02)
+    starts = [index for index in range(len(received) - 246) if received[index:index + 3] == bytes((19, 243, 100))]
+    intact = [start for start in starts if sum(received[start:start + 246]) % 256 == 0]
+    assert 0 < len(intact) < len(starts)
+
+
+@both
+def test_distance_and_angle_are_those_since_the_last_reading(model):
+    robot = robot_in(FULL, model)
+    robot.send(drive_direct(200, 100))
+    robot.run(2)
+    robot.send(drive_direct(0, 0))
+    whole = robot.body.distance.total, robot.body.angle.total
+    first = robot.read(2)
+    assert first['distance'] == pytest.approx(whole[0], abs=0.5) and first['angle'] == pytest.approx(whole[1], abs=0.5)
+    assert robot.read(19) == {'distance': 0} and robot.read(20) == {'angle': 0}
+
+
+@both
+def test_a_frame_of_the_stream_reads_distance_too(model):
+    robot = robot_in(FULL, model)
+    robot.send(command('stream', 1, 19), drive_direct(100, 100))
+    received = robot.run(1)
+    frames = [received[index:index + 6] for index in range(0, len(received) - 5, 6)]
+    total = sum(int.from_bytes(frame[3:5], 'big') for frame in frames)
+    assert total == pytest.approx(100, abs=2)       # 15 ms at each end
+
+
+def test_distance_is_capped():
+    robot = robot_in(FULL, CREATE)
+    robot.send(drive_direct(500, 500))
+    robot.run(70)
+    assert robot.read(19) == {'distance': 32767}
+    robot.send(drive_direct(0, 0))
+    robot.read(19)
+    assert robot.read(19) == {'distance': 0}
+
+
+def test_encoders_wrap():
+    robot = robot_in(FULL, CREATE_2)
+    robot.send(drive_direct(500, -500))
+    robot.run(60)
+    robot.send(drive_direct(0, 0))
+    travel = robot.pose.yaw * CREATE_2.wheel_separation / 2
+    counts = round(travel * 508.8 / (pi * 0.072))
+    assert counts > 65536
+    values = robot.read(101)
+    assert values['right_encoder'] == counts % 65536
+    assert values['left_encoder'] == -counts % 65536 and values['left_encoder'] != values['right_encoder']
+
+
+def test_the_gyro_on_the_analog_input_of_a_create():
+    robot = robot_in(FULL, CREATE)
+    assert robot.read(33) == {'analog_input': 512}
+    robot.send(drive_direct(130, -130))      # 1 rad/s
+    adc = robot.read(33)['analog_input']
+    # create_node's law
+    assert radians(-(adc - 512) / 512 * 150) == pytest.approx(1, abs=radians(150 / 512 / 2))
+    assert robot_in(PASSIVE, CREATE_2).read(33) == {'analog_input': 0}
+
+
+# songs, buttons, baud rate
+
+@both
+def test_a_song_plays_for_its_duration_and_no_other_meanwhile(model):
+    robot = robot_in(SAFE, model)
+    robot.send(command('song', 1, 2, 60, 32, 62, 64), command('song', 2, 1, 60, 64))
+    assert robot.read(37) == {'song_playing': 0}
+    robot.send(command('play_song', 1), command('play_song', 2))
+    assert robot.read(36) == {'song_number': 1} and robot.read(37) == {'song_playing': 1}
+    robot.run(1.5)
+    assert robot.read(37) == {'song_playing': 0}
+    robot.send(command('play_song', model.songs))       # there is none
+    assert robot.read(37) == {'song_playing': 0}
+
+
+def test_a_pushed_button_comes_back():
+    robot = robot_in(SAFE, CREATE_2)
+    robot.send(command('push_buttons', 4))
+    assert robot.read(18) == {'buttons': 4}
+    robot.run(0.2)
+    assert robot.read(18) == {'buttons': 0}
+
+
+@both
+def test_baud(model):
+    robot = robot_in(PASSIVE, model)
+    robot.send(command('baud', 7))
+    assert robot.robot.line.baud == 19200
+    robot.send(command('sensors', 35))
+    robot.robot.line.host_baud = 19200
+    robot.run(1)
+    assert robot.read(35) == {'mode': PASSIVE}
+
+
+def test_outputs_are_kept():
+    robot = robot_in(SAFE, CREATE)
+    robot.send(command('leds', 8, 0, 255), command('low_side_drivers', 3), command('digital_outputs', 1))
+    assert robot.robot.outputs == {'leds': bytes((8, 0, 255)), 'low_side_drivers': bytes((3,)), 'digital_outputs': bytes((1,))}
+    robot.send(command('safe'))
+    assert 'leds' not in robot.robot.outputs
+
+
+# battery
+
+@both
+def test_the_battery_runs_down_and_a_dock_charges_it(model):
+    robot = robot_in(PASSIVE, model)
+    full = robot.read(3)
+    assert full['charge'] == full['capacity'] and full['current'] < 0 and full['charging_state'] == 0
+    robot.run(3600)
+    low = robot.read(3)
+    assert low['charge'] == full['charge'] - 300 and low['voltage'] < full['voltage']
+    robot.body.docked = True
+    robot.run(60)
+    charging = robot.read(3)
+    assert charging['charge'] > low['charge'] and charging['current'] > 0 and charging['charging_state'] == 2
+    assert robot.read(34) == {'charging_sources': 2}
+    robot.send(command('full'))
+    assert robot.read(3)['charging_state'] == 0
+
+
+@both
+def test_an_empty_battery_switches_the_robot_off(model):
+    robot = robot_in(FULL, model)
+    robot.send(drive_direct(200, 200), command('stream', 1, 7))
+    robot.body.charge = 0
+    robot.run(0.1)
+    assert robot.mode == OFF and not robot.body.moving
+    assert robot.send(command('start'), command('sensors', 35)) == b'' and robot.mode == OFF
+
+
+@both
+@given(st.binary(max_size=400))
+def test_no_bytes_upset_it(model, data):
+    robot = robot_in(FULL, model)
+    robot.send(data)
+    robot.run(1)
+    assert robot.mode in (OFF, PASSIVE, SAFE, FULL)

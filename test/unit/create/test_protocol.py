@@ -1,0 +1,79 @@
+"""The tables of the Open Interface, against the documents and in both directions."""
+from struct import Struct
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rbx1_nav.create.protocol import (
+    CREATE, CREATE_2, FRAME_HEADER, MODELS, checksum, command, drive_direct, encode_frame, frame_format, packets_format,
+    single_packets)
+
+models = st.sampled_from(list(MODELS.values()))
+PACKETS = [pytest.param(packet, id='%s-%d' % (model.name, packet.number))
+           for model in MODELS.values() for packet in model.packets.values()]
+
+
+@st.composite
+def frames(draw):
+    """(model, numbers of packets and groups, values by the names of the packets)"""
+    model = draw(models)
+    numbers = draw(st.lists(st.sampled_from(list(model.packets) + list(model.groups)), min_size=1, max_size=5))
+    values = {packet.name: draw(st.integers(packet.low, packet.high)) for packet in single_packets(model, numbers)}
+    return model, numbers, values
+
+
+@pytest.mark.parametrize('packet', PACKETS)
+def test_every_value_of_a_packet_encodes_and_decodes_back(packet):
+    form = packets_format([packet])
+    for value in range(packet.low, packet.high + 1):
+        assert form.unpack(form.pack(value)) == (value,)
+
+
+def test_values_are_big_endian():
+    assert packets_format([CREATE.packets[19]]).pack(-2) == b'\xff\xfe'
+    assert packets_format([CREATE.packets[25]]).pack(0x0102) == b'\x01\x02'
+
+
+# number of bytes: Create p. 17, Create 2 p. 23
+@pytest.mark.parametrize('model, group, size', [
+    (CREATE, 0, 26), (CREATE, 1, 10), (CREATE, 2, 6), (CREATE, 3, 10), (CREATE, 4, 14), (CREATE, 5, 12), (CREATE, 6, 52),
+    (CREATE_2, 0, 26), (CREATE_2, 1, 10), (CREATE_2, 2, 6), (CREATE_2, 3, 10), (CREATE_2, 4, 14), (CREATE_2, 5, 12),
+    (CREATE_2, 6, 52), (CREATE_2, 100, 80), (CREATE_2, 101, 28), (CREATE_2, 106, 12), (CREATE_2, 107, 9)])
+def test_the_size_of_a_group(model, group, size):
+    assert packets_format(single_packets(model, [group])).size == size
+
+
+@given(frames())
+def test_a_frame_encodes_and_decodes_back(frame):
+    model, numbers, values = frame
+    form = frame_format(model, numbers)
+    if form.size - 3 > 255:
+        return      # too long for its length byte
+    data = encode_frame(model, numbers, values)
+    assert len(data) == form.size and data[:2] == bytes((FRAME_HEADER, len(data) - 3)) and sum(data) % 256 == 0
+    fields = list(form.unpack(data))[2:-1]
+    for number in numbers:
+        assert fields.pop(0) == number
+        for packet in single_packets(model, [number]):
+            assert fields.pop(0) == values[packet.name]
+    assert not fields
+
+
+def test_the_frame_of_the_document():
+    values = {'cliff_front_left_signal': 549, 'virtual_wall': 0}
+    assert encode_frame(CREATE, [29, 13], values) == bytes((19, 5, 29, 2, 37, 13, 0, 151))
+
+
+@given(st.binary(max_size=300))
+def test_a_checksum_makes_the_sum_a_multiple_of_256(data):
+    assert (sum(data) + checksum(data)) % 256 == 0
+
+
+@given(st.integers(-500, 500), st.integers(-500, 500))
+def test_drive_direct(right, left):
+    assert Struct('>Bhh').unpack(drive_direct(right, left)) == (145, right, left)
+
+
+def test_a_command():
+    assert command('start') == bytes((128,)) and command('leds', 8, 0, 128) == bytes((139, 8, 0, 128))
