@@ -17,7 +17,7 @@ def make_base(robot, surface, seed):
 
 
 def make_wheels_and_gyro(base_width, surface, seed, window):
-    """The wheels and the gyro of a robot on a Surface. base_width: m; surface, seed: see make_base(); window: see Wheels."""
+    """The wheels and the gyro of a robot. base_width: m; surface, seed: see make_base(); window: see Wheels."""
     if surface is None:
         return IdealWheels(base_width), IdealGyro()
     run = draw_run(surface, seed)

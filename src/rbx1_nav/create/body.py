@@ -50,7 +50,8 @@ class Body:
         self.errors = errors
         self.gyro_range = gyro_range
         self.wheels, self.gyro = make_wheels_and_gyro(
-            model.wheel_separation * errors.wheel_base, surface and surface._replace(ticks_meter=FINE), seed, UPDATE_PERIOD)
+            model.wheel_separation * errors.wheel_base, surface and surface._replace(ticks_meter=FINE), seed,
+            UPDATE_PERIOD)
         self.left = self.right = 0          # mm/s, as commanded
         self.bumped = self.wheel_dropped = self.cliff = self.docked = False
         self.charge = CAPACITY              # mAh
@@ -111,7 +112,8 @@ class Body:
             self.values.update(cliff_front_left_signal=NO_FLOOR, cliff_front_right_signal=NO_FLOOR)
         if self.model is CREATE:
             # the TurtleBot's board with the gyro is on this robot only
-            self.values.update(CONSTANT_1, analog_input=max(0, min(1023, round(ADC_ZERO * (1 - rate / self.gyro_range)))))
+            signal = round(ADC_ZERO * (1 - rate / self.gyro_range))
+            self.values.update(CONSTANT_1, analog_input=max(0, min(1023, signal)))
         else:
             self.values.update(
                 left_encoder=self._encoder(self._counted_left), right_encoder=self._encoder(self._counted_right),

@@ -4,20 +4,20 @@ from struct import Struct
 from rbx1_nav.create.protocol import (
     BAUD_RATES, COUNTED, CREATE, IN_PLACE_LEFT, IN_PLACE_RIGHT, MAX_SPEED, NOTES, OFF, PASSIVE, SAFE,
     STRAIGHT, UPDATE_PERIOD, encode_frame, frame_format, packets_format, single_packets)
-from rbx1_nav.create.script import event
+from rbx1_nav.create.scripts import Scripts
 from rbx1_nav.units import SECOND, clamp
 
 TICK = round(UPDATE_PERIOD * SECOND)
 BOOT_TIME = SECOND      # the robot hears nothing for so long after it was switched on
-BOOT_TEXT = b'bl-start\r\nSTR730\r\nRoomba by iRobot!\r\nr3_robot/tags/release-3.5.4\r\n'     # the Create 2 names its firmware
+# the Create 2 names its firmware
+BOOT_TEXT = b'bl-start\r\nSTR730\r\nRoomba by iRobot!\r\nr3_robot/tags/release-3.5.4\r\n'
 INPUT_SIZE = 512        # bytes that wait while a script does
 MAX_NOTES = 16          # of a song (Create p. 11, Create 2 p. 20)
-MAX_SCRIPT = 100        # bytes (Create p. 15)
 MAX_FRAME = 255         # data bytes in a frame of the stream
 MAX_PWM = 255
 ROBOT_RADIUS = 0.165    # m
 BUTTON_TIME = SECOND // 6
-PAIR, WORD = Struct('>hh'), Struct('>h')
+PAIR = Struct('>hh')
 
 
 def command_size(model, data):
@@ -67,7 +67,7 @@ class EmulatedCreate:
         self._stream, self._streaming = [], False
         self._songs, self._song, self._song_end = {}, 0, now
         self._buttons, self._buttons_end = 0, now
-        self._script, self._script_due, self._wait = b'', False, None
+        self._scripts = Scripts(self.body, lambda: self._values(()))
 
     # time
 
@@ -108,17 +108,14 @@ class EmulatedCreate:
     # what happens every 15 ms
 
     def _update(self):
-        self.body.sample(UPDATE_PERIOD, self.mode in (OFF, PASSIVE))     # it does not charge in the others (Create 2 p. 7)
+        # in the other modes it does not charge (Create 2 p. 7)
+        self.body.sample(UPDATE_PERIOD, self.mode in (OFF, PASSIVE))
         if not self.body.charge:
             self._enter(OFF)
             self._streaming = False
         if self.mode == SAFE and self._unsafe():
             self._enter(PASSIVE)
-        if self._wait and self._wait():
-            self._wait = None
-        if self._script_due and not self._wait:
-            self._script_due = False
-            self._input[:0] = self._script
+        self._input[:0] = self._scripts.update(self.now)
         self._execute()
         if self._streaming:
             self.line.from_robot(encode_frame(self.model, self._stream, self._values(self._stream)), self.now)
@@ -148,7 +145,7 @@ class EmulatedCreate:
 
     def _execute(self):
         """Execute the commands that are complete, up to one that waits."""
-        while self._input and not self._wait:
+        while self._input and not self._scripts.waiting:
             command = self.model.commands.get(self._input[0])
             if command is None or self.mode == OFF and OFF not in command.modes:
                 del self._input[0]      # an interface that is off does not count data bytes
@@ -163,7 +160,7 @@ class EmulatedCreate:
                 self._do(command, data[1:])
 
     def _do(self, command, data):
-        handler = getattr(self, '_do_' + command.name, None)
+        handler = getattr(self, '_do_' + command.name, None) or getattr(self._scripts, 'do_' + command.name, None)
         if handler:
             handler(data)
         elif data:
@@ -244,7 +241,7 @@ class EmulatedCreate:
     def _do_pause_resume_stream(self, data):
         self._streaming = bool(data[0] and self._stream)
 
-    # songs and buttons
+    # songs, buttons, scripts
 
     def _do_song(self, data):
         if data[0] < self.model.songs and 0 < data[1] <= MAX_NOTES:
@@ -257,34 +254,6 @@ class EmulatedCreate:
     def _do_push_buttons(self, data):
         self._buttons, self._buttons_end = data[0], self.now + BUTTON_TIME
 
-    # scripts
-
-    def _do_script(self, data):
-        if data[0] <= MAX_SCRIPT:
-            self._script = data[1:]
-
-    def _do_play_script(self, _):
-        self._script_due = True     # at the next update, so that a script that repeats itself leaves time for others
-
     def _do_show_script(self, _):
         self._streaming = False
-        self.line.from_robot(bytes((len(self._script),)) + self._script, self.now)
-
-    def _do_wait_time(self, data):
-        end = self.now + data[0] * SECOND // 10
-        self._wait = lambda: self.now >= end
-
-    def _do_wait_distance(self, data):
-        self._wait_for(self.body.distance, *WORD.unpack(data))
-
-    def _do_wait_angle(self, data):
-        self._wait_for(self.body.angle, *WORD.unpack(data))
-
-    def _wait_for(self, tally, goal):
-        tally.take()
-        self._wait = lambda: tally.pending >= goal if goal > 0 else tally.pending <= goal
-
-    def _do_wait_event(self, data):
-        happens = event(data[0])
-        if happens:
-            self._wait = lambda: happens(self._values(()))
+        self.line.from_robot(bytes((len(self._scripts.stored),)) + self._scripts.stored, self.now)

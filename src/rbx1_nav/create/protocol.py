@@ -181,7 +181,7 @@ def drive_direct(right, left):
 
 
 def single_packets(model, numbers):
-    """The Packets that numbers of packets and groups stand for, in the order in which they are sent. Raises KeyError."""
+    """The Packets that numbers of packets and groups stand for, in the order that they are sent in. Raises KeyError."""
     return [model.packets[each] for number in numbers for each in model.groups.get(number, (number,))]
 
 

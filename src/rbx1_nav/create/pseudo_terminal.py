@@ -83,11 +83,14 @@ class PseudoTerminal:
 
     def _make_link(self):
         if os.path.lexists(self.link) and not os.path.islink(self.link):
-            raise ConfigError('link: %s: a file: expected a path where a symbolic link may be made' % show_name(self.link))
+            raise self._error('a file')
         temporary = '%s.%d' % (self.link, os.getpid())
         try:
             os.symlink(self.device, temporary)
             os.replace(temporary, self.link)
         except OSError as error:
-            raise ConfigError('link: %s: %s: expected a path where a symbolic link may be made'
-                              % (show_name(self.link), error.strerror))
+            raise self._error(error.strerror)
+
+    def _error(self, text):
+        return ConfigError('link: %s: %s: expected a path where a symbolic link may be made'
+                           % (show_name(self.link), text))

@@ -91,7 +91,8 @@ class SerialLine:
         result = bytearray()
         for byte in data:
             if self._random.random() < self.corruption:
-                result += self._random.choice((b'', bytes((byte, byte)), bytes((byte ^ 1 << self._random.randrange(8),))))
+                flipped = byte ^ 1 << self._random.randrange(8)
+                result += self._random.choice((b'', bytes((byte, byte)), bytes((flipped,))))
             else:
                 result.append(byte)
         return bytes(result)

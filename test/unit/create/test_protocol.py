@@ -37,7 +37,8 @@ def test_values_are_big_endian():
 
 # number of bytes: Create p. 17, Create 2 p. 23
 @pytest.mark.parametrize('model, group, size', [
-    (CREATE, 0, 26), (CREATE, 1, 10), (CREATE, 2, 6), (CREATE, 3, 10), (CREATE, 4, 14), (CREATE, 5, 12), (CREATE, 6, 52),
+    (CREATE, 0, 26), (CREATE, 1, 10), (CREATE, 2, 6), (CREATE, 3, 10), (CREATE, 4, 14), (CREATE, 5, 12),
+    (CREATE, 6, 52),
     (CREATE_2, 0, 26), (CREATE_2, 1, 10), (CREATE_2, 2, 6), (CREATE_2, 3, 10), (CREATE_2, 4, 14), (CREATE_2, 5, 12),
     (CREATE_2, 6, 52), (CREATE_2, 100, 80), (CREATE_2, 101, 28), (CREATE_2, 106, 12), (CREATE_2, 107, 9)])
 def test_the_size_of_a_group(model, group, size):

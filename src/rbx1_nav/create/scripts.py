@@ -1,0 +1,99 @@
+"""Scripts of the Create: one that is stored, when it is played, and what it waits for."""
+from struct import Struct
+
+from rbx1_nav.create.protocol import PASSIVE
+from rbx1_nav.units import SECOND
+
+MAX_SCRIPT = 100        # bytes (Create p. 15)
+WORD = Struct('>h')
+BUMPS = 'bumps_and_wheel_drops'
+
+
+def _bits(mask, *names):
+    """Whether a bit is set in a packet."""
+    return lambda values: any(values[name] & mask for name in names)
+
+
+# by their numbers, from 1 on (Create p. 16)
+EVENTS = (
+    _bits(28, BUMPS), _bits(16, BUMPS), _bits(8, BUMPS), _bits(4, BUMPS),   # wheel drops: any, front, left, right
+    _bits(3, BUMPS), _bits(2, BUMPS), _bits(1, BUMPS),                      # bumps: any, left, right
+    _bits(1, 'virtual_wall'), _bits(1, 'wall'),
+    _bits(1, 'cliff_left', 'cliff_front_left', 'cliff_front_right', 'cliff_right'),
+    _bits(1, 'cliff_left'), _bits(1, 'cliff_front_left'), _bits(1, 'cliff_front_right'), _bits(1, 'cliff_right'),
+    _bits(2, 'charging_sources'),                                           # home base
+    _bits(4, 'buttons'), _bits(1, 'buttons'),                               # advance, play
+    _bits(1, 'digital_inputs'), _bits(2, 'digital_inputs'), _bits(4, 'digital_inputs'), _bits(8, 'digital_inputs'),
+    lambda values: values['mode'] == PASSIVE)
+
+
+def event(byte):
+    """The condition that a data byte of Wait Event stands for: a function of the packets' values by name.
+
+    A negative number is the inverse of an event. None for a number without a meaning.
+    """
+    number = byte - 256 if byte > 127 else byte
+    if not 1 <= abs(number) <= len(EVENTS):
+        return None
+    happens = EVENTS[abs(number) - 1]
+    return happens if number > 0 else lambda values: not happens(values)
+
+
+class Scripts:
+    """The script of a robot. do_...() are commands, and get their data bytes."""
+
+    def __init__(self, body, values):
+        """body: a Body; values(): those of all packets, by name."""
+        self.body = body
+        self.values = values
+        self.stored = b''
+        self._now = 0
+        self._due = False
+        self._wait = None       # whether a wait is over, at a time in ns
+
+    @property
+    def waiting(self):
+        """Whether a command keeps the next ones waiting."""
+        return self._wait is not None
+
+    def update(self, now):
+        """To be called every 15 ms: returns the commands that are now to be executed next."""
+        self._now = now
+        if self._wait and self._wait(now):
+            self._wait = None
+        if not self._due or self._wait:
+            return b''
+        self._due = False
+        return self.stored
+
+    def do_script(self, data):
+        """Store a script."""
+        if data[0] <= MAX_SCRIPT:
+            self.stored = data[1:]
+
+    def do_play_script(self, _):
+        """Play it at the next update, so that one that plays itself leaves time for other commands."""
+        self._due = True
+
+    def do_wait_time(self, data):
+        """Wait for tenths of a second."""
+        end = self._now + data[0] * SECOND // 10
+        self._wait = lambda now: now >= end
+
+    def do_wait_distance(self, data):
+        """Wait for mm."""
+        self._wait_for(self.body.distance, *WORD.unpack(data))
+
+    def do_wait_angle(self, data):
+        """Wait for degrees."""
+        self._wait_for(self.body.angle, *WORD.unpack(data))
+
+    def do_wait_event(self, data):
+        """Wait for an event."""
+        happens = event(data[0])
+        if happens:
+            self._wait = lambda _: happens(self.values())
+
+    def _wait_for(self, tally, goal):
+        tally.take()        # the packets start anew too
+        self._wait = lambda _: tally.pending >= goal if goal > 0 else tally.pending <= goal

@@ -1,0 +1,86 @@
+"""The line between host and robot: its rate, wrong baud rates, corrupted bytes."""
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rbx1_nav.create.protocol import BAUD_RATES
+from rbx1_nav.create.serial_line import SerialLine, misread
+from rbx1_nav.units import SECOND
+
+rates = st.sampled_from(BAUD_RATES)
+
+
+@given(st.binary(), rates)
+def test_at_the_same_baud_rate_everything_arrives(data, baud):
+    assert misread(data, baud, baud) == data
+
+
+@given(st.binary(), st.floats(0.965, 1.035))
+def test_a_receiver_tolerates_a_clock_that_is_a_little_off(data, ratio):
+    # half a bit in 9.5 is 5 %, and the bit before it must be over
+    assert misread(data, 57600 * ratio, 57600) == data
+
+
+def test_what_a_receiver_at_half_and_at_double_the_rate_reads():
+    # 0111111111 on the line, each bit read twice: start bit and a 0
+    assert misread(b'\xff', 57600, 115200) == b'\xfe'
+    # 0000000001 on the line, every other bit read from the fourth on
+    assert misread(b'\x00', 115200, 57600) == b'\xf8'
+
+
+@given(st.binary(min_size=1), rates, rates)
+def test_at_a_wrong_baud_rate_garbage_arrives(data, sent_at, read_at):
+    received = misread(data, sent_at, read_at)
+    if sent_at != read_at and len(data) > 20:
+        assert received != data
+    assert len(received) <= max(1, len(data) * max(1, read_at / sent_at) * 2)
+
+
+@given(st.binary(max_size=500), rates)
+def test_bytes_take_their_time(data, baud):
+    line = SerialLine(baud)
+    line.from_robot(data, 1000)
+    period = 10 * SECOND // baud
+    for count in range(0, len(data), 50):
+        assert line.received(1000 + count * period) == data[max(0, count - 50):count]
+    assert line.received(1000 + len(data) * period) == data[(len(data) - 1) // 50 * 50 if data else 0:]
+
+
+@given(st.binary(min_size=1, max_size=100))
+def test_bytes_to_the_robot_take_their_time(data):
+    line = SerialLine(57600)
+    line.from_host(data[:1], 0)
+    line.from_host(data[1:], 0)     # it has to wait for the first one
+    times = []
+    for byte in data:
+        times.append(line.next_to_robot)
+        assert line.receive_byte() == byte
+    assert times == [(index + 1) * (10 * SECOND // 57600) for index in range(len(data))]
+    assert line.next_to_robot is None
+
+
+def test_a_silent_line_carries_nothing_either_way():
+    line = SerialLine(57600)
+    line.silent = True
+    line.from_host(b'abc', 0)
+    line.from_robot(b'abc', 0)
+    assert line.next_to_robot is None and line.received(SECOND) == b''
+    line.silent = False
+    line.from_robot(b'abc', SECOND)
+    assert line.received(2 * SECOND) == b'abc'
+
+
+@pytest.mark.parametrize('fraction', [0.0, 0.01, 0.3, 1.0])
+def test_the_fraction_of_corrupted_bytes(fraction):
+    line = SerialLine(115200, 7)
+    line.corruption = fraction
+    counts = {}
+    for index in range(20000):
+        line.from_robot(b'\x55', index * SECOND)
+        received = line.received((index + 1) * SECOND)
+        kind = {0: 'lost', 2: 'doubled'}.get(len(received), 'intact' if received == b'\x55' else 'flipped')
+        assert kind != 'flipped' or bin(received[0] ^ 0x55).count('1') == 1
+        counts[kind] = counts.get(kind, 0) + 1
+    for kind in 'lost', 'doubled', 'flipped':
+        # five standard deviations of a binomial distribution
+        assert abs(counts.get(kind, 0) - 20000 * fraction / 3) <= 5 * (20000 * fraction / 3) ** 0.5
