@@ -105,7 +105,10 @@ def main():
                     Errors(*(section.number(name, 0.1, 10, 1.0, 'a factor') for name in Errors._fields)),
                     section.number('gyro_measurement_range', 1, 1e5, 150.0, unit='degrees/s'))
         body.charge = CAPACITY * section.number('charge', 0, 1, 1.0)
-        terminal = PseudoTerminal(section.get('link', '') or None)
+        link = section.get('link', '')
+        if not isinstance(link, str):
+            raise ConfigError('link: %s: expected a path' % show(link))
+        terminal = PseudoTerminal(link or None)
     except ConfigError as error:
         rospy.logfatal('%s/%s', rospy.get_name(), error)
         return 1

@@ -1,0 +1,117 @@
+"""An emulated robot as a process of its own, for the tests in this folder."""
+import os
+import signal
+import tempfile
+
+import rospy
+import serial
+from nav_msgs.msg import Odometry
+from std_msgs.msg import Float64, String
+from std_srvs.srv import SetBool, Trigger
+
+from rbx1_nav.create.protocol import MODELS, command, packets_format, single_packets
+import support
+
+
+class EmulatedRobot:
+    """fake_create.py, and a client at its serial port."""
+
+    def __init__(self, case, robot_type, **params):
+        """case: the TestCase, at whose end it ends; params: of the node."""
+        self.model = MODELS[robot_type]
+        folder = tempfile.TemporaryDirectory()
+        case.addCleanup(folder.cleanup)
+        self.link = os.path.join(folder.name, 'port')
+        if rospy.has_param('/fake_create'):
+            rospy.delete_param('/fake_create')
+        self.process = support.Process('rosrun', 'rbx1_nav', 'fake_create.py', '_link:=' + self.link,
+                                       '_robot_type:=' + robot_type, '_seed:=1',
+                                       *('_%s:=%s' % item for item in params.items()))
+        case.addCleanup(self.process.kill)
+        self.ended = False
+        self.process.wait_for_line('serial port')
+        case.addCleanup(self.end)
+        self.truth = support.Watch('/ground_truth', Odometry)
+        self.line = support.Watch('/line', String)
+        for watch in self.truth, self.line:
+            support.wait_for(watch.subscriber.get_num_connections, watch.subscriber.name)
+        self.truth.next()
+        self.port = None
+
+    def end(self):
+        """End it, so that another one can have its name."""
+        if self.ended:
+            return
+        self.ended = True
+        self.process.signal(signal.SIGINT)
+        assert self.process.wait() == 0, self.process.output
+        assert 'Traceback' not in self.process.output, self.process.output
+        for watch in self.truth, self.line:
+            watch.subscriber.unregister()
+
+    def open(self, baud=None):
+        """Open the serial port."""
+        self.port = serial.Serial(self.link, baud or self.model.baud, timeout=support.LIMIT)
+
+    def send(self, *commands):
+        """Send commands, and wait until the robot has them. Returns when it had the last one, in s of ROS time."""
+        count = len(self.line.messages)
+
+        def arrived():
+            received = self.received()[count:]
+            return [data for _, data in received[-len(commands):]] == list(commands) and received[-1][0]
+        self.port.write(b''.join(commands))
+        return support.wait_for(arrived, '%s on /line' % (commands,))
+
+    def wait_until_read(self):
+        """Wait until the robot has read all that was sent so far."""
+        for _ in range(3):      # one message may be on its way, and one be published while it reads
+            self.truth.next()
+
+    def received(self):
+        """(s of ROS time, bytes) of each command that the robot has received."""
+        texts = [message.data.split() for message in self.line.messages]
+        return [(float(stamp), bytes.fromhex(data)) for stamp, data in texts]
+
+    def read(self, number):
+        """The values of a packet or group, by the names of the packets."""
+        packets = single_packets(self.model, [number])
+        form = packets_format(packets)
+        self.port.reset_input_buffer()
+        self.port.write(command('sensors', number))
+        data = self.port.read(form.size)
+        assert len(data) == form.size, data
+        return dict(zip((packet.name for packet in packets), form.unpack(data)))
+
+    def wait_for(self, number, value):
+        """Wait until a packet has a value."""
+        packet = self.model.packets[number]
+        support.wait_for(lambda: self.read(number)[packet.name] == value, '%s = %r' % (packet.name, value))
+
+    def switch(self, service, on):
+        """Call one of the services that have a SetBool."""
+        name = '/fake_create/' + service
+        rospy.wait_for_service(name, support.LIMIT)
+        assert rospy.ServiceProxy(name, SetBool)(on).success
+
+    def power_cycle(self):
+        """Take the battery out, and put it in again."""
+        assert rospy.ServiceProxy('/fake_create/power_cycle', Trigger)().success
+
+    def publish(self, topic, value):
+        """Publish a number to one of its topics."""
+        publisher = rospy.Publisher('/fake_create/' + topic, Float64, queue_size=1, latch=True)
+        support.wait_for(publisher.get_num_connections, 'the robot to subscribe to ' + topic)
+        publisher.publish(value)
+        self.process.wait_for_line('%s: ' % topic)
+
+    @property
+    def position(self):
+        """The true x, m."""
+        return self.truth.next().pose.pose.position.x
+
+    @property
+    def moving(self):
+        """Whether the robot moves by ground truth."""
+        twist = self.truth.next().twist.twist
+        return bool(twist.linear.x or twist.angular.z)

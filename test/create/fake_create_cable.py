@@ -1,0 +1,68 @@
+#!/usr/bin/python3
+"""The emulated robot loses its cable, or its line falls silent: it goes on with its last Drive, and can be reached again."""
+import os
+import unittest
+
+import serial
+
+from emulated import EmulatedRobot
+from rbx1_nav.create.protocol import FULL, command, drive_direct
+import support
+
+
+class TestCable(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        support.init_node('fake_create_cable')
+
+    def robot(self):
+        robot = EmulatedRobot(self, 'create2')
+        robot.open()
+        robot.send(command('start'), command('full'), drive_direct(100, 100))
+        return robot
+
+    def check_it_moves_on(self, robot):
+        start = robot.position
+        support.wait_for(lambda: robot.position > start + 0.05, 'the robot to move on')
+
+    def test_pulled_and_put_back(self):
+        robot = self.robot()
+        for _ in range(3):
+            device = os.path.realpath(robot.link)
+            robot.switch('pull_cable', True)
+            with self.assertRaises(serial.SerialException):
+                robot.port.read()
+            self.assertFalse(os.path.lexists(robot.link))
+            self.check_it_moves_on(robot)
+            robot.switch('pull_cable', False)
+            old = robot.port
+            robot.open()
+            # while the old device is still open, the new one cannot have its name
+            self.assertNotEqual(os.path.realpath(robot.link), device)
+            old.close()
+            self.assertEqual(robot.read(35), {'mode': FULL})
+            self.assertEqual(robot.read(41), {'requested_right_velocity': 100})
+        robot.send(drive_direct(0, 0))
+        self.assertFalse(robot.moving)
+
+    def test_silence(self):
+        robot = self.robot()
+        robot.port.timeout = 0.5
+        for _ in range(2):
+            robot.switch('silence', True)
+            robot.port.write(command('sensors', 35))
+            self.assertEqual(robot.port.read(1), b'')
+            self.check_it_moves_on(robot)
+            robot.switch('silence', False)
+            robot.port.timeout = support.LIMIT
+            self.assertEqual(robot.read(35), {'mode': FULL})
+            robot.port.timeout = 0.5
+
+    def test_the_end_of_the_node_removes_the_link(self):
+        robot = self.robot()
+        robot.end()
+        self.assertFalse(os.path.lexists(robot.link))
+
+
+if __name__ == '__main__':
+    support.main('fake_create_cable', TestCable)
