@@ -16,8 +16,11 @@ Parameters:
     ~wheel_travel           what the encoders count / what the wheels travel (default: 1)
     ~wheel_base             true distance of the wheels / its nominal value (default: 1)
 
-Services that change what happens to the robot: ~pull_cable, ~silence, ~drop_wheel, ~cliff, ~bump, ~dock (SetBool),
-~power_cycle (Trigger). Topics: ~charge and ~corruption (Float64).
+What can happen to the robot:
+    services ~pull_cable, ~silence, ~drop_wheel, ~cliff, ~bump, ~dock (SetBool) and ~power_cycle (Trigger);
+    topics ~charge and ~corruption (Float64), see above
+It publishes /ground_truth, where the robot really is, and /line: each command that it receives, with its time.
+A pseudo-terminal has no RTS and DTR: a driver that insists on them gets an error.
 """
 import rbx1_nav.ros.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded
 

@@ -6,6 +6,7 @@ import re
 
 import pytest
 
+from rbx1_nav.create.body import Errors
 from rbx1_nav.model.robot import DRIVER_KEYS
 from rbx1_nav.ros.arguments import parameter_names
 
@@ -50,3 +51,15 @@ def test_the_base():
 @pytest.mark.parametrize('node', ['odom_ekf.py', 'pose.py'])
 def test_nodes_without_parameters(node):
     assert usage(node) == [] and 'no parameters' in read('nodes', node) and 'get_param' not in read('nodes', node)
+
+
+def test_the_emulated_robot():
+    source = read('nodes', 'fake_create.py')
+    read_here = re.findall(r"section\.(?:get|number)\('(\w+)'", source)
+    assert usage('fake_create.py') == sorted(set(read_here) | set(Errors._fields))
+    faults = read('src', 'rbx1_nav', 'ros', 'robot_faults.py')
+    offered = re.findall(r"\('(\w+)', (?:self|lambda|switch)", faults) + re.findall(r"Service\('~(\w+)'", faults)
+    text = ast.get_docstring(ast.parse(source))
+    assert len(offered) == 9
+    for name in offered:
+        assert '~%s' % name in text
