@@ -11,6 +11,8 @@ from rbx1_nav.config import ConfigError, show_name
 # termios.tcgetattr() knows the common baud rates only; this request (ioctl_tty(2)) knows all, as numbers
 TCGETS2, TERMIOS2 = 0x802c542a, struct.Struct('=4I20s2I')
 
+MIN_SLEEP = 0.001   # s: while nobody listens, each byte that is lost is not worth waking up for
+
 
 class PseudoTerminal:
     """A serial port that a client can open by name, at the end of a cable that can be pulled."""
@@ -68,7 +70,7 @@ class PseudoTerminal:
     def wait(self, duration):
         """Wait until the client sends something, at most `duration` (s)."""
         if self._client(duration) is None:
-            time.sleep(duration)
+            time.sleep(max(duration, MIN_SLEEP))
 
     def _client(self, duration):
         """Whether the client has sent something within a time (s); None if there is none."""
