@@ -124,8 +124,8 @@ class EmulatedCreate:
         """Whether something has happened that ends safe mode (Create p. 6, Create 2 p. 7)."""
         body = self.body
         linear, angular = body.velocity
-        turns_on_spot = linear <= 0 and body.moving and abs(linear) < abs(angular) * ROBOT_RADIUS
-        return body.wheel_dropped or body.docked or body.cliff and (linear > 0 or turns_on_spot)
+        small_radius = abs(linear) < abs(angular) * ROBOT_RADIUS
+        return body.wheel_dropped or body.docked or body.cliff and (linear > 0 or small_radius)
 
     def _enter(self, mode):
         if mode in (OFF, PASSIVE):

@@ -61,7 +61,7 @@ class Scripts:
         self._now = now
         if self._wait and self._wait(now):
             self._wait = None
-        if not self._due or self._wait:
+        if not self._due:
             return b''
         self._due = False
         return self.stored

@@ -99,7 +99,7 @@ def test_safe_mode_ends_when_something_happens_and_full_mode_does_not(model, fau
 @both
 @pytest.mark.parametrize('right, left, mode', [
     (100, 100, PASSIVE), (100, 0, PASSIVE), (-100, -100, SAFE), (0, 0, SAFE), (100, -100, PASSIVE), (-100, -90, SAFE),
-    (-100, 0, PASSIVE)])
+    (-100, 0, PASSIVE), (-100, -40, SAFE)])
 def test_a_cliff_counts_while_the_robot_moves_forward_or_back_in_a_small_circle(model, right, left, mode):
     robot = robot_in(SAFE, model)
     robot.send(drive_direct(right, left))
@@ -123,6 +123,13 @@ def test_an_interface_that_is_off_listens_for_start_only(model):
     assert robot.send(command('sensors', 35), command('safe'), drive_direct(100, 100)) == b'' and robot.mode == OFF
     robot.send(command('start'))
     assert robot.read(35) == {'mode': PASSIVE}
+
+
+@both
+def test_an_interface_that_is_off_takes_no_byte_for_data(model):
+    robot = Robot(model)
+    robot.send(command('sensors', 128))
+    assert robot.mode == PASSIVE
 
 
 def test_reset_restarts_a_create_2_which_names_its_firmware():
@@ -193,6 +200,12 @@ def test_speeds_beyond_the_limit_are_clamped():
     assert (robot.body.right, robot.body.left) == (500, -500)
 
 
+def test_the_outer_wheel_of_an_arc_does_not_exceed_the_limit():
+    robot = robot_in(FULL, CREATE)
+    robot.send(command('drive', 1, 244, 0, 130))    # 500 mm/s with a radius of 130 mm: the left wheel stands
+    assert (robot.body.right, robot.body.left) == (500, 0)
+
+
 def test_drive_pwm():
     robot = robot_in(FULL, CREATE_2)
     robot.send(command('drive_pwm', 0, 255, 255, 1))
@@ -238,7 +251,7 @@ def test_every_packet_and_group_is_answered(model):
 @both
 def test_a_number_without_a_packet_is_not_answered(model):
     robot = robot_in(PASSIVE, model)
-    assert robot.send(command('sensors', 99), command('query_list', 2, 7, 99)) == b''
+    assert robot.send(command('sensors', 99), command('query_list', 2, 7, 99), command('stream', 1, 99)) == b''
     assert robot.read(35) == {'mode': PASSIVE}
 
 

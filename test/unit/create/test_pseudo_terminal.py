@@ -54,6 +54,16 @@ def test_without_a_client_bytes_are_lost_and_nothing_echoes(terminal):
         terminal.wait(0)
 
 
+def test_nothing_is_echoed_or_interpreted_for_a_client_that_leaves_the_terminal_as_it_is(terminal):
+    client = os.open(terminal.device, os.O_RDWR | os.O_NOCTTY)
+    try:
+        terminal.write(b'\x03\r\n\x11')
+        assert os.read(client, 10) == b'\x03\r\n\x11'
+        assert terminal.read() == b''
+    finally:
+        os.close(client)
+
+
 def test_a_client_that_does_not_read_loses_bytes(terminal):
     with serial.Serial(terminal.device) as port:
         for _ in range(1000):
