@@ -85,17 +85,18 @@ class Body:
         if duration <= 0:
             return
         left, right = self.wheels.travel(*self.velocity, duration / SECOND)
-        left, right = left * self.errors.wheel_travel, right * self.errors.wheel_travel
-        self._counted_left += left
-        self._counted_right += right
-        self.distance.total += 1000 * (left + right) / 2
-        self.angle.total += degrees((right - left) / self.model.wheel_separation)
+        self._counted_left += left * self.errors.wheel_travel
+        self._counted_right += right * self.errors.wheel_travel
 
     def sample(self, duration, charging):
         """Sense, `duration` (s) after the last time: afterwards `values` has what the packets say, by their names.
 
-        Except distance and angle, which change as they are read. charging: whether a charger would charge the battery.
+        Distance and angle are not among them, since they change as they are read. charging: whether a charger would
+        charge the battery.
         """
+        left, right = self._counted_left, self._counted_right
+        self.distance.total = 1000 * (left + right) / 2
+        self.angle.total = degrees((right - left) / self.model.wheel_separation)
         charging = charging and self.docked
         current = self._use_battery(duration, charging)
         charge = max(0, min(CAPACITY, round(self.charge)))
@@ -116,7 +117,7 @@ class Body:
             self.values.update(CONSTANT_1, analog_input=max(0, min(1023, signal)))
         else:
             self.values.update(
-                left_encoder=self._encoder(self._counted_left), right_encoder=self._encoder(self._counted_right),
+                left_encoder=self._encoder(left), right_encoder=self._encoder(right),
                 left_motor_current=150 * bool(self.left), right_motor_current=150 * bool(self.right),
                 stasis=int(linear > abs(angular * self.wheels.base_width / 2)))
 

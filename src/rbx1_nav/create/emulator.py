@@ -111,8 +111,8 @@ class EmulatedCreate:
         # in the other modes it does not charge (Create 2 p. 7)
         self.body.sample(UPDATE_PERIOD, self.mode in (OFF, PASSIVE))
         if not self.body.charge:
-            self._enter(OFF)
-            self._streaming = False
+            self._start(self.now)
+            return
         if self.mode == SAFE and self._unsafe():
             self._enter(PASSIVE)
         self._input[:0] = self._scripts.update(self.now)

@@ -173,11 +173,11 @@ def test_drive(model, data, turn, distance):
     robot = robot_in(FULL, model)
     robot.send(command('drive', *(byte for value in data for byte in value.to_bytes(2, 'big', signed=True))))
     before = robot.pose.yaw, robot.body.distance.total
-    robot.run(1)
+    robot.run(1.5)      # a whole number of updates
     if turn is None:
         turn = data[1] * 0.1 / (model.wheel_separation / 2)
-    assert robot.pose.yaw - before[0] == pytest.approx(turn)
-    assert robot.body.distance.total - before[1] == pytest.approx(1000 * distance)
+    assert robot.pose.yaw - before[0] == pytest.approx(1.5 * turn)
+    assert robot.body.distance.total - before[1] == pytest.approx(1500 * distance)
     assert robot.read(39)['requested_velocity'] == data[0] and robot.read(40)['requested_radius'] == data[1]
 
 
@@ -221,6 +221,17 @@ def test_a_command_takes_effect_when_its_last_byte_has_arrived():
     (time, data), = robot.commands
     assert data == drive_direct(200, 200) and time - start == pytest.approx(5 * 10 / 115200 * 1e9, abs=10)
     assert robot.pose.x == pytest.approx(0.2 * (robot.now - time) / 1e9)
+
+
+@both
+def test_the_robot_senses_every_15_ms(model):
+    robot = robot_in(FULL, model)
+    robot.run(0.31)     # up to 0.36 s, an update
+    robot.robot.receive(drive_direct(400, 400), robot.now)
+    robot.run(0.014)
+    assert robot.pose.x > 0.004 and robot.body.distance.pending == 0
+    robot.run(0.001)
+    assert robot.body.distance.pending == round(1000 * robot.pose.x)
 
 
 @both
@@ -414,6 +425,10 @@ def test_an_empty_battery_switches_the_robot_off(model):
     robot.run(0.1)
     assert robot.mode == OFF and not robot.body.moving
     assert robot.send(command('start'), command('sensors', 35)) == b'' and robot.mode == OFF
+    robot.body.charge = 3000
+    robot.send(command('start'))
+    assert robot.mode == PASSIVE and robot.read(19) == {'distance': 0}
+    assert robot.run(1) == b''      # it has forgotten the stream
 
 
 @both
