@@ -3,7 +3,9 @@
 import os
 import unittest
 
+import rospy
 import serial
+from std_srvs.srv import SetBool
 
 from emulated import EmulatedRobot
 from rbx1_nav.create.protocol import FULL, command, drive_direct
@@ -57,6 +59,17 @@ class TestCable(unittest.TestCase):
             robot.port.timeout = support.LIMIT
             self.assertEqual(robot.read(35), {'mode': FULL})
             robot.port.timeout = 0.5
+
+    def test_a_link_that_can_no_longer_be_made(self):
+        robot = EmulatedRobot(self, 'create')
+        robot.switch('pull_cable', True)
+        os.mkdir(robot.link)
+        response = rospy.ServiceProxy('/fake_create/pull_cable', SetBool)(False)
+        os.rmdir(robot.link)
+        self.assertFalse(response.success)
+        self.assertIn('link: %s: exists, and is not a link: expected' % robot.link, response.message)
+        robot.switch('pull_cable', False)
+        robot.open()
 
     def test_the_end_of_the_node_removes_the_link(self):
         robot = self.robot()

@@ -15,7 +15,7 @@ class TestParameters(unittest.TestCase):
                 ({'robot_type': 2}, 'robot_type: 2: expected one of create, create2'),
                 ({'link': 7}, 'link: 7: expected a path'),
                 ({'link': '/no/such/folder/port'}, 'link: /no/such/folder/port: No such file or directory: expected'),
-                ({'link': '/etc/hostname'}, 'link: /etc/hostname: a file: expected'),
+                ({'link': '/etc/hostname'}, 'link: /etc/hostname: exists, and is not a link: expected'),
                 ({'surface': 'sand'}, "surface: 'sand': expected one of hard_floor, ideal, low_ply_carpet"),
                 ({'seed': -1}, 'seed: -1: expected random, or an integer'),
                 ({'charge': 2}, 'charge: 2: expected a number from 0 to 1'),

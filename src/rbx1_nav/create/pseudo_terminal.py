@@ -25,7 +25,7 @@ class PseudoTerminal:
         self.plug()
 
     def plug(self):
-        """Put the cable in: a new device appears."""
+        """Put the cable in: a new device appears. Raises ConfigError if the link cannot be made."""
         if self._master is not None:
             return
         self._master, slave = os.openpty()
@@ -34,7 +34,11 @@ class PseudoTerminal:
         os.close(slave)
         os.set_blocking(self._master, False)
         if self.link:
-            self._make_link()
+            try:
+                self._make_link()
+            except ConfigError:
+                self.unplug()
+                raise
 
     def unplug(self):
         """Pull the cable: the client gets an error, and the device is gone."""
@@ -64,7 +68,7 @@ class PseudoTerminal:
         if data and self._client(0) is not None:
             try:
                 os.write(self._master, data)
-            except BlockingIOError:
+            except OSError:     # it does not read, or has just gone
                 pass
 
     def wait(self, duration):
@@ -85,7 +89,7 @@ class PseudoTerminal:
 
     def _make_link(self):
         if os.path.lexists(self.link) and not os.path.islink(self.link):
-            raise self._error('a file')
+            raise self._error('exists, and is not a link')
         temporary = '%s.%d' % (self.link, os.getpid())
         try:
             os.symlink(self.device, temporary)

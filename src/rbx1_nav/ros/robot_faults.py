@@ -1,11 +1,12 @@
 """What can happen to an emulated robot, as services and topics: it loses its cable, a wheel drops, and the like."""
+from concurrent.futures import Future
 import queue
-import threading
 
 import rospy
 from std_msgs.msg import Float64
 from std_srvs.srv import SetBool, SetBoolResponse, Trigger, TriggerResponse
 
+from rbx1_nav.config import ConfigError
 from rbx1_nav.create.body import CAPACITY
 from rbx1_nav.ros import node
 
@@ -25,7 +26,7 @@ class RobotFaults:
                              ('dock', lambda on: setattr(body, 'docked', on))]:
             self._offer_switch(name, switch)
         rospy.Service('~power_cycle', Trigger, lambda _: TriggerResponse(
-            True, self._request('power_cycle', lambda: robot.switch_on(robot.now))))
+            *self._request('power_cycle', lambda: robot.switch_on(robot.now))))
         self._offer_fraction('charge', lambda value: setattr(body, 'charge', value * CAPACITY))
         self._offer_fraction('corruption', lambda value: setattr(line, 'corruption', value))
 
@@ -33,12 +34,15 @@ class RobotFaults:
         """Do what was asked for."""
         while not self.requests.empty():
             function, done = self.requests.get()
-            function()
-            done.set()
+            try:
+                function()
+                done.set_result('')
+            except ConfigError as error:    # the link cannot be made any more
+                done.set_result(str(error))
 
     def _offer_switch(self, name, switch):
         rospy.Service('~' + name, SetBool, lambda request: SetBoolResponse(
-            True, self._request('%s: %s' % (name, request.data), lambda: switch(request.data))))
+            *self._request('%s: %s' % (name, request.data), lambda: switch(request.data))))
 
     def _offer_fraction(self, name, function):
         def on_message(message):
@@ -50,10 +54,15 @@ class RobotFaults:
         rospy.Subscriber(topic, Float64, on_message)
 
     def _request(self, text, function):
-        """Have a function called, and wait until it was. Returns the text, which is logged."""
-        done = threading.Event()
+        """Have a function called, and wait until it was. Returns whether it succeeded, and the text that is logged."""
+        done = Future()
         self.requests.put((function, done))
-        while not done.is_set() and not node.end_requested.is_set():
+        while not done.done():
+            if node.end_requested.is_set():
+                return False, '%s: the node ends' % text
             node.sleep(0.001)
+        if done.result():
+            rospy.logerr('%s: %s', text, done.result())
+            return False, '%s: %s' % (text, done.result())
         rospy.loginfo('%s', text)
-        return text
+        return True, text

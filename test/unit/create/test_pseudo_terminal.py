@@ -99,13 +99,24 @@ def test_a_link_of_somebody_else_stays(terminal):
     assert os.readlink(terminal.link) == terminal.device
 
 
+def test_after_a_link_could_not_be_made_the_cable_is_out(terminal):
+    terminal.unplug()
+    os.mkdir(terminal.link)
+    with pytest.raises(ConfigError):
+        terminal.plug()
+    assert terminal.device is None
+    os.rmdir(terminal.link)
+    terminal.plug()
+    assert os.readlink(terminal.link) == terminal.device
+
+
 def test_no_link():
     terminal = PseudoTerminal()
     assert stat.S_ISCHR(os.stat(terminal.device).st_mode)
     terminal.unplug()
 
 
-@pytest.mark.parametrize('name, text', [('file', 'a file'), ('none/port', 'No such file')])
+@pytest.mark.parametrize('name, text', [('file', 'exists, and is not a link'), ('none/port', 'No such file')])
 def test_a_link_that_cannot_be_made(tmp_path, name, text):
     (tmp_path / 'file').write_text('')
     with pytest.raises(ConfigError, match='link: .*%s.*expected' % text):
