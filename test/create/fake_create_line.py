@@ -1,0 +1,37 @@
+#!/usr/bin/python3
+"""/line shows each command that the emulated robot receives, also one that it ignores, with the time of its last byte."""
+import time
+import unittest
+
+from emulated import EmulatedRobot
+from rbx1_nav.create.protocol import command, drive_direct
+import support
+
+CLOCKS = 0.001      # s: the robot's clock is not the one that stamps are made of
+
+
+class TestLine(unittest.TestCase):
+    def test_line(self):
+        support.init_node('fake_create_line')
+        robot = EmulatedRobot(self, 'create')
+        robot.open()
+        sent = time.time()
+        # a robot that is passive ignores the second one
+        stamp = robot.send(command('start'), drive_direct(100, -100))
+        received = time.time()
+        self.assertEqual([data for _, data in robot.received()], [command('start'), bytes((145, 0, 100, 255, 156))])
+        self.assertTrue(sent + 6 * 10 / 57600 - CLOCKS <= stamp <= received + CLOCKS, (sent, stamp, received))
+
+        robot.port.write(drive_direct(1, 2)[:3])
+        robot.wait_until_read()
+        sent = time.time()
+        self.assertEqual(len(robot.received()), 2)
+        robot.port.write(drive_direct(1, 2)[3:])
+        support.wait_for(lambda: len(robot.received()) == 3, 'the rest of the command')
+        stamp, data = robot.received()[-1]
+        self.assertEqual(data, drive_direct(1, 2))
+        self.assertGreaterEqual(stamp, sent - CLOCKS)
+
+
+if __name__ == '__main__':
+    support.main('fake_create_line', TestLine)
