@@ -76,7 +76,8 @@ class FakeCreate:
         self.faults.apply()
         terminal.write(data)
         robot.line.host_baud = terminal.baud or robot.line.host_baud
-        robot.receive(terminal.read(), now)
+        data = terminal.read()
+        robot.receive(data, time.monotonic_ns())    # not before it was sent
         if self.truth_schedule.due(now) and self.truth_pub.get_num_connections():
             self.publish_truth()
 
