@@ -144,8 +144,9 @@ class Process:
     def __init__(self, *command, **environment):
         """environment: variables to set."""
         # unbuffered, so that a line arrives when it is printed
-        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-                                        start_new_session=True, env=dict(os.environ, PYTHONUNBUFFERED='1', **environment))
+        self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                                        stderr=subprocess.STDOUT, text=True, start_new_session=True,
+                                        env=dict(os.environ, PYTHONUNBUFFERED='1', **environment))
         self.lines = []
         self.reader = threading.Thread(target=self._read, daemon=True)
         self.reader.start()
@@ -165,6 +166,11 @@ class Process:
             return wait_for(lambda: re.search(pattern, self.output), repr(pattern))
         except AssertionError as error:
             raise AssertionError('%s, in:\n%s' % (error, self.output))
+
+    def type(self, line):
+        """Type a line."""
+        self.process.stdin.write(line + '\n')
+        self.process.stdin.flush()
 
     def signal(self, number):
         """Send a signal."""

@@ -47,6 +47,19 @@ class TestBadParameters(unittest.TestCase):
             rospy.delete_param('/out_and_back')
         self.assertFalse(commands.messages)
 
+    def test_calibration(self):
+        commands = support.Watch('/cmd_vel', Twist)
+        for node, argument, expected in [
+                ('linear', '_goal_distance:=0', ['/calibrate_linear/goal_distance: 0: expected', 'from 0.1 to 100']),
+                ('linear', '_base_node:=7', ['/calibrate_linear/base_node: 7: expected the name of a node']),
+                ('linear', '_measured:=1', ['/last_calibration/linear: missing: expected a run before this one']),
+                ('angular', '_turns:=many', ['/calibrate_angular/turns', "'many'"]),
+                ('angular', '_measured:=360', ['/last_calibration/angular: missing'])]:
+            self.check(support.Process('rosrun', 'rbx1_nav', 'calibrate_%s.py' % node, argument), expected)
+            if rospy.has_param('/calibrate_' + node):
+                rospy.delete_param('/calibrate_' + node)
+        self.assertFalse(commands.messages)
+
     def test_filter(self):
         for params, expected in [
                 ({'freq': 1e-300}, ['/freq: 1e-300: expected a rate from 0.1 to 1000 in Hz']),

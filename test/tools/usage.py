@@ -7,8 +7,8 @@ import rospkg
 
 import support
 
-NODES = ['ekf.py', 'fake_base.py', 'fake_create.py', 'odom_ekf.py', 'odom_out_and_back.py', 'pose.py',
-         'timed_out_and_back.py']
+NODES = ['calibrate_angular.py', 'calibrate_linear.py', 'ekf.py', 'fake_base.py', 'fake_create.py', 'odom_ekf.py',
+         'odom_out_and_back.py', 'pose.py', 'timed_out_and_back.py']
 NO_MASTER = 'ROS_MASTER_URI=http://127.0.0.1:1'
 
 

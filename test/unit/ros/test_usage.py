@@ -11,7 +11,7 @@ from rbx1_nav.model.robot import DRIVER_KEYS
 from rbx1_nav.ros.arguments import parameter_names
 
 ROOT = os.path.join(os.path.dirname(__file__), '..', '..', '..')
-SCRIPTS = ['timed_out_and_back.py', 'odom_out_and_back.py']
+SCRIPTS = ['calibrate_angular.py', 'calibrate_linear.py', 'odom_out_and_back.py', 'timed_out_and_back.py']
 
 
 def read(*path):
@@ -26,8 +26,10 @@ def usage(node):
 
 @pytest.mark.parametrize('script', SCRIPTS)
 def test_the_driving_scripts(script):
-    read_here = re.findall(r"(?:positive|frame)_param\('(\w+)', ('?[\w.]+'?)(?:, [\d., ]+)?\)", read('nodes', script))
-    assert usage(script) == sorted(name for name, _ in read_here)
+    read_here = re.findall(r"(?:positive|frame|node)_param\('(\w+)', ('?[\w.]+'?)(?:, [\d., ]+)?\)",
+                           read('nodes', script))
+    others = ['measured'] if 'take_measured()' in read('nodes', script) else []
+    assert usage(script) == sorted([name for name, _ in read_here] + others)
     for name, default in read_here:
         listed, = re.findall(r'~%s .*\(default: (.*)\)' % name, read('nodes', script))
         if default == 'None':

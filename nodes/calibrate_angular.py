@@ -1,0 +1,109 @@
+#!/usr/bin/env python3
+"""Calibrates the turn that wheels and gyro report: turns 360 degrees by odometry, asks how far it really was.
+
+usage: calibrate_angular.py [_parameter:=value ...] [topic:=new_topic ...]
+example: rosrun rbx1_nav calibrate_angular.py _turns:=3
+
+Parameters:
+    ~turns              how many full turns to the left (default: 1)
+    ~angular_speed      turning speed, rad/s (default: 0.5)
+    ~min_angular_speed  lowest speed near the goal, rad/s (default: 0.2)
+    ~rate               commands per second, Hz (default: 50)
+    ~odom_frame         frame of the odometry (default: odom)
+    ~base_frame         frame of the robot (default: base_footprint or base_link, whichever exists)
+    ~base_node          node whose parameters are calibrated (default: turtlebot_node)
+    ~wait_timeout       how long to wait for a base, and for its pose, s (default: 30)
+    ~measured           how far the robot turned in the last run, degrees: in place of an answer; does not drive
+
+Mark on the floor where the robot points to. Facing the mark again it has turned by 360 degrees; 10 degrees before it,
+by 350. The gyro is compared with the same turn.
+"""
+import rbx1_nav.ros.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded
+
+from math import degrees, pi
+
+import rospy
+from sensor_msgs.msg import Imu
+
+from rbx1_nav.config import ConfigError
+from rbx1_nav.control.legs import Turn
+from rbx1_nav.model.calibration import corrected, read_measured, turn_by_gyro
+from rbx1_nav.ros import node
+from rbx1_nav.ros.calibration import factor_in_force, load_run, node_param, save_run, take_measured
+from rbx1_nav.ros.leg_driver import LegDriver
+from rbx1_nav.ros.params import frame_param, positive_param
+from rbx1_nav.ros.question import ask
+
+ODOM_KEY, GYRO_KEY = 'odom_angular_scale_correction', 'gyro_scale_correction'
+
+
+def drive():
+    """Turn once. Returns what odometry and gyro reported, degrees, and the factors with which they did."""
+    rate = positive_param('rate', 50, 2, 1000)                          # Hz
+    angular_speed = positive_param('angular_speed', 0.5)                # rad/s
+    leg = Turn('turn left',
+               2 * pi * positive_param('turns', 1, 0.1, 100),           # rad
+               angular_speed,
+               positive_param('min_angular_speed', 0.2),                # rad/s
+               rate)
+    wait_timeout = positive_param('wait_timeout', 30)                   # s
+    base_node = node_param('base_node', 'turtlebot_node')
+    driver = LegDriver(frame_param('odom_frame', 'odom'), frame_param('base_frame', None), 0.0, angular_speed, rate)
+    readings = []       # of the gyro: (s, rad/s)
+    rospy.Subscriber('imu/data', Imu, lambda message: readings.append((message.header.stamp.to_sec(),
+                                                                       message.angular_velocity.z)))
+    try:
+        driver.wait_for_base(wait_timeout)
+        run = {ODOM_KEY: factor_in_force(base_node, ODOM_KEY), GYRO_KEY: factor_in_force(base_node, GYRO_KEY)}
+        # What the gyro reports at rest is its bias.
+        driver.rest(2)
+        start = rospy.get_time()
+        driver.drive(leg)
+    finally:
+        # However it ended: the most important thing that a mobile robot must do.
+        driver.stop()
+    run['reported'] = degrees(leg.done())
+    print('The odometry reports %.1f degrees.' % run['reported'])
+    try:
+        run['gyro'] = degrees(turn_by_gyro(list(readings), start))
+        print('The gyro reports %.1f degrees.' % run['gyro'])
+    except ConfigError as error:
+        rospy.logwarn('The gyro is not calibrated: %s', error)
+    return run
+
+
+def calibrate():
+    """Turn, ask, and print the factors."""
+    node.init_node('calibrate_angular', __doc__)
+    measured = take_measured()
+    if measured is None:
+        run = drive()
+        save_run('angular', run)
+    else:
+        run = load_run('angular', 'reported', ODOM_KEY, GYRO_KEY)
+
+    def check(answer):
+        return read_measured('measured', answer, run['reported'], 'an angle', 'degrees')
+
+    measured = ask('How far has the robot turned, in degrees?', check) if measured is None else check(measured)
+    if measured is None:
+        print('Measure how far the robot has turned, in degrees. Then: rosrun rbx1_nav calibrate_angular.py '
+              '_measured:=DEGREES')
+        return
+    sensors = {ODOM_KEY: 'reported', GYRO_KEY: 'gyro'}
+    factors = {key: corrected(key, run[key], measured, run[sensor]) for key, sensor in sensors.items() if sensor in run}
+    print('The factors were %s. Now they should be:' % ', '.join('%.4f' % run[key] for key in factors))
+    for key, factor in factors.items():
+        print('%s: %.4f' % (key, factor))
+
+
+if __name__ == '__main__':
+    status = 0
+    try:
+        calibrate()
+    except rospy.ROSInterruptException:
+        rospy.loginfo('Calibration terminated.')
+    except (rospy.ROSException, ValueError, OSError) as error:    # OSError: the master does not answer
+        rospy.logerr('%s', error)
+        status = 1
+    node.leave(status)

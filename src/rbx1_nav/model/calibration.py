@@ -1,0 +1,55 @@
+"""Calibration: the factor that corrects a sensor, from what the sensor reported and what was measured."""
+from math import inf, isfinite
+
+from rbx1_nav.config import ConfigError, Section
+
+MAX_ERROR = 2.0         # a distance or turn that is wrong by more than this factor is a mistake, and no calibration
+MAX_FACTOR = 10.0       # the same for a correction factor; create_node's highest is 6
+MAX_GAP = 0.5           # s between two readings of a gyro; it turns by 15 degrees at the speed of the script
+REST = 1.0              # s at least, to know a gyro's bias
+
+
+def read_measured(key, value, expected, what, unit):
+    """What somebody has measured: a number, or text as typed; at least half and at most twice of `expected`.
+
+    key, what, unit: for the text of the error. Raises ConfigError.
+    """
+    try:
+        value = float(value) if isinstance(value, str) else value
+    except ValueError:
+        pass
+    low, high = (round(limit, 3) for limit in (expected / MAX_ERROR, expected * MAX_ERROR))
+    return Section({key: value}).number(key, low, high, what=what, unit=unit)
+
+
+def corrected(key, factor, measured, reported):
+    """The new value of the correction factor `key`, whose value was `factor` when the sensor reported this.
+
+    measured, reported: of the same distance or turn, in the same unit. Raises ConfigError.
+    """
+    new = factor * measured / reported if reported else inf
+    if not 1 / MAX_FACTOR <= new <= MAX_FACTOR:
+        raise ConfigError('%s: %.4g: expected a factor from %g to %g: measured %.3f, reported %.3f'
+                          % (key, new, 1 / MAX_FACTOR, MAX_FACTOR, measured, reported))
+    return new
+
+
+def turn_by_gyro(readings, start):
+    """The angle (rad) that a gyro has measured since `start`, when the robot began to turn.
+
+    readings: (time in s, angular velocity in rad/s), in their order. The mean of those up to `start`, at rest, is the
+    gyro's bias. Each of the others is the mean since the one before. Raises ConfigError.
+    """
+    rest = [rate for time, rate in readings if time <= start]
+    if not rest or start - readings[0][0] < REST:
+        raise ConfigError('gyro: %d readings at rest: expected %g s of them' % (len(rest), REST))
+    bias = sum(rest) / len(rest)
+    turned, before = 0.0, readings[len(rest) - 1][0]
+    for time, rate in readings[len(rest):]:
+        if not 0 <= time - before <= MAX_GAP:
+            raise ConfigError('gyro: %.2f s between two readings: expected at most %g s' % (time - before, MAX_GAP))
+        turned += (rate - bias) * (time - before)
+        before = time
+    if not isfinite(turned):
+        raise ConfigError('gyro: a turn of %g rad: expected finite readings' % turned)
+    return turned

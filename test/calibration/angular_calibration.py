@@ -1,0 +1,40 @@
+#!/usr/bin/python3
+"""calibrate_angular.py finds the errors of wheels and gyro in a turn."""
+import math
+import re
+import unittest
+
+import rospy
+
+import support
+
+ODOM_FACTOR, GYRO_FACTOR = 0.9, 1.2     # in force; the simulated base does not use them
+
+
+class TestAngularCalibration(unittest.TestCase):
+    def test_it_finds_both_errors(self):
+        support.init_node('angular_calibration')
+        rospy.set_param('/turtlebot_node', {'odom_angular_scale_correction': ODOM_FACTOR,
+                                            'gyro_scale_correction': GYRO_FACTOR})
+        odom, truth = support.OdomWatch(), support.Watch('/ground_truth', support.Odometry)
+        script = support.Process('rosrun', 'rbx1_nav', 'calibrate_angular.py', '_turns:=2')
+        self.addCleanup(script.kill)
+        script.wait_for_line('The gyro reports')
+        # both are short of, or beyond, two turns
+        real, reported = (720 + math.degrees(support.wrapped(support.yaw(topic.next()))) for topic in (truth, odom))
+        # on carpet the wheels slip by 3 % in a turn, with a standard deviation of 1 %
+        self.assertGreater(abs(reported - real), 3)
+
+        script.type('%.1f' % real)
+        self.assertEqual(script.wait(), 0, script.output)
+        factors = {key: float(value) for key, value in re.findall(r'^(\w+_correction): (\S+)$', script.output,
+                                                                  re.MULTILINE)}
+        self.assertEqual(len(factors), 2, script.output)
+        # 0.2 degrees of rounding, in 720
+        self.assertAlmostEqual(factors['odom_angular_scale_correction'], ODOM_FACTOR * real / reported, delta=0.0005)
+        # the gyro's scale error has a standard deviation of 0.3 %, of which this seed draws less than two
+        self.assertAlmostEqual(factors['gyro_scale_correction'], GYRO_FACTOR, delta=0.006 * GYRO_FACTOR)
+
+
+if __name__ == '__main__':
+    support.main('angular_calibration', TestAngularCalibration)

@@ -1,0 +1,53 @@
+#!/usr/bin/python3
+"""Where nobody can answer, a calibration script keeps its run; _measured:= brings the answer later, without a drive."""
+import re
+import unittest
+
+import rospy
+from geometry_msgs.msg import Twist
+
+import support
+
+
+class TestAnsweredLater(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        support.init_node('answered_later')
+
+    def check(self, node, argument, keys, wrong, expected):
+        """A run without an answer, then a result that makes no sense, then the same result twice."""
+        script = 'calibrate_%s.py' % node
+        run = support.Process('rosrun', 'rbx1_nav', script)
+        self.addCleanup(run.kill)
+        run.process.stdin.close()
+        self.assertEqual(run.wait(), 0, run.output)
+        self.assertIn('rosrun rbx1_nav %s _measured:=' % script, run.output)
+        self.assertNotIn('_correction: ', run.output)
+
+        commands = support.Watch('/cmd_vel', Twist)
+        for measured, status in [(wrong, 1), (argument, 0), (argument, 0)]:
+            later = support.Process('rosrun', 'rbx1_nav', script, '_measured:=%s' % measured)
+            self.addCleanup(later.kill)
+            self.assertEqual(later.wait(), status, later.output)
+            factors = dict(re.findall(r'^(\w+_correction): (\S+)$', later.output, re.MULTILINE))
+            if status:
+                self.assertIn(expected, later.output)
+                self.assertFalse(factors)
+            else:
+                # the odometry of the simulated base reports about the goal, whose sixth part is missing
+                self.assertEqual(sorted(factors), sorted(keys))
+                self.assertAlmostEqual(float(factors[keys[0]]), 5 / 6, delta=0.005)
+            self.assertFalse(rospy.has_param('/calibrate_%s/measured' % node), 'it belongs to this run only')
+        self.assertFalse(commands.messages)
+
+    def test_linear(self):
+        self.check('linear', 0.8333, ['odom_linear_scale_correction'], 83,
+                   'measured: 83: expected a distance from')
+
+    def test_angular(self):
+        self.check('angular', 300, ['odom_angular_scale_correction', 'gyro_scale_correction'], 3.1,
+                   'measured: 3.1: expected an angle from')
+
+
+if __name__ == '__main__':
+    support.main('answered_later', TestAnsweredLater)

@@ -1,0 +1,49 @@
+#!/usr/bin/python3
+"""A calibration script that is interrupted stops the robot and ends, while it drives and while it asks."""
+import signal
+import unittest
+
+from geometry_msgs.msg import Twist
+
+import support
+
+
+class TestInterruptedCalibration(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        support.init_node('interrupted_calibration')
+        cls.odom = support.OdomWatch()
+
+    def check(self, script, line=None):
+        """Interrupt a script in motion, or after this line."""
+        commands = support.Watch('/cmd_vel', Twist)
+        self.addCleanup(commands.subscriber.unregister)
+        process = support.Process('rosrun', 'rbx1_nav', script)
+        self.addCleanup(process.kill)
+        if line:
+            process.wait_for_line(line)
+        else:
+            support.wait_for(lambda: commands.last and commands.last != Twist(), 'a command to move')
+        process.signal(signal.SIGINT)
+        self.assertEqual(process.wait(), 0, process.output)
+        self.assertIn('Stopping the robot...', process.output)
+        self.assertIn('Calibration terminated.', process.output)
+        self.assertNotIn('Traceback', process.output)
+        support.wait_for(lambda: commands.last == Twist(), 'a stop')
+        self.odom.wait_for_twist(0.0)
+
+    def test_linear_in_motion(self):
+        self.check('calibrate_linear.py')
+
+    def test_angular_in_motion(self):
+        self.check('calibrate_angular.py')
+
+    def test_linear_at_the_question(self):
+        self.check('calibrate_linear.py', 'The odometry reports')
+
+    def test_angular_at_the_question(self):
+        self.check('calibrate_angular.py', 'The gyro reports')
+
+
+if __name__ == '__main__':
+    support.main('interrupted_calibration', TestInterruptedCalibration)

@@ -1,0 +1,40 @@
+#!/usr/bin/python3
+"""calibrate_linear.py finds by how much the wheels slip; with its factor, the odometry would report the truth."""
+import math
+import re
+import unittest
+
+import rospy
+
+import support
+
+FACTOR = 0.8    # in force; the simulated base does not use it
+
+
+class TestLinearCalibration(unittest.TestCase):
+    def test_it_finds_the_slip(self):
+        support.init_node('linear_calibration')
+        rospy.set_param('/turtlebot_node/odom_linear_scale_correction', FACTOR)
+        odom, truth = support.OdomWatch(), support.Watch('/ground_truth', support.Odometry)
+        script = support.Process('rosrun', 'rbx1_nav', 'calibrate_linear.py')
+        self.addCleanup(script.kill)
+        script.wait_for_line('The odometry reports')
+        real, reported = (math.hypot(*support.pose(topic.next())[:2]) for topic in (truth, odom))
+        # on carpet the wheels slip by 2 % in the mean, with a standard deviation of 1 %
+        self.assertGreater(abs(reported - real), 0.003)
+
+        for answer, shown in [('about 1', "'about 1'"), ('%.0f' % (100 * real), r'9\d.0')]:
+            script.type(answer)
+            script.wait_for_line('measured: %s: expected a distance from' % shown)
+        script.type('%.3f' % real)
+        self.assertEqual(script.wait(), 0, script.output)
+        # what it reports is rounded to millimetres
+        shown = float(re.search(r'The odometry reports (\S+) m', script.output)[1])
+        self.assertAlmostEqual(shown, reported, delta=0.0006)
+        factor = float(re.search(r'^odom_linear_scale_correction: (\S+)$', script.output, re.MULTILINE)[1])
+        # a millimetre of rounding in what was typed, in 1 m, and the last decimal of the factor
+        self.assertAlmostEqual(factor, FACTOR * real / reported, delta=0.0007)
+
+
+if __name__ == '__main__':
+    support.main('linear_calibration', TestLinearCalibration)
