@@ -45,6 +45,7 @@ from rbx1_nav.schedule import Schedule
 from rbx1_nav.units import SECOND
 
 TRUTH_RATE = 50     # Hz
+CLIENT_TIMEOUT = 0.7    # s: half of the time that a node has to end
 Frames = namedtuple('Frames', 'odom_frame_id base_frame_id')
 FRAMES = Frames('odom', 'base_footprint')
 
@@ -67,6 +68,11 @@ class FakeCreate:
         while not node.end_requested.is_set():
             self.step()
             self.terminal.wait(max(0.0, (self.robot.next_time - time.monotonic_ns()) / SECOND))
+        # a driver that ends at the same time stops the robot first: to it, a robot that vanishes is a lost line
+        deadline = time.monotonic() + CLIENT_TIMEOUT
+        while self.terminal.has_client and time.monotonic() < deadline:
+            self.step()
+            node.sleep(0.005)
         self.terminal.unplug()
 
     def step(self):

@@ -71,6 +71,11 @@ class PseudoTerminal:
             except OSError:     # it does not read, or has just gone
                 pass
 
+    @property
+    def has_client(self):
+        """Whether somebody has opened the device."""
+        return self._client(0) is not None
+
     def wait(self, duration):
         """Wait until the client sends something, at most `duration` (s)."""
         if self._client(duration) is None:

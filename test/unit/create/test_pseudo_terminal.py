@@ -128,3 +128,15 @@ def test_waiting_ends_when_the_client_sends(terminal):
         port.write(b'x')
         terminal.wait(3600)
         assert terminal.read() == b'x'
+
+
+def test_it_knows_whether_it_has_a_client(terminal):
+    assert not terminal.has_client
+    with serial.Serial(terminal.link, 57600) as port:
+        assert terminal.has_client
+        port.write(b'unread')
+        assert terminal.has_client
+    terminal.read()
+    assert not terminal.has_client
+    terminal.unplug()
+    assert not terminal.has_client
