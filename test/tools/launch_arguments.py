@@ -7,7 +7,8 @@ import support
 
 LAUNCH_FILES = [('rbx1_nav', 'fake_turtlebot.launch'), ('rbx1_nav', 'fake_pi_robot.launch'),
                 ('rbx1_bringup', 'fake_turtlebot.launch'), ('rbx1_bringup', 'fake_pi_robot.launch'),
-                ('rbx1_bringup', 'odom_ekf.launch')]
+                ('rbx1_bringup', 'odom_ekf.launch'), ('rbx1_bringup', 'turtlebot_minimal_create.launch'),
+                ('rbx1_bringup', 'turtlebot_carpet_create.launch'), ('rbx1_bringup', 'fake_turtlebot_create.launch')]
 
 
 class TestLaunchArguments(unittest.TestCase):

@@ -1,0 +1,55 @@
+#!/usr/bin/python3
+"""On an emulated Create whose errors are known, the calibration scripts find the factors that correct them.
+
+usage: found_errors.py LINEAR ANGULAR GYRO --      GYRO: none for a robot without a gyro
+"""
+import math
+import re
+import sys
+import unittest
+
+import support
+
+WITHIN = 0.01       # of the factor, which the project promises
+
+
+class TestFoundErrors(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        support.init_node('found_errors')
+        cls.truth = support.Watch('/ground_truth', support.Odometry)
+        support.wait_for(lambda: cls.truth.last, '/ground_truth')
+
+    def calibrate(self, script, line, measure):
+        """Run a script; after this line answer what measure(true pose at the start, at the end) returns."""
+        start = support.pose(self.truth.next())
+        process = support.Process('rosrun', 'rbx1_nav', script)
+        self.addCleanup(process.kill)
+        process.wait_for_line(line)
+        process.type('%.3f' % measure(start, support.pose(self.truth.next())))
+        self.assertEqual(process.wait(), 0, process.output)
+        return {key: float(value) for key, value in re.findall(r'^(\w+_correction): (\S+)$', process.output,
+                                                               re.MULTILINE)}
+
+    def check(self, found, expected):
+        """Compare factors by their names."""
+        self.assertEqual(sorted(found), sorted(expected))
+        for key, factor in expected.items():
+            self.assertAlmostEqual(found[key] / factor, 1, delta=WITHIN, msg=key)
+
+    def test_linear(self):
+        found = self.calibrate('calibrate_linear.py', 'The odometry reports',
+                               lambda start, end: math.dist(start[:2], end[:2]))
+        self.check(found, {'odom_linear_scale_correction': float(sys.argv[1])})
+
+    def test_angular(self):
+        expected = {'odom_angular_scale_correction': float(sys.argv[2])}
+        if sys.argv[3] != 'none':
+            expected['gyro_scale_correction'] = float(sys.argv[3])
+        found = self.calibrate('calibrate_angular.py', '(The gyro reports|The gyro is not calibrated)',
+                               lambda start, end: 360 + math.degrees(support.wrapped(end[2] - start[2])))
+        self.check(found, expected)
+
+
+if __name__ == '__main__':
+    support.main('found_errors', TestFoundErrors)

@@ -1,0 +1,42 @@
+"""The files in config/create/: what turtlebot_node.py makes of them."""
+import glob
+import os
+
+import pytest
+import yaml
+
+from rbx1_nav.create.parameters import read_settings
+
+FOLDER = os.path.join(os.path.dirname(__file__), '..', '..', '..', 'config', 'create')
+CALIBRATIONS = sorted(glob.glob(os.path.join(FOLDER, 'calibration', '*.yaml')))
+
+
+def load(*path):
+    """The content of a file."""
+    with open(os.path.join(FOLDER, *path), encoding='utf-8') as file:
+        return yaml.safe_load(file)
+
+
+def test_the_files_have_the_defaults_of_the_node():
+    assert read_settings({**load('parameters.yaml'), **load('calibration', 'default.yaml')}) == read_settings({})
+
+
+def test_a_comment_with_a_parameter_has_its_default_too():
+    with open(os.path.join(FOLDER, 'parameters.yaml'), encoding='utf-8') as file:
+        lines = [line[2:] for line in file if line.startswith('# ') and ': ' in line.split('  ')[0]]
+    params = yaml.safe_load(''.join(lines))
+    assert len(params) == 3 and read_settings(params) == read_settings({})
+
+
+@pytest.mark.parametrize('path', CALIBRATIONS, ids=os.path.basename)
+@pytest.mark.parametrize('robot_type', ['create', 'create2'])
+def test_a_calibration_is_accepted_and_complete(path, robot_type):
+    calibration = load('calibration', os.path.basename(path))
+    params = {**load('parameters.yaml'), **calibration, 'robot_type': robot_type}
+    assert not read_settings(params)[1].unknown
+    assert calibration.keys() == load('calibration', 'default.yaml').keys()
+
+
+def test_the_neutral_calibration_corrects_nothing():
+    settings, _ = read_settings(load('calibration', 'neutral.yaml'))
+    assert settings.gyro_correction == settings.linear_correction == settings.angular_correction == 1
