@@ -20,9 +20,9 @@ class BasePublisher:
         self.tf = rospy.Publisher('/tf', TFMessage, queue_size=100, tcp_nodelay=True)
         self.joint_states = rospy.Publisher('joint_states', JointState, queue_size=10)
 
-    def publish_odometry(self, stamp, pose, velocity, uncertainty):
-        """Publish a Pose, a velocity (m/s, rad/s) and an Uncertainty as odometry, and the pose as a transform."""
-        odom = messages.odometry(stamp, self.robot, pose, velocity, uncertainty)
+    def publish_odometry(self, stamp, pose, velocity, uncertainty, covariance=None):
+        """Publish odometry, and its pose as a transform; arguments as of messages.odometry()."""
+        odom = messages.odometry(stamp, self.robot, pose, velocity, uncertainty, covariance)
         self.odom.publish(odom)
         if self.robot.publish_tf:
             self.tf.publish([messages.transform(stamp, odom.header.frame_id, odom.child_frame_id, pose)])

@@ -1,4 +1,4 @@
-"""The three clocks that a simulated base may run on. All have
+"""The clocks that a base may run on. All have
 
     now()                           ns on the clock that motion is measured by
     stamp()                         the same moment as a rospy.Time, for message headers
@@ -72,6 +72,15 @@ class RealTimeClock(Clock):
         while not node.end_requested.is_set():
             step()
             beat = wait_for_beat(beat, 1 / self.rate)
+
+
+class HardwareClock(RealTimeClock):
+    """For a real robot: it moves on while the computer is suspended, and so does this clock."""
+
+    @staticmethod
+    def now():
+        """See above."""
+        return time.clock_gettime_ns(time.CLOCK_BOOTTIME)
 
 
 class FollowedClock(Clock):

@@ -43,8 +43,20 @@ def quaternion(yaw):
     return Quaternion(0.0, 0.0, sin(yaw / 2), cos(yaw / 2))
 
 
-def odometry(stamp, robot, pose, velocity, uncertainty):
-    """An Odometry message: the Pose in the odom frame, the velocity (m/s, rad/s) in the base frame, an Uncertainty."""
+def planar(covariance):
+    """A 6x6 covariance, row by row, from the 3x3 covariance of x, y (m) and yaw (rad)."""
+    matrix = diagonal(0.0, 0.0, UNKNOWN, UNKNOWN, UNKNOWN, 0.0)
+    for row, values in zip((0, 1, 5), covariance.tolist()):
+        for column, value in zip((0, 1, 5), values):
+            matrix[6 * row + column] = value
+    return matrix
+
+
+def odometry(stamp, robot, pose, velocity, uncertainty, covariance=None):
+    """An Odometry message: the Pose in the odom frame, the velocity (m/s, rad/s) in the base frame, an Uncertainty.
+
+    covariance: 3x3, of the pose, in place of the Uncertainty's.
+    """
     message = Odometry()
     message.header.stamp = stamp
     message.header.frame_id = robot.odom_frame_id
@@ -53,7 +65,8 @@ def odometry(stamp, robot, pose, velocity, uncertainty):
     message.pose.pose.position.y = pose.y
     message.pose.pose.orientation = quaternion(pose.yaw % (2 * pi))
     position, yaw, linear, angular = uncertainty
-    message.pose.covariance = diagonal(position, position, UNKNOWN, UNKNOWN, UNKNOWN, yaw)
+    message.pose.covariance = (diagonal(position, position, UNKNOWN, UNKNOWN, UNKNOWN, yaw) if covariance is None
+                               else planar(covariance))
     message.twist.twist.linear.x, message.twist.twist.angular.z = velocity
     # wheels do not roll sideways: the lateral speed is known
     message.twist.covariance = diagonal(linear, MEASURED, UNKNOWN, UNKNOWN, UNKNOWN, angular)
@@ -130,11 +143,7 @@ def planar_pose(stamp, frame_id, pose, covariance):
     message.pose.pose.position.x = pose.x
     message.pose.pose.position.y = pose.y
     message.pose.pose.orientation = quaternion(pose.yaw % (2 * pi))
-    matrix = diagonal(0.0, 0.0, UNKNOWN, UNKNOWN, UNKNOWN, 0.0)
-    for row, values in zip((0, 1, 5), covariance.tolist()):
-        for column, value in zip((0, 1, 5), values):
-            matrix[6 * row + column] = value
-    message.pose.covariance = matrix
+    message.pose.covariance = planar(covariance)
     return message
 
 

@@ -1,0 +1,96 @@
+"""The open line to the robot, with its guardian: opened again whenever it is lost."""
+import select
+import time
+
+from rbx1_nav.create import sequences
+from rbx1_nav.create.guardian import Guardian
+from rbx1_nav.create.port import PortError, open_port
+from rbx1_nav.units import SECOND
+
+RETRY = SECOND // 5     # ns between two attempts to open the port
+PATIENCE = SECOND       # ns that a port may be unavailable before it is logged: an old guardian needs a moment
+BEAT = SECOND // 10     # ns between two signs of life to the guardian
+
+
+class LineLost(OSError):
+    """The line broke. The text says how."""
+
+
+class Link:
+    """A serial port that may come and go. Times are in ns."""
+
+    def __init__(self, settings, warn):
+        """settings: Settings; warn(text): logs a line."""
+        self.model = settings.model
+        self.path = settings.port
+        self.warn = warn
+        self.port = None            # serial.Serial
+        self.guardian = None
+        self.problem = ''           # why the port is not open
+        self.lost_at = None         # since when
+        self.logged = None          # the problem that was logged
+        self.attempt = None
+        self.beat_time = 0
+
+    def open(self, now):
+        """Try to open the port, if it is time to. Returns whether it is open."""
+        if self.attempt is not None and now - self.attempt < RETRY:
+            return False
+        self.attempt = now
+        try:
+            self.port = open_port(self.path, self.model.baud)
+            self._guard(now)
+        except OSError as error:
+            self.close()
+            self.problem = str(error) if isinstance(error, PortError) else '%s: %s' % (self.path, error)
+            self.lost_at = now if self.lost_at is None else self.lost_at
+            if now - self.lost_at >= PATIENCE and self.logged != self.problem:
+                self.logged = self.problem
+                self.warn('%s; trying again' % self.problem)
+            return False
+        self.problem, self.logged, self.lost_at = '', None, None
+        return True
+
+    def close(self):
+        """Close the port. The guardian sends a last stop, if there still is a line."""
+        if self.guardian:
+            self.guardian.release()
+        if self.port:
+            self.port.close()
+        self.guardian = self.port = None
+
+    def watch(self, now):
+        """Give the guardian a sign of life; replace it if it is gone. Raises LineLost."""
+        if now - self.beat_time >= BEAT and not self.guardian.beat():
+            self.warn('The guardian process is gone: starting another')
+            try:
+                self._guard(now)
+            except OSError as error:
+                raise LineLost('%s: %s' % (self.path, error))
+        elif now - self.beat_time >= BEAT:
+            self.beat_time = now
+
+    def _guard(self, now):
+        self.guardian = None    # without one there is nothing to release
+        self.guardian = Guardian(self.port.fileno(), sequences.leave(self.model))
+        self.beat_time = now
+
+    def write(self, data):
+        """Send bytes. Raises OSError."""
+        self.port.write(data)
+
+    def read(self, timeout, missing):
+        """The bytes that arrive within `timeout` (s). Raises LineLost.
+
+        missing(): how many bytes complete what has begun; waiting for these at once saves waking up for each.
+        """
+        try:
+            if timeout > 0 and not select.select([self.port], [], [], timeout)[0]:
+                return b''
+            data = self.port.read(self.port.in_waiting or 1)
+            if data:
+                time.sleep(max(0, missing() - len(data)) * 10 / self.model.baud)
+                data += self.port.read(self.port.in_waiting)
+            return data
+        except OSError as error:
+            raise LineLost('%s: %s' % (self.path, error))

@@ -1,0 +1,70 @@
+"""The serial port: opened for one process at a time, with one clear line for each reason why it cannot be."""
+import errno
+import glob
+import grp
+import os
+
+import serial
+
+WRITE_TIMEOUT = 0.2     # s: a port that accepts no byte for so long is lost
+
+
+class PortError(OSError):
+    """A port that cannot be opened. The text names the port, the reason, and what to do."""
+
+
+def open_port(path, baud):
+    """An open serial.Serial that does not block when it is read. Raises PortError.
+
+    flock(2) keeps other drivers away. It also holds for a process that inherits the file descriptor.
+    """
+    try:
+        return serial.Serial(path, baud, timeout=0, write_timeout=WRITE_TIMEOUT, exclusive=True)
+    except (OSError, ValueError) as error:
+        raise PortError('%s: %s' % (path, reason(path, getattr(error, 'errno', None), error)))
+
+
+def reason(path, number, error):
+    """Why a port could not be opened. number: errno, or None; error: of pyserial."""
+    if number in (errno.EAGAIN, errno.EBUSY):
+        return 'in use by %s: expected a port that nobody uses' % (user_of(path) or 'another process')
+    if number in (errno.EACCES, errno.EPERM):
+        return ('not permitted: expected a user of the group %s; `sudo adduser $USER %s`, and log in again'
+                % ((group_of(path),) * 2))
+    if number in (errno.ENOENT, errno.ENXIO, errno.ENODEV):
+        return 'no such device: expected the adapter of the robot to be plugged in'
+    if number in (errno.ENOTTY, errno.EINVAL, errno.EISDIR):
+        return 'not a serial port'
+    return str(error)
+
+
+def group_of(path):
+    """The name of the group that may use a device."""
+    try:
+        return grp.getgrgid(os.stat(path).st_gid).gr_name
+    except (OSError, KeyError):
+        return 'dialout'
+
+
+def user_of(path):
+    """The process that has locked a device, as 'NAME (process NUMBER)'; '' if /proc does not show it."""
+    device = os.path.realpath(path)
+    for link in glob.glob('/proc/[0-9]*/fd/*'):
+        try:
+            if os.readlink(link) != device:
+                continue
+            with open(link.replace('/fd/', '/fdinfo/'), encoding='ascii') as file:
+                locked = 'FLOCK' in file.read()
+            pid = link.split('/')[2]
+            if locked and int(pid) != os.getpid():
+                return '%s (process %s)' % (command_of(pid), pid)
+        except OSError:     # it has ended, or belongs to another user
+            continue
+    return ''
+
+
+def command_of(pid):
+    """The file name of a process's program; of a script, the script's."""
+    with open('/proc/%s/cmdline' % pid, 'rb') as file:
+        words = [os.path.basename(os.fsdecode(word)) for word in file.read().split(b'\0') if word]
+    return next((word for word in words if word.endswith('.py')), words[0] if words else '?')

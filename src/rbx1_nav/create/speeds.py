@@ -1,0 +1,37 @@
+"""From a velocity to the speeds of the wheels that the robot accepts: whole mm/s, at most 500."""
+from math import ceil, floor
+
+from rbx1_nav.create.protocol import MAX_SPEED
+
+
+def wheel_speeds(linear, angular, width):
+    """(left, right) in mm/s for m/s and rad/s. Above the limit both are reduced alike, which leaves the curve as it
+    is."""
+    difference = angular * width / 2
+    left, right = 1000 * (linear - difference), 1000 * (linear + difference)
+    excess = max(abs(left), abs(right)) / MAX_SPEED
+    return (left / excess, right / excess) if excess > 1 else (left, right)
+
+
+class Rounding:
+    """Rounds the speed of a wheel so that the mean over time is the speed that was asked for."""
+
+    def __init__(self):
+        self.reset()
+
+    def reset(self):
+        """Stand, and owe nothing."""
+        self.asked = 0.0    # mm/s
+        self.sent = 0       # mm/s
+        self.debt = 0.0     # mm that the wheel is behind
+
+    def next(self, asked, elapsed):
+        """The whole mm/s to send for a speed (mm/s), `elapsed` seconds after the last one was sent."""
+        if asked == 0:
+            self.reset()
+            return 0
+        # a command was in force for less than a second, or the robot has stopped
+        self.debt += (self.asked - self.sent) * min(elapsed, 1.0)
+        self.asked = asked
+        self.sent = ceil(asked) if self.debt > 0 else floor(asked)
+        return self.sent

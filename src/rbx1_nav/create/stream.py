@@ -1,0 +1,124 @@
+"""From the bytes of the robot to readings. A reading is a dictionary of values by the name of the packet."""
+from rbx1_nav.create import protocol
+
+
+def is_in_range(packets, values):
+    """Whether each value is one that its Packet may have."""
+    return all(packet.low <= value <= packet.high for packet, value in zip(packets, values))
+
+
+class FrameReader:
+    """Finds the frames of the stream. Where the checksum fails, it searches for the next frame byte by byte."""
+
+    def __init__(self, model, numbers):
+        """model: a Model; numbers: of the packets and groups that were requested."""
+        self.format = protocol.frame_format(model, numbers)
+        self.packets, self.indices, self.markers = [], [], []
+        index = 2
+        for number in numbers:
+            self.markers.append((index, number))
+            index += 1
+            for packet in protocol.single_packets(model, [number]):
+                self.packets.append(packet)
+                self.indices.append(index)
+                index += 1
+        self.start = bytes((protocol.FRAME_HEADER, self.format.size - 3))
+        self.buffer = bytearray()
+        self.in_step = False    # whether the bytes before the buffer's were a good frame
+        self.rejected = 0       # corrupted frames
+        self.skipped = 0        # bytes in no good frame
+
+    def clear(self):
+        """Forget an incomplete frame."""
+        self.buffer.clear()
+        self.in_step = False
+
+    @property
+    def missing(self):
+        """How many bytes complete the next frame."""
+        return self.format.size - len(self.buffer)
+
+    def feed(self, data):
+        """The readings that are complete with these bytes."""
+        buffer, readings = self.buffer, []
+        buffer += data
+        while True:
+            begin = buffer.find(self.start)
+            if begin < 0:       # keep the last byte if a frame may begin with it
+                begin = len(buffer) - buffer.endswith(self.start[:1])
+            self._skip(begin)
+            if len(buffer) < self.format.size:
+                return readings
+            reading = self.decode(bytes(buffer[:self.format.size]))
+            if reading is None:
+                self.in_step = True     # this one counts
+                self._skip(1)
+            else:
+                readings.append(reading)
+                del buffer[:self.format.size]
+                self.in_step = True
+
+    def _skip(self, count):
+        """Drop bytes. They count as one corrupted frame, up to the next good one or the next header."""
+        if count:
+            self.rejected += self.in_step
+            self.skipped += count
+            self.in_step = False
+            del self.buffer[:count]
+
+    def decode(self, frame):
+        """The reading in a frame; None if it is corrupted."""
+        fields = self.format.unpack(frame)
+        values = [fields[index] for index in self.indices]
+        if sum(frame) & 0xff or any(fields[index] != number for index, number in self.markers) or (
+                not is_in_range(self.packets, values)):
+            return None
+        return {packet.name: value for packet, value in zip(self.packets, values)}
+
+
+class ReplyReader:
+    """Takes the reply to a query, which has neither header nor checksum: only its length and the ranges of its values
+    show that it is not corrupted."""
+
+    MIN_VOLTAGE, MAX_VOLTAGE = 5000, 25000      # mV: of a robot that runs
+
+    def __init__(self, model, numbers):
+        """model: a Model; numbers: of the packets and groups that are requested."""
+        self.packets = protocol.single_packets(model, numbers)
+        self.format = protocol.packets_format(self.packets)
+        self.buffer = bytearray()
+        self.waiting = False    # for a reply
+        self.rejected = 0       # replies
+        self.skipped = 0        # bytes in no reply
+
+    def clear(self):
+        """Forget an incomplete reply, and expect none."""
+        self.skipped += len(self.buffer)
+        self.buffer.clear()
+        self.waiting = False
+
+    def expect(self):
+        """A query was sent: the next bytes are the reply."""
+        self.clear()
+        self.waiting = True
+
+    @property
+    def missing(self):
+        """How many bytes complete the reply."""
+        return self.format.size - len(self.buffer) if self.waiting else 0
+
+    def feed(self, data):
+        """The readings, at most one, that are complete with these bytes."""
+        self.buffer += data
+        if not self.waiting or len(self.buffer) < self.format.size:
+            return []
+        values = self.format.unpack(bytes(self.buffer[:self.format.size]))
+        reading = {packet.name: value for packet, value in zip(self.packets, values)}
+        if is_in_range(self.packets, values) and len(self.buffer) == self.format.size and (
+                self.MIN_VOLTAGE <= reading['voltage'] <= self.MAX_VOLTAGE):
+            self.buffer.clear()
+            self.waiting = False
+            return [reading]
+        self.rejected += 1
+        self.clear()
+        return []
