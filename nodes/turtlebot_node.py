@@ -19,8 +19,8 @@ Parameters, with the names of create_node's:
     ~gyro_scale_correction          factor for the gyro's angular velocity (default: 1.35)
     ~odom_linear_scale_correction   factor for the distance that the robot reports (default: 1)
     ~odom_angular_scale_correction  factor for the angle (default: 1)
-    ~odom_linear_error              error of the distance, 1 sigma, m after 1 m (default: 0.01)
-    ~odom_angular_error             error of the angle, 1 sigma, rad after 1 rad (default: 0.03)
+    ~odom_linear_error              error of the distance, 1 sigma, m after 1 m (default: 0.02)
+    ~odom_angular_error             error of the angle, 1 sigma, rad after 1 rad (default: 0.04)
     ~odom_frame, ~base_frame        frames (default: odom, base_footprint)
     ~publish_tf                     whether to publish the transform to the base frame (default: true)
     ~drive_mode                     twist, the only one (default: twist)
@@ -47,6 +47,8 @@ from rbx1_nav.ros.create_status import CreateStatus
 from rbx1_nav.schedule import Schedule
 from rbx1_nav.units import SECOND
 
+RETRY = 0.05        # s between two attempts to open the line
+
 
 class TurtlebotNode:
     """Connects a Driver with its line and with ROS."""
@@ -58,8 +60,6 @@ class TurtlebotNode:
         self.lock = threading.Lock()
         self.driver = Driver(settings, gate, rospy.loginfo, rospy.logwarn)
         self.link = Link(settings, rospy.logwarn)
-        self.period = 1 / settings.update_rate
-        self.odom_schedule = Schedule(settings.update_rate)
         self.joint_schedule = Schedule(10)
         self.diagnostics_schedule = Schedule(1)
         self.publisher = BasePublisher(robot)
@@ -83,18 +83,18 @@ class TurtlebotNode:
         """Process what has arrived, or try to open the line. Raises OSError if the line is lost."""
         if not self.link.port:
             if not self.link.open(self.clock.now()):
-                node.sleep(self.period)
+                node.sleep(RETRY)
                 return
             rospy.loginfo('Serial port: %s', self.link.path)
             with self.lock:
                 self.driver.attach(self.clock.now(), self.link.write)
-        data = self.link.read(self.period, lambda: self.driver.reader.missing)
+        data = self.link.read(self.driver.until_tick(self.clock.now()), lambda: self.driver.reader.missing)
         with self.lock:
             now = self.clock.now()
             self.link.watch(now)
             self.driver.receive(now, data)
             timed_out = self.driver.tick(now)
-            state = self.driver.state() if self.odom_schedule.due(now) else None
+            state = self.driver.state()
             error = self.driver.error
         if timed_out:
             self.commands.log_timeout()

@@ -19,7 +19,8 @@ from rbx1_nav.units import SECOND
 SILENCE = SECOND // 2       # ns without a reading: the robot does not answer
 FIRST_WAIT = 3 * SECOND // 10   # ns that a robot that is on may need to answer, before it is started
 START_WAIT = SECOND         # ns between two attempts to start it
-REPLY_TIMEOUT = SECOND // 10    # ns
+REPLY_TIMEOUT = SECOND // 5     # ns from a query to the first byte of its reply
+BYTE_TIMEOUT = SECOND // 20     # ns between two bytes of a reply
 MIN_INTERVAL = SECOND // 200    # ns between two commands on the line, except for a stop
 STANDSTILL = SECOND // 2    # ns without travel: the robot stands
 
@@ -54,6 +55,7 @@ class Driver:
         self.reading_time = None    # ns, when the robot made it
         self.attempt = None         # ns, of the last attempt to get an answer
         self.query_time = None      # ns
+        self.byte_time = 0          # ns, when the last bytes arrived
         self.sent = (0, 0)          # left, right: mm/s
         self.sent_time = 0          # ns
         self.rounding = Rounding(), Rounding()
@@ -63,6 +65,7 @@ class Driver:
         self.left = self.right = 0.0    # m, total travel of the wheels
         self.moved_time = None      # ns, of the last travel or command to move
         self.reported = None        # ns, time of the last State
+        self.state_due = False      # whether it is time for another one
         self.since = NOWHERE        # Travel since then
         self.last_gyro = None       # the last Reading
         self.implausible = 0        # readings
@@ -189,12 +192,21 @@ class Driver:
         if self.write and not self.answers and now - self.attempt > (START_WAIT if self.started else FIRST_WAIT):
             self._start(now)
         due = self.schedule.due(now)
+        self.state_due = self.state_due or due
         if due or timed_out or (any(self.sent) and not any(self._asked())):
             self._send_speeds(now)
-        if due and self.polled and self.write and not (
-                self.reader.waiting and now - self.query_time < REPLY_TIMEOUT):
+        if due and self.polled and self.write and not self._awaits_reply(now):
             self._ask(now)
         return timed_out
+
+    def until_tick(self, now):
+        """How long it is until tick() has something to do, s."""
+        return max(0, self.schedule.next - now) / SECOND
+
+    def _awaits_reply(self, now):
+        if not self.reader.waiting:
+            return False
+        return now - self.byte_time < BYTE_TIMEOUT if self.reader.buffer else now - self.query_time < REPLY_TIMEOUT
 
     def _fall_silent(self, now):
         self.answers = False
@@ -225,6 +237,8 @@ class Driver:
     def receive(self, now, data):
         """Process bytes of the robot."""
         rejected = self.reader.rejected
+        if data:
+            self.byte_time = now
         for reading in self.reader.feed(data):
             # the robot made a frame before it was on the line, and a reply when it received the query
             time = self.query_time if self.polled else now - len(data) * 10 * SECOND // self.model.baud
@@ -285,8 +299,7 @@ class Driver:
         self.right += travel.distance + difference
         if travel.distance or travel.angle or self.moved_time is None:
             self.moved_time = time
-        self.since = Travel(self.since.distance + corrected.distance, self.since.angle + corrected.angle,
-                            *(one + other for one, other in zip(self.since[2:], self.odometry.variances(corrected))))
+        self.since = Travel(*(one + other for one, other in zip(self.since, corrected)))
 
     @property
     def stands(self):
@@ -294,9 +307,10 @@ class Driver:
         return self.reading_time is not None and self.reading_time - self.moved_time >= STANDSTILL
 
     def state(self):
-        """The State, if there is a new reading since the last one; else None."""
-        if not self.answers or self.reading_time == self.reported:
+        """The State, if it is time for one and there is a new reading; else None."""
+        if not (self.answers and self.state_due) or self.reading_time == self.reported:
             return None
+        self.state_due = False
         elapsed = (self.reading_time - self.reported) / SECOND if self.reported is not None else 0.0
         distance, angle, *variances = self.since
         velocity, spread = (0.0, 0.0), (MEASURED, MEASURED)

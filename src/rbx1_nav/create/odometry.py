@@ -5,6 +5,8 @@ import numpy
 
 from rbx1_nav.model.kinematics import Odometry
 
+HELD = 0.3      # m: a robot that drives straight ahead leaves a rounded heading as it is for so long
+
 
 class UncertainOdometry:
     """A pose with its 3x3 covariance (x, y in m, yaw in rad), propagated to first order along the path.
@@ -32,20 +34,28 @@ class UncertainOdometry:
         """Of x, y (m^2) and yaw (rad^2)."""
         return self.sum + self.rounding
 
-    def variances(self, travel):
-        """Variances of length (m^2) and angle (rad^2) of a Travel."""
-        return (travel.distance_variance + self.linear_error ** 2 * abs(travel.distance),
-                travel.angle_variance + self.angular_error ** 2 * abs(travel.angle))
+    def _variances(self, travel):
+        """Variances of the length, the displacement to the side (m^2) and the angle (rad^2) of a Travel.
+
+        To the side: the heading is counted in whole units, and its rounding is the same until the next unit. So it adds
+        up over the path to that unit, or else is the mean of two roundings.
+        """
+        distance, angle = abs(travel.distance), abs(travel.angle)
+        unit = (12 * self.rounding[2, 2]) ** 0.5
+        path = HELD if angle * HELD <= unit * distance else unit * distance / angle
+        return (travel.distance_variance + self.linear_error ** 2 * distance,
+                self.rounding[2, 2] * distance * max(path, distance / 2),
+                travel.angle_variance + self.angular_error ** 2 * angle)
 
     def move(self, travel):
         """Add a Travel."""
         distance, angle = travel.distance, travel.angle
-        variances = self.variances(travel)
+        variances = self._variances(travel)
         if not (distance or angle or any(variances)):
             return
         middle = self.pose.yaw + angle / 2
         c, s = cos(middle), sin(middle)
         by_pose = numpy.array([[1.0, 0.0, -distance * s], [0.0, 1.0, distance * c], [0.0, 0.0, 1.0]])
-        by_travel = numpy.array([[c, -distance / 2 * s], [s, distance / 2 * c], [0.0, 1.0]])
+        by_travel = numpy.array([[c, -s, -distance / 2 * s], [s, c, distance / 2 * c], [0.0, 0.0, 1.0]])
         self.sum = by_pose @ self.sum @ by_pose.T + (by_travel * variances) @ by_travel.T
         self.odometry.move(distance, angle)

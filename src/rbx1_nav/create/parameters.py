@@ -41,8 +41,8 @@ def read_settings(params):
         gyro_correction=section.number('gyro_scale_correction', 0.01, 100, 1.35, 'a factor'),
         linear_correction=section.number('odom_linear_scale_correction', 0.01, 100, 1.0, 'a factor'),
         angular_correction=section.number('odom_angular_scale_correction', 0.01, 100, 1.0, 'a factor'),
-        linear_error=section.number('odom_linear_error', 0, 1, 0.01, 'a fraction'),
-        angular_error=section.number('odom_angular_error', 0, 1, 0.03, 'a fraction'),
+        linear_error=section.number('odom_linear_error', 0, 1, 0.02, 'a fraction'),
+        angular_error=section.number('odom_angular_error', 0, 1, 0.04, 'a fraction'),
         stop_on_bump=section.flag('stop_motors_on_bump', True),
         min_yaw_speed=section.number('min_abs_yaw_vel', 0, 10, 0.0, 'a speed', 'rad/s'))
     # 0 is no limit, as in create_node
