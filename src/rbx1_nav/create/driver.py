@@ -21,7 +21,7 @@ FIRST_WAIT = 3 * SECOND // 10   # ns that a robot that is on may need to answer,
 START_WAIT = SECOND         # ns between two attempts to start it
 REPLY_TIMEOUT = SECOND // 5     # ns from a query to the first byte of its reply
 BYTE_TIMEOUT = SECOND // 20     # ns between two bytes of a reply
-MIN_INTERVAL = SECOND // 200    # ns between two commands on the line, except for a stop
+BACKLOG = SECOND // 100     # ns that the line may be busy with earlier bytes: then only a stop is sent at once
 STANDSTILL = SECOND // 2    # ns without travel: the robot stands
 
 State = namedtuple('State', 'time pose covariance velocity variances travel gyro')
@@ -39,6 +39,7 @@ class Driver:
         self.info = info
         self.warn = warn
         model = self.model = settings.model
+        self.byte = 10 * SECOND // model.baud   # ns
         self.polled = model is protocol.CREATE
         self.reader = ReplyReader(model, sequences.QUERIED) if self.polled else FrameReader(model, sequences.STREAMED)
         self.counter = travel_of(model)
@@ -58,6 +59,8 @@ class Driver:
         self.byte_time = 0          # ns, when the last bytes arrived
         self.sent = (0, 0)          # left, right: mm/s
         self.sent_time = 0          # ns
+        self.line_free = 0          # ns, when all bytes are on their way
+        self.integrated = 0         # ns, up to where `expected` goes
         self.rounding = Rounding(), Rounding()
         self.expected = Expected(0.0, 0.0)  # by the commands since the robot last started to count
         self.queried = Expected(0.0, 0.0)   # the part of it before the last query
@@ -99,11 +102,12 @@ class Driver:
         self.gate.halt()
         self._integrate(now)
         self.sent = (0, 0)
-        self._write(sequences.leave(self.model))
+        self._write(now, sequences.leave(self.model))
 
-    def _write(self, data):
+    def _write(self, now, data):
         if self.write is None:
             return
+        self.line_free = max(now, self.line_free) + len(data) * self.byte
         try:
             self.write(data)
         except OSError as error:
@@ -114,7 +118,7 @@ class Driver:
         self.sent = (0, 0)
         for rounding in self.rounding:
             rounding.reset()
-        self._write(sequences.STOP)
+        self._write(now, sequences.STOP)
 
     def _ask(self, now):
         """Ask for a reading. A query that was not answered may have cost travel."""
@@ -122,7 +126,7 @@ class Driver:
         if self.polled:
             self.reader.expect()
             self.query_time, self.queried = now, self.expected
-        self._write(sequences.ask(self.model))
+        self._write(now, sequences.ask(self.model))
 
     def _miss(self, now):
         if self.polled and self.reader.waiting:
@@ -141,9 +145,9 @@ class Driver:
 
     def _integrate(self, now):
         """Add up what the command on the line should have moved until now."""
-        elapsed = max(0, now - self.sent_time) / SECOND / 1000
+        elapsed = max(0, now - self.integrated) / SECOND / 1000
         self.expected = Expected(*(total + speed * elapsed for total, speed in zip(self.expected, self.sent)))
-        self.sent_time = now
+        self.integrated = now
 
     # commands
 
@@ -168,15 +172,15 @@ class Driver:
 
     def _send_speeds(self, now):
         asked = self._asked()
-        if self.write is None or now - self.sent_time < MIN_INTERVAL and (any(asked) or not any(self.sent)):
+        if self.write is None or self.line_free - now > BACKLOG and (any(asked) or not any(self.sent)):
             return
-        elapsed = (now - self.sent_time) / SECOND
+        elapsed, self.sent_time = (now - self.sent_time) / SECOND, now
         self._integrate(now)
         self.sent = tuple(rounding.next(speed, elapsed) for rounding, speed in zip(self.rounding, asked))
         if any(self.sent):
             self.moved_time = now
         left, right = self.sent
-        self._write(protocol.drive_direct(right, left))
+        self._write(now, protocol.drive_direct(right, left))
 
     # time
 
@@ -217,7 +221,7 @@ class Driver:
         self.warn('The robot does not answer: expected it to be switched on, its cable plugged in, and robot_type: %s'
                   % self.model.name)
         self._stop(now)
-        self._write(b'' if self.polled else sequences.ask(self.model))
+        self._write(now, b'' if self.polled else sequences.ask(self.model))
 
     def _start(self, now):
         if not self.started:
@@ -230,7 +234,7 @@ class Driver:
         if self.polled:
             self.reader.expect()
             self.query_time, self.queried = now, self.expected
-        self._write(sequences.start(self.model))
+        self._write(now, sequences.start(self.model))
 
     # readings
 
@@ -241,7 +245,7 @@ class Driver:
             self.byte_time = now
         for reading in self.reader.feed(data):
             # the robot made a frame before it was on the line, and a reply when it received the query
-            time = self.query_time if self.polled else now - len(data) * 10 * SECOND // self.model.baud
+            time = self.query_time if self.polled else now - len(data) * self.byte
             self._integrate(now)
             self._accept(max(time, self.reading_time or 0), reading)
         if self.polled and self.reader.rejected != rejected:
@@ -251,8 +255,10 @@ class Driver:
         gap = not self.answers
         elapsed = (time - self.reading_time) / SECOND if self.reading else 0.0
         read = self.queried if self.polled else self.expected
-        reset = gap and self.started and self.reading
-        if gap and self.started:
+        # a robot that was just switched on is in passive mode, since it was started, and counts from 0
+        reset = gap and self.started and self.reading and (
+            reading['mode'] == protocol.PASSIVE and self.counter.is_new(reading))
+        if reset:
             self.counter.restart()
         try:
             travel = self.counter.update(reading, elapsed, read)
@@ -266,7 +272,7 @@ class Driver:
             travel = Travel(0.0, 0.0, ((left + right) / 2) ** 2 / 3,
                             ((right - left) / self.model.wheel_separation) ** 2 / 3)
         if gap:
-            self._recover(elapsed)
+            self._recover(elapsed, reset)
         self._count_from(time, read)
         self.reading, self.reading_time = reading, time
         self._move(time, travel)
@@ -275,17 +281,17 @@ class Driver:
             self.last_gyro = self.gyro.update(reading['analog_input'], elapsed, self.stands, turn if gap else None)
         in_control = self.supervisor.in_control
         if self.supervisor.update(time, reading, self.gate.moving):
-            self._write(sequences.take_control(self.model, self.settings.mode))
+            self._write(time, sequences.take_control(self.model, self.settings.mode))
         if in_control and not self.supervisor.in_control:
             self.gate.halt()
 
-    def _recover(self, elapsed):
+    def _recover(self, elapsed, reset):
         self.answers = True
         if self.reading is None:
             self.info('The robot answers: %s' % self.model.name)
         else:
             self.warn('The robot answers again, after %.1f s%s'
-                      % (elapsed, ': it was switched off or reset' if self.started else ''))
+                      % (elapsed, ': it was switched off or reset' if reset else ''))
         self.started = False
 
     def _move(self, time, travel):

@@ -5,6 +5,7 @@ Both classes have
     update(reading, elapsed, expected)  the Travel since the last good reading; raises Implausible
     miss(begun, elapsed, expected)      a reading was lost on the line; begun: whether a part of it arrived
     restart()                           the robot counts from 0 again: the next reading is no travel
+    is_new(reading)                     whether this may be the reading of a robot that was just switched on
     rounding                            (m, rad): 1 sigma of a position and a heading, for they are counted in whole units
 
     elapsed: s since the last good reading; expected: Expected travel by the commands in the same time.
@@ -80,6 +81,10 @@ class EncoderTravel:
         unsure = sum((self.WRAP * self.scale) ** 2 for travel in expected if abs(travel) > self.WRAP / 2 * self.scale)
         return Travel((left + right) / 2, (right - left) / self.width, unsure / 4, unsure / self.width ** 2)
 
+    def is_new(self, reading):
+        """See above."""
+        return all(abs(self.difference(reading[name], 0, 0.0)) < MARGIN for name in ('left_encoder', 'right_encoder'))
+
     def difference(self, new, old, expected):
         """The travel (m) between two counts: of all that wrap to the same, the closest to that expected or to none."""
         low = (new - old + self.WRAP // 2) % self.WRAP - self.WRAP // 2
@@ -134,6 +139,11 @@ class CounterTravel:
         parts = [Travel(distance, angle, 100.0 * capped, 100.0 * capped)] + self.lost
         self.lost.clear()
         return Travel(*map(sum, zip(*parts)))
+
+    @staticmethod
+    def is_new(reading):
+        """See above."""
+        return reading['distance'] == reading['angle'] == 0
 
     def miss(self, begun, elapsed, expected):
         """See above."""

@@ -1,4 +1,6 @@
 """A driver and an emulated robot on one clock, without a serial port: what the unit tests share."""
+import os
+
 from rbx1_nav.control.gate import CommandGate
 from rbx1_nav.create.body import Body
 from rbx1_nav.create.driver import Driver
@@ -7,6 +9,7 @@ from rbx1_nav.create.parameters import read_settings
 from rbx1_nav.create.serial_line import SerialLine
 from rbx1_nav.units import SECOND
 
+SURFACES = os.path.join(os.path.dirname(__file__), '..', '..', '..', 'config', 'surfaces')
 STEP = SECOND // 500
 
 
@@ -60,6 +63,10 @@ class DrivenCreate:
         self.velocity = linear, angular
         self.run(seconds)
         self.velocity = None
+
+    def command_zero(self):
+        """Stop by a command."""
+        self.driver.command(self.now, 0, 0)
 
     @property
     def truth(self):

@@ -1,0 +1,170 @@
+"""The driver with an emulated robot: it connects, drives, stops, and reports where it is."""
+from math import pi
+
+import pytest
+
+from rbx1_nav.control.gate import RejectedCommand
+from rbx1_nav.create import protocol
+from rbx1_nav.units import SECOND
+
+from driven_create import DrivenCreate, started
+
+BOTH = pytest.mark.parametrize('robot_type', ['create', 'create2'])
+# rounding of the encoders; of the Create's angle, 1 degree over 1 m to the side
+POSITION, ANGLE = {'create': 0.02, 'create2': 0.001}, {'create': 0.02, 'create2': 0.002}
+
+
+@BOTH
+def test_it_starts_a_robot_that_was_just_switched_on(robot_type):
+    driven = started(robot_type)
+    assert driven.robot.mode == protocol.SAFE
+    assert driven.driver.answers and driven.driver.supervisor.in_control
+    assert driven.speeds == (0, 0)
+
+
+@BOTH
+@pytest.mark.parametrize('mode', [protocol.PASSIVE, protocol.SAFE, protocol.FULL])
+def test_the_mode_is_that_of_the_parameter(robot_type, mode):
+    driven = started(robot_type, operation_mode=mode)
+    assert driven.robot.mode == mode
+    driven.drive(0.2, 0, 0.1)
+    assert driven.body.moving == (mode != protocol.PASSIVE)
+
+
+@BOTH
+def test_odometry_follows_the_robot_out_and_back(robot_type):
+    driven = started(robot_type)
+    for linear, angular, seconds in 2 * [(0.2, 0, 5), (0, 1, pi)]:
+        driven.drive(linear, angular, seconds)
+        driven.command_zero()
+        driven.run(1)
+    assert driven.truth.x ** 2 + driven.truth.y ** 2 < 0.03 ** 2
+    for value, truth in zip(driven.pose[:2], driven.truth[:2]):
+        assert value == pytest.approx(truth, abs=POSITION[robot_type])
+    assert driven.pose.yaw == pytest.approx(driven.truth.yaw, abs=ANGLE[robot_type])
+    assert driven.truth.yaw == pytest.approx(2 * pi, abs=0.05)      # ticks of 20 ms at 1 rad/s
+
+
+@BOTH
+def test_a_command_is_sent_at_once(robot_type):
+    driven = started(robot_type)
+    before = driven.now
+    driven.driver.command(driven.now, 0.2, 0)
+    driven.run(0.01)
+    time = next(time for time, data in driven.commands if data == protocol.drive_direct(200, 200))
+    # five bytes, and a query before them, at the line's rate
+    assert time - before < SECOND // 200
+
+
+@BOTH
+def test_a_command_times_out(robot_type):
+    driven = started(robot_type, cmd_vel_timeout=0.3)
+    driven.driver.command(driven.now, 0.2, 0)
+    driven.run(0.29)
+    assert driven.speeds == (200, 200)
+    driven.run(0.02)    # a step and the bytes
+    assert driven.speeds == (0, 0)
+
+
+@BOTH
+def test_a_command_that_is_not_finite_stops_the_robot(robot_type):
+    driven = started(robot_type)
+    driven.drive(0.2, 0, 0.5)
+    with pytest.raises(RejectedCommand):
+        driven.driver.command(driven.now, float('nan'), 0)
+    driven.run(0.02)
+    assert driven.speeds == (0, 0)
+
+
+@BOTH
+def test_the_mean_speed_is_what_was_asked_for(robot_type):
+    driven = started(robot_type)
+    driven.drive(0.1234, 0.0, 1)
+    start, time = driven.truth.x, driven.now
+    driven.drive(0.1234, 0.0, 5)
+    # 1 mm/s less would be 5 mm
+    assert driven.truth.x - start == pytest.approx(0.1234 * (driven.now - time) / SECOND, abs=0.0005)
+
+
+@BOTH
+def test_a_flood_of_commands_does_not_fill_the_line(robot_type):
+    driven = started(robot_type)
+    for index in range(1000):
+        driven.driver.command(driven.now, 0.2 + index / 1e5, 0)
+        driven.run(0.002)
+    driven.driver.command(driven.now, 0, 0)
+    driven.run(0.02)
+    assert driven.speeds == (0, 0)
+
+
+@BOTH
+def test_a_bump_stops_forward_motion_only(robot_type):
+    driven = started(robot_type)
+    driven.drive(0.2, 0, 0.5)
+    driven.body.bumped = True
+    driven.drive(0.2, 0, 0.2)
+    assert driven.speeds == (0, 0)
+    driven.drive(-0.2, 0, 0.2)
+    assert driven.speeds == (-200, -200)
+    driven.drive(0, 1, 0.2)
+    assert driven.speeds[0] < 0 < driven.speeds[1]
+
+
+def test_a_bump_does_not_stop_if_it_should_not():
+    driven = started('create', stop_motors_on_bump=False)
+    driven.body.bumped = True
+    driven.drive(0.2, 0, 0.5)
+    assert driven.speeds == (200, 200)
+
+
+def test_slow_turns_are_commanded_at_the_least_speed():
+    driven = started('create', min_abs_yaw_vel=0.5, max_abs_yaw_vel=1.0)
+    for asked, speed in ((0.1, 65), (-0.1, -65), (0.7, 91), (2.0, 130), (0.0, 0)):
+        driven.drive(0, asked, 0.1)
+        assert driven.speeds == (-speed, speed)
+
+
+@BOTH
+def test_scale_corrections_apply_to_the_odometry(robot_type):
+    driven = started(robot_type, odom_linear_scale_correction=2.0, odom_angular_scale_correction=0.5)
+    driven.drive(0.2, 0, 2)
+    driven.run(2)
+    assert driven.pose.x == pytest.approx(2 * driven.truth.x, abs=0.003)
+    driven.drive(0, 1, 1)
+    driven.run(2)
+    assert driven.pose.yaw == pytest.approx(driven.truth.yaw / 2, abs=ANGLE[robot_type])
+
+
+def test_the_gyro_reports_the_turn_after_its_offset_is_known():
+    driven = started('create', gyro_scale_correction=1.0)
+    assert driven.driver.gyro.offset == pytest.approx(512, abs=1)
+    driven.drive(0, 1, 3)
+    driven.run(1)
+    # a count is 0.3 degrees/s
+    assert driven.driver.gyro.yaw == pytest.approx(driven.truth.yaw, abs=0.03)
+
+
+@BOTH
+def test_on_leaving_the_robot_stands_in_passive_mode(robot_type):
+    driven = started(robot_type)
+    driven.drive(0.2, 0, 1)
+    driven.driver.leave(driven.now)
+    driven.connected = False
+    driven.run(0.1)
+    assert driven.speeds == (0, 0) and driven.robot.mode == protocol.PASSIVE
+
+
+@BOTH
+def test_states_are_reported_at_the_update_rate(robot_type):
+    driven = started(robot_type, update_rate=20)
+    count = len(driven.states)
+    driven.run(5)
+    assert len(driven.states) - count == pytest.approx(100, abs=2)
+
+
+def test_without_a_line_nothing_is_reported():
+    driven = DrivenCreate('create2')
+    driven.run(1)
+    driven.driver.tick(driven.now)
+    driven.driver.command(driven.now, 0.2, 0)
+    assert driven.driver.state() is None and driven.commands == []

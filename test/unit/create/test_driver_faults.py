@@ -1,0 +1,174 @@
+"""The driver with an emulated robot to which something happens."""
+import random
+
+import numpy
+import pytest
+
+from rbx1_nav.create import protocol
+from rbx1_nav.model.surfaces import load_surface
+from rbx1_nav.units import wrap_angle
+
+from driven_create import SURFACES, started
+
+BOTH = pytest.mark.parametrize('robot_type', ['create', 'create2'])
+STOP = protocol.drive_direct(0, 0)
+CHI_SQUARE = 16.3       # 99.9 % of 3 degrees of freedom
+
+
+def normalized_error(driven):
+    """The squared error of the odometry, normalized by its covariance."""
+    error = numpy.array(driven.pose) - driven.truth
+    error[2] = wrap_angle(error[2])
+    return error @ numpy.linalg.solve(driven.driver.odometry.covariance, error)
+
+
+def pull_cable(robot_type, seed, surface, **params):
+    """The normalized squared error after a gap at a random moment of a random motion; checks the stop."""
+    choose = random.Random(seed)
+    driven = started(robot_type, surface=surface, seed=seed, **params)
+    driven.drive(choose.uniform(-0.3, 0.3), choose.choice([0, choose.uniform(-1, 1)]), choose.uniform(0.5, 3))
+    driven.run(0.002 * choose.randrange(17))
+    driven.pull()
+    driven.run(choose.uniform(0.05, 4))
+    assert driven.body.moving       # nothing stops it
+    count = len(driven.commands)
+    driven.connect()
+    driven.run(0.5)
+    assert driven.commands[count][1] == STOP
+    assert driven.driver.answers and driven.speeds == (0, 0)
+    return normalized_error(driven)
+
+
+@pytest.mark.parametrize('surface, params', [
+    ('ideal', {'odom_linear_error': 0.0, 'odom_angular_error': 0.0}), ('low_ply_carpet', {})])
+@BOTH
+def test_the_odometry_knows_how_uncertain_a_gap_is(robot_type, surface, params):
+    floor = load_surface(surface, SURFACES)
+    errors = [pull_cable(robot_type, seed, floor, **params) for seed in range(50)]
+    assert max(errors) < CHI_SQUARE
+    assert 0.5 < sum(errors) / len(errors) < 6
+
+
+@BOTH
+def test_a_silent_line_is_stopped_and_recovers(robot_type):
+    driven = started(robot_type)
+    driven.drive(0.2, 0, 1)
+    driven.line.silent = True
+    driven.drive(0.2, 0, 2)
+    assert not driven.driver.answers and driven.driver.state() is None
+    assert driven.speeds == (200, 200)
+    driven.line.silent = False
+    driven.run(1.5)
+    assert driven.speeds == (0, 0) and driven.driver.answers
+    assert normalized_error(driven) < CHI_SQUARE
+    driven.drive(0.2, 0, 0.5)
+    assert driven.speeds == (200, 200)
+
+
+@BOTH
+def test_a_reset_is_no_travel(robot_type):
+    driven = started(robot_type)
+    driven.drive(0.2, 0.3, 3)
+    driven.run(1)
+    before = driven.pose
+    driven.robot.switch_on(driven.now)
+    driven.run(5)
+    assert driven.robot.mode == protocol.SAFE
+    assert driven.pose == before
+    driven.drive(0.2, 0, 1)
+    assert driven.speeds == (200, 200)
+
+
+def test_encoders_that_start_again_within_a_frame_are_no_travel():
+    driven = started('create2')
+    driven.drive(0.2, 0, 3)
+    driven.run(1)
+    before = driven.pose
+    driven.body.reset_counters()
+    driven.run(1)
+    assert driven.pose == before
+
+
+@BOTH
+@pytest.mark.parametrize('fault', ['wheel_dropped', 'cliff'])
+def test_control_comes_back_when_the_cause_is_gone(robot_type, fault):
+    driven = started(robot_type)
+    driven.drive(0.2, 0, 1)
+    setattr(driven.body, fault, True)
+    driven.drive(0.2, 0, 3)
+    assert driven.speeds == (0, 0) and driven.robot.mode == protocol.PASSIVE
+    assert driven.driver.supervisor.reason in ('a wheel dropped', 'a cliff')
+    assert protocol.command('safe') not in [data for time, data in driven.commands[-50:]]
+    setattr(driven.body, fault, False)
+    driven.drive(0.2, 0, 0.9)
+    assert driven.robot.mode == protocol.PASSIVE    # held for a second
+    driven.drive(0.2, 0, 0.5)
+    assert driven.robot.mode == protocol.SAFE and driven.speeds == (200, 200)
+
+
+@BOTH
+def test_on_the_dock_it_stays_passive_until_a_command(robot_type):
+    driven = started(robot_type)
+    driven.body.docked = True
+    driven.run(3)
+    assert driven.robot.mode == protocol.PASSIVE
+    assert 'dock' in driven.driver.supervisor.reason
+
+
+@BOTH
+def test_a_wheel_drop_stops_the_robot_in_full_mode_too(robot_type):
+    driven = started(robot_type, operation_mode=3)
+    driven.drive(0.2, 0, 0.5)
+    driven.body.wheel_dropped = True
+    driven.drive(0.2, 0, 0.2)
+    assert driven.speeds == (0, 0)
+
+
+@pytest.mark.parametrize('seed', range(4))
+def test_a_corrupted_line_leaves_the_odometry_as_it_is(seed):
+    driven = started('create2', seed=seed)
+    driven.line.corruption = 0.01
+    for linear, angular in ((0.2, 0.0), (0.0, 1.0), (0.2, 0.3), (-0.1, -0.5)):
+        driven.drive(linear, angular, 3)
+    driven.run(1)
+    driven.line.corruption = 0.0
+    driven.run(1)
+    # as without corruption: rounding over the path
+    for value, truth in zip(driven.pose, driven.truth):
+        assert value == pytest.approx(truth, abs=0.003)
+    assert driven.driver.reader.rejected > 100 and driven.driver.dropouts == 0
+
+
+@pytest.mark.parametrize('seed', range(4))
+def test_lost_replies_of_a_create_are_bridged(seed):
+    driven = started('create', seed=seed, odom_linear_error=0.0, odom_angular_error=0.0)
+    driven.line.corruption = 0.01
+    for linear, angular in ((0.2, 0.0), (0.0, 1.0), (0.2, 0.3), (-0.1, -0.5)):
+        driven.drive(linear, angular, 3)
+    driven.run(1)
+    assert driven.driver.missed > 20
+    assert normalized_error(driven) < CHI_SQUARE
+
+
+def test_a_clock_that_went_on_while_the_computer_was_suspended_stops_the_robot():
+    driven = started('create2')
+    driven.drive(0.2, 0, 1)
+    driven.connected = False    # the processes sleep, the robot goes on
+    driven.run(20)
+    driven.connected = True
+    driven.run(0.1)
+    assert driven.speeds == (0, 0)
+    driven.run(1)
+    assert normalized_error(driven) < CHI_SQUARE
+
+
+def test_encoders_wrap():
+    driven = started('create2')
+    driven.drive(0.5, 0, 32)
+    driven.run(1)
+    assert driven.truth.x > 65536 / driven.settings.model.counts_per_metre / 2
+    driven.pull()
+    driven.run(1)
+    driven.connect()
+    driven.run(1)
+    assert driven.pose.x == pytest.approx(driven.truth.x, abs=0.001)
