@@ -20,7 +20,7 @@ def read_settings(params):
     """(Settings, Robot) from a dictionary of private parameters. Raises ConfigError."""
     section = Section(params)
     name = section.get('robot_type', 'create')
-    if name not in protocol.MODELS:
+    if not (isinstance(name, str) and name in protocol.MODELS):
         raise ConfigError('robot_type: %s: expected one of: %s' % (show(name), ', '.join(protocol.MODELS)))
     model = protocol.MODELS[name]
     port = section.get('port', '/dev/ttyUSB0')

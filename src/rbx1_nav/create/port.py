@@ -3,6 +3,7 @@ import errno
 import glob
 import grp
 import os
+import termios
 
 import serial
 
@@ -21,7 +22,9 @@ def open_port(path, baud):
     try:
         return serial.Serial(path, baud, timeout=0, write_timeout=WRITE_TIMEOUT, exclusive=True)
     except (OSError, ValueError) as error:
-        raise PortError('%s: %s' % (path, reason(path, getattr(error, 'errno', None), error)))
+        cause = error.__context__       # of an error in termios, pyserial passes on the text only
+        number = getattr(error, 'errno', None) or (cause.args[0] if isinstance(cause, termios.error) else None)
+        raise PortError('%s: %s' % (path, reason(path, number, error)))
 
 
 def reason(path, number, error):

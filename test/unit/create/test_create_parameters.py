@@ -1,0 +1,41 @@
+"""The parameters of the base node: create_node's names and defaults, and one line for what makes no sense."""
+import pytest
+
+from rbx1_nav.config import ConfigError
+from rbx1_nav.create import protocol
+from rbx1_nav.create.parameters import read_settings
+
+
+def test_the_defaults():
+    settings, robot = read_settings({})
+    assert settings.model is protocol.CREATE and settings.port == '/dev/ttyUSB0' and settings.mode == protocol.SAFE
+    assert settings.has_gyro and settings.gyro_correction == 1.35 and settings.gyro_range == 150
+    assert settings.linear_correction == settings.angular_correction == 1
+    assert robot.timeout == 600000000 and robot.rate == 30 and robot.publish_tf
+    assert (robot.odom_frame_id, robot.base_frame_id, robot.base_width) == ('odom', 'base_footprint', 0.26)
+
+
+def test_a_create_2_has_no_gyro():
+    settings, robot = read_settings({'robot_type': 'create2'})
+    assert not settings.has_gyro and robot.base_width == 0.235
+
+
+@pytest.mark.parametrize('params, text', [
+    ({'robot_type': 'roomba'}, "robot_type: 'roomba': expected one of: create, create2"),
+    ({'robot_type': ['create']}, "robot_type: ['create']: expected one of: create, create2"),
+    ({'port': 3}, 'port: 3: expected the absolute path of a device'),
+    ({'port': 'COM1'}, "port: 'COM1': expected the absolute path of a device"),
+    ({'operation_mode': 0}, 'operation_mode: 0: expected 1 (passive), 2 (safe) or 3 (full)'),
+    ({'operation_mode': True}, 'operation_mode: True: expected 1 (passive), 2 (safe) or 3 (full)'),
+    ({'drive_mode': 'turtle'}, "drive_mode: 'turtle': expected twist, the only one here"),
+    ({'robot_type': 'create2', 'has_gyro': True},
+     'has_gyro: True: expected false, a create2 has no analog input for a gyro'),
+    ({'cmd_vel_timeout': 0}, 'cmd_vel_timeout: 0: expected a time from 0.05 to 10 in s'),
+    ({'update_rate': float('nan')}, 'update_rate: nan: expected a rate from 5 to 60 in Hz'),
+    ({'min_abs_yaw_vel': 2.0, 'max_abs_yaw_vel': 1.0}, 'min_abs_yaw_vel: 2.0: expected at most max_abs_yaw_vel, 1.0'),
+    ({'odom_frame': 'x', 'base_frame': 'x'}, "base_frame: 'x': expected a frame other than odom_frame"),
+])
+def test_what_makes_no_sense(params, text):
+    with pytest.raises(ConfigError) as caught:
+        read_settings(params)
+    assert str(caught.value) == text

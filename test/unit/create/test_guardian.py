@@ -1,0 +1,126 @@
+"""The guardian stops the robot when the process that it guards is gone or hangs. Real processes on a pseudo-terminal."""
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from rbx1_nav.create.guardian import Guardian
+from rbx1_nav.create.port import PortError, open_port
+from rbx1_nav.create.pseudo_terminal import PseudoTerminal
+
+STOP = b'\0\0\x91\0\0\0\0\x80'
+LIMIT = 30      # s after which a wait fails
+
+# a process that opens the port, starts a guardian, and gives signs of life; it prints both process ids
+GUARDED = '''
+import sys, time
+sys.path.insert(0, sys.argv[1])
+from rbx1_nav.create.guardian import Guardian
+from rbx1_nav.create.port import open_port
+port = open_port(sys.argv[2], 115200)
+guardian = Guardian(port.fileno(), bytes.fromhex(sys.argv[3]))
+port.write(bytes.fromhex(sys.argv[4]))
+guardian.beat()
+print(guardian.process.pid, flush=True)
+while True:
+    time.sleep(0.05)
+    guardian.beat()
+'''
+SOURCE = os.path.join(os.path.dirname(__file__), '..', '..', '..', 'src')
+
+
+@pytest.fixture(name='terminal')
+def make_terminal(tmp_path):
+    terminal = PseudoTerminal(str(tmp_path / 'robot'))
+    yield terminal
+    terminal.unplug()
+
+
+def read_until(terminal, end):
+    """What arrives at the robot, up to the bytes `end`."""
+    data, give_up = b'', time.monotonic() + LIMIT
+    while not data.endswith(end):
+        assert time.monotonic() < give_up, data
+        data += terminal.read()
+        time.sleep(0.001)
+    return data
+
+
+def start(terminal, command=b'\x91'):
+    """(the guarded process, the process id of its guardian)."""
+    process = subprocess.Popen([sys.executable, '-c', GUARDED, SOURCE, terminal.link, STOP.hex(), command.hex()],
+                               stdout=subprocess.PIPE, start_new_session=True)
+    pid = int(process.stdout.readline())
+    assert read_until(terminal, command) == command
+    return process, pid
+
+
+def wait_for_end(pid):
+    give_up = time.monotonic() + LIMIT
+    while os.path.exists('/proc/%d' % pid):
+        assert time.monotonic() < give_up
+        time.sleep(0.01)
+
+
+@pytest.mark.parametrize('end', [
+    lambda process: process.kill(), lambda process: os.killpg(process.pid, signal.SIGKILL),
+    lambda process: process.terminate()], ids=['kill', 'kill the group', 'terminate'])
+def test_the_end_of_the_process_sends_the_stop(terminal, end):
+    process, pid = start(terminal)
+    end(process)
+    assert read_until(terminal, STOP) == STOP
+    process.communicate()
+    wait_for_end(pid)
+    open_port(terminal.link, 115200).close()
+
+
+def test_a_process_that_hangs_is_stopped_once(terminal):
+    process, pid = start(terminal)
+    process.send_signal(signal.SIGSTOP)
+    assert read_until(terminal, STOP) == STOP
+    process.send_signal(signal.SIGCONT)
+    process.kill()
+    assert read_until(terminal, STOP) == STOP
+    process.communicate()
+    wait_for_end(pid)
+
+
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_signals_do_not_end_the_guardian(terminal, number):
+    process, pid = start(terminal)
+    os.kill(pid, number)
+    process.kill()
+    assert read_until(terminal, STOP) == STOP
+    process.communicate()
+
+
+def test_the_port_is_in_use_until_the_stop_is_sent(terminal):
+    process, pid = start(terminal)
+    os.kill(pid, signal.SIGSTOP)
+    process.kill()
+    process.communicate()
+    with pytest.raises(PortError) as caught:
+        open_port(terminal.link, 115200)
+    assert 'in use by guardian.py (process %d)' % pid in str(caught.value)
+    os.kill(pid, signal.SIGCONT)
+    assert read_until(terminal, STOP) == STOP
+
+
+def test_a_guardian_that_is_gone_is_noticed(terminal):
+    with open_port(terminal.link, 115200) as port:
+        guardian = Guardian(port.fileno(), STOP)
+        assert guardian.beat()
+        guardian.process.kill()
+        guardian.process.wait()
+        assert not guardian.beat()
+
+
+def test_a_cable_that_is_gone_ends_the_guardian(terminal):
+    process, pid = start(terminal)
+    terminal.unplug()
+    process.kill()
+    process.communicate()
+    wait_for_end(pid)

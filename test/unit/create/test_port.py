@@ -1,0 +1,64 @@
+"""A port that cannot be opened: one line that says why. On a pseudo-terminal."""
+import os
+import subprocess
+import sys
+
+import pytest
+
+from rbx1_nav.create.port import PortError, open_port, reason
+from rbx1_nav.create.pseudo_terminal import PseudoTerminal
+
+
+@pytest.fixture(name='terminal')
+def make_terminal(tmp_path):
+    terminal = PseudoTerminal(str(tmp_path / 'robot'))
+    yield terminal
+    terminal.unplug()
+
+
+def refusal(path):
+    with pytest.raises(PortError) as caught:
+        open_port(str(path), 115200)
+    return str(caught.value)
+
+
+def test_a_port_is_opened_by_its_link(terminal):
+    with open_port(terminal.link, 57600) as port:
+        assert terminal.baud == 57600
+        port.write(b'abc')
+        assert terminal.read() == b'abc'
+
+
+def test_no_device(tmp_path):
+    path = tmp_path / 'none'
+    assert refusal(path) == '%s: no such device: expected the adapter of the robot to be plugged in' % path
+
+
+def test_not_a_serial_port(tmp_path):
+    path = tmp_path / 'file'
+    path.write_text('')
+    assert refusal(path) == '%s: not a serial port' % path
+    assert refusal(tmp_path) == '%s: not a serial port' % tmp_path
+
+
+@pytest.mark.skipif(os.getuid() == 0, reason='root may open every file')
+def test_not_permitted(terminal):
+    os.chmod(terminal.device, 0)
+    assert 'adduser $USER' in refusal(terminal.link)
+
+
+def test_what_a_user_without_permission_reads(tmp_path):
+    text = reason(str(tmp_path / 'none'), 13, None)     # also where the group is unknown
+    assert text == 'not permitted: expected a user of the group dialout; `sudo adduser $USER dialout`, and log in again'
+
+
+def test_another_process_has_it(terminal):
+    code = 'import serial, sys; port = serial.Serial(sys.argv[1], exclusive=True); print("open", flush=True); input()'
+    with subprocess.Popen([sys.executable, '-c', code, terminal.link], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                          ) as other:
+        assert other.stdout.readline() == b'open\n'
+        text = refusal(terminal.link)
+        other.communicate(b'\n')
+    assert text == '%s: in use by %s (process %d): expected a port that nobody uses' % (
+        terminal.link, os.path.basename(sys.executable), other.pid)
+    open_port(terminal.link, 57600).close()

@@ -1,0 +1,94 @@
+"""What the robot counts becomes travel, and what cannot be true does not."""
+from math import radians
+
+from hypothesis import given, strategies
+import pytest
+
+from rbx1_nav.create import protocol
+from rbx1_nav.create.travel import NOWHERE, CounterTravel, EncoderTravel, Expected, Implausible
+
+COUNT = 1 / protocol.CREATE_2.counts_per_metre      # m
+STILL = Expected(0.0, 0.0)
+
+
+def encoders(left, right):
+    return {'left_encoder': left % 65536, 'right_encoder': right % 65536}
+
+
+def counters(distance, angle):
+    return {'distance': distance, 'angle': angle}
+
+
+def encoder_travel(left, right):
+    counter = EncoderTravel(protocol.CREATE_2)
+    assert counter.update(encoders(left, right), 0.0, STILL) == NOWHERE
+    return counter
+
+
+def counter_travel():
+    counter = CounterTravel(protocol.CREATE)
+    assert counter.update(counters(500, 90), 0.0, STILL) == NOWHERE     # from before
+    return counter
+
+
+@given(strategies.integers(0, 65535), strategies.integers(-2000, 2000), strategies.integers(-2000, 2000))
+def test_encoders_wrap(start, left, right):
+    travel = encoder_travel(start, start).update(encoders(start + left, start + right), 3.0, STILL)
+    assert travel.distance == pytest.approx((left + right) / 2 * COUNT)
+    assert travel.angle == pytest.approx((right - left) * COUNT / 0.235)
+    assert travel.distance_variance == travel.angle_variance == 0
+
+
+def test_after_a_long_gap_the_command_says_how_often_they_wrapped():
+    counts = round(20 / COUNT)      # 20 m, more than half of 29 m
+    travel = encoder_travel(0, 0).update(encoders(counts, counts), 60.0, Expected(19.0, 19.0))
+    assert travel.distance == pytest.approx(20, abs=0.001)
+    # or it stood at once
+    assert travel.distance_variance > 10 ** 2
+
+
+def test_one_implausible_reading_is_dropped():
+    counter = encoder_travel(1000, 1000)
+    with pytest.raises(Implausible):
+        counter.update(encoders(5000, 1000), 0.015, STILL)
+    assert counter.update(encoders(1010, 1010), 0.030, STILL).distance == pytest.approx(10 * COUNT)
+
+
+def test_implausible_readings_that_agree_are_a_new_beginning():
+    counter = encoder_travel(1000, 1000)
+    for count in range(3):
+        with pytest.raises(Implausible):
+            counter.update(encoders(20000 + count, 0), 0.015, STILL)
+    assert counter.update(encoders(20012, 10), 0.015, STILL).distance == pytest.approx(10 * COUNT)
+
+
+def test_the_counters_of_a_create():
+    travel = counter_travel().update(counters(100, -10), 1.0, STILL)
+    assert (travel.distance, travel.angle) == (0.1, pytest.approx(radians(-10)))
+
+
+@pytest.mark.parametrize('distance, angle', [(100, 0), (-100, 0), (0, 20), (0, -20)])
+def test_an_implausible_reading_of_a_create(distance, angle):
+    with pytest.raises(Implausible):
+        counter_travel().update(counters(distance, angle), 0.033, STILL)
+
+
+def test_a_lost_reply_is_bridged_by_the_command():
+    counter = counter_travel()
+    counter.update(counters(20, 0), 0.1, STILL)         # 0.2 m/s
+    counter.miss(True, 0.1, Expected(0.02, 0.02))
+    travel = counter.update(counters(20, 0), 0.2, STILL)
+    assert travel.distance == pytest.approx(0.04)
+    sure = travel.distance_variance
+    # wheels that do not follow the command
+    counter.miss(True, 0.1, Expected(-0.03, -0.03))
+    assert counter.update(counters(20, 0), 0.2, STILL).distance_variance > 100 * sure
+    # only once
+    assert counter.update(counters(20, 0), 0.1, STILL).distance_variance == 0
+
+
+def test_where_no_byte_arrived_the_query_may_be_lost():
+    counter = counter_travel()
+    counter.miss(False, 0.1, Expected(0.02, 0.02))
+    travel = counter.update(counters(40, 0), 0.2, STILL)
+    assert travel.distance == pytest.approx(0.05) and travel.distance_variance >= 0.01 ** 2
