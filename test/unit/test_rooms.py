@@ -17,7 +17,7 @@ ALLOWED = {
     'schedule': {'units'},
     'plots': {'config', 'units'},
     'control': {'units'},
-    'create': {'config', 'control', 'model', 'simulated_base', 'units'},
+    'create': {'config', 'control', 'model', 'schedule', 'simulated_base', 'units'},
     'model': {'config', 'units'},
     'estimation': {'model', 'units'},
     'simulated_base': {'control', 'model', 'units'},
