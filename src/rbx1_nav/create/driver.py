@@ -11,7 +11,7 @@ from rbx1_nav.create.odometry import UncertainOdometry
 from rbx1_nav.create.speeds import Rounding, wheel_speeds
 from rbx1_nav.create.stream import FrameReader, ReplyReader
 from rbx1_nav.create.supervisor import BUMPS, WHEEL_DROPS, Supervisor
-from rbx1_nav.create.travel import NOWHERE, Expected, Implausible, Travel, travel_of
+from rbx1_nav.create.travel import NOWHERE, STILL, Expected, Implausible, Travel, travel_of
 from rbx1_nav.model.wheels import MEASURED
 from rbx1_nav.schedule import Schedule
 from rbx1_nav.units import SECOND
@@ -62,8 +62,8 @@ class Driver:
         self.line_free = 0          # ns, when all bytes are on their way
         self.integrated = 0         # ns, up to where `expected` goes
         self.rounding = Rounding(), Rounding()
-        self.expected = Expected(0.0, 0.0)  # by the commands since the robot last started to count
-        self.queried = Expected(0.0, 0.0)   # the part of it before the last query
+        self.expected = STILL       # by the commands since the robot last started to count
+        self.queried = STILL        # the part of it before the last query
         self.counted_from = 0       # ns, when the robot last started to count
         self.left = self.right = 0.0    # m, total travel of the wheels
         self.moved_time = None      # ns, of the last travel or command to move

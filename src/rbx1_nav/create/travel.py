@@ -28,6 +28,8 @@ NOWHERE = Travel(0.0, 0.0, 0.0, 0.0)
 Expected = namedtuple('Expected', 'left right')
 Expected.__doc__ = 'The travel of the wheels by the commands that were sent, m.'
 
+STILL = Expected(0.0, 0.0)
+
 
 class Implausible(ValueError):
     """A reading that no robot could produce: corrupted, or of a robot that was reset meanwhile."""
@@ -106,7 +108,7 @@ class EncoderTravel:
 
 
 class CounterTravel:
-    """Of the Create: distance and angle since the last reply, which are lost with a reply."""
+    """Of the Create: distance and angle since the last reply. What a reply said that was lost is lost with it."""
 
     CAP = 32767     # mm or degrees, where the robot stops to count
 
@@ -119,26 +121,43 @@ class CounterTravel:
     def restart(self):
         """See above."""
         self.first = True
-        self.lost = []          # Travel that was not read
-        self.speed = Expected(0.0, 0.0)     # m/s, of the wheels by the last reading
+        self.lost = []          # Travel of replies that were lost
+        self.doubtful = STILL   # by the commands, before queries of which nobody knows if they arrived
+        self.speed = STILL      # m/s, of the wheels by the last reading
 
     def update(self, reading, elapsed, expected):
         """See above."""
         distance, angle = reading['distance'] / 1000, radians(reading['angle'])
         if self.first:
+            self.restart()
             self.first = False
-            self.lost.clear()
             return NOWHERE
-        left, right = distance - angle * self.width / 2, distance + angle * self.width / 2
-        if not is_possible(left, right, elapsed):
+        wheels = Expected(distance - angle * self.width / 2, distance + angle * self.width / 2)
+        if not is_possible(*wheels, elapsed):
             raise Implausible('distance: %s mm, angle: %s degrees in %.3f s'
                               % (reading['distance'], reading['angle'], elapsed))
-        if elapsed > 0 and not self.lost:
-            self.speed = Expected(left / elapsed, right / elapsed)
         capped = abs(reading['distance']) >= self.CAP or abs(reading['angle']) >= self.CAP
-        parts = [Travel(distance, angle, 100.0 * capped, 100.0 * capped)] + self.lost
+        parts = [Travel(distance, angle, 100.0 * capped, 100.0 * capped), self._resolve(wheels, expected)] + self.lost
+        if elapsed > 0 and len(parts) == 2:
+            self.speed = Expected(*(wheel / elapsed for wheel in wheels))
         self.lost.clear()
+        self.doubtful = STILL
         return Travel(*map(sum, zip(*parts)))
+
+    def _resolve(self, wheels, expected):
+        """The Travel that doubtful queries cost. wheels: the travel that was read at last.
+
+        If they did not arrive, this includes the travel before them. If that cannot be seen: half, give or take half.
+        """
+        doubtful = self.doubtful
+        size = max(map(abs, doubtful))
+        if not size:
+            return NOWHERE
+        answered = max(abs(wheel - part) for wheel, part in zip(wheels, expected))
+        ignored = max(abs(wheel - part - other) for wheel, part, other in zip(wheels, expected, doubtful))
+        if size > 2 * (LOST_SHARE * max(map(abs, expected)) + self.rounding[0] + self.rounding[1] * self.width):
+            return NOWHERE if ignored < answered else bridged(doubtful, doubtful, self.width)
+        return bridged(Expected(*(part / 2 for part in doubtful)), STILL, self.width)
 
     @staticmethod
     def is_new(reading):
@@ -147,13 +166,11 @@ class CounterTravel:
 
     def miss(self, begun, elapsed, expected):
         """See above."""
-        measured = Expected(*(speed * elapsed for speed in self.speed))
-        travel = bridged(expected, measured, self.width)
-        if not begun:   # if the query was lost, the robot did not start from 0: half of it, give or take a half
-            half_distance, half_angle = travel.distance / 2, travel.angle / 2
-            travel = Travel(half_distance, half_angle, travel.distance_variance + half_distance ** 2,
-                            travel.angle_variance + half_angle ** 2)
-        self.lost.append(travel)
+        if begun:
+            measured = Expected(*(speed * elapsed for speed in self.speed))
+            self.lost.append(bridged(expected, measured, self.width))
+        else:
+            self.doubtful = Expected(*map(sum, zip(self.doubtful, expected)))
 
 
 def travel_of(model):

@@ -5,10 +5,9 @@ from hypothesis import given, strategies
 import pytest
 
 from rbx1_nav.create import protocol
-from rbx1_nav.create.travel import NOWHERE, CounterTravel, EncoderTravel, Expected, Implausible
+from rbx1_nav.create.travel import NOWHERE, STILL, CounterTravel, EncoderTravel, Expected, Implausible
 
 COUNT = 1 / protocol.CREATE_2.counts_per_metre      # m
-STILL = Expected(0.0, 0.0)
 
 
 def encoders(left, right):
@@ -90,5 +89,12 @@ def test_a_lost_reply_is_bridged_by_the_command():
 def test_where_no_byte_arrived_the_query_may_be_lost():
     counter = counter_travel()
     counter.miss(False, 0.1, Expected(0.02, 0.02))
-    travel = counter.update(counters(40, 0), 0.2, STILL)
-    assert travel.distance == pytest.approx(0.05) and travel.distance_variance >= 0.01 ** 2
+    # with what was read before the query: it was lost
+    assert counter.update(counters(40, 0), 0.2, Expected(0.02, 0.02)).distance == pytest.approx(0.04)
+    counter.miss(False, 0.1, Expected(0.02, 0.02))
+    # without: the reply was lost
+    assert counter.update(counters(20, 0), 0.2, Expected(0.02, 0.02)).distance == pytest.approx(0.04)
+    # over a long gap nobody can tell
+    counter.miss(False, 0.1, Expected(0.02, 0.02))
+    travel = counter.update(counters(800, 0), 4.0, Expected(0.8, 0.8))
+    assert travel.distance == pytest.approx(0.81) and travel.distance_variance == pytest.approx(0.01 ** 2, rel=0.5)

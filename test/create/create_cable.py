@@ -1,0 +1,47 @@
+#!/usr/bin/python3
+"""The cable is pulled and put back in motion: a stop comes first, and the odometry counts what moved meanwhile."""
+import unittest
+
+import numpy
+
+from driven import STOP, DrivenRobot
+import support
+
+CHI_SQUARE = 16.3       # 99.9 % of 3 degrees of freedom
+
+
+class TestCreateCable(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        support.init_node('create_cable')
+
+    def check(self, robot_type):
+        # an ideal floor adds no error
+        robot = DrivenRobot(self, robot_type, odom_linear_error=0.0, odom_angular_error=0.0)
+        for _ in range(2):
+            robot.wait_for_motion(0.2, 0.3)
+            start = robot.truth.next()
+            robot.switch('pull_cable', True)
+            robot.node.wait_for_line('The line to the robot is lost')
+            robot.wait_for_status('no such device')
+            # it goes on with its last command
+            support.wait_for(lambda: abs(support.yaw(robot.truth.next()) - support.yaw(start)) > 0.3, 'the robot to move on')
+            count = len(robot.received())
+            robot.switch('pull_cable', False)
+            robot.wait_for_standstill()
+            self.assertEqual(robot.commands_since(count)[0], STOP)
+            robot.wait_for_status('Standing')
+            error = numpy.array(robot.error())
+            covariance = numpy.array(robot.odom.last.pose.covariance).reshape(6, 6)[numpy.ix_([0, 1, 5], [0, 1, 5])]
+            self.assertLess(error @ numpy.linalg.solve(covariance, error), CHI_SQUARE, (error, covariance))
+        self.assertEqual(robot.value('Serial line', 'Dropouts'), '2')
+
+    def test_a_create(self):
+        self.check('create')
+
+    def test_a_create_2(self):
+        self.check('create2')
+
+
+if __name__ == '__main__':
+    support.main('create_cable', TestCreateCable)

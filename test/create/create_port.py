@@ -1,0 +1,49 @@
+#!/usr/bin/python3
+"""A port that is not there, is in use, or is none: one line says so, and the node waits for it. Bad parameters end it."""
+import os
+import signal
+import unittest
+
+from driven import DrivenRobot
+import support
+
+
+class TestCreatePort(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        support.init_node('create_port')
+
+    def test_two_nodes(self):
+        robot = DrivenRobot(self, 'create2')
+        pid = support.pid_of('/turtlebot_node')
+        second = robot.start_node('__name:=second', _robot_type='create2')
+        second.wait_for_line(r'%s: in use by \S+ \(process \d+\): expected a port that nobody uses' % robot.link)
+        # nothing disturbs the first
+        robot.wait_for_motion()
+        # when the port is free, the second one uses it
+        os.kill(pid, signal.SIGINT)
+        robot.node.wait()
+        second.wait_for_line('in safe mode')
+
+    def test_a_port_that_comes_later(self):
+        robot = DrivenRobot(self, 'create')
+        robot.end_node(robot.node)
+        robot.switch('pull_cable', True)
+        node = robot.start_node(_robot_type='create')
+        node.wait_for_line('%s: no such device: expected the adapter of the robot to be plugged in' % robot.link)
+        robot.switch('pull_cable', False)
+        node.wait_for_line('in safe mode')
+
+    def test_bad_parameters(self):
+        for name, argument, text in (
+                ('bad_type', '_robot_type:=roomba', "robot_type: 'roomba': expected one of: create, create2"),
+                ('bad_rate', '_update_rate:=fast', "update_rate: 'fast': expected a rate from 5 to 60 in Hz")):
+            node = support.Process('rosrun', 'rbx1_nav', 'turtlebot_node.py', argument, '__name:=' + name)
+            self.addCleanup(node.kill)
+            self.assertEqual(node.wait(), 1)
+            self.assertIn('/%s/%s' % (name, text), node.output)
+            self.assertNotIn('Traceback', node.output)
+
+
+if __name__ == '__main__':
+    support.main('create_port', TestCreatePort)

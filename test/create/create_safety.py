@@ -1,0 +1,51 @@
+#!/usr/bin/python3
+"""The robot gives up safe mode: the node says why, and takes control again only when the cause is gone."""
+import unittest
+
+from driven import DrivenRobot
+from rbx1_nav.create.protocol import command
+import support
+
+
+class TestCreateSafety(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        support.init_node('create_safety')
+
+    def check(self, robot_type):
+        robot = DrivenRobot(self, robot_type)
+        for service, reason in (('drop_wheel', 'a wheel dropped'), ('cliff', 'a cliff')):
+            robot.wait_for_motion()
+            robot.switch(service, True)
+            robot.drive(0.2, 0.0, lambda: not robot.moving, 'the robot to stop')
+            robot.drive(0.2, 0.0, lambda why=reason: robot.status().message == 'Not driven: ' + why, reason)
+            robot.node.wait_for_line('it changed from safe to passive mode')
+            count = len(robot.received())
+            # commands do not change that
+            self.assertFalse(robot.moving)
+            robot.diagnostics.next()
+            robot.diagnostics.next()
+            self.assertNotIn(command('safe'), robot.commands_since(count))
+            robot.switch(service, False)
+            robot.wait_for_status('Standing')
+            robot.wait_for_mode('safe')
+        robot.wait_for_motion()
+
+        # on the dock it is charged, until it is to move
+        robot.switch('dock', True)
+        robot.wait_for_status('Not driven: on the dock')
+        robot.publish('charge', 0.15)
+        robot.wait_for_status('charging', 'Battery')
+        robot.switch('dock', False)
+        robot.wait_for_status('Low: 15 %', 'Battery')
+        robot.wait_for_status('Standing')
+
+    def test_a_create(self):
+        self.check('create')
+
+    def test_a_create_2(self):
+        self.check('create2')
+
+
+if __name__ == '__main__':
+    support.main('create_safety', TestCreateSafety)

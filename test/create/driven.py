@@ -1,0 +1,103 @@
+"""The base node and an emulated robot, both as processes, for the tests in this folder."""
+import signal
+
+import rospy
+from diagnostic_msgs.msg import DiagnosticArray
+
+from emulated import EmulatedRobot
+from rbx1_nav.create.protocol import command, drive_direct
+import support
+
+STOP = drive_direct(0, 0)
+
+
+class DrivenRobot(EmulatedRobot):
+    """turtlebot_node.py on the port of an emulated robot."""
+
+    def __init__(self, case, robot_type, emulated=(), **params):
+        """case: the TestCase, at whose end both end; emulated: parameters of the robot; params: of the node."""
+        super().__init__(case, robot_type, **dict(emulated))
+        self.case = case
+        self.diagnostics = support.Watch('/diagnostics', DiagnosticArray)
+        self.node = self.start_node(_robot_type=robot_type, **{'_' + name: value for name, value in params.items()})
+        self.odom = support.OdomWatch()
+        self.commander = support.Commander()
+        self.wait_for_status('Standing')
+
+    def start_node(self, *arguments, **params):
+        """Another base node on this port."""
+        if rospy.has_param('/turtlebot_node'):
+            rospy.delete_param('/turtlebot_node')
+        node = support.Process('rosrun', 'rbx1_nav', 'turtlebot_node.py', '_port:=' + self.link, *arguments,
+                               *('%s:=%s' % item for item in params.items()))
+        self.case.addCleanup(self.end_node, node)
+        return node
+
+    def end_node(self, node):
+        """End a node, if it runs, and look at what it has logged."""
+        if node.process.poll() is None:
+            node.signal(signal.SIGINT)
+            self.case.assertEqual(node.wait(), 0, node.output)
+        node.kill()
+        self.case.assertNotIn('Traceback', node.output)
+
+    def status(self, name=None):
+        """The latest status of a part of the robot, by default of the base; None if there is none."""
+        name = name or self.model.name
+        statuses = [status for message in list(self.diagnostics.messages) for status in message.status]
+        return next((status for status in reversed(statuses) if status.name == 'turtlebot_node: ' + name), None)
+
+    def value(self, part, key):
+        """A value in the status of a part."""
+        return next(each.value for each in self.status(part).values if each.key == key)
+
+    def wait_for_status(self, message, name=None):
+        """Wait until the message of a status contains a text."""
+        try:
+            return support.wait_for(lambda: message in getattr(self.status(name), 'message', ''), repr(message))
+        except AssertionError as error:
+            raise AssertionError('%s; status: %s; node: %s' % (error, self.status(name), self.node.output))
+
+    def drive(self, linear, angular, condition, what):
+        """Repeat a command until a condition holds."""
+        def check():
+            self.commander.send(linear, angular)
+            rospy.sleep(0.02)
+            return condition()
+        return support.wait_for(check, what)
+
+    def wait_for_motion(self, linear=0.2, angular=0.0):
+        """Drive until the robot moves."""
+        self.drive(linear, angular, lambda: self.moving, 'the robot to move: %s' % self.node.output)
+
+    def wait_for_standstill(self):
+        """Wait until the robot stands, by ground truth."""
+        support.wait_for(lambda: not self.moving, 'the robot to stop: %s' % self.node.output)
+
+    def wait_for_mode(self, mode):
+        """Wait until diagnostics show a mode."""
+        support.wait_for(lambda: self.value(None, 'Mode') == mode, 'mode ' + mode)
+
+    def commands_since(self, count):
+        """The commands that the robot has received after the first `count`."""
+        return [data for _, data in self.received()[count:]]
+
+    def wait_for_stop(self, count):
+        """Wait for a stop that leaves the robot in passive mode, after the first `count` commands."""
+        def stopped():
+            since = self.commands_since(count)
+            return command('start') in since and STOP in since[:since.index(command('start'))]
+        support.wait_for(stopped, 'a stop on the line')
+        self.wait_for_standstill()
+
+    def poses(self):
+        """(odometry, ground truth), each (x, y, yaw), of a robot that stands."""
+        self.wait_for_standstill()
+        self.odom.next()
+        self.odom.next()
+        return support.pose(self.odom.last), support.pose(self.truth.next())
+
+    def error(self):
+        """The odometry's error, (x, y, yaw)."""
+        (x, y, yaw), (true_x, true_y, true_yaw) = self.poses()
+        return x - true_x, y - true_y, support.wrapped(yaw - true_yaw)
