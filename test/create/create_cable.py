@@ -2,12 +2,8 @@
 """The cable is pulled and put back in motion: a stop comes first, and the odometry counts what moved meanwhile."""
 import unittest
 
-import numpy
-
-from driven import STOP, DrivenRobot
+from driven import CHI_SQUARE, STOP, DrivenRobot
 import support
-
-CHI_SQUARE = 16.3       # 99.9 % of 3 degrees of freedom
 
 
 class TestCreateCable(unittest.TestCase):
@@ -31,9 +27,7 @@ class TestCreateCable(unittest.TestCase):
             robot.wait_for_standstill()
             self.assertEqual(robot.commands_since(count)[0], STOP)
             robot.wait_for_status('Standing')
-            error = numpy.array(robot.error())
-            covariance = numpy.array(robot.odom.last.pose.covariance).reshape(6, 6)[numpy.ix_([0, 1, 5], [0, 1, 5])]
-            self.assertLess(error @ numpy.linalg.solve(covariance, error), CHI_SQUARE, (error, covariance))
+            self.assertLess(robot.normalized_error(), CHI_SQUARE)
         self.assertEqual(robot.value('Serial line', 'Dropouts'), '2')
 
     def test_a_create(self):

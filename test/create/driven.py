@@ -1,6 +1,7 @@
 """The base node and an emulated robot, both as processes, for the tests in this folder."""
 import signal
 
+import numpy
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray
 
@@ -9,6 +10,7 @@ from rbx1_nav.create.protocol import command, drive_direct
 import support
 
 STOP = drive_direct(0, 0)
+CHI_SQUARE = 16.3       # 99.9 % of 3 degrees of freedom
 
 
 class DrivenRobot(EmulatedRobot):
@@ -23,6 +25,8 @@ class DrivenRobot(EmulatedRobot):
         self.odom = support.OdomWatch()
         self.commander = support.Commander()
         self.wait_for_status('Standing')
+        if robot_type == 'create':
+            self.wait_for_status('Calibrated', 'Gyro')
 
     def start_node(self, *arguments, **params):
         """Another base node on this port."""
@@ -101,3 +105,9 @@ class DrivenRobot(EmulatedRobot):
         """The odometry's error, (x, y, yaw)."""
         (x, y, yaw), (true_x, true_y, true_yaw) = self.poses()
         return x - true_x, y - true_y, support.wrapped(yaw - true_yaw)
+
+    def normalized_error(self):
+        """The odometry's squared error, normalized by its covariance: chi-square with 3 degrees of freedom."""
+        error = numpy.array(self.error())
+        covariance = numpy.array(self.odom.last.pose.covariance).reshape(6, 6)[numpy.ix_([0, 1, 5], [0, 1, 5])]
+        return error @ numpy.linalg.solve(covariance, error)

@@ -1,0 +1,54 @@
+"""The cable of an emulated Create is pulled in motion, and put back."""
+import os
+import sys
+import time
+import unittest
+
+import support
+
+sys.path.append(os.path.join(os.path.dirname(__file__), '..', '..', 'create'))
+from driven import CHI_SQUARE, STOP, DrivenRobot    # noqa: E402, pylint: disable=wrong-import-position
+
+FAULT = "a Create's cable pulled at a random moment of a motion, and put back"
+PROMISE = 'a stop comes first; the odometry counts what moved meanwhile, and knows how uncertain that is'
+FULL, SHORT = 50, 2
+ROOT = ALONE = False
+
+
+def pull(row, robot, seconds, gap, velocity):
+    """One fault, in motion."""
+    end = time.monotonic() + seconds
+    robot.drive(*velocity, lambda: time.monotonic() > end and robot.moving, 'the robot to move')
+    robot.switch('pull_cable', True)
+    time.sleep(gap)
+    count = len(robot.received())
+    robot.switch('pull_cable', False)
+    robot.wait_for_standstill()
+    assert robot.commands_since(count)[0] == STOP, robot.commands_since(count)
+    robot.wait_for_status('Standing')
+    error = robot.normalized_error()
+    row.figure('squared error, normalized', error)
+    assert error < CHI_SQUARE, 'squared error %.1f of %s' % (error, robot.error())
+
+
+def run(row):
+    """See FAULT. A robot of its own for each, so that the errors are independent."""
+    row.roscore()
+    support.init_node('faults')
+    for index in range(row.times):
+        case = unittest.TestCase()
+        robot_type = ('create', 'create2')[index % 2]
+        seconds, gap = row.random.uniform(0.2, 2), row.random.uniform(0.1, 4)
+        velocity = row.random.uniform(0.1, 0.3), row.random.choice([0.0, row.random.uniform(-1, 1)])
+        with row.fault('%s: cable pulled after %.3f s at %.3f m/s, %.3f rad/s for %.3f s'
+                       % (robot_type, seconds, *velocity, gap)):
+            try:
+                # an ideal floor adds no error
+                robot = DrivenRobot(case, robot_type, odom_linear_error=0.0, odom_angular_error=0.0)
+                pull(row, robot, seconds, gap, velocity)
+            finally:
+                case.doCleanups()
+    errors = row.figures.get('squared error, normalized', [])
+    if len(errors) > 10:
+        with row.fault('the mean of the squared errors'):
+            assert 0.5 < sum(errors) / len(errors) < 6, sum(errors) / len(errors)
