@@ -73,7 +73,8 @@ class TurtlebotNode:
             try:
                 self.step()
             except OSError as error:
-                self.disconnect(error)
+                rospy.logerr('The line to the robot is lost (%s). It goes on with its last command: stop it by hand', error)
+                self.disconnect()
             if self.diagnostics_schedule.due(self.clock.now()):
                 self.diagnostics.force_update()
         with self.lock:
@@ -88,10 +89,15 @@ class TurtlebotNode:
             rospy.loginfo('Serial port: %s', self.link.path)
             with self.lock:
                 self.driver.attach(self.clock.now(), self.link.write)
+        if not self.link.is_guarded(self.clock.now()):
+            rospy.logwarn('The guardian process is gone: starting another')
+            with self.lock:
+                self.driver.stop(self.clock.now())
+            self.disconnect()
+            return
         data = self.link.read(self.driver.until_tick(self.clock.now()), lambda: self.driver.reader.missing)
         with self.lock:
             now = self.clock.now()
-            self.link.watch(now)
             self.driver.receive(now, data)
             timed_out = self.driver.tick(now)
             state = self.driver.state()
@@ -113,21 +119,21 @@ class TurtlebotNode:
         if self.joint_schedule.due(now):
             self.publisher.publish_joints(stamp, state.travel, state.velocity)
 
-    def disconnect(self, error):
-        """The line is lost: a robot in motion goes on by itself."""
+    def disconnect(self):
+        """Give up the line. Another one will be opened."""
         with self.lock:
             self.driver.detach(self.clock.now())
         self.link.close()
-        rospy.logerr('The line to the robot is lost (%s). It goes on with its last command: stop it by hand', error)
 
 
 def main():
     """Read the parameters, and run. Returns the exit status."""
     node.init_node('turtlebot_node', __doc__)
+    if not rospy.rostime.is_wallclock():
+        rospy.logfatal('/use_sim_time: true: expected false, a robot on a serial line runs in real time')
+        return 1
     try:
         settings, robot = read_settings(rospy.get_param(rospy.get_name(), {}))
-        if not rospy.rostime.is_wallclock():
-            raise ConfigError('use_sim_time: True: expected false with a real robot')
     except ConfigError as error:
         rospy.logfatal('%s/%s', rospy.get_name(), error)
         return 1

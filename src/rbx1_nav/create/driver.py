@@ -22,6 +22,7 @@ START_WAIT = SECOND         # ns between two attempts to start it
 REPLY_TIMEOUT = SECOND // 5     # ns from a query to the first byte of its reply
 BYTE_TIMEOUT = SECOND // 20     # ns between two bytes of a reply
 BACKLOG = SECOND // 100     # ns that the line may be busy with earlier bytes: then only a stop is sent at once
+PATIENCE = 3                # attempts to start it before the first warning
 STANDSTILL = SECOND // 2    # ns without travel: the robot stands
 
 State = namedtuple('State', 'time pose covariance velocity variances travel gyro')
@@ -51,6 +52,7 @@ class Driver:
         self.write = None           # sends bytes; None without a line
         self.error = None           # the OSError with which the line was lost
         self.answers = False        # whether readings arrive
+        self.starts = 0             # attempts before it answered for the first time
         self.started = False        # whether the robot was started since it last answered
         self.reading = None         # the last one
         self.reading_time = None    # ns, when the robot made it
@@ -96,6 +98,11 @@ class Driver:
         self.gate.halt()
         self.supervisor.forget()
         self._miss(now)
+
+    def stop(self, now):
+        """Stop the robot, until the next command."""
+        self.gate.halt()
+        self._stop(now)
 
     def leave(self, now):
         """Stop the robot, and leave it in passive mode."""
@@ -218,16 +225,20 @@ class Driver:
         self.attempt, self.started = now, False
         self.gate.halt()
         self.supervisor.forget()
-        self.warn('The robot does not answer: expected it to be switched on, its cable plugged in, and robot_type: %s'
-                  % self.model.name)
+        self._warn_of_silence()
         self._stop(now)
         self._write(now, b'' if self.polled else sequences.ask(self.model))
 
+    def _warn_of_silence(self):
+        self.warn('The robot does not answer: expected a %s that is switched on, at the other end of the cable'
+                  % self.model.name)
+
     def _start(self, now):
-        if not self.started:
-            self.started = True
-            if self.reading is None:
-                self.info('Waiting for the robot to answer')
+        if self.reading is None:
+            self.starts += 1
+            if self.starts == PATIENCE:
+                self._warn_of_silence()
+        self.started = True
         self.attempt = now
         self._miss(now)
         self._stop(now)
@@ -278,7 +289,8 @@ class Driver:
         self._move(time, travel)
         if self.gyro:
             turn = (travel.angle, travel.angle_variance + self.counter.rounding[1] ** 2)
-            self.last_gyro = self.gyro.update(reading['analog_input'], elapsed, self.stands, turn if gap else None)
+            self.last_gyro = self.gyro.update(reading['analog_input'], elapsed, self.stands,
+                                              turn if elapsed > SILENCE / SECOND else None)
         in_control = self.supervisor.in_control
         if self.supervisor.update(time, reading, self.gate.moving):
             self._write(time, sequences.take_control(self.model, self.settings.mode))

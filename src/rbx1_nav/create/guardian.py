@@ -15,7 +15,7 @@ import termios
 import time
 
 HANG = 1.0              # s without a sign of life, after which the node hangs
-START_TIMEOUT = 5.0     # s for the process to start, on a busy machine
+START_TIMEOUT = 3.0     # s for the process to start, on a busy machine
 WRITE_TIMEOUT = 1.0     # s in which a line must accept the stop
 
 

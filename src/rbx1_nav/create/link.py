@@ -39,7 +39,7 @@ class Link:
         self.attempt = now
         try:
             self.port = open_port(self.path, self.model.baud)
-            self._guard(now)
+            self.guardian = Guardian(self.port.fileno(), sequences.leave(self.model))
         except OSError as error:
             self.close()
             self.problem = str(error) if isinstance(error, PortError) else '%s: %s' % (self.path, error)
@@ -49,6 +49,7 @@ class Link:
                 self.warn('%s; trying again' % self.problem)
             return False
         self.problem, self.logged, self.lost_at = '', None, None
+        self.beat_time = now - BEAT
         return True
 
     def close(self):
@@ -59,21 +60,12 @@ class Link:
             self.port.close()
         self.guardian = self.port = None
 
-    def watch(self, now):
-        """Give the guardian a sign of life; replace it if it is gone. Raises LineLost."""
-        if now - self.beat_time >= BEAT and not self.guardian.beat():
-            self.warn('The guardian process is gone: starting another')
-            try:
-                self._guard(now)
-            except OSError as error:
-                raise LineLost('%s: %s' % (self.path, error))
-        elif now - self.beat_time >= BEAT:
-            self.beat_time = now
-
-    def _guard(self, now):
-        self.guardian = None    # without one there is nothing to release
-        self.guardian = Guardian(self.port.fileno(), sequences.leave(self.model))
+    def is_guarded(self, now):
+        """Give the guardian a sign of life, if it is time to. Returns whether it is there."""
+        if now - self.beat_time < BEAT:
+            return True
         self.beat_time = now
+        return self.guardian.beat()
 
     def write(self, data):
         """Send bytes. Raises OSError."""

@@ -50,6 +50,11 @@ def test_the_base():
     assert usage('fake_base.py') == sorted(set(read_here) | set(read_there) | DRIVER_KEYS | {'diagnostic_period'})
 
 
+def test_the_base_of_a_create():
+    read_there = re.findall(r"section\.\w+\('(\w+)'", read('src', 'rbx1_nav', 'create', 'parameters.py'))
+    assert usage('turtlebot_node.py') == sorted(set(read_there) | {'diagnostic_period'})
+
+
 @pytest.mark.parametrize('node', ['odom_ekf.py', 'pose.py'])
 def test_nodes_without_parameters(node):
     assert usage(node) == [] and 'no parameters' in read('nodes', node) and 'get_param' not in read('nodes', node)
