@@ -12,8 +12,8 @@ class TestCreateSafety(unittest.TestCase):
     def setUpClass(cls):
         support.init_node('create_safety')
 
-    def check(self, robot_type):
-        robot = DrivenRobot(self, robot_type)
+    def test_safe_mode(self):
+        robot = DrivenRobot(self, 'create2')
         for service, reason in (('drop_wheel', 'a wheel dropped'), ('cliff', 'a cliff')):
             robot.wait_for_motion()
             robot.switch(service, True)
@@ -38,13 +38,10 @@ class TestCreateSafety(unittest.TestCase):
         robot.wait_for_status('charging', 'Battery')
         robot.switch('dock', False)
         robot.wait_for_status('Low: 15 %', 'Battery')
+        robot.node.wait_for_line('Battery: Low: 15 %')
         robot.wait_for_status('Standing')
-
-    def test_a_create(self):
-        self.check('create')
-
-    def test_a_create_2(self):
-        self.check('create2')
+        robot.publish('charge', 0.0)
+        robot.wait_for_status('The robot does not answer')
 
 
 if __name__ == '__main__':

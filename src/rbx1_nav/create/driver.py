@@ -8,7 +8,7 @@ from math import copysign
 from rbx1_nav.create import protocol, sequences
 from rbx1_nav.create.gyro import AnalogGyro
 from rbx1_nav.create.odometry import UncertainOdometry
-from rbx1_nav.create.speeds import Rounding, wheel_speeds
+from rbx1_nav.create.speeds import Rounding, is_too_fast, wheel_speeds
 from rbx1_nav.create.stream import FrameReader, ReplyReader
 from rbx1_nav.create.supervisor import BUMPS, WHEEL_DROPS, Supervisor
 from rbx1_nav.create.travel import NOWHERE, STILL, Expected, Implausible, Travel, travel_of
@@ -73,6 +73,7 @@ class Driver:
         self.state_due = False      # whether it is time for another one
         self.since = NOWHERE        # Travel since then
         self.last_gyro = None       # the last Reading
+        self.saturated = 0          # commands
         self.implausible = 0        # readings
         self.missed = 0             # replies
         self.dropouts = 0           # times that the robot fell silent
@@ -163,6 +164,7 @@ class Driver:
         try:
             return self.gate.command(now, linear, angular, others)
         finally:
+            self.saturated += is_too_fast(self.gate.linear, self.gate.angular, self.model.wheel_separation)
             self._send_speeds(now)
 
     def _asked(self):

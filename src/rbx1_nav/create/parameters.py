@@ -56,7 +56,7 @@ def read_settings(params):
         wheel_radius=WHEEL_RADIUS, rate=settings.update_rate,
         timeout=round(SECOND * section.number('cmd_vel_timeout', 0.05, 10, 0.6, 'a time', 's')),
         limits=Limits(inf, max_yaw_speed), publish_tf=section.flag('publish_tf', True), joints=[],
-        hardware=[], unknown=sorted(section.unknown()))
+        hardware=[], unknown=[])
     if robot.odom_frame_id == robot.base_frame_id:
         raise ConfigError('base_frame: %s: expected a frame other than odom_frame' % show(robot.base_frame_id))
     return settings, robot

@@ -4,6 +4,11 @@ from math import ceil, floor
 from rbx1_nav.create.protocol import MAX_SPEED
 
 
+def is_too_fast(linear, angular, width):
+    """Whether a wheel cannot go as fast as these m/s and rad/s need."""
+    return 1000 * (abs(linear) + abs(angular) * width / 2) > MAX_SPEED
+
+
 def wheel_speeds(linear, angular, width):
     """(left, right) in mm/s for m/s and rad/s. Above the limit both are reduced alike, which leaves the curve as it
     is."""

@@ -1,4 +1,5 @@
 """What /diagnostics says of a Create: the base, its battery, its sensors, its gyro and the serial line."""
+import rospy
 from diagnostic_msgs.msg import DiagnosticStatus
 
 from rbx1_nav.create import protocol
@@ -21,6 +22,7 @@ class CreateStatus:
         """updater: a diagnostic_updater.Updater; name: of the robot; driver: a Driver; link: a Link; commands: the
         VelocityCommands."""
         self.driver, self.link, self.commands = driver, link, commands
+        self.battery_level = OK     # the last one
         updater.setHardwareID(name)
         parts = [(name, self.base), ('Battery', self.battery), ('Sensors', self.sensors), ('Serial line', self.line)]
         for title, function in parts + ([('Gyro', self.gyro)] if driver.gyro else []):
@@ -42,6 +44,7 @@ class CreateStatus:
         status.add('Speed of the left wheel (mm/s)', driver.sent[0])
         status.add('Speed of the right wheel (mm/s)', driver.sent[1])
         self.commands.diagnose(status)
+        status.add('Commands above the speed of a wheel', driver.saturated)
         return status
 
     def battery(self, status):
@@ -51,10 +54,14 @@ class CreateStatus:
             return status
         charge = charge_of(reading)
         if charge is None or reading['charging_sources']:
-            status.summary(OK, CHARGING_STATES[reading['charging_state']])
+            level, text = OK, CHARGING_STATES[reading['charging_state']]
         else:
             level = ERROR if charge < EMPTY else WARN if charge < LOW else OK
-            status.summary(level, '%s%.0f %%' % ('Low: ' if level else '', 100 * charge))
+            text = '%s%.0f %%' % ('Low: ' if level else '', 100 * charge)
+        if level > self.battery_level:
+            rospy.logwarn('Battery: %s', text)
+        self.battery_level = level
+        status.summary(level, text)
         status.add('Voltage (V)', reading['voltage'] / 1000)
         status.add('Current (A)', reading['current'] / 1000)
         status.add('Charge (Ah)', reading['charge'] / 1000)

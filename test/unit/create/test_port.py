@@ -5,7 +5,7 @@ import sys
 
 import pytest
 
-from rbx1_nav.create.port import PortError, open_port, reason
+from rbx1_nav.create.port import PortError, group_of, open_port, reason
 from rbx1_nav.create.pseudo_terminal import PseudoTerminal
 
 
@@ -41,10 +41,26 @@ def test_not_a_serial_port(tmp_path):
     assert refusal(tmp_path) == '%s: not a serial port' % tmp_path
 
 
-@pytest.mark.skipif(os.getuid() == 0, reason='root may open every file')
 def test_not_permitted(terminal):
-    os.chmod(terminal.device, 0)
-    assert 'adduser $USER' in refusal(terminal.link)
+    os.chmod(terminal.device, 0o600)
+    read_end, write_end = os.pipe()
+    child = os.fork()
+    if not child:       # as another user, whom root can become
+        if os.getuid() == 0:
+            os.setgroups([])
+            os.setuid(65534)
+        else:
+            os.chmod(terminal.device, 0)
+        try:
+            open_port(terminal.device, 115200)
+        except PortError as error:
+            os.write(write_end, str(error).encode())
+        os._exit(0)
+    os.waitpid(child, 0)
+    os.close(write_end)
+    with open(read_end, encoding='utf-8') as pipe:
+        assert pipe.read() == ('{0}: not permitted: expected a user of the group {1}; `sudo adduser $USER {1}`, and log '
+                               'in again'.format(terminal.device, group_of(terminal.device)))
 
 
 def test_what_a_user_without_permission_reads(tmp_path):

@@ -2,7 +2,7 @@
 from hypothesis import given, strategies
 import pytest
 
-from rbx1_nav.create.speeds import Rounding, wheel_speeds
+from rbx1_nav.create.speeds import Rounding, is_too_fast, wheel_speeds
 
 SPEEDS = strategies.floats(-10, 10)
 
@@ -11,6 +11,7 @@ SPEEDS = strategies.floats(-10, 10)
 def test_the_limit_does_not_bend_the_curve(linear, angular):
     left, right = wheel_speeds(linear, angular, 0.26)
     assert max(abs(left), abs(right)) <= 500.001
+    assert is_too_fast(linear, angular, 0.26) == (abs(linear) + 0.13 * abs(angular) > 0.5)
     # the ratio of the speeds is the curve
     asked_left, asked_right = linear - 0.13 * angular, linear + 0.13 * angular
     assert left * asked_right == pytest.approx(right * asked_left, abs=1e-6)
