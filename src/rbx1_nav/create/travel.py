@@ -49,6 +49,12 @@ def bridged(expected, measured, width):
     return Travel((left + right) / 2, (right - left) / width, variance / 4, variance / width ** 2)
 
 
+def unknown(expected, width):
+    """The Travel of a robot that moved as commanded for some of the time, or not at all: uniform in between, from 0."""
+    left, right = expected
+    return Travel(0.0, 0.0, ((left + right) / 2) ** 2 / 3, ((right - left) / width) ** 2 / 3)
+
+
 class EncoderTravel:
     """Of the Create 2: encoders of 16 bits that wrap."""
 

@@ -38,11 +38,11 @@ class CreateStatus:
         elif not supervisor.in_control:
             status.summary(WARN, 'Not driven: %s' % (supervisor.reason or 'changing the mode'))
         else:
-            status.summary(OK, 'Standing' if driver.stands else 'Moving')
+            status.summary(OK, 'Standing' if driver.motion.stands else 'Moving')
         mode = supervisor.mode
         status.add('Mode', 'unknown' if mode is None else protocol.MODE_NAMES[mode])
-        status.add('Speed of the left wheel (mm/s)', driver.sent[0])
-        status.add('Speed of the right wheel (mm/s)', driver.sent[1])
+        status.add('Speed of the left wheel (mm/s)', driver.commanded.speeds[0])
+        status.add('Speed of the right wheel (mm/s)', driver.commanded.speeds[1])
         self.commands.diagnose(status)
         status.add('Commands above the speed of a wheel', driver.saturated)
         return status

@@ -76,7 +76,7 @@ class DrivenCreate:
     @property
     def pose(self):
         """The Pose of the odometry."""
-        return self.driver.odometry.pose
+        return self.driver.motion.odometry.pose
 
     @property
     def speeds(self):

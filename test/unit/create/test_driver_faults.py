@@ -19,7 +19,7 @@ def normalized_error(driven):
     """The squared error of the odometry, normalized by its covariance."""
     error = numpy.array(driven.pose) - driven.truth
     error[2] = wrap_angle(error[2])
-    return error @ numpy.linalg.solve(driven.driver.odometry.covariance, error)
+    return error @ numpy.linalg.solve(driven.driver.motion.odometry.covariance, error)
 
 
 def pull_cable(robot_type, seed, surface, **params):
