@@ -1,8 +1,7 @@
 #!/usr/bin/env python3
 """The base of a TurtleBot: drives an iRobot Create or Create 2 over a serial port. cmd_vel in, odom out.
 
-usage: turtlebot_node.py [_parameter:=value ...] [topic:=new_topic ...]     usually started by
-       turtlebot_minimal_create.launch
+usage: turtlebot_node.py [_parameter:=value ...] [topic:=new_topic ...]  started by turtlebot_minimal_create.launch
 
 Parameters, with the names of create_node's:
     ~port                           the serial port (default: /dev/ttyUSB0)
@@ -23,8 +22,7 @@ Parameters, with the names of create_node's:
     ~odom_angular_error             error of the angle, 1 sigma, rad after 1 rad (default: 0.04)
     ~odom_frame, ~base_frame        frames (default: odom, base_footprint)
     ~publish_tf                     whether to publish the transform to the base frame (default: true)
-    ~drive_mode                     twist, the only one (default: twist)
-    ~diagnostic_period              accepted; /diagnostics has 1 Hz
+    ~drive_mode, ~diagnostic_period accepted: twist, and any number; /diagnostics has 1 Hz
 """
 import rbx1_nav.ros.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded
 
@@ -73,7 +71,8 @@ class TurtlebotNode:
             try:
                 self.step()
             except OSError as error:
-                rospy.logerr('The line to the robot is lost (%s). It goes on with its last command: stop it by hand', error)
+                rospy.logerr('The line to the robot is lost (%s). It goes on with its last command: stop it by hand',
+                             error)
                 self.disconnect()
             if self.diagnostics_schedule.due(self.clock.now()):
                 self.diagnostics.force_update()
@@ -81,33 +80,32 @@ class TurtlebotNode:
             self.driver.leave(self.clock.now())
 
     def step(self):
-        """Process what has arrived, or try to open the line. Raises OSError if the line is lost."""
+        """Process what has arrived, or try to open the line. Raises OSError if it is lost."""
         if not self.link.port:
             if not self.link.open(self.clock.now()):
                 node.sleep(RETRY)
                 return
-            rospy.loginfo('Serial port: %s', self.link.path)
             with self.lock:
                 self.driver.attach(self.clock.now(), self.link.write)
+            rospy.loginfo('Serial port: %s', self.link.path)
         if not self.link.is_guarded(self.clock.now()):
             rospy.logwarn('The guardian process is gone: starting another')
             with self.lock:
                 self.driver.stop(self.clock.now())
             self.disconnect()
             return
-        data = self.link.read(self.driver.until_tick(self.clock.now()), lambda: self.driver.reader.missing)
+        data = self.link.read(self.driver.until_tick(self.clock.now()), self.driver.awaited)
         with self.lock:
             now = self.clock.now()
             self.driver.receive(now, data)
             timed_out = self.driver.tick(now)
             state = self.driver.state()
-            error = self.driver.error
         if timed_out:
             self.commands.log_timeout()
         if state:
             self.publish(now, state)
-        if error:
-            raise error
+        if self.driver.error:
+            raise self.driver.error
 
     def publish(self, now, state):
         """Publish a State."""

@@ -21,7 +21,7 @@ class TestCreateCable(unittest.TestCase):
             robot.node.wait_for_line('The line to the robot is lost')
             robot.wait_for_status('no such device')
             # it goes on with its last command
-            support.wait_for(lambda: abs(support.yaw(robot.truth.next()) - support.yaw(start)) > 0.3, 'the robot to move on')
+            support.wait_for(lambda: abs(support.yaw(robot.truth.next()) - support.yaw(start)) > 0.3, 'it to move on')
             count = len(robot.received())
             robot.switch('pull_cable', False)
             robot.wait_for_standstill()

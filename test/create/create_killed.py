@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A node that is killed or hangs in motion: its guardian stops the robot. Without a guardian the node starts another."""
+"""A node is killed or hangs in motion: its guardian stops the robot. Without a guardian the node starts another."""
 import os
 import re
 import signal

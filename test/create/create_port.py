@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A port that is not there, is in use, or is none: one line says so, and the node waits for it. Bad parameters end it."""
+"""A port that is absent or in use: one line says so, and the node waits for it. Bad parameters end it."""
 import os
 import signal
 import unittest

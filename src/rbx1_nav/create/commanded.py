@@ -1,4 +1,4 @@
-"""How far the wheels should have travelled by the commands on the line: what is known of a robot that does not answer."""
+"""How far the wheels should have travelled by the commands on the line: all that is known of a robot out of reach."""
 from rbx1_nav.create.travel import STILL, Expected
 from rbx1_nav.units import SECOND
 

@@ -42,7 +42,7 @@ class Driver:
         self.gyro = AnalogGyro(settings.gyro_range, settings.gyro_correction) if settings.has_gyro else None
         self.supervisor = Supervisor(settings.mode, info, warn)
         self.schedule = Schedule(settings.update_rate)
-        self.state_due = False      # whether it is time for a State
+        self.due = None             # ns: a State of a reading that arrives after this is to be reported
         # the line
         self.write = None           # sends bytes; None without a line
         self.error = None           # the OSError with which the line was lost
@@ -55,6 +55,7 @@ class Driver:
         self.attempt = None         # ns, of the last attempt
         self.reading = None         # the last one
         self.reading_time = None    # ns, when the robot made it
+        self.received = None        # ns, when it arrived
         self.gyro_reading = None    # a Reading that was not reported yet
         # the wheels
         self.commanded = Commanded()
@@ -190,7 +191,8 @@ class Driver:
         if self.write and not self.answers and now - self.attempt > (START_WAIT if self.started else FIRST_WAIT):
             self._start(now)
         due = self.schedule.due(now)
-        self.state_due = self.state_due or due
+        if due and self.due is None:
+            self.due = now
         if due or self._must_stop():
             self._send_speeds(now)
         if due and self.polled and self.write and not self._awaits_reply(now):
@@ -200,6 +202,11 @@ class Driver:
     def until_tick(self, now):
         """How long it is until tick() has something to do, s."""
         return max(0, self.schedule.next - now) / SECOND
+
+    @property
+    def awaited(self):
+        """The reader of the reading that is due now; None before the next tick."""
+        return None if self.due is None else self.reader
 
     def _lose_robot(self):
         self.answers = False
@@ -238,6 +245,7 @@ class Driver:
             # the robot made a frame before it was on the line, and a reply when it received the query
             time = self.commanded.asked_time if self.polled else now - len(data) * self.byte
             self.commanded.advance(now)
+            self.received = now
             self._accept(max(time, self.reading_time or 0), reading)
         if self.polled and self.reader.rejected != rejected:
             self._lose_reply(True)
@@ -288,9 +296,9 @@ class Driver:
                       % (elapsed, ': it was switched off or reset' if reset else ''))
 
     def state(self):
-        """The State, if it is time for one and there is a new reading; else None."""
-        if not (self.answers and self.state_due and self.motion.is_new):
+        """The State, if one is due and there is a new reading for it; else None."""
+        if not self.answers or self.due is None or self.received <= self.due or not self.motion.is_new:
             return None
-        self.state_due = False
+        self.due = None
         gyro, self.gyro_reading = self.gyro_reading, None
         return self.motion.state(gyro)

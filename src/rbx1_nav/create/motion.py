@@ -9,8 +9,8 @@ from rbx1_nav.units import SECOND
 STANDSTILL = SECOND // 2    # ns without travel and without a command to move: the robot stands
 
 State = namedtuple('State', 'time pose covariance velocity variances travel gyro')
-State.__doc__ = """time: ns, of the last reading; pose: Pose; covariance: 3x3; velocity: m/s and rad/s, the mean since the
-last State; variances: of these; travel: of both wheels, m; gyro: Reading or None."""
+State.__doc__ = """time: ns, of the last reading; pose: Pose; covariance: 3x3; velocity: m/s and rad/s, the mean since
+the last State; variances: of these; travel: of both wheels, m; gyro: Reading or None."""
 
 
 class Motion:

@@ -6,7 +6,7 @@ Both classes have
     miss(begun, elapsed, expected)      a reading was lost on the line; begun: whether a part of it arrived
     restart()                           the robot counts from 0 again: the next reading is no travel
     is_new(reading)                     whether this may be the reading of a robot that was just switched on
-    rounding                            (m, rad): 1 sigma of a position and a heading, for they are counted in whole units
+    rounding                            (m, rad): 1 sigma of a position and a heading that are counted in whole units
 
     elapsed: s since the last good reading; expected: Expected travel by the commands in the same time.
 """

@@ -1,4 +1,4 @@
-"""The guardian stops the robot when the process that it guards is gone or hangs. Real processes on a pseudo-terminal."""
+"""The guardian stops the robot when the guarded process is gone or hangs. Real processes on a pseudo-terminal."""
 import os
 import signal
 import subprocess

@@ -59,8 +59,8 @@ def test_not_permitted(terminal):
     os.waitpid(child, 0)
     os.close(write_end)
     with open(read_end, encoding='utf-8') as pipe:
-        assert pipe.read() == ('{0}: not permitted: expected a user of the group {1}; `sudo adduser $USER {1}`, and log '
-                               'in again'.format(terminal.device, group_of(terminal.device)))
+        assert pipe.read() == ('{0}: not permitted: expected a user of the group {1}; `sudo adduser $USER {1}`, and '
+                               'log in again'.format(terminal.device, group_of(terminal.device)))
 
 
 def test_what_a_user_without_permission_reads(tmp_path):

@@ -54,7 +54,7 @@ def test_a_changed_byte_costs_one_frame(index, change):
 @given(strategies.integers(0, len(frame(0)) - 1), strategies.booleans())
 def test_a_lost_or_doubled_byte_costs_one_frame(index, lost):
     good = frame(2)
-    bad = good[:index] + good[index + (1 if lost else 0):] if lost else good[:index] + good[index:index + 1] + good[index:]
+    bad = good[:index] + good[index + 1:] if lost else good[:index + 1] + good[index:]
     reader = FrameReader(MODEL, NUMBERS)
     readings = reader.feed(frame(1) + bad + frame(3))
     # a doubled header is no loss
