@@ -35,7 +35,11 @@ SOURCE = os.path.join(os.path.dirname(__file__), '..', '..', '..', 'src')
 @pytest.fixture(name='terminal')
 def make_terminal(tmp_path):
     terminal = PseudoTerminal(str(tmp_path / 'robot'))
+    terminal.processes = []
     yield terminal
+    for process in terminal.processes:
+        process.kill()
+        process.wait()
     terminal.unplug()
 
 
@@ -53,6 +57,7 @@ def start(terminal, command=b'\x91'):
     """(the guarded process, the process id of its guardian)."""
     process = subprocess.Popen([sys.executable, '-c', GUARDED, SOURCE, terminal.link, STOP.hex(), command.hex()],
                                stdout=subprocess.PIPE, start_new_session=True)
+    terminal.processes.append(process)
     pid = int(process.stdout.readline())
     assert read_until(terminal, command) == command
     return process, pid
