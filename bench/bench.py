@@ -145,6 +145,16 @@ def interrupt(number, _):
     raise Interrupted(f'interrupted by {signal.Signals(number).name}')
 
 
+def prepare():
+    """Make sure that rospy is there, and that no process is left behind."""
+    if not importlib.util.find_spec('rospy'):
+        sys.exit(f'bench: {sys.executable} has no rospy: expected the Python of your ROS, as in\n'
+                 f'  /usr/bin/python3 {sys.argv[0]} ...')
+    processes.adopt_orphans()
+    for number in SIGNALS:
+        signal.signal(number, interrupt)
+
+
 def bring_up(session, args, publish=False):
     """Start base and probe, and wait for odometry; returns the probe and the process ids of the nodes of the base."""
     session.start(args.base)
@@ -317,12 +327,7 @@ def measure(args, result):
 
 def main():
     args = arguments()
-    if not importlib.util.find_spec('rospy'):
-        sys.exit(f'bench: {sys.executable} has no rospy: expected the Python of your ROS, as in\n'
-                 '  /usr/bin/python3 bench/bench.py ...')
-    processes.adopt_orphans()
-    for number in SIGNALS:
-        signal.signal(number, interrupt)
+    prepare()
     result = {'base': args.base, 'driver': args.driver, 'timeout_s': args.timeout, 'host': host(),
               'runs': [], 'summary': {}}
     try:

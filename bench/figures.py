@@ -5,6 +5,7 @@ A command is (received, v, w): time of arrival (s), forward speed (m/s), turning
 An odometry record is (received, stamp, x, y, heading, v, w). A pose is (x, y, heading).
 """
 import math
+import struct
 
 GAP = 0.5  # s: a longer pause between two commands is the end of a stream
 
@@ -91,6 +92,17 @@ def shown_after(published, odometry):
         delays.append(seen[0] - time if seen else None)
         old = new
     return delays
+
+
+def line_speeds(texts):
+    """An odometry record of each Drive Direct command (145) in texts of /line: its time, and the mean speed as v."""
+    records = []
+    for text in texts:
+        stamp, data = text.split()
+        if data.startswith('91'):
+            right, left = struct.unpack('>hh', bytes.fromhex(data[2:]))  # mm/s
+            records.append((float(stamp), float(stamp), 0.0, 0.0, 0.0, (right + left) / 2000, 0.0))
+    return records
 
 
 def usage(samples, begin, end):

@@ -59,6 +59,13 @@ def test_a_command_that_is_never_shown_has_no_latency():
     assert figures.shown_after([(0.05, 0.1)], standing([0.0, 0.1, 0.2])) == [None]
 
 
+def test_a_command_on_the_line_is_shown_by_its_speed():
+    texts = ['0.1 9100000000', '0.2 8c00', '0.32 9100c80000', '0.4 9100000000']
+    odometry = figures.line_speeds(texts)
+    assert [record[5] for record in odometry] == [0, 0.1, 0]
+    assert figures.shown_after([(0.3, 0.1), (0.35, 0.0)], odometry) == pytest.approx([0.02, 0.05], abs=EXACT)
+
+
 def test_cpu_time_is_counted_within_the_interval():
     samples = [(0, 5.0), (1, 6.0), (2, 6.1), (3, 6.2), (4, 9.0)]
     assert figures.usage(samples, 0.5, 3.5) == pytest.approx(0.1, abs=EXACT)
