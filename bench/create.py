@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Measure the base node of a Create on the emulated robot: latency, CPU time, end of the exercise. See README.md.
 
-Each exercise has a roscore and a robot of its own, and so have latency and CPU time together. No process is left behind, not even after Ctrl-C.
+Each exercise has a roscore and a robot of its own, and so have latency and CPU time together. No process is left
+behind, not even after Ctrl-C.
 """
 import argparse
 import math
@@ -119,11 +120,11 @@ def measure(args):
     for robot_type in ROBOTS if args.commands else ():
         for what, text in measure_node(robot_type, args.seed, args.commands):
             yield robot_type, what, text
-    for what, *rest in (('by time, ideal', 'ideal', BY_TIME), ('combined, carpet', 'low_ply_carpet', COMBINED, FILTER)):
-        surface, driver, *others = rest
+    for what, surface, *commands in (('by time, ideal', 'ideal', BY_TIME),
+                                     ('combined, carpet', 'low_ply_carpet', COMBINED, FILTER)):
         for robot_type in ROBOTS:
             for seed in range(args.seed, args.seed + args.runs):
-                distance, angle = exercise(robot_type, surface, seed, driver, *others)
+                distance, angle = exercise(robot_type, surface, seed, *commands)
                 yield robot_type, f'{what}, seed {seed}', f'{1e3 * distance:.1f} mm, {angle:.2f} degrees'
 
 
