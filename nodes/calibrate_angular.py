@@ -29,7 +29,7 @@ from rbx1_nav.config import ConfigError
 from rbx1_nav.control.legs import Turn
 from rbx1_nav.model.calibration import corrected, read_measured, turn_by_gyro
 from rbx1_nav.ros import node
-from rbx1_nav.ros.calibration import factor_in_force, load_run, node_param, save_run, take_measured
+from rbx1_nav.ros.calibration import factor_in_force, forget_run, load_run, node_param, save_run, take_measured
 from rbx1_nav.ros.leg_driver import LegDriver
 from rbx1_nav.ros.params import frame_param, positive_param
 from rbx1_nav.ros.question import ask
@@ -52,6 +52,7 @@ def drive():
     readings = []       # of the gyro: (s, rad/s)
     rospy.Subscriber('imu/data', Imu, lambda message: readings.append((message.header.stamp.to_sec(),
                                                                        message.angular_velocity.z)))
+    forget_run('angular')
     try:
         driver.wait_for_base(wait_timeout)
         run = {ODOM_KEY: factor_in_force(base_node, ODOM_KEY), GYRO_KEY: factor_in_force(base_node, GYRO_KEY)}

@@ -27,7 +27,7 @@ import rospy
 from rbx1_nav.control.legs import Straight
 from rbx1_nav.model.calibration import corrected, read_measured
 from rbx1_nav.ros import node
-from rbx1_nav.ros.calibration import factor_in_force, load_run, node_param, save_run, take_measured
+from rbx1_nav.ros.calibration import factor_in_force, forget_run, load_run, node_param, save_run, take_measured
 from rbx1_nav.ros.leg_driver import LegDriver
 from rbx1_nav.ros.params import frame_param, positive_param
 from rbx1_nav.ros.question import ask
@@ -47,6 +47,7 @@ def drive():
     wait_timeout = positive_param('wait_timeout', 30)                   # s
     base_node = node_param('base_node', 'turtlebot_node')
     driver = LegDriver(frame_param('odom_frame', 'odom'), frame_param('base_frame', None), linear_speed, 0.0, rate)
+    forget_run('linear')
     try:
         driver.wait_for_base(wait_timeout)
         factor = factor_in_force(base_node, KEY)

@@ -3,6 +3,7 @@
 import signal
 import unittest
 
+import rospy
 from geometry_msgs.msg import Twist
 
 import support
@@ -18,6 +19,8 @@ class TestInterruptedCalibration(unittest.TestCase):
         """Interrupt a script in motion, or after this line."""
         commands = support.Watch('/cmd_vel', Twist)
         self.addCleanup(commands.subscriber.unregister)
+        kept = '/last_calibration/' + script[len('calibrate_'):-len('.py')]
+        rospy.set_param(kept, {'reported': 1.0})
         process = support.Process('rosrun', 'rbx1_nav', script)
         self.addCleanup(process.kill)
         if line:
@@ -31,6 +34,8 @@ class TestInterruptedCalibration(unittest.TestCase):
         self.assertNotIn('Traceback', process.output)
         support.wait_for(lambda: commands.last == Twist(), 'a stop')
         self.odom.wait_for_twist(0.0)
+        # the run before it does not count any more, and one that was interrupted never does
+        self.assertEqual(rospy.has_param(kept), line is not None)
 
     def test_linear_in_motion(self):
         self.check('calibrate_linear.py')

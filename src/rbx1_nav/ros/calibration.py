@@ -36,6 +36,12 @@ def save_run(name, run):
         rospy.logwarn('The master does not answer, and does not keep this run: %s', error)
 
 
+def forget_run(name):
+    """Forget the last run: another one begins, and may be interrupted."""
+    if rospy.has_param(_stored(name)):
+        rospy.delete_param(_stored(name))
+
+
 def load_run(name, *keys):
     """What the last run reported: a mapping with at least these keys. Raises ROSException if there is none."""
     run = rospy.get_param(_stored(name), None)
