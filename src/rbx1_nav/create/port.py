@@ -51,10 +51,10 @@ def group_of(path):
 
 def user_of(path):
     """The process that has locked a device, as 'NAME (process NUMBER)'; '' if /proc does not show it."""
-    device = os.path.realpath(path)
     for link in glob.glob('/proc/[0-9]*/fd/*'):
         try:
-            if os.readlink(link) != device:
+            # not by its name: in a container, another device may have the same one
+            if not os.path.samefile(link, path):
                 continue
             with open(link.replace('/fd/', '/fdinfo/'), encoding='ascii') as file:
                 locked = 'FLOCK' in file.read()
