@@ -71,7 +71,8 @@ class TurtlebotNode:
             try:
                 self.step()
             except OSError as error:
-                rospy.logerr('The line to the robot is lost (%s). It goes on with its last command: stop it by hand',
+                rospy.logerr('The line to the robot is lost (%s). The robot goes on with its last command: stop it'
+                             ' by hand',
                              error)
                 self.disconnect()
             if self.diagnostics_schedule.due(self.clock.now()):
