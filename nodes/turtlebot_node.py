@@ -43,7 +43,6 @@ from rbx1_nav.ros.clocks import HardwareClock
 from rbx1_nav.ros.commands import VelocityCommands
 from rbx1_nav.ros.create_status import CreateStatus
 from rbx1_nav.schedule import Schedule
-from rbx1_nav.units import SECOND
 
 RETRY = 0.05        # s between two attempts to open the line
 

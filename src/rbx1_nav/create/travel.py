@@ -11,7 +11,7 @@ Both classes have
     elapsed: s since the last good reading; expected: Expected travel by the commands in the same time.
 """
 from collections import namedtuple
-from math import pi, radians
+from math import radians
 
 from rbx1_nav.create.protocol import MAX_SPEED
 
