@@ -103,10 +103,10 @@ class FakeCreate:
 def main():
     """Read the parameters, and run. Returns the exit status."""
     node.init_node('fake_create', __doc__)
-    section = Section(rospy.get_param(rospy.get_name(), {}))
     try:
+        section = Section(rospy.get_param(rospy.get_name(), {}))
         robot_type = section.get('robot_type', 'create')
-        if robot_type not in MODELS:
+        if not isinstance(robot_type, str) or robot_type not in MODELS:
             raise ConfigError('robot_type: %s: expected one of %s' % (show(robot_type), ', '.join(MODELS)))
         seed = read_seed(section.get('seed', RANDOM))
         line = SerialLine(MODELS[robot_type].baud, seed)

@@ -11,8 +11,10 @@ class TestParameters(unittest.TestCase):
     def test_bad_parameters(self):
         support.init_node('fake_create_parameters')
         for params, expected in [
+                (7, 'configuration: 7: expected a mapping'),
                 ({'robot_type': 'roomba'}, "robot_type: 'roomba': expected one of create, create2"),
                 ({'robot_type': 2}, 'robot_type: 2: expected one of create, create2'),
+                ({'robot_type': ['create']}, "robot_type: ['create']: expected one of create, create2"),
                 ({'link': 7}, 'link: 7: expected a path'),
                 ({'link': '/no/such/folder/port'}, 'link: /no/such/folder/port: No such file or directory: expected'),
                 ({'link': '/etc/hostname'}, 'link: /etc/hostname: exists, and is not a link: expected'),
