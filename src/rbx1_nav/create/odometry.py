@@ -21,8 +21,9 @@ class UncertainOdometry:
         self.odometry = Odometry(width)
         self.linear_error = linear_error
         self.angular_error = angular_error
-        self.rounding = numpy.diag([rounding[0] ** 2, rounding[0] ** 2, rounding[1] ** 2])
-        self.sum = numpy.zeros((3, 3))      # without rounding, which does not add up: the next count makes up for it
+        self.rounding = rounding[0] ** 2, rounding[1] ** 2      # m^2, rad^2
+        # the covariance without rounding, which does not add up: the next count makes up for it
+        self.xx = self.xy = self.yy = self.x_yaw = self.y_yaw = self.yaw_yaw = 0.0
 
     @property
     def pose(self):
@@ -32,7 +33,10 @@ class UncertainOdometry:
     @property
     def covariance(self):
         """Of x, y (m^2) and yaw (rad^2)."""
-        return self.sum + self.rounding
+        position, yaw = self.rounding
+        return numpy.array([[self.xx + position, self.xy, self.x_yaw],
+                            [self.xy, self.yy + position, self.y_yaw],
+                            [self.x_yaw, self.y_yaw, self.yaw_yaw + yaw]])
 
     def _variances(self, travel):
         """Variances of the length, the displacement to the side (m^2) and the angle (rad^2) of a Travel.
@@ -41,21 +45,28 @@ class UncertainOdometry:
         up over the path to that unit, or else is the mean of two roundings.
         """
         distance, angle = abs(travel.distance), abs(travel.angle)
-        unit = (12 * self.rounding[2, 2]) ** 0.5
+        unit = (12 * self.rounding[1]) ** 0.5
         path = HELD if angle * HELD <= unit * distance else unit * distance / angle
         return (travel.distance_variance + self.linear_error ** 2 * distance,
-                self.rounding[2, 2] * distance * max(path, distance / 2),
+                self.rounding[1] * distance * max(path, distance / 2),
                 travel.angle_variance + self.angular_error ** 2 * angle)
 
     def move(self, travel):
         """Add a Travel."""
         distance, angle = travel.distance, travel.angle
-        variances = self._variances(travel)
-        if not (distance or angle or any(variances)):
+        along, aside, turn = self._variances(travel)
+        if not (distance or angle or along or turn):
             return
         middle = self.pose.yaw + angle / 2
         c, s = cos(middle), sin(middle)
-        by_pose = numpy.array([[1.0, 0.0, -distance * s], [0.0, 1.0, distance * c], [0.0, 0.0, 1.0]])
-        by_travel = numpy.array([[c, -s, -distance / 2 * s], [s, c, distance / 2 * c], [0.0, 0.0, 1.0]])
-        self.sum = by_pose @ self.sum @ by_pose.T + (by_travel * variances) @ by_travel.T
+        # J C J' + K V K', with the Jacobians of the new pose by the old one, and by the travel: written out, since numpy
+        # needs six times as long for matrices this small, at each reading
+        x, y = -distance * s, distance * c
+        self.xx += (2 * self.x_yaw + x * self.yaw_yaw) * x + along * c * c + aside * s * s + turn * x * x / 4
+        self.xy += (self.y_yaw * x + self.x_yaw * y + self.yaw_yaw * x * y
+                    + (along - aside) * c * s + turn * x * y / 4)
+        self.yy += (2 * self.y_yaw + y * self.yaw_yaw) * y + along * s * s + aside * c * c + turn * y * y / 4
+        self.x_yaw += (self.yaw_yaw + turn / 2) * x
+        self.y_yaw += (self.yaw_yaw + turn / 2) * y
+        self.yaw_yaw += turn
         self.odometry.move(distance, angle)

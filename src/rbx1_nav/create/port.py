@@ -7,20 +7,18 @@ import termios
 
 import serial
 
-WRITE_TIMEOUT = 0.2     # s: a port that accepts no byte for so long is lost
-
 
 class PortError(OSError):
     """A port that cannot be opened. The text names the port, the reason, and what to do."""
 
 
 def open_port(path, baud):
-    """An open serial.Serial that does not block when it is read. Raises PortError.
+    """An open serial.Serial, whose file descriptor does not block. Raises PortError.
 
     flock(2) keeps other drivers away. It also holds for a process that inherits the file descriptor.
     """
     try:
-        return serial.Serial(path, baud, timeout=0, write_timeout=WRITE_TIMEOUT, exclusive=True)
+        return serial.Serial(path, baud, timeout=0, exclusive=True)
     except (OSError, ValueError) as error:
         cause = error.__context__       # of an error in termios, pyserial passes on the text only
         number = getattr(error, 'errno', None) or (cause.args[0] if isinstance(cause, termios.error) else None)

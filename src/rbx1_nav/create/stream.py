@@ -1,10 +1,19 @@
 """From the bytes of the robot to readings. A reading is a dictionary of values by the name of the packet."""
+from operator import le
+
 from rbx1_nav.create import protocol
 
 
-def is_in_range(packets, values):
-    """Whether each value is one that its Packet may have."""
-    return all(packet.low <= value <= packet.high for packet, value in zip(packets, values))
+class Ranges:
+    """The values that Packets may have."""
+
+    def __init__(self, packets):
+        self.low = [packet.low for packet in packets]
+        self.high = [packet.high for packet in packets]
+
+    def contain(self, values):
+        """Whether each value is one that its Packet may have."""
+        return all(map(le, self.low, values)) and all(map(le, values, self.high))
 
 
 class FrameReader:
@@ -13,15 +22,17 @@ class FrameReader:
     def __init__(self, model, numbers):
         """model: a Model; numbers: of the packets and groups that were requested."""
         self.format = protocol.frame_format(model, numbers)
-        self.packets, self.indices, self.markers = [], [], []
+        packets, self.indices, self.markers = [], [], []
         index = 2
         for number in numbers:
             self.markers.append((index, number))
             index += 1
             for packet in protocol.single_packets(model, [number]):
-                self.packets.append(packet)
+                packets.append(packet)
                 self.indices.append(index)
                 index += 1
+        self.names = [packet.name for packet in packets]
+        self.ranges = Ranges(packets)
         self.start = bytes((protocol.FRAME_HEADER, self.format.size - 3))
         self.buffer = bytearray()
         self.in_step = False    # whether the bytes before the buffer's were a good frame
@@ -71,9 +82,9 @@ class FrameReader:
         fields = self.format.unpack(frame)
         values = [fields[index] for index in self.indices]
         if sum(frame) & 0xff or any(fields[index] != number for index, number in self.markers) or (
-                not is_in_range(self.packets, values)):
+                not self.ranges.contain(values)):
             return None
-        return {packet.name: value for packet, value in zip(self.packets, values)}
+        return dict(zip(self.names, values))
 
 
 class ReplyReader:
@@ -84,8 +95,10 @@ class ReplyReader:
 
     def __init__(self, model, numbers):
         """model: a Model; numbers: of the packets and groups that are requested."""
-        self.packets = protocol.single_packets(model, numbers)
-        self.format = protocol.packets_format(self.packets)
+        packets = protocol.single_packets(model, numbers)
+        self.names = [packet.name for packet in packets]
+        self.ranges = Ranges(packets)
+        self.format = protocol.packets_format(packets)
         self.buffer = bytearray()
         self.waiting = False    # for a reply
         self.rejected = 0       # replies
@@ -113,8 +126,8 @@ class ReplyReader:
         if not self.waiting or len(self.buffer) < self.format.size:
             return []
         values = self.format.unpack(bytes(self.buffer[:self.format.size]))
-        reading = {packet.name: value for packet, value in zip(self.packets, values)}
-        if is_in_range(self.packets, values) and len(self.buffer) == self.format.size and (
+        reading = dict(zip(self.names, values))
+        if self.ranges.contain(values) and len(self.buffer) == self.format.size and (
                 self.MIN_VOLTAGE <= reading['voltage'] <= self.MAX_VOLTAGE):
             self.buffer.clear()
             self.waiting = False
