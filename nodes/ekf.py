@@ -134,7 +134,7 @@ class Ekf:
 
 def main():
     """Read the parameters, and run. Returns the exit status."""
-    node.init_node('robot_pose_ekf', __doc__)
+    node.init_node('robot_pose_ekf', __doc__, check=read_parameters)
     try:
         parameters = read_parameters(rospy.get_param(rospy.get_name(), {}))
     except ConfigError as error:

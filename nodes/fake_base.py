@@ -121,7 +121,7 @@ def read_factor():
 
 def main():
     """Read the configuration, and run. Returns the exit status."""
-    node.init_node('arbotix', __doc__)
+    node.init_node('arbotix', __doc__, check=read_robot)
     try:
         robot = read_robot(rospy.get_param(rospy.get_name(), {}))
         surface = load_surface(rospy.get_param('~surface', 'ideal'), resources.surfaces())

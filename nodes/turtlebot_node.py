@@ -126,7 +126,7 @@ class TurtlebotNode:
 
 def main():
     """Read the parameters, and run. Returns the exit status."""
-    node.init_node('turtlebot_node', __doc__)
+    node.init_node('turtlebot_node', __doc__, check=read_settings)
     if not rospy.rostime.is_wallclock():
         rospy.logfatal('/use_sim_time: true: expected false, a robot on a serial line runs in real time')
         return 1

@@ -25,6 +25,16 @@ class TestCreatePort(unittest.TestCase):
         robot.node.wait()
         second.wait_for_line('in safe mode')
 
+    def test_a_second_node_with_a_bad_parameter(self):
+        robot = DrivenRobot(self, 'create2')
+        second = robot.start_node(_update_rate='fast')
+        self.assertEqual(second.wait(), 1, second.output)
+        self.assertIn("/turtlebot_node/update_rate: 'fast': expected a rate from 5 to 60 in Hz", second.output)
+        # although it has the same name, the first one goes on; once could be a last command of a node that ends
+        robot.wait_for_motion()
+        robot.wait_for_standstill()
+        robot.wait_for_motion()
+
     def test_a_port_that_comes_later(self):
         robot = DrivenRobot(self, 'create')
         robot.end_node(robot.node)

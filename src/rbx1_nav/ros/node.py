@@ -15,6 +15,7 @@ from rospy.impl.paramserver import get_param_server_cache
 
 from rbx1_nav.ros.arguments import check_command_line, report_parameters
 from rbx1_nav.ros.master import require_master
+from rbx1_nav.ros.params import check_before_start
 
 EXIT_DEADLINE = 1.4         # s of wall time from the request to the end of the process, whatever hangs
 UNREGISTER_TIMEOUT = 0.25   # s of wall time for the master to unregister the node
@@ -53,17 +54,20 @@ class _Terminal:
             os.dup2(os.open(os.devnull, os.O_WRONLY), self._stream.fileno())
 
 
-def init_node(name, usage, wait_for_master=True):
+def init_node(name, usage, wait_for_master=True, check=None):
     """Start the node `name`. From here on, Ctrl-C, kill, a closed terminal and `rosnode kill` set end_requested.
 
     usage: printed for --help, and for a command line that does not fit the parameters it lists; both end the process.
     wait_for_master: whether to wait, as rospy does, for a master that is not running yet.
+    check(params): raises ConfigError for private parameters that make no sense, before they can end an older node.
     Raises ROSInterruptException if the node is to end before it is registered, ROSException if the master does not
-    answer.
+    answer, or for a parameter that makes no sense.
     """
     check_command_line(usage)
     if not wait_for_master:
         require_master()
+    if check:
+        check_before_start(name, check)
     read_end, write_end = os.pipe()
     os.set_blocking(write_end, False)
     signal.set_wakeup_fd(write_end)     # a signal writes to the pipe; the handler itself does nothing

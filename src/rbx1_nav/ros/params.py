@@ -1,7 +1,34 @@
 """Private parameters of a node, checked as they are read."""
+import sys
+import xmlrpc.client
+
+import rosgraph
 import rospy
 
 from rbx1_nav.config import ConfigError, Section
+from rbx1_nav.ros.master import call
+
+
+def check_before_start(name, check):
+    """Call check(params) with the private parameters that a node of this name will have.
+
+    To be called before the node is registered: at that moment the master ends an older node with the same name, which
+    may be the base of a robot. Raises ROSException with one line if check() raises ConfigError. Nothing is checked if
+    the master does not answer, or the command line sets a part of a mapping.
+    """
+    name = rosgraph.names.resolve_name(rospy.names.get_mappings().get('__name', name), rospy.get_name())
+    given = rospy.client.load_command_line_node_params(sys.argv)
+    try:
+        stored = call(rosgraph.get_master_uri(), 'getParam', name)
+    except (OSError, xmlrpc.client.Error):
+        return
+    if any('/' in key for key in given):
+        return
+    try:
+        check(dict(stored if isinstance(stored, dict) else {}, **given))
+    except ConfigError as error:
+        rospy.core.configure_logging(name)      # as init_node() would, for the line to look like any other
+        raise rospy.ROSException('%s/%s' % (name, error))
 
 
 def positive_param(name, default, low=1e-6, high=1e6):
