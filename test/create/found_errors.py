@@ -8,6 +8,9 @@ import re
 import sys
 import unittest
 
+import rospy
+from std_srvs.srv import SetBool
+
 import support
 
 WITHIN = 0.01       # of the factor, which the project promises
@@ -36,6 +39,19 @@ class TestFoundErrors(unittest.TestCase):
         self.assertEqual(sorted(found), sorted(expected))
         for key, factor in expected.items():
             self.assertAlmostEqual(found[key] / factor, 1, delta=WITHIN, msg=key)
+
+    def test_a_pulled_cable(self):
+        pull_cable = rospy.ServiceProxy('/fake_create/pull_cable', SetBool)
+        script = support.Process('rosrun', 'rbx1_nav', 'calibrate_linear.py')
+        self.addCleanup(script.kill)
+        support.wait_for(lambda: self.truth.next().twist.twist.linear.x > 0.1, 'the robot to drive')
+        pull_cable(True)
+        self.assertEqual(script.wait(), 1, script.output)
+        self.assertRegex(script.output, r'\[ERROR\].*The base no longer reports odometry \(The last transform from odom '
+                                        r'to base_footprint is .* old\): .* /diagnostics')
+        # the other tests begin with a robot that stands
+        pull_cable(False)
+        support.wait_for(lambda: self.truth.next().twist.twist.linear.x == 0, 'a stop')
 
     def test_linear(self):
         found = self.calibrate('calibrate_linear.py', 'The odometry reports',

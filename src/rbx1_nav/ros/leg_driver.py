@@ -9,8 +9,6 @@ from rbx1_nav.ros.pose_listener import LostTransform, PoseListener
 from rbx1_nav.ros.rate import Rate, pause
 from rbx1_nav.ros.subscribers import wait_for_subscribers
 
-TRANSFORM_TIMEOUT = 5.0     # s of wall time that the robot stands and waits if its pose is lost
-
 
 class LegDriver:
     """Publishes commands on /cmd_vel, and looks at the pose by tf2. stop() belongs into a `finally`."""
@@ -69,10 +67,9 @@ class LegDriver:
             bar.update(max(0, min(leg.done(), leg.goal) - bar.n))
 
     def _pose(self):
-        """The robot's pose. If it is lost, the robot stands and waits for it."""
+        """The robot's pose. Raises ROSException if it is lost."""
         try:
             return self.poses.pose()
         except LostTransform as error:
-            self.cmd_vel.publish(Twist())
-            rospy.logwarn('%s: the robot waits for a new one', error)
-            return self.poses.wait(TRANSFORM_TIMEOUT, self.listeners.check)
+            raise rospy.ROSException('The base no longer reports odometry (%s): expected a base that is connected to '
+                                     'its robot; see /diagnostics' % error)
