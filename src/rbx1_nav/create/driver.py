@@ -231,8 +231,9 @@ class Driver:
         self._ask(now, sequences.start(self.model))
 
     def _warn_of_silence(self):
-        self.warn('The robot does not answer: expected a %s that is switched on, at the other end of the cable'
-                  % self.model.name)
+        rates = ', '.join('%s: %d baud' % (name, model.baud) for name, model in protocol.MODELS.items())
+        self.warn('The robot does not answer: expected a %s that is switched on, at the other end of the cable '
+                  '(robot_type %s)' % (self.model.name, rates))
 
     # readings
 

@@ -8,7 +8,7 @@ from rbx1_nav.create import protocol
 from rbx1_nav.model.surfaces import load_surface
 from rbx1_nav.units import wrap_angle
 
-from driven_create import SURFACES, started
+from driven_create import SURFACES, DrivenCreate, started
 
 BOTH = pytest.mark.parametrize('robot_type', ['create', 'create2'])
 STOP = protocol.drive_direct(0, 0)
@@ -63,6 +63,15 @@ def test_a_silent_line_is_stopped_and_recovers(robot_type):
     assert normalized_error(driven) < CHI_SQUARE
     driven.drive(0.2, 0, 0.5)
     assert driven.speeds == (200, 200)
+
+
+def test_a_robot_that_never_answers_may_be_of_the_other_type():
+    driven = DrivenCreate('create')
+    driven.line.silent = True
+    driven.connect()
+    driven.run(5)
+    assert driven.log == ['The robot does not answer: expected a create that is switched on, at the other end of the '
+                          'cable (robot_type create: 57600 baud, create2: 115200 baud)']
 
 
 @BOTH
