@@ -1,4 +1,5 @@
 """Reads configuration: mappings of keys to values, and one clear line for each value that makes no sense."""
+import difflib
 from math import isfinite
 import re
 import reprlib
@@ -26,6 +27,12 @@ def show(value):
 def show_name(name):
     """A key, a frame, a path or an argument: as it is if it is text of one line, else as show()."""
     return name if isinstance(name, str) and name.isprintable() and len(name) <= 200 else show(name)
+
+
+def suggestion(name, names):
+    """For an unknown name: ' (did you mean NAME?)' with the known one that is most similar, '' if none is."""
+    close = difflib.get_close_matches(name, names, 1) if isinstance(name, str) else []
+    return ' (did you mean %s?)' % close[0] if close else ''
 
 
 def describe(value):
@@ -114,5 +121,5 @@ class Section:
         return [self.path(key) for key in self.values if key in self.hardware]
 
     def unknown(self):
-        """Full names of the keys that were never read."""
-        return [self.path(key) for key in self.values if key not in self.known]
+        """Full names of the keys that were never read, each with its suggestion()."""
+        return [self.path(key) + suggestion(key, self.known) for key in self.values if key not in self.known]

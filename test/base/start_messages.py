@@ -49,8 +49,8 @@ class TestStartMessages(unittest.TestCase):
     def test_an_unknown_key(self):
         config = yaml.safe_load(yaml.safe_dump(self.config))
         config['controllers']['base_controller']['time_out'] = 2
-        self.assertIn('WARN Unknown parameters, without effect: controllers/base_controller/time_out',
-                      self.messages(**config))
+        self.assertIn('WARN Unknown parameters, without effect: controllers/base_controller/time_out '
+                      '(did you mean timeout?)', self.messages(**config))
 
     def test_a_surface_file_that_does_not_exist(self):
         base = self.base(surface='/nowhere/sand.yaml')

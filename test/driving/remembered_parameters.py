@@ -57,12 +57,13 @@ class TestRememberedParameters(unittest.TestCase):
         self.assertEqual(self.warnings(support.by_odometry('_odom_frame:=odom')), [])
         rospy.set_param('/out_and_back/goal_distanc', 0.2)
         expected = 'Left by an earlier command, without effect here: %s (`%s` removes all)'
-        self.assertEqual(self.warnings(support.out_and_back()), [expected % ('goal_distanc, odom_frame', FORGET)])
+        self.assertEqual(self.warnings(support.out_and_back()), [
+            expected % ('goal_distanc (did you mean goal_distance?), odom_frame', FORGET)])
 
     def test_what_a_launch_file_sets_is_no_surprise(self):
         self.assertEqual(self.warnings(self.roslaunch('')), [])
         self.assertEqual(self.warnings(self.roslaunch('<param name="goal_angl" value="1"/>')),
-                         ['Unknown parameters, without effect: goal_angl'])
+                         ['Unknown parameters, without effect: goal_angl (did you mean goal_angle?)'])
 
 
 if __name__ == '__main__':

@@ -13,7 +13,7 @@ from rosgraph.names import is_legal_name
 import rospy
 import yaml
 
-from rbx1_nav.config import show_name
+from rbx1_nav.config import show_name, suggestion
 
 EXPECTED = 'expected _parameter:=value or topic:=new_topic'
 
@@ -78,7 +78,7 @@ def report_parameters(usage):
     stored = rospy.get_param(name, {})
     if not isinstance(stored, dict):
         return
-    unknown = sorted(show_name(each) for each in set(stored) - set(names))
+    unknown = sorted(show_name(each) + suggestion(each, names) for each in set(stored) - set(names))
     if any(argument.startswith('__log:=') for argument in sys.argv):    # by roslaunch, which sets parameters on purpose
         if unknown:
             rospy.logwarn('Unknown parameters, without effect: %s', ', '.join(unknown))

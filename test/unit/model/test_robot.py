@@ -48,7 +48,7 @@ def test_frame_names_of_old_files_lose_their_leading_slash():
 def test_unknown_keys_are_reported():
     params = load('turtlebot.yaml')
     params['controllers']['base_controller']['time_out'] = 2
-    assert read_robot(params).unknown == ['controllers/base_controller/time_out']
+    assert read_robot(params).unknown == ['controllers/base_controller/time_out (did you mean timeout?)']
 
 
 @pytest.mark.parametrize('key, value, expected', [
