@@ -64,10 +64,8 @@ def drive():
         # However it ended: the most important thing that a mobile robot must do.
         driver.stop()
     run['reported'] = degrees(leg.done())
-    print('The odometry reports %.1f degrees.' % run['reported'])
     try:
         run['gyro'] = degrees(turn_by_gyro(list(readings), start))
-        print('The gyro reports %.1f degrees.' % run['gyro'])
     except ConfigError as error:
         rospy.logwarn('The gyro is not calibrated: %s', error)
     return run
@@ -82,6 +80,9 @@ def calibrate():
         save_run('angular', run)
     else:
         run = load_run('angular', 'reported', ODOM_KEY, GYRO_KEY)
+    print('The odometry reports %.1f degrees.' % run['reported'])
+    if 'gyro' in run:
+        print('The gyro reports %.1f degrees.' % run['gyro'])
 
     def check(answer):
         return read_measured('measured', answer, run['reported'], 'an angle', 'degrees')
@@ -104,6 +105,7 @@ if __name__ == '__main__':
         calibrate()
     except rospy.ROSInterruptException:
         rospy.loginfo('Calibration terminated.')
+        status = 130
     except (rospy.ROSException, ValueError, OSError) as error:    # OSError: the master does not answer
         rospy.logerr('%s', error)
         status = 1

@@ -66,9 +66,9 @@ def calibrate():
     if measured is None:
         run = drive()
         save_run('linear', run)
-        print('The odometry reports %.3f m.' % run['reported'])
     else:
         run = load_run('linear', 'reported', KEY)
+    print('The odometry reports %.3f m.' % run['reported'])
 
     def check(answer):
         return read_measured('measured', answer, run['reported'], 'a distance', 'm')
@@ -88,6 +88,7 @@ if __name__ == '__main__':
         calibrate()
     except rospy.ROSInterruptException:
         rospy.loginfo('Calibration terminated.')
+        status = 130
     except (rospy.ROSException, ValueError, OSError) as error:    # OSError: the master does not answer
         rospy.logerr('%s', error)
         status = 1

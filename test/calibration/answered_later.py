@@ -23,6 +23,7 @@ class TestAnsweredLater(unittest.TestCase):
         self.assertEqual(run.wait(), 0, run.output)
         self.assertIn('rosrun rbx1_nav %s _measured:=' % script, run.output)
         self.assertNotIn('_correction: ', run.output)
+        reported, = re.findall('The odometry reports .*', run.output)
 
         commands = support.Watch('/cmd_vel', Twist)
         for measured, status in [(wrong, 1), (argument, 0), (argument, 0)]:
@@ -30,6 +31,7 @@ class TestAnsweredLater(unittest.TestCase):
             self.addCleanup(later.kill)
             self.assertEqual(later.wait(), status, later.output)
             factors = dict(re.findall(r'^(\w+_correction): (\S+)$', later.output, re.MULTILINE))
+            self.assertIn(reported, later.output)
             if status:
                 self.assertIn(expected, later.output)
                 self.assertFalse(factors)

@@ -28,7 +28,7 @@ class TestInterruptedCalibration(unittest.TestCase):
         else:
             support.wait_for(lambda: commands.last and commands.last != Twist(), 'a command to move')
         process.signal(signal.SIGINT)
-        self.assertEqual(process.wait(), 0, process.output)
+        self.assertEqual(process.wait(), 130, process.output)
         self.assertIn('Stopping the robot...', process.output)
         self.assertIn('Calibration terminated.', process.output)
         self.assertNotIn('Traceback', process.output)

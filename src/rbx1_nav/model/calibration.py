@@ -1,23 +1,28 @@
 """Calibration: the factor that corrects a sensor, from what the sensor reported and what was measured."""
 from math import inf, isfinite
+import re
 
-from rbx1_nav.config import ConfigError, Section
+from rbx1_nav.config import ConfigError, Section, show
 
 MAX_ERROR = 2.0         # a distance or turn that is wrong by more than this factor is a mistake, and no calibration
 MAX_FACTOR = 10.0       # the same for a correction factor; create_node's highest is 6
 MAX_GAP = 0.5           # s between two readings of a gyro; it turns by 15 degrees at the speed of the script
 REST = 1.0              # s at least, to know a gyro's bias
+UNITS = {'m': 'm', 'degrees': 'degrees?|deg|°'}   # how an answer may end
 
 
 def read_measured(key, value, expected, what, unit):
     """What somebody has measured: a number, or text as typed; at least half and at most twice of `expected`.
 
-    key, what, unit: for the text of the error. Raises ConfigError.
+    unit: m or degrees; key, what: for the text of the error. Raises ConfigError.
     """
-    try:
-        value = float(value) if isinstance(value, str) else value
-    except ValueError:
-        pass
+    if isinstance(value, str):
+        if re.search(r'\d,\d', value):
+            raise ConfigError('%s: %s: expected a decimal point, not a comma' % (key, show(value)))
+        try:
+            value = float(re.sub(r'\s*(%s)\s*$' % UNITS[unit], '', value))
+        except ValueError:
+            pass
     low, high = (round(limit, 3) for limit in (expected / MAX_ERROR, expected * MAX_ERROR))
     return Section({key: value}).number(key, low, high, what=what, unit=unit)
 

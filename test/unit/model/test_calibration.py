@@ -26,9 +26,21 @@ def test_a_number_may_be_text(value):
     assert measured(value) == 0.955
 
 
+@pytest.mark.parametrize('unit, text', [('m', '0.955 m'), ('m', '0.955m '), ('degrees', '0.955 degrees'),
+                                        ('degrees', '0.955deg'), ('degrees', '0.955°'), ('degrees', '0.955 ')])
+def test_its_unit_may_follow(unit, text):
+    assert read_measured('measured', text, 1.0, 'a result', unit) == 0.955
+
+
+@pytest.mark.parametrize('text', ['0,96', '1,000.5 m'])
+def test_a_comma_is_not_guessed(text):
+    assert rejection(measured, text) == "measured: '%s': expected a decimal point, not a comma" % text
+
+
 @pytest.mark.parametrize('value, shown', [
     (96, '96'), ('96', '96.0'), ('0.49', '0.49'), (-1, '-1'), (nan, 'nan'), ('nan', 'nan'), ('inf', 'inf'),
-    (True, 'True'), ('', "''"), ('1 m', "'1 m'"), ('0,96', "'0,96'"), (None, 'None'), ([1], '[1]'),
+    (True, 'True'), ('', "''"), ('95 cm', "'95 cm'"), ('m', "'m'"), ('1 deg', "'1 deg'"), ('1 m m', "'1 m m'"),
+    (None, 'None'), ([1], '[1]'),
     (10 ** 400, 'an integer of')])
 def test_what_is_no_such_distance_is_rejected(value, shown):
     text = rejection(measured, value)
