@@ -100,7 +100,7 @@ class TurtlebotNode:
             self.driver.receive(now, data)
             timed_out = self.driver.tick(now)
             state = self.driver.state()
-        if timed_out:
+        if timed_out and self.driver.answers:       # otherwise nobody knows whether it stopped
             self.commands.log_timeout()
         if state:
             self.publish(now, state)

@@ -38,10 +38,10 @@ def suggestion(name, names):
 def describe(value):
     """A value as it stands in the YAML file, with a hint where YAML reads a number as text."""
     try:
-        is_number = isinstance(value, str) and len(value) < 100 and isfinite(float(value))
+        is_number = isinstance(value, str) and len(value) < 100 and isfinite(float(value.replace(',', '.')))
     except ValueError:
         is_number = False
-    return show(value) + (' (text to YAML: write %s)' % as_yaml_number(value) if is_number else '')
+    return show(value) + (' (text to YAML: write %s)' % as_yaml_number(value.replace(',', '.')) if is_number else '')
 
 
 def as_yaml_number(text):

@@ -217,7 +217,7 @@ class Driver:
         self._lose_robot()
         self.gate.halt()
         self.attempt, self.started = now, False
-        self._warn_of_silence()
+        self.warn('The robot no longer answers. If it still moves, it goes on with its last command: stop it by hand')
         self._stop(now)
         self._ask(now, sequences.ask(self.model))
 

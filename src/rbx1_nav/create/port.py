@@ -35,7 +35,7 @@ def reason(path, number, error):
     if number in (errno.ENOENT, errno.ENXIO, errno.ENODEV):
         return 'no such device: expected the adapter of the robot to be plugged in'
     if number in (errno.ENOTTY, errno.EINVAL, errno.EISDIR):
-        return 'not a serial port'
+        return 'not a serial port: expected the device of an adapter, such as /dev/ttyUSB0'
     return str(error)
 
 

@@ -55,10 +55,9 @@ class Supervisor:
             self.clear_since = None
             return False
         found = causes(reading)
-        if reading['charging_sources'] & DOCK and not wants_motion:
-            found.append('on the dock, without a command to move')
-        self._explain(', '.join(found))
-        if found:
+        docked = bool(reading['charging_sources'] & DOCK)
+        self._explain(', '.join(found + ['on the dock: carry it off if a command does not move it'] * docked))
+        if found or docked and not wants_motion:
             self.clear_since = None
             return False
         if self.clear_since is None:

@@ -46,7 +46,7 @@ def load_run(name, *keys):
     """What the last run reported: a mapping with at least these keys. Raises ROSException if there is none."""
     run = rospy.get_param(_stored(name), None)
     if not isinstance(run, dict):
-        raise rospy.ROSException('%s: missing: expected a run before this one, without _measured:='
+        raise rospy.ROSException('%s: missing: expected a run before this one, without _measured:=, that was not interrupted'
                                  % rospy.resolve_name(_stored(name)))
     section = Section(run, rospy.resolve_name(_stored(name)))
     return {key: _number(section, key, -1e6, 1e6) for key in {*keys, *run}}

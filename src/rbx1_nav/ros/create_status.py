@@ -59,7 +59,7 @@ class CreateStatus:
             level = ERROR if charge < EMPTY else WARN if charge < LOW else OK
             text = '%s%.0f %%' % ('Low: ' if level else '', 100 * charge)
         if level > self.battery_level:
-            rospy.logwarn('Battery: %s', text)
+            rospy.logwarn('Battery: %s: charge it soon', text)
         self.battery_level = level
         status.summary(level, text)
         status.add('Voltage (V)', reading['voltage'] / 1000)

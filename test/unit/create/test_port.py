@@ -37,8 +37,8 @@ def test_no_device(tmp_path):
 def test_not_a_serial_port(tmp_path):
     path = tmp_path / 'file'
     path.write_text('')
-    assert refusal(path) == '%s: not a serial port' % path
-    assert refusal(tmp_path) == '%s: not a serial port' % tmp_path
+    assert refusal(path) == '%s: not a serial port: expected the device of an adapter, such as /dev/ttyUSB0' % path
+    assert refusal(tmp_path) == '%s: not a serial port: expected the device of an adapter, such as /dev/ttyUSB0' % tmp_path
 
 
 def test_not_permitted(terminal):
