@@ -5,7 +5,7 @@ import support
 
 FAULT = 'SIGKILL to the script at a random moment of a motion'
 PROMISE = 'the robot goes on for at most the timeout of 1 s and one period'
-FULL, SHORT = 40, 4
+FULL, SHORT = 40, 2
 ROOT = ALONE = False
 
 TIMEOUT, PERIOD, SPEED = 1.0, 0.02, 0.2     # s, s, m/s
