@@ -2,6 +2,7 @@
 from rbx1_nav.control.gate import CommandGate
 from rbx1_nav.model.gyro import Gyro, IdealGyro
 from rbx1_nav.model.kinematics import ORIGIN, Odometry
+from rbx1_nav.model.roughness import make_roughness
 from rbx1_nav.model.surfaces import draw_run
 from rbx1_nav.model.wheels import IdealWheels, Wheels
 from rbx1_nav.units import SECOND
@@ -21,7 +22,7 @@ def make_wheels_and_gyro(base_width, surface, seed, window):
     if surface is None:
         return IdealWheels(base_width), IdealGyro()
     run = draw_run(surface, seed)
-    return Wheels(base_width, surface, run, window), Gyro(surface, run, seed)
+    return Wheels(base_width, surface, run, window, make_roughness(surface, seed)), Gyro(surface, run, seed)
 
 
 class SimulatedBase:

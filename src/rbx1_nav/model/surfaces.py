@@ -14,6 +14,7 @@ from rbx1_nav.config import ConfigError, Section, load_yaml, show, show_name
 RANDOM = 'random'   # the word for a seed that is drawn anew
 MAX_SEED = 2 ** 31 - 1
 FRACTION = dict(low=0.0, high=0.5, what='a fraction')
+SIGNED_FRACTION = dict(FRACTION, low=-0.5)
 
 
 def number_between(low, high):
@@ -27,9 +28,9 @@ KEYS = {
     'accel_limit': (number_between(1e-3, 1000), float),
     'drag_straight': (number_between(1e-6, 10), float),
     'drag_turning': (number_between(1e-6, 10), float),
-    'slip_straight': (FRACTION, float),
+    'slip_straight': (SIGNED_FRACTION, float),
     'slip_straight_spread': (FRACTION, float),
-    'slip_turning': (FRACTION, float),
+    'slip_turning': (SIGNED_FRACTION, float),
     'slip_turning_spread': (FRACTION, float),
     'ticks_meter': (number_between(1, 1e6), float),
     'gyro_noise': (number_between(1e-3, 1000), radians),
@@ -37,7 +38,16 @@ KEYS = {
     'gyro_scale_error': (FRACTION, float),
     'gyro_measurement_range': (number_between(1, 1e5), radians)}
 
-Surface = namedtuple('Surface', ['name'] + list(KEYS))
+# the same for those that a file may leave out: they are 0 then
+OPTIONAL_KEYS = {
+    'delay': (number_between(0, 5), float),
+    'curvature': (number_between(-10, 10), float),
+    'turning_loss': (number_between(0, 1), float),
+    'heading_noise_turning': (number_between(0, 1), float),
+    'heading_noise_straight': (number_between(0, 1), float),
+    'distance_noise': (number_between(0, 1), float)}
+
+Surface = namedtuple('Surface', ['name', *KEYS, *OPTIONAL_KEYS], defaults=[0.0] * len(OPTIONAL_KEYS))
 Surface.__doc__ = 'A surface, with the keys of its file as fields, in s, m/s, m/s^2 and (unlike the file) rad/s.'
 
 Run = namedtuple('Run', 'slip_straight slip_turning gyro_bias gyro_scale_error')
@@ -70,13 +80,16 @@ def load_surface(name, folder):
 
 
 def read_surface(values, name):
-    """The Surface of a mapping with all KEYS; None, the ideal surface, for an empty mapping. Raises ConfigError."""
+    """The Surface of a mapping with all KEYS, and some OPTIONAL_KEYS; None, the ideal surface, for an empty mapping.
+    Raises ConfigError."""
     section = Section(values, 'surface %s' % show_name(name))
     if not values:
         return None
-    surface = Surface(name, *(convert(section.number(key, **limits)) for key, (limits, convert) in KEYS.items()))
+    surface = Surface(name, *(convert(section.number(key, **limits)) for key, (limits, convert) in KEYS.items()),
+                      *(convert(section.number(key, default=0.0, **limits))
+                        for key, (limits, convert) in OPTIONAL_KEYS.items()))
     if section.unknown():
-        raise ConfigError('%s: unknown: expected only %s' % (section.unknown()[0], ', '.join(KEYS)))
+        raise ConfigError('%s: unknown: expected only %s' % (section.unknown()[0], ', '.join([*KEYS, *OPTIONAL_KEYS])))
     return surface
 
 

@@ -10,7 +10,7 @@ All wheels have
     uncertainty     Uncertainty of the odometry
     reset()         puts the robot back at the origin, at rest
 """
-from collections import namedtuple
+from collections import deque, namedtuple
 from math import copysign, exp, floor, hypot, log
 
 from rbx1_nav.model.kinematics import ORIGIN, Odometry
@@ -117,20 +117,57 @@ class Encoder:
         return (self.ticks - before) / self.ticks_meter
 
 
+class Delay:
+    """Commands, each of them passed on after the same time."""
+
+    def __init__(self, delay):
+        """delay: s, above 0."""
+        self.delay = delay
+        self.clear()
+
+    def clear(self):
+        """Forget the commands that are under way."""
+        self.parts = deque([[0.0, 0.0, self.delay]])     # m/s, rad/s, and for how long: s
+
+    @property
+    def is_empty(self):
+        """Whether no command to move is under way."""
+        return not any(linear or angular for linear, angular, _ in self.parts)
+
+    def over(self, linear, angular, duration):
+        """Yields (linear, angular, duration) of what is passed on while a command is in force for `duration` (s)."""
+        parts = self.parts
+        if parts[-1][:2] == [linear, angular]:
+            parts[-1][2] += duration
+        else:
+            parts.append([linear, angular, duration])
+        while duration > 0:
+            linear, angular, left = parts[0]
+            if left > duration or len(parts) == 1:
+                parts[0][2] -= duration
+                yield linear, angular, duration
+                return
+            parts.popleft()
+            yield linear, angular, left
+            duration -= left
+
+
 class Wheels:
-    """Two wheels with inertia, drag and slip, and encoders that count whole ticks.
+    """Two wheels with delay, inertia, drag and slip on a floor that is not even, and encoders that count whole ticks.
 
     Both motors are alike, so their common motion (straight) and their opposite motion (turning) are independent; each
     has its own drag and slip.
     """
 
-    def __init__(self, base_width, surface, run, window):
+    def __init__(self, base_width, surface, run, window, roughness=None):
         """base_width: m; surface: a Surface; run: the Run drawn from it; window: s, the time over which encoder counts
-        are averaged to report a speed."""
+        are averaged to report a speed; roughness: a Roughness, or None."""
         self.window = window
         self.base_width = base_width
         self.surface = surface
         self.run = run
+        self.roughness = roughness
+        self.delay = Delay(surface.delay) if surface.delay else None
         self.straight = Motor(surface.lag, surface.accel_limit, surface.drag_straight)
         self.turning = Motor(surface.lag, surface.accel_limit, surface.drag_turning)
         self.left = Encoder(surface.ticks_meter)
@@ -140,11 +177,18 @@ class Wheels:
 
     def travel(self, linear, angular, duration):
         """(left, right) travel in m that the encoders count while `linear` (m/s) and `angular` (rad/s) are in force."""
-        straight = self.straight.travel(linear, duration)
-        turning = self.turning.travel(angular * self.base_width / 2, duration)
+        straight = turning = 0.0
+        for speed, rate, part in (self.delay.over(linear, angular, duration) if self.delay
+                                  else ((linear, angular, duration),)):
+            straight += self.straight.travel(speed, part)
+            turning += self.turning.travel(rate * self.base_width / 2, part)
         self._rolling = bool(straight or turning or self.straight.speed or self.turning.speed)
-        run = self.run
-        self.truth.move(straight * (1 - run.slip_straight), 2 * turning / self.base_width * (1 - run.slip_turning))
+        turn = 2 * turning / self.base_width
+        distance, angle = self._on_the_floor(straight, turn)
+        if self.roughness:
+            further, more = self.roughness.over(straight, turn)
+            distance, angle = distance + further, angle + more
+        self.truth.move(distance, angle)
         left, right = self.left.count(straight - turning), self.right.count(straight + turning)
         self._update_velocity(left, right, duration)
         return left, right
@@ -155,13 +199,20 @@ class Wheels:
 
     def true_velocity(self, *_):
         """The motors' speeds less slip, whatever is commanded."""
-        return (self.straight.speed * (1 - self.run.slip_straight),
-                2 * self.turning.speed / self.base_width * (1 - self.run.slip_turning))
+        return self._on_the_floor(self.straight.speed, 2 * self.turning.speed / self.base_width)
+
+    def _on_the_floor(self, straight, turn):
+        """What the robot makes of its wheels' travel, or speeds, without noise."""
+        surface, run = self.surface, self.run
+        distance = straight * (1 - run.slip_straight)
+        if surface.turning_loss:
+            distance = copysign(max(0.0, abs(distance) - surface.turning_loss * abs(turn)), distance)
+        return distance, turn * (1 - run.slip_turning) + surface.curvature * straight
 
     @property
     def at_rest(self):
         """Whether nothing moved in the last step, and the reported speeds are 0."""
-        return not (self._rolling or any(self._velocity))
+        return not (self._rolling or any(self._velocity) or self.delay and not self.delay.is_empty)
 
     def _update_velocity(self, left, right, duration):
         self._distance += (left + right) / 2
@@ -178,22 +229,34 @@ class Wheels:
         """Uncertainty of the odometry.
 
         Of the pose: the sum of all slip, an upper bound, since the way back may undo it. Of the speeds: rounding to
-        whole ticks over the window, with a variance of 1/6 tick^2 as the difference of two roundings (1/12 each). The
-        speeds of a standing robot are known.
+        whole ticks over the window, with a variance of 1/6 tick^2 as the difference of two roundings (1/12 each), and
+        the floor's noise. The speeds of a standing robot are known.
         """
         surface = self.surface
         yaw = hypot(surface.slip_turning, surface.slip_turning_spread) * self._turned
         position = hypot(hypot(surface.slip_straight, surface.slip_straight_spread), yaw) * self._path
         tick = 1 / surface.ticks_meter
-        position, yaw = position ** 2 + tick ** 2, yaw ** 2 + (tick / self.base_width) ** 2
+        length, heading = self._noise(self._path, self._turned)
+        position = position ** 2 + tick ** 2 + length + heading * self._path ** 2
+        yaw = yaw ** 2 + (tick / self.base_width) ** 2 + heading
         if self.at_rest:
             return Uncertainty(position, yaw, MEASURED, MEASURED)
         wheel = tick ** 2 / 6 / self.window ** 2
-        return Uncertainty(position, yaw, MEASURED + wheel / 2, MEASURED + 2 * wheel / self.base_width ** 2)
+        length, heading = self._noise(*map(abs, self._velocity))
+        return Uncertainty(position, yaw, MEASURED + wheel / 2 + length / self.window,
+                           MEASURED + 2 * wheel / self.base_width ** 2 + heading / self.window)
+
+    def _noise(self, path, turned):
+        """Variances of the length (m^2) and the heading (rad^2) after a path (m) and turns (rad), by the noise."""
+        surface = self.surface
+        return (surface.distance_noise ** 2 * path,
+                surface.heading_noise_turning ** 2 * turned + surface.heading_noise_straight ** 2 * path)
 
     def reset(self):
         """Put the robot back at the origin, at rest."""
         self.straight.speed = self.turning.speed = 0.0
+        if self.delay:
+            self.delay.clear()
         self._rolling = False
         self._velocity = 0.0, 0.0
         self._time = self._distance = self._angle = 0.0     # s, m and rad since the last velocity

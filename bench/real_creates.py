@@ -1,0 +1,164 @@
+#!/usr/bin/env python3
+"""Judge how well a simulated floor predicts real Creates: those of the UTIAS dataset. See README.md.
+
+Fits a surface to the first half of each robot's record, unless one is given, and looks where the robots really were in
+the second half, some seconds after a known pose.
+"""
+import argparse
+import sys
+import time
+
+import numpy
+
+from rbx1_nav.config import ConfigError
+from rbx1_nav.fitting.ensemble import energy_score, inner_share, simulate_ends
+from rbx1_nav.fitting.fit import Fitter, fit_floor
+from rbx1_nav.fitting.floor import NOISES, SPREADS, Prediction, Windows
+from rbx1_nav.fitting.mrclam import BASE_WIDTH, CAMERAS, read_set
+from rbx1_nav.fitting.run import Run
+from rbx1_nav.model.surfaces import load_surface
+from rbx1_nav.ros import resources
+
+LENGTHS = 5, 10, 20, 40     # s
+FITTED = 10     # s, the windows of the fit
+ENDS = 500      # simulated, of each window
+BLOCK = 60      # s: of the bootstrap, since windows that are close have errors in common
+DRAWS = 2000    # of the bootstrap
+MOTIONS = 'delay', 'lag', 'slip_straight', 'slip_turning', 'curvature', 'turning_loss'
+OLD_MOTIONS = 'lag', 'slip_straight', 'slip_turning', 'drag_straight', 'drag_turning'
+
+
+def halves(recordings):
+    """(first, second): Run objects of the halves of each record."""
+    first, second = [], []
+    for recording in recordings:
+        start = max(recording.commands.time[0], recording.truth.time[0])
+        end = min(recording.commands.time[-1], recording.truth.time[-1])
+        first.append(Run(recording, BASE_WIDTH, start, (start + end) / 2))
+        second.append(Run(recording, BASE_WIDTH, (start + end) / 2, end))
+    return first, second
+
+
+def starting_surface(**values):
+    """A surface without errors, for a fit to begin with."""
+    surface = load_surface('hard_floor', resources.surfaces())
+    zeros = dict.fromkeys(('slip_straight', 'slip_turning') + SPREADS, 0.0)
+    return surface._replace(**{**zeros, 'drag_straight': 1e-6, 'drag_turning': 1e-6, **values})
+
+
+def fit(runs, motions, noises):
+    """The Surface with these keys fitted to runs, and their standard errors."""
+    windows = [run.windows(FITTED) for run in runs]
+    if noises == SPREADS:       # as well as a slip that never changes in a run can do: each window is a run
+        runs, windows = zip(*((run, Windows(each.first[index:index + 1], each.count, each.ends[index:index + 1]))
+                              for run, each in zip(runs, windows) for index in range(len(each.first))))
+    fitter = Fitter(runs, windows, CAMERAS)
+    start = starting_surface(**dict.fromkeys(noises, 0.05), **({'delay': 0.1} if 'delay' in motions else {}))
+    return fit_floor(fitter, start, motions, noises)[:2]
+
+
+class Judgement:
+    """What a surface predicts for windows of a length, beside the truth. One value for each window."""
+
+    def __init__(self, runs, surface, length, seed=1):
+        generator = numpy.random.default_rng(seed)
+        self.blocks, inside, scores, errors = [], [], [], []
+        for number, run in enumerate(runs):
+            windows = run.windows(length, length / 2)
+            prediction = Prediction(surface, run.steps(surface), windows)
+            self.blocks += [(number, int(run.times[first] - run.times[0]) // BLOCK) for first in windows.first]
+            for index, end in enumerate(windows.ends):
+                ends = simulate_ends(surface, prediction, index, ENDS, generator)
+                error = end - ends.mean(axis=0)
+                errors.append((numpy.hypot(*error[:2]), abs(error[2])))
+                inside.append(inner_share(ends[:, :2], end[:2]) if ends[:, :2].std() > 1e-6 else 1.0)
+                scores.append(energy_score(ends[:, :2], end[:2]))
+        self.inside, self.scores = numpy.array(inside), numpy.array(scores)
+        self.position, self.heading = numpy.transpose(errors)
+
+    def interval(self, statistic, *values):
+        """The 90 % interval of a statistic of `values` by a block bootstrap."""
+        generator = numpy.random.default_rng(0)
+        blocks = sorted(set(self.blocks))
+        members = [[index for index, block in enumerate(self.blocks) if block == each] for each in blocks]
+        drawn = []
+        for _ in range(DRAWS):
+            chosen = numpy.concatenate([members[index] for index in generator.integers(len(blocks), size=len(blocks))])
+            drawn.append(statistic(*(each[chosen] for each in values)))
+        return numpy.quantile(drawn, [0.05, 0.95])
+
+    def share(self, part):
+        """How many of the true ends are inside the region of a part of the simulated ones, with its interval, in %."""
+        def within(inside):
+            return 100 * (inside < part).mean()
+        return '%3.0f (%2.0f to %3.0f)' % (within(self.inside), *self.interval(within, self.inside))
+
+
+def judge(name, runs, surface):
+    """Print a line for each length. Returns the Judgements."""
+    judgements = {}
+    for length in LENGTHS:
+        each = judgements[length] = Judgement(runs, surface, length)
+        print('%-22s %3d  %4d  %16s  %16s  %8.3f  %8.3f' % (
+            name, length, len(each.inside), each.share(0.5), each.share(0.9), numpy.median(each.position),
+            numpy.median(each.heading)), flush=True)
+        name = ''
+    return judgements
+
+
+def show(surface, errors):
+    """Print the fitted values."""
+    for key, error in errors.items():
+        print('  %-24s %8.4f +- %.4f' % (key, getattr(surface, key), error))
+
+
+def leave_out(first, second, judgements):
+    """Print how much worse the prediction is without each part of the model."""
+    print('\nLeft out, and how much the energy score of the second halves grows by it, in % (90 % interval):')
+    for key in MOTIONS + NOISES:
+        surface, _ = fit(first, [each for each in MOTIONS if each != key], [each for each in NOISES if each != key])
+        texts = []
+        for length in LENGTHS[:3]:
+            full, less = judgements[length], Judgement(second, surface, length)
+
+            def growth(some, others):
+                return 100 * (others.mean() / some.mean() - 1)
+            texts.append('%5.1f (%5.1f to %5.1f)' % (growth(full.scores, less.scores),
+                                                   *full.interval(growth, full.scores, less.scores)))
+        print('%-24s %s' % (key, '  '.join(texts)), flush=True)
+
+
+def main():
+    """Fit, judge, print."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument('--data', required=True, metavar='DIR', help='folder of files such as D6R1_Odometry.dat')
+    parser.add_argument('--set', type=int, default=6, metavar='N', help='number of the set (default 6)')
+    parser.add_argument('--surface', metavar='NAME', help='a surface, or its YAML file, in place of a fit')
+    parser.add_argument('--leave-out', action='store_true', help='also fit without each part of the model: minutes')
+    args = parser.parse_args()
+    start = time.monotonic()
+    try:
+        first, second = halves(read_set(args.data, args.set))
+        given = load_surface(args.surface, resources.surfaces()) if args.surface else None
+    except ConfigError as error:
+        sys.exit('real_creates: %s' % error)
+    surface, errors = (given, {}) if args.surface else fit(first, MOTIONS, NOISES)
+    if errors:
+        print('Fitted to the first halves of set %d:' % args.set)
+        show(surface, errors)
+    print('%-22s %3s  %4s  %16s  %16s  %8s  %8s' % (
+        'surface', 's', 'ends', 'in 50 % (90 % CI)', 'in 90 % (90 % CI)', 'm, med.', 'rad, med.'))
+    judgements = judge(args.surface or 'fitted', second, surface)
+    if not args.surface:
+        old, errors = fit(first, OLD_MOTIONS, SPREADS)
+        judge('constant slip, fitted', second, old)
+        judge('ideal', second, starting_surface())
+        print('Constant slip, no delay:')
+        show(old, errors)
+        if args.leave_out:
+            leave_out(first, second, judgements)
+    print('%.0f s' % (time.monotonic() - start))
+
+
+if __name__ == '__main__':
+    main()

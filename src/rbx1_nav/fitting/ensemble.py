@@ -1,0 +1,55 @@
+"""Where many robots end that drive alike on the same floor, and whether a real one ends among them."""
+import numpy
+
+from rbx1_nav.fitting.floor import integrate
+from rbx1_nav.model.roughness import CELL_TRAVELLED, CELL_TURNED
+
+
+def cell_noise(generator, count, path, cell):
+    """The errors (count, m) in each of m steps of `path`, by noise of strength 1: model.roughness.Noise in arrays."""
+    borders = numpy.concatenate([[0.0], numpy.cumsum(path)]) / cell + generator.random((count, 1))
+    number = borders.astype(int)
+    sums = numpy.cumsum(generator.laplace(0.0, (cell / 2) ** 0.5, (count, number[:, -1].max() + 1)), axis=1)
+    sums = numpy.concatenate([numpy.zeros((count, 1)), sums], axis=1)
+    before = numpy.take_along_axis(sums, number, axis=1)
+    after = numpy.take_along_axis(sums, number + 1, axis=1)
+    return numpy.diff(before + (borders - number) * (after - before), axis=1)
+
+
+def simulate_ends(surface, prediction, index, count, generator):
+    """(count, 3): x, y (m), yaw (rad) at the end of a window of a Prediction, each in a run of its own on a Surface."""
+    straight, turn = prediction.straight[index], prediction.turn[index]
+    angle = numpy.repeat(prediction.angle[index][None], count, axis=0)
+    distance = numpy.repeat(prediction.distance[index][None], count, axis=0)
+    for strength, errors, path, cell in (
+            (surface.heading_noise_turning, angle, abs(turn), CELL_TURNED),
+            (surface.heading_noise_straight, angle, abs(straight), CELL_TRAVELLED),
+            (surface.distance_noise, distance, abs(straight), CELL_TRAVELLED)):
+        if strength:
+            errors += strength * cell_noise(generator, count, path, cell)
+    angle -= surface.slip_turning_spread * generator.standard_normal((count, 1)) * turn
+    distance -= surface.slip_straight_spread * generator.standard_normal((count, 1)) * straight
+    return numpy.stack([values[:, -1] for values in integrate(distance, angle)], axis=1)
+
+
+def mahalanobis(ends, points):
+    """The squared Mahalanobis distances of points (n, d), by mean and covariance of `ends` (count, d)."""
+    away = points - ends.mean(axis=0)
+    covariance = numpy.cov(ends.T)
+    # a robot that stands has no spread, and a Mahalanobis distance all the same
+    covariance += 1e-12 * numpy.eye(len(covariance))
+    return (away * numpy.linalg.solve(covariance, away.T).T).sum(axis=1)
+
+
+def inner_share(ends, end):
+    """The share of simulated ends that are closer, by Mahalanobis distance, to their mean than `end` is: below p for an
+    end inside the region that holds p of them. ends: (count, d); end: (d,)."""
+    return (mahalanobis(ends, ends) < mahalanobis(ends, end[None])).mean()
+
+
+def energy_score(ends, point):
+    """How well an ensemble (count, d) predicted a point (d,), in its unit: the smaller, the better (Gneiting and
+    Raftery, Strictly proper scoring rules, prediction, and estimation, 2007, section 4.3)."""
+    half = len(ends) // 2
+    return (numpy.linalg.norm(ends - point, axis=1).mean()
+            - numpy.linalg.norm(ends[:half] - ends[half:2 * half], axis=1).mean() / 2)

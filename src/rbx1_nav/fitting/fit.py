@@ -1,0 +1,88 @@
+"""Fits a surface to recorded runs.
+
+The ends of windows are compared with those that a surface predicts. Slip and its like are fitted by least squares,
+weighted by the predicted covariance; the noise by maximum likelihood, from what is left; both in turn until they stay.
+"""
+import numpy
+from scipy.optimize import approx_fprime, least_squares, minimize
+
+from rbx1_nav.fitting.floor import Covariance, Prediction
+
+# key: step of a numerical derivative; standard error beyond which the recordings cannot tell the value
+MEANS = {'delay': (0.01, 0.1), 'lag': (0.01, 0.1), 'slip_straight': (1e-3, 0.05), 'slip_turning': (1e-3, 0.05),
+         'curvature': (1e-3, 0.2), 'turning_loss': (1e-3, 0.05), 'drag_straight': (1e-4, 0.01),
+         'drag_turning': (1e-4, 0.01)}
+BOUNDS = {'delay': (0, 5), 'lag': (1e-3, 60), 'slip_straight': (-0.5, 0.5), 'slip_turning': (-0.5, 0.5),
+          'curvature': (-10, 10), 'turning_loss': (0, 1), 'drag_straight': (1e-6, 10), 'drag_turning': (1e-6, 10)}
+ROUNDS = 3
+MIN_STRENGTH, MAX_STRENGTH = 1e-4, 1.0      # of a noise or a spread; at the smaller one it counts as 0
+
+
+class Fitter:
+    """Runs with their windows."""
+
+    def __init__(self, runs, windows, errors):
+        """runs: Run objects; windows: Windows of each; errors: 1 sigma of a measured end: x and y (m), yaw (rad)."""
+        self.runs = runs
+        self.windows = windows
+        self.floor = numpy.diag(numpy.square(errors))
+
+    def predictions(self, surface):
+        """The Prediction for each run."""
+        return [Prediction(surface, run.steps(surface), windows) for run, windows in zip(self.runs, self.windows)]
+
+    def fit_means(self, surface, keys):
+        """(values, covariance) of keys of MEANS, given the noise of the Surface."""
+        covariances = [Covariance(surface, each.sensitivities(), self.floor) for each in self.predictions(surface)]
+
+        def residuals(values):
+            predictions = self.predictions(surface._replace(**dict(zip(keys, values))))
+            return numpy.concatenate([covariance.whitened(each.errors)
+                                      for covariance, each in zip(covariances, predictions)])
+
+        def jacobian(values):
+            base = residuals(values)
+            return numpy.stack([(residuals(values + step) - base) / step.sum()
+                                for step in numpy.diag([MEANS[key][0] for key in keys])], axis=1)
+
+        start = [numpy.clip(getattr(surface, key), *BOUNDS[key]) for key in keys]
+        result = least_squares(residuals, start, jacobian, numpy.transpose([BOUNDS[key] for key in keys]),
+                               x_scale=[MEANS[key][1] for key in keys], xtol=1e-4, ftol=1e-6)
+        return result.x, numpy.linalg.pinv(result.jac.T @ result.jac)
+
+    def fit_noise(self, surface, keys):
+        """(values, standard errors) of keys of NOISES and SPREADS, by maximum likelihood."""
+        predictions = self.predictions(surface)
+        sensitivities = [each.sensitivities() for each in predictions]
+
+        def cost(logarithms):
+            noisy = surface._replace(**dict(zip(keys, numpy.exp(logarithms).tolist())))
+            total = 0.0
+            for sensitivity, prediction in zip(sensitivities, predictions):
+                covariance = Covariance(noisy, sensitivity, self.floor)
+                total += covariance.half_log_determinant() + (covariance.whitened(prediction.errors) ** 2).sum() / 2
+            return total
+
+        start = numpy.log(numpy.clip([getattr(surface, key) or 0.03 for key in keys], MIN_STRENGTH, MAX_STRENGTH))
+        result = minimize(cost, start, method='L-BFGS-B',
+                          bounds=[(numpy.log(MIN_STRENGTH), numpy.log(MAX_STRENGTH))] * len(keys))
+        steps = 0.05 * numpy.eye(len(keys))
+        hessian = numpy.stack([(approx_fprime(result.x + step, cost, 1e-4) - approx_fprime(result.x - step, cost, 1e-4))
+                               / 0.1 for step in steps])
+        variances = numpy.diag(numpy.linalg.pinv((hessian + hessian.T) / 2)).clip(0)
+        return numpy.exp(result.x), numpy.exp(result.x) * numpy.sqrt(variances), result.fun
+
+
+def fit_floor(fitter, surface, means, noises):
+    """(Surface, {key: standard error}, cost) with the values of all keys fitted together."""
+    errors, cost = {}, None
+    for _ in range(ROUNDS):
+        if means:
+            values, covariance = fitter.fit_means(surface, means)
+            surface = surface._replace(**dict(zip(means, values.tolist())))
+            errors.update(zip(means, numpy.sqrt(numpy.diag(covariance))))
+        if noises:
+            values, deviations, cost = fitter.fit_noise(surface, noises)
+            surface = surface._replace(**dict(zip(noises, values.tolist())))
+            errors.update(zip(noises, deviations))
+    return surface, errors, cost

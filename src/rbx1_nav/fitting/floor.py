@@ -1,0 +1,87 @@
+"""The floor in arrays: where wheels that travel in Steps take a robot, and how sure that is.
+
+The same model as that of model/wheels.py and model/roughness.py, for many windows at once. Covariances are propagated
+to first order: each error turns or shifts the rest of the path.
+"""
+from collections import namedtuple
+
+import numpy
+
+Windows = namedtuple('Windows', 'first count ends')
+Windows.__doc__ = """Parts of a recording that have a measured end. first: (n,), the step that each begins with; count:
+their number of steps; ends: (n, 3), in the frame of the start of each: x, y (m), yaw (rad)."""
+
+NOISES = ('heading_noise_turning', 'heading_noise_straight', 'distance_noise')
+SPREADS = ('slip_straight_spread', 'slip_turning_spread')
+
+
+def floor_travel(surface, straight, turn):
+    """(distance in m, angle in rad) of the robot, in arrays like those of the wheels' travel, without noise."""
+    distance = straight * (1 - surface.slip_straight)
+    distance = numpy.sign(distance) * numpy.maximum(0.0, abs(distance) - surface.turning_loss * abs(turn))
+    return distance, turn * (1 - surface.slip_turning) + surface.curvature * straight
+
+
+def integrate(distance, angle):
+    """(x, y, yaw) after each step, along the last axis, of a robot that was at the origin before the first."""
+    yaw = numpy.cumsum(angle, axis=-1)
+    middle = yaw - angle / 2
+    chord = distance * numpy.sinc(angle / 2 / numpy.pi)     # see kinematics.arc()
+    return numpy.cumsum(chord * numpy.cos(middle), axis=-1), numpy.cumsum(chord * numpy.sin(middle), axis=-1), yaw
+
+
+class Prediction:
+    """What a Surface predicts for n windows of m steps."""
+
+    def __init__(self, surface, steps, windows):
+        """steps: of the whole recording; windows: Windows."""
+        part = windows.first[:, None] + numpy.arange(windows.count)
+        self.straight, self.turn = steps.straight[part], steps.turn[part]       # (n, m)
+        self.distance, self.angle = floor_travel(surface, self.straight, self.turn)
+        self.path = integrate(self.distance, self.angle)
+        self.means = numpy.stack([values[:, -1] for values in self.path], axis=1)   # (n, 3)
+        self.errors = windows.ends - self.means
+
+    def sensitivities(self):
+        """A dictionary: for each of NOISES the covariances of the ends for a strength of 1, (n, 3, 3); for each of
+        SPREADS the derivatives of the ends by a slip that is constant in the run, (n, 3)."""
+        x, y, yaw = self.path
+        middle = yaw - self.angle / 2
+        by_heading = numpy.stack([y - y[:, -1:], x[:, -1:] - x, numpy.ones_like(x)], axis=1)    # (n, 3, m)
+        by_distance = numpy.stack([numpy.cos(middle), numpy.sin(middle), numpy.zeros_like(x)], axis=1)
+        turned, travelled = abs(self.turn)[:, None], abs(self.straight)[:, None]
+
+        def along(derivatives, weights):
+            return derivatives * weights @ derivatives.transpose(0, 2, 1)
+        return {'heading_noise_turning': along(by_heading, turned),
+                'heading_noise_straight': along(by_heading, travelled),
+                'distance_noise': along(by_distance, travelled),
+                'slip_straight_spread': -(by_distance @ self.straight[..., None])[..., 0],
+                'slip_turning_spread': -(by_heading @ self.turn[..., None])[..., 0]}
+
+
+class Covariance:
+    """The covariance of all ends of a run: independent noise in each window, and slips that are the same in all."""
+
+    def __init__(self, surface, sensitivities, floor):
+        """sensitivities: see Prediction; floor: 3x3, of a measured end."""
+        blocks = floor + sum(getattr(surface, key) ** 2 * sensitivities[key] for key in NOISES)
+        self.roots = numpy.linalg.cholesky(blocks)      # (n, 3, 3)
+        common = numpy.concatenate([self._white(getattr(surface, key) * sensitivities[key])[:, None] for key in SPREADS],
+                                   axis=1)
+        # the whitened covariance is the identity plus common @ common.T
+        self.axes, sizes, _ = numpy.linalg.svd(common, full_matrices=False)
+        self.variances = 1 + sizes ** 2
+
+    def _white(self, errors):
+        return numpy.linalg.solve(self.roots, errors[..., None]).ravel()
+
+    def whitened(self, errors):
+        """Errors of the ends, (n, 3), as 3 n independent numbers of variance 1."""
+        white = self._white(errors)
+        along = self.axes.T @ white
+        return white + self.axes @ (along * (self.variances ** -0.5 - 1))
+
+    def half_log_determinant(self):
+        """Half of the logarithm of the determinant."""
+        return (numpy.log(numpy.diagonal(self.roots, axis1=1, axis2=2)).sum() + numpy.log(self.variances).sum() / 2)

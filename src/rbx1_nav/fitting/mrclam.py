@@ -1,0 +1,44 @@
+"""Reads the text files of the UTIAS Multi-Robot Cooperative Localization and Mapping Dataset (K. Y. K. Leung,
+Y. Halpern, T. D. Barfoot, H. H. T. Liu, International Journal of Robotics Research 30(8), 969-974, 2011)."""
+import glob
+import os
+
+import numpy
+
+from rbx1_nav.config import ConfigError, show, show_name
+from rbx1_nav.fitting.recording import Commands, Recording, Track, check_recording
+
+BASE_WIDTH = 0.26               # m, of a Create
+CAMERAS = 0.001, 0.001, 0.003   # m, m, rad: 1 sigma of the motion capture system, from robots that stand still
+
+
+def read_table(path):
+    """The columns of a text file of numbers. Raises ConfigError."""
+    try:
+        table = numpy.loadtxt(path, ndmin=2)
+    except (OSError, ValueError, UnicodeDecodeError) as error:
+        raise ConfigError('%s: expected a text file of numbers: %s' % (show_name(path), ' '.join(str(error).split())))
+    return table.T
+
+
+def read_robot(commands, truth):
+    """The Recording of two files: NAME_Odometry.dat has time (s), m/s and rad/s, as commanded; NAME_Groundtruth.dat has
+    time (s), x and y (m), and heading (rad). Raises ConfigError."""
+    tables = []
+    for path, width in ((commands, 3), (truth, 4)):
+        table = read_table(path)
+        if len(table) != width:
+            raise ConfigError('%s: %d columns: expected %d' % (show_name(path), len(table) if table.size else 0, width))
+        tables.append(table)
+    name = os.path.basename(commands).replace('_Odometry.dat', '')
+    time, x, y, yaw = tables[1]
+    return check_recording(Recording(name, Commands(*tables[0]), None, None, Track(time, x, y, numpy.unwrap(yaw)), None))
+
+
+def read_set(folder, number):
+    """The Recordings of all robots of a set in a folder: D6R1_Odometry.dat and so on for set 6. Raises ConfigError."""
+    pattern = 'D%dR*_Odometry.dat' % number
+    paths = sorted(glob.glob(os.path.join(glob.escape(folder), pattern)))
+    if not paths:
+        raise ConfigError('%s: no files %s: expected the folder of an unpacked set' % (show(folder), pattern))
+    return [read_robot(path, path.replace('_Odometry', '_Groundtruth')) for path in paths]

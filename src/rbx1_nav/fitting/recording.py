@@ -1,0 +1,59 @@
+"""A recorded run: what was commanded, what the robot's sensors reported, and where the robot really was.
+
+Times are in s, on one clock; all arrays of a series have one value per time.
+"""
+from collections import namedtuple
+
+import numpy
+
+from rbx1_nav.config import ConfigError
+
+Commands = namedtuple('Commands', 'time linear angular')
+Commands.__doc__ = 'Each is in force until the next: m/s forward, rad/s to the left.'
+
+Track = namedtuple('Track', 'time x y yaw')
+Track.__doc__ = 'Poses: x and y in m, yaw in rad, not wrapped.'
+
+Rates = namedtuple('Rates', 'time rate')
+Rates.__doc__ = 'A gyro: rad/s.'
+
+Recording = namedtuple('Recording', 'name commands odometry gyro truth end')
+Recording.__doc__ = """name: for messages; commands: Commands; odometry: Track by the wheels; gyro: Rates; truth: Track;
+end: Pose in the frame of the first pose, measured by hand. All but name and commands may be None."""
+
+
+def check_series(name, series):
+    """Raise ConfigError unless all values of a Commands, Track or Rates are finite, and its stamps never go back.
+
+    name: what to call the series, with its file.
+    """
+    for field, values in zip(series._fields, series):
+        bad = numpy.flatnonzero(~numpy.isfinite(values))
+        if bad.size:
+            raise ConfigError('%s: %s of message %d: %s: expected a finite number'
+                              % (name, field, bad[0] + 1, values[bad[0]]))
+    back = numpy.flatnonzero(numpy.diff(series.time) < 0)
+    if back.size:
+        before, after = series.time[back[0]:back[0] + 2]
+        raise ConfigError('%s: stamp of message %d: %.3f s before that of message %d: expected stamps that never go back'
+                          % (name, back[0] + 2, before - after, back[0] + 1))
+
+
+def check_recording(recording):
+    """Raise ConfigError unless a Recording has commands, motion, and series without mistakes. Returns it."""
+    if not len(recording.commands.time):
+        raise ConfigError('%s: no commands: expected the velocity commands of a run' % recording.name)
+    for field in ('commands', 'odometry', 'gyro', 'truth'):
+        series = getattr(recording, field)
+        if series is not None:
+            check_series('%s: %s' % (recording.name, field), series)
+    if not (numpy.any(recording.commands.linear) or numpy.any(recording.commands.angular)):
+        raise ConfigError('%s: no motion: expected commands other than 0' % recording.name)
+    return recording
+
+
+def relative(pose, other):
+    """The pose `other` (x, y in m, yaw in rad) in the frame of `pose`, as an array."""
+    x, y = other[0] - pose[0], other[1] - pose[1]
+    c, s = numpy.cos(pose[2]), numpy.sin(pose[2])
+    return numpy.array([c * x + s * y, c * y - s * x, other[2] - pose[2]])

@@ -1,0 +1,48 @@
+"""From commands, or from odometry, to the travel of the wheels in small steps."""
+from collections import namedtuple
+
+import numpy
+
+from rbx1_nav.model.wheels import Motor
+
+STEP = 0.05     # s
+
+Steps = namedtuple('Steps', 'time straight turn')
+Steps.__doc__ = """The travel of the wheels by their encoders: `straight` (m) and `turn` (rad) of each step; `time` (s)
+has one value more, the start of the first."""
+
+
+def grid(start, end):
+    """Times from `start` to `end` (s), STEP apart."""
+    return start + STEP * numpy.arange(int((end - start) / STEP) + 1)
+
+
+def commanded_travel(surface, base_width, commands, times):
+    """The Steps between `times` (s) of motors on a Surface that stood before the first of the Commands.
+
+    base_width: m.
+    """
+    changes = numpy.flatnonzero(numpy.append(True, numpy.diff(commands.linear) != 0)
+                                | numpy.append(True, numpy.diff(commands.angular) != 0))
+    starts = commands.time[changes] + surface.delay
+    linear, angular = commands.linear[changes], commands.angular[changes] * base_width / 2
+    borders = numpy.unique(numpy.concatenate([starts, times]))
+    borders = borders[borders <= times[-1]]
+    in_force = numpy.searchsorted(starts, borders[:-1], side='right') - 1
+    straight = Motor(surface.lag, surface.accel_limit, surface.drag_straight)
+    turning = Motor(surface.lag, surface.accel_limit, surface.drag_turning)
+    travel = [(straight.travel(linear[index], duration), turning.travel(angular[index], duration)) if index >= 0
+              else (0.0, 0.0) for index, duration in zip(in_force.tolist(), numpy.diff(borders).tolist())]
+    step = numpy.searchsorted(times, borders[:-1], side='right') - 1
+    travel = numpy.array(travel).reshape(-1, 2)[step >= 0].T
+    distance, side = (numpy.bincount(step[step >= 0], values, len(times) - 1) for values in travel)
+    return Steps(times, distance, 2 * side / base_width)
+
+
+def reported_travel(odometry, times):
+    """The Steps between `times` (s) by odometry, a Track."""
+    x, y, yaw = (numpy.interp(times, odometry.time, values) for values in odometry[1:])
+    turn = numpy.diff(yaw)
+    middle = yaw[:-1] + turn / 2
+    chord = numpy.diff(x) * numpy.cos(middle) + numpy.diff(y) * numpy.sin(middle)
+    return Steps(times, chord / numpy.sinc(turn / 2 / numpy.pi), turn)      # kinematics.arc(), the other way round

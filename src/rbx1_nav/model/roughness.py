@@ -1,0 +1,59 @@
+"""The errors of a motion that are drawn again and again on the way: a floor is not the same everywhere."""
+from math import log
+import random
+
+CELL_TURNED = 0.25      # rad } the size of a cell; both were found in records of five Creates: docs/why_it_misses.md
+CELL_TRAVELLED = 0.1    # m   }
+
+
+class Noise:
+    """White noise along a path. Its variance grows by strength ** 2 with each unit of the path, however the path is cut
+    into steps (the form of Chong and Kleeman, Accurate odometry and error modelling for a mobile robot, 1997).
+
+    The path is divided into cells. The error grows evenly within a cell, and each cell has another one, drawn from a
+    Laplace distribution: large errors are more frequent than in a normal distribution.
+    """
+
+    def __init__(self, strength, cell, generator):
+        """strength: 1 sigma after one unit of the path; cell: in units of the path; generator: a random.Random."""
+        self.scale = strength / (2 * cell) ** 0.5       # a Laplace distribution of scale 1 has a variance of 2
+        self.cell = cell
+        self.random = generator.random
+        self._draw(cell * self.random())
+
+    def _draw(self, size):
+        self.slope = self.scale * log((1 - self.random()) / (1 - self.random()))     # Laplace
+        self.left = size
+
+    def over(self, path):
+        """The error of the next `path` (0 or more)."""
+        error = 0.0
+        while path > self.left:
+            error += self.slope * self.left
+            path -= self.left
+            self._draw(self.cell)
+        self.left -= path
+        return error + self.slope * path
+
+
+class Roughness:
+    """The errors of one run, by the travel of the wheels."""
+
+    def __init__(self, surface, seed):
+        """surface: a Surface; seed: an integer."""
+        generator = random.Random('roughness %d' % seed)
+        self.turning = Noise(surface.heading_noise_turning, CELL_TURNED, generator)
+        self.heading = Noise(surface.heading_noise_straight, CELL_TRAVELLED, generator)
+        self.distance = Noise(surface.distance_noise, CELL_TRAVELLED, generator)
+
+    def over(self, straight, turn):
+        """The errors of the distance (m) and the angle (rad) while the wheels travel by `straight` (m) and `turn` (rad).
+        """
+        straight, turn = abs(straight), abs(turn)
+        return self.distance.over(straight), self.turning.over(turn) + self.heading.over(straight)
+
+
+def make_roughness(surface, seed):
+    """A Roughness; None for a Surface without noise."""
+    return Roughness(surface, seed) if (surface.heading_noise_turning or surface.heading_noise_straight
+                                        or surface.distance_noise) else None
