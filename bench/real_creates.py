@@ -22,6 +22,7 @@ from rbx1_nav.ros import resources
 LENGTHS = 5, 10, 20, 40     # s
 FITTED = 10     # s, the windows of the fit
 ENDS = 500      # simulated, of each window
+UNEXPLAINED = 0.02, 0.02, 0.05  # m, m, rad: errors after FITTED that a constant slip cannot explain, nearly all of them
 BLOCK = 60      # s: of the bootstrap, since windows that are close have errors in common
 DRAWS = 2000    # of the bootstrap
 MOTIONS = 'delay', 'lag', 'slip_straight', 'slip_turning', 'curvature', 'turning_loss'
@@ -48,11 +49,12 @@ def starting_surface(**values):
 
 def fit(runs, motions, noises):
     """The Surface with these keys fitted to runs, and their standard errors."""
-    windows = [run.windows(FITTED) for run in runs]
-    if noises == SPREADS:       # as well as a slip that never changes in a run can do: each window is a run
+    windows, errors = [run.windows(FITTED) for run in runs], CAMERAS
+    if noises == SPREADS:       # a slip that never changes does best if each window is a run, and few errors are its own
+        errors = UNEXPLAINED
         runs, windows = zip(*((run, Windows(each.first[index:index + 1], each.count, each.ends[index:index + 1]))
                               for run, each in zip(runs, windows) for index in range(len(each.first))))
-    fitter = Fitter(runs, windows, CAMERAS)
+    fitter = Fitter(runs, windows, errors)
     start = starting_surface(**dict.fromkeys(noises, 0.05), **({'delay': 0.1} if 'delay' in motions else {}))
     return fit_floor(fitter, start, motions, noises)[:2]
 
