@@ -41,10 +41,12 @@ class Roughness:
 
     def __init__(self, surface, seed):
         """surface: a Surface; seed: an integer."""
-        generator = random.Random('roughness %d' % seed)
-        self.turning = Noise(surface.heading_noise_turning, CELL_TURNED, generator)
-        self.heading = Noise(surface.heading_noise_straight, CELL_TRAVELLED, generator)
-        self.distance = Noise(surface.distance_noise, CELL_TRAVELLED, generator)
+        def noise(key, cell):
+            # a generator for each: in a common one, the length of the steps would decide whose turn it is
+            return Noise(getattr(surface, key), cell, random.Random('%s %d' % (key, seed)))
+        self.turning = noise('heading_noise_turning', CELL_TURNED)
+        self.heading = noise('heading_noise_straight', CELL_TRAVELLED)
+        self.distance = noise('distance_noise', CELL_TRAVELLED)
 
     def over(self, straight, turn):
         """The errors of the distance (m) and the angle (rad) while the wheels travel by `straight` (m) and `turn` (rad).
