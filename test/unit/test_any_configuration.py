@@ -9,10 +9,10 @@ import yaml
 
 from rbx1_nav.config import ConfigError
 from rbx1_nav.model.robot import read_robot
-from rbx1_nav.model.surfaces import KEYS, draw_run, read_seed, read_surface
+from rbx1_nav.model.surfaces import KEYS, OPTIONAL_KEYS, draw_run, read_seed, read_surface
 from rbx1_nav.ros.filter_parameters import read_parameters
 from rbx1_nav.schedule import Schedule
-from rbx1_nav.simulated_base import make_base
+from rbx1_nav.simulated_base import make_base, make_wheels_and_gyro
 
 CONFIG = os.path.join(os.path.dirname(__file__), '..', '..', 'config')
 ROBOTS, SURFACES = ([yaml.safe_load(open(path)) for path in sorted(glob.glob(os.path.join(CONFIG, *pattern)))]
@@ -27,6 +27,7 @@ VALUES = st.recursive(SCALARS, lambda values: st.one_of(
     st.lists(values, max_size=3), st.dictionaries(st.one_of(TEXTS, NUMBERS), values, max_size=3)), max_leaves=8)
 
 ANY = st.one_of(NUMBERS, TEXTS, VALUES)
+OPTIONAL = st.dictionaries(st.sampled_from(sorted(OPTIONAL_KEYS)), st.floats(0, 1))
 
 
 def with_change(data, mapping):
@@ -66,15 +67,21 @@ def test_a_robot(data):
 
 @given(st.data())
 def test_a_surface(data):
-    values = data.draw(VALUES) if not data.draw(st.integers(0, 9)) else with_change(data, data.draw(
-        st.sampled_from(SURFACES)))
+    values = data.draw(VALUES) if not data.draw(st.integers(0, 9)) else with_change(data, dict(
+        data.draw(st.sampled_from(SURFACES)), **data.draw(OPTIONAL)))
     try:
         surface = read_surface(values, data.draw(TEXTS))
     except ConfigError as error:
         assert one_line(str(error))
         return
     assert surface is None or all(map(isfinite, surface[1:])) and all(map(isfinite, draw_run(surface, 0)))
-    assert surface is None or len(surface) == 1 + len(KEYS)
+    if surface is None:
+        return
+    assert len(surface) == 1 + len(KEYS) + len(OPTIONAL_KEYS)
+    wheels, _ = make_wheels_and_gyro(0.26, surface, 0, 0.02)
+    for command in (0.2, 1.0), (-0.1, 0.0), (0.0, 0.0):
+        wheels.travel(*command, 1.0)
+    assert all(map(isfinite, wheels.truth.pose)) and all(map(isfinite, wheels.uncertainty))
 
 
 @given(st.dictionaries(st.sampled_from(FILTER), ANY, max_size=2))

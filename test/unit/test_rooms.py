@@ -20,13 +20,15 @@ ALLOWED = {
     'create': {'config', 'control', 'model', 'schedule', 'simulated_base', 'units'},
     'model': {'config', 'units'},
     'estimation': {'model', 'units'},
+    'fitting': {'config', 'model', 'units'},
     'simulated_base': {'control', 'model', 'units'},
     'simulation': {'control', 'estimation', 'simulated_base', 'units'},
-    'ros': {'config', 'control', 'create', 'estimation', 'model', 'schedule', 'units'},
+    'ros': {'config', 'control', 'create', 'estimation', 'fitting', 'model', 'schedule', 'units'},
 }
 ALLOWED['nodes'] = set(ALLOWED) - {'__init__'}
 WITH_ROS = {'ros', 'nodes'}
-THIRD_PARTY = {'matplotlib', 'numpy', 'serial', 'yaml'}   # what the other rooms may import besides Python's own modules
+# what the other rooms may import besides Python's own modules
+THIRD_PARTY = {'matplotlib', 'numpy', 'scipy', 'serial', 'yaml'}
 MAX_NODE_LINES = 149
 
 

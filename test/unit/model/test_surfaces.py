@@ -7,7 +7,7 @@ import pytest
 import yaml
 
 from rbx1_nav.config import ConfigError
-from rbx1_nav.model.surfaces import KEYS, draw_run, known_surfaces, load_surface, read_seed, read_surface
+from rbx1_nav.model.surfaces import KEYS, OPTIONAL_KEYS, draw_run, known_surfaces, load_surface, read_seed, read_surface
 
 FOLDER = os.path.join(os.path.dirname(__file__), '..', '..', '..', 'config', 'surfaces')
 
@@ -63,10 +63,13 @@ def test_a_file_without_a_surface_is_rejected(tmp_path, text):
 
 
 @pytest.mark.parametrize('key, value', [
-    ('lag', 0), ('lag', -1), ('lag', 1e9), ('accel_limit', nan), ('drag_turning', 0), ('slip_straight', -0.1),
-    ('slip_turning', 0.6), ('slip_turning_spread', 'much'), ('ticks_meter', 0), ('ticks_meter', 1e308),
-    ('gyro_noise', 0), ('gyro_noise', 1e-9), ('gyro_bias', 1e200), ('gyro_bias', -1), ('gyro_scale_error', True),
-    ('gyro_measurement_range', [])])
+    ('lag', 0), ('lag', -1), ('lag', 1e9), ('accel_limit', nan), ('drag_turning', 0), ('slip_straight', -0.6),
+    ('slip_turning', 0.6), ('slip_turning_spread', 'much'), ('slip_straight_spread', -0.1),
+    ('ticks_meter', 0), ('ticks_meter', 1e308), ('gyro_noise', 0), ('gyro_noise', 1e-9), ('gyro_bias', 1e200), ('gyro_bias', -1), ('gyro_scale_error', True),
+    ('gyro_measurement_range', []), ('delay', -0.1), ('delay', 6), ('curvature', 11), ('curvature', nan),
+    ('turning_loss', -0.01), ('turning_loss', 'some'), ('heading_noise_turning', -0.1), ('heading_noise_turning', 2),
+    ('heading_noise_straight', True), ('heading_noise_straight', -1e-9), ('distance_noise', 1.5),
+    ('distance_noise', None)])
 def test_an_invalid_value_is_named_with_its_key(key, value):
     with pytest.raises(ConfigError, match='^surface x/%s: .*expected a ' % key):
         read_surface(dict(carpet(), **{key: value}), 'x')
@@ -78,6 +81,31 @@ def test_a_missing_key_is_named(key):
     del values[key]
     with pytest.raises(ConfigError, match='surface x/%s: missing' % key):
         read_surface(values, 'x')
+
+
+def without_optional_keys():
+    return {key: value for key, value in carpet().items() if key in KEYS}
+
+
+def test_a_file_without_the_optional_keys_is_valid_and_they_are_0():
+    surface = read_surface(without_optional_keys(), 'x')
+    assert [getattr(surface, key) for key in OPTIONAL_KEYS] == [0.0] * 6
+    assert read_surface(dict(without_optional_keys(), **dict.fromkeys(OPTIONAL_KEYS, 0)), 'x') == surface
+
+
+@pytest.mark.parametrize('key, low, high', [
+    ('delay', 0, 5), ('curvature', -10, 10), ('turning_loss', 0, 1), ('heading_noise_turning', 0, 1),
+    ('heading_noise_straight', 0, 1), ('distance_noise', 0, 1), ('slip_straight', -0.5, 0.5),
+    ('slip_turning', -0.5, 0.5)])
+def test_the_range_of_a_key(key, low, high):
+    for value in (low, high, (low + 3 * high) / 4):
+        surface = read_surface(dict(without_optional_keys(), **{key: value}), 'x')
+        assert getattr(surface, key) == value
+        # the others as in the file
+        assert surface == read_surface(without_optional_keys(), 'x')._replace(**{key: value})
+    for value in (low - 0.01, high + 0.01):
+        with pytest.raises(ConfigError, match='^surface x/%s: ' % key):
+            read_surface(dict(without_optional_keys(), **{key: value}), 'x')
 
 
 def test_an_unknown_key_is_rejected():
