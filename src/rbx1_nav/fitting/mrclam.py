@@ -2,6 +2,7 @@
 Y. Halpern, T. D. Barfoot, H. H. T. Liu, International Journal of Robotics Research 30(8), 969-974, 2011)."""
 import glob
 import os
+import warnings
 
 import numpy
 
@@ -15,7 +16,9 @@ CAMERAS = 0.001, 0.001, 0.003   # m, m, rad: 1 sigma of the motion capture syste
 def read_table(path):
     """The columns of a text file of numbers. Raises ConfigError."""
     try:
-        table = numpy.loadtxt(path, ndmin=2)
+        with warnings.catch_warnings():
+            warnings.simplefilter('ignore', UserWarning)    # a file without numbers: its columns are counted below
+            table = numpy.loadtxt(path, ndmin=2)
     except (OSError, ValueError, UnicodeDecodeError) as error:
         raise ConfigError('%s: expected a text file of numbers: %s' % (show_name(path), ' '.join(str(error).split())))
     return table.T
@@ -31,8 +34,8 @@ def read_robot(commands, truth):
             raise ConfigError('%s: %d columns: expected %d' % (show_name(path), len(table) if table.size else 0, width))
         tables.append(table)
     name = os.path.basename(commands).replace('_Odometry.dat', '')
-    time, x, y, yaw = tables[1]
-    return check_recording(Recording(name, Commands(*tables[0]), None, None, Track(time, x, y, numpy.unwrap(yaw)), None))
+    recording = check_recording(Recording(name, Commands(*tables[0]), None, None, Track(*tables[1]), None))
+    return recording._replace(truth=recording.truth._replace(yaw=numpy.unwrap(recording.truth.yaw)))
 
 
 def read_set(folder, number):

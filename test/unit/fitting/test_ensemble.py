@@ -1,0 +1,147 @@
+"""Ends in arrays, and covariances to first order: those of the simulated robot."""
+import random
+
+import numpy
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from rbx1_nav.fitting.ensemble import cell_noise, energy_score, inner_share, mahalanobis, simulate_ends
+from rbx1_nav.fitting.floor import NOISES, SPREADS, Covariance, Prediction, Windows
+from rbx1_nav.fitting.recording import Commands
+from rbx1_nav.fitting.travel import STEP, commanded_travel, grid
+from rbx1_nav.model.roughness import Noise, make_roughness
+from rbx1_nav.model.surfaces import draw_run
+from rbx1_nav.model.wheels import Wheels
+from sample_surface import SURFACE
+
+WIDTH = 0.26
+FLOOR = SURFACE._replace(delay=0.1, curvature=-0.04, turning_loss=0.1, **dict.fromkeys(SPREADS, 0.0))
+NOISY = FLOOR._replace(heading_noise_turning=0.09, heading_noise_straight=0.07, distance_noise=0.04,
+                       slip_straight_spread=0.02, slip_turning_spread=0.04)
+# (m/s, rad/s, s): whole steps
+SEQUENCE = [(0.2, 0.0, 3.0), (0.15, 0.5, 3.0), (0.0, -1.0, 1.5), (-0.1, 0.2, 1.0), (0.0, 0.0, 1.0)]
+RUNS = 800
+
+
+def predict(surface, sequence):
+    """The Prediction for one window that holds all of a sequence."""
+    times = numpy.cumsum([0.0] + [duration for _, _, duration in sequence])
+    linear, angular = ([*values, 0.0] for values in list(zip(*sequence))[:2])
+    commands = Commands(times, numpy.array(linear), numpy.array(angular))
+    steps = commanded_travel(surface, WIDTH, commands, grid(0.0, times[-1] + 1e-9))
+    return Prediction(surface, steps, Windows(numpy.array([0]), len(steps.straight), numpy.zeros((1, 3))))
+
+
+def drive(surface, sequence, seed):
+    """The true end of a simulated robot."""
+    wheels = Wheels(WIDTH, surface, draw_run(surface, seed), 0.02, make_roughness(surface, seed))
+    for linear, angular, duration in sequence:
+        for _ in range(round(duration / STEP)):
+            wheels.travel(linear, angular, STEP)
+    return wheels.truth.pose
+
+
+def simulated(surface):
+    return numpy.array([drive(surface, SEQUENCE, seed) for seed in range(RUNS)])
+
+
+def spreads_agree(some, others):
+    """Whether two covariances are alike: along no axis do the variances differ by more than 30 %.
+
+    1 sigma of a variance of RUNS ends is sqrt((kurtosis - 1) / RUNS) of it, 5 to 6 %; the worst of three axes.
+    """
+    ratios = numpy.linalg.eigvals(numpy.linalg.solve(some, others)).real
+    return 1 / 1.3 < ratios.min() and ratios.max() < 1.3
+
+
+@settings(max_examples=50)
+@given(st.lists(st.tuples(st.floats(-0.5, 0.5), st.floats(-2, 2), st.integers(1, 40)), min_size=1, max_size=10))
+def test_without_noise_the_end_is_that_of_the_simulated_robot(parts):
+    sequence = [(linear, angular, STEP * count) for linear, angular, count in parts]
+    prediction = predict(FLOOR, sequence)
+    end = numpy.array(drive(FLOOR, sequence, 0))
+    assert prediction.means[0] == pytest.approx(end, abs=1e-9)
+    ends = simulate_ends(FLOOR, prediction, 0, 3, numpy.random.default_rng(0))
+    assert ends == pytest.approx(numpy.stack([end] * 3), abs=1e-9)
+
+
+def test_the_ensemble_is_that_of_the_simulated_robot():
+    ends = simulated(NOISY)
+    ensemble = simulate_ends(NOISY, predict(NOISY, SEQUENCE), 0, 10 * RUNS, numpy.random.default_rng(1))
+    # five times 1 sigma of a mean
+    assert (abs(ends.mean(axis=0) - ensemble.mean(axis=0)) < 5 * ends.std(axis=0) / RUNS ** 0.5).all()
+    assert spreads_agree(numpy.cov(ends.T), numpy.cov(ensemble.T))
+    for part in 0.5, 0.9:
+        inside = numpy.mean([inner_share(ensemble[:2000], end) < part for end in ends[:400]])
+        # five times 1 sigma of a share of 400
+        assert abs(inside - part) < 5 * (part * (1 - part) / 400) ** 0.5
+
+
+@pytest.mark.parametrize('key', NOISES + SPREADS)
+def test_each_strength_alone_has_the_spread_of_the_simulated_robot(key):
+    surface = FLOOR._replace(**{key: 0.05})
+    ends = simulated(surface)
+    ensemble = simulate_ends(surface, predict(surface, SEQUENCE), 0, 10 * RUNS, numpy.random.default_rng(1))
+    floor = 1e-6 * numpy.eye(3)     # one strength alone leaves some direction without any spread
+    assert spreads_agree(numpy.cov(ends.T) + floor, numpy.cov(ensemble.T) + floor)
+
+
+@pytest.mark.parametrize('keys', [NOISES, SPREADS, NOISES + SPREADS], ids=' '.join)
+def test_the_covariance_to_first_order_is_that_of_the_ensemble(keys):
+    surface = FLOOR._replace(**dict.fromkeys(keys, 0.02))
+    prediction = predict(surface, SEQUENCE)
+    ensemble = simulate_ends(surface, prediction, 0, 10 * RUNS, numpy.random.default_rng(2))
+    # errors of a measurement of 3 mm: more than what is beyond the first order
+    measured = ensemble - ensemble.mean(axis=0) + 0.003 * numpy.random.default_rng(3).standard_normal(ensemble.shape)
+    covariance = Covariance(surface, prediction.sensitivities(), 0.003 ** 2 * numpy.eye(3))
+    white = numpy.array([covariance.whitened(error[None]) for error in measured[:3000]])
+    # 1 sigma of each of the three variances is below 5 %
+    assert spreads_agree(numpy.cov(white.T), numpy.eye(3))
+
+
+@given(st.integers(0, 10 ** 6), st.lists(st.floats(0, 1), min_size=1, max_size=20), st.floats(0.05, 1))
+def test_the_noise_in_arrays_has_the_sum_of_its_steps_at_any_cut(seed, path, cell):
+    whole = cell_noise(numpy.random.default_rng(seed), 4, numpy.array([sum(path)]), cell)
+    parts = cell_noise(numpy.random.default_rng(seed), 4, numpy.array(path), cell)
+    assert whole.shape == (4, 1) and parts.shape == (4, len(path))
+    # the last border may be in another cell by rounding, and then the draws differ in their number
+    borders = numpy.random.default_rng(seed).random((4, 1)) + sum(path) / cell
+    if (abs(borders - numpy.round(borders)) > 1e-9).all():
+        assert parts.sum(axis=1) == pytest.approx(whole[:, 0], abs=1e-9)
+
+
+def test_the_noise_in_arrays_has_variance_and_tails_of_the_noise_of_a_run():
+    cell, path, count = 0.25, numpy.array([0.1, 0.3, 1.6, 0.0]), 4000
+    arrays = cell_noise(numpy.random.default_rng(5), count, path, cell)
+    noises = [Noise(1.0, cell, random.Random(seed)) for seed in range(count)]
+    single = numpy.array([[noise.over(step) for step in path] for noise in noises])
+    for values in arrays, single:
+        assert (values[:, 3] == 0).all()
+        # sqrt((kurtosis - 1) / count) is below 4 %: five of those
+        assert values.sum(axis=1).var() == pytest.approx(2.0 - cell / 3, rel=0.15)
+        # shorter than a cell: path ** 2 / cell * (1 - path / cell / 3)
+        assert values[:, 0].var() == pytest.approx(0.01 / cell * (1 - 0.1 / cell / 3), rel=0.2)
+        short = values[:, 0] / values[:, 0].std()
+        assert 4.5 < (short ** 4).mean() < 8     # 3: normal
+
+
+def test_the_inner_share_of_an_end_is_that_of_the_simulated_ends_nearer_to_the_mean():
+    ends = numpy.random.default_rng(3).standard_normal((4000, 2)) * [0.5, 0.02] + [1.0, 2.0]
+    assert inner_share(ends, ends.mean(axis=0)) == 0
+    assert inner_share(ends, numpy.array([9.0, 2.0])) == 1
+    # two dimensions: 1 - exp(-d^2 / 2) of a normal distribution is inside; both are one standard deviation away
+    for end in [1.5, 2.0], [1.0, 2.02]:
+        assert inner_share(ends, numpy.array(end)) == pytest.approx(1 - numpy.exp(-0.5), abs=0.04)
+    assert mahalanobis(ends, numpy.array([[1.5, 2.02]])) == pytest.approx(2, rel=0.2)
+
+
+def test_the_energy_score_is_the_smaller_the_better_the_prediction():
+    generator = numpy.random.default_rng(4)
+    points = generator.standard_normal((300, 2))
+    good, shifted, timid, bold = (numpy.mean([
+        energy_score(generator.standard_normal((200, 2)) * width + shift, point) for point in points])
+        for width, shift in ((1, 0), (1, 1), (3, 0), (0.2, 0)))
+    assert good < min(shifted, timid, bold)
+    # an ensemble without spread: the distance
+    assert energy_score(numpy.zeros((10, 2)), numpy.array([3.0, 4.0])) == 5
