@@ -66,6 +66,7 @@ def test_a_folder_in_the_place_of_a_file_is_rejected(tmp_path):
 @pytest.mark.parametrize('name', ['', 'none', 'a[b', 'two\nlines'])
 def test_a_folder_without_files_of_the_set_is_rejected(tmp_path, name):
     write(tmp_path, number=7)
-    with pytest.raises(ConfigError, match=r'no files D6R\*_Odometry.dat: expected the folder of an unpacked set') as error:
+    text = r'no files D6R\*_Odometry.dat: expected the folder of an unpacked set'
+    with pytest.raises(ConfigError, match=text) as error:
         read_set(str(tmp_path / name), 6)
     assert str(error.value).isprintable()
