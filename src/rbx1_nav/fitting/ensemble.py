@@ -16,8 +16,9 @@ def cell_noise(generator, count, path, cell):
     return numpy.diff(before + (borders - number) * (after - before), axis=1)
 
 
-def simulate_ends(surface, prediction, index, count, generator):
-    """(count, 3): x, y (m), yaw (rad) at the end of a window of a Prediction, each in a run of its own on a Surface."""
+def simulate_paths(surface, prediction, index, count, generator):
+    """(count, 3, steps): x, y (m), yaw (rad) after each step of a window of a Prediction, each in a run of its own on a
+    Surface."""
     straight, turn = prediction.straight[index], prediction.turn[index]
     angle = numpy.repeat(prediction.angle[index][None], count, axis=0)
     distance = numpy.repeat(prediction.distance[index][None], count, axis=0)
@@ -29,7 +30,12 @@ def simulate_ends(surface, prediction, index, count, generator):
             errors += strength * cell_noise(generator, count, path, cell)
     angle -= surface.slip_turning_spread * generator.standard_normal((count, 1)) * turn
     distance -= surface.slip_straight_spread * generator.standard_normal((count, 1)) * straight
-    return numpy.stack([values[:, -1] for values in integrate(distance, angle)], axis=1)
+    return numpy.stack(integrate(distance, angle), axis=1)
+
+
+def simulate_ends(surface, prediction, index, count, generator):
+    """(count, 3): the ends of such paths."""
+    return simulate_paths(surface, prediction, index, count, generator)[:, :, -1]
 
 
 def mahalanobis(ends, points):

@@ -4,7 +4,7 @@ The ends of windows are compared with those that a surface predicts. Slip and it
 weighted by the predicted covariance; the noise by maximum likelihood, from what is left; both in turn until they stay.
 """
 import numpy
-from scipy.optimize import approx_fprime, least_squares, minimize
+from scipy.optimize import approx_fprime, brentq, least_squares, minimize
 
 from rbx1_nav.fitting.floor import Covariance, Prediction
 
@@ -15,6 +15,7 @@ MEANS = {'delay': (0.01, 0.1), 'lag': (0.01, 0.1), 'slip_straight': (1e-3, 0.05)
 BOUNDS = {'delay': (0, 5), 'lag': (1e-3, 60), 'slip_straight': (-0.5, 0.5), 'slip_turning': (-0.5, 0.5),
           'curvature': (-10, 10), 'turning_loss': (0, 1), 'drag_straight': (1e-6, 10), 'drag_turning': (1e-6, 10)}
 ROUNDS = 3
+VAGUE = 0.5     # 1 sigma of the logarithm of a strength, above which it may as well be 0
 MIN_STRENGTH, MAX_STRENGTH = 1e-4, 1.0      # of a noise or a spread; at the smaller one it counts as 0
 
 
@@ -50,18 +51,45 @@ class Fitter:
                                x_scale=[MEANS[key][1] for key in keys], xtol=1e-4, ftol=1e-6)
         return result.x, numpy.linalg.pinv(result.jac.T @ result.jac)
 
-    def fit_noise(self, surface, keys):
-        """(values, standard errors) of keys of NOISES and SPREADS, by maximum likelihood."""
+    def slopes(self, surface, keys):
+        """The derivatives of all ends by keys of MEANS: for each run an array (n, 3, keys)."""
+        base = self.predictions(surface)
+        columns = []
+        for key in keys:
+            step = MEANS[key][0]
+            moved = self.predictions(surface._replace(**{key: getattr(surface, key) + step}))
+            columns.append([(after.means - before.means) / step for before, after in zip(base, moved)])
+        return [numpy.stack(each, axis=2) for each in zip(*columns)]
+
+    def noise_cost(self, surface, means=()):
+        """A function of a Surface that differs only in its noises and spreads: less the logarithm of its likelihood.
+
+        If keys of MEANS that were fitted to the same ends are given, it is the restricted likelihood, which allows for
+        what they explain (Patterson and Thompson, Recovery of inter-block information when block sizes are unequal,
+        1971).
+        """
         predictions = self.predictions(surface)
         sensitivities = [each.sensitivities() for each in predictions]
+        slopes = [numpy.moveaxis(each, 2, 0) for each in self.slopes(surface, means)] if means else []
 
-        def cost(logarithms):
-            noisy = surface._replace(**dict(zip(keys, numpy.exp(logarithms).tolist())))
-            total = 0.0
-            for sensitivity, prediction in zip(sensitivities, predictions):
+        def cost(noisy):
+            total, information = 0.0, 0.0
+            for index, (sensitivity, prediction) in enumerate(zip(sensitivities, predictions)):
                 covariance = Covariance(noisy, sensitivity, self.floor)
                 total += covariance.half_log_determinant() + (covariance.whitened(prediction.errors) ** 2).sum() / 2
-            return total
+                if slopes:
+                    white = numpy.stack([covariance.whitened(column) for column in slopes[index]])
+                    information = information + white @ white.T
+            return total + (numpy.linalg.slogdet(information)[1] / 2 if slopes else 0.0)
+        return cost
+
+    def fit_noise(self, surface, keys, means=()):
+        """(values, standard errors, cost) of keys of NOISES and SPREADS, by maximum likelihood; means: see
+        noise_cost()."""
+        cost_of = self.noise_cost(surface, means)
+
+        def cost(logarithms):
+            return cost_of(surface._replace(**dict(zip(keys, numpy.exp(logarithms).tolist()))))
 
         start = numpy.log(numpy.clip([getattr(surface, key) or 0.03 for key in keys], MIN_STRENGTH, MAX_STRENGTH))
         result = minimize(cost, start, method='L-BFGS-B',
@@ -70,11 +98,28 @@ class Fitter:
         hessian = numpy.stack([(approx_fprime(result.x + step, cost, 1e-4) - approx_fprime(result.x - step, cost, 1e-4))
                                / 0.1 for step in steps])
         variances = numpy.diag(numpy.linalg.pinv((hessian + hessian.T) / 2)).clip(0)
-        return numpy.exp(result.x), numpy.exp(result.x) * numpy.sqrt(variances), result.fun
+        errors = numpy.exp(result.x) * numpy.sqrt(variances)
+        for index in numpy.flatnonzero((numpy.exp(result.x) < 3 * MIN_STRENGTH) | (variances > VAGUE ** 2)):
+            errors[index] = upper_error(cost, result, index)
+        return numpy.exp(result.x), errors, result.fun
 
 
-def fit_floor(fitter, surface, means, noises):
-    """(Surface, {key: standard error}, cost) with the values of all keys fitted together."""
+def upper_error(cost, result, index):
+    """How much larger one of the strengths, whose logarithms are in `result`, may be: until the likelihood falls to that
+    of one standard error. For those that may be 0, where a parabola of the logarithm says nothing."""
+    def excess(logarithm):
+        moved = result.x.copy()
+        moved[index] = logarithm
+        return cost(moved) - result.fun - 0.5
+    largest = numpy.log(MAX_STRENGTH)
+    if result.x[index] >= largest or excess(largest) < 0:
+        return numpy.inf
+    return numpy.exp(brentq(excess, result.x[index], largest, xtol=0.01)) - numpy.exp(result.x[index])
+
+
+def fit_floor(fitter, surface, means, noises, restricted=False):
+    """(Surface, {key: standard error}, cost) with the values of all keys fitted together; restricted: see fit_noise().
+    """
     errors, cost = {}, None
     for _ in range(ROUNDS):
         if means:
@@ -82,7 +127,7 @@ def fit_floor(fitter, surface, means, noises):
             surface = surface._replace(**dict(zip(means, values.tolist())))
             errors.update(zip(means, numpy.sqrt(numpy.diag(covariance))))
         if noises:
-            values, deviations, cost = fitter.fit_noise(surface, noises)
+            values, deviations, cost = fitter.fit_noise(surface, noises, means if restricted else ())
             surface = surface._replace(**dict(zip(noises, values.tolist())))
             errors.update(zip(noises, deviations))
     return surface, errors, cost

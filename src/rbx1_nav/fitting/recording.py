@@ -53,7 +53,7 @@ def check_recording(recording):
 
 
 def relative(pose, other):
-    """The pose `other` (x, y in m, yaw in rad) in the frame of `pose`, as an array."""
+    """The pose `other` (x, y in m, yaw in rad) in the frame of `pose`, as an array; each may be many poses."""
     x, y = other[0] - pose[0], other[1] - pose[1]
     c, s = numpy.cos(pose[2]), numpy.sin(pose[2])
     return numpy.array([c * x + s * y, c * y - s * x, other[2] - pose[2]])

@@ -7,6 +7,7 @@ from rbx1_nav.fitting.travel import commanded_travel, grid, reported_travel
 from rbx1_nav.units import wrap_angle
 
 MAX_GAP = 0.25      # s: a window in which the truth is unknown for so long is left out
+ROLL_OUT = 3.0      # s after the last command, until the end was measured by hand
 MOTORS = ('delay', 'lag', 'accel_limit', 'drag_straight', 'drag_turning')
 
 
@@ -20,6 +21,8 @@ class Run:
         self.base_width = base_width
         series = [each.time for each in (recording.odometry or recording.commands, recording.truth) if each]
         first, last = max(time[0] for time in series), min(time[-1] for time in series)
+        if recording.end and not recording.odometry:
+            last += ROLL_OUT    # the end is where the robot came to rest
         self.times = grid(max(first, first if start is None else start), min(last, last if end is None else end))
         self._steps = {}
 

@@ -1,0 +1,79 @@
+"""Recorded runs beside simulated ones of the same commands."""
+from collections import namedtuple
+
+import numpy
+
+from rbx1_nav.fitting.ensemble import inner_share, simulate_paths
+from rbx1_nav.fitting.floor import Prediction, Windows
+from rbx1_nav.fitting.recording import relative
+from rbx1_nav.fitting.run import Run
+
+ENDS = 500      # simulated, of each run
+LONG = 60.0     # s: of longer runs, parts are compared, each from where the robot really was
+PART = 20.0     # s: length of such a part
+MAX_SHOWN = 12  # runs, or parts
+
+Comparison = namedtuple('Comparison', 'name recorded is_truth simulated ends end')
+Comparison.__doc__ = """One run or a part of it, in the frame of its start. recorded: x and y (m) of its path; is_truth:
+whether this is the truth, and not odometry; simulated: x and y of one path with the same commands; ends: (ENDS, 3),
+simulated x, y (m) and yaw (rad); end: the true one, or None."""
+
+
+def predict(surface, recording, base_width, start=None, end=None):
+    """(Run without its odometry, Prediction for the whole of it by its commands)."""
+    run = Run(recording._replace(odometry=None), base_width, start, end)
+    windows = Windows(numpy.array([0]), len(run.times) - 1, numpy.zeros((1, 3)))
+    return run, Prediction(surface, run.steps(surface), windows)
+
+
+def region_share(surface, recording, base_width, end, seed):
+    """inner_share() of a true end (x, y in m, yaw in rad, not wrapped) of a run, by its commands alone: of x and y, and
+    of all three."""
+    _, prediction = predict(surface, recording, base_width)
+    ends = simulate_paths(surface, prediction, 0, ENDS, numpy.random.default_rng(seed))[:, :, -1]
+    return inner_share(ends[:, :2], end[:2]), inner_share(ends, end)
+
+
+def compare(surface, recordings, base_width, seed=1):
+    """The Comparisons of Recordings with a Surface that was fitted to them; at most MAX_SHOWN."""
+    generator = numpy.random.default_rng(seed)
+    comparisons = []
+    for recording, start, end in choose(recordings):
+        run, prediction = predict(surface, recording, base_width, start, end)
+        paths = simulate_paths(surface, prediction, 0, ENDS, generator)
+        track = recording.truth or recording.odometry
+        path, true = None, None
+        if track:
+            path = relative(*(numpy.array([numpy.interp(time, track.time, values) for values in track[1:]])
+                              for time in (run.times[0], run.times)))
+            path = numpy.concatenate([numpy.zeros((3, 1)), path], axis=1)
+        if recording.truth:
+            true = path[:, -1]
+        elif recording.end:
+            true = numpy.array(recording.end)
+        comparisons.append(Comparison(recording.name, None if path is None else path[:2], bool(recording.truth),
+                                      numpy.concatenate([numpy.zeros((2, 1)), paths[0, :2]], axis=1),
+                                      paths[:, :, -1], true))
+    return comparisons
+
+
+def choose(recordings):
+    """(Recording, start, end) of what is compared; start and end (s) are None for the whole."""
+    if len(recordings) > MAX_SHOWN:
+        recordings = [recordings[index] for index in numpy.linspace(0, len(recordings) - 1, MAX_SHOWN).astype(int)]
+    each = max(1, MAX_SHOWN // len(recordings))
+    for recording in recordings:
+        time = recording.commands.time
+        if time[-1] - time[0] <= LONG or not recording.truth:
+            yield recording, None, None
+            continue
+        # parts, evenly over the record
+        first, last = max(time[0], recording.truth.time[0]), min(time[-1], recording.truth.time[-1])
+        for start in numpy.linspace(first, last - PART, each + 2)[1:-1]:
+            yield recording, start, start + PART
+
+
+def shares(comparisons):
+    """(number of true ends, of those inside the region of 50 %, and of 90 %), by x and y."""
+    inside = numpy.array([inner_share(each.ends[:, :2], each.end[:2]) for each in comparisons if each.end is not None])
+    return len(inside), int((inside < 0.5).sum()), int((inside < 0.9).sum())

@@ -1,0 +1,112 @@
+"""Fits the errors of a gyro: at rest its bias and noise, and by the true heading its scale."""
+import numpy
+
+from rbx1_nav.model.gyro import NOISE_RATE
+
+SETTLED = 1.5       # s after a stop command until a robot counts as standing
+INTERVAL = 1.0      # s: turns in intervals of this length are compared
+MIN_TURN = 3.0      # rad: no scale from less
+
+
+def standing(recording, times, delay=0.0):
+    """Whether the robot stood still at each of `times` (s): no command to move since SETTLED and a delay (s)."""
+    commands = recording.commands
+    moving = (commands.linear != 0) | (commands.angular != 0)
+    before = numpy.searchsorted(commands.time, times, side='right') - 1
+    # the latest time, up to each command, at which the robot was commanded to move
+    ends = numpy.append(commands.time[1:], numpy.inf)
+    last = numpy.maximum.accumulate(numpy.where(moving, ends, -numpy.inf))
+    latest = numpy.where(before >= 0, last[before], -numpy.inf)
+    return (times > latest + SETTLED + delay)
+
+
+def rest_of(recording, delay):
+    """(bias in rad/s, noise at NOISE_RATE in rad/s, number of readings) of the gyro while the robot stood; None if
+    that was never long enough."""
+    time, rate = recording.gyro
+    at_rest = standing(recording, time, delay)
+    period = numpy.median(numpy.diff(time)) if len(time) > 1 else 0.0
+    if at_rest.sum() < 20 or not period > 0:
+        return None
+    readings = rate[at_rest]
+    return readings.mean(), readings.std(ddof=1) * (period * NOISE_RATE) ** 0.5, len(readings)
+
+
+def gyro_turns(recording, bias, times):
+    """The angle (rad) that the gyro measured between `times` (s). A reading is the mean since the one before."""
+    time, rate = recording.gyro
+    angle = numpy.append(0.0, numpy.cumsum((rate[1:] - bias) * numpy.diff(time)))
+    return numpy.diff(numpy.interp(times, time, angle))
+
+
+def scale_by_truth(recording, bias, noise):
+    """(scale error, its standard error) by a continuous truth; None if that turns too little.
+
+    bias, noise: of the gyro, rad/s.
+    """
+    truth, time = recording.truth, recording.gyro.time
+    first, last = max(truth.time[0], time[0]), min(truth.time[-1], time[-1])
+    times = first + INTERVAL * numpy.arange(max(0, int((last - first) / INTERVAL)) + 1)
+    if len(times) < 3:
+        return None
+    turned = numpy.diff(numpy.interp(times, truth.time, truth.yaw))
+    measured = gyro_turns(recording, bias, times)
+    if abs(turned).sum() < MIN_TURN:
+        return None
+    scale = (turned @ measured) / (turned @ turned)
+    left = ((measured - scale * turned) ** 2).sum() / (len(times) - 2)
+    floor = noise ** 2 / NOISE_RATE * INTERVAL
+    return scale - 1, (max(left, floor) / (turned @ turned)) ** 0.5
+
+
+def scale_by_end(recording, bias, noise, heading_error):
+    """(scale error, its standard error) by an end measured by hand; None if the run turns too little.
+
+    heading_error: of that, rad.
+    """
+    time = recording.gyro.time
+    turned = gyro_turns(recording, bias, time[[0, -1]])[0]
+    if abs(turned) < MIN_TURN:
+        return None
+    true = turned + (recording.end.yaw - turned + numpy.pi) % (2 * numpy.pi) - numpy.pi
+    error = numpy.hypot(heading_error, noise * ((time[-1] - time[0]) / NOISE_RATE) ** 0.5)
+    return turned / true - 1, abs(error / turned)
+
+
+def root_mean_square(values, errors):
+    """(rms of what the values are in truth, its standard error), where each was measured with an error."""
+    values, errors = numpy.asarray(values), numpy.asarray(errors)
+    variance = (values ** 2).mean()
+    own = max(variance - (errors ** 2).mean(), 0.0)
+    # of a variance by n normal values of mean 0
+    deviation = variance * (2 / len(values)) ** 0.5
+    root = own ** 0.5
+    return root, deviation / (2 * root) if root > 0 else numpy.inf
+
+
+def fit_gyro(recordings, delay=0.0, heading_error=0.0):
+    """{key: (value, standard error)} for those of gyro_noise, gyro_bias (rad/s) and gyro_scale_error that the
+    Recordings tell; the standard error is infinite for one run only. delay: of the motors, s; heading_error: of ends
+    measured by hand, rad."""
+    found, biases, noises, scales = {}, [], [], []
+    for recording in recordings:
+        rest = rest_of(recording, delay) if recording.gyro else None
+        if rest is None:
+            continue
+        bias, noise, number = rest
+        biases.append((bias, noise / number ** 0.5))
+        noises.append((noise, number))
+        if recording.truth or recording.end:
+            scale = (scale_by_truth(recording, bias, noise) if recording.truth
+                     else scale_by_end(recording, bias, noise, heading_error))
+            if scale:
+                scales.append(scale)
+    if noises:
+        values, numbers = numpy.transpose(noises)
+        value = ((values ** 2 * (numbers - 1)).sum() / (numbers - 1).sum()) ** 0.5
+        found['gyro_noise'] = value, value / (2 * (numbers - 1).sum()) ** 0.5
+    for key, some in (('gyro_bias', biases), ('gyro_scale_error', scales)):
+        if some:
+            value, error = root_mean_square(*zip(*some))
+            found[key] = value, error if len(some) > 1 else numpy.inf
+    return found

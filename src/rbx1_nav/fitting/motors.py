@@ -1,0 +1,82 @@
+"""Fits delay, lag and drag: from commands to what odometry reports."""
+from collections import namedtuple
+
+import numpy
+from scipy.optimize import least_squares
+
+from rbx1_nav.fitting.fit import BOUNDS
+from rbx1_nav.fitting.recording import Track
+from rbx1_nav.fitting.travel import commanded_travel, reported_travel
+
+INTERVAL = 0.2      # s: the travel in intervals of about this length is compared
+KEYS = ('delay', 'lag', 'accel_limit', 'drag_straight', 'drag_turning')
+STEPS = dict(delay=1e-3, lag=1e-3, accel_limit=1e-2, drag_straight=1e-5, drag_turning=1e-5)     # of derivatives
+LIMITS = {**BOUNDS, 'accel_limit': (0.01, 100)}
+FIRST_DELAYS = 0.0, 0.05, 0.1, 0.2, 0.4, 0.8    # s: the fit begins with the best, since it has no slope from afar
+
+MotorFit = namedtuple('MotorFit', 'values errors unused rms travel')
+MotorFit.__doc__ = """values, errors: dictionaries, one value and one standard error for each of KEYS; unused: those that
+made no difference; rms: of what is left, and of the travel itself, per INTERVAL (m)."""
+
+
+class Intervals:
+    """The reported travel of one Recording, between stamps of its odometry."""
+
+    def __init__(self, recording, base_width):
+        """base_width: m."""
+        self.commands = recording.commands
+        self.half_width = base_width / 2
+        stamps, index = numpy.unique(recording.odometry.time, return_index=True)
+        steps = reported_travel(Track(*(values[index] for values in recording.odometry)), stamps)
+        number = ((stamps - stamps[0]) / INTERVAL + 1e-6).astype(int)
+        chosen = numpy.flatnonzero(numpy.append(True, numpy.diff(number) > 0))
+        self.times = stamps[chosen]
+        self.travel = self._sides(*(numpy.add.reduceat(values, chosen[:-1]) if len(chosen) > 1 else numpy.zeros(0)
+                                    for values in (steps.straight[:chosen[-1]], steps.turn[:chosen[-1]])))
+
+    def _sides(self, straight, turn):
+        return numpy.concatenate([straight, turn * self.half_width])
+
+    def errors(self, surface):
+        """Reported less predicted travel of the wheels, m: straight, then turning."""
+        steps = commanded_travel(surface, 2 * self.half_width, self.commands, self.times)
+        return self.travel - self._sides(steps.straight, steps.turn)
+
+
+def fit_motors(surface, base_width, recordings):
+    """The MotorFit to Recordings with odometry, beginning with a Surface. base_width: m."""
+    intervals = [each for each in (Intervals(one, base_width) for one in recordings) if len(each.times) > 1]
+
+    def with_values(values):
+        return surface._replace(**dict(zip(KEYS, numpy.clip(values, *zip(*(LIMITS[key] for key in KEYS))).tolist())))
+
+    def residuals(values):
+        return numpy.concatenate([each.errors(with_values(values)) for each in intervals])
+
+    def jacobian(values):
+        base, columns = residuals(values), []
+        for index, key in enumerate(KEYS):
+            step = numpy.zeros(len(KEYS))
+            # at its upper bound the other way
+            step[index] = STEPS[key] if values[index] + STEPS[key] < LIMITS[key][1] else -STEPS[key]
+            columns.append((residuals(values + step) - base) / step[index])
+        return numpy.stack(columns, axis=1)
+
+    start = numpy.array([numpy.clip(getattr(surface, key), *LIMITS[key]) for key in KEYS])
+    start = min(([delay, *start[1:]] for delay in FIRST_DELAYS), key=lambda each: (residuals(each) ** 2).sum())
+    result = least_squares(residuals, start, jacobian, numpy.transpose([LIMITS[key] for key in KEYS]),
+                           x_scale=[0.01, 0.01, 0.3, 0.001, 0.001], xtol=1e-6, ftol=1e-8, max_nfev=60)
+    slopes = jacobian(result.x)
+    left = residuals(result.x)
+    # a parameter without effect: less than a micrometre in sum for a tenth of its value
+    unused = [key for key, column, value in zip(KEYS, slopes.T, result.x)
+              if abs(column).sum() * max(abs(value), STEPS[key]) < 1e-5]
+    used = [index for index, key in enumerate(KEYS) if key not in unused]
+    errors = dict.fromkeys(KEYS, numpy.inf)
+    if used:
+        variance = (left ** 2).sum() / max(1, len(left) - len(used))
+        covariance = variance * numpy.linalg.pinv(slopes[:, used].T @ slopes[:, used])
+        errors.update((KEYS[index], error) for index, error in zip(used, numpy.sqrt(numpy.diag(covariance))))
+    travel = numpy.concatenate([each.travel for each in intervals])
+    return MotorFit(dict(zip(KEYS, result.x.tolist())), errors, unused, float(numpy.sqrt((left ** 2).mean())),
+                    float(numpy.sqrt((travel ** 2).mean())))

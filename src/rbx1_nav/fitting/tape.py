@@ -1,0 +1,94 @@
+"""Fits a floor to runs of which only the ends are known, measured with a tape.
+
+A few ends tell the mean slips and how large the errors are as a whole, not each noise by itself. So all noises and
+spreads are multiplied by one common factor. What so few runs leave open is added to the spreads.
+"""
+from collections import namedtuple
+
+import numpy
+from scipy.optimize import minimize_scalar
+from scipy.stats import chi2, f as f_distribution
+
+from rbx1_nav.fitting.fit import MEANS, Fitter
+from rbx1_nav.fitting.floor import NOISES, SPREADS
+
+SLIPS = ('slip_straight', 'slip_turning')
+TYPICAL = dict(heading_noise_turning=0.08, heading_noise_straight=0.03, distance_noise=0.02)    # of real Creates
+FACTORS = 0.02, 50.0    # of the noises
+PRIOR = 1.0     # 1 sigma of the logarithm of the factor, before any run is seen: floors differ by so much
+ROUNDS = 3
+PART = 0.9      # the region that has to hold this part of the ends of further runs
+FAR_OFF = 5.0   # a factor above this, or below its reciprocal, is suspicious
+
+EndsFit = namedtuple('EndsFit', 'values errors reasons notes warnings')
+
+
+def fit_ends(runs, surface, end_errors):
+    """The EndsFit to Runs; end_errors: 1 sigma of x, y (m) and yaw (rad)."""
+    start = surface
+    if not any(getattr(surface, key) for key in NOISES):
+        surface = start = surface._replace(**TYPICAL)
+    means, factor, reasons = list(SLIPS), 1.0, {}
+    while True:
+        for _ in range(ROUNDS):
+            windows = [ends_of(run, surface) for run in runs]
+            fitter = Fitter(runs, windows, end_errors)
+            covariance = numpy.zeros((0, 0))
+            if means:
+                values, covariance = fitter.fit_means(surface, means)
+                surface = surface._replace(**dict(zip(means, values.tolist())))
+            factor = fit_factor(fitter, surface, start, means)
+            surface = scaled(surface, start, factor)
+        errors = dict(zip(means, numpy.sqrt(numpy.diag(covariance))))
+        unknown = [key for key in means if not errors[key] <= MEANS[key][1]]
+        if not unknown:
+            break
+        worst = max(unknown, key=lambda key: errors[key])
+        reasons[worst] = 'found %.3g +- %.2g: too uncertain' % (getattr(surface, worst), errors[worst])
+        means.remove(worst)
+        surface = surface._replace(**{worst: getattr(start, worst)})
+    degrees = 3 * len(runs) - len(means)
+    wider = widening(degrees)
+    spreads = {'slip_straight_spread': 'slip_straight', 'slip_turning_spread': 'slip_turning'}
+    values = {key: getattr(surface, key) for key in means}
+    for key in NOISES:
+        values[key] = min(1.0, wider * getattr(surface, key))
+    for key, mean in spreads.items():
+        values[key] = float(min(0.5, wider * numpy.hypot(getattr(surface, key), errors.get(mean, 0.0))))
+    relative = (1 / (2 * degrees)) ** 0.5
+    found = {key: float(values[key] * relative) for key in (*NOISES, *spreads) if values[key]}
+    notes = ['Noises and spreads are those of the starting surface times %.2f, one common factor that %d ends tell,'
+             % (factor, len(runs)),
+             'and times %.2f, since %d values are few: a region of 90 %% must hold 90 %% of the ends of further runs'
+             % (wider, 3 * len(runs)),
+             "(Student's t distribution). The spreads also contain the standard errors of the mean slips."]
+    warnings = [] if 1 / FAR_OFF < factor < FAR_OFF else [
+        'noise: %.2f times that of the starting surface: check the ends, and their order' % factor]
+    return EndsFit({key: float(value) for key, value in values.items()}, {**errors, **found}, reasons, notes, warnings)
+
+
+def ends_of(run, surface):
+    """The Windows, one, of a run, with the heading nearest to what a Surface predicts."""
+    steps = run.steps(surface)
+    yaw = (1 - surface.slip_turning) * steps.turn.sum() + surface.curvature * steps.straight.sum()
+    return run.whole(yaw)
+
+
+def scaled(surface, start, factor):
+    """A Surface with the noises and spreads of another one, times a factor."""
+    return surface._replace(**{key: min(0.5, factor * getattr(start, key)) for key in NOISES + SPREADS})
+
+
+def fit_factor(fitter, surface, start, means):
+    """The most probable factor of all noises and spreads."""
+    cost = fitter.noise_cost(surface, means)
+
+    def total(logarithm):
+        return cost(scaled(surface, start, numpy.exp(logarithm))) + logarithm ** 2 / (2 * PRIOR ** 2)
+    return float(numpy.exp(minimize_scalar(total, bounds=numpy.log(FACTORS), method='bounded').x))
+
+
+def widening(degrees):
+    """By how much a region must be wider if its size was itself estimated, with so many degrees of freedom: the root of
+    the ratio of Hotelling's T squared, for two coordinates, and chi squared."""
+    return float((2 * f_distribution.ppf(PART, 2, degrees) / chi2.ppf(PART, 2)) ** 0.5)

@@ -1,0 +1,211 @@
+"""From recordings to a surface, with a standard error for each value, and a word for each that they do not tell."""
+from collections import namedtuple
+
+import numpy
+
+from rbx1_nav.config import ConfigError
+from rbx1_nav.fitting import tape
+from rbx1_nav.fitting.fit import BOUNDS, MEANS, MIN_STRENGTH, Fitter, fit_floor
+from rbx1_nav.fitting.floor import NOISES, SPREADS, Covariance
+from rbx1_nav.fitting.gyro import fit_gyro, standing
+from rbx1_nav.fitting.motors import KEYS as MOTOR_KEYS, LIMITS, fit_motors
+from rbx1_nav.fitting.run import Run
+from rbx1_nav.model.surfaces import KEYS, OPTIONAL_KEYS
+
+FLOOR = ('slip_straight', 'slip_turning', 'curvature', 'turning_loss')
+RESOLUTION = 0.0003, 0.0003, 0.001  # m, m, rad: of encoders; no end is measured better
+CAMERAS = 0.001, 0.001, 0.003       # m, m, rad: 1 sigma of a motion capture system, where nothing tells it
+SHORTEST, LONGEST = 2.0, 10.0       # s: of a window
+WINDOWS = 100       # of the shorter windows in all that was recorded
+MIN_RUNS = 3        # for a spread from run to run
+LARGEST = {'accel_limit': 0.3, 'lag': 0.1, 'gyro_noise': 0.02, 'gyro_bias': 0.02, 'gyro_scale_error': 0.01,
+           **{key: error for key, (_, error) in MEANS.items()},
+           **dict.fromkeys(NOISES, 0.05), **dict.fromkeys(SPREADS, 0.02)}  # standard error of a value that is kept
+FAR_OFF = 30.0      # squared error of three normal values, of variance 1: exceeded once in a million
+POOR = 0.1          # what motors may leave unexplained of the travel, rms; and at least
+POOR_TRAVEL = 0.002     # m
+
+Value = namedtuple('Value', 'key value error reason')
+Value.__doc__ = """A value of a surface, in SI units; error: 1 sigma; for a value that was left as it was, error is None,
+and reason says why."""
+
+Result = namedtuple('Result', 'surface values warnings description notes')
+Result.__doc__ = """surface: Surface; values: Value of each key, in the order of a file; warnings, notes: texts; description:
+one line that says from what to what was fitted."""
+
+
+class WholeFit:
+    """Fits a surface, part by part."""
+
+    def __init__(self, recordings, base_width, start, end_errors=None):
+        """recordings: all alike, see check_alike(); base_width: m; start: Surface; end_errors: of ends measured by hand:
+        x, y (m), yaw (rad)."""
+        check_alike(recordings)
+        self.recordings = recordings
+        self.base_width = base_width
+        self.start = self.surface = start
+        self.end_errors = end_errors
+        self.errors, self.reasons, self.warnings, self.notes = {}, {}, [], []
+        self.description = 'motors and gyro'
+        self.has_odometry = recordings[0].odometry is not None
+        if self.has_odometry:
+            self._fit_motors()
+        if recordings[0].truth:
+            self._fit_to_truth()
+        elif recordings[0].end:
+            self._fit_to_ends()
+        elif not self.has_odometry:
+            raise ConfigError('%s: neither odometry nor truth: expected at least one of them' % recordings[0].name)
+        self._fit_gyro()
+
+    def result(self):
+        """The Result."""
+        values = []
+        for key in [*KEYS, *OPTIONAL_KEYS]:
+            error = self.errors.get(key)
+            reason = None if error is not None else self.reasons.get(key, 'the recordings do not tell it')
+            values.append(Value(key, getattr(self.surface, key), error, reason))
+        return Result(self.surface, values, self.warnings, self.description, self.notes)
+
+    def _set(self, key, value, error, bounds=None):
+        """Keep a fitted value, unless its standard error is too large."""
+        low, high = bounds or limits_of(key)
+        if not error <= LARGEST[key]:
+            self.reasons[key] = 'found %.3g +- %.2g: too uncertain' % (value, error)
+            return False
+        if bounds and (value <= low * 1.001 + 1e-9 or value >= high * 0.999) and low != 0:
+            self.warnings.append('%s: %.4g: at the end of its range' % (key, value))
+        self.surface = self.surface._replace(**{key: float(numpy.clip(value, *limits_of(key)))})
+        self.errors[key] = float(error)
+        self.reasons.pop(key, None)
+        return True
+
+    def _stopping_time(self):
+        """How long after a command (s) the motors have nearly followed it."""
+        return self.surface.delay + 5 * self.surface.lag
+
+    def _fit_motors(self):
+        fit = fit_motors(self.start, self.base_width, self.recordings)
+        for key in MOTOR_KEYS:
+            if key not in fit.unused:
+                self._set(key, fit.values[key], fit.errors[key], LIMITS[key])
+            else:
+                self.reasons[key] = 'it makes no difference in these runs'
+        if 'accel_limit' not in self.errors:    # never reached: then it must not limit on the new surface either
+            limit = max(self.start.accel_limit, fit.values['accel_limit'])
+            self.surface = self.surface._replace(accel_limit=limit)
+            self.reasons['accel_limit'] = 'never reached in these runs, so at least about this'
+        if fit.rms > max(POOR_TRAVEL, POOR * fit.travel):
+            self.warnings.append('odometry: %.1f mm rms in 0.2 s are not explained by commands and motors, of %.1f mm: '
+                                 'check that the commands are those of this robot' % (1e3 * fit.rms, 1e3 * fit.travel))
+
+    def _fit_to_truth(self):
+        runs = [Run(recording, self.base_width) for recording in self.recordings]
+        total = sum(run.times[-1] - run.times[0] for run in runs)
+        length = float(numpy.clip(total / WINDOWS, SHORTEST, LONGEST))
+        runs, windows = zip(*((run, run.windows(length)) for run in runs))
+        number = sum(len(each.first) for each in windows)
+        if not number:
+            raise ConfigError('truth: no %.1f s without a gap, in %d recordings: expected some' % (length, len(runs)))
+        runs, windows = zip(*((run, each) for run, each in zip(runs, windows) if len(each.first)))
+        self.description = 'floor from %s to the truth, in %d windows of %.1f s' % (
+            'odometry' if self.has_odometry else 'commands', number, length)
+        means = FLOOR if self.has_odometry else ('delay', 'lag') + FLOOR
+        if not self.has_odometry:
+            for key in ('accel_limit', 'drag_straight', 'drag_turning'):
+                self.reasons[key] = 'no odometry'
+        noises = NOISES + (SPREADS if len(runs) >= MIN_RUNS else ())
+        for key in SPREADS if len(runs) < MIN_RUNS else ():
+            self.reasons[key] = '%d of at least %d runs' % (len(runs), MIN_RUNS)
+        fitter = Fitter(runs, windows, truth_errors(self.recordings, self._stopping_time()))
+        start = self.surface._replace(**{key: getattr(self.surface, key) or 0.03 for key in noises},
+                                      **({'delay': self.surface.delay or 0.1} if 'delay' in means else {}))
+        surface, errors = self._fit_known(fitter, start, means, noises)
+        for key, error in errors.items():
+            self._set(key, getattr(surface, key), error, BOUNDS.get(key))
+        self._look_for_outliers(fitter, surface)
+
+    def _fit_known(self, fitter, start, means, noises):
+        """(Surface, {key: standard error}) of what can be told; the others stay as on the surface so far."""
+        while True:
+            surface, errors, _ = fit_floor(fitter, start, means, noises, restricted=True)
+            unknown = [key for key in (*means, *noises) if not errors[key] <= LARGEST[key]]
+            if not unknown:
+                break
+            # the worst first: without it, the others may be known
+            worst = max(unknown, key=lambda key: errors[key] / LARGEST[key])
+            self.reasons[worst] = 'found %.3g +- %.2g: too uncertain' % (getattr(surface, worst), errors[worst])
+            start = surface._replace(**{worst: getattr(self.surface, worst)})
+            means, noises = ([key for key in keys if key != worst] for keys in (means, noises))
+            if not means and not noises:
+                return start, {}
+        for key in noises:
+            if getattr(surface, key) < 2 * MIN_STRENGTH:
+                surface = surface._replace(**{key: 0.0})
+        return surface, errors
+
+    def _look_for_outliers(self, fitter, surface):
+        for run, windows, prediction in zip(fitter.runs, fitter.windows, fitter.predictions(surface)):
+            covariance = Covariance(surface, prediction.sensitivities(), fitter.floor)
+            squares = (covariance.whitened(prediction.errors).reshape(-1, 3) ** 2).sum(axis=1)
+            far = numpy.flatnonzero(squares > FAR_OFF)
+            if len(far) > 0.02 * len(squares):      # a floor's errors have fat tails
+                first = run.times[windows.first[far[0]]] - run.times[0]
+                self.warnings.append('%s: %d of %d windows end far from where this floor would have them, the first %.0f s '
+                                     'after the start' % (run.recording.name, len(far), len(squares), first))
+
+    def _fit_to_ends(self):
+        runs = [Run(recording, self.base_width) for recording in self.recordings]
+        self.description = 'floor from %s to %d ends measured by hand' % (
+            'odometry' if self.has_odometry else 'commands', len(runs))
+        fit = tape.fit_ends(runs, self.surface, self.end_errors)
+        self.surface = self.surface._replace(**fit.values)
+        self.errors.update(fit.errors)
+        self.reasons.update(fit.reasons)
+        self.notes += fit.notes
+        self.warnings += fit.warnings
+
+    def _fit_gyro(self):
+        found = fit_gyro(self.recordings, self._stopping_time(),
+                         self.end_errors[2] if self.end_errors else 0.0)
+        for key in ('gyro_noise', 'gyro_bias', 'gyro_scale_error', 'gyro_measurement_range'):
+            self.reasons[key] = 'the recordings do not tell it' if self.recordings[0].gyro else 'no gyro'
+        for key, (value, error) in found.items():
+            if error == numpy.inf and len(self.recordings) == 1:
+                self.reasons[key] = 'one run only'
+            elif not error < value:
+                self.reasons[key] = 'found %.2g: less than its own uncertainty' % value
+            else:
+                self._set(key, value, error)
+
+
+def limits_of(key):
+    """(lowest, highest) value of a key, in SI units."""
+    limits, convert = {**KEYS, **OPTIONAL_KEYS}[key]
+    return convert(limits['low']), convert(limits['high'])
+
+
+def check_alike(recordings):
+    """Raise ConfigError unless all Recordings have the same series, gyros apart."""
+    for field in ('odometry', 'truth', 'end'):
+        having = [recording for recording in recordings if getattr(recording, field) is not None]
+        if 0 < len(having) < len(recordings):
+            without = next(each for each in recordings if getattr(each, field) is None)
+            raise ConfigError('%s: no %s, but %s has it: expected all runs alike'
+                              % (without.name, field, having[0].name))
+
+
+def truth_errors(recordings, delay):
+    """1 sigma of x, y (m) and yaw (rad) of the truth, from robots that stand still; and no less than RESOLUTION.
+
+    delay: of the motors, s."""
+    squares, number = numpy.zeros(3), 0
+    for recording in recordings:
+        truth = recording.truth
+        still = standing(recording, truth.time, delay)
+        borders = numpy.flatnonzero(numpy.diff(still.astype(int))) + 1
+        for part in numpy.split(numpy.arange(len(still)), borders):
+            if len(part) >= 20 and still[part[0]]:
+                squares += [numpy.var(values[part]) * len(part) for values in truth[1:]]
+                number += len(part)
+    return tuple(numpy.hypot(RESOLUTION, (squares / number) ** 0.5)) if number else CAMERAS
