@@ -105,8 +105,8 @@ def judge_values(robot, start, seeds, odometry=True):
         print('surface %d: %.1f s %s' % (seed, time.process_time() - begin, '; '.join(result.warnings)), flush=True)
     for key, some in errors.items():
         some = numpy.array(some)
-        print('%-24s %3d fitted, %3.0f %% within 2 standard errors, rms %.2f, mean %5.2f; left: %d' % (
-            key, len(some), 100 * (abs(some) < 2).mean(), (some ** 2).mean() ** 0.5, some.mean(), len(left.get(key, []))))
+        print('%-24s %3d fitted, %3.0f %% within 2 standard errors, rms %.2f, median %5.2f; left: %d' % (
+            key, len(some), 100 * (abs(some) < 2).mean(), (some ** 2).mean() ** 0.5, numpy.median(some), len(left.get(key, []))))
     everything = abs(numpy.concatenate(list(errors.values())))
     print('all values: %d, %.1f %% within 2 standard errors' % (len(everything), 100 * (everything < 2).mean()))
     for key, some in parts.items():

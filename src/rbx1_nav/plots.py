@@ -20,6 +20,11 @@ def check_picture(path):
     formats = sorted(set(Figure().canvas.get_supported_filetypes()) - {'pgf'})      # that one needs LaTeX
     if os.path.splitext(path)[1][1:].lower() not in formats:
         raise ConfigError('expected a name that ends in one of .%s' % ', .'.join(formats))
+    check_writable(path)
+
+
+def check_writable(path):
+    """Try whether a file can be written. Raises ConfigError."""
     if not os.path.isdir(os.path.dirname(os.path.abspath(path))):
         raise ConfigError('expected a folder that exists')
     new = not os.path.lexists(path)
@@ -51,10 +56,15 @@ def draw(file, surface, results, seeds):
         points = draw_ends(below, ends[method], extent, norm)
     if norm:
         figure.colorbar(points, ax=list(panels[1]), label='heading error (degrees)').solids.set(alpha=1)
+    save(figure, file)
+
+
+def save(figure, path):
+    """Write a Figure to a file, in the format that its name says. Raises OSError."""
     # drawn in memory: a full disk is an OSError, and not one of all that the libraries below matplotlib may raise
     picture = io.BytesIO()
-    figure.savefig(picture, dpi=90, bbox_inches='tight', format=os.path.splitext(file)[1][1:].lower())
-    write_file(file, picture.getvalue())
+    figure.savefig(picture, dpi=90, bbox_inches='tight', format=os.path.splitext(path)[1][1:].lower())
+    write_file(path, picture.getvalue())
 
 
 def write_file(path, content):

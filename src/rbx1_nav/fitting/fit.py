@@ -22,11 +22,13 @@ MIN_STRENGTH, MAX_STRENGTH = 1e-4, 1.0      # of a noise or a spread; at the sma
 class Fitter:
     """Runs with their windows."""
 
-    def __init__(self, runs, windows, errors):
-        """runs: Run objects; windows: Windows of each; errors: 1 sigma of a measured end: x and y (m), yaw (rad)."""
+    def __init__(self, runs, windows, errors, by_cells=False):
+        """runs: Run objects; windows: Windows of each; errors: 1 sigma of a measured end: x and y (m), yaw (rad);
+        by_cells: see Prediction.sensitivities()."""
         self.runs = runs
         self.windows = windows
         self.floor = numpy.diag(numpy.square(errors))
+        self.by_cells = by_cells
 
     def predictions(self, surface):
         """The Prediction for each run."""
@@ -34,7 +36,7 @@ class Fitter:
 
     def fit_means(self, surface, keys):
         """(values, covariance) of keys of MEANS, given the noise of the Surface."""
-        covariances = [Covariance(surface, each.sensitivities(), self.floor) for each in self.predictions(surface)]
+        covariances = [Covariance(surface, each.sensitivities(self.by_cells), self.floor) for each in self.predictions(surface)]
 
         def residuals(values):
             predictions = self.predictions(surface._replace(**dict(zip(keys, values))))
@@ -69,7 +71,7 @@ class Fitter:
         1971).
         """
         predictions = self.predictions(surface)
-        sensitivities = [each.sensitivities() for each in predictions]
+        sensitivities = [each.sensitivities(self.by_cells) for each in predictions]
         slopes = [numpy.moveaxis(each, 2, 0) for each in self.slopes(surface, means)] if means else []
 
         def cost(noisy):
@@ -99,6 +101,8 @@ class Fitter:
                                / 0.1 for step in steps])
         variances = numpy.diag(numpy.linalg.pinv((hessian + hessian.T) / 2)).clip(0)
         errors = numpy.exp(result.x) * numpy.sqrt(variances)
+        if means:       # the way up, which is longer than the way down
+            errors = numpy.exp(result.x) * numpy.expm1(numpy.sqrt(variances))
         for index in numpy.flatnonzero((numpy.exp(result.x) < 3 * MIN_STRENGTH) | (variances > VAGUE ** 2)):
             errors[index] = upper_error(cost, result, index)
         return numpy.exp(result.x), errors, result.fun

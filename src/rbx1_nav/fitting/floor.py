@@ -7,6 +7,8 @@ from collections import namedtuple
 
 import numpy
 
+from rbx1_nav.model.roughness import CELL_TRAVELLED, CELL_TURNED
+
 Windows = namedtuple('Windows', 'first count ends')
 Windows.__doc__ = """Parts of a recording that have a measured end. first: (n,), the step that each begins with; count:
 their number of steps; ends: (n, 3), in the frame of the start of each: x, y (m), yaw (rad)."""
@@ -30,6 +32,15 @@ def integrate(distance, angle):
     return numpy.cumsum(chord * numpy.cos(middle), axis=-1), numpy.cumsum(chord * numpy.sin(middle), axis=-1), yaw
 
 
+def cell_covariance(path, cell):
+    """(m, m): the covariance of the errors in each of m steps of a path, by noise of strength 1 with cells."""
+    position = numpy.append(0.0, numpy.cumsum(path)) / cell
+    apart = abs(position[:, None] - position)
+    # the variance of the error in a part of the path: its cells lie anywhere
+    variance = cell * numpy.where(apart < 1, apart ** 2 * (1 - apart / 3), apart - 1 / 3)
+    return (variance[:-1, 1:] + variance[1:, :-1] - variance[:-1, :-1] - variance[1:, 1:]) / 2
+
+
 class Prediction:
     """What a Surface predicts for n windows of m steps."""
 
@@ -42,20 +53,27 @@ class Prediction:
         self.means = numpy.stack([values[:, -1] for values in self.path], axis=1)   # (n, 3)
         self.errors = windows.ends - self.means
 
-    def sensitivities(self):
+    def sensitivities(self, by_cells=False):
         """A dictionary: for each of NOISES the covariances of the ends for a strength of 1, (n, 3, 3); for each of
-        SPREADS the derivatives of the ends by a slip that is constant in the run, (n, 3)."""
+        SPREADS the derivatives of the ends by a slip that is constant in the run, (n, 3).
+
+        by_cells: whether noise is that of model.roughness.Noise with its cells, which makes a difference for windows of
+        few cells; otherwise it is white.
+        """
         x, y, yaw = self.path
         middle = yaw - self.angle / 2
         by_heading = numpy.stack([y - y[:, -1:], x[:, -1:] - x, numpy.ones_like(x)], axis=1)    # (n, 3, m)
         by_distance = numpy.stack([numpy.cos(middle), numpy.sin(middle), numpy.zeros_like(x)], axis=1)
         turned, travelled = abs(self.turn)[:, None], abs(self.straight)[:, None]
 
-        def along(derivatives, weights):
+        def along(derivatives, weights, cell):
+            if by_cells:
+                return numpy.stack([one @ cell_covariance(path[0], cell) @ one.T
+                                    for one, path in zip(derivatives, weights)])
             return derivatives * weights @ derivatives.transpose(0, 2, 1)
-        return {'heading_noise_turning': along(by_heading, turned),
-                'heading_noise_straight': along(by_heading, travelled),
-                'distance_noise': along(by_distance, travelled),
+        return {'heading_noise_turning': along(by_heading, turned, CELL_TURNED),
+                'heading_noise_straight': along(by_heading, travelled, CELL_TRAVELLED),
+                'distance_noise': along(by_distance, travelled, CELL_TRAVELLED),
                 'slip_straight_spread': -(by_distance @ self.straight[..., None])[..., 0],
                 'slip_turning_spread': -(by_heading @ self.turn[..., None])[..., 0]}
 

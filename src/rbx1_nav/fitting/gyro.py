@@ -1,5 +1,6 @@
 """Fits the errors of a gyro: at rest its bias and noise, and by the true heading its scale."""
 import numpy
+from scipy.stats import chi2, norm
 
 from rbx1_nav.model.gyro import NOISE_RATE
 
@@ -78,10 +79,9 @@ def root_mean_square(values, errors):
     values, errors = numpy.asarray(values), numpy.asarray(errors)
     variance = (values ** 2).mean()
     own = max(variance - (errors ** 2).mean(), 0.0)
-    # of a variance by n normal values of mean 0
-    deviation = variance * (2 / len(values)) ** 0.5
-    root = own ** 0.5
-    return root, deviation / (2 * root) if root > 0 else numpy.inf
+    # the true variance may be larger by this factor, with the probability of one standard error; it is rarely smaller
+    largest = variance * len(values) / chi2.ppf(norm.cdf(-1), len(values))
+    return own ** 0.5, max(largest - (errors ** 2).mean(), 0.0) ** 0.5 - own ** 0.5
 
 
 def fit_gyro(recordings, delay=0.0, heading_error=0.0):

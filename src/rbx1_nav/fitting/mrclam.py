@@ -13,6 +13,19 @@ BASE_WIDTH = 0.26               # m, of a Create
 CAMERAS = 0.001, 0.001, 0.003   # m, m, rad: 1 sigma of the motion capture system, from robots that stand still
 
 
+COMMANDS, TRUTH = '_Odometry.dat', '_Groundtruth.dat'   # ends of file names
+
+
+def is_commands_file(path):
+    """Whether the name of a file is that of a robot's commands."""
+    return path.endswith(COMMANDS)
+
+
+def truth_file(path):
+    """The path of the truth that belongs to the commands in `path`."""
+    return path[:-len(COMMANDS)] + TRUTH
+
+
 def read_table(path):
     """The columns of a text file of numbers. Raises ConfigError."""
     try:
@@ -33,15 +46,15 @@ def read_robot(commands, truth):
         if len(table) != width:
             raise ConfigError('%s: %d columns: expected %d' % (show_name(path), len(table) if table.size else 0, width))
         tables.append(table)
-    name = os.path.basename(commands).replace('_Odometry.dat', '')
+    name = os.path.basename(commands).replace(COMMANDS, '')
     recording = check_recording(Recording(name, Commands(*tables[0]), None, None, Track(*tables[1]), None))
     return recording._replace(truth=recording.truth._replace(yaw=numpy.unwrap(recording.truth.yaw)))
 
 
 def read_set(folder, number):
     """The Recordings of all robots of a set in a folder: D6R1_Odometry.dat and so on for set 6. Raises ConfigError."""
-    pattern = 'D%dR*_Odometry.dat' % number
+    pattern = 'D%dR*%s' % (number, COMMANDS)
     paths = sorted(glob.glob(os.path.join(glob.escape(folder), pattern)))
     if not paths:
         raise ConfigError('%s: no files %s: expected the folder of an unpacked set' % (show(folder), pattern))
-    return [read_robot(path, path.replace('_Odometry', '_Groundtruth')) for path in paths]
+    return [read_robot(path, truth_file(path)) for path in paths]

@@ -7,6 +7,10 @@ from collections import namedtuple
 import numpy
 
 from rbx1_nav.config import ConfigError
+from rbx1_nav.units import SECOND
+
+LARGEST = 1e10      # s, m, ...: no number of a run is larger
+MIN_TRAVEL, MIN_TURN = 0.02, 0.1    # m, rad: less is no motion
 
 Commands = namedtuple('Commands', 'time linear angular')
 Commands.__doc__ = 'Each is in force until the next: m/s forward, rad/s to the left.'
@@ -28,7 +32,7 @@ def check_series(name, series):
     name: what to call the series, with its file.
     """
     for field, values in zip(series._fields, series):
-        bad = numpy.flatnonzero(~numpy.isfinite(values))
+        bad = numpy.flatnonzero(~(abs(values) < LARGEST))
         if bad.size:
             raise ConfigError('%s: %s of message %d: %s: expected a finite number'
                               % (name, field, bad[0] + 1, values[bad[0]]))
@@ -40,16 +44,42 @@ def check_series(name, series):
 
 
 def check_recording(recording):
-    """Raise ConfigError unless a Recording has commands, motion, and series without mistakes. Returns it."""
-    if not len(recording.commands.time):
-        raise ConfigError('%s: no commands: expected the velocity commands of a run' % recording.name)
+    """Raise ConfigError unless a Recording has commands, motion, and series without mistakes on one clock. Returns it.
+    """
+    name, commands = recording.name, recording.commands
+    if not len(commands.time):
+        raise ConfigError('%s: no commands: expected the velocity commands of a run' % name)
     for field in ('commands', 'odometry', 'gyro', 'truth'):
         series = getattr(recording, field)
         if series is not None:
-            check_series('%s: %s' % (recording.name, field), series)
-    if not (numpy.any(recording.commands.linear) or numpy.any(recording.commands.angular)):
-        raise ConfigError('%s: no motion: expected commands other than 0' % recording.name)
+            check_series('%s: %s' % (name, field), series)
+    if not (numpy.any(commands.linear) or numpy.any(commands.angular)):
+        raise ConfigError('%s: no motion: expected commands other than 0' % name)
+    for field in ('odometry', 'gyro', 'truth'):
+        series = getattr(recording, field)
+        if series is None:
+            continue
+        first, last = max(series.time[0], commands.time[0]), min(series.time[-1], commands.time[-1])
+        if not last - first > 0.5 * (commands.time[-1] - commands.time[0]):
+            raise ConfigError('%s: %s from %.1f to %.1f s, but commands from %.1f to %.1f s: expected the same time, by '
+                              'one clock' % (name, field, series.time[0], series.time[-1], *commands.time[[0, -1]]))
+        if field != 'gyro' and not (max(numpy.ptp(series.x), numpy.ptp(series.y)) > MIN_TRAVEL
+                                    or numpy.ptp(series.yaw) > MIN_TURN):
+            raise ConfigError('%s: %s: no motion, although it was commanded: expected a robot that moves' % (name, field))
     return recording
+
+
+def in_force(commands, robot):
+    """The Commands that a base puts in force: within the limits of a Robot, and until they time out."""
+    time, linear, angular = commands
+    linear = numpy.clip(linear, -robot.limits.linear, robot.limits.linear)
+    angular = numpy.clip(angular, -robot.limits.angular, robot.limits.angular)
+    timeout = robot.timeout / SECOND
+    if timeout:
+        late = numpy.flatnonzero(numpy.diff(time, append=numpy.inf) > timeout)
+        time, linear, angular = (numpy.insert(values, late + 1, more) for values, more in (
+            (time, time[late] + timeout), (linear, 0.0), (angular, 0.0)))
+    return Commands(time, linear, angular)
 
 
 def relative(pose, other):

@@ -13,7 +13,7 @@ from rbx1_nav.fitting.fit import MEANS, Fitter
 from rbx1_nav.fitting.floor import NOISES, SPREADS
 
 SLIPS = ('slip_straight', 'slip_turning')
-TYPICAL = dict(heading_noise_turning=0.08, heading_noise_straight=0.03, distance_noise=0.02)    # of real Creates
+TYPICAL = dict(heading_noise_turning=0.09, heading_noise_straight=0.07, distance_noise=0.04)    # of real Creates
 FACTORS = 0.02, 50.0    # of the noises
 PRIOR = 1.0     # 1 sigma of the logarithm of the factor, before any run is seen: floors differ by so much
 ROUNDS = 3
@@ -32,7 +32,7 @@ def fit_ends(runs, surface, end_errors):
     while True:
         for _ in range(ROUNDS):
             windows = [ends_of(run, surface) for run in runs]
-            fitter = Fitter(runs, windows, end_errors)
+            fitter = Fitter(runs, windows, end_errors, by_cells=True)
             covariance = numpy.zeros((0, 0))
             if means:
                 values, covariance = fitter.fit_means(surface, means)

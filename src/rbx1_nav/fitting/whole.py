@@ -117,7 +117,7 @@ class WholeFit:
         noises = NOISES + (SPREADS if len(runs) >= MIN_RUNS else ())
         for key in SPREADS if len(runs) < MIN_RUNS else ():
             self.reasons[key] = '%d of at least %d runs' % (len(runs), MIN_RUNS)
-        fitter = Fitter(runs, windows, truth_errors(self.recordings, self._stopping_time()))
+        fitter = Fitter(runs, windows, truth_errors(self.recordings, self._stopping_time()), by_cells=True)
         start = self.surface._replace(**{key: getattr(self.surface, key) or 0.03 for key in noises},
                                       **({'delay': self.surface.delay or 0.1} if 'delay' in means else {}))
         surface, errors = self._fit_known(fitter, start, means, noises)
@@ -146,7 +146,7 @@ class WholeFit:
 
     def _look_for_outliers(self, fitter, surface):
         for run, windows, prediction in zip(fitter.runs, fitter.windows, fitter.predictions(surface)):
-            covariance = Covariance(surface, prediction.sensitivities(), fitter.floor)
+            covariance = Covariance(surface, prediction.sensitivities(True), fitter.floor)
             squares = (covariance.whitened(prediction.errors).reshape(-1, 3) ** 2).sum(axis=1)
             far = numpy.flatnonzero(squares > FAR_OFF)
             if len(far) > 0.02 * len(squares):      # a floor's errors have fat tails

@@ -40,7 +40,9 @@ class Series:
 
     def add(self, message, time, header):
         """Add a message. time: s, when it was recorded."""
-        self.senders[header.get('callerid'), getattr(message, 'child_frame_id', None)] = True
+        name = header.get('callerid', 'an unknown node')    # rosbag leaves it undecoded
+        self.senders[name.decode(errors='replace') if isinstance(name, bytes) else name,
+                     getattr(message, 'child_frame_id', None)] = True
         if isinstance(message, Twist):
             self.rows.append((time, message.linear.x, message.angular.z))
             return
@@ -74,7 +76,8 @@ def read_bag(path, topics, end=None):
             for topic, message, time, header in bag.read_messages(connection_filter=choose,
                                                                   return_connection_header=True):
                 by_topic['/' + topic.lstrip('/')].add(message, time.to_sec(), header)
-    except (rosbag.ROSBagException, OSError, ValueError, UnicodeDecodeError) as error:
+    except Exception as error:      # pylint: disable=broad-except
+        # a damaged bag ends in whatever the first wrong byte leads to: struct.error, KeyError, MemoryError, ...
         raise ConfigError('%s: expected a bag: %s' % (name, ' '.join(str(error).split()) or type(error).__name__))
     for one in by_topic.values():
         check(name, one)
@@ -95,10 +98,12 @@ def check(name, series):
     if series.other_types and not series.rows:
         raise ConfigError('%s: %s: %s: expected %s' % (name, series.topic, ', '.join(sorted(series.other_types)),
                                                        ' or '.join(one._type for one in series.types)))
-    if len(series.senders) > 1:
+    # but a learner may steer by hand besides a script
+    if len(series.senders) > 1 and series.types != TYPES.cmd_vel:
         raise ConfigError('%s: %s: published by %s: expected one robot'
                           % (name, series.topic, ' and '.join(
-                              '%s (%s)' % sender if sender[1] else str(sender[0]) for sender in series.senders)))
+                              '%s (%s)' % tuple(map(show_name, sender)) if sender[1] else show_name(sender[0])
+                              for sender in sorted(series.senders, key=str))))
 
 
 def track(series):

@@ -1,0 +1,133 @@
+#!/usr/bin/env python3
+"""Fits a surface file to recorded runs of a robot.
+
+A run is a bag with the velocity commands, the odometry and, where there is one, the gyro. Where the robot really was is
+known from a topic (--truth), or its ends were measured by hand (--ends). Robots of the UTIAS dataset are read from
+their text files: D6R1_Odometry.dat, with D6R1_Groundtruth.dat beside it.
+
+The file of --ends has a line for each bag: its name without folder, and the end in the frame of the start, x ahead:
+
+  run1.bag: [0.02, 0.35, -12]   # x (m), y (m), heading (degrees)
+  position_error: 0.01          # of the tape, 1 sigma, m (default)
+  heading_error: 2              # the same of the heading, degrees (default)
+"""
+import rbx1_nav.ros.early_interrupt     # Ctrl-C ends it quietly even while the rest is loaded
+
+import argparse
+import os
+import signal
+import sys
+
+from rbx1_nav.config import ConfigError, load_yaml, show_name
+from rbx1_nav.fit_picture import draw_fit
+from rbx1_nav.fitting.comparison import compare, shares
+from rbx1_nav.fitting.ends_file import read_ends
+from rbx1_nav.fitting.mrclam import is_commands_file, read_robot as read_text_files, truth_file
+from rbx1_nav.fitting.recording import in_force
+from rbx1_nav.fitting.surface_file import surface_text, table
+from rbx1_nav.fitting.whole import WholeFit
+from rbx1_nav.model.robot import read_robot
+from rbx1_nav.model.surfaces import known_surfaces, load_surface
+from rbx1_nav.plots import check_picture, check_writable, write_file
+from rbx1_nav.ros import resources
+from rbx1_nav.ros.bags import Topics, read_bag
+
+START = 'low_ply_carpet'
+
+
+def read_arguments():
+    """The command line."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument('runs', nargs='+', metavar='RUN', help='a bag, or a text file NAME_Odometry.dat')
+    truth = parser.add_mutually_exclusive_group()
+    truth.add_argument('--truth', metavar='TOPIC', help='where the robot really was: nav_msgs/Odometry or '
+                                                        'geometry_msgs/PoseStamped')
+    truth.add_argument('--ends', metavar='FILE', help='YAML file with the ends of the runs, measured by hand')
+    parser.add_argument('--output', required=True, metavar='FILE', help='the surface file to write')
+    parser.add_argument('--plot', metavar='FILE', help='draw recorded and simulated paths (PNG, PDF, SVG)')
+    parser.add_argument('--start', default=START, metavar='SURFACE',
+                        help='what the runs do not tell stays as on this surface: one of %s, or a YAML file; default: %s'
+                             % (', '.join(known_surfaces(resources.surfaces())), START))
+    parser.add_argument('--config', default=resources.path('config', 'turtlebot.yaml'), metavar='FILE',
+                        help="ArbotiX YAML file of the base: its width, limits and timeout; default: the TurtleBot's")
+    for name, topic in (('cmd-vel', '/cmd_vel'), ('odom', '/odom'), ('imu', '/imu/data')):
+        parser.add_argument('--' + name, default=topic, metavar='TOPIC', help='default: %s' % topic)
+    arguments = parser.parse_args()
+    for name, check in (('output', check_output), ('plot', check_picture)):
+        path = getattr(arguments, name)
+        try:
+            if path is not None:
+                check(path)
+        except ConfigError as error:
+            parser.error('--%s: %s: %s' % (name, show_name(path), error))
+    topics = [each.lstrip('/') for each in (arguments.cmd_vel, arguments.odom, arguments.imu, arguments.truth) if each]
+    for topic in topics:
+        if topics.count(topic) > 1:
+            parser.error('/%s: given twice: expected a topic of its own for commands, odometry, gyro and truth' % topic)
+    if os.path.splitext(arguments.start)[1]:        # a name has none
+        arguments.start = os.path.abspath(arguments.start)
+    text_files = [path for path in arguments.runs if is_commands_file(path)]
+    if text_files and (arguments.truth or arguments.ends or len(text_files) < len(arguments.runs)):
+        parser.error('%s: a text file has its truth beside it: expected neither bags nor --truth nor --ends'
+                     % show_name(text_files[0]))
+    return arguments
+
+
+def check_output(path):
+    """Raise ConfigError unless a surface file can be written to a path."""
+    if not path.endswith('.yaml'):
+        raise ConfigError('expected a name that ends in .yaml')
+    check_writable(path)
+
+
+def read_runs(arguments, robot):
+    """(Recordings, errors of ends measured by hand or None). Raises ConfigError."""
+    if is_commands_file(arguments.runs[0]):
+        return [read_text_files(path, truth_file(path)) for path in arguments.runs], None
+    ends, errors = read_ends(arguments.ends, arguments.runs) if arguments.ends else ([None] * len(arguments.runs), None)
+    topics = Topics(arguments.cmd_vel, arguments.odom, arguments.imu, arguments.truth)
+    recordings = [read_bag(path, topics, end) for path, end in zip(arguments.runs, ends)]
+    return [each._replace(commands=in_force(each.commands, robot)) for each in recordings], errors
+
+
+def load_files(arguments):
+    """(Robot, starting Surface). Raises ConfigError."""
+    try:
+        robot = read_robot(load_yaml(arguments.config))
+    except ConfigError as error:
+        raise ConfigError('%s: %s' % (show_name(arguments.config), error))
+    start = load_surface(arguments.start, resources.surfaces())
+    if start is None:
+        raise ConfigError('--start: %s: the ideal surface: expected one with values' % show_name(arguments.start))
+    return robot, start
+
+
+def main():
+    """Read, fit, print, write. Returns the exit status."""
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda *_: os._exit(130))
+    try:
+        arguments = read_arguments()
+        robot, start = load_files(arguments)
+        recordings, end_errors = read_runs(arguments, robot)
+        result = WholeFit(recordings, robot.base_width, start, end_errors).result()
+        print('\n'.join(table(result, arguments.start)))
+        comparisons = compare(result.surface, recordings, robot.base_width)
+        count, inside_50, inside_90 = shares(comparisons)
+        if count:
+            print('Of %d ends, %d are in the region of 50 %% of the simulated ones, %d in that of 90 %%'
+                  % (count, inside_50, inside_90))
+        text = surface_text(result, os.path.basename(arguments.start), [each.name for each in recordings])
+        write_file(arguments.output, text.encode())
+        print('Surface: %s' % arguments.output)
+        if arguments.plot:
+            draw_fit(arguments.plot, 'Fitted floor: %s' % result.description, comparisons)
+            print('Picture: %s' % arguments.plot)
+    except (OSError, ValueError) as error:
+        print('fit_surface.py: %s' % ' '.join(str(error).split()), file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())

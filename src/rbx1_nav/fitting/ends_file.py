@@ -1,0 +1,43 @@
+"""Reads the ends of runs that were measured by hand."""
+from math import radians
+import os
+
+from rbx1_nav.config import ConfigError, Section, load_yaml, show, show_name
+from rbx1_nav.model.kinematics import Pose
+
+FARTHEST, MOST = 1000.0, 36000.0    # m, degrees
+ERRORS = dict(position_error=(1e-4, 10.0, 0.01, 'm'), heading_error=(0.01, 90.0, 2.0, 'degrees'))
+
+
+def read_ends(path, bags):
+    """([Pose of each bag], (error of x, of y in m, of the heading in rad)) of a YAML file. bags: paths.
+
+    The file maps the name of each bag, without folder, to [x (m), y (m), heading (degrees)] of its end, in the frame of
+    its start. position_error (m) and heading_error (degrees) say how well that was measured. Raises ConfigError.
+    """
+    try:
+        section = Section(load_yaml(path))
+        errors = {key: section.number(key, low, high, default, unit=unit)
+                  for key, (low, high, default, unit) in ERRORS.items()}
+        names = [os.path.basename(bag) for bag in bags]
+        twice = [name for name in names if names.count(name) > 1]
+        if twice:
+            raise ConfigError('%s: two bags of this name: expected names that differ' % show_name(twice[0]))
+        ends = [read_end(section, name) for name in names]
+        if section.unknown():
+            raise ConfigError('%s: unknown: expected %s and names of bags on the command line'
+                              % (section.unknown()[0], ', '.join(ERRORS)))
+    except ConfigError as error:
+        raise ConfigError('%s: %s' % (show_name(path), error))
+    return ends, (errors['position_error'], errors['position_error'], radians(errors['heading_error']))
+
+
+def read_end(section, name):
+    """The Pose of one bag. Raises ConfigError."""
+    expected = '[x in m, y in m, heading in degrees]'
+    values = section.get(name, expected=expected)
+    if not (isinstance(values, list) and len(values) == 3):
+        raise ConfigError('%s: %s: expected %s' % (section.path(name), show(values), expected))
+    part = Section(dict(zip(('x', 'y', 'heading'), values)), section.path(name))
+    return Pose(part.number('x', -FARTHEST, FARTHEST, unit='m'), part.number('y', -FARTHEST, FARTHEST, unit='m'),
+                radians(part.number('heading', -MOST, MOST, unit='degrees')))

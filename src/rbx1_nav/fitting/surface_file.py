@@ -1,0 +1,103 @@
+"""The result of a fit as text: a surface file with comments, and a table to print."""
+from math import degrees, radians
+
+import numpy
+
+from rbx1_nav.config import as_yaml_number, show_name
+from rbx1_nav.fitting.whole import limits_of
+from rbx1_nav.model.surfaces import KEYS, OPTIONAL_KEYS
+
+UNITS = {'lag': 's', 'accel_limit': 'm/s^2', 'drag_straight': 'm/s', 'drag_turning': 'm/s at the wheel',
+         'ticks_meter': 'ticks per metre', 'gyro_noise': 'degrees/s rms, at 50 readings per second',
+         'gyro_bias': 'degrees/s', 'gyro_scale_error': 'fraction of the rate', 'gyro_measurement_range': 'degrees/s',
+         'delay': 's', 'curvature': 'rad to the left per metre', 'turning_loss': 'm per rad',
+         'heading_noise_turning': 'rad, after one rad', 'heading_noise_straight': 'rad, after one metre',
+         'distance_noise': 'm, after one metre'}
+PARTS = (
+    ('Motors: delay and lag after a command, and the speed lost by drag.',
+     ('delay', 'lag', 'accel_limit', 'drag_straight', 'drag_turning')),
+    ('Slip: the fraction of the wheels\' travel that the robot does not make, and its spread from run to run.',
+     ('slip_straight', 'slip_straight_spread', 'slip_turning', 'slip_turning_spread')),
+    ('The same in every run: drift to the left, and distance lost in an arc.', ('curvature', 'turning_loss')),
+    ('Errors that are drawn again and again on the way, 1 sigma after one unit of it.',
+     ('heading_noise_turning', 'heading_noise_straight', 'distance_noise')),
+    ('Encoders.', ('ticks_meter',)),
+    ('Gyro: bias and scale error are constant in a run.',
+     ('gyro_noise', 'gyro_bias', 'gyro_scale_error', 'gyro_measurement_range')))
+WIDTH = 117     # of a line
+
+
+def in_file_units(key, number):
+    """A value in SI units, in the unit of surface files."""
+    return degrees(number) if {**KEYS, **OPTIONAL_KEYS}[key][1] is radians else number
+
+
+def shown(value):
+    """(value, standard error or None) of a Value, as text in the unit of the file: with two digits of the error."""
+    number = in_file_units(value.key, value.value)
+    if value.error is None:
+        return '%.6g' % number, None
+    error = in_file_units(value.key, value.error)
+    digits = int(numpy.clip(1 - numpy.floor(numpy.log10(error)), 0, 9)) if error > 0 else 6
+    return '%.*f' % (digits, number), '%.2g' % error
+
+
+def yaml_number(value):
+    """A Value as a number of YAML, inside the range of its key."""
+    text = shown(value)[0]
+    low, high = (in_file_units(value.key, limit) for limit in limits_of(value.key))
+    if not low <= float(text) <= high:      # by rounding
+        text = repr(in_file_units(value.key, value.value))
+        text = text if low <= float(text) <= high else repr(low if float(text) < low else high)
+    return as_yaml_number(text) if 'e' in text else text
+
+
+def comment(value):
+    """What stands behind a Value."""
+    unit = UNITS.get(value.key)
+    error = shown(value)[1]
+    text = 'left as it was: %s' % value.reason if error is None else 'fitted, +- %s' % error
+    return '%s; %s' % (unit, text) if unit else text
+
+
+def wrapped(text):
+    """The lines of a comment."""
+    lines, line = [], '#'
+    for word in text.split():
+        if len(line) + 1 + len(word) > WIDTH and line != '#':
+            lines.append(line)
+            line = '#'
+        line += ' ' + word
+    return lines + [line]
+
+
+def surface_text(result, start_name, names):
+    """A surface file. result: Result of a fit; start_name: of the starting surface; names: of the recordings."""
+    lines = wrapped('Fitted by fit_surface.py to %d recording%s: %s.' % (
+        len(names), '' if len(names) == 1 else 's', ', '.join(show_name(name) for name in names)))
+    lines += wrapped('Fitted: %s. "+-" is one standard error. A value that was "left as it was" is that of %s.'
+                     % (result.description, show_name(start_name)))
+    for text in result.notes:
+        lines += wrapped(text)
+    for text in result.warnings:
+        lines += wrapped('Warning: %s.' % text)
+    values = {value.key: value for value in result.values}
+    for title, keys in PARTS:
+        lines += ['', *wrapped(title)]
+        for key in keys:
+            lines.append('%-36s # %s' % ('%s: %s' % (key, yaml_number(values[key])), comment(values[key])))
+    return '\n'.join(lines) + '\n'
+
+
+def table(result, start_name):
+    """The lines to print."""
+    values = {value.key: value for value in result.values}
+    ordered = [values[key] for _, keys in PARTS for key in keys]
+    lines = ['Fitted: %s' % result.description]
+    lines += ['  %-24s %10s +- %-8s %s' % (value.key, *shown(value), UNITS.get(value.key, ''))
+              for value in ordered if value.error is not None]
+    left = [value for value in ordered if value.error is None]
+    if left:
+        lines.append('Left as on %s:' % show_name(start_name))
+        lines += ['  %-24s %10s    %s' % (value.key, shown(value)[0], value.reason) for value in left]
+    return lines + ['Note: %s' % text for text in result.notes] + ['Warning: %s' % text for text in result.warnings]
