@@ -121,7 +121,7 @@ def main():
         write_file(arguments.output, text.encode())
         print('Surface: %s' % arguments.output)
         if arguments.plot:
-            draw_fit(arguments.plot, 'Fitted floor: %s' % result.description, comparisons)
+            draw_fit(arguments.plot, 'Fitted: %s' % result.description, comparisons)
             print('Picture: %s' % arguments.plot)
     except (OSError, ValueError) as error:
         print('fit_surface.py: %s' % ' '.join(str(error).split()), file=sys.stderr)

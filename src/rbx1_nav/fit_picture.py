@@ -31,13 +31,14 @@ def draw_fit(file, title, comparisons):
         simulated.plot(*each.simulated, color=SIMULATED, linewidth=1, alpha=0.7, label=None if number else 'simulated')
         simulated.plot(*each.simulated[:, -1], 'o', color='black', markerfacecolor='white', markersize=5, zorder=5,
                        label=None if number else 'end, simulated')
-        draw_regions(ends, each, label=not number)
+        if not any(alike(each, other) for other in comparisons[:number]):
+            draw_regions(ends, each, label=not number)
     set_extents(comparisons, recorded, simulated)
     count, inside_50, inside_90 = shares(comparisons)
     recorded.set_title('recorded', fontsize='medium')
     simulated.set_title('simulated on the fitted floor, same commands', fontsize='medium')
-    ends.set_title('ends: of %d measured, %d are in the region of 50 %%, %d in that of 90 %%' % (
-        count, inside_50, inside_90) if count else 'simulated ends', fontsize='medium')
+    ends.set_title('of %d measured ends, %d are inside 50 %%, %d inside 90 %%' % (count, inside_50, inside_90)
+                   if count else 'simulated ends', fontsize='medium')
     for axes in (recorded, simulated, ends):
         if axes is not ends:
             axes.plot(0, 0, marker='+', markersize=14, color='black', linestyle='', label='start')
@@ -48,10 +49,15 @@ def draw_fit(file, title, comparisons):
     save(figure, file)
 
 
+def alike(comparison, other):
+    """Whether two runs have the same region, as far as can be seen: they had the same commands."""
+    return mahalanobis(other.ends[:, :2], comparison.ends[:, :2].mean(axis=0)[None])[0] < 0.02
+
+
 def draw_regions(axes, comparison, label):
     """The simulated ends of a run, and the regions that hold parts of them."""
     points = comparison.ends[:, :2]
-    axes.plot(*points[:POINTS].T, '.', color=SIMULATED, markersize=2.5, alpha=0.5, zorder=1, markeredgewidth=0,
+    axes.plot(*points[:POINTS].T, '.', color=SIMULATED, markersize=4, alpha=0.6, zorder=1, markeredgewidth=0,
               label='simulated' if label else None)
     covariance = numpy.cov(points.T)
     sizes, directions = numpy.linalg.eigh(covariance)

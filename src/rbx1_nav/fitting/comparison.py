@@ -36,11 +36,12 @@ def region_share(surface, recording, base_width, end, seed):
 
 def compare(surface, recordings, base_width, seed=1):
     """The Comparisons of Recordings with a Surface that was fitted to them; at most MAX_SHOWN."""
-    generator = numpy.random.default_rng(seed)
     comparisons = []
     for recording, start, end in choose(recordings):
         run, prediction = predict(surface, recording, base_width, start, end)
-        paths = simulate_paths(surface, prediction, 0, ENDS, generator)
+        # another path in each, but the same region for the same commands
+        number = len(comparisons)
+        paths = simulate_paths(surface, prediction, 0, ENDS, numpy.random.default_rng(seed))
         track = recording.truth or recording.odometry
         path, true = None, None
         if track:
@@ -52,7 +53,7 @@ def compare(surface, recordings, base_width, seed=1):
         elif recording.end:
             true = numpy.array(recording.end)
         comparisons.append(Comparison(recording.name, None if path is None else path[:2], bool(recording.truth),
-                                      numpy.concatenate([numpy.zeros((2, 1)), paths[0, :2]], axis=1),
+                                      numpy.concatenate([numpy.zeros((2, 1)), paths[number, :2]], axis=1),
                                       paths[:, :, -1], true))
     return comparisons
 

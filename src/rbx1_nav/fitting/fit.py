@@ -103,7 +103,7 @@ class Fitter:
         errors = numpy.exp(result.x) * numpy.sqrt(variances)
         if means:       # the way up, which is longer than the way down
             errors = numpy.exp(result.x) * numpy.expm1(numpy.sqrt(variances))
-        for index in numpy.flatnonzero((numpy.exp(result.x) < 3 * MIN_STRENGTH) | (variances > VAGUE ** 2)):
+        for index in numpy.flatnonzero((numpy.exp(result.x) < 3 * MIN_STRENGTH) | (variances > VAGUE ** 2) | (variances <= 0)):
             errors[index] = upper_error(cost, result, index)
         return numpy.exp(result.x), errors, result.fun
 
