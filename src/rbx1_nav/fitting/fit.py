@@ -15,6 +15,7 @@ MEANS = {'delay': (0.01, 0.1), 'lag': (0.01, 0.1), 'slip_straight': (1e-3, 0.05)
 BOUNDS = {'delay': (0, 5), 'lag': (1e-3, 60), 'slip_straight': (-0.5, 0.5), 'slip_turning': (-0.5, 0.5),
           'curvature': (-10, 10), 'turning_loss': (0, 1), 'drag_straight': (1e-6, 10), 'drag_turning': (1e-6, 10)}
 ROUNDS = 3
+VAGUE_MEAN = 100    # 1 sigma of a value before any run is seen, in units of its largest standard error
 VAGUE = 0.5     # 1 sigma of the logarithm of a strength, above which it may as well be 0
 MIN_STRENGTH, MAX_STRENGTH = 1e-4, 1.0      # of a noise or a spread; at the smaller one it counts as 0
 
@@ -51,7 +52,7 @@ class Fitter:
         start = [numpy.clip(getattr(surface, key), *BOUNDS[key]) for key in keys]
         result = least_squares(residuals, start, jacobian, numpy.transpose([BOUNDS[key] for key in keys]),
                                x_scale=[MEANS[key][1] for key in keys], xtol=1e-4, ftol=1e-6)
-        return result.x, numpy.linalg.pinv(result.jac.T @ result.jac)
+        return result.x, numpy.linalg.inv(result.jac.T @ result.jac + vague(keys))
 
     def slopes(self, surface, keys):
         """The derivatives of all ends by keys of MEANS: for each run an array (n, 3, keys)."""
@@ -82,16 +83,19 @@ class Fitter:
                 if slopes:
                     white = numpy.stack([covariance.whitened(column) for column in slopes[index]])
                     information = information + white @ white.T
-            return total + (numpy.linalg.slogdet(information)[1] / 2 if slopes else 0.0)
+            return total + (numpy.linalg.slogdet(information + vague(means))[1] / 2 if slopes else 0.0)
         return cost
 
-    def fit_noise(self, surface, keys, means=()):
+    def fit_noise(self, surface, keys, means=(), prior=None):
         """(values, standard errors, cost) of keys of NOISES and SPREADS, by maximum likelihood; means: see
-        noise_cost()."""
+        noise_cost(); prior: a Surface whose values are likely, before any run is seen, to a factor of e; None: any are.
+        """
         cost_of = self.noise_cost(surface, means)
+        likely = None if prior is None else numpy.log([getattr(prior, key) for key in keys])
 
         def cost(logarithms):
-            return cost_of(surface._replace(**dict(zip(keys, numpy.exp(logarithms).tolist()))))
+            return (cost_of(surface._replace(**dict(zip(keys, numpy.exp(logarithms).tolist()))))
+                    + (0.0 if prior is None else ((logarithms - likely) ** 2).sum() / 2))
 
         start = numpy.log(numpy.clip([getattr(surface, key) or 0.03 for key in keys], MIN_STRENGTH, MAX_STRENGTH))
         result = minimize(cost, start, method='L-BFGS-B',
@@ -101,11 +105,17 @@ class Fitter:
                                / 0.1 for step in steps])
         variances = numpy.diag(numpy.linalg.pinv((hessian + hessian.T) / 2)).clip(0)
         errors = numpy.exp(result.x) * numpy.sqrt(variances)
-        if means:       # the way up, which is longer than the way down
+        if prior:       # the way up, which is longer than the way down
             errors = numpy.exp(result.x) * numpy.expm1(numpy.sqrt(variances))
         for index in numpy.flatnonzero((numpy.exp(result.x) < 3 * MIN_STRENGTH) | (variances > VAGUE ** 2) | (variances <= 0)):
             errors[index] = upper_error(cost, result, index)
         return numpy.exp(result.x), errors, result.fun
+
+
+def vague(keys):
+    """The information about keys of MEANS before any run is seen: next to nothing, but enough for a value that the runs
+    do not tell, or a sum of two, to get a large standard error and not none."""
+    return numpy.diag([(VAGUE_MEAN * MEANS[key][1]) ** -2.0 for key in keys])
 
 
 def upper_error(cost, result, index):
@@ -121,9 +131,9 @@ def upper_error(cost, result, index):
     return numpy.exp(brentq(excess, result.x[index], largest, xtol=0.01)) - numpy.exp(result.x[index])
 
 
-def fit_floor(fitter, surface, means, noises, restricted=False):
-    """(Surface, {key: standard error}, cost) with the values of all keys fitted together; restricted: see fit_noise().
-    """
+def fit_floor(fitter, surface, means, noises, prior=None):
+    """(Surface, {key: standard error}, cost) with the values of all keys fitted together. prior: see fit_noise(); with
+    it, the likelihood is restricted."""
     errors, cost = {}, None
     for _ in range(ROUNDS):
         if means:
@@ -131,7 +141,7 @@ def fit_floor(fitter, surface, means, noises, restricted=False):
             surface = surface._replace(**dict(zip(means, values.tolist())))
             errors.update(zip(means, numpy.sqrt(numpy.diag(covariance))))
         if noises:
-            values, deviations, cost = fitter.fit_noise(surface, noises, means if restricted else ())
+            values, deviations, cost = fitter.fit_noise(surface, noises, means if prior else (), prior)
             surface = surface._replace(**dict(zip(noises, values.tolist())))
             errors.update(zip(noises, deviations))
     return surface, errors, cost

@@ -14,6 +14,8 @@ STEPS = dict(delay=1e-3, lag=1e-3, accel_limit=1e-2, drag_straight=1e-5, drag_tu
 LIMITS = {**BOUNDS, 'accel_limit': (0.01, 100)}
 FIRST_DELAYS = 0.0, 0.05, 0.1, 0.2, 0.4, 0.8    # s: the fit begins with the best, since it has no slope from afar
 
+SIGNIFICANT = 9.0   # by how much a limit must lower the sum of squares, in variances of a residual: 3 sigma
+
 MotorFit = namedtuple('MotorFit', 'values errors unused rms travel')
 MotorFit.__doc__ = """values, errors: dictionaries, one value and one standard error for each of KEYS; unused: those that
 made no difference; rms: of what is left, and of the travel itself, per INTERVAL (m)."""
@@ -41,6 +43,19 @@ class Intervals:
         """Reported less predicted travel of the wheels, m: straight, then turning."""
         steps = commanded_travel(surface, 2 * self.half_width, self.commands, self.times)
         return self.travel - self._sides(steps.straight, steps.turn)
+
+
+def standard_errors(slopes, left, borders):
+    """Of values fitted by least squares: from the variance of the residuals `left`, or from their sums in each run where
+    that is more, because rounding to whole ticks is not independent in one interval and the next (the sandwich of Liang
+    and Zeger, Longitudinal data analysis using generalized linear models, 1986). borders: index of the end of each run.
+    """
+    sizes = numpy.sqrt((slopes ** 2).sum(axis=0))       # the units differ by far
+    bread = numpy.linalg.pinv((slopes / sizes).T @ (slopes / sizes)) / numpy.outer(sizes, sizes)
+    plain = (left ** 2).sum() / max(1, len(left) - slopes.shape[1]) * bread
+    sums = numpy.stack([part.sum(axis=0) for part in numpy.split(slopes * left[:, None], borders[:-1])])
+    robust = bread @ (sums.T @ sums) @ bread * len(sums) / max(1, len(sums) - 1)
+    return numpy.sqrt(numpy.maximum(numpy.diag(plain), numpy.diag(robust)))
 
 
 def fit_motors(surface, base_width, recordings):
@@ -71,12 +86,16 @@ def fit_motors(surface, base_width, recordings):
     # a parameter without effect: less than a micrometre in sum for a tenth of its value
     unused = [key for key, column, value in zip(KEYS, slopes.T, result.x)
               if abs(column).sum() * max(abs(value), STEPS[key]) < 1e-5]
+    # and one just above what the motors need: as good as none
+    without = residuals(numpy.where([key == 'accel_limit' for key in KEYS], LIMITS['accel_limit'][1], result.x))
+    variance = (left ** 2).sum() / max(1, len(left) - len(KEYS))
+    if 'accel_limit' not in unused and (without ** 2).sum() - (left ** 2).sum() < SIGNIFICANT * variance:
+        unused.append('accel_limit')
     used = [index for index, key in enumerate(KEYS) if key not in unused]
     errors = dict.fromkeys(KEYS, numpy.inf)
     if used:
-        variance = (left ** 2).sum() / max(1, len(left) - len(used))
-        covariance = variance * numpy.linalg.pinv(slopes[:, used].T @ slopes[:, used])
-        errors.update((KEYS[index], error) for index, error in zip(used, numpy.sqrt(numpy.diag(covariance))))
+        errors.update(zip((KEYS[index] for index in used),
+                          standard_errors(slopes[:, used], left, numpy.cumsum([len(each.travel) for each in intervals]))))
     travel = numpy.concatenate([each.travel for each in intervals])
     return MotorFit(dict(zip(KEYS, result.x.tolist())), errors, unused, float(numpy.sqrt((left ** 2).mean())),
                     float(numpy.sqrt((travel ** 2).mean())))

@@ -13,7 +13,8 @@ from rbx1_nav.fitting.fit import MEANS, Fitter
 from rbx1_nav.fitting.floor import NOISES, SPREADS
 
 SLIPS = ('slip_straight', 'slip_turning')
-TYPICAL = dict(heading_noise_turning=0.09, heading_noise_straight=0.07, distance_noise=0.04)    # of real Creates
+TYPICAL = dict(heading_noise_turning=0.09, heading_noise_straight=0.07, distance_noise=0.04,     # of real Creates
+               slip_straight_spread=0.01, slip_turning_spread=0.01)
 FACTORS = 0.02, 50.0    # of the noises
 PRIOR = 1.0     # 1 sigma of the logarithm of the factor, before any run is seen: floors differ by so much
 ROUNDS = 3
@@ -27,7 +28,7 @@ def fit_ends(runs, surface, end_errors):
     """The EndsFit to Runs; end_errors: 1 sigma of x, y (m) and yaw (rad)."""
     start = surface
     if not any(getattr(surface, key) for key in NOISES):
-        surface = start = surface._replace(**TYPICAL)
+        surface = start = surface._replace(**{key: getattr(surface, key) or value for key, value in TYPICAL.items()})
     means, factor, reasons = list(SLIPS), 1.0, {}
     while True:
         for _ in range(ROUNDS):

@@ -10,6 +10,7 @@ from rbx1_nav.fitting.floor import NOISES, SPREADS, Covariance
 from rbx1_nav.fitting.gyro import fit_gyro, standing
 from rbx1_nav.fitting.motors import KEYS as MOTOR_KEYS, LIMITS, fit_motors
 from rbx1_nav.fitting.run import Run
+from rbx1_nav.fitting.tape import TYPICAL
 from rbx1_nav.model.surfaces import KEYS, OPTIONAL_KEYS
 
 FLOOR = ('slip_straight', 'slip_turning', 'curvature', 'turning_loss')
@@ -118,7 +119,7 @@ class WholeFit:
         for key in SPREADS if len(runs) < MIN_RUNS else ():
             self.reasons[key] = '%d of at least %d runs' % (len(runs), MIN_RUNS)
         fitter = Fitter(runs, windows, truth_errors(self.recordings, self._stopping_time()), by_cells=True)
-        start = self.surface._replace(**{key: getattr(self.surface, key) or 0.03 for key in noises},
+        start = self.surface._replace(**{key: getattr(self.surface, key) or TYPICAL[key] for key in noises},
                                       **({'delay': self.surface.delay or 0.1} if 'delay' in means else {}))
         surface, errors = self._fit_known(fitter, start, means, noises)
         for key, error in errors.items():
@@ -127,8 +128,9 @@ class WholeFit:
 
     def _fit_known(self, fitter, start, means, noises):
         """(Surface, {key: standard error}) of what can be told; the others stay as on the surface so far."""
+        prior = start
         while True:
-            surface, errors, _ = fit_floor(fitter, start, means, noises, restricted=True)
+            surface, errors, _ = fit_floor(fitter, start, means, noises, prior)
             unknown = [key for key in (*means, *noises) if not errors[key] <= LARGEST[key]]
             if not unknown:
                 break

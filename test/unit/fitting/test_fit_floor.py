@@ -1,0 +1,69 @@
+"""The covariance of the floor's noise, and what windows tell of it."""
+from hypothesis import given, strategies as st
+import numpy
+import pytest
+
+from rbx1_nav.fitting.ensemble import cell_noise, simulate_ends
+from rbx1_nav.fitting.fit import MEANS, Fitter
+from rbx1_nav.fitting.floor import Covariance, Prediction, Windows, cell_covariance
+from rbx1_nav.fitting.run import Run
+from sample_runs import DRIVE, EXERCISE, FLOOR, FORWARD, REST, record
+
+QUIET = 1e-4, 1e-4, 1e-4    # m, m, rad
+
+
+@given(st.lists(st.floats(0.0, 2.0), min_size=1, max_size=12), st.floats(0.05, 1.0), st.integers(1, 5))
+def test_the_variance_after_a_path_does_not_depend_on_its_steps(steps, cell, parts):
+    finer = numpy.repeat(numpy.array(steps) / parts, parts)
+    variances = [cell_covariance(numpy.array(path), cell).sum() for path in (steps, [sum(steps)], finer)]
+    assert variances == pytest.approx(3 * variances[:1], abs=1e-9)
+    # never more than white noise, and a third of a cell less on a path of many cells
+    assert variances[0] <= sum(steps) + 1e-9
+    assert variances[0] >= sum(steps) - cell / 3 - 1e-9
+
+
+def test_the_covariance_is_that_of_simulated_noise():
+    path = numpy.array([0.02, 0.3, 0.0, 0.05, 0.2, 0.1])
+    errors = cell_noise(numpy.random.default_rng(1), 100000, path, 0.25)
+    # 1 sigma of an estimated variance is 0.5 % for a normal distribution, and 0.8 % for these tails
+    assert numpy.cov(errors.T) == pytest.approx(cell_covariance(path, 0.25), abs=0.01)
+
+
+def test_ends_have_the_predicted_covariance():
+    run = Run(record(EXERCISE), 0.26)
+    prediction = Prediction(FLOOR, run.steps(FLOOR), Windows(numpy.array([0]), len(run.times) - 1, numpy.zeros((1, 3))))
+    ends = simulate_ends(FLOOR, prediction, 0, 20000, numpy.random.default_rng(2))
+    roots = Covariance(FLOOR, prediction.sensitivities(by_cells=True), numpy.diag(numpy.square(QUIET))).roots[0]
+    spreads = [prediction.sensitivities()[key][0] * getattr(FLOOR, key)
+               for key in ('slip_straight_spread', 'slip_turning_spread')]
+    expected = roots @ roots.T + sum(numpy.outer(one, one) for one in spreads)
+    # the first order: errors of 0.1 rad change the path by a few percent
+    assert numpy.diag(numpy.cov(ends.T)) == pytest.approx(numpy.diag(expected), rel=0.1)
+
+
+def test_what_the_runs_do_not_tell_has_a_large_standard_error():
+    run = Run(record((REST, FORWARD, REST)), 0.26)
+    _, covariance = Fitter([run], [run.windows(2.0)], QUIET, by_cells=True).fit_means(FLOOR, ['slip_straight',
+                                                                                        'slip_turning'])
+    assert covariance[0, 0] ** 0.5 < MEANS['slip_straight'][1]
+    assert covariance[1, 1] ** 0.5 > MEANS['slip_turning'][1]
+
+
+def test_two_values_of_which_only_the_sum_is_told_are_both_unknown():
+    run = Run(record((REST, FORWARD, REST, FORWARD, REST))._replace(odometry=None), 0.26)
+    # without turns, a curvature looks like nothing else; delay and lag are told apart only at starts and stops
+    windows = run.windows(3.0)
+    _, covariance = Fitter([run], [Windows(windows.first[1:2], windows.count, windows.ends[1:2])], QUIET).fit_means(
+        FLOOR, ['delay', 'lag', 'slip_straight'])
+    assert numpy.isfinite(covariance).all()
+    assert all(covariance[index, index] ** 0.5 > MEANS[key][1] for index, key in enumerate(('delay', 'lag')))
+
+
+def test_windows_skip_gaps_of_the_truth():
+    recording = record(DRIVE)
+    keep = (recording.truth.time < 5.0) | (recording.truth.time > 6.0)
+    whole = Run(recording, 0.26)
+    cut = Run(recording._replace(truth=type(recording.truth)(*(values[keep] for values in recording.truth))), 0.26)
+    starts = [run.times[run.windows(2.0).first] for run in (whole, cut)]
+    lost = set(numpy.round(starts[0], 6)) - set(numpy.round(starts[1], 6))
+    assert lost and all(3.0 - 1e-6 <= start <= 6.0 for start in lost)

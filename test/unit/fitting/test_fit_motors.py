@@ -1,0 +1,51 @@
+"""Delay, lag, limit and drag from commands and odometry."""
+from hypothesis import given, settings, strategies as st
+import numpy
+import pytest
+
+from rbx1_nav.fitting.motors import INTERVAL, KEYS, Intervals, fit_motors
+from sample_runs import DRIVE, EXERCISE, FLOOR, FORWARD, REST, record
+
+START = FLOOR._replace(lag=0.1, accel_limit=1.0, drag_straight=0.002, drag_turning=0.003, delay=0.0)
+
+
+@settings(max_examples=8)
+@given(st.floats(0.0, 0.6), st.floats(0.03, 0.3), st.floats(0.3, 0.7), st.floats(0.001, 0.03), st.floats(0.001, 0.03))
+def test_motors_are_found(delay, lag, limit, straight, turning):
+    surface = FLOOR._replace(delay=delay, lag=lag, accel_limit=limit, drag_straight=straight, drag_turning=turning)
+    fit = fit_motors(START, 0.26, [record(DRIVE, surface=surface)])
+    for key in KEYS:
+        if key not in fit.unused:
+            # encoders with 4100 ticks per metre tell all within 2 %, or 2 ms
+            assert fit.values[key] == pytest.approx(getattr(surface, key), rel=0.02, abs=2e-3), key
+    assert not {'delay', 'lag', 'drag_straight', 'drag_turning'} & set(fit.unused)
+    # less than a tick, 0.24 mm
+    assert fit.rms < 2e-4
+
+
+def test_a_run_without_a_turn_does_not_tell_the_drag_in_turns():
+    fit = fit_motors(START, 0.26, [record((REST, FORWARD, REST, FORWARD, REST))])
+    assert 'drag_turning' in fit.unused and 'drag_straight' not in fit.unused
+
+
+def test_a_limit_that_is_never_reached_is_not_told():
+    surface = FLOOR._replace(accel_limit=5.0)
+    fit = fit_motors(START, 0.26, [record(EXERCISE, surface=surface)])
+    assert 'accel_limit' in fit.unused
+    assert fit.values['lag'] == pytest.approx(surface.lag, rel=0.02)
+
+
+def test_commands_of_another_run_leave_a_large_residual():
+    run = record(DRIVE)
+    other = run._replace(commands=record(EXERCISE).commands)
+    assert fit_motors(START, 0.26, [run]).rms < 2e-4 < 0.01 < fit_motors(START, 0.26, [other]).rms
+
+
+def test_travel_is_compared_between_stamps_of_the_odometry():
+    run = record(EXERCISE)
+    intervals = Intervals(run, 0.26)
+    assert set(intervals.times) <= set(run.odometry.time)
+    assert numpy.diff(intervals.times).min() > INTERVAL - 0.021      # stamps are 0.02 s apart
+    # all that was turned, as travel of a wheel
+    half = len(intervals.travel) // 2
+    assert intervals.travel[half:].sum() == pytest.approx(run.odometry.yaw[-1] * 0.13, abs=1e-3)
