@@ -104,6 +104,7 @@ def load_files(arguments):
 
 def main():
     """Read, fit, print, write. Returns the exit status."""
+    signal.signal(signal.SIGPIPE, signal.SIG_DFL)               # the reader of a pipe may have seen enough
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: os._exit(130))
     try:

@@ -115,6 +115,8 @@ class WholeFit:
         if not self.has_odometry:
             for key in ('accel_limit', 'drag_straight', 'drag_turning'):
                 self.reasons[key] = 'no odometry'
+            self.notes.append('Without odometry, drag and slip look alike: these slips belong to the drags of the starting '
+                              'surface.')
         noises = NOISES + (SPREADS if len(runs) >= MIN_RUNS else ())
         for key in SPREADS if len(runs) < MIN_RUNS else ():
             self.reasons[key] = '%d of at least %d runs' % (len(runs), MIN_RUNS)

@@ -1,0 +1,56 @@
+"""A fitted surface as a file: complete, readable, and within what a surface file may have."""
+from math import isclose
+
+from hypothesis import given, settings, strategies as st
+import yaml
+
+from rbx1_nav.fitting.surface_file import PARTS, in_file_units, surface_text, table
+from rbx1_nav.fitting.whole import Result, Value, limits_of
+from rbx1_nav.model.surfaces import KEYS, OPTIONAL_KEYS, Surface, read_surface
+
+ALL = [*KEYS, *OPTIONAL_KEYS]
+
+
+VALUES = {key: st.floats(*limits_of(key)) | st.sampled_from(limits_of(key)) for key in ALL}      # in SI units
+ERRORS = st.none() | st.floats(1e-9, 10)        # as a part of the value
+
+
+@st.composite
+def results(draw):
+    """A Result with any values, some of them fitted."""
+    values = []
+    for key in ALL:
+        value, part = draw(VALUES[key]), draw(ERRORS)
+        values.append(Value(key, value, part and part * max(abs(value), 1e-6), None if part else 'no gyro'))
+    surface = Surface('x', **{value.key: value.value for value in values})
+    return Result(surface, values, draw(st.sampled_from([[], ['too far off']])), 'floor',
+                  draw(st.sampled_from([[], ['a long note ' * 99]])))
+
+
+@settings(max_examples=30)       # of 19 values each
+@given(results())
+def test_it_can_be_read_again(result):
+    text = surface_text(result, 'low_ply_carpet', ['run1.bag', 'run\n2: x.bag'])
+    surface = read_surface(yaml.safe_load(text), 'x')
+    for value in result.values:
+        # two digits of the error are kept, six of a value without one
+        allowed = in_file_units(value.key, value.error) / 10 if value.error else 0.0
+        assert isclose(in_file_units(value.key, getattr(surface, value.key)), in_file_units(value.key, value.value),
+                       rel_tol=1e-5, abs_tol=max(allowed, 1e-9)), value
+    assert max(map(len, text.splitlines())) <= 160
+
+
+@settings(max_examples=30)       # of 19 values each
+@given(results())
+def test_each_value_is_explained(result):
+    lines = surface_text(result, 'low_ply_carpet', ['run1.bag']).splitlines()
+    for value in result.values:
+        line, = (each for each in lines if each.startswith(value.key + ':'))
+        assert ('fitted, +- ' in line) == (value.error is not None) == ('left as it was: no gyro' not in line)
+    assert any('too far off' in line for line in lines) == bool(result.warnings)
+    printed = table(result, 'low_ply_carpet')
+    assert sum(line.split()[0] in ALL for line in printed if line.split()) == len(ALL)
+
+
+def test_every_key_is_in_a_part():
+    assert sorted(key for _, keys in PARTS for key in keys) == sorted(ALL)

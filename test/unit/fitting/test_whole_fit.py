@@ -1,0 +1,126 @@
+"""From recordings to a surface: what is found, and what is named because the recordings do not tell it."""
+from math import radians
+
+import numpy
+import pytest
+
+from rbx1_nav.config import ConfigError
+from rbx1_nav.fitting.recording import Commands
+from rbx1_nav.fitting.whole import WholeFit, truth_errors
+from rbx1_nav.model.kinematics import Pose
+from sample_runs import DRIVE, EXERCISE, FLOOR, FORWARD, REST, record, wrapped
+
+START = FLOOR._replace(name='start', lag=0.2, delay=0.0, drag_straight=0.002, drag_turning=0.003, slip_straight=0.011,
+                       slip_straight_spread=0.004, slip_turning=0.012, slip_turning_spread=0.005, curvature=0.0,
+                       turning_loss=0.0, heading_noise_turning=0.0, heading_noise_straight=0.0, distance_noise=0.0,
+                       gyro_noise=0.004, gyro_bias=0.05, gyro_scale_error=0.006)
+TAPE = 0.01, 0.01, radians(2)   # m, m, rad
+
+
+def fit(recordings, **options):
+    """(Result, {key: Value})."""
+    result = WholeFit(recordings, 0.26, START, **options).result()
+    return result, {value.key: value for value in result.values}
+
+
+def with_end(recording):
+    """A Recording of which only the end is known."""
+    end = Pose(recording.truth.x[-1], recording.truth.y[-1], wrapped(recording.truth.yaw[-1]))
+    return recording._replace(truth=None, end=end)
+
+
+def test_a_floor_is_found():
+    result, values = fit([record(DRIVE, seed) for seed in range(4)])
+    for key in ('slip_straight', 'slip_turning', 'curvature', 'turning_loss', 'heading_noise_turning',
+                'heading_noise_straight', 'distance_noise', 'slip_straight_spread', 'slip_turning_spread'):
+        # five standard errors: these four runs always are the same
+        assert abs(values[key].value - getattr(FLOOR, key)) < 5 * values[key].error, key
+    # known well enough to be of use
+    assert values['turning_loss'].error < 0.01 and values['heading_noise_turning'].error < 0.02
+    assert {key for key, value in values.items() if value.error is None} <= {'ticks_meter', 'gyro_measurement_range',
+                                                                            'gyro_scale_error'}
+    assert result.warnings == []
+    assert all(getattr(result.surface, key) == value.value for key, value in values.items())
+
+
+def test_a_floor_is_found_without_odometry():
+    _, values = fit([record(DRIVE, seed, FLOOR._replace(drag_straight=0.002, drag_turning=0.003))._replace(odometry=None)
+                     for seed in range(3)])
+    for key in 'delay', 'slip_turning', 'turning_loss', 'heading_noise_turning':
+        assert abs(values[key].value - getattr(FLOOR, key)) < 5 * values[key].error, key
+    assert values['drag_straight'] == ('drag_straight', 0.002, None, 'no odometry')
+
+
+def test_one_run_tells_no_spread():
+    _, values = fit([record(DRIVE)])
+    for key in 'slip_straight_spread', 'slip_turning_spread':
+        assert values[key] == (key, getattr(START, key), None, '1 of at least 3 runs')
+    for key in 'gyro_bias', 'gyro_scale_error':
+        assert values[key] == (key, getattr(START, key), None, 'one run only')
+    assert values['turning_loss'].error
+
+
+def test_runs_without_a_turn():
+    _, values = fit([record((REST, FORWARD, REST, FORWARD, REST), seed) for seed in range(3)])
+    assert values['drag_turning'] == ('drag_turning', START.drag_turning, None, 'it makes no difference in these runs')
+    for key in 'slip_turning', 'turning_loss', 'gyro_scale_error':
+        assert values[key].error is None and values[key].value == getattr(START, key), key
+    assert values['slip_straight'].error
+
+
+def test_runs_without_gyro_or_truth():
+    _, values = fit([record(DRIVE)._replace(gyro=None, truth=None)])
+    for key in 'gyro_noise', 'gyro_bias', 'gyro_scale_error':
+        assert values[key] == (key, getattr(START, key), None, 'no gyro')
+    for key in 'slip_straight', 'heading_noise_turning':
+        assert values[key] == (key, getattr(START, key), None, 'the recordings do not tell it')
+    assert values['drag_turning'].error
+
+
+def test_neither_odometry_nor_truth_is_nothing_to_fit_to():
+    with pytest.raises(ConfigError, match='^run: neither odometry nor truth: expected at least one'):
+        fit([record(EXERCISE)._replace(odometry=None, truth=None)])
+
+
+def test_all_runs_are_alike():
+    with pytest.raises(ConfigError, match='^other: no odometry, but run has it: expected all runs alike$'):
+        fit([record(EXERCISE), record(EXERCISE, name='other')._replace(odometry=None)])
+
+
+def test_ends_tell_slips_and_one_factor():
+    result, values = fit([with_end(record(EXERCISE, seed)) for seed in range(3)], end_errors=TAPE)
+    assert abs(values['slip_turning'].value - FLOOR.slip_turning) < 3 * values['slip_turning'].error
+    # the spread contains what three runs leave open of the mean
+    assert values['slip_turning_spread'].value > values['slip_turning'].error
+    assert values['heading_noise_turning'].error and values['curvature'].error is None
+    assert "Student's t distribution" in result.notes[0]
+
+
+def test_a_heading_measured_a_turn_off_is_the_same():
+    runs = [with_end(record(EXERCISE, seed)) for seed in range(3)]
+    turned = [run._replace(end=run.end._replace(yaw=run.end.yaw + 2 * numpy.pi)) for run in runs]
+    some, others = (fit(each, end_errors=TAPE)[0].surface for each in (runs, turned))
+    assert some[1:] == pytest.approx(others[1:])
+
+
+def test_commands_of_another_robot_are_warned_of():
+    other = record(EXERCISE).commands
+    result, _ = fit([record(DRIVE, seed)._replace(commands=Commands(*other)) for seed in range(2)])
+    assert any(text.startswith('odometry: ') for text in result.warnings)
+
+
+def test_a_robot_that_was_pushed_is_warned_of():
+    runs = [record(DRIVE, seed, name='run%d' % seed) for seed in range(3)]
+    x = runs[1].truth.x + 1.0 * (runs[1].truth.time > 11.0)
+    runs[1] = runs[1]._replace(truth=runs[1].truth._replace(x=x))
+    result, _ = fit(runs)
+    assert any(text.startswith('run1: ') and 'the first 10 s after' in text or 'the first 9 s' in text
+               for text in result.warnings), result.warnings
+
+
+def test_the_error_of_the_truth_is_that_at_rest():
+    run = record((REST, FORWARD, REST, REST))
+    noise = numpy.random.default_rng(2).normal(0, 0.01, len(run.truth.x))
+    errors = truth_errors([run._replace(truth=run.truth._replace(x=run.truth.x + noise))], 0.75)
+    assert errors[0] == pytest.approx(0.01, rel=0.2)        # nearly 200 values: 5 %
+    assert errors[1:] == pytest.approx((0.0003, 0.001), rel=0.01)
