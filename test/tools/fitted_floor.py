@@ -1,0 +1,92 @@
+#!/usr/bin/python3
+"""Runs recorded on a floor, a surface fitted to them, and the same exercise simulated on that surface."""
+import os
+import re
+import signal
+import tempfile
+import unittest
+
+import rosgraph
+import rospkg
+import rospy
+import yaml
+
+from rbx1_nav.fitting.recording import relative
+from rbx1_nav.model.surfaces import draw_run, load_surface, read_seed
+import support
+
+TOPICS = '/cmd_vel', '/odom', '/imu/data', '/ground_truth'
+
+
+class TestFittedFloor(unittest.TestCase):
+    def setUp(self):
+        support.init_node('fitted_floor')
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+        self.truth = support.Watch('/ground_truth', support.Odometry)
+        support.wait_for(lambda: self.truth.last, '/ground_truth')
+
+    def run_process(self, process):
+        """Wait for a Process that must succeed; returns its output."""
+        self.addCleanup(process.kill)
+        self.assertEqual(process.wait(), 0, process.output)
+        return process.output
+
+    def record(self, name):
+        """Drive the exercise, and record it; returns the path of the bag."""
+        path = os.path.join(self.folder, name)
+        recorder = support.Process('rosbag', 'record', '-O', path, *TOPICS)
+        self.addCleanup(recorder.kill)
+        master = rosgraph.Master(rospy.get_name())
+        support.wait_for(lambda: all(any(node.startswith('/record') for node in nodes)
+                                     for topic, nodes in master.getSystemState()[1] if topic in TOPICS), 'the recorder')
+        start = self.truth.next()
+        self.run_process(support.out_and_back())
+        # a second of the robot at rest, also for the gyro
+        end = self.truth.next().header.stamp + rospy.Duration(3)
+        support.wait_for(lambda: self.truth.last.header.stamp > end, 'the robot at rest')
+        recorder.signal(signal.SIGINT)
+        recorder.wait()
+        self.assertTrue(os.path.isfile(path), recorder.output)
+        return path, relative(support.pose(start), support.pose(self.truth.last))
+
+    def test_runs_are_recorded_and_fitted_and_simulated(self):
+        bags, ends = zip(*(self.record('run%d.bag' % number) for number in (1, 2, 3)))
+        real = sum(ends) / len(ends)
+        surface = os.path.join(self.folder, 'my_floor.yaml')
+        picture = os.path.join(self.folder, 'fit.png')
+        output = self.run_process(support.Process(
+            'rosrun', 'rbx1_nav', 'fit_surface.py', *bags, '--truth', '/ground_truth', '--start', 'hard_floor',
+            '--output', surface, '--plot', picture))
+        self.assertNotIn('Warning: odometry', output)
+        self.assertGreater(os.path.getsize(picture), 10000)
+
+        folder = os.path.join(rospkg.RosPack().get_path('rbx1_nav'), 'config', 'surfaces')
+        floor, start = (load_surface(name, folder) for name in ('low_ply_carpet', 'hard_floor'))
+        fitted = load_surface(surface, folder)
+        # all three runs had the base's slip of this seed
+        drawn = draw_run(floor, read_seed(rospy.get_param('/arbotix/seed')))
+        with open(surface) as file:
+            text = file.read()
+        self.assertEqual(set(yaml.safe_load(text)), set(fitted._fields[1:]))
+        for key, value, tolerance in (
+                ('slip_straight', drawn.slip_straight, 0.01), ('slip_turning', drawn.slip_turning, 0.01),
+                # the recorder stamps commands when they arrive, in simulated time, which runs at 10 times its clock
+                ('drag_straight', floor.drag_straight, 0.003), ('drag_turning', floor.drag_turning, 0.003)):
+            self.assertAlmostEqual(getattr(fitted, key), value, delta=tolerance, msg=key + '\n' + output)
+            self.assertRegex(text, r'\n%s: .*fitted, \+- ' % key)
+        self.assertGreater(abs(start.drag_turning - floor.drag_turning), 0.01)      # so the start would not do
+        self.assertRegex(text, r'\nticks_meter: 4100 .*left as it was')
+
+        output = self.run_process(support.Process('rosrun', 'rbx1_nav', 'simulate.py', '--surface', surface, '--method',
+                                                  'timed', '--runs', '20'))
+        x, y = map(float, re.search(r'timed +truth +(\S+) \+- \S+ +(\S+) \+-', output).groups())
+        # a slip known to 0.01 turns the way back by 0.03 rad; the ideal robot ends at the start, half a metre away
+        self.assertLess(abs(x - real[0]), 0.10, (real, output))
+        self.assertLess(abs(y - real[1]), 0.10, (real, output))
+        self.assertGreater(real[1], 0.3)
+
+
+if __name__ == '__main__':
+    support.main('fitted_floor', TestFittedFloor)
