@@ -52,7 +52,7 @@ class TestFittedFloor(unittest.TestCase):
         return path, relative(support.pose(start), support.pose(self.truth.last))
 
     def test_runs_are_recorded_and_fitted_and_simulated(self):
-        bags, ends = zip(*(self.record('run%d.bag' % number) for number in (1, 2, 3)))
+        bags, ends = zip(*(self.record('run%d.bag' % number) for number in (1, 2)))
         real = sum(ends) / len(ends)
         surface = os.path.join(self.folder, 'my_floor.yaml')
         picture = os.path.join(self.folder, 'fit.png')
@@ -65,7 +65,7 @@ class TestFittedFloor(unittest.TestCase):
         folder = os.path.join(rospkg.RosPack().get_path('rbx1_nav'), 'config', 'surfaces')
         floor, start = (load_surface(name, folder) for name in ('low_ply_carpet', 'hard_floor'))
         fitted = load_surface(surface, folder)
-        # all three runs had the base's slip of this seed
+        # both runs had the base's slip of this seed
         drawn = draw_run(floor, read_seed(rospy.get_param('/arbotix/seed')))
         with open(surface) as file:
             text = file.read()
