@@ -8,7 +8,7 @@ import unittest
 
 import support
 
-NODES = ['ekf.py', 'fake_base.py', 'odom_ekf.py', 'odom_out_and_back.py', 'pose.py', 'simulate.py',
+NODES = ['ekf.py', 'fake_base.py', 'fit_surface.py', 'odom_ekf.py', 'odom_out_and_back.py', 'pose.py', 'simulate.py',
          'timed_out_and_back.py']
 F_SETPIPE_SZ = 1031     # fcntl has this name since Python 3.10
 

@@ -20,7 +20,7 @@ class TestUsage(unittest.TestCase):
         return process.wait(), process
 
     def test_help(self):
-        for name in NODES + ['simulate.py']:
+        for name in NODES + ['fit_surface.py', 'simulate.py']:
             for argument in '-h', '--help':
                 status, process = self.run_to_its_end(name, argument)
                 self.assertEqual(status, 0, process.output)
