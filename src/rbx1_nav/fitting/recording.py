@@ -34,7 +34,7 @@ def check_series(name, series):
     for field, values in zip(series._fields, series):
         bad = numpy.flatnonzero(~(abs(values) < LARGEST))
         if bad.size:
-            raise ConfigError('%s: %s of message %d: %s: expected a finite number'
+            raise ConfigError('%s: %s of message %d: %s: expected a finite number below 1e10'
                               % (name, field, bad[0] + 1, values[bad[0]]))
     back = numpy.flatnonzero(numpy.diff(series.time) < 0)
     if back.size:
