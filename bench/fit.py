@@ -45,7 +45,8 @@ def random_surface(generator):
 def exercise():
     """[(linear, angular, ticks)] of the tutorial's exercise, with its rests."""
     rest = (0.0, 0.0, RATE)
-    return [(0.0, 0.0, 2 * RATE)] + [each for motion in out_and_back(**EXERCISE) for each in (motion[1:], rest)] + [rest]
+    motions = [each for motion in out_and_back(**EXERCISE) for each in (motion[1:], rest)]
+    return [rest, rest] + motions + [rest]
 
 
 def drive(generator):
@@ -106,7 +107,8 @@ def judge_values(robot, start, seeds, odometry=True):
     for key, some in errors.items():
         some = numpy.array(some)
         print('%-24s %3d fitted, %3.0f %% within 2 standard errors, rms %.2f, median %5.2f; left: %d' % (
-            key, len(some), 100 * (abs(some) < 2).mean(), (some ** 2).mean() ** 0.5, numpy.median(some), len(left.get(key, []))))
+            key, len(some), 100 * (abs(some) < 2).mean(), (some ** 2).mean() ** 0.5, numpy.median(some),
+            len(left.get(key, []))))
     everything = abs(numpy.concatenate(list(errors.values())))
     print('all values: %d, %.1f %% within 2 standard errors' % (len(everything), 100 * (everything < 2).mean()))
     for key, some in parts.items():

@@ -46,7 +46,7 @@ def read_arguments():
     parser.add_argument('--output', required=True, metavar='FILE', help='the surface file to write')
     parser.add_argument('--plot', metavar='FILE', help='draw recorded and simulated paths (PNG, PDF, SVG)')
     parser.add_argument('--start', default=START, metavar='SURFACE',
-                        help='what the runs do not tell stays as on this surface: one of %s, or a YAML file; default: %s'
+                        help='what the runs do not tell is as on this surface: one of %s, or a YAML file; default: %s'
                              % (', '.join(known_surfaces(resources.surfaces())), START))
     parser.add_argument('--config', default=resources.path('config', 'turtlebot.yaml'), metavar='FILE',
                         help="ArbotiX YAML file of the base: its width, limits and timeout; default: the TurtleBot's")

@@ -65,8 +65,9 @@ def draw_regions(axes, comparison, label):
     distances = mahalanobis(points, points)
     for part, alpha in REGIONS:
         axis = 2 * (numpy.quantile(distances, part) * sizes.clip(0)) ** 0.5
-        axes.add_patch(Ellipse(points.mean(axis=0), axis[1], axis[0], angle=angle, facecolor=SIMULATED, edgecolor='black',
-                               linewidth=0.8, alpha=alpha, label='%.0f %%' % (100 * part) if label else None))
+        axes.add_patch(Ellipse(points.mean(axis=0), axis[1], axis[0], angle=angle, facecolor=SIMULATED,
+                               edgecolor='black', linewidth=0.8, alpha=alpha,
+                               label='%.0f %%' % (100 * part) if label else None))
 
 
 def set_extents(comparisons, *panels):

@@ -37,7 +37,8 @@ class Fitter:
 
     def fit_means(self, surface, keys):
         """(values, covariance) of keys of MEANS, given the noise of the Surface."""
-        covariances = [Covariance(surface, each.sensitivities(self.by_cells), self.floor) for each in self.predictions(surface)]
+        covariances = [Covariance(surface, each.sensitivities(self.by_cells), self.floor)
+                       for each in self.predictions(surface)]
 
         def residuals(values):
             predictions = self.predictions(surface._replace(**dict(zip(keys, values))))
@@ -107,7 +108,8 @@ class Fitter:
         errors = numpy.exp(result.x) * numpy.sqrt(variances)
         if prior:       # the way up, which is longer than the way down
             errors = numpy.exp(result.x) * numpy.expm1(numpy.sqrt(variances))
-        for index in numpy.flatnonzero((numpy.exp(result.x) < 3 * MIN_STRENGTH) | (variances > VAGUE ** 2) | (variances <= 0)):
+        unclear = (numpy.exp(result.x) < 3 * MIN_STRENGTH) | (variances > VAGUE ** 2) | (variances <= 0)
+        for index in numpy.flatnonzero(unclear):
             errors[index] = upper_error(cost, result, index)
         return numpy.exp(result.x), errors, result.fun
 
@@ -119,8 +121,8 @@ def vague(keys):
 
 
 def upper_error(cost, result, index):
-    """How much larger one of the strengths, whose logarithms are in `result`, may be: until the likelihood falls to that
-    of one standard error. For those that may be 0, where a parabola of the logarithm says nothing."""
+    """How much larger one of the strengths, whose logarithms are in `result`, may be: until the likelihood falls as far
+    as after one standard error. For those that may be 0, where a parabola of the logarithm says nothing."""
     def excess(logarithm):
         moved = result.x.copy()
         moved[index] = logarithm

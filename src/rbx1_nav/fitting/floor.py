@@ -85,8 +85,7 @@ class Covariance:
         """sensitivities: see Prediction; floor: 3x3, of a measured end."""
         blocks = floor + sum(getattr(surface, key) ** 2 * sensitivities[key] for key in NOISES)
         self.roots = numpy.linalg.cholesky(blocks)      # (n, 3, 3)
-        common = numpy.concatenate([self._white(getattr(surface, key) * sensitivities[key])[:, None] for key in SPREADS],
-                                   axis=1)
+        common = numpy.stack([self._white(getattr(surface, key) * sensitivities[key]) for key in SPREADS], axis=1)
         # the whitened covariance is the identity plus common @ common.T
         self.axes, sizes, _ = numpy.linalg.svd(common, full_matrices=False)
         self.variances = 1 + sizes ** 2

@@ -17,8 +17,8 @@ FIRST_DELAYS = 0.0, 0.05, 0.1, 0.2, 0.4, 0.8    # s: the fit begins with the bes
 SIGNIFICANT = 9.0   # by how much a limit must lower the sum of squares, in variances of a residual: 3 sigma
 
 MotorFit = namedtuple('MotorFit', 'values errors unused rms travel')
-MotorFit.__doc__ = """values, errors: dictionaries, one value and one standard error for each of KEYS; unused: those that
-made no difference; rms: of what is left, and of the travel itself, per INTERVAL (m)."""
+MotorFit.__doc__ = """values, errors: dictionaries, one value and one standard error for each of KEYS; unused: those
+that made no difference; rms: of what is left, and of the travel itself, per INTERVAL (m)."""
 
 
 class Intervals:
@@ -46,7 +46,7 @@ class Intervals:
 
 
 def standard_errors(slopes, left, borders):
-    """Of values fitted by least squares: from the variance of the residuals `left`, or from their sums in each run where
+    """Of values fitted by least squares: from the variance of the residuals `left`, or from their sums in each run if
     that is more, because rounding to whole ticks is not independent in one interval and the next (the sandwich of Liang
     and Zeger, Longitudinal data analysis using generalized linear models, 1986). borders: index of the end of each run.
     """
@@ -94,8 +94,8 @@ def fit_motors(surface, base_width, recordings):
     used = [index for index, key in enumerate(KEYS) if key not in unused]
     errors = dict.fromkeys(KEYS, numpy.inf)
     if used:
-        errors.update(zip((KEYS[index] for index in used),
-                          standard_errors(slopes[:, used], left, numpy.cumsum([len(each.travel) for each in intervals]))))
+        borders = numpy.cumsum([len(each.travel) for each in intervals])
+        errors.update(zip((KEYS[index] for index in used), standard_errors(slopes[:, used], left, borders)))
     travel = numpy.concatenate([each.travel for each in intervals])
     return MotorFit(dict(zip(KEYS, result.x.tolist())), errors, unused, float(numpy.sqrt((left ** 2).mean())),
                     float(numpy.sqrt((travel ** 2).mean())))

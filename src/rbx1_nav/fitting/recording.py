@@ -39,8 +39,8 @@ def check_series(name, series):
     back = numpy.flatnonzero(numpy.diff(series.time) < 0)
     if back.size:
         before, after = series.time[back[0]:back[0] + 2]
-        raise ConfigError('%s: stamp of message %d: %.3f s before that of message %d: expected stamps that never go back'
-                          % (name, back[0] + 2, before - after, back[0] + 1))
+        raise ConfigError('%s: stamp of message %d: %.3f s before that of message %d: expected stamps that never go '
+                          'back' % (name, back[0] + 2, before - after, back[0] + 1))
 
 
 def check_recording(recording):
@@ -61,11 +61,12 @@ def check_recording(recording):
             continue
         first, last = max(series.time[0], commands.time[0]), min(series.time[-1], commands.time[-1])
         if not last - first > 0.5 * (commands.time[-1] - commands.time[0]):
-            raise ConfigError('%s: %s from %.1f to %.1f s, but commands from %.1f to %.1f s: expected the same time, by '
-                              'one clock' % (name, field, series.time[0], series.time[-1], *commands.time[[0, -1]]))
+            raise ConfigError('%s: %s from %.1f to %.1f s, but commands from %.1f to %.1f s: expected the same time, '
+                              'by one clock' % (name, field, series.time[0], series.time[-1], *commands.time[[0, -1]]))
         if field != 'gyro' and not (max(numpy.ptp(series.x), numpy.ptp(series.y)) > MIN_TRAVEL
                                     or numpy.ptp(series.yaw) > MIN_TURN):
-            raise ConfigError('%s: %s: no motion, although it was commanded: expected a robot that moves' % (name, field))
+            raise ConfigError('%s: %s: no motion, although it was commanded: expected a robot that moves'
+                              % (name, field))
     return recording
 
 

@@ -58,9 +58,9 @@ def fit_ends(runs, surface, end_errors):
         values[key] = float(min(0.5, wider * numpy.hypot(getattr(surface, key), errors.get(mean, 0.0))))
     relative = (1 / (2 * degrees)) ** 0.5
     found = {key: float(values[key] * relative) for key in (*NOISES, *spreads) if values[key]}
-    notes = ['Noises and spreads are those of the starting surface times %.2f, one common factor that %d ends tell, and '
-             'times %.2f, since %d values are few: the region of 90 %% is to hold 90 %% of the ends of further runs '
-             "(Student's t distribution). The spreads also contain the standard errors of the mean slips."
+    notes = ['Noises and spreads are those of the starting surface times %.2f, one common factor that %d ends tell, '
+             'and times %.2f, since %d values are few: the region of 90 %% is to hold 90 %% of the ends of further '
+             "runs (Student's t distribution). The spreads also contain the standard errors of the mean slips."
              % (factor, len(runs), wider, 3 * len(runs))]
     warnings = [] if 1 / FAR_OFF < factor < FAR_OFF else [
         'noise: %.2f times that of the starting surface: check the ends, and their order' % factor]

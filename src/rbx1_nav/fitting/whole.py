@@ -27,20 +27,20 @@ POOR = 0.1          # what motors may leave unexplained of the travel, rms; and 
 POOR_TRAVEL = 0.002     # m
 
 Value = namedtuple('Value', 'key value error reason')
-Value.__doc__ = """A value of a surface, in SI units; error: 1 sigma; for a value that was left as it was, error is None,
-and reason says why."""
+Value.__doc__ = """A value of a surface, in SI units; error: 1 sigma; for a value that was left as it was, error is
+None, and reason says why."""
 
 Result = namedtuple('Result', 'surface values warnings description notes')
-Result.__doc__ = """surface: Surface; values: Value of each key, in the order of a file; warnings, notes: texts; description:
-one line that says from what to what was fitted."""
+Result.__doc__ = """surface: Surface; values: Value of each key, in the order of a file; warnings, notes: texts;
+description: one line that says from what to what was fitted."""
 
 
 class WholeFit:
     """Fits a surface, part by part."""
 
     def __init__(self, recordings, base_width, start, end_errors=None):
-        """recordings: all alike, see check_alike(); base_width: m; start: Surface; end_errors: of ends measured by hand:
-        x, y (m), yaw (rad)."""
+        """recordings: all alike, see check_alike(); base_width: m; start: Surface; end_errors: of ends measured by
+        hand: x, y (m), yaw (rad)."""
         check_alike(recordings)
         self.recordings = recordings
         self.base_width = base_width
@@ -115,8 +115,8 @@ class WholeFit:
         if not self.has_odometry:
             for key in ('accel_limit', 'drag_straight', 'drag_turning'):
                 self.reasons[key] = 'no odometry'
-            self.notes.append('Without odometry, drag and slip look alike: these slips belong to the drags of the starting '
-                              'surface.')
+            self.notes.append('Without odometry, drag and slip look alike: these slips belong to the drags of the '
+                              'starting surface.')
         noises = NOISES + (SPREADS if len(runs) >= MIN_RUNS else ())
         for key in SPREADS if len(runs) < MIN_RUNS else ():
             self.reasons[key] = '%d of at least %d runs' % (len(runs), MIN_RUNS)
@@ -155,8 +155,8 @@ class WholeFit:
             far = numpy.flatnonzero(squares > FAR_OFF)
             if len(far) > 0.02 * len(squares):      # a floor's errors have fat tails
                 first = run.times[windows.first[far[0]]] - run.times[0]
-                self.warnings.append('%s: %d of %d windows end far from where this floor would have them, the first %.0f s '
-                                     'after the start' % (run.recording.name, len(far), len(squares), first))
+                self.warnings.append('%s: %d of %d windows end far from where this floor would have them, the first '
+                                     '%.0f s after the start' % (run.recording.name, len(far), len(squares), first))
 
     def _fit_to_ends(self):
         runs = [Run(recording, self.base_width) for recording in self.recordings]

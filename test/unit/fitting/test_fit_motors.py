@@ -36,6 +36,14 @@ def test_a_limit_that_is_never_reached_is_not_told():
     assert fit.values['lag'] == pytest.approx(surface.lag, rel=0.02)
 
 
+@pytest.mark.parametrize('limit', [1.4, 1.7, 2.0, 2.3])
+def test_a_limit_that_is_hardly_reached_is_right_or_not_told(limit):
+    surface = FLOOR._replace(accel_limit=limit, lag=0.186, drag_straight=0.002)
+    fit = fit_motors(START, 0.26, [record(DRIVE, surface=surface)])
+    assert 'accel_limit' in fit.unused or fit.values['accel_limit'] == pytest.approx(
+        limit, abs=5 * fit.errors['accel_limit'])
+
+
 def test_commands_of_another_run_leave_a_large_residual():
     run = record(DRIVE)
     other = run._replace(commands=record(EXERCISE).commands)

@@ -12,7 +12,7 @@ ALL = [*KEYS, *OPTIONAL_KEYS]
 
 
 VALUES = {key: st.floats(*limits_of(key)) | st.sampled_from(limits_of(key)) for key in ALL}      # in SI units
-ERRORS = st.none() | st.floats(1e-9, 10)        # as a part of the value
+ERRORS = st.none() | st.floats(1e-9, 1e4)       # as a part of the value
 
 
 @st.composite

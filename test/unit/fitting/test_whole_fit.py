@@ -44,8 +44,8 @@ def test_a_floor_is_found():
 
 
 def test_a_floor_is_found_without_odometry():
-    _, values = fit([record(DRIVE, seed, FLOOR._replace(drag_straight=0.002, drag_turning=0.003))._replace(odometry=None)
-                     for seed in range(3)])
+    floor = FLOOR._replace(drag_straight=0.002, drag_turning=0.003)
+    _, values = fit([record(DRIVE, seed, floor)._replace(odometry=None) for seed in range(3)])
     for key in 'delay', 'slip_turning', 'turning_loss', 'heading_noise_turning':
         assert abs(values[key].value - getattr(FLOOR, key)) < 5 * values[key].error, key
     assert values['drag_straight'] == ('drag_straight', 0.002, None, 'no odometry')

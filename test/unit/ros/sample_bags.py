@@ -63,7 +63,8 @@ def write_bag(path, messages, senders=None):
         for number, (topic, message, time) in enumerate(messages):
             names = (senders or {}).get(topic, ['/arbotix'])
             name = names[number // 40 % len(names)]
-            if before.setdefault(topic, name) != name:      # rosbag's writer has one connection per topic, the recorder more
+            # rosbag's writer has one connection per topic, the recorder one per publisher
+            if before.setdefault(topic, name) != name:
                 bag._topic_connections.pop(topic)
                 before[topic] = name
             header = {'topic': topic, 'type': message._type, 'md5sum': message._md5sum,

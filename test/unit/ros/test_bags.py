@@ -75,7 +75,8 @@ def shifted(topic, seconds):
 @pytest.mark.parametrize('messages, senders, text', [
     ([], None, '/cmd_vel: no messages of type geometry_msgs/Twist: expected some; the bag has nothing else'),
     (without('/cmd_vel'), None, '/cmd_vel: no messages of type geometry_msgs/Twist'),
-    (without('/ground_truth'), None, '/ground_truth: no messages of type nav_msgs/Odometry or geometry_msgs/PoseStamped'),
+    (without('/ground_truth'), None,
+     '/ground_truth: no messages of type nav_msgs/Odometry or geometry_msgs/PoseStamped'),
     (run_messages([(0.0, 0.0, 200)]), None, 'no motion: expected commands other than 0'),
     ([(topic, odometry(time, 0.0, 0.0, 0.0) if topic == '/odom' else message, time)
       for topic, message, time in run_messages()], None, 'odometry: no motion, although it was commanded'),

@@ -57,8 +57,9 @@ def test_the_truth_of_a_robot_without_errors(folder):
 
 @pytest.mark.parametrize('arguments, status, text', [
     (['ends.yaml'], 1, 'fit_surface.py: ends.yaml: expected a bag: '),
-    (['nothing.bag'], 1, "fit_surface.py: nothing.bag: expected a bag: [Errno 2] No such file or directory: 'nothing.bag'"),
-    (['run1.bag', '--truth', '/mocap'], 1, '/mocap: no messages of type nav_msgs/Odometry or geometry_msgs/PoseStamped'),
+    (['nothing.bag'], 1, 'fit_surface.py: nothing.bag: expected a bag: [Errno 2] No such file or directory: '),
+    (['run1.bag', '--truth', '/mocap'], 1,
+     '/mocap: no messages of type nav_msgs/Odometry or geometry_msgs/PoseStamped'),
     (['run1.bag', '--odom', '/mocap'], 1, 'run1.bag: neither odometry nor truth: expected at least one of them'),
     (['run1.bag', '--start', 'sand'], 1, "surface: 'sand': expected one of "),
     (['run1.bag', '--start', 'ideal'], 1, '--start: ideal: the ideal surface: expected one with values'),
