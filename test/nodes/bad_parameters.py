@@ -67,7 +67,7 @@ class TestBadParameters(unittest.TestCase):
                 ({'imu_used': 1}, ['imu_used', '1', 'true or false']), ({'output_frame': ''}, ['output_frame', "''"]),
                 ({'odom_used': False}, ['odom_used', 'False', 'expected true']),
                 ({'vo_used': True}, ['vo_used', 'True', 'expected false']),
-                ({'surface': 'sand'}, ['surface', "'sand'", 'hard_floor, ideal, low_ply_carpet'])]:
+                ({'surface': 'sand'}, ['surface', "'sand'", 'create_lab_floor, hard_floor, ideal, low_ply_carpet'])]:
             rospy.set_param('/robot_pose_ekf', params)
             self.check(support.Process('rosrun', 'rbx1_nav', 'ekf.py'), expected)
             rospy.delete_param('/robot_pose_ekf')
@@ -80,7 +80,7 @@ class TestBadParameters(unittest.TestCase):
                 ({'controllers': {'base': dict(BASE, type='arm')}}, ['base/type', "'arm'", 'diff_controller']),
                 ({'controllers': {'two\nlines': 7}}, [r"/arbotix/controllers/'two\nlines'", '7', 'a mapping']),
                 ({'controllers': {'base': BASE}, 'surface': 'sand'},
-                 ['/arbotix/surface', "'sand'", 'hard_floor, ideal, low_ply_carpet']),
+                 ['/arbotix/surface', "'sand'", 'create_lab_floor, hard_floor, ideal, low_ply_carpet']),
                 ({'controllers': {'base': BASE}, 'seed': -1}, ['/arbotix/seed', '-1', 'integer']),
                 ({'controllers': {'base': BASE}, 'real_time_factor': 5}, ['real_time_factor', '5', '/use_sim_time']),
                 ({'controllers': {'base': BASE}, 'real_time_factor': 1e-300}, ['1e-300: expected a number from 0.01'])]:

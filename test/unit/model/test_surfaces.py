@@ -18,9 +18,9 @@ def carpet():
 
 
 def test_all_surfaces_of_the_package_can_be_read():
-    assert known_surfaces(FOLDER) == ['hard_floor', 'ideal', 'low_ply_carpet']
+    assert known_surfaces(FOLDER) == ['create_lab_floor', 'hard_floor', 'ideal', 'low_ply_carpet']
     assert load_surface('ideal', FOLDER) is None
-    for name in ('hard_floor', 'low_ply_carpet'):
+    for name in ('create_lab_floor', 'hard_floor', 'low_ply_carpet'):
         assert load_surface(name, FOLDER).name == name
 
 
@@ -35,14 +35,14 @@ def test_the_values_of_carpet():
 @pytest.mark.parametrize('name', ['sand', '', 'ideal.yaml', '../turtlebot', 7, None, [1],
                                   pytest.param(16 ** 5000, id='huge')])
 def test_an_unknown_surface_is_rejected_with_the_list_of_known_ones(name):
-    with pytest.raises(ConfigError, match='^surface: .*expected one of hard_floor, ideal, low_ply_carpet') as error:
+    with pytest.raises(ConfigError, match='^surface: .*expected one of create_lab_floor, hard_floor, ideal') as error:
         load_surface(name, FOLDER)
     assert '\n' not in str(error.value)
 
 
 def test_a_path_without_a_file_is_rejected_as_such():
     with pytest.raises(ConfigError, match="^surface: '/no/such/file.yaml': no such file: expected .*, or one of "
-                                          'hard_floor, ideal, low_ply_carpet$'):
+                                          'create_lab_floor, hard_floor, ideal, low_ply_carpet$'):
         load_surface('/no/such/file.yaml', FOLDER)
 
 
