@@ -94,7 +94,7 @@ def table(result, start_name):
     values = {value.key: value for value in result.values}
     ordered = [values[key] for _, keys in PARTS for key in keys]
     lines = ['Fitted: %s' % result.description]
-    lines += ['  %-24s %10s +- %-8s %s' % (value.key, *shown(value), UNITS.get(value.key, ''))
+    lines += [('  %-24s %10s +- %-8s %s' % (value.key, *shown(value), UNITS.get(value.key, ''))).rstrip()
               for value in ordered if value.error is not None]
     left = [value for value in ordered if value.error is None]
     if left:
