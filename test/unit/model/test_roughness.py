@@ -92,3 +92,16 @@ def test_the_cells_are_those_of_the_documents():
     roughness = Roughness(ROUGH, 0)
     assert (roughness.turning.cell, roughness.heading.cell, roughness.distance.cell) == (
         CELL_TURNED, CELL_TRAVELLED, CELL_TRAVELLED) == (0.25, 0.1, 0.1)
+
+
+def test_backwards_is_as_rough_as_forwards():
+    forwards, backwards = Roughness(ROUGH, 5), Roughness(ROUGH, 5)
+    for straight, turn in (0.3, 0.5), (2.0, 4.0), (0.0, 1.0):
+        assert forwards.over(straight, turn) == backwards.over(-straight, -turn)
+
+
+def test_the_errors_of_distance_and_heading_have_nothing_in_common():
+    errors = [Roughness(ROUGH._replace(heading_noise_turning=0.0), seed).over(1.0, 0.0) for seed in range(2000)]
+    distance, angle = zip(*errors)
+    correlation = mean(a * b for a, b in errors) / (mean(a * a for a in distance) * mean(b * b for b in angle)) ** 0.5
+    assert abs(correlation) < 0.11      # five times 1 sigma, 1 / sqrt(2000)

@@ -64,12 +64,12 @@ def test_a_file_without_a_surface_is_rejected(tmp_path, text):
 
 @pytest.mark.parametrize('key, value', [
     ('lag', 0), ('lag', -1), ('lag', 1e9), ('accel_limit', nan), ('drag_turning', 0), ('slip_straight', -0.6),
-    ('slip_turning', 0.6), ('slip_turning_spread', 'much'), ('slip_straight_spread', -0.1),
-    ('ticks_meter', 0), ('ticks_meter', 1e308), ('gyro_noise', 0), ('gyro_noise', 1e-9), ('gyro_bias', 1e200), ('gyro_bias', -1),
-    ('gyro_scale_error', True), ('gyro_measurement_range', []), ('delay', -0.1), ('delay', 6), ('curvature', 11), ('curvature', nan),
-    ('turning_loss', -0.01), ('turning_loss', 'some'), ('heading_noise_turning', -0.1), ('heading_noise_turning', 2),
-    ('heading_noise_straight', True), ('heading_noise_straight', -1e-9), ('distance_noise', 1.5),
-    ('distance_noise', None)])
+    ('slip_turning', 0.6), ('slip_turning_spread', 'much'), ('slip_straight_spread', -0.1), ('ticks_meter', 0),
+    ('ticks_meter', 1e308), ('gyro_noise', 0), ('gyro_noise', 1e-9), ('gyro_bias', 1e200), ('gyro_bias', -1),
+    ('gyro_scale_error', True), ('gyro_measurement_range', []), ('delay', -0.1), ('delay', 6), ('curvature', 11),
+    ('curvature', nan), ('turning_loss', -0.01), ('turning_loss', 'some'), ('heading_noise_turning', -0.1),
+    ('heading_noise_turning', 2), ('heading_noise_straight', True), ('heading_noise_straight', -1e-9),
+    ('distance_noise', 1.5), ('distance_noise', None)])
 def test_an_invalid_value_is_named_with_its_key(key, value):
     with pytest.raises(ConfigError, match='^surface x/%s: .*expected a ' % key):
         read_surface(dict(carpet(), **{key: value}), 'x')
