@@ -3,4 +3,5 @@ from setuptools import setup
 from catkin_pkg.python_setup import generate_distutils_setup
 
 ROOMS = ['control', 'create', 'estimation', 'fitting', 'model', 'ros']
-setup(**generate_distutils_setup(packages=['rbx1_nav'] + ['rbx1_nav.' + room for room in ROOMS], package_dir={'': 'src'}))
+setup(**generate_distutils_setup(packages=['rbx1_nav'] + ['rbx1_nav.' + room for room in ROOMS],
+                                 package_dir={'': 'src'}))

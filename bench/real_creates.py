@@ -50,7 +50,7 @@ def starting_surface(**values):
 def fit(runs, motions, noises):
     """The Surface with these keys fitted to runs, and their standard errors."""
     windows, errors = [run.windows(FITTED) for run in runs], CAMERAS
-    if noises == SPREADS:       # a slip that never changes does best if each window is a run, and few errors are its own
+    if noises == SPREADS:       # it does best if each window is a run, and few errors are its own
         errors = UNEXPLAINED
         runs, windows = zip(*((run, Windows(each.first[index:index + 1], each.count, each.ends[index:index + 1]))
                               for run, each in zip(runs, windows) for index in range(len(each.first))))

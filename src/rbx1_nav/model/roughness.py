@@ -49,8 +49,7 @@ class Roughness:
         self.distance = noise('distance_noise', CELL_TRAVELLED)
 
     def over(self, straight, turn):
-        """The errors of the distance (m) and the angle (rad) while the wheels travel by `straight` (m) and `turn` (rad).
-        """
+        """The errors of distance (m) and angle (rad) while the wheels travel by `straight` (m) and `turn` (rad)."""
         straight, turn = abs(straight), abs(turn)
         return self.distance.over(straight), self.turning.over(turn) + self.heading.over(straight)
 
