@@ -18,8 +18,9 @@ Parameters, with the names of create_node's:
     ~gyro_scale_correction          factor for the gyro's angular velocity (default: 1.35)
     ~odom_linear_scale_correction   factor for the distance that the robot reports (default: 1)
     ~odom_angular_scale_correction  factor for the angle (default: 1)
-    ~odom_linear_error              error of the distance, 1 sigma, m after 1 m (default: 0.02)
-    ~odom_angular_error             error of the angle, 1 sigma, rad after 1 rad (default: 0.04)
+    ~odom_linear_error              error of the distance, 1 sigma, m after 1 m (default: 0.05)
+    ~odom_angular_error             error of the angle, 1 sigma, rad after 1 rad (default: 0.09)
+    ~odom_heading_error             error of the heading, 1 sigma, rad after 1 m (default: 0.07)
     ~odom_frame, ~base_frame        frames (default: odom, base_footprint)
     ~publish_tf                     whether to publish the transform to the base frame (default: true)
     ~drive_mode, ~diagnostic_period accepted: twist, and any number; /diagnostics has 1 Hz

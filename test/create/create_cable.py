@@ -13,7 +13,8 @@ class TestCreateCable(unittest.TestCase):
 
     def check(self, robot_type):
         # an ideal floor adds no error
-        robot = DrivenRobot(self, robot_type, odom_linear_error=0.0, odom_angular_error=0.0)
+        robot = DrivenRobot(self, robot_type, odom_linear_error=0.0, odom_angular_error=0.0,
+                            odom_heading_error=0.0)
         for _ in range(2):
             robot.wait_for_motion(0.2, 0.3)
             start = robot.truth.next()

@@ -21,7 +21,7 @@ class Motion:
         self.width = settings.model.wheel_separation
         self.corrections = settings.linear_correction, settings.angular_correction
         self.rounding = rounding
-        self.odometry = UncertainOdometry(self.width, settings.linear_error, settings.angular_error, rounding)
+        self.odometry = UncertainOdometry(self.width, settings.errors, rounding)
         self.left = self.right = 0.0    # m, total travel of the wheels as the robot counts it
         self.time = None            # of the last Travel
         self.moved_time = None      # of the last travel that was not 0, or command to move
@@ -63,8 +63,8 @@ class Motion:
         if elapsed > 0 and (any(self.since) or not self.stands):
             velocity = self.since.distance / elapsed, self.since.angle / elapsed
             # a difference of two roundings
-            variances = tuple((variance + 2 * rounding ** 2) / elapsed ** 2 + MEASURED
-                              for variance, rounding in zip(self.since[2:], self.rounding))
+            variances = tuple((variance + error + 2 * rounding ** 2) / elapsed ** 2 + MEASURED for variance, error, rounding
+                              in zip(self.since[2:], self.odometry.errors.variances(self.since), self.rounding))
         self.reported, self.since = self.time, NOWHERE
         return State(self.time, self.odometry.pose, self.odometry.covariance, velocity, variances,
                      (self.left, self.right), gyro)

@@ -1,4 +1,5 @@
 """Odometry that knows how uncertain it is."""
+from collections import namedtuple
 from math import cos, sin
 
 import numpy
@@ -8,6 +9,16 @@ from rbx1_nav.model.kinematics import Odometry
 HELD = 0.3      # m: a robot that drives straight ahead leaves a rounded heading as it is for so long
 
 
+class Errors(namedtuple('Errors', 'linear angular heading')):
+    """Of the wheels' travel on the floor, 1 sigma: m after 1 m, rad after a turn of 1 rad, rad after 1 m. They grow with
+    the root of the travel."""
+
+    def variances(self, travel):
+        """Of the length (m^2) and the angle (rad^2) of a Travel."""
+        distance, angle = abs(travel.distance), abs(travel.angle)
+        return self.linear ** 2 * distance, self.angular ** 2 * angle + self.heading ** 2 * distance
+
+
 class UncertainOdometry:
     """A pose with its 3x3 covariance (x, y in m, yaw in rad), propagated to first order along the path.
 
@@ -15,12 +26,10 @@ class UncertainOdometry:
     Nourbakhsh and Scaramuzza, Introduction to Autonomous Mobile Robots, 2nd ed., section 5.2.4.
     """
 
-    def __init__(self, width, linear_error, angular_error, rounding):
-        """width: between the wheels, m; linear_error: 1 sigma of the length after 1 m; angular_error: 1 sigma of the
-        angle (rad) after 1 rad; rounding: see travel.py."""
+    def __init__(self, width, errors, rounding):
+        """width: between the wheels, m; errors: Errors; rounding: see travel.py."""
         self.odometry = Odometry(width)
-        self.linear_error = linear_error
-        self.angular_error = angular_error
+        self.errors = errors
         self.rounding = rounding[0] ** 2, rounding[1] ** 2      # m^2, rad^2
         # the covariance without rounding, which does not add up: the next count makes up for it
         self.xx = self.xy = self.yy = self.x_yaw = self.y_yaw = self.yaw_yaw = 0.0
@@ -45,11 +54,11 @@ class UncertainOdometry:
         up over the path to that unit, or else is the mean of two roundings.
         """
         distance, angle = abs(travel.distance), abs(travel.angle)
+        length, turn = self.errors.variances(travel)
         unit = (12 * self.rounding[1]) ** 0.5
         path = HELD if angle * HELD <= unit * distance else unit * distance / angle
-        return (travel.distance_variance + self.linear_error ** 2 * distance,
-                self.rounding[1] * distance * max(path, distance / 2),
-                travel.angle_variance + self.angular_error ** 2 * angle)
+        return (travel.distance_variance + length, self.rounding[1] * distance * max(path, distance / 2),
+                travel.angle_variance + turn)
 
     def move(self, travel):
         """Add a Travel."""

@@ -4,16 +4,16 @@ from math import inf
 
 from rbx1_nav.config import ConfigError, Section, show
 from rbx1_nav.create import protocol
+from rbx1_nav.create.odometry import Errors
 from rbx1_nav.model.robot import Limits, Robot
 from rbx1_nav.units import SECOND
 
 WHEEL_RADIUS = 0.033    # m, of the wheels that RViz shows
 
 Settings = namedtuple('Settings', 'model port update_rate mode has_gyro gyro_range gyro_correction linear_correction '
-                                  'angular_correction linear_error angular_error stop_on_bump min_yaw_speed')
+                                  'angular_correction errors stop_on_bump min_yaw_speed')
 Settings.__doc__ = """What the driver depends on. model: a Model; update_rate in Hz; mode: that in which the robot is
-driven; gyro_range in degrees/s; linear_error: m after 1 m, angular_error: rad after 1 rad (1 sigma); min_yaw_speed in
-rad/s."""
+driven; gyro_range in degrees/s; errors: Errors; min_yaw_speed in rad/s."""
 
 
 def read_settings(params):
@@ -41,8 +41,9 @@ def read_settings(params):
         gyro_correction=section.number('gyro_scale_correction', 0.01, 100, 1.35, 'a factor'),
         linear_correction=section.number('odom_linear_scale_correction', 0.01, 100, 1.0, 'a factor'),
         angular_correction=section.number('odom_angular_scale_correction', 0.01, 100, 1.0, 'a factor'),
-        linear_error=section.number('odom_linear_error', 0, 1, 0.02, 'a fraction'),
-        angular_error=section.number('odom_angular_error', 0, 1, 0.04, 'a fraction'),
+        errors=Errors(section.number('odom_linear_error', 0, 1, 0.05, 'a distance', 'm'),
+                      section.number('odom_angular_error', 0, 1, 0.09, 'an angle', 'rad'),
+                      section.number('odom_heading_error', 0, 1, 0.07, 'an angle', 'rad')),
         stop_on_bump=section.flag('stop_motors_on_bump', True),
         min_yaw_speed=section.number('min_abs_yaw_vel', 0, 10, 0.0, 'a speed', 'rad/s'))
     # 0 is no limit, as in create_node

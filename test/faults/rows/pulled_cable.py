@@ -44,7 +44,8 @@ def run(row):
                        % (robot_type, seconds, *velocity, gap)):
             try:
                 # an ideal floor adds no error
-                robot = DrivenRobot(case, robot_type, odom_linear_error=0.0, odom_angular_error=0.0)
+                robot = DrivenRobot(case, robot_type, odom_linear_error=0.0, odom_angular_error=0.0,
+                                    odom_heading_error=0.0)
                 pull(row, robot, seconds, gap, velocity)
             finally:
                 case.doCleanups()

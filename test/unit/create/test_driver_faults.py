@@ -12,6 +12,7 @@ from driven_create import SURFACES, DrivenCreate, started
 
 BOTH = pytest.mark.parametrize('robot_type', ['create', 'create2'])
 STOP = protocol.drive_direct(0, 0)
+NO_ERRORS = {'odom_linear_error': 0.0, 'odom_angular_error': 0.0, 'odom_heading_error': 0.0}
 CHI_SQUARE = 16.3       # 99.9 % of 3 degrees of freedom
 
 
@@ -40,7 +41,7 @@ def pull_cable(robot_type, seed, surface, **params):
 
 
 @pytest.mark.parametrize('surface, params', [
-    ('ideal', {'odom_linear_error': 0.0, 'odom_angular_error': 0.0}), ('low_ply_carpet', {})])
+    ('ideal', NO_ERRORS), ('low_ply_carpet', {})])
 @BOTH
 def test_the_odometry_knows_how_uncertain_a_gap_is(robot_type, surface, params):
     floor = load_surface(surface, SURFACES)
@@ -150,7 +151,7 @@ def test_a_corrupted_line_leaves_the_odometry_as_it_is(seed):
 
 @pytest.mark.parametrize('seed', range(4))
 def test_lost_replies_of_a_create_are_bridged(seed):
-    driven = started('create', seed=seed, odom_linear_error=0.0, odom_angular_error=0.0)
+    driven = started('create', seed=seed, **NO_ERRORS)
     driven.line.corruption = 0.01
     for linear, angular in ((0.2, 0.0), (0.0, 1.0), (0.2, 0.3), (-0.1, -0.5)):
         driven.drive(linear, angular, 3)

@@ -26,7 +26,7 @@ def test_all_surfaces_of_the_package_can_be_read():
 
 def test_the_values_of_carpet():
     surface = load_surface('low_ply_carpet', FOLDER)
-    assert surface[5:9] == (0.02, 0.01, 0.03, 0.01)
+    assert surface[5:9] == (0.02, 0.0, 0.03, 0.0)
     assert (surface.gyro_noise, surface.gyro_bias) == (radians(0.1), radians(0.5))
     assert (surface.gyro_scale_error, surface.gyro_measurement_range) == (0.003, radians(150))
     assert surface.ticks_meter == 4100
@@ -136,9 +136,9 @@ def test_the_errors_of_a_run_depend_on_the_seed_only():
 
 
 def test_the_errors_of_runs_have_mean_and_spread_of_the_file():
-    surface = load_surface('low_ply_carpet', FOLDER)
+    surface = load_surface('hard_floor', FOLDER)
     columns = list(zip(*[draw_run(surface, seed) for seed in range(2000)]))
     # over 2000 runs, 1 sigma of the mean is 0.022 spreads, of the spread 1.6 %: five of those
-    for values, middle, spread in zip(columns, (0.02, 0.03, 0, 0), (0.01, 0.01, radians(0.5), 0.003)):
+    for values, middle, spread in zip(columns, (0.002, 0.005, 0, 0), (0.001, 0.002, radians(0.5), 0.003)):
         assert abs(mean(values) - middle) < 0.11 * spread
         assert stdev(values) == pytest.approx(spread, rel=0.08)
