@@ -11,8 +11,8 @@ Parameters:
     ~odom_used          only true is accepted
     ~vo_used            only false is accepted
     ~output_frame       frame of the combined pose (default: odom)
-    ~surface            of the initial uncertainties: a name or path as for the base, or auto: that of the simulated
-                        base, and low_ply_carpet for a real one (default: auto)
+    ~surface            the floor that the filter starts with: a name or path as for the base, unknown, or auto: that
+                        of the simulated base, and unknown for any other (default: auto)
     ~diagnostic_period  of /diagnostics, s (default: 1)
 """
 import rbx1_nav.ros.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded
@@ -29,11 +29,10 @@ from std_msgs.msg import Empty
 
 from rbx1_nav.config import ConfigError
 from rbx1_nav.estimation.combined_odometry import CombinedOdometry
-from rbx1_nav.estimation.filter import priors
 from rbx1_nav.estimation.inputs import RejectedMessage
 from rbx1_nav.ros import messages, node
 from rbx1_nav.ros.estimate_publisher import EstimatePublisher
-from rbx1_nav.ros.filter_parameters import find_surface, read_parameters
+from rbx1_nav.ros.filter_parameters import find_prior, read_parameters
 from rbx1_nav.ros.limited_log import LimitedLog
 from rbx1_nav.ros.one_sender import OneSender
 from rbx1_nav.ros.sensor_status import SensorStatus
@@ -95,9 +94,9 @@ class Ekf:
         """Start with the odometry of another node: it may be another robot."""
         if self.combined:
             self.warn('odom comes from another node: restarting')
-        surface = find_surface(self.parameters['surface'], sender, self.log.add)
-        self.combined = CombinedOdometry(priors(surface), round(SECOND * self.parameters['sensor_timeout']),
-                                         self.parameters['imu_used'], self.warn)
+        prior = find_prior(self.parameters['surface'], sender, self.log.add)
+        self.combined = CombinedOdometry(prior, round(SECOND * self.parameters['sensor_timeout']),
+                                         self.parameters['imu_used'], self.warn, time.monotonic_ns)
 
     def process(self, sensor, add, message):
         """Pass a message to the filter, and publish the result."""

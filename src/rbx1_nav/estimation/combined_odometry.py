@@ -2,7 +2,7 @@
 from collections import deque, namedtuple
 from math import cos, hypot, sin
 
-from rbx1_nav.estimation.filter import TURNING, X, Y, YAW, Filter
+from rbx1_nav.estimation.filter import BIAS, TURNING, X, Y, YAW, Filter
 from rbx1_nav.estimation.inputs import check, check_imu, check_odom
 from rbx1_nav.model.kinematics import Pose
 from rbx1_nav.units import SECOND, wrap_angle
@@ -12,7 +12,8 @@ MAX_TURN_RATE = 5.0     # rad/s: or turns faster
 JUMP_TOLERANCE = 0.02   # m and rad in addition
 DROPOUT_SPEED = 0.5     # m/s: how fast the robot may move (1 sigma) while no odometry arrives
 MAX_LEAD = SECOND // 2  # ns that a stamp may be ahead of the clock: clocks differ
-MAX_AGE = 10 * SECOND   # ns that it may be behind
+MAX_AGE = 60 * SECOND   # ns that it may be behind: simulated time may run far ahead of a busy machine
+MAX_WAIT = 5 * SECOND   # ns that odometry waits for a gyro that is late but not silent
 
 Estimate = namedtuple('Estimate', 'stamp pose covariance odom')
 Estimate.__doc__ = """The estimated pose: stamp in ns, Pose, 3x3 covariance of x, y (m) and yaw (rad), and the last Odom
@@ -39,20 +40,26 @@ def has_jumped(before, odom):
 class CombinedOdometry:
     """Runs the filter on messages in the order of their stamps: one step per odometry message.
 
-    Only stamps (ns) count, so the result does not depend on when messages arrive. A step waits until the gyro has
-    reported up to its end. A sensor that sends nothing for `timeout` while the other one does has timed out, and is not
-    used until it recovers: without the gyro, the turn is measured by the wheels; without odometry, by the gyro, and the
-    uncertainty of the position grows. The travel during a dropout of the odometry counts when it recovers.
+    A step waits until the gyro has reported up to its end. So the result depends on stamps (ns) only, and not on when
+    messages arrive, as long as no sensor times out. A sensor has timed out if by stamps the other one is ahead by more
+    than `timeout`, and nothing has arrived from it for as long: one that is late is not silent. It is not used until it
+    recovers: without the gyro, the turn is measured by the wheels; without odometry, by the gyro, and the uncertainty of
+    the position grows. The travel during a dropout of the odometry counts when it recovers.
     """
 
-    def __init__(self, prior, timeout, gyro_used=True, warn=lambda text: None):
-        """prior: Priors; timeout: ns; gyro_used: whether to wait for a gyro at all; warn(text): logs a warning."""
+    def __init__(self, prior, timeout, gyro_used=True, warn=lambda text: None, clock=None):
+        """prior: Priors; timeout: ns; gyro_used: whether to wait for a gyro at all; warn(text): logs a warning; clock():
+        ns, tells when a message arrives if `now` may be simulated time."""
         self.prior = prior
         self.timeout = timeout
         self.gyro_used = gyro_used
         self.warn = warn
+        self.clock = clock
         self.now = 0
         self.last_stamp = {'odom': None, 'imu_data': None}      # ns
+        self.arrival = 0            # ns, of the last message of all, see _add_arrival()
+        self.last_clock = 0         # ns, at that time
+        self.last_arrival = {'odom': None, 'imu_data': None}    # ns
         self.restart()
 
     def restart(self, reason=None):
@@ -61,11 +68,14 @@ class CombinedOdometry:
             self.warn('%s: restarting at the pose of the odometry' % reason)
         self.filter = None
         self.estimate = None        # the latest Estimate
-        self.pending = deque()      # Odoms, until the gyro has caught up
+        self.pending = deque()      # (ns of arrival, Odom), until the gyro has caught up
         self.readings = deque()     # (ns at the start of the reading, Imu), not used yet
         self.time = None            # ns, the end of the last step
         self.odom = None            # the last Odom of a step
         self.odom_yaw = None        # rad, the filter's yaw at that time
+        self.yaws = deque()         # (ns, rad) of the filter since then, where the gyro is ahead of the odometry
+        self.another_floor = False  # whether the sensors have shown that the prior is that of another floor
+        self.contradict = False     # whether wheels and gyro contradict each other
         self.suspect = None         # an Odom that has jumped, until the next one confirms it
         self.timed_out = {'odom': False, 'imu_data': False}
 
@@ -81,8 +91,7 @@ class CombinedOdometry:
         if not (odom.linear_variance and odom.angular_variance):
             odom = odom._replace(linear_variance=pose_variances[0], angular_variance=pose_variances[2])
         self._check_stamp('odom', now, odom.stamp)
-        if not self.timed_out['odom']:
-            self.pending.append(odom)
+        self.pending.append((self.arrival, odom))
         self._make_steps()
 
     def add_imu(self, now, imu):
@@ -106,35 +115,52 @@ class CombinedOdometry:
                                      (before is None or stamp > before, 'a stamp later than the last', before or 0)):
             check('header.stamp', '%.9f' % (stamp / SECOND), good, '%s, %.9f' % (expected, time / SECOND))
         self.last_stamp[sensor] = stamp
+        self._add_arrival(sensor, self.clock() if self.clock else now)
         other = self.last_stamp['odom' if sensor == 'imu_data' else 'imu_data']
-        # not if it is still as late as when it timed out
-        if self.timed_out[sensor] and (other or 0) - stamp <= self.timeout:
+        # not if it is still as late as when it was given up
+        if self.timed_out[sensor] and (sensor == 'odom' or (other or 0) - stamp <= MAX_WAIT):
             self.timed_out[sensor] = False
             self.warn('%s has recovered' % sensor)
         return before
 
-    def _set_timed_out(self, sensor):
+    def _add_arrival(self, sensor, clock):
+        """Tell that a message arrives. A pause of both sensors counts little: the process may have been asleep, and the
+        messages of the one be processed before those of the other."""
+        self.arrival += min(max(0, clock - self.last_clock), self.timeout // 4)
+        self.last_clock = clock
+        self.last_arrival[sensor] = self.arrival
+
+    def _is_silent(self, sensor, since):
+        """Whether no message of a sensor has arrived for longer than the timeout. since: ns, if there was none yet."""
+        last = self.last_arrival[sensor]
+        return self.arrival - (since if last is None else last) > self.timeout
+
+    def _set_timed_out(self, sensor, reason=None):
         if not self.timed_out[sensor]:
             self.timed_out[sensor] = True
-            self.warn('%s has timed out: no message for more than %g s; not used until it recovers'
-                      % (sensor, self.timeout / SECOND))
+            self.warn('%s has timed out: %s; not used until it recovers'
+                      % (sensor, reason or 'no message for more than %g s' % (self.timeout / SECOND)))
 
     # steps
 
     def _make_steps(self):
         """Make all steps for which there are messages."""
         while self.pending and self._gyro_is_ready():
-            self._step(self.pending.popleft())
-        if self.filter and not self.pending and (self.last_stamp['imu_data'] or 0) - self.odom.stamp > self.timeout:
+            self._step(self.pending.popleft()[1])
+        if (self.filter and not self.pending and (self.last_stamp['imu_data'] or 0) - self.odom.stamp > self.timeout
+                and self._is_silent('odom', 0)):
             self._set_timed_out('odom')
             self._step_by_gyro(self.last_stamp['imu_data'])
 
     def _gyro_is_ready(self):
         """Whether the gyro has reported up to the first pending odometry, or need not be waited for."""
-        first, last, reported = self.pending[0].stamp, self.pending[-1].stamp, self.last_stamp['imu_data']
-        if not self.gyro_used or self.timed_out['imu_data'] or reported is not None and reported >= first:
+        (arrival, first), (_, last), reported = self.pending[0], self.pending[-1], self.last_stamp['imu_data']
+        if not self.gyro_used or self.timed_out['imu_data'] or reported is not None and reported >= first.stamp:
             return True
-        if last - (first if reported is None else reported) > self.timeout:
+        if self.arrival - arrival > MAX_WAIT:
+            self._set_timed_out('imu_data', 'its messages come more than %g s late' % (MAX_WAIT / SECOND))
+        elif (last.stamp - (first.stamp if reported is None else reported) > self.timeout
+              and self._is_silent('imu_data', arrival)):
             self._set_timed_out('imu_data')
         return self.timed_out['imu_data']
 
@@ -152,6 +178,7 @@ class CombinedOdometry:
             return
         if not self.filter:
             self.filter = Filter(self.prior, odom.pose)
+            self.odom_yaw = odom.pose.yaw
             self._finish(odom.stamp, odom)
             return
 
@@ -167,24 +194,53 @@ class CombinedOdometry:
             # the gyro was used alone, but not up to here: the wheels measured the rest of the turn
             already = (self.filter.state[YAW] - self.odom_yaw) / (1 - self.filter.state[TURNING])
             wheels = wrap_angle(turned - already), odom.angular_variance * elapsed ** 2
-        turn = self.filter.turn(duration, wheels, gyro)
+        turn = self.filter.turn(duration, wheels, gyro, hypot(dx, dy))
+        if wheels and gyro:
+            self._check_agreement(wheels[0], gyro[0], hypot(dx, dy), duration)
 
         # the displacement in the wheels' heading half way
         heading = self.odom.pose.yaw + turned / 2
         c, s = cos(heading), sin(heading)
         forward, left = dx * c + dy * s, dy * c - dx * s
-        # that heading in the filter's frame: half way from the yaw at the last odometry
-        since = self.filter.state[YAW] - self.odom_yaw
-        ahead = turned + wrap_angle(since + turn.angle - turned)
-        self.filter.move(duration, turn, ahead / 2 - since - turn.angle / 2, forward, left,
+        # that heading in the filter's frame: half way between the yaws at the last odometry and at this one
+        yaw = self.filter.state[YAW]
+        end = yaw + turn.angle if odom.stamp >= self.time else self._past_yaw(odom.stamp)
+        ahead = turned + wrap_angle(end - self.odom_yaw - turned)
+        self.filter.move(duration, turn, self.odom_yaw + ahead / 2 - yaw - turn.angle / 2, forward, left,
                          odom.linear_variance * elapsed ** 2)
+        self.odom_yaw = end
         self._finish(max(odom.stamp, self.time), odom)
+
+    def _check_agreement(self, wheels, gyro, travelled, duration):
+        """Warn where wheels and gyro contradict what the filter believes, or each other."""
+        ekf = self.filter
+        sums = ekf.agreement
+        if not sums.add(wheels, gyro - ekf.state[BIAS] * duration, travelled, duration):
+            return
+        measured = 'odom turned by %.2f rad, imu_data by %.2f rad' % (sums.wheels, sums.gyro)
+        before, self.contradict = self.contradict, bool(ekf.contradiction())
+        if self.contradict and not before:
+            self.warn('%s: one of them is wrong; the heading is uncertain' % measured)
+        elif not (self.contradict or self.another_floor) and ekf.is_another_floor():
+            self.another_floor = True
+            self.warn('%s: this is another floor than assumed; the distance is less certain' % measured)
 
     def _step_by_gyro(self, end):
         duration = (end - self.time) / SECOND
         if duration > 0:
+            if not self.yaws:
+                self.yaws.append((self.time, self.filter.state[YAW]))
             self.filter.move(duration, self.filter.turn(duration, None, self._gyro_turn(end)))
             self._finish(end, None)
+            self.yaws.append((end, self.filter.state[YAW]))
+
+    def _past_yaw(self, stamp):
+        """The filter's yaw at the stamp (ns) of odometry that is behind the gyro."""
+        yaws = self.yaws
+        while yaws[1][0] < stamp:
+            yaws.popleft()
+        (start, before), (end, after) = yaws[0], yaws[1]
+        return before + (after - before) * (stamp - start) / (end - start)
 
     def _gyro_turn(self, end):
         """(angle, variance) of the readings up to `end` (ns); None if they do not cover all of that time."""
@@ -208,8 +264,10 @@ class CombinedOdometry:
         self.time = time
         state = self.filter.state
         if odom:
-            self.odom, self.odom_yaw = odom, state[YAW]
-        covariance = self.filter.covariance[:3, :3].copy()
+            self.odom = odom
+            if odom.stamp >= time:
+                self.yaws.clear()
+        covariance = self.filter.covariance
         unknown_travel = DROPOUT_SPEED * (time - self.odom.stamp) / SECOND
         covariance[X, X] += unknown_travel ** 2
         covariance[Y, Y] += unknown_travel ** 2

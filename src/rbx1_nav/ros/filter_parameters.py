@@ -1,16 +1,17 @@
-"""The parameters of the filter node, and the surface that its initial uncertainties come from."""
+"""The parameters of the filter node, and the floor that it starts with."""
 import xmlrpc.client
 
 import rosgraph
 import rospy
 
 from rbx1_nav.config import ConfigError, Section
+from rbx1_nav.estimation.filter import UNKNOWN, priors
 from rbx1_nav.model.surfaces import load_surface
 from rbx1_nav.ros import resources
 from rbx1_nav.ros.master import call
 
 AUTO = 'auto'       # the surface of the simulated base, or else
-DEFAULT_SURFACE = 'low_ply_carpet'
+ANY = 'unknown'     # any floor
 
 
 def read_parameters(params):
@@ -31,25 +32,23 @@ def read_parameters(params):
         raise ConfigError('odom_used: False: expected true, nothing else measures the distance')
     if section.flag('vo_used', False):
         raise ConfigError('vo_used: True: expected false, visual odometry is not supported')
-    if values['surface'] != AUTO:
+    if values['surface'] not in (AUTO, ANY):
         load_surface(values['surface'], resources.surfaces())
     return values
 
 
-def find_surface(name, base, log):
-    """The Surface of this name; for AUTO, that of the node `base`, or else DEFAULT_SURFACE.
-
-    A simulated base has a parameter `surface`; a real one is assumed to stand on carpet, like the tutorial's.
-    log(function, text): logs a line.
+def find_prior(name, base, log):
+    """The Priors of the surface of this name, UNKNOWN for ANY; for AUTO, those of the surface of the node `base`, which
+    has a parameter `surface` if it is simulated, or else UNKNOWN. log(function, text): logs a line.
     """
     try:
         if name == AUTO:
             key, master = base + '/surface', rosgraph.get_master_uri()
             # not by rospy, which waits for a frozen master for ever
-            name = call(master, 'getParam', key) if call(master, 'hasParam', key) else DEFAULT_SURFACE
-        surface = load_surface(name, resources.surfaces())
+            name = call(master, 'getParam', key) if call(master, 'hasParam', key) else ANY
+        prior = UNKNOWN if name == ANY else priors(load_surface(name, resources.surfaces()))
     except (ConfigError, OSError, xmlrpc.client.Error) as error:     # or no answer from the master
-        log(rospy.logwarn, '%s/%s; using %s instead' % (base, error, DEFAULT_SURFACE))
-        name, surface = DEFAULT_SURFACE, load_surface(DEFAULT_SURFACE, resources.surfaces())
-    log(rospy.loginfo, 'Initial uncertainties of wheels and gyro: as on %s' % name)
-    return surface
+        log(rospy.logwarn, '%s/%s; using %s instead' % (base, error, ANY))
+        name, prior = ANY, UNKNOWN
+    log(rospy.loginfo, 'Floor that the filter starts with: %s' % name)
+    return prior

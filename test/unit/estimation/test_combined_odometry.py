@@ -1,4 +1,5 @@
 """The combined odometry: the order of messages, rejected messages, dropouts, jumps and restarts."""
+from itertools import count
 from math import cos, pi, sin
 
 import numpy
@@ -240,16 +241,90 @@ def test_readings_at_the_limit_of_the_measurement_range_are_not_used():
     assert robot.combined.filter.state[YAW] == pytest.approx(4.0 * 0.97, abs=1e-3)
 
 
-@pytest.mark.parametrize('lag', [1.1, 5.0])
-def test_a_gyro_that_is_always_late_times_out_once(lag):
-    robot = Robot(IDEAL)
+def send_late(odom_lag, imu_lag):
+    """Ten seconds of a robot whose messages come late (s); it, and where it was at the stamp of the last estimate."""
+    robot, poses = Robot(IDEAL), {}
     for _ in range(500):
         robot.now += STEP
+        robot.pose = poses[robot.now] = arc(robot.pose, 0.004, 0.01)
+        stamp = robot.now - round(odom_lag * SECOND)
+        if stamp in poses:
+            robot.combined.add_odom(robot.now, Odom(stamp, poses[stamp], 1e-6, 1e-6), VARIANCES)
+        robot.combined.add_imu(robot.now, Imu(robot.now - round(imu_lag * SECOND), 0.5, 3e-6))
+    return robot, poses[robot.combined.estimate.stamp]
+
+
+@pytest.mark.parametrize('odom_lag, imu_lag', [(0.0, 1.1), (0.0, 4.0), (1.1, 0.0), (8.0, 0.0)])
+def test_a_sensor_that_is_always_late_is_waited_for(odom_lag, imu_lag):
+    robot, pose = send_late(odom_lag, imu_lag)
+    assert not robot.warnings and exact(robot.combined.estimate, pose)
+    behind = (robot.now - robot.combined.estimate.stamp) / SECOND
+    assert behind == pytest.approx(max(odom_lag, imu_lag), abs=0.021)
+
+
+def test_a_gyro_that_is_too_late_times_out_once():
+    robot, pose = send_late(0.0, 6.0)
+    assert robot.warnings == ['imu_data has timed out: its messages come more than 5 s late; '
+                              'not used until it recovers']
+    assert robot.combined.estimate.stamp == robot.now and exact(robot.combined.estimate, pose)
+
+
+def test_odometry_that_is_later_after_a_dropout_counts_again():
+    robot = Robot(IDEAL)
+    robot.send(50, 0.2)
+    poses = {}
+    for tick in range(600):     # nothing for 4 s, then all of it, and 1.1 s late from then on
+        robot.send(1, 0.2, 0.3, odom=False)
+        poses[robot.now] = robot.pose
+        stamp = robot.now - round(1.1 * SECOND)
+        if tick > 200 and stamp in poses:
+            robot.combined.add_odom(robot.now, Odom(stamp, poses[stamp], 1e-6, 1e-6), VARIANCES)
+    assert len(robot.warnings) == 2 and not robot.combined.timed_out['odom']
+    assert exact(robot.combined.estimate, poses[robot.combined.estimate.stamp], abs=1e-3)
+    assert robot.combined.estimate.covariance[X, X] < 1e-3
+
+
+def test_simulated_time_that_runs_fast_is_no_dropout():
+    arrival = 0
+    robot = Robot(IDEAL, clock=lambda: arrival)
+    for _ in range(20):         # each sensor's messages come in bursts of 3 s, every 0.15 s of the wall
+        stamps = [robot.now + STEP * (number + 1) for number in range(150)]
+        odoms = []
+        for robot.now in stamps:
+            robot.pose = arc(robot.pose, 0.004, 0.01)
+            odoms.append(robot.odom())
+        for odom in odoms:
+            robot.combined.add_odom(robot.now, odom, VARIANCES)
+        arrival += SECOND * 15 // 100
+        for stamp in stamps:
+            robot.combined.add_imu(robot.now, Imu(stamp, 0.5, 3e-6))
+    assert not robot.warnings and exact(robot.combined.estimate, robot.pose)
+
+
+def test_messages_that_wait_while_the_process_sleeps_are_no_dropout():
+    clock = 0
+    robot = Robot(IDEAL, clock=lambda: clock)
+    robot.send(50, 0.2, 0.5)
+    clock += 10 * SECOND
+    stamps, odoms = [], []
+    for _ in range(200):
+        robot.now += STEP
         robot.pose = arc(robot.pose, 0.004, 0.01)
-        robot.combined.add_odom(robot.now, robot.odom(), VARIANCES)
-        robot.combined.add_imu(robot.now, Imu(robot.now - round(lag * SECOND), 0.5, 3e-6))
-    assert len(robot.warnings) == 1 and 'imu_data has timed out' in robot.warnings[0]
-    assert exact(robot.combined.estimate, robot.pose)
+        stamps.append(robot.now)
+        odoms.append(robot.odom())
+    for stamp in stamps:
+        clock += SECOND // 1000
+        robot.combined.add_imu(robot.now, Imu(stamp, 0.5, 3e-6))
+    for odom in odoms:
+        robot.combined.add_odom(robot.now, odom, VARIANCES)
+    assert not robot.warnings and exact(robot.combined.estimate, robot.pose)
+
+
+def test_simulated_time_that_runs_slowly_is_no_dropout():
+    arrivals = count(0, 2 * SECOND)
+    robot = Robot(IDEAL, clock=lambda: next(arrivals))
+    robot.send(100, 0.2, 0.5)
+    assert not robot.warnings and exact(robot.combined.estimate, robot.pose)
 
 
 # the order of messages

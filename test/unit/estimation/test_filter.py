@@ -1,71 +1,131 @@
 """The arithmetic of the filter: derivatives, covariances and means are right."""
-from math import cos, sin
+from math import cos, sin, sqrt
+from unittest.mock import patch
 
 import numpy
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rbx1_nav.estimation.filter import BIAS, BIAS_WALK, ROUNDING, SCALE, STRAIGHT, TURNING, X, YAW, Filter
+from rbx1_nav.estimation.filter import BIAS, SCALE, SLIP_WALK, STRAIGHT, TURNING, UNKNOWN, X, YAW, Filter
 from rbx1_nav.model.kinematics import ORIGIN
 from sample_priors import IDEAL, PRIORS
 
 angles = st.floats(-3, 3)
 small = st.floats(-0.1, 0.1)
 variances = st.floats(1e-9, 1e-3)
+any_variance = st.floats(-12, 12).map(lambda exponent: 10 ** exponent)
+durations = st.floats(-3, 7).map(lambda exponent: 10 ** exponent)
+
+
+def with_state(state, prior=PRIORS):
+    """A filter with this state, and 1 mm, mrad ... of uncertainty."""
+    ekf = Filter(prior, ORIGIN)
+    ekf.state = list(state)
+    ekf.root[:, :7] = 1e-3 * numpy.eye(7)
+    return ekf
+
+
+def whole_covariance(ekf):
+    """Of the whole state."""
+    return ekf.root @ ekf.root.T
 
 
 def after_step(state, wheels, gyro, forward, left, variance):
     """A filter, one step of 0.02 s after it had this state."""
-    ekf = Filter(PRIORS, ORIGIN)
-    ekf.state = list(state)
-    ekf.covariance = numpy.diag([1e-6] * 8)
+    ekf = with_state(state, IDEAL)
     turn = ekf.turn(0.02, wheels, gyro)
     ekf.move(0.02, turn, 0.1, forward, left, variance)
     return ekf
 
 
-@given(st.tuples(small, small, angles, small, small, small, small, small), small, variances, small, small,
+@given(st.tuples(small, small, angles, small, small, small, small), small, variances, small, small,
        st.sampled_from(['wheels', 'gyro']))
 def test_the_covariance_follows_from_the_derivatives_of_a_step(state, angle, variance, forward, left, sensor):
     sensors = [(angle, variance), None] if sensor == 'wheels' else [None, (angle, variance)]
     ekf = after_step(state, *sensors, forward, left, 0.0)
-    derivatives = numpy.zeros((8, 8))
+    derivatives = numpy.zeros((7, 7))
     h = 1e-6
-    for i in range(8):
+    for i in range(7):
         up, down = (after_step([v + s * (j == i) for j, v in enumerate(state)], *sensors, forward, left, 0.0).state
                     for s in (h, -h))
         derivatives[:, i] = (numpy.array(up) - down) / (2 * h)
-    expected = derivatives @ numpy.diag([1e-6] * 8) @ derivatives.T
+    expected = derivatives @ (1e-6 * numpy.eye(7)) @ derivatives.T
     # and the noise of the turn, which moves x and y by half of what a change of heading would
     # (of the robot's own heading half way, whatever frame the displacement is in)
     grip = 1 - state[STRAIGHT]
-    along = forward + (state[ROUNDING] if forward or left else 0.0)
     middle = state[YAW] + (ekf.state[YAW] - state[YAW]) / 2 + 0.1
-    by_turn = numpy.zeros(8)
-    by_turn[:3] = (-grip * (along * sin(middle) + left * cos(middle)) / 2,
-                   grip * (along * cos(middle) - left * sin(middle)) / 2, 1.0)
+    by_turn = numpy.zeros(7)
+    by_turn[:3] = (-grip * (forward * sin(middle) + left * cos(middle)) / 2,
+                   grip * (forward * cos(middle) - left * sin(middle)) / 2, 1.0)
     scale = 1 - state[TURNING] if sensor == 'wheels' else 1 / (1 + state[SCALE])
     expected += numpy.outer(by_turn, by_turn) * variance * scale ** 2
-    expected[BIAS, BIAS] += BIAS_WALK ** 2 * 0.02
     # central differences have an error of 1e-10 where the derivatives are about 1
-    numpy.testing.assert_allclose(ekf.covariance, expected, atol=1e-12, rtol=1e-4)
+    numpy.testing.assert_allclose(whole_covariance(ekf), expected, atol=1e-12, rtol=1e-4)
+    numpy.testing.assert_allclose(ekf.covariance, expected[:3, :3], atol=1e-12, rtol=1e-4)
 
 
-@given(st.lists(st.tuples(small, small, variances, variances), min_size=1, max_size=30))
+@given(st.tuples(small, small, angles, small, small, small, small), angles, variances, variances)
+def test_a_comparison_changes_state_and_covariance_as_in_the_textbook(state, turned, wheel_noise, gyro_noise):
+    ekf = with_state(state, IDEAL)
+    grip, scale = 1 - state[TURNING], 1 + state[SCALE]
+    gyro = (turned * grip + 1e-4) * scale + state[BIAS] * 0.02     # differs by 1e-4 rad
+    ekf.turn(0.02, (turned, wheel_noise), (gyro, gyro_noise))
+    row = numpy.zeros(7)
+    row[BIAS], row[SCALE], row[TURNING] = 0.02 / scale, (turned * grip + 1e-4) / scale, -(turned * grip + 1e-4) / grip
+    before = 1e-6 * numpy.eye(7)
+    gain = before @ row / (row @ before @ row + wheel_noise * grip ** 2 + gyro_noise / scale ** 2)
+    numpy.testing.assert_allclose(ekf.state, numpy.array(state) + 1e-4 * gain, atol=1e-9)
+    numpy.testing.assert_allclose(whole_covariance(ekf), before - numpy.outer(gain, row @ before), atol=1e-15)
+
+
+def test_slip_and_bias_walk():
+    ekf = with_state([0.0] * 7)
+    for _ in range(1000):
+        ekf.move(0.02, ekf.turn(0.02, (0.01, 1e-6)), 0.0, 0.004, 0.0, 1e-8)
+    grown = numpy.diagonal(whole_covariance(ekf)) - 1e-6
+    # of 4 m and 10 rad, all but the last steps
+    assert grown[STRAIGHT] == pytest.approx(4 * SLIP_WALK ** 2, rel=0.05)
+    assert grown[TURNING] == pytest.approx(10 * SLIP_WALK ** 2, rel=0.05)
+    assert 0 < grown[BIAS] < 1e-6
+
+
+@given(st.floats(0.01, 3), st.floats(0.01, 3), st.integers(1, 50))
+def test_the_noise_of_a_floor_does_not_depend_on_the_step(turned, travelled, count):
+    ekf = Filter(UNKNOWN, ORIGIN)
+    ekf.root[TURNING] = 0.0
+    with patch('rbx1_nav.estimation.filter.SLIP_WALK', 0.0):
+        for _ in range(count):
+            ekf.move(0.0, ekf.turn(0.0, (turned / count, 1e-12), travelled=travelled / count))
+    assert ekf.covariance[YAW, YAW] == pytest.approx(0.084 ** 2 * turned + 0.066 ** 2 * travelled + 1e-9)
+    straight = Filter(UNKNOWN, ORIGIN)
+    straight.root[STRAIGHT] = 0.0
+    with patch('rbx1_nav.estimation.filter.SLIP_WALK', 0.0):
+        for _ in range(count):
+            straight.move(0.0, straight.turn(0.0), 0.0, travelled / count, 0.0, 1e-12)
+    assert straight.covariance[X, X] == pytest.approx(0.044 ** 2 * travelled + 1e-9)
+
+
+@given(st.lists(st.tuples(angles, st.floats(-1e6, 1e6), durations, any_variance, any_variance, st.integers(0, 2)),
+                min_size=1, max_size=60))
 def test_the_covariance_stays_symmetric_and_positive(steps):
     ekf = Filter(PRIORS, ORIGIN)
-    for turned, forward, wheel_variance, gyro_variance in steps:
-        turn = ekf.turn(0.02, (turned, wheel_variance), (turned, gyro_variance))
-        ekf.move(0.02, turn, 0.0, forward, 0.0, wheel_variance)
-        numpy.testing.assert_allclose(ekf.covariance, ekf.covariance.T, rtol=1e-9, atol=1e-18)
-        assert numpy.linalg.eigvalsh(ekf.covariance).min() > -1e-15
+    for turned, forward, duration, wheel_variance, gyro_variance, sensors in steps:
+        wheels = (turned, wheel_variance * duration ** 2) if sensors < 2 else None
+        gyro = (turned * 0.9, gyro_variance * duration ** 2) if sensors > 0 else None
+        ekf.move(duration, ekf.turn(duration, wheels, gyro, abs(forward)), 0.0, forward, 0.0,
+                 wheel_variance * duration ** 2)
+        for covariance in whole_covariance(ekf), ekf.covariance:
+            numpy.testing.assert_array_equal(covariance, covariance.T)
+            values = numpy.linalg.eigvalsh(covariance)
+            assert values[0] >= -1e-12 * values[-1]
         assert numpy.isfinite(ekf.state).all()
 
 
 @given(angles, angles, variances, variances)
 def test_the_turn_is_the_mean_of_wheels_and_gyro_by_their_variances(by_wheels, by_gyro, wheel_noise, gyro_noise):
     ekf = Filter(IDEAL, ORIGIN)
+    ekf.root[BIAS:] = 0.0       # no errors but the noise
     angle, noise, *_ = ekf.turn(0.02, (by_wheels, wheel_noise), (by_gyro, gyro_noise))
     if (by_wheels - by_gyro) ** 2 > 25 * (wheel_noise + gyro_noise):
         assert (angle, noise) == (by_gyro, gyro_noise) and ekf.outliers == 1
@@ -75,10 +135,46 @@ def test_the_turn_is_the_mean_of_wheels_and_gyro_by_their_variances(by_wheels, b
         assert angle == pytest.approx((by_wheels / wheel_noise + by_gyro / gyro_noise) * noise, abs=1e-12)
 
 
-def test_the_rounding_of_encoder_counts_does_not_accumulate():
-    ekf = Filter(IDEAL, ORIGIN)
-    for _ in range(1000):
-        ekf.move(0.02, ekf.turn(0.02, (0.0, 1e-12), None), 0.0, 0.004, 0.0, 1e-8)
-    # the variance of one rounding, half of that of a step
-    assert ekf.covariance[X, X] == pytest.approx(0.5e-8 + 1e-9, rel=1e-3)
-    assert ekf.state[X] == pytest.approx(4.0)
+def drive(prior, slip, gyro_factor=1.0, turned=6.0):
+    """A filter after a rest, and so much of turning with wheels that slip, and a gyro that measures a multiple of the
+    turn; and whether it has noticed another floor, and a contradiction."""
+    ekf, floor, contradiction = Filter(prior, ORIGIN), False, 0.0
+    for _ in range(100):
+        ekf.move(0.02, ekf.turn(0.02, (0.0, 1e-9), (0.0, 1e-9)))
+    for _ in range(round(turned / 0.02)):
+        wheels, gyro = 0.02 / (1 - slip), 0.02 * gyro_factor
+        ekf.move(0.02, ekf.turn(0.02, (wheels, 1e-8), (gyro, 1e-9)))
+        if ekf.agreement.add(wheels, gyro, 0.0, 0.02):
+            floor, contradiction = floor or ekf.is_another_floor(), ekf.contradiction()
+    return ekf, floor, contradiction
+
+
+def test_another_floor_is_noticed():
+    floor = PRIORS._replace(slip_turning=0.005, slip_turning_spread=0.002, heading_noise_turning=0.0)
+    same, noticed, _ = drive(floor, 0.006)
+    assert not noticed
+    other, noticed, contradiction = drive(floor, 0.08)
+    assert noticed and not contradiction
+    # its straight slip is less certain then, and its turn still the gyro's
+    assert (other.root[STRAIGHT] @ other.root[STRAIGHT]) > 2 * (same.root[STRAIGHT] @ same.root[STRAIGHT])
+    assert other.state[YAW] == pytest.approx(6.0, abs=0.02)
+
+
+@pytest.mark.parametrize('slip, factor', [(0.0, -1.0), (0.9, 1.0), (0.0, 1.5)])
+def test_a_contradiction_makes_the_heading_as_uncertain_as_wheels_and_gyro_differ(slip, factor):
+    ekf, _, contradiction = drive(UNKNOWN, slip, factor)
+    assert abs(contradiction) > 1
+    assert sqrt(ekf.covariance[YAW, YAW]) == pytest.approx(abs(contradiction), rel=0.2)
+
+
+@given(st.floats(-0.07, 0.07), st.floats(1.5, 60))
+def test_no_slip_of_a_known_floor_is_a_contradiction(slip, turned):
+    assert drive(UNKNOWN, slip, turned=turned)[1:] == (False, 0.0)
+
+
+def test_the_noise_of_a_robot_that_stands_or_goes_straight_is_no_turn():
+    ekf = Filter(UNKNOWN, ORIGIN)
+    generator = numpy.random.default_rng(1)
+    for wheels, gyro in generator.normal(0, 1e-3, (100000, 2)):
+        ekf.agreement.add(wheels, gyro, 0.004, 0.02)
+    assert ekf.agreement.turned == 0.0

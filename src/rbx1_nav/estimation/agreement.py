@@ -1,0 +1,51 @@
+"""Whether wheels and gyro agree as well as their floor lets them, over the last turns of the robot."""
+from math import copysign, exp, sqrt
+
+TURN = 0.2          # rad: the parts in which a turn is looked at
+STRAIGHT = 5.0      # s: whoever has not turned that far by then goes straight
+MEMORY = 10.0       # rad: a turn is forgotten with the exponential of what the robot has turned since
+LEAST = 1.5         # rad: less says too little
+DEVIATIONS = 5.0    # standard deviations that are no chance any more
+ROUNDING = 0.005    # rad: what wheels and gyro may differ by anyway
+
+
+class Agreement:
+    """Sums of what wheels and gyro measured in turns, each counted in its own direction."""
+
+    def __init__(self):
+        self.part = [0.0] * 4       # wheels and gyro (rad, counter-clockwise positive), m, s since the last whole part
+        self.wheels = self.gyro = self.turned = 0.0     # rad; turned: by the one that reports more
+        self.travelled = self.time = 0.0                # m, s
+
+    def add(self, wheels, gyro, travelled, duration):
+        """A step: the turn (rad) by the wheels, and by the gyro without its bias; m by the wheels; s. Returns whether
+        that makes a part, so that there is something new to ask for."""
+        part = self.part
+        part[0] += wheels
+        part[1] += gyro
+        part[2] += travelled
+        part[3] += duration
+        if abs(part[0]) < TURN and abs(part[1]) < TURN:
+            if part[3] > STRAIGHT:
+                self.part = [0.0] * 4
+            return False
+        lead = max(part[:2], key=abs)
+        sign, kept = copysign(1, lead), exp(-abs(lead) / MEMORY)
+        self.wheels = self.wheels * kept + sign * part[0]
+        self.gyro = self.gyro * kept + sign * part[1]
+        self.turned = self.turned * kept + abs(lead)
+        self.travelled = self.travelled * kept + part[2]
+        self.time = self.time * kept + part[3]
+        self.part = [0.0] * 4
+        return True
+
+    def difference(self, prior, bias):
+        """The angle (rad) by which wheels and gyro differ more than on a floor; 0 if that may be chance.
+
+        prior: the Priors of the floor; bias: variance of the gyro's bias, rad^2/s^2.
+        """
+        difference = self.wheels * (1 - prior.slip_turning) - self.gyro
+        variance = (ROUNDING ** 2 + bias * self.time ** 2
+                    + (prior.slip_turning_spread ** 2 + prior.gyro_scale_error ** 2) * self.turned ** 2
+                    + prior.heading_noise_turning ** 2 * self.turned + prior.heading_noise_straight ** 2 * self.travelled)
+        return difference if self.turned > LEAST and abs(difference) > DEVIATIONS * sqrt(variance) else 0.0
