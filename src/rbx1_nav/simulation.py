@@ -36,32 +36,49 @@ Result = namedtuple('Result', 'end first_leg covariance path')
 Result.__doc__ = """A run: Snapshot of its end, true distance at the end of the first motion (m), the 3x3 covariance of
 the filter's pose (m and rad; None without a filter), and the Snapshots of all ticks (None if not kept)."""
 
+Messages = namedtuple('Messages', 'imu orientation odom pose_variances')
+Messages.__doc__ = """What the base publishes at a tick: the Imu, the (yaw, variance) of its orientation (rad and rad^2), the
+Odom, and the variances of its pose's x, y (m^2) and yaw (rad^2)."""
+
+
+def feed(combined, messages):
+    """Give a CombinedOdometry the Messages of a tick."""
+    now = messages.odom.stamp
+    combined.add_imu(now, messages.imu)
+    combined.add_odom(now, messages.odom, messages.pose_variances)
+
 
 class Simulation:
     """A robot, and a filter that receives its odometry and gyro readings."""
 
-    def __init__(self, robot, surface, seed, filtered, keep):
-        """filtered: whether there is a filter; keep: whether to keep a Snapshot of each tick in `path`."""
+    def __init__(self, robot, surface, seed, filtered, keep, prior=None, listen=None):
+        """filtered: whether there is a filter; keep: whether to keep a Snapshot of each tick in `path`; prior, listen:
+        see simulate()."""
         self.base = make_base(robot, surface, seed)
-        self.filter = CombinedOdometry(priors(surface), SECOND) if filtered else None
-        if filtered:
+        self.filter = CombinedOdometry(prior or priors(surface), SECOND) if filtered else None
+        self.listen = listen
+        if filtered or listen:
             self.base.read_gyro()       # readings begin now
         self.path = [] if keep else None
         self.now = 0
 
     def tick(self):
         """Advance by one tick."""
-        base = self.base
         self.now += TICK
-        base.advance(self.now)
+        self.base.advance(self.now)
+        messages = self._messages() if self.filter or self.listen else None
         if self.filter:
-            reading = base.read_gyro()
-            uncertainty = base.wheels.uncertainty
-            self.filter.add_imu(self.now, Imu(self.now, reading.rate, reading.rate_variance))
-            self.filter.add_odom(self.now, Odom(self.now, base.odometry.pose, uncertainty.linear, uncertainty.angular),
-                                 (uncertainty.position, uncertainty.position, uncertainty.yaw))
+            feed(self.filter, messages)
         if self.path is not None:
             self.path.append(self.snapshot())
+        if self.listen:
+            self.listen(self.snapshot(), messages)
+
+    def _messages(self):
+        reading, uncertainty = self.base.read_gyro(), self.base.wheels.uncertainty
+        return Messages(Imu(self.now, reading.rate, reading.rate_variance), (reading.yaw, reading.yaw_variance),
+                        Odom(self.now, self.base.odometry.pose, uncertainty.linear, uncertainty.angular),
+                        (uncertainty.position, uncertainty.position, uncertainty.yaw))
 
     def rest(self, ticks):
         """Stand still for a number of ticks."""
@@ -95,13 +112,14 @@ class Simulation:
             self.tick()
 
 
-def simulate(method, robot, surface, seed, filtered=False, keep=False):
+def simulate(method, robot, surface, seed, filtered=False, keep=False, prior=None, listen=None):
     """The exercise by one of METHODS; returns a Result. Raises StuckError.
 
     robot: a Robot; surface: a Surface, or None; seed: of the run's random errors; filtered: whether to run the filter,
-    as `ekf` always does; keep: whether to keep the path.
+    as `ekf` always does; keep: whether to keep the path; prior: Priors of the filter, if not those of the surface;
+    listen(Snapshot, Messages): called at each tick.
     """
-    simulation = Simulation(robot, surface, seed, filtered or method == 'ekf', keep)
+    simulation = Simulation(robot, surface, seed, filtered or method == 'ekf', keep, prior, listen)
     simulation.rest(CALIBRATION)
     if method == 'timed':
         motions, drive = out_and_back(**EXERCISE), simulation.drive_by_time

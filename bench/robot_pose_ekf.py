@@ -1,0 +1,76 @@
+"""The arithmetic of robot_pose_ekf for wheel odometry and an IMU, in the plane, without ROS.
+
+Written from what these sources do: robot_pose_ekf's odom_estimation.cpp (the models, and what is measured),
+odom_estimation_node.cpp (initial pose, covariances) and nonlinearanalyticconditionalgaussianodo.cpp (the motion), and
+the kalmanfilter.cpp and extendedkalmanfilter.cpp of BFL (the update). Units: metres, radians, seconds.
+"""
+import math
+
+import numpy
+
+SYSTEM_NOISE = 1000.0 ** 2      # added to each variance in each update: nothing is known but what is measured
+PRIOR_VARIANCE = 0.001 ** 2     # of the initial pose
+IMU = numpy.array([[0.0, 0.0, 1.0]])    # an IMU measures the yaw, odometry all of the state
+ODOM = numpy.eye(3)
+
+
+class RobotPoseEkf:
+    """The estimated pose: x, y, yaw, and its covariance. One update per pair of messages.
+
+    The node updates at its `freq`, up to the older of the two latest messages. Here every pair is used, so that the
+    estimate is never old.
+    """
+
+    def __init__(self):
+        self.state = None           # x, y, yaw
+        self.covariance = None
+        self.time = None            # s, of the last update
+        self.before = None          # (odometry's pose, IMU's yaw) at the last update
+
+    def update(self, time, odom, odom_variances, imu_yaw, imu_variance):
+        """Use odometry and an IMU's orientation with the same stamp.
+
+        odom: its pose (x, y, yaw); odom_variances: those of the three; imu_yaw: of the orientation.
+        """
+        measured = odom, imu_yaw
+        if self.state is None:      # the initial pose is that of the odometry
+            self.state, self.covariance = numpy.array(odom, float), PRIOR_VARIANCE * numpy.eye(3)
+            self.time = time
+            return
+        elapsed = time - self.time
+        if elapsed <= 0:
+            return
+        old = self.state.copy()
+        # the motion is 0, so the state stays, and its derivative is the unit matrix
+        self.covariance = self.covariance + SYSTEM_NOISE * numpy.eye(3)
+        if self.before:             # the first update has nothing to compare with
+            odom_before, yaw_before = self.before
+            self._correct(ODOM, compose(old, relative(odom, odom_before)), numpy.diag(odom_variances) * elapsed ** 2)
+            self._correct(IMU, [near(old[2] + imu_yaw - yaw_before, old[2])], [[imu_variance * elapsed ** 2]])
+        self.before = measured
+        self.time = time
+
+    def _correct(self, model, measured, noise):
+        gain_times_s = self.covariance @ model.T
+        gain = gain_times_s @ numpy.linalg.inv(model @ gain_times_s + noise)
+        self.state = gain @ (measured - model @ self.state) + self.state
+        self.covariance = self.covariance - gain @ model @ self.covariance
+
+
+def relative(pose, start):
+    """A pose in the frame of another one."""
+    dx, dy = pose[0] - start[0], pose[1] - start[1]
+    c, s = math.cos(start[2]), math.sin(start[2])
+    return dx * c + dy * s, dy * c - dx * s, pose[2] - start[2]
+
+
+def compose(start, motion):
+    """The pose after a motion in the frame of the start; its yaw within pi of that of the start."""
+    c, s = math.cos(start[2]), math.sin(start[2])
+    return numpy.array([start[0] + motion[0] * c - motion[1] * s, start[1] + motion[0] * s + motion[1] * c,
+                        near(start[2] + motion[2], start[2])])
+
+
+def near(angle, reference):
+    """The equivalent angle within pi of a reference."""
+    return reference + math.remainder(angle - reference, 2 * math.pi)
