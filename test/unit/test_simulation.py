@@ -7,9 +7,12 @@ import numpy
 import pytest
 import yaml
 
+from rbx1_nav.estimation.combined_odometry import CombinedOdometry
+from rbx1_nav.estimation.filter import priors
 from rbx1_nav.model.robot import read_robot
 from rbx1_nav.model.surfaces import load_surface
-from rbx1_nav.simulation import METHODS, simulate, simulate_many
+from rbx1_nav.simulation import METHODS, feed, simulate, simulate_many
+from rbx1_nav.units import SECOND
 
 CONFIG = os.path.join(os.path.dirname(__file__), '..', '..', 'config')
 SEEDS = range(20)
@@ -107,3 +110,22 @@ def test_several_processes_return_the_same_runs_in_the_same_order():
     parallel = list(simulate_many('timed', TURTLEBOT, CARPET, SEEDS, keep=2, jobs=2))
     assert single == parallel
     assert [run.path is not None for run in single] == [True] * 2 + [False] * 18
+
+
+@pytest.mark.parametrize('method', METHODS)
+def test_who_listens_receives_what_the_filter_does_and_changes_nothing(method):
+    other, estimates = CombinedOdometry(priors(CARPET), SECOND), []
+
+    def listen(snapshot, messages):
+        feed(other, messages)
+        estimates.append((snapshot.estimate, other.estimate.pose))
+    listened = simulate(method, TURTLEBOT, CARPET, 5, filtered=True, listen=listen)
+    assert listened.end == simulate(method, TURTLEBOT, CARPET, 5, filtered=True).end
+    assert len(estimates) > 1000 and all(one == another for one, another in estimates)
+
+
+def test_another_floor_may_be_assumed_than_the_true_one():
+    own, same, other = (simulate('timed', TURTLEBOT, CARPET, 5, filtered=True, prior=prior).end
+                        for prior in (None, priors(CARPET), priors(FLOOR)))
+    assert own == same and own._replace(estimate=None) == other._replace(estimate=None)
+    assert own.estimate != other.estimate

@@ -1,0 +1,124 @@
+"""The figures of a filter under a true and an assumed floor, and their limits; without ROS and without a simulator.
+
+Units: metres, radians; headings in the results in degrees. A pose is (x, y, yaw).
+"""
+from collections import namedtuple
+import math
+
+import numpy
+
+IDEAL, UNKNOWN = 'ideal', 'unknown'
+COLUMNS = ('heading', 'heading deg'), ('port_heading', 'port'), ('heading_ratio', 'ratio'), \
+    ('position', 'position m'), ('port_position', 'port'), ('position_ratio', 'ratio'), \
+    ('nees', 'NEES'), ('end_heading', 'end deg'), ('end_position', 'end m')
+
+Errors = namedtuple('Errors', 'ticks heading position end_heading end_position nees')
+Errors.__doc__ = """Summed up over runs: number of ticks; squared errors of heading (degrees^2) and position (m^2), over all
+ticks and at the end; normalised estimation errors squared at the end (0 for the port)."""
+
+
+def squared_errors(pose, truth):
+    """Squared errors of the heading (degrees^2) and the position (m^2)."""
+    return (math.degrees(math.remainder(pose[2] - truth[2], 2 * math.pi)) ** 2,
+            (pose[0] - truth[0]) ** 2 + (pose[1] - truth[1]) ** 2)
+
+
+def consistency(pose, truth, covariance):
+    """The normalised estimation error squared; infinite if the covariance is not positive definite."""
+    error = numpy.subtract(pose, truth)
+    error[2] = math.remainder(error[2], 2 * math.pi)
+    try:
+        return float(numpy.sum(numpy.linalg.solve(numpy.linalg.cholesky(covariance), error) ** 2))
+    except numpy.linalg.LinAlgError:
+        return math.inf
+
+
+class Follower:
+    """Sums up the errors of an estimate in one run."""
+
+    def __init__(self):
+        self.ticks = 0
+        self.heading = self.position = 0.0      # squares
+        self.last = None    # (estimate, truth)
+
+    def compare(self, pose, truth):
+        """Compare the estimate after a tick with the truth."""
+        self.last = pose, truth
+        self.ticks += 1
+        heading, position = squared_errors(pose, truth)
+        self.heading += heading
+        self.position += position
+
+    def errors(self, covariance=None):
+        """The Errors of the run, as an array. covariance: of the estimate at the end."""
+        return numpy.array([self.ticks, self.heading, self.position, *squared_errors(*self.last),
+                            0.0 if covariance is None else consistency(*self.last, covariance)])
+
+
+def figures(runs, stuck, errors, port):
+    """Root mean squares, their ratios, and the mean NEES. runs: their number; stuck: that of those that never ended;
+    errors, port: Errors of the filter and the port, summed over the runs."""
+    errors, port = Errors(*map(float, errors)), Errors(*map(float, port))
+    values = dict(runs=runs, stuck=stuck, nees=errors.nees / runs)
+    for name, sums in ('', errors), ('port_', port):
+        values.update({name + 'heading': math.sqrt(sums.heading / sums.ticks),
+                       name + 'position': math.sqrt(sums.position / sums.ticks),
+                       name + 'end_heading': math.sqrt(sums.end_heading / runs),
+                       name + 'end_position': math.sqrt(sums.end_position / runs)})
+    for name in 'heading', 'position':
+        if values['port_' + name] > 1e-9:   # on the ideal floor, the port's errors are those of rounding
+            values[name + '_ratio'] = values[name] / values['port_' + name]
+    return values
+
+
+def limits(true, assumed, values, unobservable):
+    """{figure: (least, greatest)} of a pair of floors.
+
+    unobservable: m, the wrongly assumed straight slip times the path, which nothing on the robot can observe.
+    """
+    heading, position = 1.1 * values['port_heading'] + 0.1, 1.1 * values['port_position'] + 0.002
+    if true == assumed:
+        if true == IDEAL:
+            return dict(heading=(0, 0.1), position=(0, 0.002), nees=(0, 5))
+        return dict(heading=(0, heading), position=(0, 0.8 * values['port_position']), nees=(0.7, 5))
+    if assumed == UNKNOWN:
+        return dict(heading=(0, heading), position=(0, position), nees=(0 if true == IDEAL else 0.7, 5))
+    return dict(heading=(0, heading), position=(0, position + unobservable), nees=(0, 10))
+
+
+def misses(values, bounds):
+    """The figures that are beyond their limits, and `stuck` if a run never ended."""
+    return ([name for name, (least, greatest) in bounds.items() if not least <= values[name] <= greatest]
+            + ['stuck'] * (values['stuck'] > 0))
+
+
+def digits(value):
+    """A figure as text, with three digits that count."""
+    return '-' if math.isnan(value) else '%.3g' % value if value < 100 or value >= 1e5 else '%.0f' % value
+
+
+def table(rows):
+    """One line per row: a dict with `true`, `assumed`, `method`, `misses` and what figures() returns."""
+    lines = [['true', 'assumed', 'method', *(title for _, title in COLUMNS), 'misses']]
+    lines += [[row['true'], row['assumed'], row['method'], *(digits(row.get(name, math.nan)) for name, _ in COLUMNS),
+               ', '.join(row['misses']) or '-'] for row in rows]
+    widths = [max(map(len, column)) for column in zip(*lines)]
+    for line in lines:
+        yield '  '.join(text.ljust(width) if number < 3 or number == len(line) - 1 else text.rjust(width)
+                        for number, (text, width) in enumerate(zip(line, widths))).rstrip()
+
+
+def markdown(rows):
+    """The same in Markdown, one line per pair of floors: each cell has one value per method, bold if beyond its limit."""
+    titles = 'true floor', 'assumed', 'heading (degrees)', 'the port', 'position (cm)', 'the port', 'NEES'
+    yield '| %s |' % ' | '.join(titles)
+    yield '|' + '---|' * len(titles)
+    pairs = {}
+    for row in rows:
+        pairs.setdefault((row['true'], row['assumed']), []).append(row)
+    for floors, methods in pairs.items():
+        cells = [', '.join(('**%.*f**' if name in row['misses'] else '%.*f') % (places, factor * row.get(name, math.nan))
+                           for row in methods)
+                 for name, factor, places in (('heading', 1, 2), ('port_heading', 1, 2), ('position', 100, 2),
+                                              ('port_position', 100, 2), ('nees', 1, 1))]
+        yield '| %s |' % ' | '.join([*floors, *cells])

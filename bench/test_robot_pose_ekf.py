@@ -1,0 +1,88 @@
+"""robot_pose_ekf's arithmetic, against its results in closed form.
+
+The system noise hides the old estimate in each update. So what is left of the filter is: the position moves as the
+odometry does, seen from the estimated heading, and the heading turns by the mean of both turns, weighted by the inverse
+variances.
+"""
+import cmath
+import math
+import random
+
+import numpy
+import pytest
+
+from robot_pose_ekf import SYSTEM_NOISE, RobotPoseEkf
+
+ROUNDING = 1e-5     # of the weights: variances near 1e-5 as the difference of two numbers near SYSTEM_NOISE
+VARIANCES = 1e-3, 1e-3, 1e-3
+
+
+def run(messages):
+    """The filter after messages: (time, odometry's pose, its variances, IMU's yaw, its variance)."""
+    port = RobotPoseEkf()
+    for message in messages:
+        port.update(*message)
+    return port
+
+
+def by_closed_form(messages):
+    """The same as complex position and yaw. The first message gives the pose, the second one the first measurements."""
+    place, heading = complex(*messages[0][1][:2]), messages[0][1][2]
+    for (_, before, _, imu_before, _), (_, odom, variances, imu, imu_variance) in zip(messages[1:], messages[2:]):
+        place += (complex(*odom[:2]) - complex(*before[:2])) * cmath.exp(1j * (heading - before[2]))
+        wheels, gyro = 1 / variances[2], 1 / imu_variance
+        heading += (wheels * math.remainder(odom[2] - before[2], 2 * math.pi)
+                    + gyro * math.remainder(imu - imu_before, 2 * math.pi)) / (wheels + gyro)
+    return place, heading
+
+
+def test_it_begins_at_the_pose_of_the_odometry():
+    port = run([(5.0, (1.0, 2.0, 3.0), VARIANCES, 0.7, 1e-3)])
+    assert port.state == pytest.approx([1.0, 2.0, 3.0]) and port.covariance == pytest.approx(1e-6 * numpy.eye(3))
+
+
+def test_straight_at_constant_speed_the_position_is_the_sum_of_the_odometry():
+    messages = [(0.1 * n, (0.02 * n, 0.0, 0.0), VARIANCES, 0.3, 1e-3) for n in range(101)]
+    # the travel up to the second message is lost: the first update has nothing to compare with
+    assert run(messages).state == pytest.approx([1.98, 0.0, 0.0], abs=1e-9)
+
+
+@pytest.mark.parametrize('imu_variance, turned', [(1e-3, 0.75), (3e-3, 0.625), (1e3, 0.5), (1e-7, 0.99995)])
+def test_a_turn_is_the_mean_weighted_by_the_inverse_variances(imu_variance, turned):
+    messages = [(0.1 * n, (0.0, 0.0, 0.005 * max(0, n - 1)), VARIANCES, 0.01 * max(0, n - 1), imu_variance)
+                for n in range(102)]
+    assert run(messages).state[2] == pytest.approx(turned, rel=ROUNDING)
+
+
+def test_variances_are_those_of_one_second():
+    port = run([(time, (0.0, 0.0, 0.0), (1e-3, 4e-3, 2e-3), 0.0, 2e-3) for time in (0.0, 1.0, 1.5)])
+    assert numpy.diag(port.covariance) == pytest.approx([2.5e-4, 1e-3, 2.5e-4], rel=ROUNDING)
+
+
+def test_the_first_update_leaves_the_system_noise():
+    port = run([(time, (0.0, 0.0, 0.0), VARIANCES, 0.0, 1e-3) for time in (0.0, 1.0)])
+    assert port.covariance == pytest.approx(SYSTEM_NOISE * numpy.eye(3))
+
+
+def test_a_stamp_that_is_not_later_has_no_effect():
+    messages = [(0.1 * n, (0.02 * n, 0.0, 0.0), VARIANCES, 0.0, 1e-3) for n in range(5)]
+    again = [(0.4, (9.0, 9.0, 1.0), VARIANCES, 1.0, 1e-3), (0.2, (9.0, 9.0, 1.0), VARIANCES, 1.0, 1e-3)]
+    assert list(run(messages + again).state) == list(run(messages).state)
+
+
+@pytest.mark.parametrize('seed', range(20))
+def test_any_drive_ends_as_in_closed_form(seed):
+    generator = random.Random(seed)
+    time, imu, x, y, yaw, messages = 0.0, 0.0, 0.0, 0.0, 0.0, []
+    for _ in range(300):    # several turns, both yaws reported within one turn, at changing intervals and variances
+        time += generator.uniform(0.05, 0.2)
+        turn = generator.uniform(-0.1, 0.3)
+        x, y = x + generator.uniform(-0.01, 0.04), y + generator.uniform(-0.04, 0.04)
+        yaw, imu = yaw + turn, imu + turn * generator.uniform(0.9, 1.1)
+        variances = [10 ** generator.uniform(-2, 1) for _ in range(4)]
+        messages.append((time, (x, y, math.remainder(yaw, 2 * math.pi)), variances[:3], imu % (2 * math.pi),
+                         variances[3]))
+    place, heading = by_closed_form(messages)
+    state = run(messages).state
+    assert complex(*state[:2]) == pytest.approx(place, abs=1e-6)
+    assert math.remainder(state[2] - heading, 2 * math.pi) == pytest.approx(0.0, abs=1e-6)
