@@ -79,11 +79,12 @@ def run_some(task):
 def tasks(robot, surfaces, assumed, methods, seeds):
     """The arguments of run_some() for all runs."""
     for true, surface in surfaces.items():
+        count = seeds if surface else 1     # nothing is drawn on the ideal floor
         for method in methods:
             # a robot that follows the filter drives another path with each
             for group in ([{name: prior} for name, prior in assumed.items()] if method == 'ekf' else [assumed]):
-                for start in range(0, seeds, CHUNK):
-                    yield robot, true, surface, group, method, range(start, min(start + CHUNK, seeds))
+                for start in range(0, count, CHUNK):
+                    yield robot, true, surface, group, method, range(start, min(start + CHUNK, count))
 
 
 def measure(robot, surfaces, assumed, methods, seeds, jobs):

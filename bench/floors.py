@@ -8,13 +8,14 @@ import math
 import numpy
 
 IDEAL, UNKNOWN = 'ideal', 'unknown'
-COLUMNS = ('heading', 'heading deg'), ('port_heading', 'port'), ('heading_ratio', 'ratio'), \
-    ('position', 'position m'), ('port_position', 'port'), ('position_ratio', 'ratio'), \
-    ('nees', 'NEES'), ('end_heading', 'end deg'), ('end_position', 'end m')
+COLUMNS = (('heading', 'heading deg'), ('port_heading', 'port'), ('heading_ratio', 'ratio'),
+           ('position', 'position m'), ('port_position', 'port'), ('position_ratio', 'ratio'),
+           ('nees', 'NEES'), ('end_heading', 'end deg'), ('end_position', 'end m'))
+CELLS = (('heading', 1, 2), ('port_heading', 1, 2), ('position', 100, 2), ('port_position', 100, 2), ('nees', 1, 1))
 
 Errors = namedtuple('Errors', 'ticks heading position end_heading end_position nees')
-Errors.__doc__ = """Summed up over runs: number of ticks; squared errors of heading (degrees^2) and position (m^2), over all
-ticks and at the end; normalised estimation errors squared at the end (0 for the port)."""
+Errors.__doc__ = """Sums over runs: number of ticks; squared errors of heading (degrees^2) and position (m^2) at all ticks,
+and at the end; normalised estimation error squared at the end (0 for the port)."""
 
 
 def squared_errors(pose, truth):
@@ -109,7 +110,7 @@ def table(rows):
 
 
 def markdown(rows):
-    """The same in Markdown, one line per pair of floors: each cell has one value per method, bold if beyond its limit."""
+    """The same in Markdown, one line per pair of floors. Each cell has a value per method, bold if beyond its limit."""
     titles = 'true floor', 'assumed', 'heading (degrees)', 'the port', 'position (cm)', 'the port', 'NEES'
     yield '| %s |' % ' | '.join(titles)
     yield '|' + '---|' * len(titles)
@@ -117,8 +118,10 @@ def markdown(rows):
     for row in rows:
         pairs.setdefault((row['true'], row['assumed']), []).append(row)
     for floors, methods in pairs.items():
-        cells = [', '.join(('**%.*f**' if name in row['misses'] else '%.*f') % (places, factor * row.get(name, math.nan))
-                           for row in methods)
-                 for name, factor, places in (('heading', 1, 2), ('port_heading', 1, 2), ('position', 100, 2),
-                                              ('port_position', 100, 2), ('nees', 1, 1))]
-        yield '| %s |' % ' | '.join([*floors, *cells])
+        yield '| %s |' % ' | '.join([*floors, *(', '.join(markdown_value(row, *cell) for row in methods)
+                                                for cell in CELLS)])
+
+
+def markdown_value(row, name, factor, places):
+    """A figure of a row, times a factor."""
+    return ('**%.*f**' if name in row['misses'] else '%.*f') % (places, factor * row.get(name, math.nan))

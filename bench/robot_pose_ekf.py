@@ -2,7 +2,7 @@
 
 Written from what these sources do: robot_pose_ekf's odom_estimation.cpp (the models, and what is measured),
 odom_estimation_node.cpp (initial pose, covariances) and nonlinearanalyticconditionalgaussianodo.cpp (the motion), and
-the kalmanfilter.cpp and extendedkalmanfilter.cpp of BFL (the update). Units: metres, radians, seconds.
+the kalmanfilter.cpp and extendedkalmanfilter.cpp of BFL 0.8 (the update). Units: metres, radians, seconds.
 """
 import math
 

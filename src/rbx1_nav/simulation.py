@@ -37,8 +37,8 @@ Result.__doc__ = """A run: Snapshot of its end, true distance at the end of the 
 the filter's pose (m and rad; None without a filter), and the Snapshots of all ticks (None if not kept)."""
 
 Messages = namedtuple('Messages', 'imu orientation odom pose_variances')
-Messages.__doc__ = """What the base publishes at a tick: the Imu, the (yaw, variance) of its orientation (rad and rad^2), the
-Odom, and the variances of its pose's x, y (m^2) and yaw (rad^2)."""
+Messages.__doc__ = """What the base publishes at a tick: Imu, (yaw, variance) of its orientation (rad, rad^2), Odom, and
+variances of its pose's x, y (m^2) and yaw (rad^2)."""
 
 
 def feed(combined, messages):
