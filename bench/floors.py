@@ -14,8 +14,8 @@ COLUMNS = (('heading', 'heading deg'), ('port_heading', 'port'), ('heading_ratio
 CELLS = (('heading', 1, 2), ('port_heading', 1, 2), ('position', 100, 2), ('port_position', 100, 2), ('nees', 1, 1))
 
 Errors = namedtuple('Errors', 'ticks heading position end_heading end_position nees')
-Errors.__doc__ = """Sums over runs: number of ticks; squared errors of heading (degrees^2) and position (m^2) at all ticks,
-and at the end; normalised estimation error squared at the end (0 for the port)."""
+Errors.__doc__ = """Sums over runs: number of ticks; squared errors of heading (degrees^2) and position (m^2) at all
+ticks, and at the end; normalised estimation error squared at the end (0 for the port)."""
 
 
 def squared_errors(pose, truth):
