@@ -12,7 +12,7 @@ from floors import UNKNOWN, Follower, figures, limits, misses, markdown, table
 from robot_pose_ekf import RobotPoseEkf
 from rbx1_nav.control.legs import StuckError
 from rbx1_nav.estimation.combined_odometry import CombinedOdometry
-from rbx1_nav.estimation.filter import Priors, priors
+from rbx1_nav.estimation.filter import UNKNOWN as any_floor, priors
 from rbx1_nav.model.robot import read_robot
 from rbx1_nav.model.surfaces import known_surfaces, load_surface
 from rbx1_nav.ros import resources
@@ -22,12 +22,6 @@ from rbx1_nav.units import SECOND
 PATH = 2 * EXERCISE['goal_distance']    # m, out and back
 CHUNK = 5       # seeds per task of a process
 NOTHING = 0, 0, 0.0, 0.0    # the arguments of figures() before the first run
-
-
-def unknown_priors():
-    """The Priors where no floor is named."""
-    return Priors(slip_straight=0.0, slip_straight_spread=0.05, slip_turning=0.0, slip_turning_spread=0.05,
-                  gyro_bias=math.radians(1), gyro_scale_error=0.01, gyro_measurement_range=math.inf)
 
 
 def run(robot, surface, assumed, method, seed):
@@ -122,7 +116,7 @@ def main():
             parser.error('--%s: %d: expected an integer above 0' % (name, getattr(arguments, name)))
     folder = resources.surfaces()
     surfaces = {name: load_surface(name, folder) for name in known_surfaces(folder)}
-    assumed = {**{name: priors(surface) for name, surface in surfaces.items()}, UNKNOWN: unknown_priors()}
+    assumed = {**{name: priors(surface) for name, surface in surfaces.items()}, UNKNOWN: any_floor}
     for name, known in ('true', surfaces), ('assumed', assumed):
         for value in getattr(arguments, name) or ():
             if value not in known:

@@ -137,9 +137,10 @@ class Filter:
         wheel_noise, gyro_noise = wheels[1] * grip ** 2, gyro[1] / scale ** 2
         angle = (gyro[0] - state[BIAS] * duration) / scale
         difference = wheels[0] * grip - angle
-        # the slip's derivative uses the gyro's turn: the wheels' turn is rounded to ticks, and noise that is both in a
-        # measurement and in its derivative does not average out
-        spread = numpy.array([duration / scale, angle / scale, -angle / grip]) @ root[BIAS:STRAIGHT]
+        # noise that is both in a measurement and in its derivative does not average out. So the slip's derivative uses the
+        # gyro's turn, since the wheels' is rounded to ticks; and where the wheels stand, the gyro's turn is all noise
+        turned = angle if wheels[0] else 0.0
+        spread = numpy.array([duration / scale, turned / scale, -turned / grip]) @ root[BIAS:STRAIGHT]
         noise = wheel_noise + gyro_noise
         variance = float(spread @ spread) + noise
         if difference ** 2 > OUTLIER ** 2 * variance:
