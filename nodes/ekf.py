@@ -4,13 +4,15 @@
 usage: ekf.py [_parameter:=value ...] [topic:=new_topic ...]      usually started by odom_ekf.launch
 
 Parameters:
-    ~freq               of odom_combined and its transform, Hz (default: 10)
+    ~freq               of odom_combined and its transform, Hz (default: 30)
     ~sensor_timeout     a sensor that is silent for longer is not used until it recovers, s (default: 1)
     ~publish_tf         whether to publish the transform (default: true)
     ~imu_used           whether to use the gyro (default: true)
     ~odom_used          only true is accepted
-    ~vo_used            only false is accepted
-    ~output_frame       frame of the combined pose (default: odom)
+    ~vo_used, ~gps_used, ~debug, ~self_diagnose   accepted: a line says that they have no effect
+    ~output_frame       frame of the combined pose (default: odom_combined)
+    ~base_footprint_frame   of the robot (default: child_frame_id of odom, or base_footprint if that is empty)
+    ~tf_prefix          of both names, unless they begin with a slash (default: none)
     ~surface            the floor that the filter starts with: a name or path as for the base, unknown, or auto: that
                         of the simulated base, and unknown for any other (default: auto)
     ~diagnostic_period  of /diagnostics, s (default: 1)
@@ -22,20 +24,20 @@ import threading
 import time
 
 import rospy
-from diagnostic_updater import Updater
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import Imu
 from std_msgs.msg import Empty
 
-from rbx1_nav.config import ConfigError
 from rbx1_nav.estimation.combined_odometry import CombinedOdometry
 from rbx1_nav.estimation.inputs import RejectedMessage
 from rbx1_nav.ros import messages, node
 from rbx1_nav.ros.estimate_publisher import EstimatePublisher
-from rbx1_nav.ros.filter_parameters import find_prior, read_parameters
+from rbx1_nav.ros.filter_parameters import find_prior, load_parameters, read_parameters
+from rbx1_nav.ros.frame_tree import FrameTree
+from rbx1_nav.ros.imu_input import ImuInput
 from rbx1_nav.ros.limited_log import LimitedLog
 from rbx1_nav.ros.one_sender import OneSender
-from rbx1_nav.ros.sensor_status import SensorStatus
+from rbx1_nav.ros.sensor_status import SensorStatus, make_diagnostics
 from rbx1_nav.schedule import Schedule
 from rbx1_nav.units import SECOND
 
@@ -50,14 +52,14 @@ class Ekf:
         self.log = LimitedLog()
         self.warn = partial(self.log.add, rospy.logwarn)
         self.sender = OneSender('odom', parameters['sensor_timeout'], self.warn, self.restart)
-        self.frames = None          # (frame_id, child_frame_id) of its odometry
+        self.frames = None          # of its odometry, and of the robot
         self.sensors = {name: SensorStatus(parameters['sensor_timeout'])
                         for name in ('odom', 'imu_data')[:1 + parameters['imu_used']]}
-        self.publisher = EstimatePublisher(parameters['freq'], parameters['output_frame'], parameters['publish_tf'])
-        self.diagnostics = Updater()
-        self.diagnostics.setHardwareID('none')
-        for sensor in self.sensors:
-            self.diagnostics.add(sensor, lambda status, sensor=sensor: self.diagnose(sensor, status))
+        self.tree = FrameTree()
+        self.publisher = EstimatePublisher(parameters, self.tree, partial(self.log.add, rospy.loginfo))
+        self.imu = ImuInput('imu_data', self.tree, partial(self.log.add, rospy.loginfo))
+        self.diagnostics = make_diagnostics(self.sensors, self.diagnose)
+        self.tree.listen(True)
         self.odom_sub = None    # a message may arrive before the next line is done
         self.odom_sub = rospy.Subscriber('odom', Odometry, self.on_odom, queue_size=None, tcp_nodelay=True)
         if parameters['imu_used']:
@@ -74,8 +76,9 @@ class Ekf:
     def on_imu(self, message):
         """A reading of the gyro arrives."""
         with self.lock:
-            if self.combined:
-                self.process('imu_data', lambda now, imu: self.combined.add_imu(now, messages.from_imu(imu)), message)
+            if self.frames:
+                self.process('imu_data', lambda now, imu: self.imu.read(
+                    imu, self.frames[1], partial(self.combined.add_imu, now)), message)
 
     def on_reset(self, _):
         """The base was reset."""
@@ -86,7 +89,7 @@ class Ekf:
 
     def add_odom(self, now, message):
         """Pass an Odometry to the filter."""
-        frames = messages.frames_of(message, self.parameters['output_frame'])
+        frames = messages.frames_of(message, self.parameters)
         self.combined.add_odom(now, *messages.from_odometry(message))
         self.frames = frames
 
@@ -94,6 +97,7 @@ class Ekf:
         """Start with the odometry of another node: it may be another robot."""
         if self.combined:
             self.warn('odom comes from another node: restarting')
+            self.publisher.restart(self.frames and self.frames[1])
         prior = find_prior(self.parameters['surface'], sender, self.log.add)
         self.combined = CombinedOdometry(prior, round(SECOND * self.parameters['sensor_timeout']),
                                          self.parameters['imu_used'], self.warn, time.monotonic_ns)
@@ -128,18 +132,14 @@ class Ekf:
             if schedule.due(time.monotonic_ns()):   # wall time: a clock that stands still is worth a diagnosis too
                 self.diagnostics.force_update()
             self.log.flush(time.monotonic())
+            self.tree.listen(not (self.publisher.settled and self.imu.settled))
             node.sleep(0.05)
 
 
 def main():
     """Read the parameters, and run. Returns the exit status."""
     node.init_node('robot_pose_ekf', __doc__, check=read_parameters)
-    try:
-        parameters = read_parameters(rospy.get_param(rospy.get_name(), {}))
-    except ConfigError as error:
-        rospy.logfatal('%s/%s', rospy.get_name(), error)
-        return 1
-    Ekf(parameters).run()
+    Ekf(load_parameters()).run()
     return 0
 
 

@@ -1,4 +1,6 @@
 """Publishes the combined odometry as a pose and a transform."""
+import time
+
 import rospy
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from tf2_msgs.msg import TFMessage
@@ -6,18 +8,36 @@ from tf2_msgs.msg import TFMessage
 from rbx1_nav.model.kinematics import relative_frame
 from rbx1_nav.ros import messages
 from rbx1_nav.schedule import Schedule
+from rbx1_nav.units import SECOND
+
+PATIENCE = 2 * SECOND   # ns after the first estimate, in which a transform to the robot's frame may arrive
+MIN_WAIT = 1.0          # s of wall time for the same: a connection takes time, however fast simulated time passes
 
 
 class EstimatePublisher:
-    """Publishes Estimates at a given rate."""
+    """Publishes Estimates at a given rate.
 
-    def __init__(self, rate, output_frame, publish_tf):
-        """rate: Hz; output_frame: of the pose; publish_tf: whether to publish the transform too."""
-        self.output_frame = output_frame
-        self.publish_tf = publish_tf
-        self.schedule = Schedule(rate)
-        self.pose_pub = rospy.Publisher('odom_combined', PoseWithCovarianceStamped, queue_size=10)
+    The transform leads from the output frame to the robot's, as in robot_pose_ekf. A frame has one parent: if another
+    node publishes a transform to the robot's frame, ours leads to the frame of the odometry instead.
+    """
+
+    def __init__(self, parameters, tree, log):
+        """parameters: those of the filter; tree: FrameTree; log(text): logs a line."""
+        self.output_frame = parameters['output_frame']
+        self.publish_tf = parameters['publish_tf']
+        self.tree = tree
+        self.log = log
+        self.schedule = Schedule(parameters['freq'])
+        self.pose_pub = rospy.Publisher('~odom_combined', PoseWithCovarianceStamped, queue_size=10)
         self.tf_pub = rospy.Publisher('/tf', TFMessage, queue_size=100, tcp_nodelay=True)
+        self.child = None       # frame that the transform leads to, None until that is known
+        self.restart()
+
+    def restart(self, base_frame=None):
+        """Look anew who publishes the transform to the robot's frame."""
+        self.tree.forget(base_frame)
+        self.settled = not self.publish_tf      # whether no transform of other nodes can make a difference
+        self.first = None                       # (ns, s of wall time) of the first estimate
 
     def update(self, estimate, odom_frame, base_frame):
         """Publish an Estimate if it is due. odom_frame, base_frame: the frames of the odometry that it is based on."""
@@ -25,8 +45,28 @@ class EstimatePublisher:
             return
         stamp = rospy.Time(0, estimate.stamp)
         self.pose_pub.publish(messages.planar_pose(stamp, self.output_frame, estimate.pose, estimate.covariance))
-        if self.publish_tf:
-            # a frame has one parent: if that of the base frame is odom, ours is the parent of odom
-            child, pose = ((base_frame, estimate.pose) if self.output_frame == odom_frame
-                           else (odom_frame, relative_frame(estimate.pose, estimate.odom.pose)))
-            self.tf_pub.publish([messages.transform(stamp, self.output_frame, child, pose)])
+        if not self.publish_tf:
+            return
+        self._choose_child(estimate.stamp, odom_frame, base_frame)
+        if self.child:
+            pose = (estimate.pose if self.child == base_frame else relative_frame(estimate.pose, estimate.odom.pose))
+            self.tf_pub.publish([messages.transform(stamp, self.output_frame, self.child, pose)])
+
+    def _choose_child(self, now, odom_frame, base_frame):
+        """Set `child`. now: ns."""
+        other = self.tree.publisher(base_frame)
+        if self.output_frame == odom_frame:
+            self._set_child(base_frame, 'as the odometry has the same frame')
+            self.settled = True
+        elif other:
+            self._set_child(odom_frame, '%s publishes the one from %s to %s' % (other[1], other[0], base_frame))
+            self.settled = True
+        elif self.first is None or now < self.first[0]:     # also after a clock that has jumped back
+            self.first = now, time.monotonic()
+        elif now - self.first[0] >= PATIENCE and time.monotonic() - self.first[1] >= MIN_WAIT:
+            self._set_child(base_frame, 'no other node publishes one to %s' % base_frame)
+
+    def _set_child(self, child, why):
+        if child != self.child:
+            self.child = child
+            self.log('Transform from %s to %s: %s' % (self.output_frame, child, why))

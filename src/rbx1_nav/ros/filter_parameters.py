@@ -15,26 +15,57 @@ ANY = 'unknown'     # any floor
 
 
 def read_parameters(params):
-    """A dictionary of all parameters, with the names that robot_pose_ekf gives them, from those that are set.
+    """A dictionary of all parameters, with the names and defaults of robot_pose_ekf, from those that are set.
 
+    base_footprint_frame: '' unless it is set; unsupported: a line for each that asks for what the filter does not do.
     Raises ConfigError.
     """
     section = Section(params)
+    prefix = section.frame('tf_prefix', '/') if params.get('tf_prefix') else ''
     values = dict(
-        freq=section.number('freq', 0.1, 1000, 10.0, 'a rate', 'Hz'),
+        freq=section.number('freq', 0.1, 1000, 30.0, 'a rate', 'Hz'),
         sensor_timeout=section.number('sensor_timeout', 0.01, 1e6, 1.0, 'a time', 's'),
         diagnostic_period=section.number('diagnostic_period', 0.1, 1e6, 1.0, 'a time', 's'),
         publish_tf=section.flag('publish_tf', True),
         imu_used=section.flag('imu_used', True),
-        output_frame=section.frame('output_frame', 'odom'),
+        output_frame=_resolve(prefix, section.frame('output_frame', 'odom_combined'), params.get('output_frame')),
+        base_footprint_frame='',
+        default_base_frame=_resolve(prefix, section.frame('base_footprint_frame', 'base_footprint'),
+                                    params.get('base_footprint_frame')),
+        unsupported=[line for asked, line in [
+            (section.flag('vo_used', False), 'vo_used: visual odometry is not supported, and not used'),
+            (section.flag('gps_used', False), 'gps_used: GPS is not supported, and not used'),
+            (section.flag('debug', False), 'debug: no files are written; record the topics with rosbag'),
+            (section.flag('self_diagnose', False), 'self_diagnose: see /diagnostics')] if asked],
         surface=section.get('surface', AUTO))
     if not section.flag('odom_used', True):
         raise ConfigError('odom_used: False: expected true, nothing else measures the distance')
-    if section.flag('vo_used', False):
-        raise ConfigError('vo_used: True: expected false, visual odometry is not supported')
+    if 'base_footprint_frame' in params:
+        values['base_footprint_frame'] = values['default_base_frame']
     if values['surface'] not in (AUTO, ANY):
         load_surface(values['surface'], resources.surfaces())
     return values
+
+
+def load_parameters():
+    """read_parameters() of this node. As in tf, tf_prefix may also be set in a namespace around it.
+
+    Logs what is asked for and not supported. Raises ROSException with one line.
+    """
+    params = rospy.get_param(rospy.get_name(), {})
+    found = rospy.search_param('tf_prefix')
+    try:
+        values = read_parameters(dict(params, tf_prefix=rospy.get_param(found)) if found else params)
+    except ConfigError as error:
+        raise rospy.ROSException('%s/%s' % (rospy.get_name(), error))
+    for line in values['unsupported']:
+        rospy.logwarn('%s', line)
+    return values
+
+
+def _resolve(prefix, frame, given):
+    """A frame with the prefix. given: as in the parameter, where a leading slash means that it has none."""
+    return '%s/%s' % (prefix, frame) if prefix and not str(given).startswith('/') else frame
 
 
 def find_prior(name, base, log):

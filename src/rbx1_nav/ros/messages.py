@@ -1,12 +1,13 @@
 """Conversion between the core's types and ROS messages."""
-from math import atan2, cos, nan, pi, sin
+from math import atan2, cos, isnan, nan, pi, sin, sqrt
 
 from geometry_msgs.msg import PoseWithCovarianceStamped, Quaternion, TransformStamped
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import Imu, JointState
 
 from rbx1_nav.config import show
-from rbx1_nav.estimation.inputs import Imu as ImuInput, Odom, check
+from rbx1_nav.estimation.gyro_input import ImuData
+from rbx1_nav.estimation.inputs import Odom, check
 from rbx1_nav.model.kinematics import Pose
 from rbx1_nav.model.wheels import MEASURED
 from rbx1_nav.units import wrap_angle
@@ -28,11 +29,24 @@ def from_twist(twist):
             (twist.linear.y, twist.linear.z, twist.angular.x, twist.angular.y))
 
 
-def yaw_of(rotation):
-    """The yaw (rad) of a Quaternion; nan if it is not normalized."""
+def squared_norm(rotation):
+    """The squared length of a Quaternion; nan if it is not normalized."""
     # not `** 2`, which raises an OverflowError for huge numbers
     norm = sum(value * value for value in (rotation.x, rotation.y, rotation.z, rotation.w))
-    if not 0.9 < norm < 1.1:
+    return norm if 0.9 < norm < 1.1 else nan
+
+
+def unit_quaternion(rotation):
+    """(x, y, z, w) of a Quaternion, of length 1; None if it is not normalized."""
+    length = sqrt(squared_norm(rotation))
+    return None if isnan(length) else tuple(
+        value / length for value in (rotation.x, rotation.y, rotation.z, rotation.w))
+
+
+def yaw_of(rotation):
+    """The yaw (rad) of a Quaternion; nan if it is not normalized."""
+    norm = squared_norm(rotation)
+    if isnan(norm):
         return nan
     return atan2(2 * (rotation.w * rotation.z + rotation.x * rotation.y),
                  norm - 2 * (rotation.y ** 2 + rotation.z ** 2))
@@ -118,21 +132,29 @@ def from_odometry(message):
             (covariance[0], covariance[7], covariance[35]))
 
 
-def frames_of(message, output_frame):
-    """(frame_id, child_frame_id) of an Odometry message, without leading slashes. Raises RejectedMessage.
+def frames_of(message, parameters):
+    """The frames of an Odometry message and of the robot, without leading slashes. Raises RejectedMessage.
 
-    output_frame: that of the estimate, which the robot's own frame cannot be.
+    parameters: those of the filter. Its output_frame cannot be the robot's own.
     """
-    frames = message.header.frame_id.lstrip('/'), message.child_frame_id.lstrip('/')
+    base_frame = parameters['base_footprint_frame'] or message.child_frame_id.lstrip('/') or (
+        parameters['default_base_frame'])
+    frames = message.header.frame_id.lstrip('/'), base_frame
     for field, frame in zip(('header.frame_id', 'child_frame_id'), frames):
         check(field, show(frame), frame, 'the name of a frame')
-    check('child_frame_id', show(frames[1]), frames[1] != output_frame, 'a frame other than output_frame')
+    check('child_frame_id', show(frames[1]), frames[1] != parameters['output_frame'], 'a frame other than output_frame')
     return frames
 
 
 def from_imu(message):
-    """The filter's input from an Imu message."""
-    return ImuInput(message.header.stamp.to_nsec(), message.angular_velocity.z, message.angular_velocity_covariance[8])
+    """The ImuData of an Imu message. By its definition, a first variance of -1 stands for what is not measured."""
+    rate = message.angular_velocity
+    has_rates, has_orientation = (covariance[0] != -1 for covariance in (
+        message.angular_velocity_covariance, message.orientation_covariance))
+    return ImuData(message.header.stamp.to_nsec(), (rate.x, rate.y, rate.z) if has_rates else None,
+                   message.angular_velocity_covariance[::4],
+                   unit_quaternion(message.orientation) if has_orientation else None,
+                   message.orientation_covariance[8])
 
 
 def planar_pose(stamp, frame_id, pose, covariance):

@@ -1,8 +1,18 @@
 """The state of one of the filter's sensors, for /diagnostics."""
 import rospy
 from diagnostic_msgs.msg import DiagnosticStatus
+from diagnostic_updater import Updater
 
 MAX_OUTLIERS = 5    # steps between two diagnoses: now and then a wheel may slip
+
+
+def make_diagnostics(sensors, diagnose):
+    """An Updater of the sensors with these names. diagnose(sensor, status): fills in the DiagnosticStatus of one."""
+    diagnostics = Updater()
+    diagnostics.setHardwareID('none')
+    for sensor in sensors:
+        diagnostics.add(sensor, lambda status, sensor=sensor: diagnose(sensor, status))
+    return diagnostics
 
 
 class SensorStatus:

@@ -1,0 +1,107 @@
+"""What the filter gets of an IMU: the rate of turn, however the IMU is mounted, and also from an orientation alone.
+
+The robot is on a floor: it turns about its vertical axis only.
+"""
+from collections import namedtuple
+from math import atan2, sqrt
+
+from rbx1_nav.estimation.inputs import Imu, check, check_number, check_variance
+from rbx1_nav.units import SECOND
+
+UPRIGHT = (0.0, 0.0, 1.0)
+DEFAULT_VARIANCE = 0.00017 ** 2     # of an IMU that gives none: robot_pose_ekf, OdomEstimationNode::imuCallback
+MIN_SHARE = 1e-3    # of a rate that an axis must measure to be used: 3.14 in a URDF file is not pi
+
+ImuData = namedtuple('ImuData', 'stamp rates rate_variances orientation yaw_variance')
+ImuData.__doc__ = """An Imu message: stamp in ns; angular velocity (rad/s, None if it has none) with its variances by
+axis; orientation (quaternion x, y, z, w, None if it has none) with the variance of its yaw (rad^2)."""
+
+
+def multiply(one, other):
+    """The product of two quaternions (x, y, z, w)."""
+    ax, ay, az, aw = one
+    bx, by, bz, bw = other
+    return (aw * bx + ax * bw + ay * bz - az * by, aw * by - ax * bz + ay * bw + az * bx,
+            aw * bz + ax * by - ay * bx + az * bw, aw * bw - ax * bx - ay * by - az * bz)
+
+
+def inverse(rotation):
+    """The inverse of a quaternion (x, y, z, w) of length 1."""
+    x, y, z, w = rotation
+    return -x, -y, -z, w
+
+
+def vertical_axis(mounting):
+    """The vertical axis of the robot in the frame of an IMU. mounting: rotation of the IMU in the robot's frame."""
+    x, y, z, w = mounting
+    return 2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)     # last row of the rotation matrix
+
+
+def turn_about(axis, before, after):
+    """The part of the turn from one orientation to another that is about an axis of the turned frame, rad."""
+    x, y, z, w = multiply(inverse(before), after)
+    sine = sqrt(x * x + y * y + z * z)
+    angle = 2 * atan2(sine, abs(w))
+    return sum(a * b for a, b in zip(axis, (x, y, z))) * (angle / sine if w >= 0 else -angle / sine) if sine else 0.0
+
+
+class GyroInput:
+    """Makes Imus from the ImuData of one IMU."""
+
+    def __init__(self, note=lambda text: None):
+        """note(text): called once for each thing that a user may want to know."""
+        self.note = note
+        self.noted = set()
+        self.last = None            # ImuData that was accepted
+        self.has_rates = False      # whether it has ever measured an angular velocity
+
+    def read(self, data, vertical=UPRIGHT):
+        """The Imu of an ImuData. vertical: as of vertical_axis(). Raises RejectedMessage.
+
+        Without an angular velocity (or if it and its variances are all 0), the rate is the change of the orientation
+        since the last accepted ImuData, with the variance of the orientation per square second, as in robot_pose_ekf.
+        """
+        check('angular_velocity_covariance[0]', -1, data.rates or data.orientation,
+              'an angular velocity or an orientation')
+        absent = data.rates is None or not (self.has_rates or any(data.rates) or any(data.rate_variances))
+        return (self._from_orientation if absent and data.orientation else self._from_rates)(data, vertical)
+
+    def accepted(self, data):
+        """To be called with the ImuData of each Imu that the filter has accepted."""
+        self.last = data
+        self.has_rates = self.has_rates or bool(data.rates and any(data.rates))
+
+    def _from_rates(self, data, vertical):
+        axes = [axis for axis in range(3) if abs(vertical[axis]) >= MIN_SHARE]
+        for axis in axes:
+            check_number('angular_velocity.%s' % 'xyz'[axis], data.rates[axis])
+            if data.rate_variances[axis] != 0:
+                check_variance('angular_velocity_covariance[%d]' % (4 * axis), data.rate_variances[axis])
+        # an axis without a variance is used only if no other one has a variance
+        variances = {axis: data.rate_variances[axis] for axis in axes if data.rate_variances[axis]}
+        if not variances:
+            self._note('no covariance of the angular velocity: 0.00017 rad/s assumed')
+            variances = dict.fromkeys(axes, DEFAULT_VARIANCE)
+        # each axis measures its share of the rate: their mean, weighted by the inverse variances
+        least = min(variances.values())
+        total = sum(vertical[axis] ** 2 * least / variance for axis, variance in variances.items())
+        rate = sum(vertical[axis] * least / variance * data.rates[axis] for axis, variance in variances.items()) / total
+        return Imu(data.stamp, rate, least / total)
+
+    def _from_orientation(self, data, vertical):
+        variance = data.yaw_variance
+        if variance == 0:
+            self._note('no covariance of the orientation: 0.00017 rad assumed')
+            variance = DEFAULT_VARIANCE
+        check_variance('orientation_covariance[8]', variance)
+        last, rate = self.last, 0.0     # the filter does not use the first reading
+        if last and last.orientation and data.stamp > last.stamp:
+            rate = turn_about(vertical, last.orientation, data.orientation) / ((data.stamp - last.stamp) / SECOND)
+        if rate:
+            self._note('no angular velocity: the change of its orientation is used')
+        return Imu(data.stamp, rate, variance)
+
+    def _note(self, text):
+        if text not in self.noted:
+            self.noted.add(text)
+            self.note(text)

@@ -1,0 +1,57 @@
+"""The tree of frames as other nodes publish it: who is the parent of a frame, and how one is turned against another."""
+import rospy
+from tf2_msgs.msg import TFMessage
+
+from rbx1_nav.estimation.gyro_input import inverse, multiply
+from rbx1_nav.ros.messages import unit_quaternion
+
+
+class FrameTree:
+    """Listens to /tf and /tf_static while somebody wants to know. The node's own transforms do not count.
+
+    Keeps rotations only, the latest of each frame, and needs no tf2_ros, which would take 5 MB.
+    """
+
+    def __init__(self):
+        self.frames = {}        # by child: (parent, node that publishes it, rotation of the child in the parent)
+        self.subscribers = []
+
+    def listen(self, wanted):
+        """Start or stop listening."""
+        if wanted and not self.subscribers:
+            self.subscribers = [rospy.Subscriber(topic, TFMessage, self._on_transforms, tcp_nodelay=True)
+                                for topic in ('/tf_static', '/tf')]
+        while self.subscribers and not wanted:
+            self.subscribers.pop().unregister()
+
+    def publisher(self, child):
+        """(parent, node) of the transform that leads to a frame, or None."""
+        return self.frames[child][:2] if child in self.frames else None
+
+    def forget(self, child):
+        """Forget the transform that leads to a frame."""
+        self.frames.pop(child, None)
+
+    def rotation(self, frame, other):
+        """The rotation of `other` in `frame`, a quaternion (x, y, z, w); None if they are not connected yet."""
+        path = self._path(frame)
+        return next((multiply(inverse(path[ancestor]), rotation)
+                     for ancestor, rotation in self._path(other).items() if ancestor in path), None)
+
+    def _path(self, frame):
+        """Rotations of a frame in itself and in all its ancestors."""
+        rotation, path = (0.0, 0.0, 0.0, 1.0), {}
+        while frame not in path:    # a circle is an error of others
+            path[frame] = rotation
+            if frame in self.frames:
+                frame, _, turn = self.frames[frame]
+                rotation = multiply(turn, rotation)
+        return path
+
+    def _on_transforms(self, message):
+        node = message._connection_header['callerid']
+        for transform in message.transforms if node != rospy.get_name() else ():
+            rotation = unit_quaternion(transform.transform.rotation)
+            if rotation:
+                self.frames[transform.child_frame_id.lstrip('/')] = (
+                    transform.header.frame_id.lstrip('/'), node, rotation)
