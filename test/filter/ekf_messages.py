@@ -72,7 +72,7 @@ class TestEkfMessages(unittest.TestCase):
     def setUpClass(cls):
         support.init_node('ekf_messages')
         cls.log = support.Watch('/rosout', Log)
-        cls.poses = support.Watch('odom_combined', PoseWithCovarianceStamped)
+        cls.poses = support.Watch('robot_pose_ekf/odom_combined', PoseWithCovarianceStamped)
         cls.diagnostics = support.Watch('/diagnostics', DiagnosticArray)
         cls.odom, cls.imu = Sender('odom', make_odom), Sender('imu_data', make_imu)
         support.wait_for(lambda: cls.poses.last, 'a combined pose')
@@ -101,8 +101,10 @@ class TestEkfMessages(unittest.TestCase):
                 (self.odom, lambda m: setattr(m.header, 'stamp', m.header.stamp + rospy.Duration(5)),
                  ('/odom: header.stamp', 'not later than now')),
                 (self.imu, lambda m: setattr(m.angular_velocity, 'z', nan), ('/imu_data: angular_velocity.z: nan',)),
-                (self.imu, lambda m: setattr(m, 'angular_velocity_covariance', [0.0] * 9),
-                 ('/imu_data: angular_velocity_covariance[8]: 0.0',)),
+                (self.imu, lambda m: setattr(m, 'angular_velocity_covariance', [-0.5] * 9),
+                 ('/imu_data: angular_velocity_covariance[8]: -0.5',)),
+                (self.imu, lambda m: setattr(m, 'angular_velocity_covariance', [-1.0] + [0.0] * 8),
+                 ('/imu_data: angular_velocity_covariance[0]: -1', 'an angular velocity or an orientation')),
                 (self.imu, lambda m: setattr(m.header, 'stamp', m.header.stamp + rospy.Duration(3600)),
                  ('/imu_data: header.stamp', 'not later than now'))]:
             sender.send(change)
@@ -112,8 +114,8 @@ class TestEkfMessages(unittest.TestCase):
         self.assertTrue(all(math.isfinite(value) for value in pose.covariance))
 
     def test_a_frame_without_a_name_is_rejected(self):
-        self.odom.send(lambda m: setattr(m, 'child_frame_id', ''))
-        self.wait_for_log("/odom: child_frame_id: ''", 'expected', 'rejected')
+        self.odom.send(lambda m: setattr(m.header, 'frame_id', ''))
+        self.wait_for_log("/odom: header.frame_id: ''", 'expected', 'rejected')
         self.poses.next()
 
     def test_reset_odometry_restarts_the_filter(self):
@@ -173,7 +175,7 @@ class TestEkfMessages(unittest.TestCase):
         start = len(self.log.messages)
         for make in bad('x', math.nan), bad('y', math.inf), lambda: Odometry(header=make_odom().header):
             self.odom.make = make
-            self.imu.send(lambda m: setattr(m, 'angular_velocity_covariance', [0.0] * 9))
+            self.imu.send(lambda m: setattr(m, 'angular_velocity_covariance', [-0.5] * 9))
             support.wait_for(lambda: any(
                 'more of this kind' in m.msg for m in self.log.messages[start:]), 'a line that counts')
         self.odom.make = good

@@ -66,7 +66,9 @@ class TestBadParameters(unittest.TestCase):
                 ({'sensor_timeout': 'long'}, ['sensor_timeout', "'long'"]),
                 ({'imu_used': 1}, ['imu_used', '1', 'true or false']), ({'output_frame': ''}, ['output_frame', "''"]),
                 ({'odom_used': False}, ['odom_used', 'False', 'expected true']),
-                ({'vo_used': True}, ['vo_used', 'True', 'expected false']),
+                ({'vo_used': 'no'}, ['vo_used', "'no'", 'true or false']),
+                ({'base_footprint_frame': 'a b'}, ['base_footprint_frame', "'a b'", 'the name of a frame']),
+                ({'tf_prefix': 7}, ['tf_prefix', '7', 'the name of a frame']),
                 ({'surface': 'sand'}, ['surface', "'sand'", 'create_lab_floor, hard_floor, ideal, low_ply_carpet'])]:
             rospy.set_param('/robot_pose_ekf', params)
             self.check(support.Process('rosrun', 'rbx1_nav', 'ekf.py'), expected)

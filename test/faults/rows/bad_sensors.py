@@ -60,7 +60,7 @@ def faults(row):
     kind('wheels that turn while the robot is held', lambda o, i: setattr(i.angular_velocity, 'z', 0.0))
     kind('a robot that is turned while its wheels stand', lambda o, i: setattr(o, 'pose', Odometry().pose),
          lambda o, i: turn(o, 0.0), lambda o, i: setattr(o.pose, 'covariance', [1e-6] * 36))
-    kind('no frames', lambda o, i: setattr(o, 'child_frame_id', ''))
+    kind('no frames', lambda o, i: setattr(o.header, 'frame_id', ''))
     kinds += [('no odometry', lambda o, i: (None, i)), ('no gyro', lambda o, i: (o, None)),
               ('no message', lambda o, i: (None, None)),
               ('odometry now and then', lambda o, i: (o if uniform(0, 1) < 0.02 else None, i))]
@@ -82,7 +82,7 @@ def run(row):
     ekf = row.start('rosrun', 'rbx1_nav', 'ekf.py')
     support.init_node('faults')
     log, transforms = support.Watch('/rosout', Log), support.Watch('/tf', TFMessage)
-    poses = support.Watch('/odom_combined', PoseWithCovarianceStamped)
+    poses = support.Watch('/robot_pose_ekf/odom_combined', PoseWithCovarianceStamped)
     reset = rospy.Publisher('/reset_odometry', Empty, queue_size=10)
     sensors = Sensors()
     good = sensors.spoil

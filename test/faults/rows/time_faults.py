@@ -69,7 +69,7 @@ def script_in_motion(row, clock, jump, script):
 def filter_in_use(row, clock, jump):
     """The clock of the filter jumps while the sensors' stamps go on."""
     clock.start('ekf.py', 'odom:=/odom_sent')
-    poses = support.Watch('/odom_combined', PoseWithCovarianceStamped)
+    poses = support.Watch('/robot_pose_ekf/odom_combined', PoseWithCovarianceStamped)
     if not row.sensors:
         row.sensors = Sensors('/odom_sent')
         row.sensors.start()

@@ -1,0 +1,48 @@
+#!/usr/bin/python3
+"""The transform leads to the robot's frame, also where the odometry does not name it, until another node publishes one."""
+import unittest
+
+import rospy
+from geometry_msgs.msg import TransformStamped
+from nav_msgs.msg import Odometry
+from rosgraph_msgs.msg import Log
+from tf2_msgs.msg import TFMessage
+
+import support
+
+
+class TestRobotFrame(unittest.TestCase):
+    def test_which_frame_the_transform_leads_to(self):
+        support.init_node('robot_frame')
+        log, transforms = support.Watch('/rosout', Log), support.Watch('/tf', TFMessage)
+        odometry = rospy.Publisher('/odom', Odometry, queue_size=10)
+        others = rospy.Publisher('/tf', TFMessage, queue_size=10)
+
+        def children():
+            """Where the latest transform of the filter leads from and to, after one more odometry message."""
+            message = Odometry()
+            message.header.frame_id, message.header.stamp = 'odom', rospy.Time.now()
+            message.pose.pose.orientation.w = 1.0
+            message.pose.covariance[::7] = [1e-6] * 6
+            odometry.publish(message)
+            rospy.rostime.wallsleep(0.02)
+            return [(t.header.frame_id, t.child_frame_id) for m in list(transforms.messages) for t in m.transforms
+                    if m._connection_header['callerid'] == '/robot_pose_ekf'][-1:]
+
+        def has_logged(text):
+            return any(m.name == '/robot_pose_ekf' and text in m.msg for m in list(log.messages))
+        support.wait_for(lambda: children() == [('robot/odom_combined', 'robot/base_footprint')],
+                         'the transform to the frame of the robot')
+        support.wait_for(lambda: has_logged('to robot/base_footprint: no other node publishes one'), 'the line')
+
+        # the base starts to publish its own
+        base = TransformStamped()
+        base.header.frame_id, base.child_frame_id = 'odom', 'robot/base_footprint'
+        base.transform.rotation.w = 1.0
+        others.publish([base])
+        support.wait_for(lambda: children() == [('robot/odom_combined', 'odom')], 'the transform to the odometry')
+        support.wait_for(lambda: has_logged('Transform from robot/odom_combined to odom: /robot_frame'), 'the line')
+
+
+if __name__ == '__main__':
+    support.main('robot_frame', TestRobotFrame)

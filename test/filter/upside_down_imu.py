@@ -1,0 +1,40 @@
+#!/usr/bin/python3
+"""An IMU that is mounted upside down is not used without a transform to its frame, and turned by it."""
+import unittest
+
+import rospy
+from geometry_msgs.msg import Quaternion, TransformStamped
+from tf2_msgs.msg import TFMessage
+
+from altered import AlteredRobot
+import support
+
+
+def upside_down(imu):
+    """What the IMU sends when it is rolled by 180 degrees."""
+    imu.header.frame_id = 'imu_link'
+    imu.angular_velocity.y *= -1
+    imu.angular_velocity.z *= -1
+    heading = imu.orientation
+    imu.orientation = Quaternion(heading.w, heading.z, -heading.y, -heading.x)      # times the roll (1, 0, 0, 0)
+
+
+class TestUpsideDownImu(unittest.TestCase):
+    def test_it_is_turned_by_the_transform(self):
+        support.init_node('upside_down_imu')
+        robot = AlteredRobot(imu=upside_down)
+        robot.wait_for_line("/imu_altered: header.frame_id: 'imu_link': expected a transform from base_footprint to it")
+        robot.estimates.next()      # by the wheels alone
+
+        transform = TransformStamped()
+        transform.header.frame_id, transform.child_frame_id = 'base_link', 'imu_link'
+        transform.transform.rotation.x = 1.0
+        publisher = rospy.Publisher('/tf_static', TFMessage, queue_size=1, latch=True)
+        publisher.publish([transform])
+        robot.wait_for_line('turned from imu_link to base_footprint, its vertical axis by 180 degrees')
+        robot.turn()
+        robot.check_heading(self)
+
+
+if __name__ == '__main__':
+    support.main('upside_down_imu', TestUpsideDownImu)
