@@ -97,7 +97,7 @@ class Ekf:
         """Start with the odometry of another node: it may be another robot."""
         if self.combined:
             self.warn('odom comes from another node: restarting')
-            self.publisher.restart(self.frames and self.frames[1])
+            self.publisher.restart()
         prior = find_prior(self.parameters['surface'], sender, self.log.add)
         self.combined = CombinedOdometry(prior, round(SECOND * self.parameters['sensor_timeout']),
                                          self.parameters['imu_used'], self.warn, time.monotonic_ns)

@@ -1,5 +1,8 @@
 #!/usr/bin/python3
-"""The transform leads to the robot's frame, also where the odometry does not name it, until another node publishes one."""
+"""The transform leads to the robot's frame, also where the odometry does not name it, until another node publishes one.
+
+What is not supported is named.
+"""
 import unittest
 
 import rospy
@@ -18,10 +21,11 @@ class TestRobotFrame(unittest.TestCase):
         odometry = rospy.Publisher('/odom', Odometry, queue_size=10)
         others = rospy.Publisher('/tf', TFMessage, queue_size=10)
 
-        def children():
+        def children(child_frame_id=''):
             """Where the latest transform of the filter leads from and to, after one more odometry message."""
             message = Odometry()
             message.header.frame_id, message.header.stamp = 'odom', rospy.Time.now()
+            message.child_frame_id = child_frame_id
             message.pose.pose.orientation.w = 1.0
             message.pose.covariance[::7] = [1e-6] * 6
             odometry.publish(message)
@@ -34,6 +38,8 @@ class TestRobotFrame(unittest.TestCase):
         support.wait_for(lambda: children() == [('robot/odom_combined', 'robot/base_footprint')],
                          'the transform to the frame of the robot')
         support.wait_for(lambda: has_logged('to robot/base_footprint: no other node publishes one'), 'the line')
+        for text in 'gps_used: GPS is not supported', 'debug: no files are written', 'self_diagnose: see /diagnostics':
+            support.wait_for(lambda: has_logged(text), text)
 
         # the base starts to publish its own
         base = TransformStamped()
@@ -42,6 +48,10 @@ class TestRobotFrame(unittest.TestCase):
         others.publish([base])
         support.wait_for(lambda: children() == [('robot/odom_combined', 'odom')], 'the transform to the odometry')
         support.wait_for(lambda: has_logged('Transform from robot/odom_combined to odom: /robot_frame'), 'the line')
+
+        # another robot, whose odometry names its frame
+        support.wait_for(lambda: children('base_link') == [('robot/odom_combined', 'base_link')],
+                         'the transform to the frame of the odometry')
 
 
 if __name__ == '__main__':

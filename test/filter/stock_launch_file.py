@@ -2,8 +2,8 @@
 """The launch file of robot_pose_ekf, with another pkg and type: the combined pose, and one connected tree of frames."""
 import unittest
 
-import tf2_ros
 import rospy
+import tf2_ros
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Log
@@ -51,6 +51,11 @@ class TestStockLaunchFile(unittest.TestCase):
         self.assertEqual(pose.header.frame_id, 'odom_combined')
         self.assertEqual((last.transform.translation.x, last.transform.rotation), (
             pose.pose.pose.position.x, pose.pose.pose.orientation))
+        self.assertEqual((pose.pose.pose.position.z, pose.pose.pose.orientation.x, pose.pose.pose.orientation.y), (0, 0, 0))
+        self.assertEqual([pose.pose.covariance[7 * axis] for axis in (2, 3, 4)], [1e6] * 3)
+        services = [name for name, _ in rospy.get_master().getSystemState()[2][2]]
+        self.assertIn('/robot_pose_ekf/get_loggers', services)
+        self.assertNotIn('/robot_pose_ekf/get_status', services)
         for frame in 'base_footprint', 'base_link', 'base_l_wheel_link', 'gyro_link':
             support.wait_for(lambda: buffer.can_transform('odom_combined', frame, rospy.Time()), 'the frame ' + frame)
 

@@ -30,12 +30,13 @@ class EstimatePublisher:
         self.schedule = Schedule(parameters['freq'])
         self.pose_pub = rospy.Publisher('~odom_combined', PoseWithCovarianceStamped, queue_size=10)
         self.tf_pub = rospy.Publisher('/tf', TFMessage, queue_size=100, tcp_nodelay=True)
-        self.child = None       # frame that the transform leads to, None until that is known
+        self.frames = None, None    # of the odometry and of the robot
         self.restart()
 
-    def restart(self, base_frame=None):
+    def restart(self):
         """Look anew who publishes the transform to the robot's frame."""
-        self.tree.forget(base_frame)
+        self.tree.forget(self.frames[1])
+        self.child = None                       # frame that the transform leads to, None until that is known
         self.settled = not self.publish_tf      # whether no transform of other nodes can make a difference
         self.first = None                       # (ns, s of wall time) of the first estimate
 
@@ -47,6 +48,9 @@ class EstimatePublisher:
         self.pose_pub.publish(messages.planar_pose(stamp, self.output_frame, estimate.pose, estimate.covariance))
         if not self.publish_tf:
             return
+        if self.frames != (odom_frame, base_frame):
+            self.frames = odom_frame, base_frame
+            self.restart()
         self._choose_child(estimate.stamp, odom_frame, base_frame)
         if self.child:
             pose = (estimate.pose if self.child == base_frame else relative_frame(estimate.pose, estimate.odom.pose))
