@@ -20,7 +20,8 @@ class TestOrientationOnlyImu(unittest.TestCase):
         robot = AlteredRobot(imu=orientation_only)
         robot.turn()
         robot.check_heading(self)
-        self.assertEqual(robot.lines('imu'), ['/imu_altered: no angular velocity: the change of its orientation is used'])
+        self.assertEqual(robot.lines('/imu_altered'), [
+            '/imu_altered: no angular velocity: the change of its orientation is used'])
 
 
 if __name__ == '__main__':

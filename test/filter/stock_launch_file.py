@@ -51,7 +51,8 @@ class TestStockLaunchFile(unittest.TestCase):
         self.assertEqual(pose.header.frame_id, 'odom_combined')
         self.assertEqual((last.transform.translation.x, last.transform.rotation), (
             pose.pose.pose.position.x, pose.pose.pose.orientation))
-        self.assertEqual((pose.pose.pose.position.z, pose.pose.pose.orientation.x, pose.pose.pose.orientation.y), (0, 0, 0))
+        rotation = pose.pose.pose.orientation
+        self.assertEqual((pose.pose.pose.position.z, rotation.x, rotation.y), (0, 0, 0))
         self.assertEqual([pose.pose.covariance[7 * axis] for axis in (2, 3, 4)], [1e6] * 3)
         services = [name for name, _ in rospy.get_master().getSystemState()[2][2]]
         self.assertIn('/robot_pose_ekf/get_loggers', services)
@@ -62,10 +63,8 @@ class TestStockLaunchFile(unittest.TestCase):
         # 30 Hz of messages that come 50 times a second: every second one, or two of three
         stamps = [m.header.stamp.to_sec() for m in poses.messages]
         self.assertAlmostEqual((len(stamps) - 1) / (stamps[-1] - stamps[0]), 30, delta=6)
-        lines = [m.msg for m in log.messages if m.name == '/robot_pose_ekf']
-        for line in ('vo_used: visual odometry is not supported, and not used',
-                     'Transform from odom_combined to base_footprint: no other node publishes one to base_footprint'):
-            self.assertEqual(lines.count(line), 1, lines)
+        self.assertEqual([m.msg for m in log.messages if m.name == '/robot_pose_ekf' and 'Transform' in m.msg], [
+            'Transform from odom_combined to base_footprint: no other node publishes one to base_footprint'])
 
 
 if __name__ == '__main__':

@@ -27,7 +27,8 @@ class TestZeroCovariances(unittest.TestCase):
         robot.estimates.next()
         robot.turn()
         robot.check_heading(self)
-        self.assertEqual(robot.lines('imu'), ['/imu_altered: no covariance of the angular velocity: 0.00017 rad/s assumed'])
+        self.assertEqual(robot.lines('/imu_altered'), [
+            '/imu_altered: no covariance of the angular velocity: 0.00017 rad/s assumed'])
 
 
 if __name__ == '__main__':

@@ -1,0 +1,46 @@
+#!/usr/bin/python3
+"""What robot_pose_ekf can do and the filter cannot is named, each in a line; the filter runs without it."""
+import unittest
+
+import rospy
+from geometry_msgs.msg import PoseWithCovarianceStamped
+from nav_msgs.msg import Odometry
+
+import support
+
+LINES = ['vo_used: visual odometry is not supported, and not used', 'gps_used: GPS is not supported, and not used',
+         'debug: no files are written; record the topics with rosbag', 'self_diagnose: see /diagnostics']
+
+
+class TestUnsupportedInputs(unittest.TestCase):
+    def start(self, value):
+        """Start the filter with this value of all four parameters, and wait for a pose; returns the process."""
+        ekf = support.Process('rosrun', 'rbx1_nav', 'ekf.py', '_imu_used:=false', *(
+            '_%s:=%s' % (line.split(':')[0], value) for line in LINES))
+        self.addCleanup(ekf.kill)
+        poses = support.Watch('/robot_pose_ekf/odom_combined', PoseWithCovarianceStamped)
+        odometry = rospy.Publisher('/odom', Odometry, queue_size=10)
+
+        def send():
+            message = Odometry()
+            message.header.frame_id, message.header.stamp = 'odom', rospy.Time.now()
+            message.pose.pose.orientation.w = 1.0
+            message.pose.covariance[::7] = [1e-6] * 6
+            odometry.publish(message)
+            return poses.last
+        support.wait_for(send, 'a pose')
+        return ekf
+
+    def test_each_is_named_if_it_is_asked_for(self):
+        support.init_node('unsupported_inputs')
+        process = self.start('true')
+        for line in LINES:
+            self.assertEqual(process.output.count(line), 1, process.output)
+        process.kill()
+        output = self.start('false').output
+        self.assertIn('Initial uncertainties', output)
+        self.assertNotIn('[WARN]', output)
+
+
+if __name__ == '__main__':
+    support.main('unsupported_inputs', TestUnsupportedInputs)
