@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The transform leads to the robot's frame, also where the odometry does not name it, until another node publishes one."""
+"""The transform leads to the robot's frame, also if the odometry does not name it, until another node publishes one."""
 import unittest
 
 import rospy
@@ -40,12 +40,13 @@ class TestRobotFrame(unittest.TestCase):
         base = TransformStamped()
         base.header.frame_id, base.child_frame_id = 'odom', 'robot/base_footprint'
         base.transform.rotation.w = 1.0
-        support.wait_for(lambda: others.publish([base]) or children() == [('robot/odom_combined', 'odom')], 'the transform to the odometry')
+        support.wait_for(lambda: others.publish([base]) or children() == [('robot/odom_combined', 'odom')],
+                         'the transform to the odometry')
         support.wait_for(lambda: has_logged('Transform from robot/odom_combined to odom: /robot_frame'), 'the line')
 
         # another robot, whose odometry names its frame
         support.wait_for(lambda: children('base_link') == [('robot/odom_combined', 'base_link')],
-                         'the transform to the frame of the odometry')
+                         'the transform to the other frame')
 
 
 if __name__ == '__main__':
