@@ -10,7 +10,7 @@ import time
 
 import numpy
 
-from rbx1_nav.config import ConfigError
+from rbx1_nav.config import ConfigError, show_name
 from rbx1_nav.fitting.ensemble import energy_score, inner_share, simulate_ends
 from rbx1_nav.fitting.fit import Fitter, fit_floor
 from rbx1_nav.fitting.floor import NOISES, SPREADS, Prediction, Windows
@@ -18,6 +18,7 @@ from rbx1_nav.fitting.mrclam import BASE_WIDTH, CAMERAS, read_set
 from rbx1_nav.fitting.run import Run
 from rbx1_nav.model.surfaces import load_surface
 from rbx1_nav.ros import resources
+from real_pictures import draw_all
 
 LENGTHS = 5, 10, 20, 40     # s
 FITTED = 10     # s, the windows of the fit
@@ -130,6 +131,15 @@ def leave_out(first, second, judgements):
         print('%-24s %s' % (key, '  '.join(texts)), flush=True)
 
 
+def plot(folder, runs, surface):
+    """Write the pictures; returns the error, if there is one."""
+    try:
+        draw_all(folder, runs, surface, starting_surface())
+    except OSError as error:
+        return 'real_creates: --plot: %s: expected a folder that can be written: %s' % (show_name(folder), error.strerror)
+    return None
+
+
 def main():
     """Fit, judge, print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
@@ -137,6 +147,7 @@ def main():
     parser.add_argument('--set', type=int, default=6, metavar='N', help='number of the set (default 6)')
     parser.add_argument('--surface', metavar='NAME', help='a surface, or its YAML file, in place of a fit')
     parser.add_argument('--leave-out', action='store_true', help='also fit without each part of the model: minutes')
+    parser.add_argument('--plot', metavar='DIR', help='write real_paths.png and real_ends.png to this folder, and end')
     args = parser.parse_args()
     start = time.monotonic()
     try:
@@ -148,6 +159,8 @@ def main():
     if errors:
         print('Fitted to the first halves of set %d:' % args.set)
         show(surface, errors)
+    if args.plot:
+        sys.exit(plot(args.plot, second, surface))
     print('%-22s %3s  %4s  %16s  %16s  %8s  %8s' % (
         'surface', 's', 'ends', 'in 50 % (90 % CI)', 'in 90 % (90 % CI)', 'm, med.', 'rad, med.'))
     judgements = judge(args.surface or 'fitted', second, surface)
