@@ -32,7 +32,7 @@ from rbx1_nav.plots import check_picture, check_writable, write_file
 from rbx1_nav.ros import resources
 from rbx1_nav.ros.bags import Topics, read_bag
 
-START = 'low_ply_carpet'
+START, CREATE_START = 'low_ply_carpet', 'create_lab_floor'
 
 
 def read_arguments():
@@ -45,9 +45,10 @@ def read_arguments():
     truth.add_argument('--ends', metavar='FILE', help='YAML file with the ends of the runs, measured by hand')
     parser.add_argument('--output', required=True, metavar='FILE', help='the surface file to write')
     parser.add_argument('--plot', metavar='FILE', help='draw recorded and simulated paths (PNG, PDF, SVG)')
-    parser.add_argument('--start', default=START, metavar='SURFACE',
-                        help='what the runs do not tell is as on this surface: one of %s, or a YAML file; default: %s'
-                             % (', '.join(known_surfaces(resources.surfaces())), START))
+    parser.add_argument('--start', metavar='SURFACE',
+                        help='what the runs do not tell is as on this surface: one of %s, or a YAML file; default: '
+                             '%s, for text files %s'
+                             % (', '.join(known_surfaces(resources.surfaces())), START, CREATE_START))
     parser.add_argument('--config', default=resources.path('config', 'turtlebot.yaml'), metavar='FILE',
                         help="ArbotiX YAML file of the base: its width, limits and timeout; default: the TurtleBot's")
     for name, topic in (('cmd-vel', '/cmd_vel'), ('odom', '/odom'), ('imu', '/imu/data')):
@@ -64,9 +65,11 @@ def read_arguments():
     for topic in topics:
         if topics.count(topic) > 1:
             parser.error('/%s: given twice: expected a topic of its own for commands, odometry, gyro and truth' % topic)
+    text_files = [path for path in arguments.runs if is_commands_file(path)]
+    # without odometry, the drags stay: those of a carpet would be far from a Create's
+    arguments.start = arguments.start or (CREATE_START if text_files else START)
     if os.path.splitext(arguments.start)[1]:        # a name has none
         arguments.start = os.path.abspath(arguments.start)
-    text_files = [path for path in arguments.runs if is_commands_file(path)]
     if text_files and (arguments.truth or arguments.ends or len(text_files) < len(arguments.runs)):
         parser.error('%s: a text file has its truth beside it: expected neither bags nor --truth nor --ends'
                      % show_name(text_files[0]))

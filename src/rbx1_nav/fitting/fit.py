@@ -23,13 +23,21 @@ MIN_STRENGTH, MAX_STRENGTH = 1e-4, 1.0      # of a noise or a spread; at the sma
 class Fitter:
     """Runs with their windows."""
 
-    def __init__(self, runs, windows, errors, by_cells=False):
+    def __init__(self, runs, windows, errors, by_cells=False, widest=1.0):
         """runs: Run objects; windows: Windows of each; errors: 1 sigma of a measured end: x and y (m), yaw (rad);
-        by_cells: see Prediction.sensitivities()."""
+        by_cells: see Prediction.sensitivities(); widest: up to so many times as large as given are the errors taken, if
+        fit_noise() finds that likelier."""
         self.runs = runs
         self.windows = windows
-        self.floor = numpy.diag(numpy.square(errors))
+        self.measured = numpy.diag(numpy.square(errors))
+        self.wider = 1.0    # by how much the errors were found larger
         self.by_cells = by_cells
+        self.widest = widest
+
+    @property
+    def floor(self):
+        """The covariance of a measured end."""
+        return self.wider ** 2 * self.measured
 
     def predictions(self, surface):
         """The Prediction for each run."""
@@ -66,7 +74,8 @@ class Fitter:
         return [numpy.stack(each, axis=2) for each in zip(*columns)]
 
     def noise_cost(self, surface, means=()):
-        """A function of a Surface that differs only in its noises and spreads: less the logarithm of its likelihood.
+        """A function of a Surface that differs only in its noises and spreads, and perhaps of another `wider`:
+        less the logarithm of its likelihood.
 
         If keys of MEANS that were fitted to the same ends are given, it is the restricted likelihood, which allows for
         what they explain (Patterson and Thompson, Recovery of inter-block information when block sizes are unequal,
@@ -76,10 +85,10 @@ class Fitter:
         sensitivities = [each.sensitivities(self.by_cells) for each in predictions]
         slopes = [numpy.moveaxis(each, 2, 0) for each in self.slopes(surface, means)] if means else []
 
-        def cost(noisy):
-            total, information = 0.0, 0.0
+        def cost(noisy, wider=None):
+            total, information, floor = 0.0, 0.0, (wider or self.wider) ** 2 * self.measured
             for index, (sensitivity, prediction) in enumerate(zip(sensitivities, predictions)):
-                covariance = Covariance(noisy, sensitivity, self.floor)
+                covariance = Covariance(noisy, sensitivity, floor)
                 total += covariance.half_log_determinant() + (covariance.whitened(prediction.errors) ** 2).sum() / 2
                 if slopes:
                     white = numpy.stack([covariance.whitened(column) for column in slopes[index]])
@@ -93,25 +102,33 @@ class Fitter:
         """
         cost_of = self.noise_cost(surface, means)
         likely = None if prior is None else numpy.log([getattr(prior, key) for key in keys])
+        count = len(keys)
 
-        def cost(logarithms):
-            return (cost_of(surface._replace(**dict(zip(keys, numpy.exp(logarithms).tolist()))))
-                    + (0.0 if prior is None else ((logarithms - likely) ** 2).sum() / 2))
+        def cost(logarithms):       # of the strengths, and of `wider` where it is fitted with them
+            values = numpy.exp(logarithms).tolist()
+            return (cost_of(surface._replace(**dict(zip(keys, values))), *values[count:])
+                    + (0.0 if prior is None else ((logarithms[:count] - likely) ** 2).sum() / 2))
 
         start = numpy.log(numpy.clip([getattr(surface, key) or 0.03 for key in keys], MIN_STRENGTH, MAX_STRENGTH))
-        result = minimize(cost, start, method='L-BFGS-B',
-                          bounds=[(numpy.log(MIN_STRENGTH), numpy.log(MAX_STRENGTH))] * len(keys))
-        steps = 0.05 * numpy.eye(len(keys))
+        bounds = [(numpy.log(MIN_STRENGTH), numpy.log(MAX_STRENGTH))] * count
+        if self.widest > 1:
+            start, bounds = numpy.append(start, numpy.log(self.wider)), bounds + [(0.0, numpy.log(self.widest))]
+        result = minimize(cost, start, method='L-BFGS-B', bounds=bounds)
+        if self.widest > 1:
+            self.wider = float(numpy.exp(result.x[count]))
+            if result.x[count] in bounds[count]:    # there it has no variance
+                result.x = result.x[:count]
+        steps = 0.05 * numpy.eye(len(result.x))
         hessian = numpy.stack([(approx_fprime(result.x + step, cost, 1e-4) - approx_fprime(result.x - step, cost, 1e-4))
                                / 0.1 for step in steps])
-        variances = numpy.diag(numpy.linalg.pinv((hessian + hessian.T) / 2)).clip(0)
-        errors = numpy.exp(result.x) * numpy.sqrt(variances)
-        if prior:       # the way up, which is longer than the way down
-            errors = numpy.exp(result.x) * numpy.expm1(numpy.sqrt(variances))
-        unclear = (numpy.exp(result.x) < 3 * MIN_STRENGTH) | (variances > VAGUE ** 2) | (variances <= 0)
+        variances = numpy.diag(numpy.linalg.pinv((hessian + hessian.T) / 2))[:count].clip(0)
+        values = numpy.exp(result.x[:count])
+        # with a prior the way up, which is longer than the way down
+        errors = values * (numpy.expm1(numpy.sqrt(variances)) if prior else numpy.sqrt(variances))
+        unclear = (values < 3 * MIN_STRENGTH) | (variances > VAGUE ** 2) | (variances <= 0)
         for index in numpy.flatnonzero(unclear):
             errors[index] = upper_error(cost, result, index)
-        return numpy.exp(result.x), errors, result.fun
+        return values, errors, result.fun
 
 
 def vague(keys):

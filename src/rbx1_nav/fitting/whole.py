@@ -1,5 +1,6 @@
 """From recordings to a surface, with a standard error for each value, and a word for each that they do not tell."""
 from collections import namedtuple
+from math import degrees
 
 import numpy
 
@@ -18,6 +19,8 @@ RESOLUTION = 0.0003, 0.0003, 0.001  # m, m, rad: of encoders; no end is measured
 CAMERAS = 0.001, 0.001, 0.003       # m, m, rad: 1 sigma of a motion capture system, where nothing tells it
 SHORTEST, LONGEST = 2.0, 10.0       # s: of a window
 WINDOWS = 100       # of the shorter windows in all that was recorded
+WIDEST = 10.0       # times the error of the truth at rest: the largest that an end may have in motion
+CLEARLY_WIDER = 2.0
 MIN_RUNS = 3        # for a spread from run to run
 LARGEST = {'accel_limit': 0.3, 'lag': 0.1, 'gyro_noise': 0.02, 'gyro_bias': 0.02, 'gyro_scale_error': 0.01,
            **{key: error for key, (_, error) in MEANS.items()},
@@ -120,12 +123,17 @@ class WholeFit:
         noises = NOISES + (SPREADS if len(runs) >= MIN_RUNS else ())
         for key in SPREADS if len(runs) < MIN_RUNS else ():
             self.reasons[key] = '%d of at least %d runs' % (len(runs), MIN_RUNS)
-        fitter = Fitter(runs, windows, truth_errors(self.recordings, self._stopping_time()), by_cells=True)
+        fitter = Fitter(runs, windows, truth_errors(self.recordings, self._stopping_time()), True, WIDEST)
         start = self.surface._replace(**{key: getattr(self.surface, key) or TYPICAL[key] for key in noises},
                                       **({'delay': self.surface.delay or 0.1} if 'delay' in means else {}))
         surface, errors = self._fit_known(fitter, start, means, noises)
         for key, error in errors.items():
             self._set(key, getattr(surface, key), error, BOUNDS.get(key))
+        if fitter.wider > CLEARLY_WIDER:
+            x, y, yaw = numpy.sqrt(numpy.diag(fitter.floor))
+            self.notes.append('The ends of the windows have errors of %.1f mm and %.2f degrees besides, which do not '
+                              'grow with the path: of the truth, or of the times of the commands. They are not in the '
+                              'surface.' % (1e3 * max(x, y), degrees(yaw)))
         self._look_for_outliers(fitter, surface)
 
     def _fit_known(self, fitter, start, means, noises):

@@ -5,6 +5,7 @@ import numpy
 import pytest
 
 from rbx1_nav.config import ConfigError
+from rbx1_nav.fitting.gyro import standing
 from rbx1_nav.fitting.recording import Commands
 from rbx1_nav.fitting.whole import WholeFit, truth_errors
 from rbx1_nav.model.kinematics import Pose
@@ -116,6 +117,22 @@ def test_a_robot_that_was_pushed_is_warned_of():
     result, _ = fit(runs)
     assert any(text.startswith('run1: ') and 'the first 10 s after' in text or 'the first 9 s' in text
                for text in result.warnings), result.warnings
+
+
+def test_a_truth_that_is_worse_in_motion_is_not_taken_for_noise_of_the_floor():
+    def shaken(run, generator):
+        moving = ~standing(run, run.truth.time, 0.75)
+        return run._replace(truth=run.truth._replace(**{
+            key: getattr(run.truth, key) + moving * generator.normal(0, sigma, len(moving))
+            for key, sigma in (('x', 0.003), ('y', 0.003), ('yaw', 0.01))}))
+    generator = numpy.random.default_rng(3)
+    result, values = fit([shaken(record(DRIVE, seed), generator) for seed in range(4)])
+    for key in 'heading_noise_turning', 'heading_noise_straight', 'distance_noise':
+        assert abs(values[key].value - getattr(FLOOR, key)) < 3 * values[key].error, key
+        assert values[key].error < 0.03, key
+    assert len(result.notes) == 1 and result.notes[0].startswith('The ends of the windows have errors of ')
+    exact, _ = fit([record(DRIVE, seed) for seed in range(4)])
+    assert exact.notes == []
 
 
 def test_the_error_of_the_truth_is_that_at_rest():

@@ -3,6 +3,7 @@ import os
 import subprocess
 import sys
 
+import numpy
 import pytest
 
 from rbx1_nav.model.surfaces import load_surface
@@ -53,6 +54,20 @@ def test_the_truth_of_a_robot_without_errors(folder):
     # three windows of 2 s tell little, but more than the 0.03 of the start
     assert abs(surface.slip_turning) < 0.01 and surface.drag_turning < 1e-3
     assert 'Left as on low_ply_carpet:' in output and '1 of at least 3 runs' in output
+
+
+def test_text_files_begin_with_the_floor_of_creates(tmp_path):
+    time = numpy.arange(0, 30, 0.1)
+    speed = numpy.where((time > 2) & (time < 26), 0.1, 0.0)
+    numpy.savetxt(str(tmp_path / 'D1R1_Odometry.dat'), numpy.transpose([time, speed, 0 * time]))
+    x = 0.1 * numpy.clip(time - 2.2, 0, 24)
+    numpy.savetxt(str(tmp_path / 'D1R1_Groundtruth.dat'), numpy.transpose([time, x, 0 * time, 0 * time]))
+    status, output, error = fit(tmp_path, 'D1R1_Odometry.dat', '--output', 'floor.yaml')
+    assert (status, error) == (0, '')
+    assert 'Left as on create_lab_floor:' in output
+    assert load_surface(str(tmp_path / 'floor.yaml'), SURFACES).drag_straight < 1e-5
+    status, output, _ = fit(tmp_path, 'D1R1_Odometry.dat', '--output', 'floor.yaml', '--start', 'hard_floor')
+    assert status == 0 and 'Left as on hard_floor:' in output
 
 
 @pytest.mark.parametrize('arguments, status, text', [
