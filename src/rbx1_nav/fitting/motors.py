@@ -46,16 +46,18 @@ class Intervals:
 
 
 def standard_errors(slopes, left, borders):
-    """Of values fitted by least squares: from the variance of the residuals `left`, or from their sums in each run if
-    that is more, because rounding to whole ticks is not independent in one interval and the next (the sandwich of Liang
-    and Zeger, Longitudinal data analysis using generalized linear models, 1986). borders: index of the end of each run.
+    """Of values fitted by least squares: the largest of three. From the variance of the residuals `left`; from each of
+    them by itself, because rounding to whole ticks leaves more of a start than of a rest; and from their sums in each
+    run, because it is not independent in one interval and the next (the sandwich of Liang and Zeger, Longitudinal data
+    analysis using generalized linear models, 1986). borders: index of the end of each run.
     """
     sizes = numpy.sqrt((slopes ** 2).sum(axis=0))       # the units differ by far
     bread = numpy.linalg.pinv((slopes / sizes).T @ (slopes / sizes)) / numpy.outer(sizes, sizes)
-    plain = (left ** 2).sum() / max(1, len(left) - slopes.shape[1]) * bread
-    sums = numpy.stack([part.sum(axis=0) for part in numpy.split(slopes * left[:, None], borders[:-1])])
-    robust = bread @ (sums.T @ sums) @ bread * len(sums) / max(1, len(sums) - 1)
-    return numpy.sqrt(numpy.maximum(numpy.diag(plain), numpy.diag(robust)))
+    variances = [(left ** 2).sum() / max(1, len(left) - slopes.shape[1]) * numpy.diag(bread)]
+    scores = slopes * left[:, None]
+    for sums in (scores, numpy.stack([part.sum(axis=0) for part in numpy.split(scores, borders[:-1])])):
+        variances.append(numpy.diag(bread @ (sums.T @ sums) @ bread) * len(sums) / max(1, len(sums) - 1))
+    return numpy.sqrt(numpy.max(variances, axis=0))
 
 
 def fit_motors(surface, base_width, recordings):

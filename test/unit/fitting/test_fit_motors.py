@@ -3,7 +3,7 @@ from hypothesis import Phase, given, settings, strategies as st
 import numpy
 import pytest
 
-from rbx1_nav.fitting.motors import INTERVAL, KEYS, Intervals, fit_motors
+from rbx1_nav.fitting.motors import INTERVAL, KEYS, Intervals, fit_motors, standard_errors
 from sample_runs import DRIVE, EXERCISE, FLOOR, FORWARD, REST, record
 
 START = FLOOR._replace(lag=0.1, accel_limit=1.0, drag_straight=0.002, drag_turning=0.003, delay=0.0)
@@ -42,6 +42,25 @@ def test_a_limit_that_is_hardly_reached_is_right_or_not_told(limit):
     fit = fit_motors(START, 0.26, [record(DRIVE, surface=surface)])
     assert 'accel_limit' in fit.unused or fit.values['accel_limit'] == pytest.approx(
         limit, abs=5 * fit.errors['accel_limit'])
+
+
+@pytest.mark.parametrize('limit', [1.9, 3.0])
+def test_a_limit_just_above_what_the_motors_need_is_not_told(limit):
+    # 0.3 m/s with this lag needs 1.6 m/s^2: there the fit stops, and rounding to ticks makes a slope
+    surface = FLOOR._replace(accel_limit=limit, lag=0.186, drag_straight=0.002)
+    fit = fit_motors(START, 0.26, [record(DRIVE, surface=surface)])
+    assert fit.values['accel_limit'] < 1.7 and 'accel_limit' in fit.unused
+
+
+def test_standard_errors_allow_for_residuals_that_are_larger_where_the_slope_is():
+    generator = numpy.random.default_rng(4)
+    # one interval in ten is a start: all of the slope, and nearly all of the error
+    slopes, sigma = (numpy.tile([value] + 9 * [rest], 200) for value, rest in ((1.0, 0.0), (1.0, 0.01)))
+    left = generator.normal(0.0, sigma)
+    left -= slopes * (slopes @ left) / (slopes @ slopes)        # what a fit leaves
+    error, = standard_errors(slopes[:, None], left, numpy.array([2000]))
+    # 1 sigma of it is 5 %; by the variance of all residuals it would be a third
+    assert error >= 0.85 / 200 ** 0.5
 
 
 def test_commands_of_another_run_leave_a_large_residual():
