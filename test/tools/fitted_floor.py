@@ -12,7 +12,7 @@ import rospy
 import yaml
 
 from rbx1_nav.fitting.recording import relative
-from rbx1_nav.model.surfaces import draw_run, load_surface, read_seed
+from rbx1_nav.model.surfaces import load_surface
 import support
 
 TOPICS = '/cmd_vel', '/odom', '/imu/data', '/ground_truth'
@@ -65,26 +65,27 @@ class TestFittedFloor(unittest.TestCase):
         folder = os.path.join(rospkg.RosPack().get_path('rbx1_nav'), 'config', 'surfaces')
         floor, start = (load_surface(name, folder) for name in ('low_ply_carpet', 'hard_floor'))
         fitted = load_surface(surface, folder)
-        # both runs had the base's slip of this seed
-        drawn = draw_run(floor, read_seed(rospy.get_param('/arbotix/seed')))
         with open(surface) as file:
             text = file.read()
         self.assertEqual(set(yaml.safe_load(text)), set(fitted._fields[1:]))
-        for key, value, tolerance in (
-                ('slip_straight', drawn.slip_straight, 0.01), ('slip_turning', drawn.slip_turning, 0.01),
+        for key, tolerance in (
+                # the carpet's noise over 4 m and 4 half turns: three standard deviations, 0.022 and 0.024
+                ('slip_straight', 0.07), ('slip_turning', 0.07),
                 # the recorder stamps commands when they arrive, in simulated time, which runs at 10 times its clock
-                ('drag_straight', floor.drag_straight, 0.003), ('drag_turning', floor.drag_turning, 0.003)):
-            self.assertAlmostEqual(getattr(fitted, key), value, delta=tolerance, msg=key + '\n' + output)
+                ('drag_straight', 0.003), ('drag_turning', 0.003)):
+            self.assertAlmostEqual(getattr(fitted, key), getattr(floor, key), delta=tolerance, msg=key + '\n' + output)
             self.assertRegex(text, r'\n%s: .*fitted, \+- ' % key)
+        for key in 'heading_noise_turning', 'heading_noise_straight', 'distance_noise':     # within a factor of 3
+            self.assertTrue(1 / 3 < getattr(fitted, key) / getattr(floor, key) < 3, key + '\n' + output)
         self.assertGreater(abs(start.drag_turning - floor.drag_turning), 0.01)      # so the start would not do
         self.assertRegex(text, r'\nticks_meter: 4100 .*left as it was')
 
         output = self.run_process(support.Process('rosrun', 'rbx1_nav', 'simulate.py', '--surface', surface, '--method',
                                                   'timed', '--runs', '20'))
         x, y = map(float, re.search(r'timed +truth +(\S+) \+- \S+ +(\S+) \+-', output).groups())
-        # a slip known to 0.01 turns the way back by 0.03 rad; the ideal robot ends at the start, half a metre away
-        self.assertLess(abs(x - real[0]), 0.10, (real, output))
-        self.assertLess(abs(y - real[1]), 0.10, (real, output))
+        # the mean of two runs, by which the slip was fitted; the ideal robot ends at the start, half a metre away
+        self.assertLess(abs(x - real[0]), 0.20, (real, output))
+        self.assertLess(abs(y - real[1]), 0.20, (real, output))
         self.assertGreater(real[1], 0.3)
 
 
