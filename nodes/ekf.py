@@ -121,8 +121,8 @@ class Ekf:
         """Fill in the DiagnosticStatus of a sensor."""
         with self.lock:
             timed_out = self.combined is not None and self.combined.timed_out[sensor]
-            outliers = self.combined.filter.outliers if self.combined and self.combined.filter else 0
-            self.sensors[sensor].diagnose(status, timed_out, outliers)
+            contradicts = self.combined is not None and self.combined.contradicts
+            self.sensors[sensor].diagnose(status, timed_out, contradicts)
         return status
 
     def run(self):

@@ -10,8 +10,8 @@ from sensor_msgs.msg import Imu
 import support
 
 STANDSTILL = 100    # messages of the odometry, 2 s: time for the filter to estimate the bias of the gyro
-TURNS = 8           # of about 50 degrees: in the end the wheels are off by more than
-WHEEL_ERROR = math.radians(6)
+TURNS = 4           # of about 50 degrees: in the end the wheels are off by more than
+WHEEL_ERROR = math.radians(30)
 GYRO_ERROR = math.radians(3)    # what is left of bias, scale error and noise is about a degree
 
 

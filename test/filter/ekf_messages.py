@@ -125,7 +125,7 @@ class TestEkfMessages(unittest.TestCase):
         self.wait_for_log('reset_odometry: restarting')
         self.poses.next()
 
-    def test_wheels_and_gyro_that_disagree_are_diagnosed(self):
+    def test_wheels_and_gyro_that_contradict_each_other_are_diagnosed(self):
         count = [0]
 
         def make():
@@ -135,9 +135,9 @@ class TestEkfMessages(unittest.TestCase):
             message.pose.pose.orientation.w = math.cos(count[0] * 0.01)
             return message
         standing, self.odom.make = self.odom.make, make
-        support.wait_for(lambda: any(status.message == 'Wheels and gyro disagree'
+        support.wait_for(lambda: any(status.message == 'Wheels and gyro contradict each other'
                                      for m in self.diagnostics.messages[-3:] for status in m.status),
-                         'the disagreement in /diagnostics')
+                         'the contradiction in /diagnostics')
         self.odom.make = standing
         self.wait_for_status('odom', DiagnosticStatus.OK)
 

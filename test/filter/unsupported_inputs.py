@@ -38,7 +38,7 @@ class TestUnsupportedInputs(unittest.TestCase):
             self.assertEqual(process.output.count(line), 1, process.output)
         process.kill()
         output = self.start('false').output
-        self.assertIn('Initial uncertainties', output)
+        self.assertIn('Floor that the filter starts with', output)
         self.assertNotIn('[WARN]', output)
 
 

@@ -13,6 +13,7 @@ JUMP_TOLERANCE = 0.02   # m and rad in addition
 DROPOUT_SPEED = 0.5     # m/s: how fast the robot may move (1 sigma) while no odometry arrives
 MAX_LEAD = SECOND // 2  # ns that a stamp may be ahead of the clock: clocks differ
 MAX_AGE = 60 * SECOND   # ns that it may be behind: simulated time may run far ahead of a busy machine
+CONTRADICTION = 5 * SECOND  # ns for which a contradiction is shown
 MAX_WAIT = 5 * SECOND   # ns that odometry waits for a gyro that is late but not silent
 
 Estimate = namedtuple('Estimate', 'stamp pose covariance odom')
@@ -75,9 +76,14 @@ class CombinedOdometry:
         self.odom_yaw = None        # rad, the filter's yaw at that time
         self.yaws = deque()         # (ns, rad) of the filter since then, where the gyro is ahead of the odometry
         self.another_floor = False  # whether the sensors have shown that the prior is that of another floor
-        self.contradict = False     # whether wheels and gyro contradict each other
+        self.contradicted = None    # ns, when wheels and gyro last contradicted each other
         self.suspect = None         # an Odom that has jumped, until the next one confirms it
         self.timed_out = {'odom': False, 'imu_data': False}
+
+    @property
+    def contradicts(self):
+        """Whether wheels and gyro contradict each other, or did so a moment ago."""
+        return self.contradicted is not None and self.time - self.contradicted < CONTRADICTION
 
     # input
 
@@ -218,10 +224,11 @@ class CombinedOdometry:
         if not sums.add(wheels, gyro - ekf.state[BIAS] * duration, travelled, duration):
             return
         measured = 'odom turned by %.2f rad, imu_data by %.2f rad' % (sums.wheels, sums.gyro)
-        before, self.contradict = self.contradict, bool(ekf.contradiction())
-        if self.contradict and not before:
-            self.warn('%s: one of them is wrong; the heading is uncertain' % measured)
-        elif not (self.contradict or self.another_floor) and ekf.is_another_floor():
+        if ekf.contradiction():
+            if not self.contradicts:
+                self.warn('%s: one of them is wrong; the heading is uncertain' % measured)
+            self.contradicted = self.time
+        elif not self.another_floor and ekf.is_another_floor():
             self.another_floor = True
             self.warn('%s: this is another floor than assumed; the distance is less certain' % measured)
 

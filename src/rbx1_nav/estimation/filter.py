@@ -73,8 +73,7 @@ class Filter:
         self.used = 7               # columns of the root
         self.walked = [0.0] * 3     # s, rad, m since the root was square
         self.agreement = Agreement()
-        self.doubted = 0.0          # rad: of the heading, since wheels and gyro contradict each other
-        self.outliers = 0           # steps in which wheels and gyro disagreed by more than OUTLIER
+        self.doubt = 0.0            # rad: the sum of what wheels and gyro have contradicted each other by
 
     @property
     def covariance(self):
@@ -114,11 +113,12 @@ class Filter:
 
     def contradiction(self):
         """The angle (rad) by which wheels and gyro differ more than on any floor, or 0. One of them is wrong, and the
-        heading as uncertain as they differ."""
+        heading as uncertain as they differ. They are compared anew from there on."""
         difference = self.agreement.difference(UNKNOWN, self._bias_variance)
-        if abs(difference) > self.doubted:
-            self._add_noise(YAW, sqrt(difference ** 2 - self.doubted ** 2))
-        self.doubted = abs(difference)
+        if difference:
+            before, self.doubt = self.doubt, self.doubt + abs(difference)
+            self._add_noise(YAW, sqrt(self.doubt ** 2 - before ** 2))
+            self.agreement = Agreement()
         return difference
 
     @property
@@ -144,7 +144,6 @@ class Filter:
         noise = wheel_noise + gyro_noise
         variance = float(spread @ spread) + noise
         if difference ** 2 > OUTLIER ** 2 * variance:
-            self.outliers += 1
             return None
         gain = root @ spread / variance
         root -= (gain / (1 + sqrt(noise / variance)))[:, None] * spread
