@@ -8,7 +8,7 @@ import math
 
 import yaml
 
-from floors import UNKNOWN, Follower, figures, limits, misses, markdown, table
+from floors import UNKNOWN, Follower, KnownHeading, figures, limits, misses, markdown, table
 from robot_pose_ekf import RobotPoseEkf
 from rbx1_nav.control.legs import StuckError
 from rbx1_nav.estimation.combined_odometry import CombinedOdometry
@@ -21,23 +21,26 @@ from rbx1_nav.units import SECOND
 
 PATH = 2 * EXERCISE['goal_distance']    # m, out and back
 CHUNK = 5       # seeds per task of a process
-NOTHING = 0, 0, 0.0, 0.0    # the arguments of figures() before the first run
+NOTHING = 0, 0, 0.0, 0.0, 0.0   # the arguments of figures() before the first run
 
 
 def run(robot, surface, assumed, method, seed):
-    """One run: the Errors of the filter for each of `assumed` (name: Priors), and those of the port.
+    """One run: the Errors of the filter for each of `assumed` (name: Priors), those of the port and of KnownHeading.
 
     The assumed floor must be one if the method is ekf, where the robot follows the filter. Raises StuckError.
     """
     prior = next(iter(assumed.values())) if method == 'ekf' else None
     filters = {} if prior else {name: CombinedOdometry(each, SECOND) for name, each in assumed.items()}
     port = RobotPoseEkf()
-    followers, port_follower = {name: Follower() for name in assumed}, Follower()
+    best = KnownHeading(surface.slip_straight if surface else 0.0)
+    followers, port_follower, best_follower = {name: Follower() for name in assumed}, Follower(), Follower()
 
     def listen(snapshot, messages):
         odom = messages.odom
         port.update(odom.stamp / SECOND, odom.pose, messages.pose_variances, *messages.orientation)
         port_follower.compare(port.state, snapshot.truth)
+        best.update(odom.pose, snapshot.truth)
+        best_follower.compare(best.pose, snapshot.truth)
         for name, follower in followers.items():
             if prior:
                 pose = snapshot.estimate
@@ -48,7 +51,7 @@ def run(robot, surface, assumed, method, seed):
 
     result = simulate(method, robot, surface, seed, prior=prior, listen=listen)
     return ({name: follower.errors(result.covariance if prior else filters[name].estimate.covariance)
-             for name, follower in followers.items()}, port_follower.errors())
+             for name, follower in followers.items()}, port_follower.errors(), best_follower.errors())
 
 
 def add(one, other):
@@ -62,11 +65,11 @@ def run_some(task):
     sums = {name: list(NOTHING) for name in assumed}
     for seed in seeds:
         try:
-            errors, port = run(robot, surface, assumed, method, seed)
+            errors, port, known = run(robot, surface, assumed, method, seed)
         except StuckError:
-            sums = {name: add(before, (0, 1, 0.0, 0.0)) for name, before in sums.items()}
+            sums = {name: add(before, (0, 1, 0.0, 0.0, 0.0)) for name, before in sums.items()}
         else:
-            sums = {name: add(before, (1, 0, errors[name], port)) for name, before in sums.items()}
+            sums = {name: add(before, (1, 0, errors[name], port, known)) for name, before in sums.items()}
     return (true, method), sums
 
 

@@ -9,9 +9,10 @@ import numpy
 
 IDEAL, UNKNOWN = 'ideal', 'unknown'
 COLUMNS = (('heading', 'heading deg'), ('port_heading', 'port'), ('heading_ratio', 'ratio'),
-           ('position', 'position m'), ('port_position', 'port'), ('position_ratio', 'ratio'),
+           ('position', 'position m'), ('port_position', 'port'), ('position_ratio', 'ratio'), ('best_position', 'best'),
            ('nees', 'NEES'), ('end_heading', 'end deg'), ('end_position', 'end m'))
-CELLS = (('heading', 1, 2), ('port_heading', 1, 2), ('position', 100, 2), ('port_position', 100, 2), ('nees', 1, 1))
+CELLS = (('heading', 1, 2), ('port_heading', 1, 2), ('position', 100, 2), ('port_position', 100, 2),
+         ('best_position', 100, 2), ('nees', 1, 1))
 
 Errors = namedtuple('Errors', 'ticks heading position end_heading end_position nees')
 Errors.__doc__ = """Sums over runs: number of ticks; squared errors of heading (degrees^2) and position (m^2) at all
@@ -56,12 +57,31 @@ class Follower:
                             0.0 if covariance is None else consistency(*self.last, covariance)])
 
 
-def figures(runs, stuck, errors, port):
+class KnownHeading:
+    """Dead reckoning that is told the true heading and the mean slip: no filter without another sensor does better."""
+
+    def __init__(self, slip):
+        self.slip = slip
+        self.pose = self.odom = None
+
+    def update(self, odom, truth):
+        """Add the displacement that odometry reports. odom, truth: poses (x, y, yaw)."""
+        if self.odom is None:
+            self.pose = tuple(truth)
+        else:
+            (x, y, yaw), (old_x, old_y, old_yaw) = odom, self.odom
+            reported, real = (yaw + old_yaw) / 2, (truth[2] + self.pose[2]) / 2
+            distance = (1 - self.slip) * ((x - old_x) * math.cos(reported) + (y - old_y) * math.sin(reported))
+            self.pose = (self.pose[0] + distance * math.cos(real), self.pose[1] + distance * math.sin(real), truth[2])
+        self.odom = tuple(odom)
+
+
+def figures(runs, stuck, errors, port, best):
     """Root mean squares, their ratios, and the mean NEES. runs: their number; stuck: that of those that never ended;
-    errors, port: Errors of the filter and the port, summed over the runs."""
-    errors, port = Errors(*map(float, errors)), Errors(*map(float, port))
+    errors, port, best: Errors of the filter, the port and KnownHeading, summed over the runs."""
+    errors, port, best = (Errors(*map(float, each)) for each in (errors, port, best))
     values = dict(runs=runs, stuck=stuck, nees=errors.nees / runs)
-    for name, sums in ('', errors), ('port_', port):
+    for name, sums in ('', errors), ('port_', port), ('best_', best):
         values.update({name + 'heading': math.sqrt(sums.heading / sums.ticks),
                        name + 'position': math.sqrt(sums.position / sums.ticks),
                        name + 'end_heading': math.sqrt(sums.end_heading / runs),
@@ -111,7 +131,7 @@ def table(rows):
 
 def markdown(rows):
     """The same in Markdown, one line per pair of floors. Each cell has a value per method, bold if beyond its limit."""
-    titles = 'true floor', 'assumed', 'heading (degrees)', 'the port', 'position (cm)', 'the port', 'NEES'
+    titles = 'true floor', 'assumed', 'heading (degrees)', 'the port', 'position (cm)', 'the port', 'best', 'NEES'
     yield '| %s |' % ' | '.join(titles)
     yield '|' + '---|' * len(titles)
     pairs = {}

@@ -6,14 +6,14 @@ import pytest
 
 import floors
 
-GOOD = dict(runs=1, stuck=0, heading=0.5, port_heading=0.5, position=0.005, port_position=0.01, nees=3.0)
+GOOD = dict(runs=1, stuck=0, heading=0.5, port_heading=0.5, position=0.005, port_position=0.01, best_position=0.002, nees=3.0)
 
 
 def test_errors_are_summed_up_over_the_ticks():
     follower = floors.Follower()
     follower.compare((0.0, 0.0, math.pi - 0.1), (3.0, 4.0, -math.pi + 0.1))     # 0.2 rad, 5 m
     follower.compare((1.0, 0.0, 0.1), (0.0, 0.0, 0.0))
-    values = floors.figures(1, 0, follower.errors(numpy.diag([4.0, 1.0, 0.01])), follower.errors())
+    values = floors.figures(1, 0, follower.errors(numpy.diag([4.0, 1.0, 0.01])), follower.errors(), follower.errors())
     assert values['heading'] == pytest.approx(math.degrees(math.sqrt((0.04 + 0.01) / 2)))
     assert values['position'] == pytest.approx(math.sqrt((25 + 1) / 2))
     assert values['end_heading'] == pytest.approx(math.degrees(0.1)) and values['end_position'] == pytest.approx(1.0)
@@ -23,7 +23,7 @@ def test_errors_are_summed_up_over_the_ticks():
 
 def test_long_runs_count_more_at_all_ticks_but_not_at_the_end():
     short, long = floors.Errors(10, 90.0, 0.0, 1.0, 0.0, 2.0), floors.Errors(30, 30.0, 0.0, 3.0, 0.0, 4.0)
-    values = floors.figures(2, 0, numpy.add(short, long), numpy.ones(6))
+    values = floors.figures(2, 0, numpy.add(short, long), numpy.ones(6), numpy.ones(6))
     assert values['heading'] == pytest.approx(math.sqrt(3.0)) and values['end_heading'] == pytest.approx(math.sqrt(2.0))
     assert values['nees'] == pytest.approx(3.0)
 
@@ -36,6 +36,14 @@ def test_consistency_uses_the_correlations():
 
 def test_a_covariance_that_is_none_is_not_consistent():
     assert floors.consistency((1.0, 0.0, 0.0), (0.0, 0.0, 0.0), numpy.diag([1.0, 1.0, -1e-9])) == math.inf
+
+
+def test_with_a_known_heading_only_the_distance_can_be_wrong():
+    best = floors.KnownHeading(0.1)
+    for step in range(101):     # the robot goes 1 m to the north, its odometry reports 1.2 m to the north-east
+        along = step / 100 * 1.2 * math.sqrt(0.5)
+        best.update((along, along, math.pi / 4), (2.0, step / 100, math.pi / 2))
+    assert best.pose == pytest.approx((2.0, 1.2 * 0.9, math.pi / 2))
 
 
 @pytest.mark.parametrize('true, assumed, bad, missed', [
@@ -65,4 +73,4 @@ def test_both_tables_show_what_misses():
             for method in ('timed', 'ekf')]
     assert [line.split()[-1] for line in floors.table(rows)] == ['misses', '-', 'nees']
     assert list(floors.markdown(rows))[2:] == [
-        '| carpet | tiles | 0.50, 0.50 | 0.50, 0.50 | 0.50, 0.50 | 1.00, 1.00 | 3.0, **3.0** |']
+        '| carpet | tiles | 0.50, 0.50 | 0.50, 0.50 | 0.50, 0.50 | 1.00, 1.00 | 0.20, 0.20 | 3.0, **3.0** |']
