@@ -9,8 +9,8 @@ import numpy
 
 IDEAL, UNKNOWN = 'ideal', 'unknown'
 COLUMNS = (('heading', 'heading deg'), ('port_heading', 'port'), ('heading_ratio', 'ratio'),
-           ('position', 'position m'), ('port_position', 'port'), ('position_ratio', 'ratio'), ('best_position', 'best'),
-           ('nees', 'NEES'), ('end_heading', 'end deg'), ('end_position', 'end m'))
+           ('position', 'position m'), ('port_position', 'port'), ('position_ratio', 'ratio'),
+           ('best_position', 'best'), ('nees', 'NEES'), ('end_heading', 'end deg'), ('end_position', 'end m'))
 CELLS = (('heading', 1, 2), ('port_heading', 1, 2), ('position', 100, 2), ('port_position', 100, 2),
          ('best_position', 100, 2), ('nees', 1, 1))
 

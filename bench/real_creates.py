@@ -136,7 +136,8 @@ def plot(folder, runs, surface):
     try:
         draw_all(folder, runs, surface, starting_surface())
     except OSError as error:
-        return 'real_creates: --plot: %s: expected a folder that can be written: %s' % (show_name(folder), error.strerror)
+        return 'real_creates: --plot: %s: expected a folder that can be written: %s' % (
+            show_name(folder), error.strerror)
     return None
 
 

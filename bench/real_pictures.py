@@ -110,7 +110,7 @@ def draw_ends(windows):
     left.set_aspect('equal', adjustable='datalim')
     left.grid(True, alpha=0.4)
     draw_scaled(right, windows)
-    figure.suptitle('Where the robot was after %d s (blue), and the regions that hold 50 %% and 90 %% of the simulated ends'
+    figure.suptitle('Where the robot was after %d s (blue), and the regions of 50 %% and 90 %% of the simulated ends'
                     % END_LENGTH)
     return figure
 
@@ -150,5 +150,5 @@ def draw_scaled(axes, windows):
                   color=TRUTH, markersize=4, alpha=0.8, markeredgewidth=0)
     shares = [100 * numpy.mean([each.inside < part for each in windows]) for part in PARTS]
     axes.set(title='all %d on one scale: %.0f %% and %.0f %% are inside' % (len(windows), *shares), aspect='equal',
-             xlim=(-4, 4), ylim=(-4, 4), xticks=[], yticks=[], xlabel='less far  \u2190  than simulated  \u2192  farther',
-             ylabel='right  \u2190      \u2192  left')
+             xlim=(-4, 4), ylim=(-4, 4), xticks=[], yticks=[],
+             xlabel='less far  \u2190  than simulated  \u2192  farther', ylabel='right  \u2190      \u2192  left')

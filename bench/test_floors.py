@@ -6,7 +6,8 @@ import pytest
 
 import floors
 
-GOOD = dict(runs=1, stuck=0, heading=0.5, port_heading=0.5, position=0.005, port_position=0.01, best_position=0.002, nees=3.0)
+GOOD = dict(runs=1, stuck=0, heading=0.5, port_heading=0.5, position=0.005, port_position=0.01, best_position=0.002,
+            nees=3.0)
 
 
 def test_errors_are_summed_up_over_the_ticks():

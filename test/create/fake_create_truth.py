@@ -58,7 +58,7 @@ class TestTruth(unittest.TestCase):
         robot.send(command('start'), command('full'), drive_direct(200, 200))
         support.wait_for(lambda: robot.position > 0.3, 'the robot to drive')
         x, _, _ = self.stopped(robot)
-        # a mean slip of 2 %; the noise over 0.3 m has a standard deviation of 8 %, of which this seed draws less than two
+        # a mean slip of 2 %; the noise over 0.3 m has a standard deviation of 8 %: this seed draws less than two
         ratio = robot.read(43)['left_encoder'] / COUNTS / x
         self.assertTrue(0.85 < ratio < 1.25 and abs(ratio - 1) > 0.003, ratio)
 

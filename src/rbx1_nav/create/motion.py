@@ -63,8 +63,9 @@ class Motion:
         if elapsed > 0 and (any(self.since) or not self.stands):
             velocity = self.since.distance / elapsed, self.since.angle / elapsed
             # a difference of two roundings
-            variances = tuple((variance + error + 2 * rounding ** 2) / elapsed ** 2 + MEASURED for variance, error, rounding
-                              in zip(self.since[2:], self.odometry.errors.variances(self.since), self.rounding))
+            errors = self.odometry.errors.variances(self.since)
+            variances = tuple((variance + error + 2 * rounding ** 2) / elapsed ** 2 + MEASURED
+                              for variance, error, rounding in zip(self.since[2:], errors, self.rounding))
         self.reported, self.since = self.time, NOWHERE
         return State(self.time, self.odometry.pose, self.odometry.covariance, velocity, variances,
                      (self.left, self.right), gyro)

@@ -10,8 +10,8 @@ HELD = 0.3      # m: a robot that drives straight ahead leaves a rounded heading
 
 
 class Errors(namedtuple('Errors', 'linear angular heading')):
-    """Of the wheels' travel on the floor, 1 sigma: m after 1 m, rad after a turn of 1 rad, rad after 1 m. They grow with
-    the root of the travel."""
+    """Of the wheels' travel on the floor, 1 sigma: m after 1 m, rad after a turn of 1 rad, rad after 1 m. They grow
+    with the root of the travel."""
 
     def variances(self, travel):
         """Of the length (m^2) and the angle (rad^2) of a Travel."""

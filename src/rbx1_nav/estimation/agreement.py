@@ -47,5 +47,6 @@ class Agreement:
         difference = self.wheels * (1 - prior.slip_turning) - self.gyro
         variance = (ROUNDING ** 2 + bias * self.time ** 2
                     + (prior.slip_turning_spread ** 2 + prior.gyro_scale_error ** 2) * self.turned ** 2
-                    + prior.heading_noise_turning ** 2 * self.turned + prior.heading_noise_straight ** 2 * self.travelled)
+                    + prior.heading_noise_turning ** 2 * self.turned
+                    + prior.heading_noise_straight ** 2 * self.travelled)
         return difference if self.turned > LEAST and abs(difference) > DEVIATIONS * sqrt(variance) else 0.0

@@ -44,13 +44,13 @@ class CombinedOdometry:
     A step waits until the gyro has reported up to its end. So the result depends on stamps (ns) only, and not on when
     messages arrive, as long as no sensor times out. A sensor has timed out if by stamps the other one is ahead by more
     than `timeout`, and nothing has arrived from it for as long: one that is late is not silent. It is not used until it
-    recovers: without the gyro, the turn is measured by the wheels; without odometry, by the gyro, and the uncertainty of
-    the position grows. The travel during a dropout of the odometry counts when it recovers.
+    recovers: without the gyro, the turn is measured by the wheels; without odometry, by the gyro, and the uncertainty
+    of the position grows. The travel during a dropout of the odometry counts when it recovers.
     """
 
     def __init__(self, prior, timeout, gyro_used=True, warn=lambda text: None, clock=None):
-        """prior: Priors; timeout: ns; gyro_used: whether to wait for a gyro at all; warn(text): logs a warning; clock():
-        ns, tells when a message arrives if `now` may be simulated time."""
+        """prior: Priors; timeout: ns; gyro_used: whether to wait for a gyro at all; warn(text): logs a warning;
+        clock(): ns, tells when a message arrives if `now` may be simulated time."""
         self.prior = prior
         self.timeout = timeout
         self.gyro_used = gyro_used

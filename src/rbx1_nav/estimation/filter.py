@@ -1,7 +1,7 @@
 """The arithmetic of the combined odometry: a planar extended Kalman filter of wheel odometry and a gyro.
 
-Both sensors measure the same turn. The wheels slip by a fraction of their travel, which changes on the way; the gyro has
-a bias and a scale error. These errors are part of the state, after the pose:
+Both sensors measure the same turn. The wheels slip by a fraction of their travel, which changes on the way; the gyro
+has a bias and a scale error. These errors are part of the state, after the pose:
 
     x, y (m), yaw (rad), gyro bias (rad/s), gyro scale error, slip turning, slip straight (fractions of the travel)
 
@@ -41,8 +41,8 @@ Priors = namedtuple('Priors', 'slip_straight slip_straight_spread slip_turning s
                               'heading_noise_turning heading_noise_straight distance_noise')
 Priors.__doc__ = 'What is assumed before the first message; fields of a Surface, in its units.'
 
-# any floor. The noise is that of five real robots, config/surfaces/create_lab_floor.yaml; the spreads are as wide as the
-# slips of all files are apart
+# any floor. The noise is that of five real robots, config/surfaces/create_lab_floor.yaml; the spreads are as wide as
+# the slips of all files are apart
 UNKNOWN = Priors(0.0, 0.05, 0.0, 0.05, MIN_BIAS, MIN_SCALE_ERROR, radians(150), 0.084, 0.066, 0.044)
 
 
@@ -84,8 +84,8 @@ class Filter:
     def turn(self, duration, wheels=None, gyro=None, travelled=0.0):
         """Estimate the Turn of a step of `duration` (s) for move(), and update the errors in the state.
 
-        wheels, gyro: the measured (angle in rad, variance in rad^2), or None; travelled: m, by the wheels. If wheels and
-        gyro disagree by more than OUTLIER, the wheels have slipped far more than usual: the gyro is used alone.
+        wheels, gyro: the measured (angle in rad, variance in rad^2), or None; travelled: m, by the wheels. If wheels
+        and gyro disagree by more than OUTLIER, the wheels have slipped far more than usual: the gyro is used alone.
         """
         if wheels:
             prior, (angle, variance) = self.prior, wheels
@@ -137,8 +137,8 @@ class Filter:
         wheel_noise, gyro_noise = wheels[1] * grip ** 2, gyro[1] / scale ** 2
         angle = (gyro[0] - state[BIAS] * duration) / scale
         difference = wheels[0] * grip - angle
-        # noise that is both in a measurement and in its derivative does not average out. So the slip's derivative uses the
-        # gyro's turn, since the wheels' is rounded to ticks; and where the wheels stand, the gyro's turn is all noise
+        # noise that is both in a measurement and in its derivative does not average out. So the slip's derivative uses
+        # the gyro's turn, since the wheels' is rounded to ticks; where the wheels stand, the gyro's turn is all noise
         turned = angle if wheels[0] else 0.0
         spread = numpy.array([duration / scale, turned / scale, -turned / grip]) @ root[BIAS:STRAIGHT]
         noise = wheel_noise + gyro_noise
@@ -193,7 +193,7 @@ class Filter:
         self._use_columns(columns)
 
     def _use_columns(self, number):
-        """The root has so many more columns. If they get scarce, add the noise of the random walks, and make it square."""
+        """The root has so many more columns. If few are left, add the noise of the random walks, and make it square."""
         self.used += number
         if self.used <= 5 + SPARE:
             return

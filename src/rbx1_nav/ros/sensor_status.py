@@ -23,8 +23,8 @@ class SensorStatus:
         self.rejected = 0
 
     def diagnose(self, status, timed_out, contradicts):
-        """Fill in a DiagnosticStatus. timed_out: whether the filter does not use this sensor; contradicts: whether wheels
-        and gyro contradict each other."""
+        """Fill in a DiagnosticStatus. timed_out: whether the filter does not use this sensor; contradicts: whether
+        wheels and gyro contradict each other."""
         age = None if self.received is None else (rospy.Time.now() - self.received).to_sec()
         # below 0: the clock has jumped back since
         if timed_out or age is None or not -1 <= age <= self.timeout:
