@@ -31,8 +31,7 @@ class AlteredRobot:
             support.wait_for(publisher.get_num_connections, 'the filter to subscribe to ' + target)
             rospy.Subscriber(topic, kind, self._pass_on, (publisher, alter), tcp_nodelay=True)
 
-    @staticmethod
-    def _pass_on(message, where):
+    def _pass_on(self, message, where):
         publisher, alter = where
         alter(message)
         publisher.publish(message)

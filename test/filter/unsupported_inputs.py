@@ -37,9 +37,9 @@ class TestUnsupportedInputs(unittest.TestCase):
         for line in LINES:
             self.assertEqual(process.output.count(line), 1, process.output)
         process.kill()
-        output = self.start('false').output
-        self.assertIn('Floor that the filter starts with', output)
-        self.assertNotIn('[WARN]', output)
+        process = self.start('false')
+        process.wait_for_line('Floor that the filter starts with')
+        self.assertNotIn('[WARN]', process.output)
 
 
 if __name__ == '__main__':

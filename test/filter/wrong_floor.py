@@ -1,0 +1,43 @@
+#!/usr/bin/python3
+"""A filter that is told another floor than that below the robot notices it, and is less certain of the distance."""
+import math
+import unittest
+
+from geometry_msgs.msg import PoseWithCovarianceStamped
+from nav_msgs.msg import Odometry
+from rosgraph_msgs.msg import Log
+
+import support
+
+
+class TestWrongFloor(unittest.TestCase):
+    def test_it_is_noticed(self):
+        support.init_node('wrong_floor')
+        log, truth = support.Watch('/rosout', Log), support.Watch('/ground_truth', Odometry)
+        right, wrong = (support.Watch('/%s/odom_combined' % name, PoseWithCovarianceStamped)
+                        for name in ('right', 'wrong'))
+        support.wait_for(lambda: min(len(right.messages), len(wrong.messages)) > 60, 'two seconds of both filters')
+        driver = support.out_and_back()
+        self.addCleanup(driver.kill)
+        self.assertEqual(driver.wait(), 0, driver.output)
+        true_yaw = support.yaw(truth.next())
+        right.next()
+        wrong.next()
+
+        noticed = [(m.name, m.msg) for m in list(log.messages) if 'another floor than assumed' in m.msg]
+        self.assertEqual([name for name, _ in noticed], ['/wrong'], noticed)
+        self.assertRegex(noticed[0][1], r'^odom turned by \d+\.\d\d rad, imu_data by \d+\.\d\d rad: ')
+        variances = {m.header.stamp: m.pose.covariance[0] for m in list(right.messages)}
+        ratios = [m.pose.covariance[0] / variances[m.header.stamp] for m in list(wrong.messages)
+                  if m.header.stamp in variances]
+        self.assertGreater(len(ratios), 100)
+        # on the way out it was more certain than on the carpet, or as certain: the base reports the carpet's noise
+        self.assertLess(ratios[len(ratios) // 4], 1.1)
+        self.assertGreater(max(ratios), 1.5)
+        # the heading is the gyro's, whatever is assumed of the wheels
+        for estimate in right, wrong:
+            self.assertLess(abs(support.wrapped(support.yaw(estimate.last) - true_yaw)), math.radians(4))
+
+
+if __name__ == '__main__':
+    support.main('wrong_floor', TestWrongFloor)
