@@ -5,11 +5,13 @@ Fits a surface to the first half of each robot's record, unless one is given, an
 the second half, some seconds after a known pose.
 """
 import argparse
+import os
 import sys
 import time
 
 import numpy
 
+from real_pictures import draw_ends, draw_paths
 from rbx1_nav.config import ConfigError, show_name
 from rbx1_nav.fitting.ensemble import energy_score, inner_share, simulate_ends
 from rbx1_nav.fitting.fit import Fitter, fit_floor
@@ -17,8 +19,8 @@ from rbx1_nav.fitting.floor import NOISES, SPREADS, Prediction, Windows
 from rbx1_nav.fitting.mrclam import BASE_WIDTH, CAMERAS, read_set
 from rbx1_nav.fitting.run import Run
 from rbx1_nav.model.surfaces import load_surface
+from rbx1_nav.plots import check_picture
 from rbx1_nav.ros import resources
-from real_pictures import draw_all
 
 LENGTHS = 5, 10, 20, 40     # s
 FITTED = 10     # s, the windows of the fit
@@ -26,6 +28,8 @@ ENDS = 500      # simulated, of each window
 UNEXPLAINED = 0.02, 0.02, 0.05  # m, m, rad: errors after FITTED that a constant slip cannot explain, nearly all of them
 BLOCK = 60      # s: of the bootstrap, since windows that are close have errors in common
 DRAWS = 2000    # of the bootstrap
+PICTURES = 'real_paths.png', 'real_ends.png'
+PATH_LENGTH, END_LENGTH = 40, 20    # s, the windows in them
 MOTIONS = 'delay', 'lag', 'slip_straight', 'slip_turning', 'curvature', 'turning_loss'
 OLD_MOTIONS = 'lag', 'slip_straight', 'slip_turning', 'drag_straight', 'drag_turning'
 
@@ -41,6 +45,12 @@ def halves(recordings):
     return first, second
 
 
+def separate(windows):
+    """Each of some Windows, alone."""
+    return [Windows(windows.first[index:index + 1], windows.count, windows.ends[index:index + 1])
+            for index in range(len(windows.first))]
+
+
 def starting_surface(**values):
     """A surface without errors, for a fit to begin with."""
     surface = load_surface('hard_floor', resources.surfaces())
@@ -48,13 +58,17 @@ def starting_surface(**values):
     return surface._replace(**{**zeros, 'drag_straight': 1e-6, 'drag_turning': 1e-6, **values})
 
 
+def ideal_surface():
+    """A surface on which a robot follows its commands, at once."""
+    return starting_surface(lag=1e-4, accel_limit=1e3)
+
+
 def fit(runs, motions, noises):
     """The Surface with these keys fitted to runs, and their standard errors."""
     windows, errors = [run.windows(FITTED) for run in runs], CAMERAS
     if noises == SPREADS:       # it does best if each window is a run, and few errors are its own
         errors = UNEXPLAINED
-        runs, windows = zip(*((run, Windows(each.first[index:index + 1], each.count, each.ends[index:index + 1]))
-                              for run, each in zip(runs, windows) for index in range(len(each.first))))
+        runs, windows = zip(*((run, window) for run, each in zip(runs, windows) for window in separate(each)))
     fitter = Fitter(runs, windows, errors)
     start = starting_surface(**dict.fromkeys(noises, 0.05), **({'delay': 0.1} if 'delay' in motions else {}))
     return fit_floor(fitter, start, motions, noises)[:2]
@@ -65,13 +79,16 @@ class Judgement:
 
     def __init__(self, runs, surface, length, seed=1):
         generator = numpy.random.default_rng(seed)
+        self.windows, self.ends = [], []    # (Run, Windows with one); simulated
         self.blocks, inside, scores, errors = [], [], [], []
         for number, run in enumerate(runs):
             windows = run.windows(length, length / 2)
             prediction = Prediction(surface, run.steps(surface), windows)
+            self.windows += [(run, window) for window in separate(windows)]
             self.blocks += [(number, int(run.times[first] - run.times[0]) // BLOCK) for first in windows.first]
             for index, end in enumerate(windows.ends):
                 ends = simulate_ends(surface, prediction, index, ENDS, generator)
+                self.ends.append(ends)
                 error = end - ends.mean(axis=0)
                 errors.append((numpy.hypot(*error[:2]), abs(error[2])))
                 inside.append(inner_share(ends[:, :2], end[:2]) if ends[:, :2].std() > 1e-6 else 1.0)
@@ -109,6 +126,19 @@ def judge(name, runs, surface):
     return judgements
 
 
+def plot(folder, surface, floor, judgements):
+    """Write the pictures. floor: what to call the Surface. Raises OSError."""
+    paths, ends = (os.path.join(folder, name) for name in PICTURES)
+    draw_paths(paths, 'The same commands for %d s: real robots, and simulated ones on %s\n'
+               'The window with the median score of each robot, from the second half of its record' % (
+                   PATH_LENGTH, floor), judgements[PATH_LENGTH], surface, ideal_surface())
+    judgement = judgements[END_LENGTH]
+    draw_ends(ends, 'After %d s: real ends, and the regions of %d simulated ones on %s\n'
+              'Of all %d ends in the second halves of the records, %.0f %% are inside 50 %%, %.0f %% inside 90 %%' % (
+                  END_LENGTH, ENDS, floor, len(judgement.inside), 100 * (judgement.inside < 0.5).mean(),
+                  100 * (judgement.inside < 0.9).mean()), judgement)
+
+
 def show(surface, errors):
     """Print the fitted values."""
     for key, error in errors.items():
@@ -131,16 +161,6 @@ def leave_out(first, second, judgements):
         print('%-24s %s' % (key, '  '.join(texts)), flush=True)
 
 
-def plot(folder, runs, surface):
-    """Write the pictures; returns the error, if there is one."""
-    try:
-        draw_all(folder, runs, surface, starting_surface())
-    except OSError as error:
-        return 'real_creates: --plot: %s: expected a folder that can be written: %s' % (
-            show_name(folder), error.strerror)
-    return None
-
-
 def main():
     """Fit, judge, print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
@@ -148,8 +168,14 @@ def main():
     parser.add_argument('--set', type=int, default=6, metavar='N', help='number of the set (default 6)')
     parser.add_argument('--surface', metavar='NAME', help='a surface, or its YAML file, in place of a fit')
     parser.add_argument('--leave-out', action='store_true', help='also fit without each part of the model: minutes')
-    parser.add_argument('--plot', metavar='DIR', help='write real_paths.png and real_ends.png to this folder, and end')
+    parser.add_argument('--plot', metavar='DIR', help='write %s and %s to this folder' % PICTURES)
     args = parser.parse_args()
+    if args.plot:
+        try:
+            for name in PICTURES:
+                check_picture(os.path.join(args.plot, name))
+        except ConfigError as error:
+            parser.error('--plot: %s: %s' % (show_name(args.plot), error))
     start = time.monotonic()
     try:
         first, second = halves(read_set(args.data, args.set))
@@ -160,15 +186,19 @@ def main():
     if errors:
         print('Fitted to the first halves of set %d:' % args.set)
         show(surface, errors)
-    if args.plot:
-        sys.exit(plot(args.plot, second, surface))
     print('%-22s %3s  %4s  %16s  %16s  %8s  %8s' % (
         'surface', 's', 'ends', 'in 50 % (90 % CI)', 'in 90 % (90 % CI)', 'm, med.', 'rad, med.'))
     judgements = judge(args.surface or 'fitted', second, surface)
+    if args.plot:
+        floor = show_name(args.surface) if args.surface else 'a floor fitted to the first halves of their records'
+        try:
+            plot(args.plot, surface, floor, judgements)
+        except OSError as error:
+            sys.exit('real_creates: --plot: %s: %s' % (show_name(args.plot), error.strerror))
     if not args.surface:
         old, errors = fit(first, OLD_MOTIONS, SPREADS)
         judge('constant slip, fitted', second, old)
-        judge('ideal', second, starting_surface())
+        judge('ideal', second, ideal_surface())
         print('Constant slip, no delay:')
         show(old, errors)
         if args.leave_out:

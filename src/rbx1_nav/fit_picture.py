@@ -32,7 +32,7 @@ def draw_fit(file, title, comparisons):
         simulated.plot(*each.simulated[:, -1], 'o', color='black', markerfacecolor='white', markersize=5, zorder=5,
                        label=None if number else 'end, simulated')
         if not any(alike(each, other) for other in comparisons[:number]):
-            draw_regions(ends, each, label=not number)
+            draw_regions(ends, each.ends[:, :2], label=not number)
     set_extents(comparisons, recorded, simulated)
     count, inside_50, inside_90 = shares(comparisons)
     recorded.set_title('recorded', fontsize='medium')
@@ -54,9 +54,8 @@ def alike(comparison, other):
     return mahalanobis(other.ends[:, :2], comparison.ends[:, :2].mean(axis=0)[None])[0] < 0.02
 
 
-def draw_regions(axes, comparison, label):
-    """The simulated ends of a run, and the regions that hold parts of them."""
-    points = comparison.ends[:, :2]
+def draw_regions(axes, points, label):
+    """Simulated ends, (n, 2), and the regions that hold parts of them. label: whether they are for the legend."""
     axes.plot(*points[:POINTS].T, '.', color=SIMULATED, markersize=4, alpha=0.6, zorder=1, markeredgewidth=0,
               label='simulated' if label else None)
     covariance = numpy.cov(points.T)

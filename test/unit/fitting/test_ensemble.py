@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rbx1_nav.fitting.ensemble import cell_noise, energy_score, inner_share, mahalanobis, simulate_ends
+from rbx1_nav.fitting.ensemble import cell_noise, energy_score, inner_share, mahalanobis, simulate_ends, simulate_paths
 from rbx1_nav.fitting.floor import NOISES, SPREADS, Covariance, Prediction, Windows
 from rbx1_nav.fitting.recording import Commands
 from rbx1_nav.fitting.travel import STEP, commanded_travel, grid
@@ -34,16 +34,17 @@ def predict(surface, sequence):
 
 
 def drive(surface, sequence, seed):
-    """The true end of a simulated robot."""
+    """The true poses of a simulated robot after each step."""
     wheels = Wheels(WIDTH, surface, draw_run(surface, seed), 0.02, make_roughness(surface, seed))
     for linear, angular, duration in sequence:
         for _ in range(round(duration / STEP)):
             wheels.travel(linear, angular, STEP)
-    return wheels.truth.pose
+            yield wheels.truth.pose
 
 
 def simulated(surface):
-    return numpy.array([drive(surface, SEQUENCE, seed) for seed in range(RUNS)])
+    """The true ends of RUNS simulated robots."""
+    return numpy.array([list(drive(surface, SEQUENCE, seed))[-1] for seed in range(RUNS)])
 
 
 def spreads_agree(some, others):
@@ -57,13 +58,23 @@ def spreads_agree(some, others):
 
 @settings(max_examples=50)
 @given(st.lists(st.tuples(st.floats(-0.5, 0.5), st.floats(-2, 2), st.integers(1, 40)), min_size=1, max_size=10))
-def test_without_noise_the_end_is_that_of_the_simulated_robot(parts):
+def test_without_noise_path_and_end_are_those_of_the_simulated_robot(parts):
     sequence = [(linear, angular, STEP * count) for linear, angular, count in parts]
     prediction = predict(FLOOR, sequence)
-    end = numpy.array(drive(FLOOR, sequence, 0))
+    path = numpy.transpose(list(drive(FLOOR, sequence, 0)))
+    end = path[:, -1]
     assert prediction.means[0] == pytest.approx(end, abs=1e-9)
     ends = simulate_ends(FLOOR, prediction, 0, 3, numpy.random.default_rng(0))
     assert ends == pytest.approx(numpy.stack([end] * 3), abs=1e-9)
+    paths = simulate_paths(FLOOR, prediction, 0, 3, numpy.random.default_rng(0))
+    assert paths == pytest.approx(numpy.stack([path] * 3), abs=1e-9)
+
+
+def test_half_way_the_paths_are_spread_like_those_of_the_simulated_robot():
+    half = round(sum(duration for _, _, duration in SEQUENCE[:2]) / STEP)
+    paths = simulate_paths(NOISY, predict(NOISY, SEQUENCE), 0, 10 * RUNS, numpy.random.default_rng(1))
+    poses = numpy.array([list(drive(NOISY, SEQUENCE[:2], seed))[-1] for seed in range(RUNS)])
+    assert spreads_agree(numpy.cov(poses.T), numpy.cov(paths[:, :, half - 1].T))
 
 
 def test_the_ensemble_is_that_of_the_simulated_robot():
