@@ -27,9 +27,9 @@ class TestPoseTable(unittest.TestCase):
         self.addCleanup(process.kill)
         return process.wait(), process.lines
 
-    def start(self, node):
-        """Start a node; it is ended, and unregistered, after the test."""
-        process = support.Process('rosrun', 'rbx1_nav', node)
+    def start(self, *node):
+        """Start a node with arguments; it is ended, and unregistered, after the test."""
+        process = support.Process('rosrun', 'rbx1_nav', *node)
         self.addCleanup(process.kill)
         self.addCleanup(process.wait)
         self.addCleanup(process.signal, signal.SIGTERM)
@@ -72,8 +72,8 @@ class TestPoseTable(unittest.TestCase):
 
     def test_base_and_filter(self):
         rospy.set_param('/arbotix', BASE)
-        for node in 'fake_base.py', 'ekf.py', 'odom_ekf.py':
-            self.start(node)
+        for node in ('fake_base.py',), ('ekf.py',), ('odom_ekf.py', 'odom_combined:=robot_pose_ekf/odom_combined'):
+            self.start(*node)
         topics = ['/ground_truth', '/odom', '/odom_ekf']
         watches = [support.Watch(topic, Odometry) for topic in topics]
         support.wait_for(lambda: all(watch.last for watch in watches), 'all three poses')

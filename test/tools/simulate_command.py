@@ -50,7 +50,7 @@ class TestSimulateCommand(unittest.TestCase):
     def test_three_methods_and_a_picture(self):
         with tempfile.TemporaryDirectory() as folder:
             picture = os.path.join(folder, 'methods.png')
-            status, output = simulate('--surface', 'low_ply_carpet', '--runs', '3', '--plot', picture)
+            status, output = simulate('--surface', 'low_ply_carpet', '--runs', '10', '--plot', picture)
             self.assertEqual(status, 0, output)
             pixels = numpy.asarray(Image.open(picture).convert('RGB')).astype(int)
         rows = re.findall(r'^(timed|odom|ekf) +truth.* ([\d.]+) \+- [\d.]+$', output, re.MULTILINE)
