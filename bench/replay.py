@@ -1,0 +1,198 @@
+"""The figures of a recorded run: the filter that ran live, the same filter replayed, and the port; without ROS.
+
+Stamps are in ns, poses are (x, y, yaw) in m and rad; angles in the results are in degrees.
+"""
+from collections import namedtuple
+import math
+import re
+
+from floors import consistency, squared_errors
+from rbx1_nav.estimation.combined_odometry import CombinedOdometry
+from rbx1_nav.units import SECOND
+from robot_pose_ekf import RobotPoseEkf
+
+STILL = 1e-3        # m and rad: odometry has moved if it differs by more from a pose at rest
+STANDSTILL = 2 * SECOND     # ns before the first motion and after the last one, between which the errors count
+DIFFERENCE = 1e-6   # m and rad: more is no rounding
+LIMITS = dict(difference_m=0.001, difference_deg=0.1, nees=(1, 5))
+MORE = re.compile(r'\(and (\d+) more of this kind\)')
+
+Recording = namedtuple('Recording', 'odom imu truth combined statistics missing lines')
+Recording.__doc__ = """What a bag has: odom: (Odom, variances of its pose); imu: (Imu, (yaw, variance) of its orientation);
+truth: {stamp: pose}; combined: Published; statistics: (start of the window, messages dropped) of the filter's
+subscriptions; missing: by topic, (stamp after the gap, number of messages) that the recorder did not get; lines: those
+of the filter in /rosout."""
+
+Published = namedtuple('Published', 'stamp pose yaw_variance')
+Published.__doc__ = 'What the filter published: stamp, pose, variance of the yaw (rad^2).'
+
+
+class Unusable(Exception):
+    """A recording that cannot be evaluated; the text says why."""
+
+
+def gaps(headers):
+    """(stamp after the gap, number of missing messages), from (sequence number, stamp) of the received messages."""
+    return [(stamp, number - before - 1) for (before, _), (number, stamp) in zip(headers, headers[1:])
+            if number != before + 1]
+
+
+def count_lines(lines):
+    """{what: number of lines} about sensors that time out and recover, and rejected messages."""
+    counts = {}
+    for what, text in ('timed_out', 'has timed out'), ('recovered', 'has recovered'), ('rejected', '; rejected'):
+        found = [line for line in lines if text in line]
+        counts[what] = len(found) + sum(int(more.group(1)) for more in map(MORE.search, found) if more)
+    return counts
+
+
+def replay(recording, prior, start, end=math.inf):
+    """{stamp: Estimate} of a filter that gets its first odometry at `start`, and all messages up to `end`."""
+    combined = CombinedOdometry(prior, SECOND)
+    # the reading before the first odometry tells when the next one begins
+    messages = [(imu.stamp, 0, imu) for imu, _ in recording.imu if start - SECOND <= imu.stamp <= end]
+    messages += [(odom.stamp, 1, (odom, variances)) for odom, variances in recording.odom if start <= odom.stamp <= end]
+    estimates = {}
+    for stamp, kind, message in sorted(messages, key=lambda each: each[:2]):
+        if kind:
+            combined.add_odom(stamp, *message)
+        else:
+            combined.add_imu(stamp, message)
+        if combined.estimate:
+            estimates.setdefault(combined.estimate.stamp, combined.estimate)
+    return estimates
+
+
+def replay_port(recording, start, end):
+    """The pose of robot_pose_ekf's arithmetic at `end`."""
+    port, orientations = RobotPoseEkf(), {imu.stamp: orientation for imu, orientation in recording.imu}
+    for odom, variances in recording.odom:
+        if start <= odom.stamp <= end and odom.stamp in orientations:
+            port.update(odom.stamp / SECOND, odom.pose, variances, *orientations[odom.stamp])
+    return tuple(port.state)
+
+
+def find_start(recording, prior):
+    """The stamp of the first odometry after the filter's restart. Raises Unusable.
+
+    The variance of the yaw becomes small at a restart. How small it is at the first published estimate depends on the
+    number of steps until then.
+    """
+    combined = recording.combined
+    restarts = [number for number in range(1, len(combined))
+                if combined[number].yaw_variance < combined[number - 1].yaw_variance / 2]
+    if not restarts:
+        raise Unusable('the filter was not restarted: expected a smaller variance of the yaw')
+    before, first = combined[restarts[-1] - 1], combined[restarts[-1]]
+    starts = [odom.stamp for odom, _ in recording.odom if before.stamp < odom.stamp <= first.stamp]
+    if not starts:
+        raise Unusable('no odometry was recorded at the restart of the filter')
+
+    def deviation(start):
+        estimate = replay(recording, prior, start, first.stamp).get(first.stamp)
+        return abs(estimate.covariance[2, 2] - first.yaw_variance) if estimate else math.inf
+    return min(starts, key=deviation)
+
+
+def motion(odom):
+    """The stamps between which odometry moves. odom: Odoms. Raises Unusable."""
+    def moved(pose, other):
+        return max(abs(a - b) for a, b in zip(pose, other)) > STILL
+    stamps = [each.stamp for each in odom if moved(each.pose, odom[0].pose) and moved(each.pose, odom[-1].pose)]
+    if not stamps:
+        raise Unusable('the robot did not move')
+    return stamps[0], stamps[-1]
+
+
+def is_scheduled(published, stamps, period):
+    """Whether a filter with estimates at `stamps` publishes those that were published, one per `period` (ns).
+
+    It publishes the first estimate at or after each multiple of the period from some time on. So each one published
+    limits that time: it is not before the estimate that was not published yet, and not after the one that was.
+    """
+    earlier = dict(zip(stamps[1:], stamps))
+    low, high = -math.inf, math.inf
+    for before, stamp in zip([published[0], *published], published):
+        if stamp not in earlier or stamp - before >= 2 * period:
+            return False
+        grid = round((stamp - published[0]) / period) * period
+        low, high = max(low, earlier[stamp] - grid), min(high, stamp - grid)
+    return low < high
+
+
+def difference(pose, other):
+    """(m, degrees) between two poses."""
+    heading, position = squared_errors(pose, other)
+    return math.sqrt(position), math.sqrt(heading)
+
+
+def live_figures(recording, prior, period):
+    """What the live filter reported, whether it got the messages that were recorded, and its difference from the
+    replay. period: of what it publishes, ns. Raises Unusable."""
+    start = find_start(recording, prior)
+    estimates = replay(recording, prior, start)
+    # the first ones are published while the filter catches up with its restart
+    published = [each for each in recording.combined if each.stamp > start + SECOND]
+    if not published:
+        raise Unusable('odom_combined ends less than 1 s after the restart of the filter')
+    common = [each for each in published if each.stamp in estimates]
+    differences = [(each.stamp, *difference(each.pose, estimates[each.stamp].pose)) for each in common]
+    row = dict(start=start, replayed_s=(published[-1].stamp - start) / SECOND,
+               missing={topic: sum(number for stamp, number in those if stamp > start)
+                        for topic, those in recording.missing.items()},
+               dropped=sum(dropped for since, dropped in recording.statistics if since > start),
+               statistics=sum(since > start for since, _ in recording.statistics),
+               scheduled=is_scheduled([each.stamp for each in published], list(estimates), period),
+               differs_after_s=next(((stamp - start) / SECOND for stamp, metres, degrees in differences
+                                     if metres > DIFFERENCE or math.radians(degrees) > DIFFERENCE), None),
+               **count_lines(recording.lines))
+    row['same'] = row['scheduled'] and not row['dropped'] and not any(
+        row['missing'].get(topic) for topic in ('/odom', '/imu/data', '/odom_combined'))
+    row['difference_m'], row['difference_deg'] = (
+        differences[-1][1:] if common and common[-1] is published[-1] else (math.nan, math.nan))
+    return row
+
+
+def end_figures(recording, prior):
+    """The errors of a replay and of the port against the truth, from one standstill to the other. Raises Unusable."""
+    begin, end = motion([odom for odom, _ in recording.odom])
+    begin, end = begin - STANDSTILL, end + STANDSTILL
+    stamps = [odom.stamp for odom, _ in recording.odom]
+    if stamps[0] > begin or stamps[-1] < end:
+        raise Unusable('the robot stood for less than %g s before or after its motion' % (STANDSTILL / SECOND))
+    estimates = replay(recording, prior, begin, end)
+    last = max((stamp for stamp in estimates if stamp in recording.truth), default=None)
+    if last is None:
+        raise Unusable('no ground truth')
+    first, truth, estimate = min(estimates), recording.truth[last], estimates[last]
+    metres, degrees = difference(estimate.pose, truth)
+    port_metres, port_degrees = difference(replay_port(recording, first, last), truth)
+    return dict(motion_s=(end - begin) / SECOND, error_m=metres, error_deg=degrees, port_m=port_metres,
+                port_deg=port_degrees, nees=consistency(estimate.pose, truth, estimate.covariance))
+
+
+def means(rows):
+    """The mean of each figure of end_figures() over the runs."""
+    names = 'error_m', 'error_deg', 'port_m', 'port_deg', 'nees'
+    return {name: sum(row[name] for row in rows) / len(rows) for name in names}
+
+
+def misses(rows):
+    """What is beyond the limits, as text."""
+    found = []
+    for row in rows:
+        lines = sum(row[name] for name in ('timed_out', 'recovered', 'rejected'))
+        if lines:
+            found.append('seed %d: %d lines about dropouts and rejected messages' % (row['seed'], lines))
+        # not `>`: a difference that is not known is a miss
+        if row['same'] and not all(row[name] <= LIMITS[name] for name in ('difference_m', 'difference_deg')):
+            found.append('seed %d: the same messages, but %.2g m and %.2g degrees from the replay'
+                         % (row['seed'], row['difference_m'], row['difference_deg']))
+    mean = means(rows)
+    for name, port in ('error_m', 'port_m'), ('error_deg', 'port_deg'):
+        if not mean[name] <= mean[port]:
+            found.append('mean %s: %.3g, the port %.3g' % (name, mean[name], mean[port]))
+    least, greatest = LIMITS['nees']
+    if not least <= mean['nees'] <= greatest:
+        found.append('mean NEES: %.3g: expected %g to %g' % (mean['nees'], least, greatest))
+    return found
