@@ -116,7 +116,8 @@ def read(path):
                     found.combined.append(replay.Published(stamp, pose, message.pose.covariance[35]))
             elif topic == '/statistics':
                 if message.node_sub == NODE and message.topic in TOPICS[:2]:
-                    found.statistics.append((message.window_start.to_nsec(), message.dropped_msgs))
+                    found.statistics.append((message.window_start.to_nsec(), message.window_stop.to_nsec(),
+                                             message.dropped_msgs))
             elif message.name == NODE:
                 found.lines.append(message.msg)
     found.missing.update((topic, replay.gaps(those)) for topic, those in headers.items())
@@ -125,10 +126,14 @@ def read(path):
 
 def evaluate(path, surface):
     """The figures of a bag, and the lines of the filter. Raises Failure."""
+    import rosbag
     from rbx1_nav.estimation.filter import priors
     from rbx1_nav.model.surfaces import load_surface
     from rbx1_nav.ros import resources
-    recording = read(path)
+    try:
+        recording = read(path)
+    except (OSError, rosbag.ROSBagException) as error:
+        raise bench.Failure(f'{path}: expected a bag: {error}')
     prior = priors(load_surface(surface, resources.surfaces()))
     try:
         return {**replay.live_figures(recording, prior, round(1e9 / FREQ)), **replay.end_figures(recording, prior),
@@ -174,6 +179,7 @@ def arguments():
     parser.add_argument('--surface', default='low_ply_carpet', help='the floor (default low_ply_carpet)')
     parser.add_argument('--limit', type=float, default=180, help='timeout of the driver, s of wall time (default 180)')
     parser.add_argument('--bags', metavar='DIR', help='keep the bags in this folder')
+    parser.add_argument('--replay', action='store_true', help='record nothing, but evaluate the bags in that folder')
     parser.add_argument('--json', metavar='FILE', help='write all figures to this file')
     args = parser.parse_args()
     for name, good in (('runs', args.runs > 0), ('factor', args.factor > 0), ('limit', args.limit > 0)):
@@ -181,6 +187,8 @@ def arguments():
             parser.error(f'--{name}: {getattr(args, name):g}: expected a number above 0')
     if args.load < 0:
         parser.error(f'--load: {args.load}: expected at least 0')
+    if args.replay and not args.bags:
+        parser.error('--replay: expected --bags DIR beside it')
     return args
 
 
@@ -189,7 +197,7 @@ def measure(args, folder, result):
     print(RUNS % TITLES, flush=True)
     for seed in range(args.runs):
         path = os.path.join(folder, f'seed_{seed}.bag')
-        factor = record(path, seed, args)
+        factor = math.nan if args.replay else record(path, seed, args)
         row = dict(seed=seed, real_time_factor=factor, **evaluate(path, args.surface))
         result['runs'].append(row)
         print(line(row), flush=True)

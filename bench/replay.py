@@ -19,9 +19,9 @@ MORE = re.compile(r'\(and (\d+) more of this kind\)')
 
 Recording = namedtuple('Recording', 'odom imu truth combined statistics missing lines')
 Recording.__doc__ = """What a bag has: odom: (Odom, variances of its pose); imu: (Imu, (yaw, variance) of its orientation);
-truth: {stamp: pose}; combined: Published; statistics: (start of the window, messages dropped) of the filter's
-subscriptions; missing: by topic, (stamp after the gap, number of messages) that the recorder did not get; lines: those
-of the filter in /rosout."""
+truth: {stamp: pose}; combined: Published; statistics: (first stamp, last stamp, gaps) of the filter's subscriptions, as
+rospy counts them; missing: by topic, (stamp after the gap, number of messages) that the recorder did not get; lines:
+those of the filter in /rosout."""
 
 Published = namedtuple('Published', 'stamp pose yaw_variance')
 Published.__doc__ = 'What the filter published: stamp, pose, variance of the yaw (rad^2).'
@@ -126,40 +126,46 @@ def difference(pose, other):
     return math.sqrt(position), math.sqrt(heading)
 
 
+def exercise(recording):
+    """The stamps from STANDSTILL before the first motion to STANDSTILL after the last one. Raises Unusable."""
+    begin, end = motion([odom for odom, _ in recording.odom])
+    begin, end = begin - STANDSTILL, end + STANDSTILL
+    stamps = [odom.stamp for odom, _ in recording.odom]
+    if stamps[0] > begin or stamps[-1] < end:
+        raise Unusable('the robot stood for less than %g s before or after its motion' % (STANDSTILL / SECOND))
+    return begin, end
+
+
 def live_figures(recording, prior, period):
     """What the live filter reported, whether it got the messages that were recorded, and its difference from the
-    replay. period: of what it publishes, ns. Raises Unusable."""
-    start = find_start(recording, prior)
-    estimates = replay(recording, prior, start)
-    # the first ones are published while the filter catches up with its restart
-    published = [each for each in recording.combined if each.stamp > start + SECOND]
+    replay, from its restart to the end of the exercise. period: of what it publishes, ns. Raises Unusable."""
+    start, (begin, end) = find_start(recording, prior), exercise(recording)
+    if start > begin:
+        raise Unusable('the filter was restarted less than %g s before the motion' % (STANDSTILL / SECOND))
+    estimates = replay(recording, prior, start, end)
+    # the gyro may be ahead at a restart: what is published at once differs
+    published = [each for each in recording.combined if start + SECOND < each.stamp <= end]
     if not published:
-        raise Unusable('odom_combined ends less than 1 s after the restart of the filter')
+        raise Unusable('no odom_combined during the exercise')
     common = [each for each in published if each.stamp in estimates]
     differences = [(each.stamp, *difference(each.pose, estimates[each.stamp].pose)) for each in common]
-    row = dict(start=start, replayed_s=(published[-1].stamp - start) / SECOND,
-               missing={topic: sum(number for stamp, number in those if stamp > start)
+    row = dict(replayed_s=(end - start) / SECOND,
+               missing={topic: sum(number for stamp, number in those if start < stamp <= end)
                         for topic, those in recording.missing.items()},
-               dropped=sum(dropped for since, dropped in recording.statistics if since > start),
-               statistics=sum(since > start for since, _ in recording.statistics),
+               dropped=sum(dropped for since, until, dropped in recording.statistics if since <= end and until >= start),
                scheduled=is_scheduled([each.stamp for each in published], list(estimates), period),
                differs_after_s=next(((stamp - start) / SECOND for stamp, metres, degrees in differences
                                      if metres > DIFFERENCE or math.radians(degrees) > DIFFERENCE), None),
                **count_lines(recording.lines))
     row['same'] = row['scheduled'] and not row['dropped'] and not any(
         row['missing'].get(topic) for topic in ('/odom', '/imu/data', '/odom_combined'))
-    row['difference_m'], row['difference_deg'] = (
-        differences[-1][1:] if common and common[-1] is published[-1] else (math.nan, math.nan))
+    row['difference_m'], row['difference_deg'] = differences[-1][1:] if differences else (math.nan, math.nan)
     return row
 
 
 def end_figures(recording, prior):
     """The errors of a replay and of the port against the truth, from one standstill to the other. Raises Unusable."""
-    begin, end = motion([odom for odom, _ in recording.odom])
-    begin, end = begin - STANDSTILL, end + STANDSTILL
-    stamps = [odom.stamp for odom, _ in recording.odom]
-    if stamps[0] > begin or stamps[-1] < end:
-        raise Unusable('the robot stood for less than %g s before or after its motion' % (STANDSTILL / SECOND))
+    begin, end = exercise(recording)
     estimates = replay(recording, prior, begin, end)
     last = max((stamp for stamp in estimates if stamp in recording.truth), default=None)
     if last is None:
@@ -167,7 +173,7 @@ def end_figures(recording, prior):
     first, truth, estimate = min(estimates), recording.truth[last], estimates[last]
     metres, degrees = difference(estimate.pose, truth)
     port_metres, port_degrees = difference(replay_port(recording, first, last), truth)
-    return dict(motion_s=(end - begin) / SECOND, error_m=metres, error_deg=degrees, port_m=port_metres,
+    return dict(error_m=metres, error_deg=degrees, port_m=port_metres,
                 port_deg=port_degrees, nees=consistency(estimate.pose, truth, estimate.covariance))
 
 
