@@ -18,10 +18,10 @@ LIMITS = dict(difference_m=0.001, difference_deg=0.1, nees=(1, 5))
 MORE = re.compile(r'\(and (\d+) more of this kind\)')
 
 Recording = namedtuple('Recording', 'odom imu truth combined statistics missing lines')
-Recording.__doc__ = """What a bag has: odom: (Odom, variances of its pose); imu: (Imu, (yaw, variance) of its orientation);
-truth: {stamp: pose}; combined: Published; statistics: (first stamp, last stamp, gaps) of the filter's subscriptions, as
-rospy counts them; missing: by topic, (stamp after the gap, number of messages) that the recorder did not get; lines:
-those of the filter in /rosout."""
+Recording.__doc__ = """What a bag has: odom: (Odom, variances of its pose); imu: (Imu, (yaw, variance) of its
+orientation); truth: {stamp: pose}; combined: Published; statistics: (first stamp, last stamp, number of gaps) of the
+filter's subscriptions, as rospy counts them; missing: by topic, (stamp after the gap, number of messages) that the
+recorder did not get; lines: those of the filter in /rosout."""
 
 Published = namedtuple('Published', 'stamp pose yaw_variance')
 Published.__doc__ = 'What the filter published: stamp, pose, variance of the yaw (rad^2).'
@@ -152,7 +152,7 @@ def live_figures(recording, prior, period):
     row = dict(replayed_s=(end - start) / SECOND,
                missing={topic: sum(number for stamp, number in those if start < stamp <= end)
                         for topic, those in recording.missing.items()},
-               dropped=sum(dropped for since, until, dropped in recording.statistics if since <= end and until >= start),
+               dropped=sum(number for since, until, number in recording.statistics if since <= end and until >= start),
                scheduled=is_scheduled([each.stamp for each in published], list(estimates), period),
                differs_after_s=next(((stamp - start) / SECOND for stamp, metres, degrees in differences
                                      if metres > DIFFERENCE or math.radians(degrees) > DIFFERENCE), None),

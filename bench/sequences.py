@@ -101,7 +101,8 @@ class Robot:
 
     def _imu(self, rate):
         variance = self.variances[4] if self.variances else self._variance()
-        return Imu(self.now, rate * self.sensitivity + self.bias + self.rng.gauss(0, min(math.sqrt(variance), 0.05)), variance)
+        noise = self.rng.gauss(0, min(math.sqrt(variance), 0.05))
+        return Imu(self.now, rate * self.sensitivity + self.bias + noise, variance)
 
     def _send(self, sensor, message):
         """Lose it, double it, delay it."""
