@@ -28,7 +28,7 @@ from nav_msgs.msg import Odometry
 from sensor_msgs.msg import Imu
 from std_msgs.msg import Empty
 
-from rbx1_nav.estimation.combined_odometry import CombinedOdometry
+from rbx1_nav.estimation.combined_odometry import MAX_AGE, MAX_LEAD, CombinedOdometry
 from rbx1_nav.estimation.inputs import RejectedMessage
 from rbx1_nav.ros import messages, node
 from rbx1_nav.ros.estimate_publisher import EstimatePublisher
@@ -85,7 +85,7 @@ class Ekf:
         with self.lock:
             if self.combined:
                 self.log.add(rospy.loginfo, 'reset_odometry: restarting at the pose of the odometry')
-                self.combined.restart()
+                self.combined.reset(rospy.Time.now().to_nsec())
 
     def add_odom(self, now, message):
         """Pass an Odometry to the filter."""
@@ -100,7 +100,8 @@ class Ekf:
             self.publisher.restart()
         prior = find_prior(self.parameters['surface'], sender, self.log.add)
         self.combined = CombinedOdometry(prior, round(SECOND * self.parameters['sensor_timeout']),
-                                         self.parameters['imu_used'], self.warn, time.monotonic_ns)
+                                         self.parameters['imu_used'], self.warn, time.monotonic_ns,
+                                         MAX_LEAD if rospy.rostime.is_wallclock() else MAX_AGE)
 
     def process(self, sensor, add, message):
         """Pass a message to the filter, and publish the result."""

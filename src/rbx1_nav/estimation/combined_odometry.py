@@ -11,8 +11,8 @@ MAX_SPEED = 2.0         # m/s: odometry that moves faster has jumped
 MAX_TURN_RATE = 5.0     # rad/s: or turns faster
 JUMP_TOLERANCE = 0.02   # m and rad in addition
 DROPOUT_SPEED = 0.5     # m/s: how fast the robot may move (1 sigma) while no odometry arrives
-MAX_LEAD = SECOND // 2  # ns that a stamp may be ahead of the clock: clocks differ
-MAX_AGE = 60 * SECOND   # ns that it may be behind: simulated time may run far ahead of a busy machine
+MAX_LEAD = SECOND // 2  # ns that a stamp may be ahead of the clock: clocks of computers differ
+MAX_AGE = 60 * SECOND   # ns that it may be behind; simulated time may be ahead of it or behind it by as much
 CONTRADICTION = 5 * SECOND  # ns for which a contradiction is shown
 MAX_WAIT = 5 * SECOND   # ns that odometry waits for a gyro that is late but not silent
 
@@ -48,14 +48,15 @@ class CombinedOdometry:
     of the position grows. The travel during a dropout of the odometry counts when it recovers.
     """
 
-    def __init__(self, prior, timeout, gyro_used=True, warn=lambda text: None, clock=None):
+    def __init__(self, prior, timeout, gyro_used=True, warn=lambda text: None, clock=None, max_lead=MAX_LEAD):
         """prior: Priors; timeout: ns; gyro_used: whether to wait for a gyro at all; warn(text): logs a warning;
-        clock(): ns, tells when a message arrives if `now` may be simulated time."""
+        clock(): ns, tells when a message arrives if `now` may be simulated time; max_lead: ns, of a stamp."""
         self.prior = prior
         self.timeout = timeout
         self.gyro_used = gyro_used
         self.warn = warn
         self.clock = clock
+        self.max_lead = max_lead
         self.now = 0
         self.last_stamp = {'odom': None, 'imu_data': None}      # ns
         self.arrival = 0            # ns, of the last message of all, see _add_arrival()
@@ -63,10 +64,16 @@ class CombinedOdometry:
         self.last_arrival = {'odom': None, 'imu_data': None}    # ns
         self.restart()
 
+    def reset(self, now):
+        """The base was reset at `now` (ns): restart. Messages from before, which may still be on their way, do not count."""
+        self.restart()
+        self.start = max([now] + [stamp for stamp in self.last_stamp.values() if stamp])
+
     def restart(self, reason=None):
         """Forget everything; the next odometry message gives the initial pose."""
         if reason:
             self.warn('%s: restarting at the pose of the odometry' % reason)
+        self.start = 0              # ns, stamp of the first message that counts
         self.filter = None
         self.estimate = None        # the latest Estimate
         self.pending = deque()      # (ns of arrival, Odom), until the gyro has caught up
@@ -97,8 +104,9 @@ class CombinedOdometry:
         if not (odom.linear_variance and odom.angular_variance):
             odom = odom._replace(linear_variance=pose_variances[0], angular_variance=pose_variances[2])
         self._check_stamp('odom', now, odom.stamp)
-        self.pending.append((self.arrival, odom))
-        self._make_steps()
+        if odom.stamp >= self.start:
+            self.pending.append((self.arrival, odom))
+            self._make_steps()
 
     def add_imu(self, now, imu):
         """Process an Imu that arrived at `now` (ns). Raises RejectedMessage."""
@@ -116,7 +124,7 @@ class CombinedOdometry:
             self.last_stamp = {'odom': None, 'imu_data': None}
         self.now = now
         before = self.last_stamp[sensor]
-        for good, expected, time in ((stamp <= now + MAX_LEAD, 'a stamp not later than now', now),
+        for good, expected, time in ((stamp <= now + self.max_lead, 'a stamp not later than now', now),
                                      (stamp >= now - MAX_AGE, 'a stamp not much older than now', now),
                                      (before is None or stamp > before, 'a stamp later than the last', before or 0)):
             check('header.stamp', '%.9f' % (stamp / SECOND), good, '%s, %.9f' % (expected, time / SECOND))
@@ -145,7 +153,7 @@ class CombinedOdometry:
         if not self.timed_out[sensor]:
             self.timed_out[sensor] = True
             self.warn('%s has timed out: %s; not used until it recovers'
-                      % (sensor, reason or 'no message for more than %g s' % (self.timeout / SECOND)))
+                      % (sensor, reason or 'no valid message for more than %g s' % (self.timeout / SECOND)))
 
     # steps
 
@@ -230,7 +238,7 @@ class CombinedOdometry:
             self.contradicted = self.time
         elif not self.another_floor and ekf.is_another_floor():
             self.another_floor = True
-            self.warn('%s: this is another floor than assumed; the distance is less certain' % measured)
+            self.warn('%s: this is another floor than ~surface names; the distance is less certain' % measured)
 
     def _step_by_gyro(self, end):
         duration = (end - self.time) / SECOND

@@ -98,7 +98,7 @@ class WholeFit:
         if 'accel_limit' not in self.errors:    # never reached: then it must not limit on the new surface either
             limit = max(self.start.accel_limit, fit.values['accel_limit'])
             self.surface = self.surface._replace(accel_limit=limit)
-            self.reasons['accel_limit'] = 'never reached in these runs, so at least about this'
+            self.reasons['accel_limit'] = 'not reached in these runs: raised to about what they show at least'
         if fit.rms > max(POOR_TRAVEL, POOR * fit.travel):
             self.warnings.append('odometry: %.1f mm rms in 0.2 s are not explained by commands and motors, of %.1f mm: '
                                  'check that the commands are those of this robot' % (1e3 * fit.rms, 1e3 * fit.travel))

@@ -8,6 +8,7 @@ import rosbag
 from sensor_msgs.msg import Imu
 
 from rbx1_nav.config import ConfigError, show_name
+from rbx1_nav.estimation.combined_odometry import JUMP_TOLERANCE, MAX_SPEED
 from rbx1_nav.fitting.recording import Commands, Rates, Recording, Track, check_recording
 from rbx1_nav.ros.messages import yaw_of
 
@@ -63,12 +64,11 @@ def read_bag(path, topics, end=None):
     name = show_name(path)
     series = Topics(*(topic and Series(topic, types) for topic, types in zip(topics, TYPES)))
     by_topic = {'/' + one.topic.lstrip('/'): one for one in series if one}
-    others = set()
+    found = set()
 
     def choose(topic, datatype, md5sum, *_):
         one = by_topic.get('/' + topic.lstrip('/'))
-        if one is None:
-            others.add(topic)
+        found.add(topic)
         return one is not None and one.accepts(datatype, md5sum)
 
     try:
@@ -86,11 +86,13 @@ def read_bag(path, topics, end=None):
         if not one.rows:
             raise ConfigError('%s: %s: no messages of type %s: expected some; the bag has %s'
                               % (name, one.topic, ' or '.join(each._type for each in one.types),
-                                 ', '.join(sorted(others)) or 'nothing else'))
-    return check_recording(Recording(
+                                 ', '.join(sorted(found)) or 'none at all'))
+    recording = check_recording(Recording(
         name, Commands(*series.cmd_vel.columns(3)),
         track(series.odom), Rates(*series.imu.columns(2)) if series.imu and series.imu.rows else None,
         track(series.truth), end))
+    check_jumps(name, series.odom, recording.odometry)
+    return recording
 
 
 def check(name, series):
@@ -112,3 +114,15 @@ def track(series):
         return None
     time, x, y, yaw = series.columns(4)
     return Track(time, x, y, numpy.unwrap(yaw))
+
+
+def check_jumps(name, series, poses):
+    """Raise ConfigError if the poses of a Track jump as those of no robot: there are two, or it was reset."""
+    if poses is None:
+        return
+    steps = numpy.hypot(numpy.diff(poses.x), numpy.diff(poses.y))
+    jumps = numpy.flatnonzero(steps > MAX_SPEED * numpy.diff(poses.time) + JUMP_TOLERANCE)
+    if len(jumps):
+        first = jumps[0]
+        raise ConfigError('%s: %s: jumps by %.2f m in %.3f s, %d times in all: expected one run of one robot' % (
+            name, series.topic, steps[first], poses.time[first + 1] - poses.time[first], len(jumps)))

@@ -4,7 +4,7 @@ import xmlrpc.client
 import rosgraph
 import rospy
 
-from rbx1_nav.config import ConfigError, Section
+from rbx1_nav.config import ConfigError, Section, show
 from rbx1_nav.estimation.filter import UNKNOWN, priors
 from rbx1_nav.model.surfaces import load_surface
 from rbx1_nav.ros import resources
@@ -42,8 +42,14 @@ def read_parameters(params):
         raise ConfigError('odom_used: False: expected true, nothing else measures the distance')
     if 'base_footprint_frame' in params:
         values['base_footprint_frame'] = values['default_base_frame']
+        if values['base_footprint_frame'] == values['output_frame']:
+            raise ConfigError('base_footprint_frame: %s: expected a frame other than output_frame'
+                              % show(values['output_frame']))
     if values['surface'] not in (AUTO, ANY):
-        load_surface(values['surface'], resources.surfaces())
+        try:
+            load_surface(values['surface'], resources.surfaces())
+        except ConfigError as error:
+            raise ConfigError('%s; or %s, or %s' % (error, AUTO, ANY))
     return values
 
 

@@ -175,7 +175,7 @@ def test_a_gyro_times_out_and_recovers():
     assert exact(robot.combined.estimate, robot.pose) and robot.combined.timed_out['imu_data']
     robot.send(60, 0.2, 0.5)
     assert exact(robot.combined.estimate, robot.pose) and not robot.combined.timed_out['imu_data']
-    assert robot.warnings == ['imu_data has timed out: no message for more than 1 s; not used until it recovers',
+    assert robot.warnings == ['imu_data has timed out: no valid message for more than 1 s; not used until it recovers',
                               'imu_data has recovered']
 
 
@@ -367,6 +367,29 @@ def test_a_gyro_may_have_another_rate(rate):
 
 
 # restarts
+
+def test_messages_from_before_a_reset_do_not_count():
+    robot = Robot()
+    robot.send(100, 0.2)
+    late = [(robot.now - STEP, robot.odom()), (robot.now, robot.odom())]
+    robot.combined.last_stamp['odom'] -= 2 * STEP       # as if they were still on their way
+    robot.combined.reset(robot.now - 10 * STEP)
+    for stamp, odom in late:
+        robot.combined.add_odom(robot.now, odom._replace(stamp=stamp - 1), VARIANCES)
+    assert robot.combined.filter is None
+    robot.pose = ORIGIN
+    assert exact(robot.send(2), ORIGIN) and not robot.warnings
+
+
+def test_on_simulated_time_a_stamp_may_be_far_ahead_of_the_clock():
+    robot = Robot(IDEAL, max_lead=60 * SECOND)
+    for _ in range(100):
+        robot.now += STEP
+        robot.pose = arc(robot.pose, 0.004, 0.01)
+        robot.combined.add_imu(robot.now - 50 * SECOND, Imu(robot.now, 0.5, 3e-6))
+        robot.combined.add_odom(robot.now - 50 * SECOND, robot.odom(), VARIANCES)
+    assert exact(robot.combined.estimate, robot.pose) and not robot.warnings
+
 
 @pytest.mark.parametrize('there', [Pose(-1.0, 2.0, pi / 2), Pose(0.3, 0.0, 0.0), Pose(0.2, 0.0, 0.5)])
 def test_odometry_that_jumps_restarts_the_filter_there(there):
