@@ -29,7 +29,7 @@ TOPICS = '/odom', '/imu/data', '/odom_combined', '/ground_truth', '/rosout', '/s
 NODE = '/robot_pose_ekf'
 FREQ = 10       # Hz, of odom_combined, as in odom_ekf.launch
 REST = 2        # s of simulated time before and after the exercise, and of wall time after it
-STOP = 20       # s of wall time for the recorder to write the rest of its bag
+STOP = 60       # s of wall time for the recorder to write the rest of its bag
 RUNS = '%4s %6s %6s %5s %5s %5s %4s %8s %8s %7s %7s %7s %7s %6s  %s'
 TITLES = ('seed', 'x real', 'sim s', 'lines', 'rec.', 'filt.', 'same', 'diff mm', 'diff deg', 'end mm', 'end deg',
           'port mm', 'deg', 'NEES', 'remarks')
