@@ -27,6 +27,9 @@ class Noise:
 
     def over(self, path):
         """The error of the next `path` (0 or more)."""
+        if path <= self.left:       # nearly always
+            self.left -= path
+            return self.slope * path
         error = 0.0
         while path > self.left:
             error += self.slope * self.left
@@ -50,8 +53,12 @@ class Roughness:
 
     def over(self, straight, turn):
         """The errors of distance (m) and angle (rad) while the wheels travel by `straight` (m) and `turn` (rad)."""
-        straight, turn = abs(straight), abs(turn)
-        return self.distance.over(straight), self.turning.over(turn) + self.heading.over(straight)
+        distance = angle = 0.0
+        if straight:
+            distance, angle = self.distance.over(abs(straight)), self.heading.over(abs(straight))
+        if turn:
+            angle += self.turning.over(abs(turn))
+        return distance, angle
 
 
 def make_roughness(surface, seed):

@@ -177,15 +177,18 @@ class Wheels:
 
     def travel(self, linear, angular, duration):
         """(left, right) travel in m that the encoders count while `linear` (m/s) and `angular` (rad/s) are in force."""
-        straight = turning = 0.0
-        for speed, rate, part in (self.delay.over(linear, angular, duration) if self.delay
-                                  else ((linear, angular, duration),)):
-            straight += self.straight.travel(speed, part)
-            turning += self.turning.travel(rate * self.base_width / 2, part)
+        if self.delay:
+            straight = turning = 0.0
+            for speed, rate, part in self.delay.over(linear, angular, duration):
+                straight += self.straight.travel(speed, part)
+                turning += self.turning.travel(rate * self.base_width / 2, part)
+        else:
+            straight = self.straight.travel(linear, duration)
+            turning = self.turning.travel(angular * self.base_width / 2, duration)
         self._rolling = bool(straight or turning or self.straight.speed or self.turning.speed)
         turn = 2 * turning / self.base_width
         distance, angle = self._on_the_floor(straight, turn)
-        if self.roughness:
+        if self.roughness and self._rolling:
             further, more = self.roughness.over(straight, turn)
             distance, angle = distance + further, angle + more
         self.truth.move(distance, angle)
