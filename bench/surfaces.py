@@ -8,6 +8,7 @@ import time
 import numpy
 import yaml
 
+from floors import Follower, consistency
 from rbx1_nav.model.robot import read_robot
 from rbx1_nav.model.surfaces import load_surface
 from rbx1_nav.ros import resources
@@ -38,19 +39,19 @@ def ends(robot, surface, seeds):
 
 def errors(method, robot, surface, seeds):
     """Root mean square errors over all ticks of all runs, and the consistency of the filter at their ends."""
-    squares, number, consistency = numpy.zeros(4), 0, []
+    followers = {'/odom': Follower(), '/odom_ekf': Follower()}
+    nees = []
     for seed in seeds:
         run = simulate(method, robot, surface, seed, filtered=True, keep=True)
-        for _, truth, odometry, estimate in run.path:
-            squares += [turned(truth, odometry) ** 2, turned(truth, estimate) ** 2,
-                        distance(truth, odometry) ** 2, distance(truth, estimate) ** 2]
-        number += len(run.path)
-        error = numpy.subtract(run.end.estimate, run.end.truth)
-        error[2] = math.remainder(error[2], 2 * math.pi)
-        consistency.append(error @ numpy.linalg.solve(run.covariance, error))
-    return {**dict(zip(('/odom heading RMSE (degrees)', '/odom_ekf heading RMSE (degrees)',
-                        '/odom position RMSE (m)', '/odom_ekf position RMSE (m)'), (squares / number) ** 0.5)),
-            'mean normalised estimation error squared': numpy.mean(consistency)}
+        for _, truth, *poses in run.path:
+            for follower, pose in zip(followers.values(), poses):
+                follower.compare(pose, truth)
+        nees.append(consistency(run.end.estimate, run.end.truth, run.covariance))
+    values = {}
+    for title, field in ('heading RMSE (degrees)', 'heading'), ('position RMSE (m)', 'position'):
+        for topic, follower in followers.items():
+            values['%s %s' % (topic, title)] = math.sqrt(getattr(follower, field) / follower.ticks)
+    return {**values, 'mean normalised estimation error squared': numpy.mean(nees)}
 
 
 def speed(method, robot, surface, seeds):

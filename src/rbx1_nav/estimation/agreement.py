@@ -2,7 +2,7 @@
 from math import copysign, exp, sqrt
 
 TURN = 0.2          # rad: the parts in which a turn is looked at
-STRAIGHT = 5.0      # s: whoever has not turned that far by then goes straight
+PATIENCE = 5.0      # s: a robot that has not turned that far by then goes straight, or stands
 MEMORY = 10.0       # rad: a turn is forgotten with the exponential of what the robot has turned since
 LEAST = 1.5         # rad: less says too little
 DEVIATIONS = 5.0    # standard deviations that are no chance any more
@@ -26,7 +26,7 @@ class Agreement:
         part[2] += travelled
         part[3] += duration
         if abs(part[0]) < TURN and abs(part[1]) < TURN:
-            if part[3] > STRAIGHT:
+            if part[3] > PATIENCE:
                 self.part = [0.0] * 4
             return False
         lead = max(part[:2], key=abs)

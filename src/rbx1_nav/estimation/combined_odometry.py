@@ -65,7 +65,7 @@ class CombinedOdometry:
         self.restart()
 
     def reset(self, now):
-        """The base was reset at `now` (ns): restart. Messages from before, which may still be on their way, do not count."""
+        """The base was reset at `now` (ns): restart. Odometry from before it, which may arrive later, does not count."""
         self.restart()
         self.start = max([now] + [stamp for stamp in self.last_stamp.values() if stamp])
 
@@ -232,11 +232,11 @@ class CombinedOdometry:
         if not sums.add(wheels, gyro - ekf.state[BIAS] * duration, travelled, duration):
             return
         measured = 'odom turned by %.2f rad, imu_data by %.2f rad' % (sums.wheels, sums.gyro)
-        if ekf.contradiction():
+        if ekf.doubt_heading():
             if not self.contradicts:
                 self.warn('%s: one of them is wrong; the heading is uncertain' % measured)
             self.contradicted = self.time
-        elif not self.another_floor and ekf.is_another_floor():
+        elif not self.another_floor and ekf.doubt_floor():
             self.another_floor = True
             self.warn('%s: this is another floor than ~surface names; the distance is less certain' % measured)
 

@@ -103,17 +103,17 @@ class Filter:
             return Turn(wheels[0] * grip, wheels[1] * grip ** 2, 0.0, 0.0, -wheels[0])
         return Turn(0.0, 0.0, 0.0, 0.0, 0.0)
 
-    def is_another_floor(self):
-        """Whether wheels and gyro show a slip that the prior's floor does not have. The straight slip, which nothing
-        measures, is then as uncertain as on an unknown floor."""
+    def doubt_floor(self):
+        """If wheels and gyro show a slip that the prior's floor does not have, the straight slip, which nothing
+        measures, becomes as uncertain as on an unknown floor. Returns whether that is so."""
         if not self.agreement.difference(self.prior, self._bias_variance):
             return False
         self._add_noise(STRAIGHT, UNKNOWN.slip_straight_spread)
         return True
 
-    def contradiction(self):
-        """The angle (rad) by which wheels and gyro differ more than on any floor, or 0. One of them is wrong, and the
-        heading as uncertain as they differ. They are compared anew from there on."""
+    def doubt_heading(self):
+        """If wheels and gyro differ more than on any floor, one of them is wrong: the heading becomes as uncertain as
+        they differ, and they are compared anew. Returns the angle (rad), or 0."""
         difference = self.agreement.difference(UNKNOWN, self._bias_variance)
         if difference:
             before, self.doubt = self.doubt, self.doubt + abs(difference)
@@ -148,7 +148,7 @@ class Filter:
         gain = root @ spread / variance
         root -= (gain / (1 + sqrt(noise / variance)))[:, None] * spread
         state = [old - change * difference for old, change in zip(state, gain.tolist())]
-        for index in SCALE, TURNING, STRAIGHT:
+        for index in SCALE, TURNING:
             state[index] = clamp(state[index], MAX_ERROR)
         self.state = state
 

@@ -123,7 +123,8 @@ class WholeFit:
         noises = NOISES + (SPREADS if len(runs) >= MIN_RUNS else ())
         for key in SPREADS if len(runs) < MIN_RUNS else ():
             self.reasons[key] = '%d of at least %d runs' % (len(runs), MIN_RUNS)
-        fitter = Fitter(runs, windows, truth_errors(self.recordings, self._stopping_time()), True, WIDEST)
+        fitter = Fitter(runs, windows, truth_errors(self.recordings, self._stopping_time()),
+                        by_cells=True, widest=WIDEST)
         start = self.surface._replace(**{key: getattr(self.surface, key) or TYPICAL[key] for key in noises},
                                       **({'delay': self.surface.delay or 0.1} if 'delay' in means else {}))
         surface, errors = self._fit_known(fitter, start, means, noises)

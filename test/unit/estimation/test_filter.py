@@ -147,8 +147,8 @@ def drive(prior, slip, gyro_factor=1.0, turned=6.0):
         wheels, gyro = 0.02 / (1 - slip), 0.02 * gyro_factor
         ekf.move(0.02, ekf.turn(0.02, (wheels, 1e-8), (gyro, 1e-9)))
         if ekf.agreement.add(wheels, gyro, 0.0, 0.02):
-            contradiction += abs(ekf.contradiction())
-            floor = floor or ekf.is_another_floor()
+            contradiction += abs(ekf.doubt_heading())
+            floor = floor or ekf.doubt_floor()
     return ekf, floor, contradiction
 
 
