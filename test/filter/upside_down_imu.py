@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""An IMU that is mounted upside down is not used without a transform to its frame, and turned by it."""
+"""An IMU that is mounted upside down is not used without a transform to its frame, and turned by the first one."""
 import unittest
 
 import rospy
@@ -32,6 +32,12 @@ class TestUpsideDownImu(unittest.TestCase):
         publisher = rospy.Publisher('/tf_static', TFMessage, queue_size=1, latch=True)
         publisher.publish([transform])
         robot.wait_for_line('turned from imu_link to base_footprint, its vertical axis by 180 degrees')
+        robot.turn()
+        robot.check_heading(self)
+
+        # it is looked up once
+        transform.transform.rotation.x, transform.transform.rotation.w = 0.0, 1.0
+        publisher.publish([transform])
         robot.turn()
         robot.check_heading(self)
 

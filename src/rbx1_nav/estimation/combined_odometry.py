@@ -238,7 +238,8 @@ class CombinedOdometry:
             self.contradicted = self.time
         elif not self.another_floor and ekf.doubt_floor():
             self.another_floor = True
-            self.warn('%s: this is another floor than ~surface names; the distance is less certain' % measured)
+            self.warn('%s: this is another floor than the one that the filter started with; the distance is less certain'
+                      % measured)
 
     def _step_by_gyro(self, end):
         duration = (end - self.time) / SECOND
