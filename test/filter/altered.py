@@ -27,7 +27,7 @@ class AlteredRobot:
         self.commander = support.Commander()
         for topic, target, kind, alter in [('/odom', '/odom_altered', Odometry, odom),
                                            ('/imu/data', '/imu_altered', Imu, imu)]:
-            publisher = rospy.Publisher(target, kind, queue_size=100, tcp_nodelay=True)
+            publisher = rospy.Publisher(target, kind, queue_size=10000, tcp_nodelay=True)
             support.wait_for(publisher.get_num_connections, 'the filter to subscribe to ' + target)
             rospy.Subscriber(topic, kind, self._pass_on, (publisher, alter), tcp_nodelay=True)
 

@@ -13,30 +13,33 @@ class Agreement:
     """Sums of what wheels and gyro measured in turns, each counted in its own direction."""
 
     def __init__(self):
-        self.part = [0.0] * 4       # wheels and gyro (rad, counter-clockwise positive), m, s since the last whole part
+        # since the last whole part: wheels and gyro (rad, counter-clockwise positive), variance of the gyro, m, s
+        self.part = [0.0] * 5
         self.wheels = self.gyro = self.turned = 0.0     # rad; turned: by the one that reports more
-        self.travelled = self.time = 0.0                # m, s
+        self.variance = self.travelled = self.time = 0.0    # rad^2, m, s
 
-    def add(self, wheels, gyro, travelled, duration):
-        """A step: the turn (rad) by the wheels, and by the gyro without its bias; m by the wheels; s. Returns whether
-        that makes a part, so that there is something new to ask for."""
+    def add(self, wheels, gyro, variance, travelled, duration):
+        """A step: the turn (rad) by the wheels, and by the gyro without its bias, with its variance; m by the wheels;
+        s. Returns whether that makes a part, so that there is something new to ask for."""
         part = self.part
         part[0] += wheels
         part[1] += gyro
-        part[2] += travelled
-        part[3] += duration
+        part[2] += variance
+        part[3] += travelled
+        part[4] += duration
         if abs(part[0]) < TURN and abs(part[1]) < TURN:
-            if part[3] > PATIENCE:
-                self.part = [0.0] * 4
+            if part[4] > PATIENCE:
+                self.part = [0.0] * 5
             return False
         lead = max(part[:2], key=abs)
         sign, kept = copysign(1, lead), exp(-abs(lead) / MEMORY)
         self.wheels = self.wheels * kept + sign * part[0]
         self.gyro = self.gyro * kept + sign * part[1]
         self.turned = self.turned * kept + abs(lead)
-        self.travelled = self.travelled * kept + part[2]
-        self.time = self.time * kept + part[3]
-        self.part = [0.0] * 4
+        self.variance = self.variance * kept + part[2]
+        self.travelled = self.travelled * kept + part[3]
+        self.time = self.time * kept + part[4]
+        self.part = [0.0] * 5
         return True
 
     def difference(self, prior, bias):
@@ -45,7 +48,7 @@ class Agreement:
         prior: the Priors of the floor; bias: variance of the gyro's bias, rad^2/s^2.
         """
         difference = self.wheels * (1 - prior.slip_turning) - self.gyro
-        variance = (ROUNDING ** 2 + bias * self.time ** 2
+        variance = (ROUNDING ** 2 + self.variance + bias * self.time ** 2
                     + (prior.slip_turning_spread ** 2 + prior.gyro_scale_error ** 2) * self.turned ** 2
                     + prior.heading_noise_turning ** 2 * self.turned
                     + prior.heading_noise_straight ** 2 * self.travelled)

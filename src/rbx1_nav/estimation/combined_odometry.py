@@ -3,7 +3,7 @@ from collections import deque, namedtuple
 from math import cos, hypot, sin
 
 from rbx1_nav.estimation.filter import BIAS, TURNING, X, Y, YAW, Filter
-from rbx1_nav.estimation.inputs import check, check_imu, check_odom
+from rbx1_nav.estimation.inputs import Imu, check, check_imu, check_odom
 from rbx1_nav.model.kinematics import Pose
 from rbx1_nav.units import SECOND, wrap_angle
 
@@ -11,6 +11,7 @@ MAX_SPEED = 2.0         # m/s: odometry that moves faster has jumped
 MAX_TURN_RATE = 5.0     # rad/s: or turns faster
 JUMP_TOLERANCE = 0.02   # m and rad in addition
 DROPOUT_SPEED = 0.5     # m/s: how fast the robot may move (1 sigma) while no odometry arrives
+MAX_ACCELERATION = 10.0     # rad/s^2: how fast its turn rate may change while readings of the gyro are lost
 MAX_LEAD = SECOND // 2  # ns that a stamp may be ahead of the clock: clocks of computers differ
 MAX_AGE = 60 * SECOND   # ns that it may be behind; simulated time may be ahead of it or behind it by as much
 CONTRADICTION = 5 * SECOND  # ns for which a contradiction is shown
@@ -61,6 +62,8 @@ class CombinedOdometry:
         self.last_stamp = {'odom': None, 'imu_data': None}      # ns
         self.arrival = 0            # ns, of the last message of all, see _add_arrival()
         self.last_clock = 0         # ns, at that time
+        self.last_imu = None        # Imu
+        self.period = None          # ns, usual time between readings
         self.last_arrival = {'odom': None, 'imu_data': None}    # ns
         self.restart()
 
@@ -114,8 +117,22 @@ class CombinedOdometry:
         before = self._check_stamp('imu_data', now, imu.stamp)
         # the first reading after a dropout covers a time whose start is unknown
         if (self.filter or self.pending) and before is not None and imu.stamp - before <= self.timeout:
-            self.readings.append((before, imu))
+            self._add_reading(self.last_imu, imu)
+        self.last_imu = imu
         self._make_steps()
+
+    def _add_reading(self, last, imu):
+        """Store the reading that follows `last`. If others were lost between them, the rate in the gap is taken as the
+        mean of both. One that changes by at most A in a second makes the turn in a time T wrong by at most A T^2 / 4.
+        """
+        start, duration = last.stamp, imu.stamp - last.stamp
+        usual = self.period or duration
+        self.period = usual + (min(duration, 2 * usual) - usual) // 16
+        if imu.since is None and duration > 1.5 * usual:
+            start = imu.stamp - usual
+            deviation = min(MAX_ACCELERATION * (start - last.stamp) / SECOND / 4, MAX_TURN_RATE)
+            self.readings.append((last.stamp, Imu(start, (last.rate + imu.rate) / 2, imu.variance + deviation ** 2)))
+        self.readings.append((start, imu))
 
     def _check_stamp(self, sensor, now, stamp):
         """Check and store a stamp; returns the previous one, or None."""
@@ -210,7 +227,7 @@ class CombinedOdometry:
             wheels = wrap_angle(turned - already), odom.angular_variance * elapsed ** 2
         turn = self.filter.turn(duration, wheels, gyro, hypot(dx, dy))
         if wheels and gyro:
-            self._check_agreement(wheels[0], gyro[0], hypot(dx, dy), duration)
+            self._check_agreement(wheels[0], gyro, hypot(dx, dy), duration)
 
         # the displacement in the wheels' heading half way
         heading = self.odom.pose.yaw + turned / 2
@@ -229,7 +246,7 @@ class CombinedOdometry:
         """Warn where wheels and gyro contradict what the filter believes, or each other."""
         ekf = self.filter
         sums = ekf.agreement
-        if not sums.add(wheels, gyro - ekf.state[BIAS] * duration, travelled, duration):
+        if not sums.add(wheels, gyro[0] - ekf.state[BIAS] * duration, gyro[1], travelled, duration):
             return
         measured = 'odom turned by %.2f rad, imu_data by %.2f rad' % (sums.wheels, sums.gyro)
         if ekf.doubt_heading():

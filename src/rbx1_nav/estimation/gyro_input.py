@@ -94,12 +94,13 @@ class GyroInput:
             self._note('no covariance of the orientation: 0.00017 rad assumed')
             variance = DEFAULT_VARIANCE
         check_variance('orientation_covariance[8]', variance)
-        last, rate = self.last, 0.0     # the filter does not use the first reading
+        last, rate, since = self.last, 0.0, None    # the filter does not use the first reading
         if last and last.orientation and data.stamp > last.stamp:
-            rate = turn_about(vertical, last.orientation, data.orientation) / ((data.stamp - last.stamp) / SECOND)
+            since = last.stamp
+            rate = turn_about(vertical, last.orientation, data.orientation) / ((data.stamp - since) / SECOND)
         if rate:
             self._note('no angular velocity: the change of its orientation is used')
-        return Imu(data.stamp, rate, variance)
+        return Imu(data.stamp, rate, variance, since)
 
     def _note(self, text):
         if text not in self.noted:

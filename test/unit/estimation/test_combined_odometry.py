@@ -327,6 +327,40 @@ def test_simulated_time_that_runs_slowly_is_no_dropout():
     assert not robot.warnings and exact(robot.combined.estimate, robot.pose)
 
 
+@pytest.mark.parametrize('lost', [4, 10, 20, 40])
+@pytest.mark.parametrize('odom', [True, False])
+def test_readings_of_the_gyro_that_are_lost_make_the_heading_uncertain(lost, odom):
+    robot = Robot()
+    robot.send(100)
+    robot.send(50, angular=1.0)
+    before = robot.combined.estimate.covariance[2, 2]
+    robot.send(lost // 2, angular=1.0, odom=odom, imu=False)    # it stops in the middle
+    robot.send(lost // 2, odom=odom, imu=False)
+    estimate = robot.send(10)
+    error = abs(estimate.pose.yaw - robot.pose.yaw)
+    # the wheels of this floor slip by 3 +- 5 %
+    assert error < 0.015 and error ** 2 < 9 * estimate.covariance[2, 2] and estimate.covariance[2, 2] > 1.5 * before
+    assert not robot.warnings
+
+
+def test_a_steady_turn_needs_no_reading_of_the_gyro():
+    robot = Robot(IDEAL)
+    robot.send(50, 0.1, 0.5)
+    robot.send(40, 0.1, 0.5, imu=False)
+    assert exact(robot.send(10, 0.1, 0.5), robot.pose)
+
+
+def test_the_change_of_an_orientation_loses_nothing():
+    robot = Robot()
+    robot.send(100)
+    start = robot.now
+    robot.send(20, angular=1.0, odom=False, imu=False)
+    robot.now += STEP
+    robot.combined.add_imu(robot.now, Imu(robot.now, 20 / 21, 1e-6, start))
+    robot.combined.add_odom(robot.now, robot.odom()._replace(pose=Pose(0.0, 0.0, 0.5)), VARIANCES)
+    assert robot.combined.estimate.pose.yaw == pytest.approx(0.4, abs=1e-3)
+
+
 # the order of messages
 
 def test_a_gyro_may_be_later_than_the_odometry():

@@ -146,7 +146,7 @@ def drive(prior, slip, gyro_factor=1.0, turned=6.0):
     for _ in range(round(turned / 0.02)):
         wheels, gyro = 0.02 / (1 - slip), 0.02 * gyro_factor
         ekf.move(0.02, ekf.turn(0.02, (wheels, 1e-8), (gyro, 1e-9)))
-        if ekf.agreement.add(wheels, gyro, 0.0, 0.02):
+        if ekf.agreement.add(wheels, gyro, 1e-9, 0.0, 0.02):
             contradiction += abs(ekf.doubt_heading())
             floor = floor or ekf.doubt_floor()
     return ekf, floor, contradiction
@@ -181,5 +181,5 @@ def test_the_noise_of_a_robot_that_stands_or_goes_straight_is_no_turn():
     ekf = Filter(UNKNOWN, ORIGIN)
     generator = numpy.random.default_rng(1)
     for wheels, gyro in generator.normal(0, 1e-3, (100000, 2)):
-        ekf.agreement.add(wheels, gyro, 0.004, 0.02)
+        ekf.agreement.add(wheels, gyro, 1e-9, 0.004, 0.02)
     assert ekf.agreement.turned == 0.0

@@ -6,7 +6,7 @@ import pytest
 
 from rbx1_nav.estimation.gyro_input import (
     DEFAULT_VARIANCE, GyroInput, ImuData, inverse, multiply, turn_about, vertical_axis)
-from rbx1_nav.estimation.inputs import RejectedMessage
+from rbx1_nav.estimation.inputs import Imu, RejectedMessage
 from rbx1_nav.units import SECOND
 
 UPSIDE_DOWN = vertical_axis((1.0, 0.0, 0.0, 0.0))       # rolled by 180 degrees
@@ -61,13 +61,13 @@ def test_a_gyro_with_one_axis_measures_its_share(mounting, tilt, rate):
 def test_a_roll_of_3_14_in_the_urdf_file_is_upside_down():
     mounting = about('x', 3.1416)
     message = data(0.5, mounting, (UNKNOWN, UNKNOWN, 1e-6))
-    assert GyroInput().read(message, vertical_axis(mounting))[1:] == (
-        pytest.approx(0.5, abs=MARGIN), pytest.approx(1e-6, rel=1e-6))
+    imu = GyroInput().read(message, vertical_axis(mounting))
+    assert imu.rate == pytest.approx(0.5, abs=MARGIN) and imu.variance == pytest.approx(1e-6, rel=1e-6)
 
 
 def test_without_a_mounting_the_z_axis_is_used_unchanged():
     message = ImuData(7, (nan, inf, 0.1), (nan, -1.0, 0.3), None, nan)
-    assert GyroInput().read(message) == (7, 0.1, 0.3)
+    assert GyroInput().read(message) == Imu(7, 0.1, 0.3)
 
 
 @pytest.mark.parametrize('vertical, field, rates, variances', [
@@ -85,7 +85,7 @@ def test_rates_without_a_covariance_get_the_one_of_robot_pose_ekf():
     notes = []
     gyro = GyroInput(notes.append)
     for _ in range(3):
-        assert gyro.read(data(0.5, variances=(0.0, 0.0, 0.0))) == (0, 0.5, DEFAULT_VARIANCE)
+        assert gyro.read(data(0.5, variances=(0.0, 0.0, 0.0))) == Imu(0, 0.5, DEFAULT_VARIANCE)
     assert notes == ['no covariance of the angular velocity: 0.00017 rad/s assumed']
 
 
@@ -104,7 +104,7 @@ def test_without_an_angular_velocity_the_rate_is_the_change_of_the_orientation(m
     assert first.rate == 0.0
     # stamps are rounded to 1 ns
     assert second.rate == pytest.approx(rate, rel=1e-5, abs=1e-6)
-    assert second.variance == 1e-6
+    assert second.variance == 1e-6 and second.since == first.stamp
 
 
 def test_rates_of_0_without_a_covariance_are_no_angular_velocity_until_one_is_measured():
@@ -119,7 +119,7 @@ def test_rates_of_0_without_a_covariance_are_no_angular_velocity_until_one_is_me
 def test_rates_are_used_rather_than_the_orientation():
     gyro = GyroInput()
     gyro.accepted(data(heading=0.0))
-    assert gyro.read(data(0.0, heading=0.1, stamp=0.1)) == (SECOND // 10, 0.0, 1e-6)
+    assert gyro.read(data(0.0, heading=0.1, stamp=0.1)) == Imu(SECOND // 10, 0.0, 1e-6)
 
 
 def test_an_orientation_without_a_covariance_gets_the_one_of_robot_pose_ekf():
