@@ -14,8 +14,9 @@ class BasePublisher:
     def __init__(self, robot):
         """robot: a Robot."""
         self.robot = robot
-        self.odom = rospy.Publisher('odom', Odometry, queue_size=10, tcp_nodelay=True)
-        self.imu = rospy.Publisher('imu/data', Imu, queue_size=10, tcp_nodelay=True)
+        # simulated time may make many messages at once
+        self.odom = rospy.Publisher('odom', Odometry, queue_size=100, tcp_nodelay=True)
+        self.imu = rospy.Publisher('imu/data', Imu, queue_size=100, tcp_nodelay=True)
         # tf2_ros' broadcaster does just this, and needs 5 MB more
         self.tf = rospy.Publisher('/tf', TFMessage, queue_size=100, tcp_nodelay=True)
         self.joint_states = rospy.Publisher('joint_states', JointState, queue_size=10)
