@@ -83,8 +83,12 @@ def record(path, seed, args):
             if process.poll() is not None:
                 raise bench.Failure(f'"{command}" ended during the run')
         received = [row[:2] for row in probe.ask('record')[1] if row[0] > began]
-        if not processes.stop(recorder, STOP) or not os.path.exists(path):
-            raise bench.Failure(f'the recorder did not write {path} within {STOP} s')
+        processes.stop(recorder, STOP)
+        end = time.monotonic() + STOP
+        while not os.path.exists(path):     # `rosbag` may end before the process that it has started to record
+            if time.monotonic() > end:
+                raise bench.Failure(f'the recorder did not write {path} within {STOP} s')
+            time.sleep(0.05)
     return (received[-1][1] - received[0][1]) / (received[-1][0] - received[0][0]) if len(received) > 1 else math.nan
 
 
