@@ -3,7 +3,7 @@ from collections import deque, namedtuple
 from math import cos, hypot, sin
 
 from rbx1_nav.estimation.filter import BIAS, TURNING, X, Y, YAW, Filter
-from rbx1_nav.estimation.inputs import Imu, check, check_imu, check_odom
+from rbx1_nav.estimation.inputs import check, check_imu, check_odom
 from rbx1_nav.model.kinematics import Pose
 from rbx1_nav.units import SECOND, wrap_angle
 
@@ -12,6 +12,8 @@ MAX_TURN_RATE = 5.0     # rad/s: or turns faster
 JUMP_TOLERANCE = 0.02   # m and rad in addition
 DROPOUT_SPEED = 0.5     # m/s: how fast the robot may move (1 sigma) while no odometry arrives
 MAX_ACCELERATION = 10.0     # rad/s^2: how fast its turn rate may change while readings of the gyro are lost
+SHORT = SECOND // 20    # ns between two readings in which the rate hardly changes
+LOST = 1.5              # times the usual time between two readings: others between them were lost
 MAX_LEAD = SECOND // 2  # ns that a stamp may be ahead of the clock: clocks of computers differ
 MAX_AGE = 60 * SECOND   # ns that it may be behind; simulated time may be ahead of it or behind it by as much
 CONTRADICTION = 5 * SECOND  # ns for which a contradiction is shown
@@ -122,17 +124,22 @@ class CombinedOdometry:
         self._make_steps()
 
     def _add_reading(self, last, imu):
-        """Store the reading that follows `last`. If others were lost between them, the rate in the gap is taken as the
-        mean of both. One that changes by at most A in a second makes the turn in a time T wrong by at most A T^2 / 4.
+        """Store the reading that follows `last`. Its rate stands for the time since then, if that is short.
+
+        In a longer time the rate may have been anything between the two. And if readings in between were lost, one that
+        changes by at most A in a second makes the turn in a time T wrong by at most A T^2 / 4. Both errors are taken as
+        uniformly distributed.
         """
-        start, duration = last.stamp, imu.stamp - last.stamp
+        duration = imu.stamp - last.stamp
         usual = self.period or duration
-        self.period = usual + (min(duration, 2 * usual) - usual) // 16
-        if imu.since is None and duration > 1.5 * usual:
-            start = imu.stamp - usual
-            deviation = min(MAX_ACCELERATION * (start - last.stamp) / SECOND / 4, MAX_TURN_RATE)
-            self.readings.append((last.stamp, Imu(start, (last.rate + imu.rate) / 2, imu.variance + deviation ** 2)))
-        self.readings.append((start, imu))
+        self.period = usual + (duration - usual) // 16      # a running mean
+        if duration > SHORT:
+            rate = imu.rate if imu.is_mean else (last.rate + imu.rate) / 2
+            variance = imu.variance + (imu.rate - last.rate) ** 2 / 12
+            if duration > LOST * usual:
+                variance += min(MAX_ACCELERATION * duration / SECOND / 4, MAX_TURN_RATE) ** 2 / 3
+            imu = imu._replace(rate=rate, variance=variance)
+        self.readings.append((last.stamp, imu))
 
     def _check_stamp(self, sensor, now, stamp):
         """Check and store a stamp; returns the previous one, or None."""

@@ -63,6 +63,7 @@ class GyroInput:
         """
         check('angular_velocity_covariance[0]', -1, data.rates or data.orientation,
               'an angular velocity or an orientation')
+        check('angular_velocity_covariance[0]', -1, data.rates or not self.has_rates, 'an angular velocity, as before')
         absent = data.rates is None or not (self.has_rates or any(data.rates) or any(data.rate_variances))
         return (self._from_orientation if absent and data.orientation else self._from_rates)(data, vertical)
 
@@ -94,13 +95,12 @@ class GyroInput:
             self._note('no covariance of the orientation: 0.00017 rad assumed')
             variance = DEFAULT_VARIANCE
         check_variance('orientation_covariance[8]', variance)
-        last, rate, since = self.last, 0.0, None    # the filter does not use the first reading
+        last, rate = self.last, 0.0     # the filter does not use the first reading
         if last and last.orientation and data.stamp > last.stamp:
-            since = last.stamp
-            rate = turn_about(vertical, last.orientation, data.orientation) / ((data.stamp - since) / SECOND)
+            rate = turn_about(vertical, last.orientation, data.orientation) / ((data.stamp - last.stamp) / SECOND)
         if rate:
             self._note('no angular velocity: the change of its orientation is used')
-        return Imu(data.stamp, rate, variance, since)
+        return Imu(data.stamp, rate, variance, is_mean=True)
 
     def _note(self, text):
         if text not in self.noted:

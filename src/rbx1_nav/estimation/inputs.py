@@ -9,9 +9,9 @@ MAX_VARIANCE = 1 / MIN_VARIANCE
 Odom = namedtuple('Odom', 'stamp pose linear_variance angular_variance')
 Odom.__doc__ = 'Wheel odometry: stamp in ns, Pose in its frame, variances of its speeds (m^2/s^2, rad^2/s^2).'
 
-Imu = namedtuple('Imu', 'stamp rate variance since', defaults=[None])
-Imu.__doc__ = """A reading: stamp in ns, mean angular velocity (rad/s), its variance (rad^2/s^2), and the stamp since which it
-is the mean; None: for the usual time between two readings."""
+Imu = namedtuple('Imu', 'stamp rate variance is_mean', defaults=[False])
+Imu.__doc__ = """A reading: stamp in ns, angular velocity (rad/s), its variance (rad^2/s^2), and whether it is the mean velocity
+since the previous reading, however long ago."""
 
 
 class RejectedMessage(ValueError):

@@ -104,7 +104,7 @@ def test_without_an_angular_velocity_the_rate_is_the_change_of_the_orientation(m
     assert first.rate == 0.0
     # stamps are rounded to 1 ns
     assert second.rate == pytest.approx(rate, rel=1e-5, abs=1e-6)
-    assert second.variance == 1e-6 and second.since == first.stamp
+    assert second.variance == 1e-6 and second.is_mean
 
 
 def test_rates_of_0_without_a_covariance_are_no_angular_velocity_until_one_is_measured():
@@ -120,6 +120,13 @@ def test_rates_are_used_rather_than_the_orientation():
     gyro = GyroInput()
     gyro.accepted(data(heading=0.0))
     assert gyro.read(data(0.0, heading=0.1, stamp=0.1)) == Imu(SECOND // 10, 0.0, 1e-6)
+
+
+def test_after_rates_an_orientation_is_rejected():
+    gyro = GyroInput()
+    gyro.accepted(data(0.5, heading=0.0))
+    with pytest.raises(RejectedMessage, match='an angular velocity, as before'):
+        gyro.read(data(heading=0.1, stamp=0.1)._replace(rates=None))
 
 
 def test_an_orientation_without_a_covariance_gets_the_one_of_robot_pose_ekf():
