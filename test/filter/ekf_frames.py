@@ -27,7 +27,8 @@ class TestEkfFrames(unittest.TestCase):
         transforms = support.Watch('/tf', TFMessage)
         combined = support.Watch('odom_combined', PoseWithCovarianceStamped)
         republished = support.Watch('/odom_ekf', support.Odometry)
-        support.wait_for(lambda: republished.last, '/odom_ekf')
+        for watch in transforms, combined, republished:
+            support.wait_for(lambda: watch.last, watch.subscriber.name)
         commander = support.Commander()
         for linear, angular in [(0.2, 0.7), (-0.1, 0.9)]:
             commander.send(linear, angular)

@@ -25,7 +25,7 @@ class LateRobot(AlteredRobot):
             publisher.publish(message)
             return
         self.waiting.append(message)
-        while self.waiting[0].header.stamp <= message.header.stamp - LAG:
+        while message.header.stamp - self.waiting[0].header.stamp >= LAG:
             publisher.publish(self.waiting.popleft())
 
 
