@@ -18,6 +18,9 @@ import os
 import signal
 import sys
 
+# the matrices are small: on a busy machine, threads that wait for each other take many times as long
+os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
+
 from rbx1_nav.config import ConfigError, load_yaml, show_name
 from rbx1_nav.fit_picture import draw_fit
 from rbx1_nav.fitting.comparison import compare, shares
