@@ -78,17 +78,17 @@ class FakeCreate:
     def step(self):
         """Bring the robot up to the present."""
         robot, terminal, now = self.robot, self.terminal, time.monotonic_ns()
-        self.update_rate()
+        self.set_host_baud()
         data = robot.advance(now)
         self.faults.apply()
         terminal.write(data)
         data = terminal.read()
-        self.update_rate()      # the client has set it before it sent the data
+        self.set_host_baud()        # the client has set it before it sent the data
         robot.receive(data, time.monotonic_ns())    # not before it was sent
         if self.truth_schedule.due(now) and self.truth_pub.get_num_connections():
             self.publish_truth()
 
-    def update_rate(self):
+    def set_host_baud(self):
         """Set the host's baud rate on the line as the client has set it."""
         self.robot.line.host_baud = self.terminal.baud or self.robot.line.host_baud
 

@@ -10,7 +10,7 @@ Odom = namedtuple('Odom', 'stamp pose linear_variance angular_variance')
 Odom.__doc__ = 'Wheel odometry: stamp in ns, Pose in its frame, variances of its speeds (m^2/s^2, rad^2/s^2).'
 
 Imu = namedtuple('Imu', 'stamp rate variance is_mean', defaults=[False])
-Imu.__doc__ = """A reading: stamp in ns, angular velocity (rad/s), its variance (rad^2/s^2), and whether it is the mean velocity
+Imu.__doc__ = """A reading: stamp in ns, angular velocity (rad/s), its variance (rad^2/s^2), and whether it is the mean
 since the previous reading, however long ago."""
 
 
