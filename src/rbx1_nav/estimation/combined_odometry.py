@@ -82,7 +82,7 @@ class CombinedOdometry:
         self.filter = None
         self.estimate = None        # the latest Estimate
         self.pending = deque()      # (ns of arrival, Odom), until the gyro has caught up
-        self.readings = deque()     # (ns at the start of the reading, Imu), not used yet
+        self.readings = deque()     # (ns at the start, Imu, variance by lost readings), not used yet
         self.time = None            # ns, the end of the last step
         self.odom = None            # the last Odom of a step
         self.odom_yaw = None        # rad, the filter's yaw at that time
@@ -128,8 +128,9 @@ class CombinedOdometry:
 
         In a longer time the rate may have been anything between the two. And if readings in between were lost, one that
         changes by at most A in a second makes the turn in a time T wrong by at most A T^2 / 4. Both errors are taken as
-        uniformly distributed.
+        uniformly distributed. The second one is kept apart, because the wheels may have measured the gap.
         """
+        lost = 0.0
         duration = imu.stamp - last.stamp
         usual = self.period or duration
         self.period = usual + (duration - usual) // 16      # a running mean
@@ -137,9 +138,9 @@ class CombinedOdometry:
             rate = imu.rate if imu.is_mean else (last.rate + imu.rate) / 2
             variance = imu.variance + (imu.rate - last.rate) ** 2 / 12
             if duration > LOST * usual:
-                variance += min(MAX_ACCELERATION * duration / SECOND / 4, MAX_TURN_RATE) ** 2 / 3
+                lost = min(MAX_ACCELERATION * duration / SECOND / 4, MAX_TURN_RATE) ** 2 / 3
             imu = imu._replace(rate=rate, variance=variance)
-        self.readings.append((last.stamp, imu))
+        self.readings.append((last.stamp, imu, lost))
 
     def _check_stamp(self, sensor, now, stamp):
         """Check and store a stamp; returns the previous one, or None."""
@@ -224,7 +225,7 @@ class CombinedOdometry:
         dx, dy = odom.pose.x - self.odom.pose.x, odom.pose.y - self.odom.pose.y
         duration = max(0, odom.stamp - self.time) / SECOND      # less than elapsed if the gyro was used alone
         turned = wrap_angle(odom.pose.yaw - self.odom.pose.yaw)
-        gyro = self._gyro_turn(odom.stamp)
+        gyro, missing = self._gyro_turn(odom.stamp)
         wheels = None
         if self.time == self.odom.stamp:
             wheels = turned, odom.angular_variance * elapsed ** 2
@@ -232,9 +233,9 @@ class CombinedOdometry:
             # the gyro was used alone, but not up to here: the wheels measured the rest of the turn
             already = (self.filter.state[YAW] - self.odom_yaw) / (1 - self.filter.state[TURNING])
             wheels = wrap_angle(turned - already), odom.angular_variance * elapsed ** 2
-        turn = self.filter.turn(duration, wheels, gyro, hypot(dx, dy))
+        turn = self.filter.turn(duration, wheels, gyro, hypot(dx, dy), missing)
         if wheels and gyro:
-            self._check_agreement(wheels[0], gyro, hypot(dx, dy), duration)
+            self._check_agreement(wheels[0], (gyro[0], gyro[1] + missing), hypot(dx, dy), duration)
 
         # the displacement in the wheels' heading half way
         heading = self.odom.pose.yaw + turned / 2
@@ -270,7 +271,8 @@ class CombinedOdometry:
         if duration > 0:
             if not self.yaws:
                 self.yaws.append((self.time, self.filter.state[YAW]))
-            self.filter.move(duration, self.filter.turn(duration, None, self._gyro_turn(end)))
+            gyro, missing = self._gyro_turn(end)
+            self.filter.move(duration, self.filter.turn(duration, None, gyro, missing=missing))
             self._finish(end, None)
             self.yaws.append((end, self.filter.state[YAW]))
 
@@ -283,21 +285,27 @@ class CombinedOdometry:
         return before + (after - before) * (stamp - start) / (end - start)
 
     def _gyro_turn(self, end):
-        """(angle, variance) of the readings up to `end` (ns); None if they do not cover all of that time."""
-        angle = variance = 0.0
+        """(angle, variance) of the readings up to `end` (ns), None if they do not cover all of that time; and the
+        additional variance because readings were lost, if the whole gap is within that time."""
+        angle = variance = missing = 0.0
         time, good = self.time, True
         while self.readings and time < end:
-            start, imu = self.readings[0]
+            start, imu, lost = self.readings[0]
             if imu.stamp > time:
                 good = good and start <= time and abs(imu.rate) < self.prior.gyro_measurement_range
                 stop = min(imu.stamp, end)
                 part = (stop - time) / SECOND
                 angle += imu.rate * part
-                variance += imu.variance * part * (imu.stamp - start) / SECOND
+                square = part * (imu.stamp - start) / SECOND
+                variance += imu.variance * square
+                if start == time and stop == imu.stamp:
+                    missing += lost * square
+                else:
+                    variance += lost * square
                 time = stop
             if imu.stamp <= end:
                 self.readings.popleft()
-        return (angle, variance) if good and time == end and variance else None
+        return ((angle, variance), missing) if good and time == end and variance else (None, 0.0)
 
     def _finish(self, time, odom):
         """Store the result of a step."""

@@ -9,7 +9,9 @@ In each step the wheels report a turn W, of which the robot makes W (1 - slip tu
 G, which stands for a turn of (G - bias * time) / (1 + scale error). The difference of the two, which should be 0, is a
 measurement of the errors. Their mean, weighted by the inverse variances, is the turn. The noise of that mean and the
 noise of the difference are uncorrelated (the Gauss-Markov theorem), so using one after the other loses no information
-and counts none twice. The rest is the standard filter: Thrun, Burgard and Fox, Probabilistic Robotics, section 3.3.
+and counts none twice. This also holds for the sum of the differences of several steps, and that sum is what is used: a
+single step's turn by the wheels may be coarsely rounded. The rest is the standard filter: Thrun, Burgard and Fox,
+Probabilistic Robotics, section 3.3.
 
 The covariance is kept as a root, a matrix whose product with its own transpose it is: so it has no negative eigenvalue,
 whatever is measured. A measurement changes the root as in Potter's filter (Maybeck, Stochastic Models, Estimation, and
@@ -30,6 +32,8 @@ BIAS_WALK = radians(0.002)  # rad/s per root of a second: random walk of the bia
 SLIP_WALK = 0.02            # per root of a radian, or of a metre: random walk of the slip
 OUTLIER = 5.0               # standard deviations between wheels and gyro beyond which one of them must be wrong
 MAX_ERROR = 0.5             # of slip and scale error: beyond it something else is wrong
+PART_TURN, PART_TIME = 0.2, 1.0     # rad, s: turn and time over which the differences of wheels and gyro are added up
+STEADY = 0.5                # variance of the gyro's turn over a gap at a steady rate / variance of the wheels' turn
 
 # no gyro is better, whatever a floor's file says: 1 sigma of the bias (rad/s) and of the scale error
 MIN_BIAS, MIN_SCALE_ERROR = radians(0.5), 0.003
@@ -72,6 +76,7 @@ class Filter:
             max(prior.slip_turning_spread, MIN_SPREAD_TURNING), max(prior.slip_straight_spread, MIN_SPREAD_STRAIGHT)]
         self.used = 7               # columns of the root
         self.walked = [0.0] * 3     # s, rad, m since the root was square
+        self.part = None            # sums of the steps whose difference has not been used yet, see _use()
         self.agreement = Agreement()
         self.doubt = 0.0            # rad: the sum of what wheels and gyro have contradicted each other by
 
@@ -81,23 +86,24 @@ class Filter:
         pose = self.root[:3]
         return pose @ pose.T
 
-    def turn(self, duration, wheels=None, gyro=None, travelled=0.0):
+    def turn(self, duration, wheels=None, gyro=None, travelled=0.0, missing=0.0):
         """Estimate the Turn of a step of `duration` (s) for move(), and update the errors in the state.
 
-        wheels, gyro: the measured (angle in rad, variance in rad^2), or None; travelled: m, by the wheels. If wheels
-        and gyro disagree by more than OUTLIER, the wheels have slipped far more than usual: the gyro is used alone.
+        wheels, gyro: the measured (angle in rad, variance in rad^2), or None; travelled: m, by the wheels; missing:
+        additional variance (rad^2) of the gyro's turn because readings are missing within this step. If wheels and gyro
+        disagree by more than OUTLIER, the wheels have slipped far more than usual: the gyro is used alone.
         """
         if wheels:
             prior, (angle, variance) = self.prior, wheels
             wheels = angle, max(variance, prior.heading_noise_turning ** 2 * abs(angle)
                                 + prior.heading_noise_straight ** 2 * travelled)
-        both = self._compare(duration, wheels, gyro) if wheels and gyro else None
+        both = self._compare(duration, wheels, gyro, missing) if wheels and gyro else None
         if both:
             return both
         if gyro:
             scale = 1 + self.state[SCALE]
             angle = (gyro[0] - self.state[BIAS] * duration) / scale
-            return Turn(angle, gyro[1] / scale ** 2, -duration / scale, -angle / scale, 0.0)
+            return Turn(angle, (gyro[1] + missing) / scale ** 2, -duration / scale, -angle / scale, 0.0)
         if wheels:
             grip = 1 - self.state[TURNING]
             return Turn(wheels[0] * grip, wheels[1] * grip ** 2, 0.0, 0.0, -wheels[0])
@@ -130,33 +136,67 @@ class Filter:
         self.root[index, self.used] = deviation
         self._use_columns(1)
 
-    def _compare(self, duration, wheels, gyro):
-        """Use the difference as a measurement, then return the mean; None for an outlier."""
-        state, root = self.state, self.root
+    def _compare(self, duration, wheels, gyro, missing):
+        """Add the step to the part, use the part when it is complete, and return the mean; None for an outlier."""
+        alone = missing or gyro[1] > wheels[1]      # its noise would hide what the other steps have measured
+        if alone and self.part:
+            self._use(self.part)
+            self.part = None
+        state = self.state
         scale, grip = 1 + state[SCALE], 1 - state[TURNING]
-        wheel_noise, gyro_noise = wheels[1] * grip ** 2, gyro[1] / scale ** 2
+        difference = wheels[0] * grip - (gyro[0] - state[BIAS] * duration) / scale
+        if missing:
+            # if the rate changed while it was not read, the two turns differ by as much as the gyro's is wrong
+            gyro = gyro[0], gyro[1] + min(missing, STEADY * wheels[1] + difference ** 2)
+        noise = wheels[1] * grip ** 2 + gyro[1] / scale ** 2
+        if difference ** 2 > OUTLIER ** 2 * noise:      # rare: the errors in the state count too
+            spread = self._spread(duration, wheels[0], gyro[0])
+            if difference ** 2 > OUTLIER ** 2 * (noise + float(spread @ spread)):
+                return None
+        step = (duration, *wheels, *gyro)
+        if alone:
+            self._use(step)
+        else:
+            part = self.part = tuple(map(sum, zip(self.part, step))) if self.part else step
+            if part[0] > PART_TIME or abs(part[1]) > PART_TURN or abs(part[3]) > PART_TURN:
+                self._use(part)
+                self.part = None
+
+        state = self.state
+        scale, grip = 1 + state[SCALE], 1 - state[TURNING]
         angle = (gyro[0] - state[BIAS] * duration) / scale
-        difference = wheels[0] * grip - angle
+        wheel_noise, gyro_noise = wheels[1] * grip ** 2, gyro[1] / scale ** 2
+        share = gyro_noise / (wheel_noise + gyro_noise)     # of the wheels
+        return Turn(share * wheels[0] * grip + (1 - share) * angle, share * wheel_noise,
+                    (share - 1) * duration / scale, (share - 1) * angle / scale, -share * wheels[0])
+
+    def _spread(self, duration, wheels, gyro):
+        """The derivatives of the difference of two turns (rad) by the errors in the state, multiplied by their root."""
+        state = self.state
+        scale, grip = 1 + state[SCALE], 1 - state[TURNING]
         # noise that is both in a measurement and in its derivative does not average out. So the slip's derivative uses
         # the gyro's turn, since the wheels' is rounded to ticks; where the wheels stand, the gyro's turn is all noise
-        turned = angle if wheels[0] else 0.0
-        spread = numpy.array([duration / scale, turned / scale, -turned / grip]) @ root[BIAS:STRAIGHT]
-        noise = wheel_noise + gyro_noise
+        turned = (gyro - state[BIAS] * duration) / scale if wheels else 0.0
+        return numpy.array([duration / scale, turned / scale, -turned / grip]) @ self.root[BIAS:STRAIGHT]
+
+    def _use(self, part):
+        """Use the difference of wheels and gyro as a measurement of the errors.
+
+        part: s, turn by the wheels (rad) and its variance, turn by the gyro (rad) and its variance.
+        """
+        duration, wheels, wheel_variance, gyro, gyro_variance = part
+        spread = self._spread(duration, wheels, gyro)
+        state, root = self.state, self.root
+        scale, grip = 1 + state[SCALE], 1 - state[TURNING]
+        difference = wheels * grip - (gyro - state[BIAS] * duration) / scale
+        noise = wheel_variance * grip ** 2 + gyro_variance / scale ** 2
         variance = float(spread @ spread) + noise
-        if difference ** 2 > OUTLIER ** 2 * variance:
-            return None
         gain = root @ spread / variance
         root -= (gain / (1 + sqrt(noise / variance)))[:, None] * spread
         state = [old - change * difference for old, change in zip(state, gain.tolist())]
         for index in SCALE, TURNING:
             state[index] = clamp(state[index], MAX_ERROR)
         self.state = state
-
-        scale, grip = 1 + state[SCALE], 1 - state[TURNING]
-        angle = (gyro[0] - state[BIAS] * duration) / scale
-        share = gyro_noise / noise      # of the wheels
-        return Turn(share * wheels[0] * grip + (1 - share) * angle, share * wheel_noise,
-                    (share - 1) * duration / scale, (share - 1) * angle / scale, -share * wheels[0])
 
     def move(self, duration, turn, direction=0.0, forward=0.0, left=0.0, variance=0.0):
         """Predict the state after a step of `duration` (s) with a Turn from turn() and a displacement.

@@ -1,6 +1,6 @@
 """The combined odometry: the order of messages, rejected messages, dropouts, jumps and restarts."""
 from itertools import count
-from math import cos, pi, sin
+from math import cos, pi, sin, sqrt
 
 import numpy
 import pytest
@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rbx1_nav.estimation.combined_odometry import CombinedOdometry
-from rbx1_nav.estimation.filter import BIAS, X, Y, YAW
+from rbx1_nav.estimation.filter import BIAS, UNKNOWN, X, Y, YAW
 from rbx1_nav.estimation.inputs import Imu, Odom, RejectedMessage
 from rbx1_nav.model.kinematics import ORIGIN, Pose, arc
 from rbx1_nav.units import SECOND
@@ -69,6 +69,62 @@ def test_the_bias_is_estimated_at_standstill():
     assert state[BIAS] == pytest.approx(0.01, abs=1e-4)
     # it turned as little as the wheels report, not by the 0.02 rad of the gyro
     assert abs(state[YAW]) < 1e-4
+
+
+# contradictions
+
+def turn_with_wheels(robot, ticks, factor, linear=0.0, angular=1.0, bias=0.0):
+    """Drive a robot whose odometry reports a multiple of each turn; returns the last Estimate."""
+    wheels = robot.pose
+    for _ in range(ticks):
+        robot.send(1, linear, angular, odom=False, bias=bias)
+        wheels = arc(wheels, linear * 0.02, factor * angular * 0.02)
+        robot.combined.add_odom(robot.now, Odom(robot.now, wheels, 1e-6, 1e-6), VARIANCES)
+    robot.pose = wheels
+    return robot.combined.estimate
+
+
+def test_wheels_and_gyro_that_contradict_each_other_are_reported_and_make_the_heading_uncertain():
+    robot = Robot()
+    robot.send(100)
+    estimate = turn_with_wheels(robot, 500, -1.0)
+    assert robot.combined.contradicts and len(robot.warnings) == 1
+    # they differ by 20 rad, less 3 % slip of the wheels. The last turn, of 2 rad at most, may not be significant yet
+    assert 15.0 < sqrt(estimate.covariance[2, 2]) < 20.0
+
+
+def test_a_contradiction_is_shown_for_5_seconds():
+    robot = Robot()
+    robot.send(100)
+    turn_with_wheels(robot, 74, -1.0)
+    # a turn of less than 1.5 rad, here at 1 rad/s, is not enough evidence
+    assert not robot.combined.contradicts
+    turn_with_wheels(robot, 10, -1.0)
+    assert robot.combined.contradicts
+    # 5 s, less up to 10 ticks since the contradiction was noticed
+    robot.send(239)
+    assert robot.combined.contradicts
+    robot.send(11)
+    assert not robot.combined.contradicts
+
+
+def test_a_slip_that_the_floor_does_not_have_is_reported_as_another_floor():
+    robot = Robot(IDEAL)
+    robot.send(100)
+    turn_with_wheels(robot, 500, 1.08)
+    assert robot.combined.another_floor and not robot.combined.contradicts and len(robot.warnings) == 1
+
+
+@pytest.mark.parametrize('motion', [
+    # the gyro reports -0.04 rad/s at standstill, and 0.01 rad/s in a turn at 0.05 rad/s
+    dict(factor=1.0, angular=0.05, bias=-0.04),
+    # a curve of 60 m, in which unequal wheels may turn the robot by 0.066 rad times the square root of the distance
+    dict(factor=1.6, linear=0.5, angular=0.06)])
+def test_neither_a_bias_in_a_slow_turn_nor_unequal_wheels_in_a_long_curve_are_a_contradiction(motion):
+    robot = Robot(UNKNOWN)
+    robot.send(500, bias=motion.get('bias', 0.0))
+    turn_with_wheels(robot, 6000, **motion)
+    assert not robot.warnings
 
 
 # rejected messages
@@ -191,6 +247,16 @@ def test_a_gyro_that_is_not_used_is_not_waited_for():
     assert exact(robot.combined.estimate, robot.pose) and not robot.warnings
 
 
+def test_without_a_gyro_the_heading_is_as_uncertain_as_the_odometry_reports():
+    robot = Robot(IDEAL, gyro_used=False)
+    before = robot.send(imu=False)
+    for _ in range(10):
+        robot.now += STEP
+        robot.combined.add_odom(robot.now, Odom(robot.now, robot.pose, 1e-2, 1e-3), VARIANCES)
+    # variance of an angular velocity, times the square of 0.02 s, in each step
+    assert robot.combined.estimate.covariance[2, 2] - before.covariance[2, 2] == pytest.approx(10 * 1e-3 * 0.02 ** 2)
+
+
 def test_odometry_times_out_and_its_travel_meanwhile_counts_when_it_recovers():
     robot = Robot(IDEAL)
     robot.send(50, 0.2)
@@ -206,6 +272,44 @@ def test_odometry_times_out_and_its_travel_meanwhile_counts_when_it_recovers():
     # the wheels report a straight displacement since the dropout, the gyro has reported the turn
     assert exact(robot.combined.estimate, robot.pose) and not robot.combined.timed_out['odom']
     assert robot.combined.estimate.covariance[X, X] < 1e-3
+
+
+@pytest.mark.parametrize('late', [-1, 0, 1])
+def test_odometry_times_out_when_stamps_and_arrivals_are_ahead_by_more_than_the_timeout(late):
+    robot = Robot(IDEAL)
+    last = robot.send(50).stamp
+    for ahead in range(1, 60):      # ticks from the odometry to a reading; the timeout is 50
+        stamp = last + ahead * STEP
+        robot.combined.add_imu(stamp + late * STEP, Imu(stamp, 0.0, 3e-6))
+        timed_out = ahead > 50 and ahead + late > 50
+        assert robot.combined.timed_out['odom'] == timed_out
+        assert robot.combined.estimate.stamp == (stamp if timed_out else last)
+
+
+def test_odometry_that_waits_for_a_late_gyro_has_not_timed_out():
+    robot = Robot(IDEAL)
+    last = robot.send(50).stamp
+    pending = last + 3 * SECOND
+    for stamp in range(last + STEP, pending + 1, STEP):     # readings come 2.5 s late
+        if robot.now == pending:
+            robot.combined.add_odom(robot.now, robot.odom(), VARIANCES)
+        assert robot.combined.estimate.stamp == last
+        robot.now = stamp + 5 * SECOND // 2
+        robot.combined.add_imu(robot.now, Imu(stamp, 0.0, 3e-6))
+    assert robot.combined.estimate.stamp == pending and not robot.warnings
+
+
+def test_a_turn_while_both_sensors_are_silent_is_as_uncertain_as_the_odometry_over_the_whole_dropout():
+    robot = Robot(IDEAL)
+    robot.send(50)
+    before = robot.send(100, 0.0, 2.0, odom=False)      # 2 s and more than half a turn, measured by the gyro
+    assert exact(before, robot.pose)
+    robot.now += 3 * SECOND // 2
+    robot.combined.add_odom(robot.now, Odom(robot.now, robot.pose, 1e-2, 1e-3), VARIANCES)
+    robot.combined.add_imu(robot.now, Imu(robot.now, 0.0, 3e-6))
+    after = robot.combined.estimate
+    assert after.stamp == robot.now and exact(after, robot.pose)
+    assert after.covariance[2, 2] - before.covariance[2, 2] == pytest.approx(1e-3 * 3.5 ** 2)
 
 
 @pytest.mark.parametrize('odom_first', [True, False])

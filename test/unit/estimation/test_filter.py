@@ -1,5 +1,5 @@
 """The arithmetic of the filter: derivatives, covariances and means are right."""
-from math import cos, sin, sqrt
+from math import cos, pi, sin, sqrt
 from unittest.mock import patch
 
 import numpy
@@ -14,6 +14,7 @@ from sample_priors import IDEAL, PRIORS
 angles = st.floats(-3, 3)
 small = st.floats(-0.1, 0.1)
 variances = st.floats(1e-9, 1e-3)
+LONG = 2.0      # s: a step so long is compared by itself
 any_variance = st.floats(-12, 12).map(lambda exponent: 10 ** exponent)
 durations = st.floats(-3, 7).map(lambda exponent: 10 ** exponent)
 
@@ -69,16 +70,81 @@ def test_the_covariance_follows_from_the_derivatives_of_a_step(state, angle, var
 def test_a_comparison_changes_state_and_covariance_as_in_the_textbook(state, turned, wheel_noise, gyro_noise):
     ekf = with_state(state, IDEAL)
     grip, scale = 1 - state[TURNING], 1 + state[SCALE]
-    gyro = (turned * grip + 1e-4) * scale + state[BIAS] * 0.02     # differs by 1e-4 rad
-    ekf.turn(0.02, (turned, wheel_noise), (gyro, gyro_noise))
+    gyro = (turned * grip + 1e-4) * scale + state[BIAS] * LONG     # differs by 1e-4 rad
+    ekf.turn(LONG, (turned, wheel_noise), (gyro, gyro_noise))
     row = numpy.zeros(7)
-    row[BIAS] = 0.02 / scale
+    row[BIAS] = LONG / scale
     if turned:      # wheels that stand tell nothing of slip and scale
         row[SCALE], row[TURNING] = (turned * grip + 1e-4) / scale, -(turned * grip + 1e-4) / grip
     before = 1e-6 * numpy.eye(7)
     gain = before @ row / (row @ before @ row + wheel_noise * grip ** 2 + gyro_noise / scale ** 2)
     numpy.testing.assert_allclose(ekf.state, numpy.array(state) + 1e-4 * gain, atol=1e-9)
     numpy.testing.assert_allclose(whole_covariance(ekf), before - numpy.outer(gain, row @ before), atol=1e-15)
+
+
+@given(angles, st.tuples(small, small, small), variances, variances)
+def test_a_step_with_both_sensors_is_as_certain_as_the_least_squares_of_both(turned, errors, wheel_noise, gyro_noise):
+    bias, scale_error, slip = errors
+    grip, scale = 1 - slip, 1 + scale_error
+    duration = 1.01         # long enough to be compared at once
+    ekf = with_state([0.0, 0.0, 0.0, bias, scale_error, slip, 0.0], IDEAL)
+    turn = ekf.turn(duration, (turned / grip, wheel_noise), (turned * scale + bias * duration, gyro_noise))
+    ekf.move(duration, turn)
+    assert ekf.state[YAW] == pytest.approx(turned, abs=1e-9)
+    # derivatives of both measurements by the turn, the bias, the scale error and the slip. Least squares adds up the
+    # information, the inverse of the covariance; there is none about the turn before
+    by_wheels = numpy.array([1.0, 0.0, 0.0, turned / grip])
+    by_gyro = numpy.array([1.0, duration / scale, turned / scale, 0.0])
+    information = (numpy.diag([0.0, 1e6, 1e6, 1e6]) + numpy.outer(by_wheels, by_wheels) / (wheel_noise * grip ** 2)
+                   + numpy.outer(by_gyro, by_gyro) / (gyro_noise / scale ** 2))
+    expected = numpy.linalg.inv(information)
+    expected[0, 0] += 1e-6      # of the yaw before
+    which = [YAW, BIAS, SCALE, TURNING]
+    # rounding errors of the inverse, whose elements are at most 1e-3, at a condition number of up to 1e6
+    numpy.testing.assert_allclose(whole_covariance(ekf)[numpy.ix_(which, which)], expected, atol=1e-12, rtol=1e-6)
+
+
+@pytest.mark.parametrize('count', [2, 5, 20])
+def test_short_steps_are_compared_by_their_sum(count):
+    whole, parts = with_state([0.0] * 7), with_state([0.0] * 7)
+    whole.turn(1.01, (0.19, 1e-3), (0.18, 1e-6))
+    for _ in range(count):
+        assert parts.state == [0.0] * 7
+        parts.turn(1.01 / count, (0.19 / count, 1e-3 / count), (0.18 / count, 1e-6 / count))
+    numpy.testing.assert_allclose(parts.state, whole.state, atol=1e-12)
+    numpy.testing.assert_allclose(whole_covariance(parts), whole_covariance(whole), atol=1e-15)
+
+
+@pytest.mark.parametrize('rate', [0.2, 0.5, 1.0, 1.5])
+def test_a_rounded_turn_of_the_wheels_is_no_slip(rate):
+    ekf = Filter(UNKNOWN, ORIGIN)
+    steps, degree = round(3 / rate * 30), pi / 180
+    counted = [round(rate * step / 30 / degree) for step in range(steps + 1)]
+    for before, after in zip(counted, counted[1:]):
+        wheels = (after - before) * degree
+        # a Create's: two roundings, and the floor's noise in what was counted
+        ekf.turn(1 / 30, (wheels, degree ** 2 / 6 + 0.09 ** 2 * wheels), (rate / 30, 5e-8))
+    # of the 0.05 that it was uncertain by
+    assert abs(ekf.state[TURNING]) < 0.01
+
+
+def test_a_gap_in_which_the_rate_was_steady_is_measured_by_wheels_and_gyro():
+    ekf = with_state([0.0] * 7)
+    turn = ekf.turn(0.4, (0.4, 0.002), (0.4, 1e-6), missing=0.1)
+    assert turn.angle == pytest.approx(0.4) and 0.0005 < turn.variance < 0.001
+
+
+def test_a_gap_in_which_the_rate_changed_is_measured_by_the_wheels():
+    ekf = with_state([0.0] * 7)
+    turn = ekf.turn(0.4, (0.1, 0.002), (0.4, 1e-6), missing=0.1)
+    # the weight of the gyro is at most that of a turn which is wrong by the difference
+    assert turn.angle - 0.1 < 0.3 * 0.002 / 0.3 ** 2 and 0.0015 < turn.variance < 0.002
+
+
+def test_without_wheels_a_gap_is_uncertain():
+    ekf = with_state([0.0] * 7)
+    turn = ekf.turn(0.4, None, (0.4, 1e-6), missing=0.1)
+    assert turn.angle == pytest.approx(0.4) and turn.variance == pytest.approx(0.1 + 1e-6)
 
 
 def test_slip_and_bias_walk():
