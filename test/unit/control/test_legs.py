@@ -1,6 +1,6 @@
 """The exercise by odometry: legs that end when the pose says so."""
 from collections import deque
-from math import hypot, inf, pi, remainder
+from math import cos, hypot, inf, pi, remainder, sin
 
 import pytest
 from hypothesis import given
@@ -155,3 +155,14 @@ def test_a_leg_without_progress_ends_with_an_error(fraction):
     ((1.0, 0.0, 2.0), (1.0, 0.0, 0.0), 0.02, False), ((1.0, 0.0, 0.0), (1.0, 0.0, -0.19), 0.02, True)])
 def test_a_pose_that_jumps_is_not_reachable(before, after, elapsed, reachable):
     assert is_reachable(Pose(*before), Pose(*after), elapsed, 0.2, 1.0) is reachable
+
+
+@pytest.mark.parametrize('yaw', [0.0, 0.5, pi / 4, 2.0, -2.5])
+@pytest.mark.parametrize('forward, left, reachable', [
+    # in 0.1 s at 0.2 m/s, half as fast again: 0.03 m, and 0.1 m in every direction
+    (0.12, 0.0, True), (0.14, 0.0, False), (-0.09, 0.0, True), (-0.11, 0.0, False),
+    (0.0, 0.12, True), (0.0, 0.14, False), (0.0, -0.12, True), (0.0, -0.14, False)])
+def test_what_is_reachable_depends_on_the_heading_of_the_robot(yaw, forward, left, reachable):
+    before = Pose(3.0, -2.0, yaw)
+    after = Pose(3.0 + forward * cos(yaw) - left * sin(yaw), -2.0 + forward * sin(yaw) + left * cos(yaw), yaw)
+    assert is_reachable(before, after, 0.1, 0.2, 1.0) is reachable
