@@ -5,6 +5,8 @@ usage: fake_create.py [_parameter:=value ...] [topic:=new_topic ...]    usually 
 
 Parameters:
     ~robot_type             create or create2 (default: create)
+    ~baud                   bits per second when the robot is switched on, 300 to 115200; 19200 is a robot whose power
+                            button was held (default: create: 57600, create2: 115200)
     ~link                   path of a symbolic link to the device (default: none; the log shows the device's name)
     ~surface                ideal, hard_floor, low_ply_carpet, or the absolute path of a surface file (default: ideal)
     ~seed                   integer that slip, gyro errors and corruption are drawn from, or random; the log shows it
@@ -15,16 +17,20 @@ Parameters:
     ~gyro_sensitivity       what the gyro's signal shows / its nominal value (default: 1)
     ~wheel_travel           what the encoders count / what the wheels travel (default: 1)
     ~wheel_base             true distance of the wheels / its nominal value (default: 1)
+    ~gyro_stuck             count from 0 to 1023 at which the analog input is stuck, or -1 (default: -1, not stuck)
+    ~mode_plus_one          whether the robot reports its mode plus one, as a Roomba 642 does (default: false)
+    ~drops_fractions        whether each reading of the angle loses the fraction of a degree (default: false)
 
 What can happen to the robot:
     services ~pull_cable, ~silence, ~drop_wheel, ~cliff, ~bump, ~dock (SetBool) and ~power_cycle (Trigger);
-    topics ~charge and ~corruption (Float64), see above
+    topics ~charge, ~corruption and ~gyro_stuck (Float64), see above
 It publishes /ground_truth, where the robot really is, and /line: each command that it receives, with its time.
 A pseudo-terminal has no RTS and DTR: a driver that insists on them gets an error.
 """
 import rbx1_nav.ros.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded
 
 from collections import namedtuple
+from math import floor
 import time
 
 import rospy
@@ -32,9 +38,9 @@ from nav_msgs.msg import Odometry
 from std_msgs.msg import String
 
 from rbx1_nav.config import ConfigError, Section, show
-from rbx1_nav.create.body import CAPACITY, Body, Errors
+from rbx1_nav.create.body import CAPACITY, Body, Errors, Quirks
 from rbx1_nav.create.emulator import EmulatedCreate
-from rbx1_nav.create.protocol import MODELS
+from rbx1_nav.create.protocol import BAUD_RATES, MODELS
 from rbx1_nav.create.pseudo_terminal import PseudoTerminal
 from rbx1_nav.create.serial_line import SerialLine
 from rbx1_nav.model.surfaces import RANDOM, load_surface, read_seed
@@ -110,16 +116,16 @@ def main():
     node.init_node('fake_create', __doc__)
     try:
         section = Section(rospy.get_param(rospy.get_name(), {}))
-        robot_type = section.get('robot_type', 'create')
-        if not isinstance(robot_type, str) or robot_type not in MODELS:
-            raise ConfigError('robot_type: %s: expected one of %s' % (show(robot_type), ', '.join(MODELS)))
+        model = MODELS[section.choice('robot_type', tuple(MODELS), 'create')]
         seed = read_seed(section.get('seed', RANDOM))
-        line = SerialLine(MODELS[robot_type].baud, seed)
+        line = SerialLine(section.choice('baud', BAUD_RATES, model.baud), seed)
         line.corruption = section.number('corruption', 0, 1, 0.0)
-        body = Body(MODELS[robot_type], load_surface(section.get('surface', 'ideal'), resources.surfaces()), seed,
+        body = Body(model, load_surface(section.get('surface', 'ideal'), resources.surfaces()), seed,
                     Errors(*(section.number(name, 0.1, 10, 1.0, 'a factor') for name in Errors._fields)),
-                    section.number('gyro_measurement_range', 1, 1e5, 150.0, unit='degrees/s'))
+                    section.number('gyro_measurement_range', 1, 1e5, 150.0, unit='degrees/s'),
+                    Quirks(*(section.flag(name, False) for name in Quirks._fields)))
         body.charge = CAPACITY * section.number('charge', 0, 1, 1.0)
+        body.gyro_stuck = floor(section.number('gyro_stuck', -1, 1023, -1.0, 'a count'))
         link = section.get('link', '')
         if not isinstance(link, str):
             raise ConfigError('link: %s: expected a path' % show(link))
@@ -127,9 +133,9 @@ def main():
     except ConfigError as error:
         rospy.logfatal('%s/%s', rospy.get_name(), error)
         return 1
-    rospy.loginfo('Emulated %s: serial port %s%s; seed:=%d repeats this robot', robot_type, terminal.device,
+    rospy.loginfo('Emulated %s: serial port %s%s; seed:=%d repeats this robot', model.name, terminal.device,
                   ', linked as %s' % terminal.link if terminal.link else '', seed)
-    FakeCreate(EmulatedCreate(MODELS[robot_type], body, line, time.monotonic_ns()), terminal).run()
+    FakeCreate(EmulatedCreate(model, body, line, time.monotonic_ns()), terminal).run()
     return 0
 
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What can happen to the emulated robot: wheel drop, cliff, bump, dock, a power cycle, an empty battery, bad bytes."""
+"""What can happen to the emulated robot: wheel drop, cliff, bump, dock, power, battery, bad bytes, a stuck gyro."""
 import unittest
 
 from emulated import EmulatedRobot
@@ -50,6 +50,26 @@ class TestFaults(unittest.TestCase):
             return robot.received()[-1][1] == command('start')
         support.wait_for(restarted, 'the robot to listen again')
         self.assertEqual(robot.read(43), {'left_encoder': 0})
+
+    def test_a_robot_that_was_switched_off(self):
+        robot = self.robot('create2')
+        robot.send(command('power'))
+        self.assertFalse(robot.moving)
+        robot.port.timeout = 0.5
+        robot.port.write(command('start') + command('cover') + command('sensors', 35))
+        self.assertEqual(robot.port.read(1), b'')
+        self.assertFalse(robot.moving)
+        robot.port.timeout = support.LIMIT
+        robot.power_cycle()
+        self.assertEqual(robot.port.read(8), b'bl-start')
+
+    def test_a_stuck_gyro(self):
+        robot = self.robot('create')
+        for count, value in (0, 0), (700, 700), (1023, 1023), (-1, 512):
+            robot.publish('gyro_stuck', count)
+            robot.wait_for(33, value)
+        robot.publish('gyro_stuck', 1024)
+        robot.process.wait_for_line('gyro_stuck: 1024.0: expected a number from -1 to 1023; rejected')
 
     def test_the_battery(self):
         robot = self.robot('create')

@@ -1,20 +1,44 @@
 #!/usr/bin/python3
-"""An invalid parameter ends fake_create.py with one line that names the key, the value and what is expected."""
+"""Parameters of fake_create.py: valid ones have an effect, an invalid one stops the node with a one-line message."""
 import unittest
 
 import rospy
 
+from emulated import EmulatedRobot
+from rbx1_nav.create.protocol import SAFE, command, drive_direct, encode_frame
 import support
 
 
 class TestParameters(unittest.TestCase):
-    def test_bad_parameters(self):
+    @classmethod
+    def setUpClass(cls):
         support.init_node('fake_create_parameters')
+
+    def test_good_parameters(self):
+        robot = EmulatedRobot(self, 'create', baud=19200, mode_plus_one=True, drops_fractions=True, gyro_stuck=700)
+        robot.open(19200)
+        robot.send(command('start'), command('safe'), drive_direct(65, -65))
+        self.assertEqual(robot.read(35), {'mode': SAFE + 1})
+        support.wait_for(lambda: support.yaw(robot.truth.next()) > 0.5, 'the robot to turn')
+        self.assertEqual(robot.read(33), {'analog_input': 700})
+        # 15 ms at 28.6 degrees/s are less than a degree
+        robot.send(command('stream', 1, 20))
+        frame = encode_frame(robot.model, [20], {'angle': 0})
+        robot.port.read_until(frame)
+        self.assertEqual(robot.port.read(6 * 50), 50 * frame)
+        robot.end()
+
+    def test_bad_parameters(self):
         for params, expected in [
                 (7, 'configuration: 7: expected a mapping'),
                 ({'robot_type': 'roomba'}, "robot_type: 'roomba': expected one of create, create2"),
                 ({'robot_type': 2}, 'robot_type: 2: expected one of create, create2'),
                 ({'robot_type': ['create']}, "robot_type: ['create']: expected one of create, create2"),
+                ({'baud': 19201}, 'baud: 19201: expected one of 300, 600, 1200'),
+                ({'baud': True}, 'baud: True: expected one of 300, 600, 1200'),
+                ({'mode_plus_one': 'yes'}, "mode_plus_one: 'yes': expected true or false"),
+                ({'drops_fractions': 1}, 'drops_fractions: 1: expected true or false'),
+                ({'gyro_stuck': 1024}, 'gyro_stuck: 1024: expected a count from -1 to 1023'),
                 ({'link': 7}, 'link: 7: expected a path'),
                 ({'link': '/no/such/folder/port'}, 'link: /no/such/folder/port: No such file or directory: expected'),
                 ({'link': '/etc/hostname'}, 'link: /etc/hostname: exists, and is not a link: expected'),

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""roslaunch --ros-args lists no argument as required: each has a default that says something."""
+"""roslaunch --ros-args lists no argument as required: each has a documented default. Arguments reach the nodes."""
 import subprocess
 import unittest
 
@@ -11,12 +11,24 @@ LAUNCH_FILES = [('rbx1_nav', 'fake_turtlebot.launch'), ('rbx1_nav', 'fake_pi_rob
                 ('rbx1_bringup', 'turtlebot_carpet_create.launch'), ('rbx1_bringup', 'fake_turtlebot_create.launch')]
 
 
+def roslaunch(*arguments):
+    """What roslaunch prints with these arguments."""
+    return subprocess.run(['roslaunch', *arguments], check=True, timeout=support.LIMIT, stdout=subprocess.PIPE,
+                          universal_newlines=True).stdout
+
+
 class TestLaunchArguments(unittest.TestCase):
+    def test_how_a_robot_differs_from_the_documents(self):
+        for name in 'mode_plus_one', 'drops_fractions':
+            for value in 'false', 'true':
+                params = roslaunch('--dump-params', 'rbx1_bringup', 'fake_turtlebot_create.launch',
+                                   '%s:=%s' % (name, value))
+                self.assertIn('/fake_create/%s: %s\n' % (name, value), params)
+
     def test_arguments(self):
         texts = {}
         for package, file in LAUNCH_FILES:
-            output = subprocess.run(['roslaunch', '--ros-args', package, file], check=True, timeout=support.LIMIT,
-                                    stdout=subprocess.PIPE, universal_newlines=True).stdout
+            output = roslaunch('--ros-args', package, file)
             self.assertNotIn('Required', output)
             self.assertNotIn('undocumented', output)
             texts[package, file] = output

@@ -1,6 +1,6 @@
 """The body of an emulated Create: wheels, gyro, switches and battery, and what the robot's sensors say of them."""
 from collections import namedtuple
-from math import degrees, floor
+from math import degrees, floor, trunc
 
 from rbx1_nav.create.protocol import BUMP_LEFT, BUMP_RIGHT, CREATE, UPDATE_PERIOD, WHEEL_DROP_LEFT
 from rbx1_nav.simulated_base import make_wheels_and_gyro
@@ -9,6 +9,11 @@ from rbx1_nav.units import SECOND
 Errors = namedtuple('Errors', 'gyro_sensitivity wheel_travel wheel_base', defaults=(1.0, 1.0, 1.0))
 Errors.__doc__ = """True errors of a robot, as factors: what the gyro's signal shows, of its nominal value; what the
 encoders count, of the wheels' true travel; the true distance of the wheels, of its nominal value."""
+
+Quirks = namedtuple('Quirks', 'mode_plus_one drops_fractions', defaults=(False, False))
+Quirks.__doc__ = """How some robots differ from the documents. mode_plus_one: packet 35 is the mode plus one, as on a
+Roomba 642 (create_robot issue 64); drops_fractions: each reading of the angle starts at 0 and loses the fraction of a
+degree, as on a Create (libcreate issue 22, create_robot issue 28)."""
 
 FINE = 1e6              # ticks per metre: the wheels travel without steps, and the encoders here count
 ADC_ZERO = 512          # the gyro's signal at rest, of 0 to 1023
@@ -41,14 +46,28 @@ class Tally:
         return value
 
 
+class DroppingTally(Tally):
+    """A sum whose readings each start at 0: what is left over is lost."""
+
+    @property
+    def pending(self):
+        return max(-32768, min(32767, trunc(self.total - self._read)))
+
+    def take(self):
+        value, self._read = self.pending, self.total
+        return value
+
+
 class Body:
     """The robot without its electronics. All times are in ns."""
 
-    def __init__(self, model, surface=None, seed=0, errors=Errors(), gyro_range=150.0):
+    def __init__(self, model, surface=None, seed=0, errors=Errors(), gyro_range=150.0, quirks=Quirks()):
         """model: a protocol.Model; surface, seed: see simulated_base.make_base(); gyro_range: degrees/s."""
         self.model = model
         self.errors = errors
         self.gyro_range = gyro_range
+        self.quirks = quirks
+        self.gyro_stuck = -1                # 0 to 1023: the analog input has this value whatever the gyro measures
         self.wheels, self.gyro = make_wheels_and_gyro(
             model.wheel_separation * errors.wheel_base, surface and surface._replace(ticks_meter=FINE), seed,
             UPDATE_PERIOD)
@@ -61,7 +80,8 @@ class Body:
     def reset_counters(self):
         """Everything that the robot counts starts at 0."""
         self._counted_left = self._counted_right = 0.0  # m
-        self.distance, self.angle = Tally(), Tally()    # mm, degrees
+        self.distance = Tally()     # mm
+        self.angle = DroppingTally() if self.quirks.drops_fractions else Tally()    # degrees
         self.values = dict.fromkeys((packet.name for packet in self.model.packets.values()), 0)
 
     def drive(self, left, right):
@@ -113,8 +133,8 @@ class Body:
             self.values.update(cliff_front_left_signal=NO_FLOOR, cliff_front_right_signal=NO_FLOOR)
         if self.model is CREATE:
             # the TurtleBot's board with the gyro is on this robot only
-            signal = round(ADC_ZERO * (1 - rate / self.gyro_range))
-            self.values.update(CONSTANT_1, analog_input=max(0, min(1023, signal)))
+            signal = max(0, min(1023, round(ADC_ZERO * (1 - rate / self.gyro_range))))
+            self.values.update(CONSTANT_1, analog_input=signal if self.gyro_stuck < 0 else self.gyro_stuck)
         else:
             self.values.update(
                 left_encoder=self._encoder(left), right_encoder=self._encoder(right),

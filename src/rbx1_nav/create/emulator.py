@@ -1,17 +1,20 @@
 """An emulated Create: what the robot's electronics do with the bytes on its serial line. All times are in ns."""
+from math import inf
 from struct import Struct
 
 from rbx1_nav.create.protocol import (
     BAUD_RATES, COUNTED, CREATE, IN_PLACE_LEFT, IN_PLACE_RIGHT, MAX_SPEED, NOTES, OFF, PASSIVE, SAFE,
     STRAIGHT, UPDATE_PERIOD, encode_frame, frame_format, packets_format, single_packets)
-from rbx1_nav.create.scripts import Scripts
+from rbx1_nav.create.programs import Programs
+from rbx1_nav.create.scripts import MAX_SCRIPT, Scripts
 from rbx1_nav.units import SECOND, clamp
 
 TICK = round(UPDATE_PERIOD * SECOND)
 BOOT_TIME = SECOND      # the robot hears nothing for so long after it was switched on
+CREATE_RESET_TIME = 3 * SECOND      # the same after a reset of a Create, whose boot loader takes 3 s (Create p. 10)
 # the Create 2 names its firmware
 BOOT_TEXT = b'bl-start\r\nSTR730\r\nRoomba by iRobot!\r\nr3_robot/tags/release-3.5.4\r\n'
-INPUT_SIZE = 512        # bytes that wait while a script does
+INPUT_SIZE = 3 + 2 * 255    # bytes that wait while a script does; a song of 255 notes, the longest command, must fit
 MAX_NOTES = 16          # of a song (Create p. 11, Create 2 p. 20)
 MAX_FRAME = 255         # data bytes in a frame of the stream
 MAX_PWM = 255
@@ -34,7 +37,7 @@ class EmulatedCreate:
     """The robot at the end of a SerialLine."""
 
     def __init__(self, model, body, line, now, on_command=None):
-        """model: a protocol.Model; body: a Body; line: a SerialLine.
+        """model: a protocol.Model; body: a Body; line: a SerialLine at the baud rate that the robot starts with.
 
         on_command(time, data): called with the bytes of each command that arrives, also of those that are ignored.
         """
@@ -43,10 +46,13 @@ class EmulatedCreate:
         self.line = line
         self.on_command = on_command or (lambda time, data: None)
         self.outputs = {}           # data bytes of the latest command to LEDs, drivers and the like, by its name
+        self.programs = Programs(body)
+        self._baud = line.baud
+        self._deaf_until = now
         self._start(now)
 
     def switch_on(self, now):
-        """Start anew, as after the battery was put in."""
+        """Start again, as after the battery was put in."""
         self._start(now)
         self._deaf_until = now + BOOT_TIME
         if self.model is not CREATE:
@@ -55,19 +61,19 @@ class EmulatedCreate:
     def _start(self, now):
         self.mode = OFF
         self.now = now
-        self.line.baud = self.model.baud
+        self.line.baud = self._baud
         self.body.drive(0, 0)
         self.body.reset_counters()
         self.outputs.clear()
+        self.programs.stop()
         self._input = bytearray()
-        self._deaf_until = now
         self._next_update = now + TICK
         self._requested = dict.fromkeys(('requested_velocity', 'requested_radius', 'requested_right_velocity',
                                          'requested_left_velocity'), 0)
         self._stream, self._streaming = [], False
         self._songs, self._song, self._song_end = {}, 0, now
         self._buttons, self._buttons_end = 0, now
-        self._scripts = Scripts(self.body, lambda: self._values(()))
+        self._scripts = Scripts(self.body, lambda: dict(self._values(()), mode=self.mode))
 
     # time
 
@@ -115,7 +121,10 @@ class EmulatedCreate:
             return
         if self.mode == SAFE and self._unsafe():
             self._enter(PASSIVE)
+        if self.programs.running:
+            self._drive_curve(*self.programs.update(self.now))
         self._input[:0] = self._scripts.update(self.now)
+        del self._input[INPUT_SIZE + MAX_SCRIPT:]   # a script may play itself again and again before its last command
         self._execute()
         if self._streaming:
             self.line.from_robot(encode_frame(self.model, self._stream, self._values(self._stream)), self.now)
@@ -160,16 +169,26 @@ class EmulatedCreate:
                 self._do(command, data[1:])
 
     def _do(self, command, data):
-        handler = getattr(self, '_do_' + command.name, None) or getattr(self._scripts, 'do_' + command.name, None)
+        of_programs = getattr(self.programs, 'do_' + command.name, None)
+        handler = of_programs or getattr(self, '_do_' + command.name, None) or getattr(
+            self._scripts, 'do_' + command.name, None)
         if handler:
             handler(data)
         elif data:
             self.outputs[command.name] = data
         if command.mode is not None:
             self._enter(command.mode)
+            if not of_programs:
+                self.programs.stop()
 
     def _do_reset(self, _):
         self.switch_on(self.now)
+        if self.model is CREATE:
+            self._deaf_until = self.now + CREATE_RESET_TIME
+
+    def _do_power(self, _):
+        self._start(self.now)
+        self._deaf_until = inf      # until it is switched on
 
     def _do_stop(self, _):
         self._streaming = False
@@ -187,6 +206,10 @@ class EmulatedCreate:
         velocity, radius = PAIR.unpack(data)
         velocity = int(clamp(velocity, MAX_SPEED))
         self._requested.update(requested_velocity=velocity, requested_radius=radius)
+        self._drive_curve(velocity, radius)
+
+    def _drive_curve(self, velocity, radius):
+        """velocity: mm/s; radius: mm, with the special values of the command Drive."""
         if radius in STRAIGHT:
             self._drive(velocity, velocity)
         elif radius in (IN_PLACE_LEFT, IN_PLACE_RIGHT):
@@ -215,7 +238,7 @@ class EmulatedCreate:
         body = self.body
         names = {packet.name for packet in single_packets(self.model, numbers)}
         return dict(
-            body.values, **self._requested, mode=self.mode, song_number=self._song,
+            body.values, **self._requested, mode=self.mode + self.body.quirks.mode_plus_one, song_number=self._song,
             song_playing=int(self.now < self._song_end), stream_packets=len(self._stream),
             buttons=self._buttons if self.now < self._buttons_end else 0,
             distance=body.distance.take() if 'distance' in names else 0,

@@ -15,6 +15,7 @@ from struct import Struct
 
 MAX_SPEED = 500         # mm/s, of a wheel either way (Create p. 9, Create 2 p. 13)
 UPDATE_PERIOD = 0.015   # s, between two frames of the stream (Create p. 13, Create 2 p. 21)
+MIN_VOLTAGE, MAX_VOLTAGE = 5000, 25000      # mV, of the battery of a robot that runs
 FRAME_HEADER = 19       # the first byte of a frame (Create p. 13, Create 2 p. 22)
 
 OFF, PASSIVE, SAFE, FULL = range(4)     # values of packet 35
@@ -64,7 +65,7 @@ _PACKETS = (
     (32, 'digital_inputs', 'B', (0, 31), (0, 255), ''),     # unused on the Create 2
     (33, 'analog_input', 'H', (0, 1023), (0, 65535), ''),   # 0 to 5 V; unused on the Create 2
     (34, 'charging_sources', 'B', (0, 3), (0, 3), ''),
-    (35, 'mode', 'B', (0, 3), (0, 3), ''),
+    (35, 'mode', 'B', (0, 4), (0, 4), ''),      # 3 is full mode, which some robots report as 4
     (36, 'song_number', 'B', (0, 15), (0, 15), ''),
     (37, 'song_playing', 'B', (0, 1), (0, 1), ''),
     (38, 'stream_packets', 'B', (0, 43), (0, 108), ''),
@@ -109,6 +110,7 @@ _BOTH = (
     Command(130, 'control', 0, STARTED, SAFE),      # in the Roomba's interface, and kept by both robots
     Command(131, 'safe', 0, STARTED, SAFE),
     Command(132, 'full', 0, STARTED, FULL),
+    Command(133, 'power', 0, STARTED, OFF),         # Create: not in the document; Create 2: passive mode there
     Command(134, 'spot', 0, STARTED, PASSIVE),
     Command(135, 'cover', 0, STARTED, PASSIVE),     # Create 2: clean
     Command(137, 'drive', 4, DRIVING, None),
@@ -122,6 +124,7 @@ _BOTH = (
     Command(149, 'query_list', COUNTED, STARTED, None),
     Command(150, 'pause_resume_stream', 1, STARTED, None))
 _CREATE = (
+    Command(7, 'reset', 0, STARTED, OFF),           # not in the document; create_node sends it
     Command(136, 'demo', 1, STARTED, PASSIVE),
     Command(138, 'low_side_drivers', 1, DRIVING, None),
     Command(144, 'pwm_low_side_drivers', 3, DRIVING, None),
@@ -136,7 +139,6 @@ _CREATE = (
     Command(158, 'wait_event', 1, STARTED, None))
 _CREATE_2 = (
     Command(7, 'reset', 0, ALWAYS, OFF),
-    Command(133, 'power', 0, STARTED, PASSIVE),
     Command(136, 'max', 0, STARTED, PASSIVE),
     Command(138, 'motors', 1, DRIVING, None),
     Command(144, 'pwm_motors', 3, DRIVING, None),

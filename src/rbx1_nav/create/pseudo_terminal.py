@@ -1,15 +1,11 @@
 """A pseudo-terminal in the place of a serial port: the robot's end of the cable."""
-import fcntl
 import os
 import select
-import struct
 import time
 import tty
 
 from rbx1_nav.config import ConfigError, show_name
-
-# termios.tcgetattr() knows the common baud rates only; this request (ioctl_tty(2)) knows all, as numbers
-TCGETS2, TERMIOS2 = 0x802c542a, struct.Struct('=4I20s2I')
+from rbx1_nav.create.line_settings import read_rate
 
 MIN_SLEEP = 0.001   # s: while nobody listens, each byte that is lost is not worth waking up for
 
@@ -52,9 +48,7 @@ class PseudoTerminal:
     @property
     def baud(self):
         """The baud rate that the client has set, bits per second; None while the cable is out."""
-        if self._master is None:
-            return None
-        return TERMIOS2.unpack(fcntl.ioctl(self._master, TCGETS2, bytes(TERMIOS2.size)))[-1]
+        return None if self._master is None else read_rate(self._master)
 
     def read(self):
         """The bytes that the client has sent since the last call."""

@@ -44,16 +44,36 @@ class SerialLine:
         self._random = random.Random('line %d' % seed)
         self._to_robot, self._to_host = deque(), deque()    # (when it has arrived, byte)
         self._last_to_robot = self._last_to_host = 0
+        self._waiting = deque()     # (when it leaves the host, byte)
+        self._rate = baud           # at which they would leave
 
     def from_host(self, data, now):
         """The host sends bytes."""
         if self.silent:
             return
-        time = max(now, self._last_to_robot)
-        for byte in misread(data, self.host_baud, self.baud):
-            time += BITS * SECOND // self.host_baud
-            self._to_robot.append((time, byte))
-        self._last_to_robot = time
+        data = self._recall(now) + data
+        period = BITS * SECOND // self.host_baud
+        start = max(now, self._last_to_robot)
+        self._waiting += [(start + index * period, byte) for index, byte in enumerate(data)]
+        self._last_to_robot = start + len(data) * period
+        received = misread(data, self.host_baud, self.baud)
+        self._to_robot += [(start + index * len(data) * period // len(received), byte)
+                           for index, byte in enumerate(received, 1)]
+
+    def _recall(self, now):
+        """The bytes that still wait at the host, if its rate has changed: they leave at the new one."""
+        while self._waiting and self._waiting[0][0] <= now:
+            self._waiting.popleft()
+        if self._rate == self.host_baud:
+            return b''
+        self._rate = self.host_baud
+        data = bytes(byte for _, byte in self._waiting)
+        if data:
+            self._last_to_robot = self._waiting[0][0]
+            self._waiting.clear()
+            while self._to_robot and self._to_robot[-1][0] > self._last_to_robot:
+                self._to_robot.pop()
+        return data
 
     def from_robot(self, data, now):
         """The robot sends bytes."""

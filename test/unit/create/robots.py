@@ -9,12 +9,12 @@ from rbx1_nav.units import SECOND
 class Robot:
     """An EmulatedCreate with a host that reads all it sends."""
 
-    def __init__(self, model, surface=None, errors=Errors(), **options):
+    def __init__(self, model, surface=None, errors=Errors(), baud=None, **options):
         self.body = Body(model, surface, 1, errors, **options)
         self.model = model
         self.commands = []
         self.now = 0
-        self.robot = EmulatedCreate(model, self.body, SerialLine(model.baud), 0,
+        self.robot = EmulatedCreate(model, self.body, SerialLine(baud or model.baud), 0,
                                     lambda time, data: self.commands.append((time, data)))
 
     def run(self, seconds):

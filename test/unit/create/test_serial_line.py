@@ -84,3 +84,16 @@ def test_the_fraction_of_corrupted_bytes(fraction):
     for kind in 'lost', 'doubled', 'flipped':
         # five standard deviations of a binomial distribution
         assert abs(counts.get(kind, 0) - 20000 * fraction / 3) <= 5 * (20000 * fraction / 3) ** 0.5
+
+
+def test_what_waits_when_the_rate_changes_leaves_at_the_new_one():
+    line, slow, fast = SerialLine(57600), 10 * SECOND // 1200, 10 * SECOND // 57600
+    line.host_baud = 1200
+    line.from_host(b'\x00\x01\x02\x03', 0)
+    line.host_baud = 57600
+    line.from_host(b'\x04', 3 * slow // 2)         # the second byte has begun
+    arrived = []
+    while line.next_to_robot is not None:
+        arrived.append((line.next_to_robot, line.receive_byte()))
+    assert arrived[-3:] == [(2 * slow + index * fast, byte) for index, byte in enumerate((2, 3, 4), 1)]
+    assert all(time <= 2 * slow for time, _ in arrived[:-3])

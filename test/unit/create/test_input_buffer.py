@@ -1,0 +1,57 @@
+"""The bytes that the robot has received and not yet executed: the longest command fits, and their number is limited."""
+import pytest
+
+from rbx1_nav.create.emulator import INPUT_SIZE
+from rbx1_nav.create.protocol import COUNTED, CREATE, MODELS, NOTES, PASSIVE, SAFE, command
+from rbx1_nav.create.scripts import MAX_SCRIPT
+from robots import Robot
+
+LONG = [pytest.param(model, bytes((each.opcode, 255)) + bytes(255) if each.size == COUNTED else
+                     bytes((each.opcode, 0, 255)) + bytes(2 * 255), id='%s-%s' % (model.name, each.name))
+        for model in MODELS.values() for each in model.commands.values() if each.size in (COUNTED, NOTES)]
+
+
+@pytest.mark.parametrize('model, data', LONG)
+def test_the_longest_command_can_be_completed(model, data):
+    robot = Robot(model)
+    robot.send(command('start'), data[:3])
+    robot.commands.clear()
+    for byte in data[3:]:
+        robot.send(bytes((byte,)))
+    assert [received for _, received in robot.commands] == [data]
+    robot.run(1)    # a query list of 255 packets has an answer
+    assert robot.read(35) == {'mode': PASSIVE}
+
+
+@pytest.mark.parametrize('count', range(500, 530))
+def test_the_longest_command_behind_a_wait(count):
+    robot = Robot(CREATE)
+    robot.send(command('start'), command('wait_time', 10))
+    data = command('safe') + command('song', 0, 255)
+    robot.robot.receive(data + bytes(count - len(data)), robot.now)
+    robot.run(2)
+    assert robot.mode == SAFE
+    robot.robot.receive(bytes(513), robot.now)      # completes it
+    robot.run(1)
+    assert robot.read(35) == {'mode': SAFE}
+
+
+def test_what_waits_is_limited():
+    robot = Robot(CREATE)
+    robot.send(command('start'), command('wait_time', 50))
+    for _ in range(20):
+        robot.robot.receive(command('leds', 0, 0, 0) * 100, robot.now)
+        robot.run(0.1)
+    assert len(robot.robot._input) == INPUT_SIZE
+    robot.run(10)
+    robot.send(bytes(3))    # completes the last one
+    assert len(robot.robot._input) == 0 and robot.read(35) == {'mode': PASSIVE}
+
+
+def test_a_script_that_plays_itself_before_its_end_does_not_grow():
+    robot = Robot(CREATE)
+    script = command('play_script') + command('wait_time', 0) + bytes((128,)) * 90
+    robot.send(command('start'), command('script', len(script), *script), command('play_script'))
+    robot.run(3)
+    assert robot.robot._scripts.waiting or robot.robot._scripts._due
+    assert len(robot.robot._input) <= INPUT_SIZE + MAX_SCRIPT

@@ -1,0 +1,98 @@
+"""Power off, reset, and the baud rate that the robot starts with."""
+import pytest
+
+from rbx1_nav.create.protocol import BAUD_RATES, CREATE, MODELS, OFF, PASSIVE, command, drive_direct
+from robots import Robot
+
+both = pytest.mark.parametrize('model', list(MODELS.values()), ids=list(MODELS))
+
+
+def driving(model, **options):
+    """A robot that drives and streams."""
+    robot = Robot(model, **options)
+    robot.robot.line.host_baud = robot.robot.line.baud
+    robot.send(command('start'), command('full'), command('stream', 1, 7), drive_direct(200, 200))
+    robot.run(1)
+    return robot
+
+
+def check_it_is_off(robot):
+    """Nothing that is sent has an effect."""
+    robot.commands.clear()
+    stopped = robot.pose
+    for data in (command('start') + command('full') + drive_direct(200, 200), command('cover'), command('reset'),
+                 command('sensors', 35)):
+        assert robot.send(data) == b''
+    assert robot.run(5) == b''
+    assert robot.mode == OFF and robot.pose == stopped and robot.commands == [] and robot.robot.programs.started == 0
+
+
+@both
+def test_a_robot_that_was_switched_off_does_nothing_until_it_is_switched_on(model):
+    robot = driving(model)
+    robot.send(command('power'))
+    robot.run(0.1)
+    check_it_is_off(robot)
+    robot.robot.switch_on(robot.now)
+    robot.run(1)
+    robot.send(command('start'))
+    assert robot.mode == PASSIVE and robot.read(19) == {'distance': 0}
+
+
+@both
+def test_an_interface_that_is_off_does_not_switch_the_robot_off(model):
+    robot = Robot(model)
+    robot.send(command('power'), command('start'))
+    assert robot.mode == PASSIVE
+
+
+@both
+def test_a_charged_battery_does_not_switch_the_robot_on(model):
+    robot = driving(model)
+    robot.send(command('power'))
+    for charge in 0, 3000:
+        robot.body.charge = charge
+        robot.run(0.1)
+    check_it_is_off(robot)
+
+
+def test_reset_restarts_a_create_without_a_word():
+    robot = driving(CREATE)
+    robot.send(command('baud', 7), command('pause_resume_stream', 0))
+    robot.robot.line.host_baud = 19200
+    robot.run(0.1)
+    assert robot.send(command('reset')) == b'' and robot.mode == OFF and not robot.body.moving
+    robot.robot.line.host_baud = 57600
+    robot.run(2.8)
+    robot.send(command('start'))    # too early
+    assert robot.mode == OFF
+    robot.run(0.15)
+    robot.send(command('start'))
+    assert robot.mode == PASSIVE and robot.read(19) == {'distance': 0} and robot.run(1) == b''
+
+
+def test_an_interface_that_is_off_does_not_reset_a_create():
+    robot = Robot(CREATE)
+    robot.send(command('reset'), command('start'))
+    assert robot.mode == PASSIVE
+
+
+@both
+@pytest.mark.parametrize('baud', BAUD_RATES[4:])
+def test_the_baud_rate_that_a_robot_starts_with(model, baud):
+    robot = driving(model, baud=baud)
+    assert robot.mode == 3 and robot.robot.line.baud == baud
+
+
+@both
+@pytest.mark.parametrize('name', ['reset', 'power', None])
+def test_a_robot_that_starts_again_has_its_first_baud_rate(model, name):
+    robot = driving(model, baud=19200)
+    robot.send(command('pause_resume_stream', 0), command('baud', 10))
+    assert robot.robot.line.baud == 57600
+    robot.robot.line.host_baud = 57600
+    if name:
+        robot.send(command(name))
+    else:
+        robot.robot.switch_on(robot.now)
+    assert robot.robot.line.baud == 19200

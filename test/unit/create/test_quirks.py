@@ -1,0 +1,92 @@
+"""How some robots differ from the documents: the mode, fractions of the angle, a gyro that is stuck."""
+import pytest
+
+from rbx1_nav.create.body import Quirks
+from rbx1_nav.create.protocol import CREATE, CREATE_2, FULL, MODELS, PASSIVE, SAFE, command, drive_direct
+from robots import Robot
+
+both = pytest.mark.parametrize('model', list(MODELS.values()), ids=list(MODELS))
+PLUS_ONE, DROPPING = Quirks(mode_plus_one=True), Quirks(drops_fractions=True)
+
+
+@both
+def test_a_robot_that_reports_its_mode_plus_one(model):
+    robot, normal = Robot(model, quirks=PLUS_ONE), Robot(model)
+    for name, mode in ('start', PASSIVE), ('safe', SAFE), ('full', FULL):
+        robot.send(command(name))
+        normal.send(command(name))
+        assert robot.read(35) == {'mode': mode + 1} and normal.read(35) == {'mode': mode}
+        assert robot.mode == mode
+    robot.send(command('stream', 1, 35))
+    assert bytes((19, 2, 35, FULL + 1)) in robot.run(0.1)
+    # 4 is a value that the packet may have
+    assert FULL + 1 <= model.packets[35].high
+
+
+def test_a_script_waits_for_the_mode_itself():
+    robot = Robot(CREATE, quirks=PLUS_ONE)
+    robot.send(command('start'), command('full'), command('wait_event', 22), command('leds', 1, 0, 0))
+    robot.run(1)
+    assert robot.robot._scripts.waiting
+    robot.robot._enter(PASSIVE)
+    robot.run(0.1)
+    assert not robot.robot._scripts.waiting
+
+
+def streamed(robot, number, right, left, seconds=1.5):
+    """The values of a packet with 2 bytes, of each frame while the robot drives."""
+    robot.send(command('start'), command('full'), drive_direct(right, left))
+    robot.read(number)
+    robot.send(command('stream', 1, number))
+    data = robot.run(seconds)
+    return [int.from_bytes(data[index + 3:index + 5], 'big', signed=True) for index in range(0, len(data) - 5, 6)]
+
+
+# mm/s of the right wheel while the left one goes backwards at this speed: 30 and 100 degrees/s, 0.45 and 1.5 per frame
+@pytest.mark.parametrize('speed, expected', [(68, 0), (-68, 0), (227, 1), (-227, -1)])
+def test_an_angle_whose_fractions_are_lost(speed, expected):
+    values = streamed(Robot(CREATE, quirks=DROPPING), 20, speed, -speed)
+    assert len(values) == 100 and set(values) == {expected}
+
+
+@pytest.mark.parametrize('speed, rate', [(68, 30), (-68, -30), (227, 100), (-227, -100)])
+def test_an_angle_whose_fractions_are_kept(speed, rate):
+    values = streamed(Robot(CREATE), 20, speed, -speed)
+    assert sum(values) == pytest.approx(1.5 * rate, abs=2)      # a degree at each end
+
+
+@both
+def test_an_angle_that_is_read_rarely_loses_little(model):
+    robot = Robot(model, quirks=DROPPING)
+    robot.send(command('start'), command('full'))
+    robot.send(drive_direct(100, -100))
+    robot.run(2)
+    robot.send(drive_direct(0, 0))
+    whole = robot.body.angle.total
+    assert robot.read(20) == {'angle': int(whole)}
+    assert robot.read(20) == {'angle': 0}
+
+
+def test_the_distance_keeps_its_fractions():
+    values = streamed(Robot(CREATE, quirks=DROPPING), 19, 20, 20)       # 0.3 mm per frame
+    assert sum(values) == pytest.approx(30, abs=2)
+
+
+def test_a_gyro_that_is_stuck():
+    robot = Robot(CREATE)
+    robot.send(command('start'), command('full'), drive_direct(130, -130))
+    turning = robot.read(33)
+    for count in 0, 700, 1023:
+        robot.body.gyro_stuck = count
+        robot.run(0.02)     # more than an update
+        assert robot.read(33) == {'analog_input': count} != turning
+    robot.body.gyro_stuck = -1
+    robot.run(0.02)
+    assert robot.read(33) == turning
+
+
+def test_a_create_2_has_no_gyro_that_could_be_stuck():
+    robot = Robot(CREATE_2)
+    robot.body.gyro_stuck = 700
+    robot.send(command('start'))
+    assert robot.read(33) == {'analog_input': 0}
