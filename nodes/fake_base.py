@@ -60,6 +60,7 @@ class FakeBase:
         rospy.Service('~reset', EmptyService, self.on_reset)
         subscribe_joints(robot.joints, self.lock)
         self.commands = VelocityCommands(base, base.gate, clock, self.lock)
+        self.commands.subscribe()
 
     def step(self):
         """Publish the present state of the base."""

@@ -58,7 +58,7 @@ class SimulatedBase:
         """Whether the robot is at a standstill and no command will change that."""
         return not self.gate.moving and self.wheels.at_rest
 
-    def command(self, now, linear, angular, others=()):
+    def command(self, now, linear, angular, others=(), _sender=''):
         """Put a command in force from `now` on; arguments, result and errors as of CommandGate.command()."""
         self.advance(now)
         return self.gate.command(now, linear, angular, others)

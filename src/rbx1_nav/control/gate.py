@@ -10,6 +10,10 @@ class RejectedCommand(ValueError):
     """A command that no base should follow. The text gives the value and what is expected."""
 
 
+class RefusedCommand(ValueError):
+    """A command that the robot does not follow now. The text says why."""
+
+
 class CommandGate:
     """Holds the command in force: finite, within the limits, and no older than the timeout."""
 

@@ -4,20 +4,21 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import Twist
 from std_msgs.msg import Float64
 
-from rbx1_nav.control.gate import RejectedCommand
+from rbx1_nav.control.gate import RefusedCommand, RejectedCommand
 from rbx1_nav.control.senders import Senders
 from rbx1_nav.ros import messages
+from rbx1_nav.ros.refusals import Refusals
 from rbx1_nav.units import SECOND
 
 RECENT = SECOND * 3 // 2    # ns: a node whose last command is older than that does not drive; rests last 1 s
 
 
 class VelocityCommands:
-    """Subscribes to cmd_vel, and logs what the gate does to a command."""
+    """The subscription to cmd_vel: logs what the gate does to a command, and tells a sender that the base refuses it."""
 
     def __init__(self, base, gate, clock, lock):
-        """base: has command(now, linear, angular, others); gate: its CommandGate; clock: see clocks.py; lock: of the
-        base."""
+        """base: has command(now, linear, angular, others, sender); gate: its CommandGate; clock: see clocks.py; lock: of
+        the base."""
         self.base = base
         self.gate = gate
         self.clock = clock
@@ -25,9 +26,14 @@ class VelocityCommands:
         self.topic = rospy.resolve_name('cmd_vel')
         self.senders = Senders()
         self.sender = None          # the connection header of the last command
-        self.subscriber = None      # a command may arrive before the next line is done
+        self.subscriber = None
+        self.refusals = Refusals()
         clock.set_driver(self.apply, self.connections)
-        self.subscriber = rospy.Subscriber('cmd_vel', Twist, self.on_twist, queue_size=None, tcp_nodelay=True)
+
+    def subscribe(self):
+        """Accept commands from now on."""
+        if not self.subscriber:
+            self.subscriber = rospy.Subscriber('cmd_vel', Twist, self.on_twist, queue_size=None, tcp_nodelay=True)
 
     def connections(self):
         """rospy's present connections to publishers of cmd_vel."""
@@ -41,15 +47,22 @@ class VelocityCommands:
                                           lambda: [connection.header for connection in self.connections()])
         if text:
             rospy.logwarn_throttle(5, '%s: %s: expected one node that drives' % (self.topic, text))
-        self.clock.command(twist, command)
+        self.clock.command(twist, command + (header['callerid'],))
 
     def apply(self, command):
-        """Put a command in force: (linear in m/s, angular in rad/s, the velocities that the base cannot follow)."""
+        """Put a command in force: (linear in m/s, angular in rad/s, the velocities that the base cannot follow, the name
+        of its sender)."""
+        sender = command[3]
         try:
             with self.lock:
                 clamped = self.base.command(self.clock.now(), *command)
         except RejectedCommand as error:
             rospy.logerr_throttle(1, '%s: %s; rejected, and the base stopped' % (self.topic, error))
+            self.refusals.add(sender, str(error))
+            return
+        except RefusedCommand as error:
+            rospy.logwarn_throttle(5, '%s: refused a command of %s: %s' % (self.topic, sender, error))
+            self.refusals.add(sender, str(error))
             return
         if clamped:
             rospy.logwarn_throttle(5, '%s: %g m/s, %g rad/s: expected at most %g and %g; clamped'
@@ -81,6 +94,7 @@ class VelocityCommands:
         status.add('dR', gate.angular)
         status.add('Age of the last command (s)', age)
         status.add('Rejected commands', gate.rejected)
+        status.add('Refused commands', self.refusals.count)
         status.add('Clamped commands', gate.clamped)
         status.add('Contradictory commands', self.senders.contradictions)
 

@@ -1,9 +1,9 @@
 """Whether the nodes that a driving script began with still receive its commands.
 
-A script that drives by time cannot know where the robot is. But it can know that a command was lost, or that a node no
-longer takes its commands. It watches three things of each node: its connection, the bytes that its machine has not
-acknowledged, and whether it answers a call. rospy notices none of them for minutes, because the kernel takes tens of
-thousands of commands for a node that is silent.
+A script that drives by time cannot know where the robot is. But it can know that a command was lost or refused, or that a
+node no longer takes its commands. It watches three things of each node: its connection, the bytes that its machine has not
+acknowledged, and its answer to a call. rospy notices none of them for minutes, because the kernel takes tens of thousands of
+commands for a node that is silent.
 """
 from collections import namedtuple
 import threading
@@ -12,6 +12,7 @@ import time
 import rosgraph
 import rospy
 
+from rbx1_nav.ros import refusals
 from rbx1_nav.ros.master import call
 from rbx1_nav.ros.node import end_requested, sleep
 from rbx1_nav.ros.tcp import CLOSED_WINDOW, AcknowledgementTimer, read_connection
@@ -25,9 +26,10 @@ UNREGISTER_TIME = 0.5   # s from the end of a connection to that of the registra
 STOP_TIME = 1.0         # s that a script waits after its last command
 ROOM_TIMEOUT = 1.0      # s that a command waits for the one before it to be sent
 
-Peer = namedtuple('Peer', 'name uri essential keeps_time')
+Peer = namedtuple('Peer', 'name uri essential keeps_time refused')
 Peer.__doc__ = """A node that listens: its name; the address that it answers at, or None if it does not; whether it is
-essential, because it publishes odometry, as a base does; whether it publishes /clock."""
+essential, because it publishes odometry, as a base does; whether it publishes /clock; how many commands of this node it has
+refused, None if it does not tell."""
 
 
 class Listener(threading.Thread):
@@ -43,6 +45,7 @@ class Listener(threading.Thread):
         self.offset = publisher.impl.seq - connection.stat_num_msg
         self.answered = 0.0     # s of the monotonic clock: when the last call began that the node answered
         self.problem = None
+        self.refusal = None     # a text, if the node has not followed a command
         self.ended = False      # properly: it is no longer watched
 
     def run(self):
@@ -79,7 +82,7 @@ class Listener(threading.Thread):
         while not (self.problem or self.ended):
             start, before = time.monotonic(), rospy.get_rostime()
             try:
-                call(self.peer.uri, 'getPid', timeout=ANSWER_TIMEOUT)
+                refused, reason = refusals.ask(self.peer.uri, ANSWER_TIMEOUT)
             except ConnectionRefusedError:      # it has ended, and so will its connection
                 return
             except Exception:   # pylint: disable=broad-except
@@ -93,6 +96,8 @@ class Listener(threading.Thread):
                     self.problem = self.problem or '%s no longer answers' % self.peer.name
                 time.sleep(LOOK_PERIOD)
                 continue
+            if refused and refused > (self.peer.refused or 0):
+                self.refusal = '%s refused a command: %s' % (self.peer.name, reason)
             silent_since, self.answered = None, start
             time.sleep(ASK_PERIOD)
 
@@ -161,10 +166,12 @@ class Listeners:
         self.in_lockstep = not rospy.rostime.is_wallclock() and any(peer.keeps_time for peer in peers.values())
 
     def check(self):
-        """Raises ROSException if one of them no longer takes the commands, or if none is left."""
+        """Raises ROSException if one of them no longer takes or follows the commands, or if none is left."""
         if not self.publisher.impl.connections:
             raise rospy.ROSException('%s: the last subscriber has gone: expected a base' % self.topic)
         for listener in self.listeners:
+            if listener.refusal:
+                raise rospy.ROSException('%s: %s' % (self.topic, listener.refusal))
             if listener.problem:
                 raise rospy.ROSException('%s: %s: expected it to listen until the end of the run'
                                          % (self.topic, listener.problem))

@@ -1,5 +1,6 @@
 """What can happen to an emulated robot, as services and topics: it loses its cable, a wheel drops, and the like."""
 from concurrent.futures import Future
+from math import floor
 import queue
 
 import rospy
@@ -27,8 +28,9 @@ class RobotFaults:
             self._offer_switch(name, switch)
         rospy.Service('~power_cycle', Trigger, lambda _: TriggerResponse(
             *self._request('power_cycle', lambda: robot.switch_on(robot.now))))
-        self._offer_fraction('charge', lambda value: setattr(body, 'charge', value * CAPACITY))
-        self._offer_fraction('corruption', lambda value: setattr(line, 'corruption', value))
+        self._offer_number('charge', lambda value: setattr(body, 'charge', value * CAPACITY), 0, 1)
+        self._offer_number('corruption', lambda value: setattr(line, 'corruption', value), 0, 1)
+        self._offer_number('gyro_stuck', lambda value: setattr(body, 'gyro_stuck', floor(value)), -1, 1023)
 
     def apply(self):
         """Do what was asked for."""
@@ -44,12 +46,12 @@ class RobotFaults:
         rospy.Service('~' + name, SetBool, lambda request: SetBoolResponse(
             *self._request('%s: %s' % (name, request.data), lambda: switch(request.data))))
 
-    def _offer_fraction(self, name, function):
+    def _offer_number(self, name, function, low, high):
         def on_message(message):
-            if 0 <= message.data <= 1:
+            if low <= message.data <= high:
                 self._request('%s: %g' % (name, message.data), lambda: function(message.data))
             else:
-                rospy.logerr('%s: %r: expected a number from 0 to 1; rejected', topic, message.data)
+                rospy.logerr('%s: %r: expected a number from %d to %d; rejected', topic, message.data, low, high)
         topic = rospy.resolve_name('~' + name)
         rospy.Subscriber(topic, Float64, on_message)
 

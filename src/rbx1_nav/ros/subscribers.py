@@ -5,6 +5,7 @@ import time
 import rosgraph
 import rospy
 
+from rbx1_nav.ros import refusals
 from rbx1_nav.ros.listeners import Listeners, Peer
 from rbx1_nav.ros.master import call
 from rbx1_nav.ros.node import end_requested, sleep
@@ -16,7 +17,8 @@ class _SubscriberMonitor(threading.Thread):
     def __init__(self, topic):
         super().__init__(daemon=True)
         self.topic = topic
-        self.live = None        # address of each live subscriber by its name; None until the master has answered
+        # (address, commands that it has refused) of each live subscriber by its name; None until the master has answered
+        self.live = None
         self.dead = set()       # addresses
         self.publishers = {}    # names of the nodes that publish a topic
         self.odometry = []      # topics
@@ -31,21 +33,21 @@ class _SubscriberMonitor(threading.Thread):
                 self.publishers = dict(publishers)
                 self.odometry = [topic for topic, kind in call(master, 'getTopicTypes') if kind == 'nav_msgs/Odometry']
                 names = {name for topic, nodes in subscribers if topic == self.topic for name in nodes}
-                live = {name: self.find_address(master, name) for name in names}
-                self.live = {name: address for name, address in live.items() if address}
+                live = {name: self.find(master, name) for name in names}
+                self.live = {name: found for name, found in live.items() if found}
                 self.rounds += 1
             except Exception as error:      # pylint: disable=broad-except
                 rospy.logwarn_throttle(5, 'The master at %s does not answer: %s' % (master, error))
             self.done.wait(0.1)
 
-    def find_address(self, master, name):
-        """The address of a node if it answers, or None; an address that did not answer is not called again."""
+    def find(self, master, name):
+        """(address, commands that it has refused) of a node that answers, else None; an address that did not answer is not
+        called again."""
         address = None
         try:
             address = call(master, 'lookupNode', name)
             if address not in self.dead:
-                call(address, 'getPid')
-                return address
+                return address, refusals.ask(address)[0]
         except Exception:       # pylint: disable=broad-except
             self.dead.add(address)
             rospy.logwarn('%s is registered as a subscriber of %s but does not answer: ignored '
@@ -54,8 +56,9 @@ class _SubscriberMonitor(threading.Thread):
 
     def peer(self, name):
         """The Peer of this name."""
-        return Peer(name, self.live.get(name), any(name in self.publishers.get(topic, ()) for topic in self.odometry),
-                    name in self.publishers.get('/clock', ()))
+        uri, refused = self.live.get(name, (None, None))
+        return Peer(name, uri, any(name in self.publishers.get(topic, ()) for topic in self.odometry),
+                    name in self.publishers.get('/clock', ()), refused)
 
 
 def connected_nodes(publisher):

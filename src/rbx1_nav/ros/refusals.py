@@ -1,0 +1,41 @@
+"""Tells a sender of commands that its base has refused some, when it looks whether the base still answers.
+
+That takes no topic and no connection of its own: a driving script publishes, and nothing else. A base extends the slave API
+of its node by one method, which returns how many commands of the caller were refused, and why the last one was.
+"""
+import xmlrpc.client
+
+from rospy.impl.masterslave import ROSHandler
+
+from rbx1_nav.ros.master import TIMEOUT, call
+
+METHOD = 'getRefusals'
+
+
+class Refusals:
+    """Of a base."""
+
+    def __init__(self):
+        self._refused = {}      # by the name of the sender: how many commands, and why the last one
+        setattr(ROSHandler, METHOD, lambda _, caller: (1, '', list(self._refused.get(caller, (0, '')))))
+
+    @property
+    def count(self):
+        """How many commands were refused."""
+        return sum(count for count, _ in self._refused.values())
+
+    def add(self, sender, reason):
+        """Refuse a command. sender: the name of its node; reason: a text."""
+        count, _ = self._refused.get(sender, (0, ''))
+        self._refused[sender] = count + 1, reason
+
+
+def ask(uri, timeout=TIMEOUT):
+    """How many commands of this node another one has refused, and why the last one; (None, '') of a node that does not tell.
+    uri: where that node answers. Raises OSError or xmlrpc.client.Error if it does not."""
+    try:
+        count, reason = call(uri, METHOD, timeout=timeout)
+        return int(count), ''.join(filter(str.isprintable, reason))
+    except xmlrpc.client.Fault:
+        call(uri, 'getPid', timeout=timeout)
+        return None, ''

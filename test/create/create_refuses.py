@@ -1,0 +1,52 @@
+#!/usr/bin/python3
+"""A wheel drops, or the cable is out, while a script drives: it exits with 1 and says why, and the robot stays where it is."""
+import unittest
+
+from driven import DrivenRobot
+import support
+
+
+class TestCreateRefuses(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        support.init_node('create_refuses')
+
+    def drive_by_script(self, robot):
+        """Start a script, and wait until it drives the robot."""
+        script = support.out_and_back()
+        self.addCleanup(script.kill)
+        support.wait_for(lambda: robot.moving, 'the script to drive: %s' % script.output)
+        return script
+
+    def check_refusal(self, script, reason):
+        self.assertEqual(script.wait(), 1, script.output)
+        self.assertRegex(script.lines[-1], r'\[ERROR\].*/cmd_vel: /turtlebot_node refused a command: ' + reason)
+
+    def test_a_wheel_drop(self):
+        robot = DrivenRobot(self, 'create2')
+        script = self.drive_by_script(robot)
+        robot.switch('drop_wheel', True)
+        self.check_refusal(script, 'a wheel dropped')
+        robot.wait_for_standstill()
+        # another sender, which has not noticed
+        robot.switch('drop_wheel', False)
+        robot.drive(0.2, 0.0, lambda: robot.value(None, 'Refused commands') != '0', 'commands to be refused')
+        robot.drive(0.2, 0.0, lambda: robot.value(None, 'Mode') == 'safe', 'safe mode')
+        count = len(robot.received())
+        robot.drive(0.2, 0.0, lambda: len(robot.received()) > count + 30, 'a second of commands')
+        self.assertFalse(robot.moving)
+        # until it stops
+        robot.commander.send(0.0, 0.0)
+        robot.wait_for_motion()
+
+    def test_a_cable_that_is_out(self):
+        robot = DrivenRobot(self, 'create')
+        script = self.drive_by_script(robot)
+        robot.switch('pull_cable', True)
+        self.check_refusal(script, 'the robot does not answer')
+        robot.switch('pull_cable', False)
+        robot.wait_for_standstill()
+
+
+if __name__ == '__main__':
+    support.main('create_refuses', TestCreateRefuses)
