@@ -27,9 +27,12 @@ from sensor_msgs.msg import Imu
 
 from rbx1_nav.config import ConfigError
 from rbx1_nav.control.legs import Turn
+from rbx1_nav.create.fractions import LOST
+from rbx1_nav.create.parameters import GYRO_CORRECTION
 from rbx1_nav.model.calibration import corrected, read_measured, turn_by_gyro
 from rbx1_nav.ros import node
-from rbx1_nav.ros.calibration import factor_in_force, forget_run, load_run, node_param, save_run, take_measured
+from rbx1_nav.ros.calibration import (
+    Diagnosis, factor_in_force, forget_run, load_run, node_param, save_run, take_measured)
 from rbx1_nav.ros.leg_driver import LegDriver
 from rbx1_nav.ros.params import frame_param, positive_param
 from rbx1_nav.ros.question import ask
@@ -52,23 +55,37 @@ def drive():
     readings = []       # of the gyro: (s, rad/s)
     rospy.Subscriber('imu/data', Imu, lambda message: readings.append((message.header.stamp.to_sec(),
                                                                        message.angular_velocity.z)))
+    base, gyro = Diagnosis(base_node, 'Base'), Diagnosis(base_node, 'Gyro')
     forget_run('angular')
     try:
         driver.wait_for_base(wait_timeout)
-        run = {ODOM_KEY: factor_in_force(base_node, ODOM_KEY), GYRO_KEY: factor_in_force(base_node, GYRO_KEY)}
+        run = {ODOM_KEY: factor_in_force(base_node, ODOM_KEY), GYRO_KEY: factor_in_force(base_node, GYRO_KEY, None)}
         # What the gyro reports at rest is its bias.
         driver.rest(2)
         start = rospy.get_time()
         driver.drive(leg)
+        end = rospy.get_time()
     finally:
         # However it ended: the most important thing that a mobile robot must do.
         driver.stop()
     run['reported'] = degrees(leg.done())
+    if run[GYRO_KEY] is None:   # the default of a Create's base
+        run[GYRO_KEY] = GYRO_CORRECTION if gyro.last else 1.0
     try:
-        run['gyro'] = degrees(turn_by_gyro(list(readings), start))
+        if gyro.error:
+            raise ConfigError('the base reports an error: %s' % gyro.error)
+        if not readings:
+            raise ConfigError('nothing arrives on %s' % rospy.resolve_name('imu/data'))
+        run['gyro'] = degrees(turn_by_gyro(list(readings), start, end, leg.done()))
     except ConfigError as error:
-        rospy.logwarn('The gyro is not calibrated: %s', error)
+        warn_of_gyro(error)
+    run['loses_fractions'] = int(base.value('Fractions of a degree') == LOST)
     return run
+
+
+def warn_of_gyro(error):
+    """Log why the gyro is not calibrated."""
+    rospy.logwarn('The gyro is not calibrated: %s. See /diagnostics of the base', error)
 
 
 def calibrate():
@@ -79,8 +96,11 @@ def calibrate():
         run = drive()
         save_run('angular', run)
     else:
-        run = load_run('angular', 'reported', ODOM_KEY, GYRO_KEY)
+        run = load_run('angular', 'reported', 'loses_fractions', ODOM_KEY, GYRO_KEY)
     print('The odometry reports %.1f degrees.' % run['reported'])
+    if run['loses_fractions']:
+        print('The robot loses fractions of a degree. The base noticed it in a turn, and now corrects its odometry. With '
+              'the line angle_fractions in your file, it does so from the start.')
     if 'gyro' in run:
         print('The gyro reports %.1f degrees.' % run['gyro'])
 
@@ -92,11 +112,18 @@ def calibrate():
         print('Measure how far the robot has turned, in degrees. Then: rosrun rbx1_nav calibrate_angular.py '
               '_measured:=DEGREES')
         return
-    sensors = {ODOM_KEY: 'reported', GYRO_KEY: 'gyro'}
-    factors = {key: corrected(key, run[key], measured, run[sensor]) for key, sensor in sensors.items() if sensor in run}
-    print('The factors were %s. Now they should be:' % ', '.join('%.4f' % run[key] for key in factors))
+    factors = {ODOM_KEY: corrected(ODOM_KEY, run[ODOM_KEY], measured, run['reported'])}
+    if 'gyro' in run:
+        try:
+            factors[GYRO_KEY] = corrected(GYRO_KEY, run[GYRO_KEY], measured, run['gyro'])
+        except ConfigError as error:
+            warn_of_gyro(error)
+    print('The %s %s. Now %s should be:' % ('factors were' if len(factors) > 1 else 'factor was', ', '.join(
+        '%.4f' % run[key] for key in factors), 'they' if len(factors) > 1 else 'it'))
     for key, factor in factors.items():
         print('%s: %.4f' % (key, factor))
+    if run['loses_fractions']:
+        print('angle_fractions: %s' % LOST)
 
 
 if __name__ == '__main__':

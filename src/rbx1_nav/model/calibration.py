@@ -1,5 +1,5 @@
 """Calibration: the factor that corrects a sensor, from what the sensor reported and what was measured."""
-from math import inf, isfinite
+from math import degrees, inf, isfinite
 import re
 
 from rbx1_nav.config import ConfigError, Section, show
@@ -39,22 +39,27 @@ def corrected(key, factor, measured, reported):
     return new
 
 
-def turn_by_gyro(readings, start):
-    """The angle (rad) that a gyro has measured since `start`, when the robot began to turn.
+def turn_by_gyro(readings, start, end, expected):
+    """The angle (rad) that a gyro has measured from `start`, when the robot began to turn, to `end`.
 
     readings: (time in s, angular velocity in rad/s), in their order. The mean of those up to `start`, at rest, is the
-    gyro's bias. Each of the others is the mean since the one before. Raises ConfigError.
+    gyro's bias. Each of the others is the mean since the one before. expected: the turn by the odometry, rad. Raises
+    ConfigError if the gyro has not measured the whole turn, or nothing of it.
     """
     rest = [rate for time, rate in readings if time <= start]
     if not rest or start - readings[0][0] < REST:
-        raise ConfigError('gyro: %d readings at rest: expected %g s of them' % (len(rest), REST))
+        raise ConfigError('%d readings at rest: expected %g s of them' % (len(rest), REST))
     bias = sum(rest) / len(rest)
     turned, before = 0.0, readings[len(rest) - 1][0]
     for time, rate in readings[len(rest):]:
         if not 0 <= time - before <= MAX_GAP:
-            raise ConfigError('gyro: %.2f s between two readings: expected at most %g s' % (time - before, MAX_GAP))
+            raise ConfigError('%.2f s between two readings: expected at most %g s' % (time - before, MAX_GAP))
         turned += (rate - bias) * (time - before)
         before = time
+    if end - before > MAX_GAP:
+        raise ConfigError('no reading in the last %.1f s of the turn' % (end - before))
     if not isfinite(turned):
-        raise ConfigError('gyro: a turn of %g rad: expected finite readings' % turned)
+        raise ConfigError('a turn of %g rad: expected finite readings' % turned)
+    if abs(turned) < abs(expected) / MAX_FACTOR:
+        raise ConfigError('it reports no turn (%.1f degrees)' % degrees(turned))
     return turned

@@ -1,9 +1,32 @@
 """What the calibration scripts read from the master, and keep there: the base's factors, and the last run."""
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from rosgraph.names import is_legal_name
 import rospy
 
 from rbx1_nav.config import ConfigError, Section, show
 from rbx1_nav.model.calibration import MAX_FACTOR
+
+
+class Diagnosis:
+    """Listens for what a base says of one of its parts in /diagnostics."""
+
+    def __init__(self, base_node, part):
+        """base_node: the name of a node; part: Base, Gyro, or the like."""
+        self.name = '%s: %s' % (rospy.resolve_name(base_node).lstrip('/'), part)
+        self.last = None        # DiagnosticStatus; None before there is one
+        rospy.Subscriber('/diagnostics', DiagnosticArray, self._on_diagnostics)
+
+    def _on_diagnostics(self, message):
+        self.last = next((status for status in message.status if status.name == self.name), self.last)
+
+    def value(self, key):
+        """The last value with this key, a text; None if there is none."""
+        return next((each.value for each in self.last.values if each.key == key), None) if self.last else None
+
+    @property
+    def error(self):
+        """The message of the last status if that is an error, else ''."""
+        return self.last.message if self.last and self.last.level == DiagnosticStatus.ERROR else ''
 
 
 def node_param(name, default):
@@ -14,17 +37,19 @@ def node_param(name, default):
     return value
 
 
-def factor_in_force(base_node, key):
-    """The correction factor `key` among the parameters of the base's node; 1 for a node without parameters.
+def factor_in_force(base_node, key, default=1.0):
+    """The correction factor `key` among the parameters of the base's node; its default if it is not set.
 
-    Raises ROSException if it is no such factor, or only others are set: its default is not known here.
+    Raises ROSException if it is no such factor.
     """
     name = rospy.resolve_name(base_node)
     values = rospy.get_param(name, None)
     if not isinstance(values, dict):
-        rospy.logwarn('%s has no parameters: 1 is assumed for %s. _base_node:=NAME names the node of another base',
+        rospy.logwarn('%s has no parameters: the default is assumed for %s. _base_node:=NAME names the node of another base',
                       name, key)
-        return 1.0
+        return default
+    if key not in values:
+        return default
     return _number(Section(values, name), key, 1 / MAX_FACTOR, MAX_FACTOR, 'the factor that the base uses now')
 
 

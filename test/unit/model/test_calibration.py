@@ -71,39 +71,55 @@ def readings(bias, scale, rest=2.0, period=0.02):
     return [(100 + index * period, rate) for index, rate in enumerate([bias] + rates)]
 
 
+def by_gyro(every, start):
+    """The turn of a robot that turns once."""
+    return turn_by_gyro(every, start, every[-1][0] if every else start, 2 * pi)
+
+
 @given(bias=st.floats(-0.1, 0.1), scale=st.floats(0.5, 2), period=st.sampled_from([0.02, 1 / 30, 0.1]))
 def test_the_bias_of_a_gyro_is_no_turn(bias, scale, period):
-    assert turn_by_gyro(readings(bias, scale, period=period), 102.001) == pytest.approx(2 * pi * scale)
+    assert by_gyro(readings(bias, scale, period=period), 102.001) == pytest.approx(2 * pi * scale)
 
 
 def test_the_period_of_the_readings_may_vary():
     every = readings(0.01, 1.0)
     # of a sensor that reports the mean since its last reading, two at rest and two in the turn are missing
-    assert turn_by_gyro([each for index, each in enumerate(every) if index not in (7, 8, 300, 301)],
-                        102.001) == pytest.approx(2 * pi)
+    assert by_gyro([each for index, each in enumerate(every) if index not in (7, 8, 300, 301)],
+                   102.001) == pytest.approx(2 * pi)
 
 
 def test_a_gyro_that_fell_silent_has_no_turn():
     every = readings(0.0, 1.0)
     gap = [each for each in every if not 103.99 < each[0] < 104.11 + MAX_GAP]
-    assert rejection(turn_by_gyro, gap, 102.001) == 'gyro: 0.64 s between two readings: expected at most 0.5 s'
+    assert rejection(by_gyro, gap, 102.001) == '0.64 s between two readings: expected at most 0.5 s'
 
 
 def test_a_clock_that_jumped_back_has_no_turn():
     every = readings(0.0, 1.0)
-    assert 'gyro: -1.00 s between two readings' in rejection(
-        turn_by_gyro, every[:300] + [(time - 1.02, rate) for time, rate in every[300:]], 102.001)
+    assert '-1.00 s between two readings' in rejection(
+        by_gyro, every[:300] + [(time - 1.02, rate) for time, rate in every[300:]], 102.001)
 
 
 @pytest.mark.parametrize('rest, start', [(0.5, 100.501), (2.0, 99.0)])
 def test_a_gyro_that_was_not_at_rest_has_no_bias(rest, start):
-    assert 'expected 1 s of them' in rejection(turn_by_gyro, readings(0.0, 1.0, rest), start)
+    assert 'expected 1 s of them' in rejection(by_gyro, readings(0.0, 1.0, rest), start)
 
 
 def test_no_gyro():
-    assert rejection(turn_by_gyro, [], 102.0) == 'gyro: 0 readings at rest: expected 1 s of them'
+    assert rejection(by_gyro, [], 102.0) == '0 readings at rest: expected 1 s of them'
 
 
 @pytest.mark.parametrize('rate', [nan, inf])
 def test_readings_that_are_not_finite(rate):
-    assert 'expected finite readings' in rejection(turn_by_gyro, readings(0.0, 1.0) + [(113.1, rate)], 102.001)
+    assert 'expected finite readings' in rejection(by_gyro, readings(0.0, 1.0) + [(113.1, rate)], 102.001)
+
+
+def test_a_gyro_that_fell_silent_to_the_end_has_no_turn():
+    every = readings(0.0, 1.0)
+    early = [each for each in every if each[0] < 104]
+    assert rejection(turn_by_gyro, early, 102.001, every[-1][0], 2 * pi) == 'no reading in the last 9.0 s of the turn'
+
+
+@pytest.mark.parametrize('scale', [0.0, 0.05, -0.09])
+def test_a_gyro_that_reports_no_turn(scale):
+    assert rejection(by_gyro, readings(0.01, scale), 102.001).startswith('it reports no turn (')

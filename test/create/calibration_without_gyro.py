@@ -1,0 +1,67 @@
+#!/usr/bin/python3
+"""A gyro that is stuck is not calibrated, and the wheels are: with a base whose factors are not on the parameter server."""
+import math
+import re
+import unittest
+
+import rospy
+
+from driven import DrivenRobot
+import support
+
+FACTOR = re.compile(r'^(\w+_correction|angle_fractions): (\S+)$', re.MULTILINE)
+
+
+class TestCalibrationWithoutGyro(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        support.init_node('calibration_without_gyro')
+
+    def run_script(self, *command):
+        """Run a script without a terminal. Returns its output."""
+        script = support.Process('rosrun', 'rbx1_nav', *command)
+        self.addCleanup(script.kill)
+        script.process.stdin.close()
+        self.assertEqual(script.wait(), 0, script.output)
+        return script.output
+
+    def check(self, count, reason):
+        """Calibrate the turn with a gyro that is stuck."""
+        robot = DrivenRobot(self, 'create', {'wheel_base': 1.1, 'drops_fractions': True, 'gyro_stuck': count},
+                            obstacle='bump')    # the gyro need not be calibrated
+        robot.switch('bump', False)
+        robot.wait_for_status('Standing')
+        self.assertFalse(rospy.has_param('/turtlebot_node/odom_angular_scale_correction'))
+        start = support.yaw(robot.truth.next())
+        output = self.run_script('calibrate_angular.py')
+        measured = 360 + math.degrees(support.wrapped(support.yaw(robot.truth.next()) - start))
+        lines = [line for line in output.splitlines() if 'gyro' in line.lower()]
+        self.assertEqual(len(lines), 1, output)
+        self.assertRegex(lines[0], r'\[WARN\].* The gyro is not calibrated: the base reports an error: %s.*\. '
+                                   'See /diagnostics of the base' % reason)
+        self.assertEqual(robot.node.output.count('The robot loses fractions of a degree'), 1)
+        output = self.run_script('calibrate_angular.py', '_measured:=%.2f' % measured)
+        factors = dict(FACTOR.findall(output))
+        self.assertEqual(sorted(factors), ['angle_fractions', 'odom_angular_scale_correction'], output)
+        self.assertAlmostEqual(float(factors['odom_angular_scale_correction']) * 1.1, 1, delta=0.03)
+        self.assertIn('The factor was 1.0000. Now it should be:', output)
+
+    def test_stuck(self):
+        self.check(512, 'stuck at 51[0-9] counts while the wheels turn the robot')
+
+    def test_without_power(self):
+        self.check(12, '12 counts: expected at least 100: does it have power')
+
+    def test_the_default_factors(self):
+        DrivenRobot(self, 'create')
+        self.run_script('calibrate_linear.py', '_goal_distance:=0.5')
+        self.assertIn('The factor was 1.0000.', self.run_script('calibrate_linear.py', '_measured:=0.5'))
+        self.assertNotIn('not calibrated', self.run_script('calibrate_angular.py'))
+        # the gyro's default is that of create_node; the emulated gyro needs no correction
+        output = self.run_script('calibrate_angular.py', '_measured:=360')
+        self.assertIn('The factors were 1.0000, 1.3500.', output)
+        self.assertAlmostEqual(float(dict(FACTOR.findall(output))['gyro_scale_correction']), 1, delta=0.03)
+
+
+if __name__ == '__main__':
+    support.main('calibration_without_gyro', TestCalibrationWithoutGyro)
