@@ -6,6 +6,8 @@ import reprlib
 
 import yaml
 
+AUTO = 'auto'       # a value that is found out at run time
+
 _short = reprlib.Repr()
 _short.maxstring = _short.maxother = 200    # characters
 
@@ -97,6 +99,16 @@ class Section:
                                        and low <= value <= high):
             raise ConfigError('%s: %s: expected %s' % (self.path(key), describe(value), expected))
         return float(value)
+
+    def choice(self, key, choices, default):
+        """One of several values: texts, numbers, or true and false."""
+        value = self.get(key, default)
+        for each in choices:
+            # 57600.0 is 57600, but true is not 1
+            if value == each and isinstance(value, bool) == isinstance(each, bool):
+                return each
+        raise ConfigError('%s: %s: expected one of %s'
+                          % (self.path(key), show(value), ', '.join(str(each).lower() for each in choices)))
 
     def flag(self, key, default):
         """True or false."""

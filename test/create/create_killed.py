@@ -1,25 +1,11 @@
 #!/usr/bin/python3
 """A node is killed or hangs in motion: its guardian stops the robot. Without a guardian the node starts another."""
-import glob
 import os
 import signal
 import unittest
 
-from driven import DrivenRobot
+from driven import DrivenRobot, guardian_of
 import support
-
-
-def guardian_of(pid):
-    """The process id of the guardian of a node's process; None if there is none."""
-    for name in glob.glob('/proc/[0-9]*'):
-        try:
-            with open(name + '/stat', encoding='ascii') as stat, open(name + '/cmdline', 'rb') as command:
-                parent = int(stat.read().rpartition(')')[2].split()[1])
-                if parent == pid and b'guardian.py' in command.read():
-                    return int(os.path.basename(name))
-        except OSError:     # it has ended meanwhile
-            pass
-    return None
 
 
 class TestCreateKilled(unittest.TestCase):
@@ -38,7 +24,7 @@ class TestCreateKilled(unittest.TestCase):
             robot.wait_for_stop(count)
             robot.node.wait()
             # another node takes over
-            robot.node = robot.start_node(_robot_type='create')
+            robot.node = robot.start_node()
             robot.node.wait_for_line('in safe mode')
 
     def test_hang(self):
@@ -50,12 +36,15 @@ class TestCreateKilled(unittest.TestCase):
         robot.wait_for_stop(count)
         os.kill(pid, signal.SIGCONT)
         robot.wait_for_standstill()
+        # the guardian has paused the stream of readings, which the node takes for a robot that has fallen silent
+        robot.node.wait_for_line(r'(?s)The robot answers again.*in safe mode')
+        robot.commander.send(0.0, 0.0)
         robot.wait_for_motion()
 
         # the node needs its guardian
         guardian = guardian_of(pid)
         os.kill(guardian, signal.SIGKILL)
-        robot.node.wait_for_line('The guardian process is gone: starting another')
+        robot.node.wait_for_line('The guardian process died: starting a new one')
         support.wait_for(lambda: guardian_of(pid) not in (guardian, None), 'another guardian')
         robot.wait_for_motion()
         count = len(robot.received())

@@ -16,7 +16,7 @@ class TestCreatePort(unittest.TestCase):
     def test_two_nodes(self):
         robot = DrivenRobot(self, 'create2')
         pid = support.pid_of('/turtlebot_node')
-        second = robot.start_node('__name:=second', _robot_type='create2')
+        second = robot.start_node('__name:=second')
         second.wait_for_line(r'%s: in use by \S+ \(process \d+\): expected a port that nobody uses' % robot.link)
         # nothing disturbs the first
         robot.wait_for_motion()
@@ -39,14 +39,14 @@ class TestCreatePort(unittest.TestCase):
         robot = DrivenRobot(self, 'create')
         robot.end_node(robot.node)
         robot.switch('pull_cable', True)
-        node = robot.start_node(_robot_type='create')
+        node = robot.start_node()
         node.wait_for_line('%s: no such device: expected the adapter of the robot to be plugged in' % robot.link)
         robot.switch('pull_cable', False)
         node.wait_for_line('in safe mode')
 
     def test_bad_parameters(self):
         for name, argument, text in (
-                ('bad_type', '_robot_type:=roomba', "robot_type: 'roomba': expected one of: create, create2"),
+                ('bad_type', '_robot_type:=roomba', "robot_type: 'roomba': expected one of auto, create, create2"),
                 ('bad_rate', '_update_rate:=fast', "update_rate: 'fast': expected a rate from 5 to 60 in Hz")):
             node = support.Process('rosrun', 'rbx1_nav', 'turtlebot_node.py', argument, '__name:=' + name)
             self.addCleanup(node.kill)

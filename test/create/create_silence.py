@@ -15,7 +15,7 @@ class TestCreateSilence(unittest.TestCase):
         robot = DrivenRobot(self, robot_type)
         robot.wait_for_motion()
         robot.switch('silence', True)
-        robot.node.wait_for_line('The robot no longer answers. If it still moves')
+        robot.node.wait_for_line('The robot has stopped responding')
         robot.wait_for_status('The robot does not answer')
         self.assertTrue(robot.moving)
         count = len(robot.received())

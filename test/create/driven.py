@@ -1,4 +1,6 @@
 """The base node and an emulated robot, both as processes, for the tests in this folder."""
+import glob
+import os
 import signal
 
 import numpy
@@ -13,17 +15,35 @@ STOP = drive_direct(0, 0)
 CHI_SQUARE = 16.3       # 99.9 % of 3 degrees of freedom
 
 
+def guardian_of(pid):
+    """The process id of the guardian of a node's process; None if there is none."""
+    for name in glob.glob('/proc/[0-9]*'):
+        try:
+            with open(name + '/stat', encoding='ascii') as stat, open(name + '/cmdline', 'rb') as command:
+                parent = int(stat.read().rpartition(')')[2].split()[1])
+                if parent == pid and b'guardian.py' in command.read():
+                    return int(os.path.basename(name))
+        except OSError:     # it has ended meanwhile
+            pass
+    return None
+
+
 class DrivenRobot(EmulatedRobot):
     """turtlebot_node.py on the port of an emulated robot."""
 
-    def __init__(self, case, robot_type, emulated=(), **params):
-        """case: the TestCase, at whose end both end; emulated: parameters of the robot; params: of the node."""
+    def __init__(self, case, robot_type, emulated=(), obstacle='', **params):
+        """case: the TestCase, at whose end both end; emulated: parameters of the robot; obstacle: the service of the robot
+        that keeps the node from driving it at first, or ''; params: of the node."""
         super().__init__(case, robot_type, **dict(emulated))
         self.case = case
+        if obstacle:
+            self.switch(obstacle, True)
         self.diagnostics = support.Watch('/diagnostics', DiagnosticArray)
-        self.node = self.start_node(_robot_type=robot_type, **{'_' + name: value for name, value in params.items()})
+        self.node = self.start_node(**{'_' + name: value for name, value in params.items()})
         self.odom = support.OdomWatch()
         self.commander = support.Commander()
+        if obstacle:
+            return
         self.wait_for_status('Standing')
         if robot_type == 'create':
             self.wait_for_status('Calibrated', 'Gyro')
@@ -47,7 +67,7 @@ class DrivenRobot(EmulatedRobot):
 
     def status(self, name=None):
         """The latest status of a part of the robot, by default of the base; None if there is none."""
-        name = name or self.model.name
+        name = name or 'Base'
         statuses = [status for message in list(self.diagnostics.messages) for status in message.status]
         return next((status for status in reversed(statuses) if status.name == 'turtlebot_node: ' + name), None)
 

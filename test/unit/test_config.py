@@ -47,6 +47,15 @@ def test_a_number_is_a_float_and_both_ends_belong_to_the_range():
         assert number('rate', value) == value and isinstance(number('rate', value), float)
 
 
+def test_a_choice_is_one_of_several_values():
+    assert Section({}).choice('baud', (300, 19200), 300) == 300
+    value = Section({'baud': 19200.0}).choice('baud', (300, 19200), 300)
+    assert value == 19200 and isinstance(value, int)
+    for value in (301, '300', True, [300], None):
+        assert rejection(Section({'baud': value}).choice, 'baud', (300, 19200), 300) == (
+            'baud: %r: expected one of 300, 19200' % value)
+
+
 def test_only_a_default_may_be_out_of_range():
     assert Section({}).number('max_speed', 1, 2, inf) == inf
     rejection(Section({'max_speed': inf}).number, 'max_speed', 1, 2, inf)

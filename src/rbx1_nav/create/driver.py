@@ -2,126 +2,142 @@
 
 The clock must go on while the computer is suspended, and must never be set.
 """
-from math import copysign
-
 from rbx1_nav.create import protocol, sequences
-from rbx1_nav.create.commanded import Commanded
+from rbx1_nav.create.acceptance import OUTAGE, Acceptance
+from rbx1_nav.create.contact import SILENCE, Contact
+from rbx1_nav.create.fractions import Fractions
 from rbx1_nav.create.gyro import AnalogGyro
+from rbx1_nav.create.gyro_check import Step
 from rbx1_nav.create.motion import Motion
-from rbx1_nav.create.speeds import Rounding, is_too_fast, wheel_speeds
+from rbx1_nav.create.sender import Sender
+from rbx1_nav.create.speeds import is_too_fast
 from rbx1_nav.create.stream import FrameReader, ReplyReader
-from rbx1_nav.create.supervisor import BUMPS, WHEEL_DROPS, Supervisor
+from rbx1_nav.create.supervisor import WHEEL_DROPS, Supervisor, causes
 from rbx1_nav.create.travel import Implausible, travel_of, unknown
 from rbx1_nav.schedule import Schedule
 from rbx1_nav.units import SECOND
 
-SILENCE = SECOND // 2       # ns without a reading: the robot does not answer
-FIRST_WAIT = 3 * SECOND // 10   # ns that a robot that is on may need to answer, before it is started
-START_WAIT = SECOND         # ns between two attempts to start it
-PATIENCE = 3                # attempts before the first warning
 REPLY_TIMEOUT = SECOND // 5     # ns from a query to the first byte of its reply
 BYTE_TIMEOUT = SECOND // 20     # ns between two bytes of a reply
-BACKLOG = SECOND // 100     # ns that the line may be busy with earlier bytes: then only a stop is sent at once
+INSIST_WAIT = SECOND // 10      # ns without a confirmation of the last stop, after which it is repeated
+STREAM_BAUD = 57600     # bits per second that a stream needs
+GAP = 3                         # periods without a reading after which the gyro's rate does not stand for all of them
 
 
 class Driver:
     """The state of one robot, whatever happens to its line."""
 
-    def __init__(self, settings, gate, info, warn):
-        """settings: Settings; gate: a CommandGate; info(text), warn(text): log a line."""
+    def __init__(self, settings, gate, info, warn, error=None):
+        """settings: Settings; gate: a CommandGate; info(text), warn(text), error(text): log a line."""
         self.settings = settings
         self.gate = gate
         self.info = info
         self.warn = warn
-        model = self.model = settings.model
-        self.byte = 10 * SECOND // model.baud   # ns
-        self.polled = model is protocol.CREATE
-        self.reader = ReplyReader(model, sequences.QUERIED) if self.polled else FrameReader(model, sequences.STREAMED)
-        self.counter = travel_of(model)
-        self.motion = Motion(settings, self.counter.rounding)
-        self.gyro = AnalogGyro(settings.gyro_range, settings.gyro_correction) if settings.has_gyro else None
-        self.supervisor = Supervisor(settings.mode, info, warn)
+        self.error = error or warn
+        self.sender = Sender()
+        self.commanded = self.sender.commanded
+        self.contact = Contact(settings, self, warn)
+        self.supervisor = Supervisor(settings.mode, settings.mode_plus_one, info, warn)
+        self.acceptance = Acceptance(settings, gate, self.contact, self.supervisor)
         self.schedule = Schedule(settings.update_rate)
         self.due = None             # ns: a State of a reading that arrives after this is to be reported
-        # the line
-        self.write = None           # sends bytes; None without a line
-        self.error = None           # the OSError with which the line was lost
-        self.line_free = 0          # ns, when all bytes are on their way
         self.byte_time = 0          # ns, when the last bytes arrived
         # the robot
-        self.answers = False        # whether readings arrive
-        self.started = False        # whether the robot was started since it last answered
-        self.starts = 0             # attempts before it answered for the first time
-        self.attempt = None         # ns, of the last attempt
         self.reading = None         # the last one
         self.reading_time = None    # ns, when the robot made it
         self.received = None        # ns, when it arrived
         self.gyro_reading = None    # a Reading that was not reported yet
-        # the wheels
-        self.commanded = Commanded()
-        self.rounding = Rounding(), Rounding()
-        self.sent_time = 0          # ns
+        self.leaving = None         # ns, since when the robot is to stop for good
+        self.left = False           # whether it has confirmed that
+        self.told = None            # ns, when it was told so last
         # what /diagnostics counts
         self.saturated = 0          # commands
         self.implausible = 0        # readings
         self.missed = 0             # replies
-        self.dropouts = 0           # times that the robot fell silent
+        self.use(settings.model)
+
+    def use(self, model):
+        """Drive a robot of this Model. It cannot change any more once there was a reading."""
+        self.model = model
+        baud = (self.contact.found or model).baud
+        self.sender.byte = 10 * SECOND // baud
+        # a Create has no stream, and that of a Create 2, a frame every 15 ms, needs a fast line
+        self.polled = model is protocol.CREATE or baud < STREAM_BAUD
+        self.reader = (ReplyReader(model, *sequences.queried(model)) if self.polled
+                       else FrameReader(model, sequences.STREAMED))
+        if self.reading is not None:
+            return
+        self.counter = travel_of(model, Fractions(self.settings.angle_fractions, self.warn))
+        self.motion = Motion(self.settings, model, self.counter.rounding)
+        self.gyro = (AnalogGyro(self.settings.gyro_range, self.settings.gyro_correction, self.error, self.info)
+                     if model is protocol.CREATE and self.settings.has_gyro else None)
 
     # the line
 
-    def attach(self, now, write):
-        """A line was opened. write(bytes): may raise OSError. The first bytes on it are a stop."""
-        self.write, self.error = write, None
-        self.answers = self.started = False
-        self.attempt = now
+    def attach(self, now, line):
+        """A line was opened: see Contact. Raises OSError."""
+        self.sender.open(line.write)
         self.reader.clear()
-        self._stop(now)
-        self._ask(now, sequences.ask(self.model))
+        self.contact.attach(now, line)
 
-    def detach(self, now):
-        """The line is lost, and with it the control of the robot, which goes on with the last command."""
-        if self.answers:
-            self._lose_robot()
-        self.gate.halt()
-        self.commanded.advance(now)
-        self.write = None
+    def detach(self):
+        """The line is lost, and with it the control of the robot, which keeps executing the last command."""
+        self.contact.detach()
+        self.lost_robot()
+        self.sender.close()
         self._miss()
 
     def stop(self, now):
         """Stop the robot, until the next command."""
         self.gate.halt()
-        self._stop(now)
+        if self.contact.found:
+            self.sender.stop(now)
+
+    def restore(self, now):
+        """End whatever the robot may have begun when another process changed the settings of the port."""
+        if self.leaving is None and self.contact.may_ask:
+            self.sender.stop(now, after=sequences.STOP + (
+                sequences.take_control(self.model, self.settings.mode) if self.supervisor.in_control else sequences.START))
 
     def leave(self, now):
-        """Stop the robot, and leave it in passive mode."""
+        """Stop the robot, and leave it in passive mode. `left` shows whether it has confirmed that, if it can. Raises
+        OSError."""
         self.gate.halt()
-        self.commanded.send(now, (0, 0))
-        self._write(now, sequences.leave(self.model))
-
-    def _stop(self, now):
-        self.commanded.send(now, (0, 0))
-        for rounding in self.rounding:
-            rounding.reset()
-        self._write(now, sequences.STOP)
-
-    def _write(self, now, data):
-        if self.write is None:
+        if not self.contact.found:      # it was sent nothing that moves it
+            self.left = True
             return
-        self.line_free = max(now, self.line_free) + len(data) * self.byte
-        try:
-            self.write(data)
-        except OSError as error:
-            self.write, self.error = None, error
+        self.leaving = self.told = now
+        self.left = not self.contact.answers and self.motion.stands
+        if self.contact.may_ask:
+            self._leave(now)
+
+    def _leave(self, now, before=b''):
+        self.told = now + len(before) * self.sender.byte
+        self.sender.stop(now, before, sequences.leave(self.model))
+        self.ask(now)
+
+    def _insist(self, now):
+        """Say again that the robot is to stop, after what may have swallowed it before."""
+        if not self.left and now - self.told > INSIST_WAIT:
+            self._leave(now, sequences.FLUSH)
 
     # queries
 
-    def _ask(self, now, data):
-        """Send bytes that ask for a reading."""
+    def ask(self, now, start=False):
+        """Ask for a reading. start: of a robot that is started first."""
         self._miss()
+        data = sequences.RESUME_STREAM
         if self.polled:
-            self.reader.expect()
             self.commanded.ask(now)
-        self._write(now, data)
+            # the angle of a Create is not always asked for
+            short = self.model is protocol.CREATE and not start and not self.counter.wants_angle(self.commanded.asked)
+            numbers = sequences.queried(self.model)[short]
+            self.reader.expect(numbers)
+            data = sequences.query(numbers)
+        if start:
+            self.supervisor.restart()
+            data = sequences.start(self.model, self.polled)
+        self.sender.send(now, data)
 
     def _miss(self):
         """A query that is not answered costs the travel before it, if it arrived."""
@@ -144,107 +160,84 @@ class Driver:
 
     # commands
 
-    def command(self, now, linear, angular, others=()):
-        """Put a command in force, and send it at once; arguments, result and errors as of CommandGate.command()."""
+    def command(self, now, linear, angular, others=(), sender=''):
+        """Put a command in force, and send it at once; arguments, result and errors as of CommandGate.command().
+
+        sender: the name of the node that it comes from. Raises RefusedCommand if the robot does not follow it now.
+        """
+        self.acceptance.check_sender(now, sender, bool(linear or angular))
         try:
-            return self.gate.command(now, linear, angular, others)
+            clamped = self.gate.command(now, linear, angular, others)
         finally:
             self.saturated += is_too_fast(self.gate.linear, self.gate.angular, self.model.wheel_separation)
             self._send_speeds(now)
-
-    def _allowed(self):
-        """(left, right) in mm/s that the robot may go now."""
-        linear, angular = self.gate.linear, self.gate.angular
-        if not (self.answers and self.supervisor.in_control) or self.settings.mode == protocol.PASSIVE:
-            return 0.0, 0.0
-        if angular:
-            angular = copysign(max(abs(angular), self.settings.min_yaw_speed), angular)
-        bits = self.reading['bumps_and_wheel_drops']
-        if bits & WHEEL_DROPS or linear > 0 and self.settings.stop_on_bump and bits & BUMPS:
-            return 0.0, 0.0
-        return wheel_speeds(linear, angular, self.model.wheel_separation)
+        self.acceptance.check_obedience(now)
+        return clamped
 
     def _must_stop(self):
-        return self.commanded.moving and not any(self._allowed())
+        return self.commanded.moving and not any(self.acceptance.speeds(self.model))
 
     def _send_speeds(self, now):
-        if self.write is None or self.line_free - now > BACKLOG and not self._must_stop():
-            return
-        elapsed, self.sent_time = (now - self.sent_time) / SECOND, now
-        left, right = (rounding.next(speed, elapsed) for rounding, speed in zip(self.rounding, self._allowed()))
-        self.commanded.send(now, (left, right))
-        if self.commanded.moving:
-            self.motion.command(now)
-        self._write(now, protocol.drive_direct(right, left))
+        if self.contact.may_ask and (not self.sender.is_busy(now) or self._must_stop()):
+            self.sender.drive(now, self.acceptance.speeds(self.model))
+            if self.commanded.moving:
+                self.motion.command(now)
+
+    @property
+    def is_ready(self):
+        """Whether a robot has answered, and can be driven, or has a reason not to."""
+        return self.reading is not None and bool(self.supervisor.in_control or self.supervisor.reason)
 
     # time
 
     def tick(self, now):
         """Do what is due: to be called after each receive(), and at least at the update rate. Returns whether the
-        command in force has timed out."""
+        command in force has timed out. Raises OSError."""
         gate = self.gate
         timed_out = gate.moving and now >= gate.expiry
         if timed_out:
             gate.halt()
-        if self.answers and now - self.reading_time > SILENCE:
-            self._fall_silent(now)
-        if self.write and not self.answers and now - self.attempt > (START_WAIT if self.started else FIRST_WAIT):
-            self._start(now)
+        if self.leaving is not None:
+            if self.contact.searching:      # its starts end any motion
+                self.contact.tick(now, self.reading_time)
+            else:
+                self._insist(now)
+            return False
+        self.contact.tick(now, self.reading_time)
         due = self.schedule.due(now)
         if due and self.due is None:
             self.due = now
         if due or self._must_stop():
             self._send_speeds(now)
-        if due and self.polled and self.write and not self._awaits_reply(now):
-            self._ask(now, sequences.QUERY)
+        if due and self.polled and self.contact.may_ask and not self._awaits_reply(now):
+            self.ask(now)
         return timed_out
 
     def until_tick(self, now):
         """How long it is until tick() has something to do, s."""
-        return max(0, self.schedule.next - now) / SECOND
+        times = [self.schedule.next] + [self.contact.search.next_time] * self.contact.searching
+        return max(0, min(times) - now) / SECOND
 
     @property
     def awaited(self):
-        """The reader of the reading that is due now; None before the next tick."""
-        return None if self.due is None else self.reader
-
-    def _lose_robot(self):
-        self.answers = False
-        self.dropouts += 1
-        self.supervisor.forget()
-
-    def _fall_silent(self, now):
-        self._lose_robot()
-        self.gate.halt()
-        self.attempt, self.started = now, False
-        self.warn('The robot no longer answers. If it still moves, it goes on with its last command: stop it by hand')
-        self._stop(now)
-        self._ask(now, sequences.ask(self.model))
-
-    def _start(self, now):
-        if self.reading is None:
-            self.starts += 1
-            if self.starts == PATIENCE:
-                self._warn_of_silence()
-        self.attempt, self.started = now, True
-        self._stop(now)
-        self._ask(now, sequences.start(self.model))
-
-    def _warn_of_silence(self):
-        rates = ', '.join('%s: %d baud' % (name, model.baud) for name, model in protocol.MODELS.items())
-        self.warn('The robot does not answer: expected a %s that is switched on, at the other end of the cable '
-                  '(robot_type %s)' % (self.model.name, rates))
+        """The reader of what is due now; None before the next tick."""
+        if self.contact.searching:
+            return self.contact.search
+        return None if self.due is None and self.leaving is None else self.reader
 
     # readings
 
     def receive(self, now, data):
         """Process bytes of the robot."""
+        if self.contact.searching:
+            self.contact.receive(now, data)
+            return
         if data:
             self.byte_time = now
         rejected = self.reader.rejected
         for reading in self.reader.feed(data):
             # the robot made a frame before it was on the line, and a reply when it received the query
-            time = self.commanded.asked_time if self.polled else now - len(data) * self.byte
+            time = self.commanded.asked_time if self.polled else now - len(data) * self.sender.byte
             self.commanded.advance(now)
             self.received = now
             self._accept(max(time, self.reading_time or 0), reading)
@@ -256,8 +249,8 @@ class Driver:
         elapsed = (time - self.reading_time) / SECOND if self.reading else 0.0
         part = commanded.asked if self.polled else commanded.counted
         # a robot that was just switched on is in passive mode, since it was started, and counts from 0
-        reset = not self.answers and self.started and self.reading and (
-            reading['mode'] == protocol.PASSIVE and self.counter.is_new(reading))
+        reset = self.contact.started and self.reading and (
+            self.supervisor.is_passive(reading) and self.counter.is_reset(reading))
         if reset:
             self.counter.restart()
         try:
@@ -269,36 +262,54 @@ class Driver:
             return
         if reset:
             travel = unknown(commanded.since_reading, self.model.wheel_separation)
-        if not self.answers:
+        if self.contact.hear():
             self._recover(elapsed, reset)
         commanded.start(time, part)
         commanded.read()
         self.reading, self.reading_time = reading, time
-        self.motion.add(time, travel)
+        self.acceptance.follow(part, travel, self.model.wheel_separation)
+        travel = self.motion.add(time, travel)
         if self.gyro:
-            turn = travel.angle, travel.angle_variance + self.counter.rounding[1] ** 2
-            self.gyro_reading = self.gyro.update(reading['analog_input'], elapsed, self.motion.stands,
-                                                 turn if elapsed > SILENCE / SECOND else None)
-        self._supervise(time, reading)
+            self.gyro_reading = self.gyro.update(reading['analog_input'], self._step(elapsed, travel, part, reading))
+        if self.leaving is None:
+            self._supervise(time, reading)
+        elif time >= self.leaving and self.supervisor.is_passive(reading):
+            self.left = True
+
+    def _step(self, elapsed, travel, expected, reading):
+        """The Step of the gyro. expected: Expected travel by the commands."""
+        bits = reading['bumps_and_wheel_drops']
+        variance = travel.angle_variance + self.settings.errors.variances(travel)[1] + self.counter.rounding[1] ** 2
+        return Step(elapsed, travel.angle, variance, (expected.right - expected.left) / self.model.wheel_separation,
+                    self.motion.stands and not bits & WHEEL_DROPS,      # who lifts a robot may turn it
+                    self.supervisor.in_control and self.settings.mode != protocol.PASSIVE, bool(bits),
+                    elapsed * self.settings.update_rate > GAP)
 
     def _supervise(self, time, reading):
         before = self.supervisor.in_control
         if self.supervisor.update(time, reading, self.gate.moving):
-            self._write(time, sequences.take_control(self.model, self.settings.mode))
-        if before and not self.supervisor.in_control:
-            self.gate.halt()
+            self.sender.send(time, sequences.take_control(self.model, self.settings.mode))
+        if self.acceptance.feel(time, reading) or before and not self.supervisor.in_control:
+            self.acceptance.lock(', '.join(causes(reading)) or 'the robot left the mode in which it is driven')
 
     def _recover(self, elapsed, reset):
-        self.answers, self.started = True, False
         if self.reading is None:
-            self.info('The robot answers: %s' % self.model.name)
-        else:
-            self.warn('The robot answers again, after %.1f s%s'
-                      % (elapsed, ': it was switched off or reset' if reset else ''))
+            self.info('The robot answers: %s at %d baud' % (self.model.name, self.contact.found.baud))
+            return
+        what = 'the robot was switched off or reset' if reset else 'the robot did not answer for %.1f s' % elapsed
+        self.warn('The robot answers again, after %.1f s%s'
+                  % (elapsed, ': it was switched off or reset' if reset else ''))
+        if reset or elapsed > OUTAGE / SECOND:
+            self.acceptance.lock(what)
+
+    def lost_robot(self):
+        """The robot no longer answers."""
+        self.supervisor.forget()
+        self.acceptance.lose_robot()
 
     def state(self):
         """The State, if one is due and there is a new reading for it; else None."""
-        if not self.answers or self.due is None or self.received <= self.due or not self.motion.is_new:
+        if not self.contact.answers or self.due is None or self.received <= self.due or not self.motion.is_new:
             return None
         self.due = None
         gyro, self.gyro_reading = self.gyro_reading, None

@@ -1,7 +1,7 @@
 """A process of its own that stops the robot when the node cannot: after kill -9, or while it hangs.
 
-The robot has no watchdog: it goes on with its last command. The guardian holds the line open, and waits at a pipe from
-the node. When the pipe closes, the node is gone, however it ended. When no byte comes for a while, the node hangs. It
+The robot has no watchdog: it keeps executing its last command. The guardian holds the line open, and waits at a pipe from
+the node. When the pipe closes, the node has died, however that happened. When no line comes for a while, the node hangs. It
 runs in a session of its own, so that a signal to the node's process group does not reach it.
 
 This file is the program too. It imports nothing of the package, so that it starts fast and whatever is installed.
@@ -23,32 +23,46 @@ class Guardian:
     """The node's end."""
 
     def __init__(self, line, stop):
-        """line: file descriptor of the port; stop: the bytes that stop the robot, whatever was sent before. Raises
-        OSError if the process does not start."""
+        """line: file descriptor of the port; stop: the bytes to send, until confirm() names others. Raises OSError if the
+        process does not start."""
         self.process = subprocess.Popen(
             [sys.executable, '-E', '-S', os.path.abspath(__file__), str(line), stop.hex()],
             stdin=subprocess.PIPE, stdout=subprocess.PIPE, pass_fds=(line,), start_new_session=True, cwd='/')
-        with self.process.stdout as pipe:
-            if not (select.select([pipe], [], [], START_TIMEOUT)[0] and pipe.read(1)):
-                self.process.kill()
-                raise OSError('the guardian process does not start')
+        self.alive = self.process.stdout    # a pipe that closes when the process dies
+        if not (select.select([self.alive], [], [], START_TIMEOUT)[0] and os.read(self.alive.fileno(), 1)):
+            self.process.kill()
+            raise OSError('the guardian process does not start')
 
     def beat(self):
-        """Give a sign of life. Returns whether the guardian is there."""
+        """Give a sign of life. Returns whether the guardian is alive."""
+        return self._send('')
+
+    def confirm(self, stop):
+        """The robot is known: from now on, stop it with these bytes, at the rate that the port has now."""
+        self._send(stop.hex())
+
+    def _send(self, text):
         try:
-            return os.write(self.process.stdin.fileno(), b'.') == 1 and self.process.poll() is None
+            data = text.encode() + b'\n'
+            return os.write(self.process.stdin.fileno(), data) == len(data) and self.process.poll() is None
         except OSError:
             return False
 
     def release(self):
-        """Let the guardian stop the robot and end. It is not waited for."""
+        """Let the guardian stop the robot and exit. It is not waited for."""
         self.process.stdin.close()
+        self.alive.close()
 
 
-def send(line, data):
-    """Write bytes to a line, ahead of what still waits there. A line that is gone is no error."""
+def send(line, data, settings):
+    """Write bytes to a port, ahead of what is still waiting there. A port that has disconnected is no error.
+
+    settings: its attributes, as tcgetattr() returns them, which another process may have changed; None: leave them.
+    """
     try:
         termios.tcflush(line, termios.TCOFLUSH)
+        if settings:
+            termios.tcsetattr(line, termios.TCSANOW, settings)
     except termios.error:
         pass
     end = time.monotonic() + WRITE_TIMEOUT
@@ -62,22 +76,37 @@ def send(line, data):
         pass
 
 
+def read_settings(line):
+    """The attributes of a port, None if it has disconnected."""
+    try:
+        return termios.tcgetattr(line)
+    except termios.error:
+        return None
+
+
 def main(line, stop):
-    """Wait for the end of the node. line, stop: as of Guardian."""
+    """Wait for the end of the node. line, stop: see Guardian."""
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGTSTP):
         signal.signal(number, signal.SIG_IGN)
-    os.write(1, b'.')
-    os.close(1)
+    try:
+        os.write(1, b'.')
+    except OSError:     # the node has died already
+        pass
+    received, settings = b'', None
     timeout = None      # none before the first sign of life, and while the node hangs
     while True:
         if select.select([0], [], [], timeout)[0]:
             timeout = HANG
-            if not os.read(0, 4096):
+            data = os.read(0, 4096)
+            if not data:
                 break
+            *lines, received = (received + data).split(b'\n')
+            for text in filter(None, lines):
+                stop, settings = bytes.fromhex(text.decode()), read_settings(line)
         else:
             timeout = None
-            send(line, stop)
-    send(line, stop)
+            send(line, stop, settings)
+    send(line, stop, settings)
 
 
 if __name__ == '__main__':

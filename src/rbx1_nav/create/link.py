@@ -1,11 +1,15 @@
 """The open line to the robot, with its guardian: opened again whenever it is lost."""
+import errno
 import os
 import select
+import termios
 import time
 
 from rbx1_nav.create import sequences
 from rbx1_nav.create.guardian import Guardian
-from rbx1_nav.create.port import PortError, open_port
+from rbx1_nav.create.line_settings import rate_in, read_settings
+from rbx1_nav.create.port import PortError, describe_adapter, open_port
+from rbx1_nav.create.search import NoWakeLines
 from rbx1_nav.units import SECOND
 
 RETRY = SECOND // 5     # ns between two attempts to open the port
@@ -25,17 +29,22 @@ class Link:
 
     def __init__(self, settings, warn):
         """settings: Settings; warn(text): logs a line."""
-        self.model = settings.model
         self.path = settings.port
         self.warn = warn
+        self.baud = settings.baud or settings.model.baud
         self.port = None            # serial.Serial
-        self.poll = None            # select.poll of the port
         self.guardian = None
+        self.guarded = True         # whether the guardian lives
         self.problem = ''           # why the port is not open
         self.lost_at = None         # since when
         self.logged = None          # the problem that was logged
+        self.adapter = None         # the last one, as text
+        self.is_same = True         # whether it is that of the line before
         self.attempt = None
         self.beat_time = 0
+        self.settings = None        # of the port, as read_settings() returns them
+        self.changes = 0            # times that another process has changed them
+        self.disturbed = False      # whether that has happened since a caller has cleared this
 
     def open(self, now):
         """Try to open the port, if it is time to. Returns whether it is open."""
@@ -43,10 +52,10 @@ class Link:
             return False
         self.attempt = now
         try:
-            self.port = open_port(self.path, self.model.baud)
-            self.poll = select.poll()
-            self.poll.register(self.port.fileno(), select.POLLIN)
-            self.guardian = Guardian(self.port.fileno(), sequences.leave(self.model))
+            self.port = open_port(self.path, self.baud)
+            self.settings = read_settings(self.port.fd)
+            # until the robot is known, only a start is harmless at any rate
+            self.guardian = Guardian(self.port.fd, sequences.START)
         except OSError as error:
             self.close()
             self.problem = str(error) if isinstance(error, PortError) else '%s: %s' % (self.path, error)
@@ -56,8 +65,17 @@ class Link:
                 self.warn('%s; trying again' % self.problem)
             return False
         self.problem, self.logged, self.lost_at = '', None, None
+        self.guarded = True
         self.beat_time = now - BEAT
+        self._compare_adapters()
         return True
+
+    def _compare_adapters(self):
+        before, self.adapter = self.adapter, describe_adapter(self.path)
+        self.is_same = before in (None, self.adapter)
+        if not self.is_same:
+            self.warn('%s is now %s, before it was %s: check that the same robot is connected'
+                      % (self.path, self.adapter, before))
 
     def close(self):
         """Close the port. The guardian sends a last stop, if there still is a line."""
@@ -67,45 +85,95 @@ class Link:
             self.port.close()
         self.guardian = self.port = None
 
+    def set_rate(self, baud):
+        """Set the rate (bits per second), and all that belongs to a raw line. Raises LineLost."""
+        self.baud = baud
+        try:
+            self.port.baudrate = baud
+        except (OSError, ValueError, termios.error) as error:
+            raise LineLost('%s: %s' % (self.path, error))
+        self.settings = read_settings(self.port.fd)
+
+    def set_wake_lines(self, on):
+        """Set RTS and DTR, or clear them. Raises NoWakeLines, and LineLost."""
+        try:
+            self.port.rts = self.port.dtr = on
+        except OSError as error:
+            if error.errno not in (errno.ENOTTY, errno.EINVAL):
+                raise LineLost('%s: RTS and DTR: %s' % (self.path, error.strerror))
+            self.warn('wake_robot:=true: %s has no RTS and DTR: expected an adapter that has these lines; searching '
+                      'without waking the robot' % self.path)
+            raise NoWakeLines(error.errno, error.strerror)
+
+    def confirm(self, found):
+        """The robot is known (Found): the guardian may stop it."""
+        self.guardian.confirm(sequences.guardian_stop(found.model))
+
     def is_guarded(self, now):
-        """Give the guardian a sign of life, if it is time to. Returns whether it is there."""
-        if now - self.beat_time < BEAT:
-            return True
-        self.beat_time = now
-        return self.guardian.beat()
+        """Look after the guardian and the settings, if it is time to. Returns whether the guardian is alive."""
+        if self.guarded and now - self.beat_time >= BEAT:
+            self.beat_time = now
+            self._keep_settings()
+            self.guarded = self.guardian.beat()
+        return self.guarded
+
+    def _keep_settings(self):
+        """Set back what another process has changed. With an echo, say, the robot would execute its own readings."""
+        settings = read_settings(self.port.fd)
+        if settings in (None, self.settings):
+            return
+        self.changes += 1
+        self.disturbed = True
+        rate = rate_in(settings)
+        self.warn('%s: another process has changed the %s; set back' % (
+            self.path, 'settings' if rate == self.baud else 'rate to %d baud: expected %d' % (rate, self.baud)))
+        self.set_rate(self.baud)
 
     def write(self, data):
-        """Send bytes. Raises LineLost, also if the port has no room for them: then none have left it for seconds."""
+        """Send bytes, at the right rate. Raises LineLost, also if the port has no room for them: then none have left it
+        for seconds."""
+        self._keep_settings()
         try:
-            written = os.write(self.port.fileno(), data)
+            written = os.write(self.port.fd, data)
         except OSError as error:
             raise LineLost('%s: %s' % (self.path, error.strerror))
         if written < len(data):
-            raise LineLost('%s: the adapter accepts no more bytes' % self.path)
+            raise LineLost('%s: write timed out' % self.path)
+
+    def write_apart(self, data):
+        """Send bytes with a pause after each, so that a receiver at another rate does not mix them. Raises LineLost."""
+        for byte in data:
+            self.write(bytes((byte,)))
+            time.sleep(sequences.PAUSE / SECOND)
 
     def read(self, duration, reader):
-        """The bytes that arrive. Raises LineLost.
+        """The bytes that arrive. Returns at once if the guardian has died. Raises LineLost.
 
         duration: s until the next tick; reader: if it is set, return when its next reading is complete. Waiting for all
         of its bytes saves waking up for each.
         """
         if reader is None:
-            time.sleep(duration)
+            self._wait((), duration)
             return self._read(0)
         data = self._read(duration)
         if data:
-            time.sleep(max(0, reader.missing - len(data)) * 10 / self.model.baud)
+            time.sleep(max(0, reader.missing - len(data)) * 10 / self.baud)
             data += self._read(0)
         return data
 
+    def _wait(self, descriptors, duration):
+        """Whether one of the descriptors can be read within a time (s), in which the guardian lives."""
+        ready = select.select((*descriptors, self.guardian.alive), (), (), duration)[0]
+        self.guarded = self.guardian.alive not in ready
+        return any(each in ready for each in descriptors)
+
     def _read(self, timeout):
-        events = self.poll.poll(1000 * timeout)
-        if not events:
+        if not self._wait((self.port.fd,), timeout):
             return b''
         try:
-            data = os.read(self.port.fileno(), 4096)
+            data = os.read(self.port.fd, 4096)
         except OSError as error:
             raise LineLost('%s: %s' % (self.path, error.strerror))
         if not data:
-            raise LineLost('%s: the adapter is gone' % self.path)
+            raise LineLost('%s: device disconnected' % self.path)
         return data

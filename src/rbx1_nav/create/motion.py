@@ -16,11 +16,12 @@ the last State; variances: of these; travel: of both wheels, m; gyro: Reading or
 class Motion:
     """Adds up Travel. Times are in ns."""
 
-    def __init__(self, settings, rounding):
-        """settings: Settings; rounding: see travel.py."""
-        self.width = settings.model.wheel_separation
+    def __init__(self, settings, model, rounding):
+        """settings: Settings; model: a protocol.Model; rounding: see travel.py."""
+        self.width = model.wheel_separation
         self.corrections = settings.linear_correction, settings.angular_correction
         self.rounding = rounding
+        self.moving_yaw_variance = settings.moving_yaw_variance
         self.odometry = UncertainOdometry(self.width, settings.errors, rounding)
         self.left = self.right = 0.0    # m, total travel of the wheels as the robot counts it
         self.time = None            # of the last Travel
@@ -33,7 +34,7 @@ class Motion:
         self.moved_time = now
 
     def add(self, time, travel):
-        """Add a Travel, which has ended at `time`."""
+        """Add a Travel, which has ended at `time`. Returns it with the corrections."""
         linear, angular = self.corrections
         corrected = Travel(travel.distance * linear, travel.angle * angular,
                            travel.distance_variance * linear ** 2, travel.angle_variance * angular ** 2)
@@ -45,6 +46,7 @@ class Motion:
         self.time = time
         if travel.distance or travel.angle or self.moved_time is None:
             self.moved_time = time
+        return corrected
 
     @property
     def stands(self):
@@ -66,6 +68,9 @@ class Motion:
             errors = self.odometry.errors.variances(self.since)
             variances = tuple((variance + error + 2 * rounding ** 2) / elapsed ** 2 + MEASURED
                               for variance, error, rounding in zip(self.since[2:], errors, self.rounding))
+        covariance = self.odometry.covariance
+        if self.moving_yaw_variance and any(velocity):
+            covariance[2, 2] = self.moving_yaw_variance
+            variances = variances[0], self.moving_yaw_variance
         self.reported, self.since = self.time, NOWHERE
-        return State(self.time, self.odometry.pose, self.odometry.covariance, velocity, variances,
-                     (self.left, self.right), gyro)
+        return State(self.time, self.odometry.pose, covariance, velocity, variances, (self.left, self.right), gyro)

@@ -2,48 +2,57 @@
 from collections import namedtuple
 from math import inf
 
-from rbx1_nav.config import ConfigError, Section, show
+from rbx1_nav.config import AUTO, ConfigError, Section, show
 from rbx1_nav.create import protocol
+from rbx1_nav.create.fractions import KINDS
 from rbx1_nav.create.odometry import Errors
 from rbx1_nav.model.robot import Limits, Robot
 from rbx1_nav.units import SECOND
 
+GYRO_CORRECTION = 1.35  # create_node's default
 WHEEL_RADIUS = 0.033    # m, of the wheels that RViz shows
 
-Settings = namedtuple('Settings', 'model port update_rate mode has_gyro gyro_range gyro_correction linear_correction '
-                                  'angular_correction errors stop_on_bump min_yaw_speed')
-Settings.__doc__ = """What the driver depends on. model: a Model; update_rate in Hz; mode: that in which the robot is
-driven; gyro_range in degrees/s; errors: Errors; min_yaw_speed in rad/s."""
+Settings = namedtuple('Settings', 'robot_type model port baud wake update_rate mode mode_plus_one has_gyro gyro_range '
+                                  'gyro_correction linear_correction angular_correction angle_fractions errors '
+                                  'moving_yaw_variance '
+                                  'stop_on_bump min_yaw_speed')
+Settings.__doc__ = """What the driver depends on. robot_type: a name of a Model, or AUTO; model: the Model that is expected;
+baud: bits per second, None to find out; wake: whether to wake a robot by RTS and DTR; update_rate in Hz; mode: that in which
+the robot is driven; mode_plus_one: whether it reports its mode plus one, None to find out; gyro_range in degrees/s;
+angle_fractions: see fractions.KINDS; errors: Errors; moving_yaw_variance in rad^2, 0 for none; min_yaw_speed in rad/s."""
 
 
 def read_settings(params):
     """(Settings, Robot) from a dictionary of private parameters. Raises ConfigError."""
     section = Section(params)
-    name = section.get('robot_type', 'create')
-    if not (isinstance(name, str) and name in protocol.MODELS):
-        raise ConfigError('robot_type: %s: expected one of: %s' % (show(name), ', '.join(protocol.MODELS)))
-    model = protocol.MODELS[name]
+    name = section.choice('robot_type', (AUTO, *protocol.MODELS), AUTO)
+    model = protocol.MODELS.get(name, protocol.CREATE)
     port = section.get('port', '/dev/ttyUSB0')
     if not (isinstance(port, str) and port.startswith('/')):
         raise ConfigError('port: %s: expected the absolute path of a device' % show(port))
-    if section.get('drive_mode', 'twist') != 'twist':
-        raise ConfigError('drive_mode: %s: expected twist, the only one here' % show(params['drive_mode']))
+    section.choice('drive_mode', ('twist',), 'twist')
+    baud = section.choice('baud', (AUTO, *protocol.BAUD_RATES), AUTO)
     mode = section.get('operation_mode', protocol.SAFE)
     if mode not in (protocol.PASSIVE, protocol.SAFE, protocol.FULL) or isinstance(mode, bool):
         raise ConfigError('operation_mode: %s: expected 1 (passive), 2 (safe) or 3 (full)' % show(mode))
+    mode_plus_one = section.choice('oi_mode_workaround', (AUTO, True, False), AUTO)
     has_gyro = section.flag('has_gyro', model is protocol.CREATE)
     if has_gyro and model is not protocol.CREATE:
         raise ConfigError('has_gyro: True: expected false, a %s has no analog input for a gyro' % name)
     settings = Settings(
-        model=model, port=port, mode=int(mode), has_gyro=has_gyro,
+        robot_type=name, model=model, port=port, baud=None if baud == AUTO else baud,
+        wake=section.flag('wake_robot', False), mode=int(mode),
+        mode_plus_one=None if mode_plus_one == AUTO else mode_plus_one, has_gyro=has_gyro,
+        angle_fractions=section.choice('angle_fractions', KINDS, AUTO),
         update_rate=section.number('update_rate', 5, 60, 30.0, 'a rate', 'Hz'),
         gyro_range=section.number('gyro_measurement_range', 1, 1000, 150.0, 'a rate', 'degrees/s'),
-        gyro_correction=section.number('gyro_scale_correction', 0.01, 100, 1.35, 'a factor'),
+        gyro_correction=section.number('gyro_scale_correction', 0.01, 100, GYRO_CORRECTION, 'a factor'),
         linear_correction=section.number('odom_linear_scale_correction', 0.01, 100, 1.0, 'a factor'),
         angular_correction=section.number('odom_angular_scale_correction', 0.01, 100, 1.0, 'a factor'),
         errors=Errors(section.number('odom_linear_error', 0, 1, 0.05, 'a distance', 'm'),
                       section.number('odom_angular_error', 0, 1, 0.09, 'an angle', 'rad'),
                       section.number('odom_heading_error', 0, 1, 0.07, 'an angle', 'rad')),
+        moving_yaw_variance=section.number('moving_yaw_variance', 0, 1e6, 0.0, 'a variance', 'rad^2'),
         stop_on_bump=section.flag('stop_motors_on_bump', True),
         min_yaw_speed=section.number('min_abs_yaw_vel', 0, 10, 0.0, 'a speed', 'rad/s'))
     # 0 is no limit, as in create_node

@@ -1,11 +1,15 @@
 """The serial port: opened for one process at a time, with one clear line for each reason why it cannot be."""
 import errno
+import fcntl
 import glob
 import grp
 import os
 import termios
 
 import serial
+
+
+PSEUDO_TERMINALS = range(136, 144)      # major numbers of devices (admin-guide/devices.txt of Linux)
 
 
 class PortError(OSError):
@@ -15,10 +19,15 @@ class PortError(OSError):
 def open_port(path, baud):
     """An open serial.Serial, whose file descriptor does not block. Raises PortError.
 
-    flock(2) keeps other drivers away. It also holds for a process that inherits the file descriptor.
+    flock(2) keeps other drivers away. It also holds for a process that inherits the file descriptor. TIOCEXCL keeps away
+    whatever does not look for a lock, such as stty, except for root. A pseudo-terminal would keep that setting after the
+    death of all processes that have it open, so it does not get it.
     """
     try:
-        return serial.Serial(path, baud, timeout=0, exclusive=True)
+        port = serial.Serial(path, baud, timeout=0, exclusive=True)
+        if os.major(os.fstat(port.fd).st_rdev) not in PSEUDO_TERMINALS:
+            fcntl.ioctl(port.fd, termios.TIOCEXCL)
+        return port
     except (OSError, ValueError) as error:
         cause = error.__context__       # of an error in termios, pyserial passes on the text only
         number = getattr(error, 'errno', None) or (cause.args[0] if isinstance(cause, termios.error) else None)
@@ -37,6 +46,29 @@ def reason(path, number, error):
     if number in (errno.ENOTTY, errno.EINVAL, errno.EISDIR):
         return 'not a serial port: expected the device of an adapter, such as /dev/ttyUSB0'
     return str(error)
+
+
+def describe_adapter(path):
+    """What identifies the adapter of a port: maker, product and serial number of a USB device, else the device's name. A
+    pseudo-terminal has another one after each time that its other end was closed, so all count as the same."""
+    name = os.path.realpath(path)
+    if name.startswith('/dev/pts/'):
+        return 'a pseudo-terminal'
+    device = os.path.join('/sys/class/tty', os.path.basename(name), 'device')
+    folders = [os.path.realpath(os.path.join(device, *['..'] * level)) for level in range(4)]
+    for folder in folders:
+        texts = [_read_text(os.path.join(folder, key)) for key in ('manufacturer', 'product', 'serial')]
+        if any(texts):
+            return ' '.join(filter(None, texts))
+    return name
+
+
+def _read_text(path):
+    try:
+        with open(path, encoding='utf-8', errors='replace') as file:
+            return file.read().strip()
+    except OSError:
+        return ''
 
 
 def group_of(path):

@@ -1,30 +1,48 @@
 """The sequences of bytes that the driver and its guardian send."""
 from rbx1_nav.create import protocol
 from rbx1_nav.create.protocol import command
+from rbx1_nav.units import SECOND
 
 # bumps, wheel drops and cliffs; charging state to capacity; then single packets
 _NUMBERS = (1, 3, 34, 35)
 STREAMED = _NUMBERS + (43, 44)      # of the Create 2
-QUERIED = _NUMBERS + (19, 20, 33)   # of the Create: sending 19 and 20 sets them to 0
-QUERY = command('query_list', len(QUERIED), *QUERIED)
+# of the Create: sending distance and angle sets them to 0. Both are in group 2, so that there are not seven numbers: a
+# robot that is off would take that byte for a reset
+QUERIED = _NUMBERS + (2, 33)
+QUERIED_WITHOUT_ANGLE = _NUMBERS + (19, 33)
 START_STREAM = command('stream', len(STREAMED), *STREAMED)
-RESUME_STREAM = command('pause_resume_stream', 1)
-MODES = {protocol.PASSIVE: command('start'), protocol.SAFE: command('safe'), protocol.FULL: command('full')}
+PAUSE_STREAM, RESUME_STREAM = (command('pause_resume_stream', on) for on in (0, 1))
+START = command('start')
+MODES = {protocol.PASSIVE: START, protocol.SAFE: command('safe'), protocol.FULL: command('full')}
+
+# the search for a robot: see search.py
+BATTERY = 3                         # a group of 10 bytes
+ASK_BATTERY = START + command('sensors', BATTERY)
+ASK_ENCODER, ASK_WALL = command('sensors', 43), command('sensors', 8)
+PAUSE = SECOND // 500               # ns between two bytes that a receiver must not take for one
+
+
+def query(numbers):
+    """Asks for packets and groups, all in one reply."""
+    return command('query_list', len(numbers), *numbers)
+
 
 # What was sent last may be the beginning of any command of ours. Zeros complete it: no data of a command is a motion of
 # more than a moment, and 0 is no command.
-_PADDING = bytes(max(len(QUERY), len(START_STREAM)) - 1)
+_PADDING = bytes(max(len(query(QUERIED)), len(START_STREAM)) - 1)
 STOP = _PADDING + protocol.drive_direct(0, 0)
+# The longest command has 513 bytes: a song of 255 notes. What garbage has begun, this many zeros complete.
+FLUSH = bytes(512)
 
 
-def ask(model):
-    """Asks a robot that is on for a reading: the only one of a Create, the next ones of a Create 2."""
-    return QUERY if model is protocol.CREATE else RESUME_STREAM
+def queried(model):
+    """What a robot that is polled is asked for: all of it, and for a Create also without the angle."""
+    return (QUERIED, QUERIED_WITHOUT_ANGLE) if model is protocol.CREATE else (STREAMED,)
 
 
-def start(model):
+def start(model, polled):
     """Starts the interface of a robot that was switched off, and asks for a reading. It leads to passive mode."""
-    return STOP + command('start') + (QUERY if model is protocol.CREATE else START_STREAM)
+    return STOP + START + (query(queried(model)[0]) if polled else START_STREAM)
 
 
 def take_control(model, mode):
@@ -35,5 +53,10 @@ def take_control(model, mode):
 
 def leave(model):
     """Stops the robot after any beginning of a command, and leaves it in passive mode, where it can be charged."""
-    rest = command('digital_outputs', 0) if model is protocol.CREATE else command('pause_resume_stream', 0)
-    return STOP + rest + command('start')
+    return STOP + (command('digital_outputs', 0) if model is protocol.CREATE else b'') + START
+
+
+def guardian_stop(model):
+    """What a guardian sends: the same, again after what garbage may have begun, and an end of the stream."""
+    stop = leave(model) + (b'' if model is protocol.CREATE else PAUSE_STREAM)
+    return stop + FLUSH + stop

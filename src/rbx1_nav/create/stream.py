@@ -87,18 +87,24 @@ class FrameReader:
         return dict(zip(self.names, values))
 
 
-class ReplyReader:
-    """Takes the reply to a query, which has neither header nor checksum: only its length and the ranges of its values
-    show that it is not corrupted."""
-
-    MIN_VOLTAGE, MAX_VOLTAGE = 5000, 25000      # mV: of a robot that runs
+class Layout:
+    """What the reply to a query consists of."""
 
     def __init__(self, model, numbers):
-        """model: a Model; numbers: of the packets and groups that are requested."""
         packets = protocol.single_packets(model, numbers)
         self.names = [packet.name for packet in packets]
         self.ranges = Ranges(packets)
         self.format = protocol.packets_format(packets)
+
+
+class ReplyReader:
+    """Takes the reply to a query, which has neither header nor checksum: only its length and the ranges of its values
+    show that it is not corrupted."""
+
+    def __init__(self, model, *queries):
+        """model: a Model; queries: each a tuple of the numbers of packets and groups that are requested together."""
+        self.layouts = {numbers: Layout(model, numbers) for numbers in queries}
+        self.layout = self.layouts[queries[0]]  # of the reply that is expected
         self.buffer = bytearray()
         self.waiting = False    # for a reply
         self.rejected = 0       # replies
@@ -110,25 +116,27 @@ class ReplyReader:
         self.buffer.clear()
         self.waiting = False
 
-    def expect(self):
-        """A query was sent: the next bytes are the reply."""
+    def expect(self, numbers):
+        """A query was sent: the next bytes are the reply. numbers: one of `queries`."""
         self.clear()
+        self.layout = self.layouts[numbers]
         self.waiting = True
 
     @property
     def missing(self):
         """How many bytes complete the reply."""
-        return self.format.size - len(self.buffer) if self.waiting else 0
+        return self.layout.format.size - len(self.buffer) if self.waiting else 0
 
     def feed(self, data):
         """The readings, at most one, that are complete with these bytes."""
         self.buffer += data
-        if not self.waiting or len(self.buffer) < self.format.size:
+        layout = self.layout
+        if not self.waiting or len(self.buffer) < layout.format.size:
             return []
-        values = self.format.unpack(bytes(self.buffer[:self.format.size]))
-        reading = dict(zip(self.names, values))
-        if self.ranges.contain(values) and len(self.buffer) == self.format.size and (
-                self.MIN_VOLTAGE <= reading['voltage'] <= self.MAX_VOLTAGE):
+        values = layout.format.unpack(bytes(self.buffer[:layout.format.size]))
+        reading = dict(zip(layout.names, values))
+        if layout.ranges.contain(values) and len(self.buffer) == layout.format.size and (
+                protocol.MIN_VOLTAGE <= reading['voltage'] <= protocol.MAX_VOLTAGE):
             self.buffer.clear()
             self.waiting = False
             return [reading]

@@ -4,6 +4,8 @@ from rbx1_nav.units import SECOND
 
 HOLD = SECOND           # ns that the cause must be gone before the driver takes control again
 RETRY = SECOND // 2     # ns between two attempts
+SETTLE = SECOND // 10   # ns after which a reading shows the mode that was asked for
+PATIENCE = 3            # attempts without a cause for their failure, after which it is logged
 CLIFFS = ('cliff_left', 'cliff_front_left', 'cliff_front_right', 'cliff_right')
 WHEEL_DROPS = protocol.WHEEL_DROP_LEFT | protocol.WHEEL_DROP_RIGHT | protocol.WHEEL_DROP_CASTOR
 BUMPS = protocol.BUMP_LEFT | protocol.BUMP_RIGHT
@@ -22,41 +24,100 @@ def causes(reading):
     return found
 
 
+class Offset:
+    """By how much a robot reports its mode too high: Roombas with Wi-Fi report it plus one (create_robot, issue 64)."""
+
+    def __init__(self, wanted, value=None):
+        """wanted: the mode that is asked for; value: 0 or 1, or None to find out."""
+        self.wanted = wanted
+        self.value = value
+        self._reported = set()      # so far
+        self._attempts = 0
+
+    def ask(self, reported):
+        """The wanted mode is asked for. reported: the mode before."""
+        self._reported.add(reported)
+        self._attempts += 1
+
+    def judge(self, reported, obstructed):
+        """Find out from the mode that is reported after it was asked for. obstructed: whether the robot has had a reason
+        not to leave passive mode."""
+        self._reported.add(reported)
+        if reported == self.wanted + 1:
+            self.value = 1
+        elif reported == self.wanted == protocol.SAFE:
+            # passive mode plus one looks the same, but also before it was asked for
+            if not obstructed and (protocol.PASSIVE in self._reported or self._attempts >= 2):
+                self.value = 0
+        elif reported in (self.wanted, protocol.PASSIVE):
+            self.value = 0
+
+
 class Supervisor:
     """Decides when to ask the robot for the mode in which it is driven."""
 
-    def __init__(self, mode, info, warn):
-        """mode: the wanted one, of packet 35; info(text), warn(text): log a line."""
+    def __init__(self, mode, plus_one, info, warn):
+        """mode: the wanted one, of packet 35; plus_one: whether the robot reports its mode plus one, None to find out;
+        info(text), warn(text): log a line."""
         self.wanted = mode
+        self.plus_one = plus_one
         self.info = info
         self.warn = warn
         self.mode = None            # of the last two readings
         self.reason = ''            # why the robot is not in the wanted mode
         self.had_control = False
-        self.forget()
+        self.offset_logged = False
+        self.restart()
 
     @property
     def in_control(self):
         """Whether the robot is in the wanted mode."""
         return self.mode == self.wanted
 
+    def restart(self):
+        """The robot is started: it may be another one."""
+        self.offset = Offset(self.wanted, None if self.plus_one is None else int(self.plus_one))
+        self.forget()
+
     def forget(self):
         """There are no readings any more."""
         self.mode = self.latest = self.clear_since = self.attempt = None
+        self.obstructed = False     # since the last attempt
+        self.failures = 0           # attempts in a row for whose failure there is no cause
+
+    def is_passive(self, reading):
+        """Whether a robot that was asked for passive mode may be in it."""
+        offsets = (0, 1) if self.offset.value is None else (self.offset.value,)
+        return reading['mode'] - protocol.PASSIVE in offsets
 
     def update(self, now, reading, wants_motion):
         """Whether to ask for the wanted mode at `now` (ns). wants_motion: whether a command to move is in force."""
-        mode, before = reading['mode'], self.latest
-        self.latest = mode
-        if mode != before:      # one reading may be corrupted, the second one counts
-            return False
-        self._note(mode)
-        if self.in_control:
-            self.clear_since = None
+        reported, before = reading['mode'], self.latest
+        self.latest = reported
+        if reported != before:      # one reading may be corrupted, the second one counts
             return False
         found = causes(reading)
         docked = bool(reading['charging_sources'] & DOCK)
-        self._explain(', '.join(found + ['on the dock: carry it off if a command does not move it'] * docked))
+        obstructed = bool(found or docked)
+        self.obstructed |= obstructed
+        if self.offset.value is None:
+            if self.attempt is None:        # once, whatever is reported
+                return self._ask(now, reported, obstructed)
+            if now - self.attempt < SETTLE:
+                return False
+            self.offset.judge(reported, self.obstructed)
+            if self.offset.value and not self.offset_logged:
+                self.offset_logged = True
+                self.warn('The robot reports its mode plus one: expected a mode from 0 to 3; corrected, as with '
+                          'oi_mode_workaround:=true')
+        self._note(protocol.PASSIVE if self.offset.value is None else min(reported - self.offset.value, protocol.FULL))
+        if self.in_control:
+            self.clear_since, self.failures = None, 0
+            return False
+        if obstructed:
+            self.failures = 0
+        self._explain(', '.join(found + ['on the dock: carry it off if a command does not move it'] * docked
+                                + [self._contradiction(reported)] * (self.failures > PATIENCE)))
         if found or docked and not wants_motion:
             self.clear_since = None
             return False
@@ -65,8 +126,20 @@ class Supervisor:
         if now - self.clear_since < HOLD * self.had_control or (
                 self.attempt is not None and now - self.attempt < RETRY):
             return False
-        self.attempt = now
+        return self._ask(now, reported, obstructed)
+
+    def _ask(self, now, reported, obstructed):
+        self.attempt, self.obstructed = now, obstructed
+        self.failures += not obstructed
+        self.offset.ask(reported)
         return True
+
+    def _contradiction(self, reported):
+        """Why a robot that has no reason to disobey may seem to. reported: the mode."""
+        workaround = '' if self.plus_one is None else (
+            ' with oi_mode_workaround:=%s; without this parameter the base finds out' % str(self.plus_one).lower())
+        return 'it reports mode %d after it was asked for %s mode: expected %d%s' % (
+            reported, protocol.MODE_NAMES[self.wanted], self.wanted + (self.offset.value or 0), workaround)
 
     def _note(self, mode):
         before, self.mode = self.mode, mode
@@ -75,7 +148,7 @@ class Supervisor:
             self.info('The robot is in %s mode' % protocol.MODE_NAMES[mode])
         elif before == self.wanted and mode != before:
             self.reason = None
-            self.warn('The robot stopped: it changed from %s to %s mode' % (
+            self.warn('The robot is no longer driven: it changed from %s to %s mode' % (
                 protocol.MODE_NAMES[before], protocol.MODE_NAMES[mode]))
 
     def _explain(self, reason):

@@ -18,27 +18,39 @@ def charge_of(reading):
 class CreateStatus:
     """Fills in the DiagnosticStatus of each part."""
 
-    def __init__(self, updater, name, driver, link, commands):
-        """updater: a diagnostic_updater.Updater; name: of the robot; driver: a Driver; link: a Link; commands: the
-        VelocityCommands."""
+    def __init__(self, updater, driver, link, commands):
+        """updater: a diagnostic_updater.Updater; driver: a Driver; link: a Link; commands: the VelocityCommands."""
         self.driver, self.link, self.commands = driver, link, commands
         self.battery_level = OK     # the last one
-        updater.setHardwareID(name)
-        parts = [(name, self.base), ('Battery', self.battery), ('Sensors', self.sensors), ('Serial line', self.line)]
-        for title, function in parts + ([('Gyro', self.gyro)] if driver.gyro else []):
+        self.updater = updater
+        self.shows_gyro = False     # not before a robot with one was found
+        updater.setHardwareID(link.path)
+        for title, function in (('Base', self.base), ('Battery', self.battery), ('Sensors', self.sensors),
+                                ('Serial line', self.line)):
             updater.add(title, function)
+
+    def update(self):
+        """Publish /diagnostics."""
+        if self.driver.gyro and self.driver.contact.found and not self.shows_gyro:
+            self.shows_gyro = True
+            self.updater.add('Gyro', self.gyro)
+        self.updater.force_update()
 
     def base(self, status):
         """Mode and commands."""
         driver, supervisor = self.driver, self.driver.supervisor
         if self.link.problem:
             status.summary(ERROR, self.link.problem)
-        elif not driver.answers:
+        elif not driver.contact.answers:
             status.summary(ERROR, 'The robot does not answer')
         elif not supervisor.in_control:
             status.summary(WARN, 'Not driven: %s' % (supervisor.reason or 'changing the mode'))
         else:
             status.summary(OK, 'Standing' if driver.motion.stands else 'Moving')
+        found = driver.contact.found
+        status.add('Robot type', found.model.name if found else 'unknown')
+        if driver.polled:
+            status.add('Fractions of a degree', driver.counter.fractions.kind)
         mode = supervisor.mode
         status.add('Mode', 'unknown' if mode is None else protocol.MODE_NAMES[mode])
         status.add('Speed of the left wheel (mm/s)', driver.commanded.speeds[0])
@@ -91,14 +103,20 @@ class CreateStatus:
         return status
 
     def gyro(self, status):
-        """The gyro's offset."""
-        offset = self.driver.gyro.offset
-        if offset is None:
-            status.summary(WARN, 'Not calibrated: expected the robot to stand')
+        """The gyro's present reading and its offset."""
+        gyro = self.driver.gyro
+        offset = gyro.offset
+        if gyro.check.problem:
+            status.summary(ERROR, gyro.check.problem)
+        elif offset is None:
+            status.summary(WARN, 'Not calibrated: keep the robot stationary')
         else:
             status.summary(OK, 'Calibrated')
+        if self.driver.reading:
+            status.add('Reading (counts)', self.driver.reading['analog_input'])
+        if offset is not None:
             status.add('Offset (counts)', '%.2f' % offset)
-        status.add('Readings at rest', len(self.driver.gyro.rest))
+        status.add('Readings at rest', len(gyro.rest))
         return status
 
     def line(self, status):
@@ -107,17 +125,20 @@ class CreateStatus:
         if self.link.problem:
             status.summary(ERROR, self.link.problem)
         else:
-            status.summary(OK if driver.answers else ERROR, 'Open')
+            status.summary(OK if driver.contact.answers else ERROR, 'Open')
         status.add('Port', self.link.path)
+        status.add('Adapter', self.link.adapter or 'unknown')
+        status.add('Rate (baud)', self.link.baud)
+        status.add('Rates changed by other processes', self.link.changes)
         status.add('Corrupted readings', driver.reader.rejected)
         status.add('Bytes in no reading', driver.reader.skipped)
         status.add('Implausible readings', driver.implausible)
         status.add('Lost replies', driver.missed)
-        status.add('Dropouts', driver.dropouts)
+        status.add('Dropouts', driver.contact.dropouts)
         return status
 
     def _reading(self, status):
-        if not self.driver.answers:
+        if not self.driver.contact.answers:
             status.summary(ERROR, 'The robot does not answer')
             return None
         return self.driver.reading

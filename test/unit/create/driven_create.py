@@ -1,11 +1,12 @@
 """A driver and an emulated robot on one clock, without a serial port: what the unit tests share."""
 import os
 
-from rbx1_nav.control.gate import CommandGate
-from rbx1_nav.create.body import Body
+from rbx1_nav.control.gate import CommandGate, RefusedCommand
+from rbx1_nav.create.body import Body, Quirks
 from rbx1_nav.create.driver import Driver
 from rbx1_nav.create.emulator import EmulatedCreate
 from rbx1_nav.create.parameters import read_settings
+from rbx1_nav.create.protocol import MODELS
 from rbx1_nav.create.serial_line import SerialLine
 from rbx1_nav.units import SECOND
 
@@ -16,31 +17,62 @@ STEP = SECOND // 500
 class DrivenCreate:
     """Both ends of a line whose cable can be pulled."""
 
-    def __init__(self, robot_type, surface=None, seed=0, **params):
-        """robot_type: create or create2; surface, seed: of the Body; params: of the node."""
-        self.settings, robot = read_settings(dict(params, robot_type=robot_type))
-        self.gate = CommandGate(robot.limits, robot.timeout)
+    is_same = True      # whether the line is on the same adapter as the one before
+
+    def __init__(self, robot_type, surface=None, seed=0, robot=None, quirks=Quirks(), **params):
+        """robot_type: auto, create or create2; surface, seed, quirks: of the Body; robot: its true type, if that is another
+        one; params: of the node."""
+        self.settings, base = read_settings(dict(params, robot_type=robot_type))
+        self.gate = CommandGate(base.limits, base.timeout)
         self.log = []
-        self.driver = Driver(self.settings, self.gate, self.log.append, self.log.append)
+        self.errors = []        # the lines of the log that are errors
+        self.driver = Driver(self.settings, self.gate, self.log.append, self.log.append, self.log_error)
         self.now = SECOND
-        self.body = Body(self.settings.model, surface, seed)
-        self.line = SerialLine(self.settings.model.baud, seed)
+        model = MODELS[robot or robot_type]
+        self.body = Body(model, surface, seed, quirks=quirks)
+        self.line = SerialLine(model.baud, seed)
         self.commands = []      # (time, bytes) that have arrived at the robot
-        self.robot = EmulatedCreate(self.settings.model, self.body, self.line, self.now,
+        self.robot = EmulatedCreate(model, self.body, self.line, self.now,
                                     lambda time, data: self.commands.append((time, data)))
         self.connected = False
         self.states = []
+        self.found = None       # a Found
+        self.refusals = []      # texts
         self.velocity = None    # m/s and rad/s: the command that is repeated, or None
+
+    def log_error(self, text):
+        """Log an error."""
+        self.log.append(text)
+        self.errors.append(text)
 
     def connect(self):
         """Put the cable in."""
         self.connected = True
-        self.driver.attach(self.now, lambda data: self.robot.receive(data, self.now))
+        self.driver.attach(self.now, self)
+
+    # what a Link does for the driver
+
+    def write(self, data):
+        """Send bytes."""
+        self.robot.receive(data, self.now)
+
+    def write_apart(self, data):
+        """Send bytes one by one."""
+        for byte in data:
+            self.write(bytes((byte,)))
+
+    def set_rate(self, baud):
+        """Set the rate of the host."""
+        self.line.host_baud = baud
+
+    def confirm(self, found):
+        """Remember what the guardian would be told."""
+        self.found = found
 
     def pull(self):
         """Pull the cable. What is on the way is lost."""
         self.connected = False
-        self.driver.detach(self.now)
+        self.driver.detach()
 
     def run(self, seconds):
         """Let both run, with a step of the driver every 2 ms."""
@@ -49,7 +81,7 @@ class DrivenCreate:
             self.now += STEP
             data = self.robot.advance(self.now)
             if self.velocity and self.now % (SECOND // 50) < STEP:
-                self.driver.command(self.now, *self.velocity)
+                self.command(*self.velocity)
             if not self.connected:
                 continue
             self.driver.receive(self.now, data)
@@ -57,6 +89,17 @@ class DrivenCreate:
             state = self.driver.state()
             if state:
                 self.states.append(state)
+
+    def command(self, linear, angular, sender='driver'):
+        """Send a command, and keep the text if it is refused."""
+        try:
+            self.driver.command(self.now, linear, angular, sender=sender)
+        except RefusedCommand as error:
+            self.refusals.append(str(error))
+
+    def stall(self, seconds):
+        """The computer pauses: the robot moves on, and what it sends waits."""
+        self.now += round(seconds * SECOND)
 
     def drive(self, linear, angular, seconds):
         """Repeat a command for a while."""
@@ -66,7 +109,7 @@ class DrivenCreate:
 
     def command_zero(self):
         """Stop by a command."""
-        self.driver.command(self.now, 0, 0)
+        self.command(0, 0)
 
     @property
     def truth(self):

@@ -21,13 +21,13 @@ def test_a_create_2_has_no_gyro():
 
 
 @pytest.mark.parametrize('params, text', [
-    ({'robot_type': 'roomba'}, "robot_type: 'roomba': expected one of: create, create2"),
-    ({'robot_type': ['create']}, "robot_type: ['create']: expected one of: create, create2"),
+    ({'robot_type': 'roomba'}, "robot_type: 'roomba': expected one of auto, create, create2"),
+    ({'robot_type': ['create']}, "robot_type: ['create']: expected one of auto, create, create2"),
     ({'port': 3}, 'port: 3: expected the absolute path of a device'),
     ({'port': 'COM1'}, "port: 'COM1': expected the absolute path of a device"),
     ({'operation_mode': 0}, 'operation_mode: 0: expected 1 (passive), 2 (safe) or 3 (full)'),
     ({'operation_mode': True}, 'operation_mode: True: expected 1 (passive), 2 (safe) or 3 (full)'),
-    ({'drive_mode': 'turtle'}, "drive_mode: 'turtle': expected twist, the only one here"),
+    ({'drive_mode': 'turtle'}, "drive_mode: 'turtle': expected one of twist"),
     ({'robot_type': 'create2', 'has_gyro': True},
      'has_gyro: True: expected false, a create2 has no analog input for a gyro'),
     ({'cmd_vel_timeout': 0}, 'cmd_vel_timeout: 0: expected a time from 0.05 to 10 in s'),

@@ -18,7 +18,7 @@ POSITION, ANGLE = {'create': 0.02, 'create2': 0.001}, {'create': 0.02, 'create2'
 def test_it_starts_a_robot_that_was_just_switched_on(robot_type):
     driven = started(robot_type)
     assert driven.robot.mode == protocol.SAFE
-    assert driven.driver.answers and driven.driver.supervisor.in_control
+    assert driven.driver.contact.answers and driven.driver.supervisor.in_control
     assert driven.speeds == (0, 0)
 
 
@@ -49,7 +49,7 @@ def test_odometry_follows_the_robot_out_and_back(robot_type):
 def test_a_command_is_sent_at_once(robot_type):
     driven = started(robot_type)
     before = driven.now
-    driven.driver.command(driven.now, 0.2, 0)
+    driven.command(0.2, 0)
     driven.run(0.01)
     time = next(time for time, data in driven.commands if data == protocol.drive_direct(200, 200))
     # five bytes, and a query before them, at the line's rate
@@ -59,7 +59,7 @@ def test_a_command_is_sent_at_once(robot_type):
 @BOTH
 def test_a_command_times_out(robot_type):
     driven = started(robot_type, cmd_vel_timeout=0.3)
-    driven.driver.command(driven.now, 0.2, 0)
+    driven.command(0.2, 0)
     driven.run(0.29)
     assert driven.speeds == (200, 200)
     driven.run(0.02)    # a step and the bytes
@@ -90,9 +90,9 @@ def test_the_mean_speed_is_what_was_asked_for(robot_type):
 def test_a_flood_of_commands_does_not_fill_the_line(robot_type):
     driven = started(robot_type)
     for index in range(1000):
-        driven.driver.command(driven.now, 0.2 + index / 1e5, 0)
+        driven.command(0.2 + index / 1e5, 0)
         driven.run(0.002)
-    driven.driver.command(driven.now, 0, 0)
+    driven.command(0, 0)
     driven.run(0.02)
     assert driven.speeds == (0, 0)
 
@@ -166,5 +166,5 @@ def test_without_a_line_nothing_is_reported():
     driven = DrivenCreate('create2')
     driven.run(1)
     driven.driver.tick(driven.now)
-    driven.driver.command(driven.now, 0.2, 0)
+    driven.command(0.2, 0)
     assert driven.driver.state() is None and driven.commands == []

@@ -1,12 +1,15 @@
 """The guardian stops the robot when the guarded process is gone or hangs. Real processes on a pseudo-terminal."""
+import fcntl
 import os
 import signal
 import subprocess
 import sys
+import termios
 import time
 
 import pytest
 
+from rbx1_nav.create import guardian
 from rbx1_nav.create.guardian import Guardian
 from rbx1_nav.create.port import PortError, open_port
 from rbx1_nav.create.pseudo_terminal import PseudoTerminal
@@ -29,6 +32,7 @@ while True:
     time.sleep(0.05)
     guardian.beat()
 '''
+GUARDIAN = guardian.__file__
 SOURCE = os.path.join(os.path.dirname(__file__), '..', '..', '..', 'src')
 
 
@@ -61,6 +65,13 @@ def start(terminal, command=b'\x91'):
     pid = int(process.stdout.readline())
     assert read_until(terminal, command) == command
     return process, pid
+
+
+def unread_bytes(pipe):
+    """How many bytes of a pipe its reader has not read yet."""
+    count = bytearray(4)
+    fcntl.ioctl(pipe, termios.FIONREAD, count)
+    return int.from_bytes(count, sys.byteorder)
 
 
 def wait_for_end(pid):
@@ -116,11 +127,39 @@ def test_the_port_is_in_use_until_the_stop_is_sent(terminal):
 
 def test_a_guardian_that_is_gone_is_noticed(terminal):
     with open_port(terminal.link, 115200) as port:
-        guardian = Guardian(port.fileno(), STOP)
-        assert guardian.beat()
-        guardian.process.kill()
-        guardian.process.wait()
-        assert not guardian.beat()
+        watcher = Guardian(port.fileno(), STOP)
+        assert watcher.beat()
+        watcher.process.kill()
+        watcher.process.wait()
+        assert not watcher.beat()
+
+
+def test_a_process_that_dies_while_its_guardian_starts_is_stopped_too(terminal):
+    """The pipe on which the guardian says that it has started is broken by then."""
+    with open_port(terminal.link, 115200) as port:
+        read_end, write_end = os.pipe()
+        os.close(read_end)
+        process = subprocess.Popen([sys.executable, '-E', '-S', GUARDIAN, str(port.fileno()), STOP.hex()],
+                                   stdin=subprocess.DEVNULL, stdout=write_end, pass_fds=(port.fileno(),))
+        os.close(write_end)
+        assert read_until(terminal, STOP) == STOP
+        assert process.wait() == 0
+
+
+def test_a_known_robot_gets_another_stop_at_the_rate_that_it_had(terminal):
+    with open_port(terminal.link, 57600) as port:
+        watcher = Guardian(port.fileno(), b'\x80')
+        port.baudrate = 19200
+        watcher.confirm(STOP)
+        give_up = time.monotonic() + LIMIT
+        while unread_bytes(watcher.process.stdin.fileno()) and time.monotonic() < give_up:
+            time.sleep(0.001)
+        time.sleep(0.1)         # from reading that to looking at the port
+        subprocess.run(['stty', '-F', terminal.link, '9600'], check=True)
+        watcher.release()
+        assert read_until(terminal, STOP) == STOP
+        assert terminal.baud == 19200
+        watcher.process.wait()
 
 
 def test_a_cable_that_is_gone_ends_the_guardian(terminal):

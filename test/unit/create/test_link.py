@@ -1,23 +1,39 @@
-"""The line, at a pseudo-terminal that nobody reads, and at one that is gone."""
+"""The line, at a pseudo-terminal that nobody reads, at one that has disconnected, and with others who use it too."""
 import os
 import pty
+import select
+import subprocess
+import time
 from types import SimpleNamespace
 
 import pytest
 
+import rbx1_nav.create.link
 from rbx1_nav.create import protocol
-from rbx1_nav.create.link import LineLost, Link
+from rbx1_nav.create.line_settings import read_rate
+from rbx1_nav.create.link import BEAT, LineLost, Link
+from rbx1_nav.create.pseudo_terminal import PseudoTerminal
+from rbx1_nav.create.search import Search
+from rbx1_nav.units import SECOND
+
+LIMIT = 30      # s after which a wait fails
 
 
-@pytest.fixture
-def line():
-    """(the robot's end of a line, the open Link at the other)."""
+def make_link(path):
+    """(a Link with the robot at 115200 baud, the lines that it logs)."""
+    log = []
+    return Link(SimpleNamespace(model=protocol.CREATE_2, baud=None, port=path), log.append), log
+
+
+@pytest.fixture(name='line')
+def make_line():
+    """(the robot's end of a line, the open Link at the other, its log)."""
     robot, host = pty.openpty()
     path = os.ttyname(host)
     os.close(host)
-    link = Link(SimpleNamespace(model=protocol.CREATE_2, port=path), pytest.fail)
+    link, log = make_link(path)
     assert link.open(0), link.problem
-    yield robot, link
+    yield robot, link, log
     guardian = link.guardian.process
     link.close()
     guardian.wait()
@@ -25,15 +41,112 @@ def line():
 
 def test_a_line_that_takes_no_bytes_is_lost(line):
     """It neither blocks nor drops them silently."""
-    _, link = line
-    with pytest.raises(LineLost, match='accepts no more bytes|temporarily unavailable'):
+    _, link, _ = line
+    with pytest.raises(LineLost, match='write timed out|temporarily unavailable'):
         for _ in range(10 ** 5):
             link.write(bytes(100))
 
 
 def test_a_line_whose_other_end_is_closed_is_lost(line):
     """As if the cable were pulled."""
-    robot, link = line
+    robot, link, _ = line
     os.close(robot)
     with pytest.raises(LineLost, match=link.path):
         link.write(b'\0')
+
+
+def test_the_death_of_the_guardian_ends_the_wait_for_bytes(line):
+    """Until the node notices, nobody stops a robot whose node is killed."""
+    robot, link, _ = line
+    for reader in (None, SimpleNamespace(missing=0)):
+        assert link.is_guarded(BEAT)
+        link.guardian.process.kill()
+        link.read(LIMIT * 1000, reader)     # would outlast the time limit of any test
+        assert not link.is_guarded(BEAT)
+        assert not select.select([robot], [], [], 0)[0]
+        link.close()
+        assert link.open(link.attempt + 10 ** 9)
+
+
+def test_a_rate_that_another_process_has_set_is_set_back(line):
+    _, link, log = line
+    subprocess.run(['stty', '-F', link.path, '9600'], check=True)
+    assert link.is_guarded(BEAT)
+    assert log == ['%s: another process has changed the rate to 9600 baud: expected 115200; set back' % link.path]
+    assert link.port.baudrate == 115200 and link.changes == 1
+    assert '115200' in subprocess.run(['stty', '-F', link.path, 'speed'], stdout=subprocess.PIPE, check=True,
+                                      text=True).stdout
+    assert link.is_guarded(2 * BEAT) and len(log) == 1
+
+
+def test_no_byte_is_sent_at_a_rate_that_another_process_has_set(line):
+    robot, link, _ = line
+    assert link.is_guarded(BEAT)
+    subprocess.run(['stty', '-F', link.path, '57600'], check=True)
+    link.write(b'\x91')
+    assert link.port.baudrate == 115200 and link.changes == 1 and link.disturbed
+    assert read_rate(robot) == 115200
+
+
+def test_an_echo_that_another_process_has_set_is_cleared(line):
+    """The robot would execute its own readings."""
+    robot, link, log = line
+    subprocess.run(['stty', '-F', link.path, 'sane'], check=True)
+    link.write(b'\x91')
+    assert log == ['%s: another process has changed the settings; set back' % link.path]
+    os.read(robot, 1)
+    os.write(robot, b'\x85')
+    assert link.read(LIMIT, SimpleNamespace(missing=1)) == b'\x85'
+    assert not select.select([robot], [], [], 0)[0]
+
+
+def test_bytes_that_are_sent_apart_arrive_all(line):
+    robot, link, _ = line
+    link.write_apart(b'\x80' * 3)
+    assert os.read(robot, 10) == b'\x80' * 3
+
+
+def test_a_line_without_rts_and_dtr_is_searched_without_waking(line):
+    robot, link, log = line
+    search = Search((57600,), wake=True)
+    search.begin(0, link)
+    count = 0
+    for now in range(0, 4 * SECOND, SECOND // 10):
+        search.tick(now)        # raises no LineLost
+        count += len(os.read(robot, 4096)) if select.select([robot], [], [], 0)[0] else 0
+    assert search.rounds > 5 and count > 200
+    assert log == ['wake_robot:=true: %s has no RTS and DTR: expected an adapter that has these lines; searching without '
+                   'waking the robot' % link.path]
+
+
+def test_an_adapter_that_disconnects_while_its_lines_are_set_is_lost(line):
+    robot, link, log = line
+    os.close(robot)
+    with pytest.raises(LineLost, match=link.path):
+        link.set_wake_lines(True)
+    assert not log
+
+
+def test_another_device_is_reported(tmp_path, monkeypatch):
+    monkeypatch.setattr(rbx1_nav.create.link, 'describe_adapter', os.path.realpath)
+    terminals = [PseudoTerminal(str(tmp_path / 'port')) for _ in range(2)]     # the second one takes the link
+    link, log = make_link(terminals[1].link)
+    assert link.open(0)
+    guardians = [link.guardian.process]
+    link.close()
+    os.unlink(terminals[1].link)
+    os.symlink(terminals[0].device, terminals[1].link)
+    give_up = time.monotonic() + LIMIT
+    for attempt in range(1, 10 ** 6):
+        assert time.monotonic() < give_up
+        if link.open(attempt * 10 ** 9):
+            break
+    guardians.append(link.guardian.process)
+    assert log == ['%s is now %s, before it was %s: check that the same robot is connected'
+                   % (link.path, terminals[0].device, terminals[1].device)]
+    assert not link.is_same
+    link.close()
+    for process in guardians:
+        process.wait()
+    for terminal in terminals:
+        terminal.unplug()

@@ -64,7 +64,7 @@ def test_a_lost_or_doubled_byte_costs_one_frame(index, lost):
 
 def test_a_value_out_of_range_is_no_reading():
     reader = FrameReader(MODEL, NUMBERS)
-    assert reader.feed(protocol.encode_frame(MODEL, NUMBERS, dict(values(1), mode=4))) == []
+    assert reader.feed(protocol.encode_frame(MODEL, NUMBERS, dict(values(1), mode=5))) == []
     assert reader.rejected == 1
 
 
@@ -78,7 +78,7 @@ def reply(**changes):
 def test_a_reply(size):
     reading, data = reply(distance=-7, analog_input=512)
     reader = ReplyReader(protocol.CREATE, sequences.QUERIED)
-    reader.expect()
+    reader.expect(sequences.QUERIED)
     assert feed(reader, data, size) == [reading]
     assert not reader.waiting
 
@@ -86,14 +86,14 @@ def test_a_reply(size):
 def test_a_reply_that_nobody_asked_for():
     reader = ReplyReader(protocol.CREATE, sequences.QUERIED)
     assert reader.feed(reply()[1]) == []
-    reader.expect()
+    reader.expect(sequences.QUERIED)
     assert reader.skipped == len(reply()[1])
 
 
-@pytest.mark.parametrize('data', [reply()[1] + b'\0', reply(mode=4)[1], reply(voltage=0)[1], b'\0' + reply()[1][:-1]],
+@pytest.mark.parametrize('data', [reply()[1] + b'\0', reply(mode=5)[1], reply(voltage=0)[1], b'\0' + reply()[1][:-1]],
                          ids=['too long', 'mode', 'voltage', 'shifted'])
 def test_a_corrupted_reply(data):
     reader = ReplyReader(protocol.CREATE, sequences.QUERIED)
-    reader.expect()
+    reader.expect(sequences.QUERIED)
     assert reader.feed(data) == []
     assert reader.rejected == 1 and not reader.waiting

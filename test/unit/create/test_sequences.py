@@ -5,8 +5,9 @@ from rbx1_nav.create import protocol, sequences
 
 from driven_create import started
 
-COMMANDS = [protocol.drive_direct(500, -500), protocol.drive_direct(-1, -1), sequences.QUERY, sequences.START_STREAM,
-            sequences.RESUME_STREAM, protocol.command('start'), protocol.command('safe'), protocol.command('full'),
+COMMANDS = [protocol.drive_direct(500, -500), protocol.drive_direct(-1, -1), sequences.query(sequences.QUERIED),
+            sequences.query(sequences.QUERIED_WITHOUT_ANGLE), sequences.START_STREAM, sequences.RESUME_STREAM,
+            protocol.command('start'), protocol.command('safe'), protocol.command('full'),
             protocol.command('digital_outputs', 1)]
 BEGINNINGS = sorted({command[:size] for command in COMMANDS for size in range(len(command) + 1)})
 
@@ -29,5 +30,7 @@ def test_the_robot_stands_after_any_beginning_of_a_command(robot_type, stop):
 def test_nothing_that_is_sent_to_a_robot_that_is_off_resets_it(model):
     # such a robot takes each byte for a command
     reset = protocol.OPCODES['reset']
-    for data in (sequences.STOP, sequences.ask(model), sequences.start(model), sequences.leave(model)):
-        assert reset not in data or reset not in model.commands
+    for data in (sequences.STOP, sequences.FLUSH, sequences.start(model, True), sequences.start(model, False), sequences.leave(model),
+                 sequences.guardian_stop(model), sequences.ASK_BATTERY, sequences.ASK_ENCODER, sequences.ASK_WALL,
+                 sequences.query(sequences.QUERIED), sequences.query(sequences.QUERIED_WITHOUT_ANGLE)):
+        assert reset not in data

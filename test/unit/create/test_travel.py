@@ -5,6 +5,7 @@ from hypothesis import given, strategies
 import pytest
 
 from rbx1_nav.create import protocol
+from rbx1_nav.create.fractions import KEPT, Fractions
 from rbx1_nav.create.travel import NOWHERE, STILL, CounterTravel, EncoderTravel, Expected, Implausible
 
 COUNT = 1 / protocol.CREATE_2.counts_per_metre      # m
@@ -25,7 +26,7 @@ def encoder_travel(left, right):
 
 
 def counter_travel():
-    counter = CounterTravel(protocol.CREATE)
+    counter = CounterTravel(protocol.CREATE, Fractions(KEPT))
     assert counter.update(counters(500, 90), 0.0, STILL) == NOWHERE     # from before
     return counter
 
@@ -74,16 +75,16 @@ def test_an_implausible_reading_of_a_create(distance, angle):
 
 def test_a_lost_reply_is_bridged_by_the_command():
     counter = counter_travel()
-    counter.update(counters(20, 0), 0.1, STILL)         # 0.2 m/s
+    counter.update(counters(20, 0), 0.1, Expected(0.02, 0.02))         # 0.2 m/s
     counter.miss(True, 0.1, Expected(0.02, 0.02))
-    travel = counter.update(counters(20, 0), 0.2, STILL)
+    travel = counter.update(counters(20, 0), 0.2, Expected(0.02, 0.02))
     assert travel.distance == pytest.approx(0.04)
     sure = travel.distance_variance
     # wheels that do not follow the command
     counter.miss(True, 0.1, Expected(-0.03, -0.03))
-    assert counter.update(counters(20, 0), 0.2, STILL).distance_variance > 100 * sure
+    assert counter.update(counters(20, 0), 0.2, Expected(0.02, 0.02)).distance_variance > 100 * sure
     # only once
-    assert counter.update(counters(20, 0), 0.1, STILL).distance_variance == 0
+    assert counter.update(counters(20, 0), 0.1, Expected(0.02, 0.02)).distance_variance < 1e-6
 
 
 def test_where_no_byte_arrived_the_query_may_be_lost():
@@ -98,3 +99,13 @@ def test_where_no_byte_arrived_the_query_may_be_lost():
     counter.miss(False, 0.1, Expected(0.02, 0.02))
     travel = counter.update(counters(800, 0), 4.0, Expected(0.8, 0.8))
     assert travel.distance == pytest.approx(0.81) and travel.distance_variance == pytest.approx(0.01 ** 2, rel=0.5)
+
+
+def test_the_first_reading_after_a_silence_is_not_doubted():
+    counter = counter_travel()
+    counter.update(counters(7, 0), 0.033, Expected(0.0066, 0.0066))
+    for _ in range(3):
+        counter.miss(False, 0.2, Expected(0.04, 0.04))
+    # the robot drove on for 2 s with its last command, which the stop that was sent meanwhile did not end
+    travel = counter.update(counters(400, 0), 2.0, STILL)
+    assert travel.distance == pytest.approx(0.4)

@@ -6,7 +6,7 @@ import re
 
 import pytest
 
-from rbx1_nav.create.body import Errors
+from rbx1_nav.create.body import Errors, Quirks
 from rbx1_nav.model.robot import DRIVER_KEYS
 from rbx1_nav.ros.arguments import parameter_names
 
@@ -62,11 +62,11 @@ def test_nodes_without_parameters(node):
 
 def test_the_emulated_robot():
     source = read('nodes', 'fake_create.py')
-    read_here = re.findall(r"section\.(?:get|number)\('(\w+)'", source)
-    assert usage('fake_create.py') == sorted(set(read_here) | set(Errors._fields))
+    read_here = re.findall(r"section\.(?:get|choice|number)\('(\w+)'", source)
+    assert usage('fake_create.py') == sorted(set(read_here) | set(Errors._fields) | set(Quirks._fields))
     faults = read('src', 'rbx1_nav', 'ros', 'robot_faults.py')
     offered = set(re.findall(r"\('(\w+)', lambda", faults))
     text = ast.get_docstring(ast.parse(source))
-    assert len(offered) == 9
+    assert len(offered) == 10
     for name in offered:
         assert '~%s' % name in text

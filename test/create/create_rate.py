@@ -1,0 +1,46 @@
+#!/usr/bin/python3
+"""Another process changes the rate of the port: it is set back, and a last stop that nobody confirms is reported."""
+import signal
+import subprocess
+import unittest
+
+from driven import DrivenRobot
+import support
+
+
+class TestCreateRate(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        support.init_node('create_rate')
+
+    def test_a_rate_that_was_changed(self):
+        for robot_type in 'create', 'create2':
+            robot = DrivenRobot(self, robot_type)
+            robot.wait_for_motion()
+            subprocess.run(['stty', '-F', robot.link, '9600', 'sane'], check=True)
+            robot.node.wait_for_line('%s: another process has changed the rate to 9600 baud: expected %d; set back'
+                                     % (robot.link, robot.model.baud))
+            robot.wait_for_status('Standing')
+            robot.commander.send(0.0, 0.0)
+            robot.wait_for_motion()
+            # at once before the end: the stop needs the rate too
+            subprocess.run(['stty', '-F', robot.link, '9600'], check=True)
+            count = len(robot.received())
+            robot.node.signal(signal.SIGTERM)
+            self.assertEqual(robot.node.wait(), 0, robot.node.output)
+            robot.wait_for_stop(count)
+            robot.end()
+
+    def test_a_stop_that_is_not_confirmed(self):
+        robot = DrivenRobot(self, 'create2')
+        robot.wait_for_motion()
+        robot.switch('silence', True)
+        robot.node.signal(signal.SIGTERM)
+        self.assertEqual(robot.node.wait(), 1, robot.node.output)
+        self.assertIn('The robot has not confirmed that it stopped. If it is still moving, stop it by hand',
+                      robot.node.output)
+        self.assertTrue(robot.moving)
+
+
+if __name__ == '__main__':
+    support.main('create_rate', TestCreateRate)

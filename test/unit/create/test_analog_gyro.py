@@ -1,0 +1,289 @@
+"""A TurtleBot's gyro that breaks, at rest and in motion: it is noticed, and one that works is not taken for broken."""
+from math import degrees, pi, radians
+
+import pytest
+
+from rbx1_nav.create.body import Errors, Quirks
+from rbx1_nav.create.gyro_check import FEW, FEW_AT_REST
+from rbx1_nav.model.surfaces import load_surface
+
+from driven_create import SURFACES, DrivenCreate, started
+
+PERIOD = 1 / 30     # s between two readings
+PROOF, PROOF_AT_REST = (FEW + 2) * PERIOD, (FEW_AT_REST + 2) * PERIOD     # s until so many readings have arrived
+
+
+def calibrated(seconds=4.0, **params):
+    """A robot whose gyro has an offset."""
+    driven = started('create', seconds, gyro_scale_correction=1.0, **params)
+    assert driven.states[-1].gyro
+    return driven
+
+
+def lines(driven):
+    """What was logged of the gyro."""
+    return [line for line in driven.log if line.startswith('Gyro')]
+
+
+def read(driven, seconds, count):
+    """Let the analog input read a count for a while. Returns the rates that were reported, degrees/s, and the times at which
+    a problem was first seen and last seen, s, None for never."""
+    driven.body.gyro_stuck = count
+    first, start = len(driven.states), driven.now
+    seen = []
+    while driven.now < start + seconds * 1e9:
+        driven.run(0.01)
+        if driven.driver.gyro.check.problem:
+            seen.append((driven.now - start) / 1e9)
+    # the reading that had been made when the input changed
+    states = driven.states[first + 1:]
+    rates = [degrees(state.gyro.rate) for state in states if state.gyro]
+    return (rates, seen[0], seen[-1]) if seen else (rates, None, None)
+
+
+def turn(driven, rate, angle):
+    """Turn by an angle (rad) at a rate (rad/s), and rest."""
+    driven.drive(0, rate, angle / abs(rate))
+    driven.command_zero()
+    driven.run(2)
+
+
+# no power
+
+@pytest.mark.parametrize('velocity', [(0, 0), (0.2, 0), (0, 0.5), (0, 1.0), (0, -1.0), (0.2, 0.5)])
+@pytest.mark.parametrize('count', [0, 12, 99])
+def test_a_gyro_without_power_is_noticed_at_once_moving_or_not(velocity, count):
+    driven = calibrated()
+    driven.velocity = velocity
+    driven.run(1)
+    rates, first, _ = read(driven, 1, count)
+    assert rates == [] and first < PROOF
+    assert lines(driven) == driven.errors == [
+        'Gyro: %d counts: expected at least 100: does it have power?; the heading is measured by the wheels alone' % count]
+    assert driven.driver.gyro.yaw == pytest.approx(driven.truth.yaw, abs=0.05)
+
+
+def test_one_corrupted_reading_is_not_a_gyro_without_power():
+    driven = calibrated()
+    driven.velocity = 0, 0.5
+    driven.run(1)
+    rates, first, _ = read(driven, 0.06, 12)
+    assert rates == [] and not first
+    rates, first, _ = read(driven, 1, -1)
+    assert not first and len(rates) > 25 and not lines(driven)
+
+
+def test_a_fast_turn_is_not_a_gyro_without_power():
+    driven = calibrated()
+    turn(driven, 2.5, 8 * pi)       # 143 degrees/s: a count of 23
+    assert not lines(driven) and driven.driver.gyro.yaw == pytest.approx(driven.truth.yaw, abs=0.1)
+    assert all(abs(state.gyro.rate) < radians(121) for state in driven.states if state.gyro)
+
+
+def test_a_rate_beyond_the_range_is_not_reported():
+    driven = calibrated()
+    turn(driven, -3.5, 8 * pi)      # 200 degrees/s: the end of the scale
+    assert not lines(driven) and driven.driver.gyro.yaw == pytest.approx(driven.truth.yaw, abs=0.1)
+
+
+def test_the_power_that_the_base_switches_on_with_its_control_may_take_a_moment():
+    driven = DrivenCreate('create')
+    driven.body.gyro_stuck = 3
+    driven.connect()
+    while not driven.driver.supervisor.in_control:
+        driven.run(0.01)
+    driven.run(0.3)
+    driven.body.gyro_stuck = -1
+    driven.run(3)
+    assert not lines(driven) and driven.states[-1].gyro
+
+
+@pytest.mark.parametrize('mode', [1, 2])
+def test_a_gyro_that_never_has_power(mode):
+    driven = DrivenCreate('create', operation_mode=mode)
+    driven.body.gyro_stuck = 12
+    driven.connect()
+    driven.run(3)
+    assert len(driven.errors) == 1 and '12 counts' in driven.errors[0] and not any(state.gyro for state in driven.states)
+
+
+# at rest
+
+@pytest.mark.parametrize('count', [101, 424, 576, 900, 1023])
+@pytest.mark.parametrize('rest', [4, 40])
+def test_a_gyro_that_jumps_at_rest_is_noticed_at_once_however_long_it_was_right(rest, count):
+    driven = calibrated(rest)
+    rates, first, _ = read(driven, 2, count)
+    assert rates == [] and first < PROOF_AT_REST
+    assert lines(driven) == driven.errors == [
+        'Gyro: %d counts at rest: expected 425 to 575; the heading is measured by the wheels alone' % count]
+    assert driven.driver.gyro.yaw == pytest.approx(0, abs=0.001)
+
+
+@pytest.mark.parametrize('count', [425, 575])
+def test_the_limits_at_rest(count):
+    driven = DrivenCreate('create')
+    driven.body.gyro_stuck = count
+    driven.connect()
+    driven.run(10)
+    assert not lines(driven) and driven.states[-1].gyro.rate == 0 and driven.driver.gyro.offset == count
+
+
+def test_an_offset_that_jumps_at_rest_is_measured_again():
+    driven = calibrated(40)
+    rates, first, _ = read(driven, 2, 560)
+    assert not first and not lines(driven)
+    # within a second and a half the new offset is in force
+    assert len(rates) > 40 and set(rates[-10:]) == {0}
+
+
+@pytest.mark.parametrize('mode', [2, 3])
+def test_who_lifts_the_robot_may_turn_it(mode):
+    driven = calibrated(operation_mode=mode)
+    offset = driven.driver.gyro.offset
+    driven.body.wheel_dropped = True
+    driven.run(0.1)
+    rates, first, _ = read(driven, 5, 300)      # 62 degrees/s
+    assert not first and not lines(driven) and rates[-1] == pytest.approx(62, abs=1)
+    driven.body.gyro_stuck = -1
+    driven.run(0.1)
+    driven.body.wheel_dropped = False
+    driven.run(2)
+    assert driven.driver.gyro.offset == pytest.approx(offset, abs=0.1) and not lines(driven)
+
+
+# in motion
+
+def test_a_gyro_that_is_stuck_while_the_wheels_turn_is_noticed():
+    driven = DrivenCreate('create')
+    driven.body.gyro_stuck = 512
+    driven.connect()
+    driven.run(2)
+    turn(driven, 0.5, pi / 2)
+    states = len(driven.states)
+    turn(driven, 0.5, pi)
+    assert lines(driven) == driven.errors == [
+        'Gyro: stuck at 512 counts while the wheels turn the robot; the heading is measured by the wheels alone']
+    assert not any(state.gyro for state in driven.states[states:])
+
+
+def test_wheels_that_turn_in_the_air_do_not_prove_a_gyro_stuck():
+    driven = calibrated(operation_mode=3)
+    driven.body.wheel_dropped = True
+    driven.body.gyro_stuck = 512
+    driven.drive(0, 1.0, 5)
+    assert not lines(driven)
+
+
+@pytest.mark.parametrize('count, seconds', [(900, 1.0), (800, 1.4), (150, 1.0), (620, 3.2)])
+@pytest.mark.parametrize('speed', [0.1, -0.2, 0.4])
+def test_a_steady_turn_that_the_wheels_do_not_make(speed, count, seconds):
+    driven = calibrated()
+    driven.velocity = speed, 0
+    driven.run(1)
+    _, first, _ = read(driven, 4, count)
+    assert first < seconds and lines(driven) == driven.errors == [
+        'Gyro: stuck at %d counts: it shows a turn that the wheels do not make; the heading is measured by the wheels alone'
+        % count]
+    # what it showed before the problem was found does not count
+    assert driven.driver.gyro.yaw == pytest.approx(driven.truth.yaw, abs=0.02)
+
+
+def test_a_turn_to_the_other_side_is_one_that_the_wheels_do_not_make():
+    driven = calibrated()
+    driven.velocity = 0, 0.5
+    driven.run(1)
+    _, first, _ = read(driven, 4, 900)
+    assert first < 1.0
+    assert driven.driver.gyro.yaw == pytest.approx(driven.truth.yaw, abs=0.05)
+
+
+def test_a_turn_that_is_not_steady_may_be_a_shove():
+    driven = calibrated()
+    driven.velocity = 0.2, 0
+    driven.run(1)
+    for _ in range(15):
+        read(driven, 0.1, 900)
+        read(driven, 0.1, 903)
+    assert not lines(driven)
+
+
+@pytest.mark.parametrize('event', ['bumped', 'wheel_dropped'])
+def test_a_turn_of_a_robot_that_is_held_or_lifted_is_not_judged(event):
+    driven = calibrated(stop_motors_on_bump=False, operation_mode=3)
+    driven.velocity = 0.2, 0
+    driven.run(1)
+    setattr(driven.body, event, True)
+    driven.run(0.1)
+    _, first, _ = read(driven, 4, 800)
+    assert not first and not lines(driven)
+
+
+@pytest.mark.parametrize('surface, sensitivity, drops', [
+    ('ideal', 1.0, False), ('ideal', 1.5, True), ('hard_floor', 0.74, False), ('low_ply_carpet', 0.5, True),
+    ('low_ply_carpet', 1.4, False), ('create_lab_floor', 1.0, False)])
+def test_a_gyro_that_works_is_never_taken_for_broken(surface, sensitivity, drops):
+    driven = started('create', 4, surface=load_surface(surface, SURFACES), quirks=Quirks(drops_fractions=drops))
+    driven.body.errors = Errors(gyro_sensitivity=sensitivity)
+    for linear, angular, seconds in [(0.5, 0, 6), (0.1, 0.2, 20), (0, 0.05, 20), (0, 0.3, 10), (0.3, -1, 10), (0, 2, 5)]:
+        driven.drive(linear, angular, seconds)
+        driven.command_zero()
+        driven.run(1)
+    assert not lines(driven)
+
+
+def test_a_robot_that_stands_does_not_prove_its_gyro_stuck():
+    driven = calibrated(60)
+    assert not lines(driven) and driven.states[-1].gyro
+
+
+# repaired
+
+@pytest.mark.parametrize('broken, repaired', [(12, 512), (900, 512), (12, 530), (300, -1)])
+@pytest.mark.parametrize('rest', [4, 40])
+def test_it_works_again_after_a_second_at_rest_with_a_new_offset(rest, broken, repaired):
+    driven = calibrated(rest)
+    read(driven, 8, broken)
+    assert driven.driver.gyro.check.problem
+    rates, _, last = read(driven, 5, repaired)
+    assert 0.9 < last < 1.2
+    # 0 from the first reading on: no broken reading is in the offset
+    assert lines(driven)[1:] == ['Gyro: works again'] and rates == [0] * len(rates) and len(rates) > 100
+    assert driven.driver.gyro.offset == (512 if repaired < 0 else repaired)
+    assert driven.driver.gyro.yaw == pytest.approx(0, abs=0.001)
+
+
+def test_from_one_fault_to_another_it_does_not_work_again():
+    driven = calibrated()
+    for _ in range(3):
+        read(driven, 2, 12)
+        assert '12 counts' in driven.driver.gyro.check.problem
+        read(driven, 4, 900)
+        assert '900 counts' in driven.driver.gyro.check.problem
+    # once each
+    assert len(lines(driven)) == len(driven.errors) == 2
+
+
+def test_in_motion_it_does_not_work_again():
+    driven = calibrated()
+    driven.velocity = 0.2, 0
+    read(driven, 1, 12)
+    rates, _, _ = read(driven, 5, -1)
+    assert rates == [] and driven.driver.gyro.check.problem
+    driven.velocity = None
+    driven.command_zero()
+    driven.run(2.5)
+    assert lines(driven)[-1] == 'Gyro: works again' and driven.states[-1].gyro
+
+
+def test_a_gyro_that_was_stuck_is_used_again_after_it_has_moved_and_rested():
+    driven = calibrated()
+    driven.body.gyro_stuck = 512
+    turn(driven, 0.5, pi)
+    driven.body.gyro_stuck = -1
+    driven.run(5)
+    assert driven.driver.gyro.check.problem     # it may still be stuck
+    turn(driven, 0.5, pi)
+    assert not driven.driver.gyro.check.problem and driven.states[-1].gyro and driven.log[-1] == 'Gyro: works again'
+    # what it did not measure was measured by the wheels
+    assert driven.driver.gyro.yaw == pytest.approx(driven.truth.yaw, abs=0.1)

@@ -1,0 +1,186 @@
+"""The search for a robot: it finds any, at any rate, and never moves one or starts a program, whatever it takes us for."""
+from itertools import permutations
+
+import pytest
+
+from rbx1_nav.create import protocol, sequences
+from rbx1_nav.create.search import RATES, WAKE_TIME, Search, has_frames, is_battery
+from rbx1_nav.create.serial_line import misread
+from rbx1_nav.units import SECOND
+
+from driven_create import DrivenCreate
+
+ROBOTS = pytest.mark.parametrize('robot', protocol.MODELS)
+AT_RATES = pytest.mark.parametrize('baud', RATES)
+# whatever moves a robot, starts one of its programs, changes its rate, or makes it deaf
+ALLOWED = {'start', 'sensors', 'pause_resume_stream'}
+HARMLESS = {protocol.OPCODES[name] for name in ALLOWED}
+OPCODES = {opcode for model in protocol.MODELS.values() for opcode in model.commands} | {protocol.OPCODES['reset']}
+
+
+def searching(robot, rate=None, robot_type='auto', **params):
+    """A driver that has just connected to a robot at a rate."""
+    driven = DrivenCreate(robot_type, robot=robot, **params)
+    if rate:
+        driven.line.baud = rate
+    driven.run(0.05)        # the robot has been on for a while
+    driven.connect()
+    return driven
+
+
+def names(driven):
+    """The commands that the robot has received, by name."""
+    return [driven.body.model.commands[data[0]].name for _, data in driven.commands]
+
+
+@ROBOTS
+@AT_RATES
+def test_any_robot_is_found_at_any_rate(robot, baud):
+    driven = searching(robot, baud)
+    driven.run(2)
+    assert driven.found == (protocol.MODELS[robot], baud) and driven.driver.supervisor.in_control
+    assert driven.log[0] == 'The robot answers: %s at %d baud' % (robot, baud)
+    driven.drive(0.2, 0, 0.5)
+    assert driven.speeds == (200, 200)
+
+
+@ROBOTS
+@AT_RATES
+@pytest.mark.parametrize('robot_type', protocol.MODELS)
+def test_nothing_moves_while_the_robot_is_not_known(robot, baud, robot_type):
+    driven = searching(robot, baud, robot_type)
+    while not driven.found and driven.now < 20 * SECOND:
+        driven.run(0.002)
+        assert not driven.body.moving and not driven.robot.programs.started
+    # all that it has received, also as garbage
+    assert set(names(driven)) <= ALLOWED
+    assert bool(driven.found) == (robot == robot_type)
+
+
+@pytest.mark.parametrize('robot, robot_type', permutations(protocol.MODELS, 2))
+def test_a_robot_of_the_wrong_type_is_reported_once_and_not_driven(robot, robot_type):
+    driven = searching(robot, robot_type=robot_type)
+    driven.drive(0.2, 0, 10)
+    assert driven.log == ['robot_type: %s: a %s answers at %d baud: expected robot_type:=%s, or auto'
+                          % (robot_type, robot, protocol.MODELS[robot].baud, robot)]
+    assert not driven.body.moving and 'the robot does not answer' in driven.refusals
+
+
+def test_a_given_rate_is_the_only_one_that_is_tried():
+    driven = searching('create2', 19200, baud=19200)
+    rates = set()
+    while not driven.found and driven.now < 5 * SECOND:
+        driven.run(0.002)
+        rates.add(driven.line.host_baud)
+    assert driven.found and rates == {19200}
+
+
+@ROBOTS
+def test_a_robot_whose_stream_was_left_on_is_found(robot):
+    driven = searching(robot)
+    driven.connected = False
+    driven.line.host_baud = driven.line.baud
+    driven.write(sequences.START + sequences.START_STREAM[:1] + bytes((2, 7, 35)))
+    driven.run(0.2)
+    driven.connect()
+    driven.run(2)
+    assert driven.found and driven.driver.supervisor.in_control
+
+
+@pytest.mark.parametrize('garbage', [b'\x8c\x00\xff', b'\x94\xff', b'\x91\x01'], ids=['song', 'stream', 'drive'])
+@ROBOTS
+def test_a_robot_that_waits_for_the_rest_of_garbage_is_found(robot, garbage):
+    driven = searching(robot)
+    driven.robot.receive(sequences.START + sequences.MODES[protocol.SAFE] + garbage, driven.now)
+    driven.run(10)      # 512 bytes, a few at each rate
+    assert driven.found and driven.speeds == (0, 0)
+
+
+# the line model of the emulated robot, and one of another kind: bits are sampled at any ratio of the clocks, and after a
+# byte whose stop bit is missing, a receiver either goes on at once or waits for the line to rest
+
+def levels(data):
+    return [level for byte in data for level in [0] + [byte >> bit & 1 for bit in range(8)] + [1]]
+
+
+def received(data, ratio, patient):
+    """What a receiver reads. ratio: bits that are sent while one is read; patient: whether it waits."""
+    line, result, time = levels(data), [], 0.0
+
+    def level(moment):
+        return line[int(moment)] if moment < len(line) else 1
+    while time < len(line):
+        if level(time):
+            time = int(time) + 1.0
+            continue
+        byte = sum(level(time + (bit + 1.5) * ratio) << bit for bit in range(8))
+        time += 9.5 * ratio
+        if level(time) or not patient:
+            result.append(byte)
+        while patient and not level(time):
+            time += 0.05
+    return result
+
+
+@pytest.mark.parametrize('sent_at, read_at', permutations(RATES, 2))
+def test_no_byte_of_the_search_is_a_command_at_another_rate(sent_at, read_at):
+    for data in (sequences.START, sequences.ASK_BATTERY):
+        assert set(misread(data, sent_at, read_at)) & OPCODES <= HARMLESS
+        for error in range(-50, 51):        # the clocks differ by up to 5 %
+            for patient in (False, True):
+                ratio = sent_at / read_at * (1 + error / 1000)
+                assert set(received(data, ratio, patient)) & OPCODES <= HARMLESS, (error, patient)
+
+
+def test_the_other_receiver_finds_what_the_line_model_does_not():
+    """A query of the mode, read at twice its rate: the line model sees no command in it, this one spot cleaning."""
+    query = protocol.command('sensors', 35)
+    assert not set(misread(query, 57600, 115200)) & OPCODES
+    assert protocol.OPCODES['spot'] in {byte for error in range(-50, 51) for patient in (False, True)
+                                        for byte in received(query, 0.5 * (1 + error / 1000), patient)}
+
+
+class Line:
+    """Records what a Search does to a line at which nobody answers."""
+
+    def __init__(self):
+        self.now = 0
+        self.wake_lines = []    # (ns, level)
+
+    def set_rate(self, baud):
+        pass
+
+    def write(self, data):
+        pass
+
+    write_apart = write
+
+    def set_wake_lines(self, on):
+        self.wake_lines.append((self.now, on))
+
+
+@pytest.mark.parametrize('wake', [False, True])
+def test_a_robot_that_sleeps_is_woken_only_if_that_is_wanted(wake):
+    line, search = Line(), Search(RATES, wake)
+    search.begin(0, line)
+    for line.now in range(0, 10 * SECOND, SECOND // 500):
+        search.tick(line.now)
+    assert bool(line.wake_lines) == wake
+    # first all rates; then both levels are long: three pulses of less than 500 ms change the rate of a robot
+    times = [time for time, _ in line.wake_lines]
+    assert all(time > SECOND // 3 for time in times[:1])
+    assert all(after - before >= WAKE_TIME > SECOND // 2 for before, after in zip(times, times[1:]))
+    assert [level for _, level in line.wake_lines] == [False, True] * (len(times) // 2) + [False] * (len(times) % 2)
+
+
+@pytest.mark.parametrize('data, whole', [
+    ('000fa0fed419 0bb8 0bb8', False), ('02 3f80 fed4 19 0bb8 0bb8', True), ('06 3f80 fed4 19 0bb8 0bb8', False),
+    ('02 3f80 fed4 19 0bb8 0bb8 00', False), ('02 3f80 fed4 d0 0bb8 0bb8', False), ('', False)])
+def test_a_reply_about_the_battery(data, whole):
+    assert is_battery(bytes.fromhex(data)) == whole
+
+
+def test_two_frames_in_a_row_are_a_stream_and_one_may_be_chance():
+    frame = protocol.encode_frame(protocol.CREATE_2, (35,), {'mode': 1})
+    assert not has_frames(b'\x13' + frame + b'\0' + frame[:-1])
+    assert has_frames(b'\x13' + frame + frame + b'\x13')
