@@ -1,4 +1,4 @@
-"""1 % of the bytes from an emulated Create 2 are corrupted for a whole run."""
+"""1 % of the bytes from an emulated Create or Create 2 are corrupted for a whole run."""
 import os
 import sys
 import unittest
@@ -6,33 +6,52 @@ import unittest
 import support
 
 sys.path.append(os.path.join(os.path.dirname(__file__), '..', '..', 'create'))
-from driven import DrivenRobot    # noqa: E402, pylint: disable=wrong-import-position
+from driven import CHI_SQUARE, DrivenRobot    # noqa: E402, pylint: disable=wrong-import-position
 
-FAULT = '1 % of the bytes from a Create 2 flipped, lost or doubled during the exercise'
-PROMISE = 'corrupted frames are counted and dropped, and the odometry ends within 5 cm of the truth'
-FULL, SHORT = 5, 0
+FAULT = '1 % of the bytes from a Create 2, or from a Create, flipped, lost or doubled during the exercise'
+PROMISE = ('Create 2: corrupted frames are counted and dropped, and the odometry ends within 5 cm of the truth. Create, '
+           'which has no checksum: the covariance holds the error')
+FULL, SHORT = 10, 0
 ROOT = ALONE = False
 
 LIMIT = 0.05        # m
+
+
+def check_create_2(row, robot):
+    """Every corrupted frame is noticed."""
+    x, y, _ = robot.error()
+    row.figure('Create 2: error, m', (x * x + y * y) ** 0.5)
+    row.figure('Create 2: corrupted frames', robot.value('Serial line', 'Corrupted readings'))
+    row.figure('Create 2: implausible readings', robot.value('Serial line', 'Implausible readings'))
+    assert (x * x + y * y) ** 0.5 < LIMIT, (x, y)
+    assert int(robot.value('Serial line', 'Corrupted readings')) > 100
+
+
+def check_create(row, robot):
+    """Some corrupted replies are not noticed."""
+    x, y, _ = robot.error()
+    error = robot.normalized_error()
+    row.figure('Create: error, m', (x * x + y * y) ** 0.5)
+    row.figure('Create: squared error, normalized', error)
+    assert error < CHI_SQUARE, 'squared error %.1f of %s' % (error, robot.error())
+    assert int(robot.value('Serial line', 'Lost replies')) > 10
 
 
 def run(row):
     """See FAULT."""
     row.roscore()
     support.init_node('faults')
-    for _ in range(row.times):
+    for index in range(row.times):
         case = unittest.TestCase()
+        robot_type, check = [('create2', check_create_2), ('create', check_create)][index % 2]
         seed = row.random.randrange(10 ** 6)
-        with row.fault('seed %d' % seed):
+        with row.fault('%s, seed %d' % (robot_type, seed)):
             try:
-                robot = DrivenRobot(case, 'create2', {'corruption': 0.01, 'seed': seed})
+                # an ideal floor adds no error
+                robot = DrivenRobot(case, robot_type, {'corruption': 0.01, 'seed': seed}, odom_linear_error=0.0,
+                                    odom_angular_error=0.0, odom_heading_error=0.0)
                 driver = row.node('timed_out_and_back.py')
                 assert driver.wait() == 0, driver.output
-                x, y, _ = robot.error()
-                row.figure('error, m', (x * x + y * y) ** 0.5)
-                row.figure('corrupted frames', robot.value('Serial line', 'Corrupted readings'))
-                row.figure('implausible readings', robot.value('Serial line', 'Implausible readings'))
-                assert (x * x + y * y) ** 0.5 < LIMIT, (x, y)
-                assert int(robot.value('Serial line', 'Corrupted readings')) > 100
+                check(row, robot)
             finally:
                 case.doCleanups()

@@ -10,34 +10,40 @@ import rospy
 import support
 
 sys.path.append(os.path.join(os.path.dirname(__file__), '..', '..', 'create'))
-from driven import STOP, DrivenRobot    # noqa: E402, pylint: disable=wrong-import-position
+from driven import STOP, DrivenRobot, guardian_of    # noqa: E402, pylint: disable=wrong-import-position
 
-FAULT = "SIGKILL to a Create's base node, or to its process group, at a random moment of a motion"
+FAULT = ("SIGKILL to a Create's base node, or to its process group, at a random moment of a motion; in a third of them to "
+         'its guardian 2 to 60 ms before')
 PROMISE = 'a stop is on the line within 0.2 s'
-FULL, SHORT = 20, 2
+FULL, SHORT = 30, 3
 ROOT = False
 ALONE = True    # it measures a duration
 
 LIMIT = 0.2     # s
 
 
-def kill(row, robot, seconds, group):
-    """One fault, in motion; then another node takes over."""
+def kill(row, robot, seconds, group, gap):
+    """One fault, in motion; then another node takes over. gap: s from the guardian's death to the node's, or None."""
     end = time.monotonic() + seconds
     robot.drive(0.2, 0.3, lambda: time.monotonic() > end and robot.moving, 'the robot to move')
     count = len(robot.received())
     pid = support.pid_of('/turtlebot_node')
     killed = rospy.get_time()
+    if gap is not None:
+        os.kill(guardian_of(pid), signal.SIGKILL)
+        time.sleep(gap)
     if group:
         os.killpg(robot.node.process.pid, signal.SIGKILL)
     else:
         os.kill(pid, signal.SIGKILL)
-    robot.wait_for_stop(count)
+    if gap is None:
+        robot.wait_for_stop(count)
+    robot.wait_for_standstill()
     delay = next(stamp for stamp, data in robot.received()[count:] if data == STOP and stamp > killed) - killed
     row.figure('stop after, s', delay)
     assert delay < LIMIT, '%.3f s' % delay
     robot.node.wait()
-    robot.node = robot.start_node(_robot_type=robot.model.name)
+    robot.node = robot.start_node()
     robot.node.wait_for_line('in safe mode')
 
 
@@ -48,8 +54,11 @@ def run(row):
     for robot_type in ('create', 'create2'):
         case = unittest.TestCase()
         robot = DrivenRobot(case, robot_type)
-        for _ in range((row.times + 1) // 2):
+        for index in range((row.times + 1) // 2):
             seconds, group = row.random.uniform(0.2, 2), row.random.random() < 0.5
-            with row.fault('%s: SIGKILL to the %s after %.3f s' % (robot_type, 'group' if group else 'node', seconds)):
-                kill(row, robot, seconds, group)
+            gap = row.random.uniform(0.002, 0.06) if index % 3 == 1 else None
+            with row.fault('%s: SIGKILL to the %s after %.3f s%s' % (
+                    robot_type, 'group' if group else 'node', seconds,
+                    '' if gap is None else ', %.1f ms after its guardian' % (1000 * gap))):
+                kill(row, robot, seconds, group, gap)
         case.doCleanups()
