@@ -34,11 +34,12 @@ class Acceptance:
         self._felt, self._bits = bits & self._bits, bits
         return bool(self._felt & WHEEL_DROPS)
 
-    def follow(self, expected, travel, width):
-        """The wheels have made a Travel. expected: Expected, by the commands; width: m between the wheels."""
+    def follow(self, elapsed, expected, travel, width):
+        """The wheels have made a Travel since the last reading, `elapsed` s ago. expected: Expected, by the commands, which
+        prove nothing of a robot that was out of reach; width: m between the wheels."""
         by_commands = max(map(abs, expected))
         turns = abs(travel.distance) + abs(travel.angle) * width / 2 > TURNED * by_commands
-        self._blocked = 0.0 if turns else self._blocked + by_commands
+        self._blocked = 0.0 if turns or elapsed > OUTAGE / SECOND else self._blocked + by_commands
 
     def lose_robot(self):
         """The robot does not answer any more."""
@@ -48,6 +49,7 @@ class Acceptance:
     def lock(self, reason):
         """Something has stopped the robot: see Lockout."""
         self.gate.halt()
+        self._blocked = 0.0
         self.lockout.lock(reason)
 
     def check_sender(self, now, sender, moving):
@@ -85,10 +87,8 @@ class Acceptance:
         """Why the robot does not follow the command in force, and has not done so for a while; else ''."""
         if not self.gate.moving or self._is_obeyed:
             self._ignored_since = None
-            if not (self.gate.moving and self._blocked > BLOCKED):
-                return ''
-            self._blocked = 0.0
-            return 'its wheels do not turn: expected wheels that are free, and oi_mode_workaround: auto'
+            blocked = self.gate.moving and self._blocked > BLOCKED
+            return 'its wheels do not turn: expected wheels that are free, and oi_mode_workaround: auto' if blocked else ''
         if not self.contact.answers:
             lost = self.reading_time is None or now - self.reading_time > OUTAGE
             return 'the robot does not answer' if lost else ''

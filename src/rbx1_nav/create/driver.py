@@ -20,20 +20,20 @@ from rbx1_nav.units import SECOND
 REPLY_TIMEOUT = SECOND // 5     # ns from a query to the first byte of its reply
 BYTE_TIMEOUT = SECOND // 20     # ns between two bytes of a reply
 INSIST_WAIT = SECOND // 10      # ns without a confirmation of the last stop, after which it is repeated
-STREAM_BAUD = 57600     # bits per second that a stream needs
+STREAM_BAUD = 57600             # bits per second that a stream needs
 GAP = 3                         # periods without a reading after which the gyro's rate does not stand for all of them
 
 
 class Driver:
     """The state of one robot, whatever happens to its line."""
 
-    def __init__(self, settings, gate, info, warn, error=None):
+    def __init__(self, settings, gate, info, warn, error):
         """settings: Settings; gate: a CommandGate; info(text), warn(text), error(text): log a line."""
         self.settings = settings
         self.gate = gate
         self.info = info
         self.warn = warn
-        self.error = error or warn
+        self.error = error
         self.sender = Sender()
         self.commanded = self.sender.commanded
         self.contact = Contact(settings, self, warn)
@@ -267,7 +267,7 @@ class Driver:
         commanded.start(time, part)
         commanded.read()
         self.reading, self.reading_time = reading, time
-        self.acceptance.follow(part, travel, self.model.wheel_separation)
+        self.acceptance.follow(elapsed, part, travel, self.model.wheel_separation)
         travel = self.motion.add(time, travel)
         if self.gyro:
             self.gyro_reading = self.gyro.update(reading['analog_input'], self._step(elapsed, travel, part, reading))

@@ -14,8 +14,7 @@ WHEEL_RADIUS = 0.033    # m, of the wheels that RViz shows
 
 Settings = namedtuple('Settings', 'robot_type model port baud wake update_rate mode mode_plus_one has_gyro gyro_range '
                                   'gyro_correction linear_correction angular_correction angle_fractions errors '
-                                  'moving_yaw_variance '
-                                  'stop_on_bump min_yaw_speed')
+                                  'moving_yaw_variance stop_on_bump min_yaw_speed')
 Settings.__doc__ = """What the driver depends on. robot_type: a name of a Model, or AUTO; model: the Model that is expected;
 baud: bits per second, None to find out; wake: whether to wake a robot by RTS and DTR; update_rate in Hz; mode: that in which
 the robot is driven; mode_plus_one: whether it reports its mode plus one, None to find out; gyro_range in degrees/s;

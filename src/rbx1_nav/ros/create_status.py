@@ -129,7 +129,7 @@ class CreateStatus:
         status.add('Port', self.link.path)
         status.add('Adapter', self.link.adapter or 'unknown')
         status.add('Rate (baud)', self.link.baud)
-        status.add('Rates changed by other processes', self.link.changes)
+        status.add('Settings changed by other processes', self.link.changes)
         status.add('Corrupted readings', driver.reader.rejected)
         status.add('Bytes in no reading', driver.reader.skipped)
         status.add('Implausible readings', driver.implausible)

@@ -310,6 +310,22 @@ def test_a_command_is_refused_if_the_wheels_do_not_turn(robot_type):
     assert driven.refusals[0].startswith('its wheels do not turn: expected wheels that are free, and oi_mode_workaround: auto')
 
 
+@BOTH
+def test_a_robot_that_stood_while_it_was_out_of_reach_has_wheels_that_turn(robot_type):
+    driven = started(robot_type)
+    driven.drive(0.2, 0, 0.5)
+    driven.pull()
+    driven.body.wheel_dropped = True
+    driven.run(2)
+    driven.body.wheel_dropped = False
+    driven.connect()
+    driven.run(2)
+    driven.command_zero()
+    driven.refusals.clear()
+    driven.drive(0.2, 0, 0.5)
+    assert not driven.refusals and driven.speeds == (200, 200)
+
+
 def test_a_create_2_that_was_not_reset_while_it_stood_is_not_said_to_be():
     driven = started('create2')
     driven.pull()
