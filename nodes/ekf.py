@@ -13,8 +13,10 @@ Parameters:
     ~output_frame       frame of the combined pose (default: odom_combined)
     ~base_footprint_frame   of the robot (default: child_frame_id of odom, or base_footprint if that is empty)
     ~tf_prefix          of both names, unless they begin with a slash (default: none)
-    ~surface            the floor that the filter starts with: a name or path as for the base, unknown, or auto: that
-                        of the simulated base, and unknown for any other (default: auto)
+    ~surface            the floor at first: a name or path, unknown, or auto: that of a simulated base (default: auto)
+    ~max_speed, ~max_turn_rate  limits above which odometry has jumped, m/s and rad/s (default: 6, 6)
+    ~max_angular_acceleration   limit of the robot's motion while gyro readings are lost, rad/s^2 (default: 10)
+    ~gyro_bias, ~gyro_scale_error   limit of the bias, degrees/s; 1 sigma of the scale error (default: 10, 0.015)
     ~diagnostic_period  of /diagnostics, s (default: 1)
 """
 import rbx1_nav.ros.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded
@@ -24,22 +26,21 @@ import threading
 import time
 
 import rospy
+from geometry_msgs.msg import PoseWithCovarianceStamped
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import Imu
 from std_msgs.msg import Empty
 
-from rbx1_nav.estimation.combined_odometry import MAX_AGE, MAX_LEAD, CombinedOdometry
-from rbx1_nav.estimation.inputs import RejectedMessage
+from rbx1_nav.estimation.inputs import RejectedMessage, check
 from rbx1_nav.ros import messages, node
 from rbx1_nav.ros.estimate_publisher import EstimatePublisher
-from rbx1_nav.ros.filter_parameters import find_prior, load_parameters, read_parameters
+from rbx1_nav.ros.filter_parameters import load_parameters, make_filter, read_parameters
 from rbx1_nav.ros.frame_tree import FrameTree
 from rbx1_nav.ros.imu_input import ImuInput
 from rbx1_nav.ros.limited_log import LimitedLog
 from rbx1_nav.ros.one_sender import OneSender
-from rbx1_nav.ros.sensor_status import SensorStatus, make_diagnostics
+from rbx1_nav.ros.sensor_status import Diagnostics
 from rbx1_nav.schedule import Schedule
-from rbx1_nav.units import SECOND
 
 
 class Ekf:
@@ -53,18 +54,18 @@ class Ekf:
         self.warn = partial(self.log.add, rospy.logwarn)
         self.sender = OneSender('odom', parameters['sensor_timeout'], self.warn, self.restart)
         self.frames = None          # of its odometry, and of the robot
-        self.sensors = {name: SensorStatus(parameters['sensor_timeout'])
-                        for name in ('odom', 'imu_data')[:1 + parameters['imu_used']]}
         self.tree = FrameTree()
         self.publisher = EstimatePublisher(parameters, self.tree, partial(self.log.add, rospy.loginfo))
         self.imu = ImuInput('imu_data', self.tree, partial(self.log.add, rospy.loginfo))
-        self.diagnostics = make_diagnostics(self.sensors, self.diagnose)
+        self.diagnostics = Diagnostics(('odom', 'imu_data')[:1 + parameters['imu_used']], parameters['sensor_timeout'],
+                                       self.lock, lambda: (self.combined, self.publisher.published))
         self.tree.listen(True)
         self.odom_sub = None    # a message may arrive before the next line is done
         self.odom_sub = rospy.Subscriber('odom', Odometry, self.on_odom, queue_size=None, tcp_nodelay=True)
         if parameters['imu_used']:
             rospy.Subscriber('imu_data', Imu, self.on_imu, queue_size=None, tcp_nodelay=True)
         rospy.Subscriber('reset_odometry', Empty, self.on_reset)
+        rospy.Subscriber('set_pose', PoseWithCovarianceStamped, self.on_set_pose)
 
     def on_odom(self, message):
         """Odometry arrives."""
@@ -87,6 +88,17 @@ class Ekf:
                 self.log.add(rospy.loginfo, 'reset_odometry: restarting at the pose of the odometry')
                 self.combined.reset(rospy.Time.now().to_nsec())
 
+    def on_set_pose(self, message):
+        """Somebody knows where the robot is."""
+        with self.lock:
+            self.process('set_pose', self.place, message)
+
+    def place(self, now, message):
+        """Pass a pose to the filter, with the time of the last odometry: its clock may be another one."""
+        check('odom', None, self.combined, 'a message before this one')
+        self.combined.set_pose(self.combined.last_stamp['odom'] or now,
+                               *messages.from_set_pose(message, self.parameters['output_frame']))
+
     def add_odom(self, now, message):
         """Pass an Odometry to the filter."""
         frames = messages.frames_of(message, self.parameters)
@@ -98,12 +110,9 @@ class Ekf:
         if self.combined:
             self.warn('odom comes from another node: restarting')
             self.publisher.restart()
-        prior = find_prior(self.parameters['surface'], sender, self.log.add)
-        self.combined = CombinedOdometry(prior, round(SECOND * self.parameters['sensor_timeout']),
-                                         self.parameters['imu_used'], self.warn, time.monotonic_ns,
-                                         MAX_LEAD if rospy.rostime.is_wallclock() else MAX_AGE)
+        self.combined = make_filter(self.parameters, sender, self.log.add, self.warn)
 
-    def process(self, sensor, add, message):
+    def process(self, topic, add, message):
         """Pass a message to the filter, and publish the result."""
         now = rospy.Time.now()
         if not now:     # simulated time that has not begun
@@ -111,27 +120,19 @@ class Ekf:
         try:
             add(now.to_nsec(), message)
         except RejectedMessage as error:
-            self.sensors[sensor].rejected += 1
-            self.log.add(rospy.logerr, '%s: %s; rejected' % (rospy.resolve_name(sensor), error))
+            self.diagnostics.rejected[topic] += 1
+            self.log.add(rospy.logerr, '%s: %s; rejected' % (rospy.resolve_name(topic), error))
             return
-        self.sensors[sensor].received = now
+        self.diagnostics.count(topic, now, self.combined)
         if self.combined.estimate and not node.end_requested.is_set():      # topics are closed at the end
-            self.publisher.update(self.combined.estimate, *self.frames)
-
-    def diagnose(self, sensor, status):
-        """Fill in the DiagnosticStatus of a sensor."""
-        with self.lock:
-            timed_out = self.combined is not None and self.combined.timed_out[sensor]
-            contradicts = self.combined is not None and self.combined.contradicts
-            self.sensors[sensor].diagnose(status, timed_out, contradicts)
-        return status
+            self.publisher.update(self.combined, *self.frames)
 
     def run(self):
         """Until the node is to end."""
         schedule = Schedule(1 / self.parameters['diagnostic_period'])
         while not node.end_requested.is_set():
             if schedule.due(time.monotonic_ns()):   # wall time: a clock that stands still is worth a diagnosis too
-                self.diagnostics.force_update()
+                self.diagnostics.publish()
             self.log.flush(time.monotonic())
             self.tree.listen(not (self.publisher.settled and self.imu.settled))
             node.sleep(0.05)

@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """The filter node and its messages: invalid ones are rejected, sensors time out and recover, and resets restart it."""
 import math
-import threading
 import unittest
 
 import rospy
@@ -9,62 +8,10 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Log
-from sensor_msgs.msg import Imu
 from std_msgs.msg import Empty
 
+from still_robot import Sender, make_imu, make_odom
 import support
-
-
-def make_odom():
-    """The odometry of a robot that stands still, with the present time."""
-    message = Odometry()
-    message.header.stamp = rospy.Time.now()
-    message.header.frame_id, message.child_frame_id = '/odom', '/base_footprint'    # with the slash of old senders
-    message.pose.pose.position.x = 0.5
-    message.pose.pose.orientation.w = 1.0
-    message.pose.covariance[::7] = message.twist.covariance[::7] = [1e-6] * 6
-    return message
-
-
-def make_imu():
-    """The gyro reading of a robot that stands still, with the present time."""
-    message = Imu()
-    message.header.stamp = rospy.Time.now()
-    message.angular_velocity_covariance[8] = 1e-6
-    return message
-
-
-class Sender(threading.Thread):
-    """Sends the valid messages of a sensor at about 50 Hz, and others on request."""
-
-    def __init__(self, topic, make):
-        """make(): the next valid message."""
-        super().__init__(daemon=True)
-        self.publisher = rospy.Publisher(topic, type(make()), queue_size=100)
-        self.make = make
-        self.lock = threading.Lock()
-        self.active = True
-        self.done = threading.Event()
-        self.start()
-
-    def run(self):
-        while not self.done.wait(0.02):
-            with self.lock:
-                if self.active:
-                    self.publisher.publish(self.make())
-
-    def send(self, change):
-        """Send one more message, after change(message)."""
-        with self.lock:
-            message = self.make()
-            change(message)
-            self.publisher.publish(message)
-
-    def end(self):
-        """Unregister the publisher."""
-        self.done.set()
-        self.join()
-        self.publisher.unregister()
 
 
 class TestEkfMessages(unittest.TestCase):

@@ -69,6 +69,8 @@ class TestBadParameters(unittest.TestCase):
                 ({'vo_used': 'no'}, ['vo_used', "'no'", 'true or false']),
                 ({'base_footprint_frame': 'a b'}, ['base_footprint_frame', "'a b'", 'the name of a frame']),
                 ({'tf_prefix': 7}, ['tf_prefix', '7', 'the name of a frame']),
+                ({'max_speed': 0}, ['/max_speed: 0: expected a speed from 0.01 to 1000 in m/s']),
+                ({'gyro_bias': 'small'}, ['/gyro_bias', "'small'", 'from 0.01 to 1000 in degrees/s']),
                 ({'surface': 'sand'}, ['surface', "'sand'", 'create_lab_floor, hard_floor, ideal, low_ply_carpet'])]:
             rospy.set_param('/robot_pose_ekf', params)
             self.check(support.Process('rosrun', 'rbx1_nav', 'ekf.py'), expected)

@@ -18,7 +18,8 @@ CONFIG = os.path.join(os.path.dirname(__file__), '..', '..', 'config')
 ROBOTS, SURFACES = ([yaml.safe_load(open(path)) for path in sorted(glob.glob(os.path.join(CONFIG, *pattern)))]
                     for pattern in (['*.yaml'], ['surfaces', '*d*_*.yaml']))
 FILTER = ['freq', 'sensor_timeout', 'diagnostic_period', 'publish_tf', 'imu_used', 'output_frame', 'odom_used',
-          'vo_used', 'surface']
+          'vo_used', 'surface', 'max_speed', 'max_turn_rate', 'max_angular_acceleration', 'gyro_bias',
+          'gyro_scale_error']
 NUMBERS = st.one_of(st.floats(), st.floats(-1e3, 1e3), st.integers(), st.sampled_from([
     0, 1, -1, 1e-320, 5e-324, 1e-9, 1e308, 10 ** 400, -10 ** 400, 2 ** 31, 2 ** 63]))
 TEXTS = st.one_of(st.text(), st.sampled_from(['1e5', 'two\nlines', 'a\x1b[1m', '\x00', 'odom', '/odom', 'x' * 10 ** 4]))
@@ -92,6 +93,7 @@ def test_parameters_of_the_filter(params):
         assert one_line(str(error))
         return
     assert all(isfinite(values[key]) for key in ('freq', 'sensor_timeout', 'diagnostic_period'))
+    assert all(map(isfinite, values['limits']))
     assert Schedule(values['freq']).period >= 10 ** 6
 
 

@@ -2,16 +2,15 @@
 from collections import deque, namedtuple
 from math import cos, hypot, sin
 
-from rbx1_nav.estimation.filter import BIAS, TURNING, X, Y, YAW, Filter
-from rbx1_nav.estimation.inputs import check, check_imu, check_odom
+from rbx1_nav.estimation.filter import BIAS, TURNING, UNKNOWN, X, Y, YAW, Filter
+from rbx1_nav.estimation.inputs import RejectedMessage, check_imu, check_odom
+from rbx1_nav.estimation.limits import Limits
+from rbx1_nav.estimation.standstill import Part, Standstill
 from rbx1_nav.model.kinematics import Pose
 from rbx1_nav.units import SECOND, wrap_angle
 
-MAX_SPEED = 2.0         # m/s: odometry that moves faster has jumped
-MAX_TURN_RATE = 5.0     # rad/s: or turns faster
 JUMP_TOLERANCE = 0.02   # m and rad in addition
 DROPOUT_SPEED = 0.5     # m/s: how fast the robot may move (1 sigma) while no odometry arrives
-MAX_ACCELERATION = 10.0     # rad/s^2: how fast its turn rate may change while readings of the gyro are lost
 SHORT = SECOND // 20    # ns between two readings in which the rate hardly changes
 LOST = 1.5              # times the usual time between two readings: others between them were lost
 MAX_LEAD = SECOND // 2  # ns that a stamp may be ahead of the clock: clocks of computers differ
@@ -34,11 +33,11 @@ def distance(one, other):
     return hypot(other.pose.x - one.pose.x, other.pose.y - one.pose.y)
 
 
-def has_jumped(before, odom):
-    """Whether no robot could have moved from the one Odom to the other in the time between them."""
+def has_jumped(before, odom, limits):
+    """Whether no robot within its Limits can have moved from the one Odom to the other in the time between them."""
     elapsed = (odom.stamp - before.stamp) / SECOND
-    return (distance(before, odom) > MAX_SPEED * elapsed + JUMP_TOLERANCE
-            or abs(wrap_angle(odom.pose.yaw - before.pose.yaw)) > MAX_TURN_RATE * elapsed + JUMP_TOLERANCE)
+    return (distance(before, odom) > limits.max_speed * elapsed + JUMP_TOLERANCE
+            or abs(wrap_angle(odom.pose.yaw - before.pose.yaw)) > limits.max_turn_rate * elapsed + JUMP_TOLERANCE)
 
 
 class CombinedOdometry:
@@ -51,10 +50,15 @@ class CombinedOdometry:
     of the position grows. The travel during a dropout of the odometry counts when it recovers.
     """
 
-    def __init__(self, prior, timeout, gyro_used=True, warn=lambda text: None, clock=None, max_lead=MAX_LEAD):
+    def __init__(self, prior, timeout, gyro_used=True, warn=lambda text: None, clock=None, max_lead=MAX_LEAD,
+                 limits=Limits()):
         """prior: Priors; timeout: ns; gyro_used: whether to wait for a gyro at all; warn(text): logs a warning;
         clock(): ns, tells when a message arrives if `now` may be simulated time; max_lead: ns, of a stamp."""
         self.prior = prior
+        if prior == UNKNOWN:
+            self.prior = prior._replace(gyro_scale_error=limits.gyro_scale_error,
+                                        gyro_measurement_range=limits.max_turn_rate)
+        self.limits = limits        # Limits
         self.timeout = timeout
         self.gyro_used = gyro_used
         self.warn = warn
@@ -82,13 +86,16 @@ class CombinedOdometry:
         self.filter = None
         self.estimate = None        # the latest Estimate
         self.pending = deque()      # (ns of arrival, Odom), until the gyro has caught up
-        self.readings = deque()     # (ns at the start, Imu, variance by lost readings), not used yet
+        self.readings = deque()     # (ns at the start, Imu, variances of the rate: by its change, by lost readings)
         self.time = None            # ns, the end of the last step
         self.odom = None            # the last Odom of a step
         self.odom_yaw = None        # rad, the filter's yaw at that time
         self.yaws = deque()         # (ns, rad) of the filter since then, where the gyro is ahead of the odometry
         self.another_floor = False  # whether the sensors have shown that the prior is that of another floor
         self.contradicted = None    # ns, when wheels and gyro last contradicted each other
+        self.standstill = Standstill(self.limits.gyro_bias)
+        self.placed = None          # arguments of set_pose(), until the first step after that time
+        self.placed_at = 0          # ns, the time of the last set_pose() that counts
         self.suspect = None         # an Odom that has jumped, until the next one confirms it
         self.timed_out = {'odom': False, 'imu_data': False}
 
@@ -97,7 +104,25 @@ class CombinedOdometry:
         """Whether wheels and gyro contradict each other, or did so a moment ago."""
         return self.contradicted is not None and self.time - self.contradicted < CONTRADICTION
 
+    @property
+    def case(self):
+        """Which rule the last step has followed: 'standstill', 'agreement', 'contradiction' or 'carried'; None without
+        one of the sensors."""
+        if not self.filter or not self.gyro_used or self.suspect or any(self.timed_out.values()):
+            return None
+        if self.standstill.case:
+            return self.standstill.case
+        return 'contradiction' if self.contradicts else 'agreement'
+
     # input
+
+    def set_pose(self, now, pose, covariance):
+        """The robot is at a Pose at `now` (ns), with this covariance (3x3) of x, y (m) and yaw (rad). What the filter has
+        learned of the sensors is kept. It counts from the first step after `now`."""
+        self.placed = now, pose, covariance
+        if self.filter and self.time >= now:
+            self._place()
+            self._finish(self.time, None)
 
     def add_odom(self, now, odom, pose_variances):
         """Process an Odom that arrived at `now` (ns). Raises RejectedMessage.
@@ -130,17 +155,18 @@ class CombinedOdometry:
         changes by at most A in a second makes the turn in a time T wrong by at most A T^2 / 4. Both errors are taken as
         uniformly distributed. The second one is kept apart, because the wheels may have measured the gap.
         """
-        lost = 0.0
+        lost = changed = 0.0
         duration = imu.stamp - last.stamp
         usual = self.period or duration
         self.period = usual + (duration - usual) // 16      # a running mean
         if duration > SHORT:
             rate = imu.rate if imu.is_mean else (last.rate + imu.rate) / 2
-            variance = imu.variance + (imu.rate - last.rate) ** 2 / 12
+            changed = (imu.rate - last.rate) ** 2 / 12
             if duration > LOST * usual:
-                lost = min(MAX_ACCELERATION * duration / SECOND / 4, MAX_TURN_RATE) ** 2 / 3
-            imu = imu._replace(rate=rate, variance=variance)
-        self.readings.append((last.stamp, imu, lost))
+                limits = self.limits
+                lost = min(limits.max_angular_acceleration * duration / SECOND / 4, limits.max_turn_rate) ** 2 / 3
+            imu = imu._replace(rate=rate)
+        self.readings.append((last.stamp, imu, changed, lost))
 
     def _check_stamp(self, sensor, now, stamp):
         """Check and store a stamp; returns the previous one, or None."""
@@ -152,7 +178,9 @@ class CombinedOdometry:
         for good, expected, time in ((stamp <= now + self.max_lead, 'a stamp not later than now', now),
                                      (stamp >= now - MAX_AGE, 'a stamp not much older than now', now),
                                      (before is None or stamp > before, 'a stamp later than the last', before or 0)):
-            check('header.stamp', '%.9f' % (stamp / SECOND), good, '%s, %.9f' % (expected, time / SECOND))
+            if not good:
+                raise RejectedMessage('header.stamp: %.9f: expected %s, %.9f'
+                                      % (stamp / SECOND, expected, time / SECOND))
         self.last_stamp[sensor] = stamp
         self._add_arrival(sensor, self.clock() if self.clock else now)
         other = self.last_stamp['odom' if sensor == 'imu_data' else 'imu_data']
@@ -208,24 +236,39 @@ class CombinedOdometry:
             return
         # one message that jumps is an outlier; a second one that agrees with it is a new place
         suspect, self.suspect = self.suspect, None
-        if suspect and not has_jumped(suspect, odom) and distance(suspect, odom) <= distance(self.odom, odom):
+        if (suspect and not has_jumped(suspect, odom, self.limits)
+                and distance(suspect, odom) <= distance(self.odom, odom)):
             self.restart('odom: jumped from %s to %s' % (format_pose(self.odom), format_pose(odom)))
-        elif self.filter and has_jumped(self.odom, odom):
-            self.warn('odom: %s is too far from %s for the time between them: ignored'
-                      % (format_pose(odom), format_pose(self.odom)))
+        elif self.filter and has_jumped(self.odom, odom, self.limits):
+            self.warn('odom: %s is too far from %s for the %.3f s between them (~max_speed, ~max_turn_rate): ignored'
+                      % (format_pose(odom), format_pose(self.odom), (odom.stamp - self.odom.stamp) / SECOND))
             self.suspect = odom
             return
         if not self.filter:
-            self.filter = Filter(self.prior, odom.pose)
+            self.filter = Filter(self.prior, odom.pose, self.limits.gyro_bias)
             self.odom_yaw = odom.pose.yaw
+            if self.placed:
+                self._place()
             self._finish(odom.stamp, odom)
             return
+        if self.placed and odom.stamp > self.placed[0]:
+            self._place()
 
         elapsed = (odom.stamp - self.odom.stamp) / SECOND
-        dx, dy = odom.pose.x - self.odom.pose.x, odom.pose.y - self.odom.pose.y
+        # the robot was put to its place at some time since the last odometry: only the rest of the distance counts
+        share = min(1.0, max(0, odom.stamp - self.placed_at) / (odom.stamp - self.odom.stamp))
+        dx, dy = share * (odom.pose.x - self.odom.pose.x), share * (odom.pose.y - self.odom.pose.y)
         duration = max(0, odom.stamp - self.time) / SECOND      # less than elapsed if the gyro was used alone
         turned = wrap_angle(odom.pose.yaw - self.odom.pose.yaw)
         gyro, missing = self._gyro_turn(odom.stamp)
+        if self.standstill.rests(odom.stamp, odom.pose) and gyro and self.time == self.odom.stamp:
+            self.filter.rest(duration)
+            self.standstill.add(Part(duration, *gyro), self.filter)
+            self.odom_yaw = self.filter.state[YAW]
+            self._finish(odom.stamp, odom)
+            return
+        if self.standstill.case:
+            self._leave_standstill()
         wheels = None
         if self.time == self.odom.stamp:
             wheels = turned, odom.angular_variance * elapsed ** 2
@@ -250,6 +293,14 @@ class CombinedOdometry:
         self.odom_yaw = end
         self._finish(max(odom.stamp, self.time), odom)
 
+    def _leave_standstill(self):
+        """The last moment at rest, in which the robot may have begun to turn, is a turn that the gyro measured."""
+        last, ekf = self.standstill.leave(self.filter), self.filter
+        if last.time:
+            before = ekf.state[YAW]
+            ekf.move(last.time, ekf.turn(last.time, None, last[1:]))
+            self.odom_yaw += ekf.state[YAW] - before
+
     def _check_agreement(self, wheels, gyro, travelled, duration):
         """Warn where wheels and gyro contradict what the filter believes, or each other."""
         ekf = self.filter
@@ -269,12 +320,26 @@ class CombinedOdometry:
     def _step_by_gyro(self, end):
         duration = (end - self.time) / SECOND
         if duration > 0:
+            if self.placed and end > self.placed[0]:
+                self._place()
+            gyro, missing = self._gyro_turn(end)
+            if not gyro:    # the wheels will measure this turn
+                return
+            if self.standstill.case:
+                self._leave_standstill()
             if not self.yaws:
                 self.yaws.append((self.time, self.filter.state[YAW]))
-            gyro, missing = self._gyro_turn(end)
             self.filter.move(duration, self.filter.turn(duration, None, gyro, missing=missing))
             self._finish(end, None)
             self.yaws.append((end, self.filter.state[YAW]))
+
+    def _place(self):
+        """Put the filter where set_pose() has said."""
+        (self.placed_at, pose, covariance), self.placed = self.placed, None
+        turned = pose.yaw - self.filter.state[YAW]
+        self.filter.place(pose, covariance)
+        self.odom_yaw += turned
+        self.yaws = deque((stamp, yaw + turned) for stamp, yaw in self.yaws)
 
     def _past_yaw(self, stamp):
         """The filter's yaw at the stamp (ns) of odometry that is behind the gyro."""
@@ -288,16 +353,17 @@ class CombinedOdometry:
         """(angle, variance) of the readings up to `end` (ns), None if they do not cover all of that time; and the
         additional variance because readings were lost, if the whole gap is within that time."""
         angle = variance = missing = 0.0
-        time, good = self.time, True
+        time, good, density = self.time, True, self.standstill.max_density
         while self.readings and time < end:
-            start, imu, lost = self.readings[0]
+            start, imu, changed, lost = self.readings[0]
             if imu.stamp > time:
                 good = good and start <= time and abs(imu.rate) < self.prior.gyro_measurement_range
                 stop = min(imu.stamp, end)
                 part = (stop - time) / SECOND
                 angle += imu.rate * part
-                square = part * (imu.stamp - start) / SECOND
-                variance += imu.variance * square
+                whole = (imu.stamp - start) / SECOND
+                square = part * whole
+                variance += (min(imu.variance, density / whole) + changed) * square
                 if start == time and stop == imu.stamp:
                     missing += lost * square
                 else:
@@ -316,7 +382,8 @@ class CombinedOdometry:
             if odom.stamp >= time:
                 self.yaws.clear()
         covariance = self.filter.covariance
-        unknown_travel = DROPOUT_SPEED * (time - self.odom.stamp) / SECOND
-        covariance[X, X] += unknown_travel ** 2
-        covariance[Y, Y] += unknown_travel ** 2
+        if time > self.odom.stamp:
+            unknown_travel = DROPOUT_SPEED * (time - self.odom.stamp) / SECOND
+            covariance[X, X] += unknown_travel ** 2
+            covariance[Y, Y] += unknown_travel ** 2
         self.estimate = Estimate(time, Pose(*state[:3]), covariance, self.odom)

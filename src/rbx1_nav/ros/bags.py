@@ -8,7 +8,8 @@ import rosbag
 from sensor_msgs.msg import Imu
 
 from rbx1_nav.config import ConfigError, show_name
-from rbx1_nav.estimation.combined_odometry import JUMP_TOLERANCE, MAX_SPEED
+from rbx1_nav.estimation.combined_odometry import JUMP_TOLERANCE
+from rbx1_nav.estimation.limits import Limits
 from rbx1_nav.fitting.recording import Commands, Rates, Recording, Track, check_recording
 from rbx1_nav.ros.messages import yaw_of
 
@@ -121,7 +122,7 @@ def check_jumps(name, series, poses):
     if poses is None:
         return
     steps = numpy.hypot(numpy.diff(poses.x), numpy.diff(poses.y))
-    jumps = numpy.flatnonzero(steps > MAX_SPEED * numpy.diff(poses.time) + JUMP_TOLERANCE)
+    jumps = numpy.flatnonzero(steps > Limits().max_speed * numpy.diff(poses.time) + JUMP_TOLERANCE)
     if len(jumps):
         first = jumps[0]
         raise ConfigError('%s: %s: jumps by %.2f m in %.3f s, %d times in all: expected one run of one robot' % (

@@ -1,12 +1,14 @@
-"""Publishes the combined odometry as a pose and a transform."""
+"""Publishes the combined odometry as a pose, as odometry and as a transform."""
 import time
 
 import rospy
 from geometry_msgs.msg import PoseWithCovarianceStamped
+from nav_msgs.msg import Odometry
 from tf2_msgs.msg import TFMessage
 
 from rbx1_nav.model.kinematics import relative_frame
 from rbx1_nav.ros import messages
+from rbx1_nav.ros.estimated_twist import estimate_twist
 from rbx1_nav.schedule import Schedule
 from rbx1_nav.units import SECOND
 
@@ -29,8 +31,13 @@ class EstimatePublisher:
         self.log = log
         self.schedule = Schedule(parameters['freq'])
         self.pose_pub = rospy.Publisher('~odom_combined', PoseWithCovarianceStamped, queue_size=10)
+        self.odometry_pub = rospy.Publisher('~odometry', Odometry, queue_size=10)
         self.tf_pub = rospy.Publisher('/tf', TFMessage, queue_size=100, tcp_nodelay=True)
         self.frames = None, None    # of the odometry and of the robot
+        self.published = 0          # poses
+        self.last = self.before = None      # the latest Estimate, and the one that it follows without a jump
+        self.filter = None                  # Filter of `last`
+        self.placed = False                 # whether the next Estimate may be at another place, by set_pose
         self.restart()
 
     def restart(self):
@@ -40,12 +47,22 @@ class EstimatePublisher:
         self.settled = not self.publish_tf      # whether no transform of other nodes can make a difference
         self.first = None                       # (ns, s of wall time) of the first estimate
 
-    def update(self, estimate, odom_frame, base_frame):
-        """Publish an Estimate if it is due. odom_frame, base_frame: the frames of the odometry that it is based on."""
+    def update(self, combined, odom_frame, base_frame):
+        """Publish the estimate of a CombinedOdometry if it is due. The frames are those of its odometry."""
+        estimate = combined.estimate
+        if estimate is not self.last:
+            self.before = None if self.placed or combined.filter is not self.filter else self.last
+            self.last, self.filter = estimate, combined.filter
+        self.placed = combined.placed is not None
         if not self.schedule.due(estimate.stamp):
             return
         stamp = rospy.Time(0, estimate.stamp)
-        self.pose_pub.publish(messages.planar_pose(stamp, self.output_frame, estimate.pose, estimate.covariance))
+        pose = messages.planar_pose(stamp, self.output_frame, estimate.pose, estimate.covariance)
+        self.pose_pub.publish(pose)
+        self.published += 1
+        if self.odometry_pub.get_num_connections():     # the message takes longer to make than the pose
+            twist = estimate_twist(combined, self.before) if self.before else None
+            self.odometry_pub.publish(messages.odometry_of_estimate(pose, base_frame, twist))
         if not self.publish_tf:
             return
         if self.frames != (odom_frame, base_frame):

@@ -3,15 +3,17 @@ from math import atan2, cos, isnan, nan, pi, sin, sqrt
 
 from geometry_msgs.msg import PoseWithCovarianceStamped, Quaternion, TransformStamped
 from nav_msgs.msg import Odometry
+import numpy
 from sensor_msgs.msg import Imu, JointState
 
 from rbx1_nav.config import show
 from rbx1_nav.estimation.gyro_input import ImuData
-from rbx1_nav.estimation.inputs import Odom, check
+from rbx1_nav.estimation.inputs import Odom, check, check_number, check_variance
 from rbx1_nav.model.kinematics import Pose
 from rbx1_nav.model.wheels import MEASURED
 from rbx1_nav.units import wrap_angle
 
+ROUNDING = 1e-6     # of a correlation that somebody has calculated
 UNKNOWN = 1e6       # variance of what is not measured, as in diff_drive_controller and robot_pose_ekf
 
 
@@ -166,6 +168,48 @@ def planar_pose(stamp, frame_id, pose, covariance):
     message.pose.pose.position.y = pose.y
     message.pose.pose.orientation = quaternion(pose.yaw % (2 * pi))
     message.pose.covariance = planar(covariance)
+    return message
+
+
+def from_set_pose(message, output_frame):
+    """(Pose, 3x3 covariance of x, y and yaw) of the PoseWithCovarianceStamped of set_pose. Raises RejectedMessage.
+
+    output_frame: the frame that the pose must be in; an empty frame_id stands for it.
+    """
+    frame = message.header.frame_id.lstrip('/')
+    check('header.frame_id', show(frame), frame in ('', output_frame), '%s, the output_frame' % output_frame)
+    point = message.pose.pose.position
+    orientation = message.pose.pose.orientation
+    pose = Pose(point.x, point.y, yaw_of(orientation))
+    check('pose.pose.orientation', '(%g, %g, %g, %g)' % (orientation.x, orientation.y, orientation.z, orientation.w),
+          not isnan(pose.yaw), 'a normalized quaternion (x, y, z, w)')
+    for field, value in zip(('position.x', 'position.y'), pose):
+        check_number('pose.pose.' + field, value)
+    covariance = numpy.reshape(message.pose.covariance, (6, 6))[numpy.ix_((0, 1, 5), (0, 1, 5))]
+    for index, value in zip((0, 7, 35), covariance.diagonal().tolist()):
+        check_variance('pose.covariance[%d]' % index, value)
+    deviations = numpy.sqrt(covariance.diagonal())
+    correlations = covariance / numpy.outer(deviations, deviations)
+    # nan fails the first comparison
+    good = ((abs(correlations) < 1 + ROUNDING).all() and abs(correlations - correlations.T).max() < ROUNDING
+            and numpy.linalg.eigvalsh(correlations).min() > -ROUNDING)
+    check('pose.covariance', show(covariance.tolist()), good, 'a covariance: symmetric, no correlation above 1')
+    return pose, (covariance + covariance.T) / 2
+
+
+def odometry_of_estimate(pose, child_frame_id, twist):
+    """An Odometry message of a PoseWithCovarianceStamped and a Twist in the frame of the robot; None: not known."""
+    message = Odometry()
+    message.header = pose.header
+    message.child_frame_id = child_frame_id
+    message.pose = pose.pose
+    if twist is None:
+        message.twist.covariance = diagonal(*[UNKNOWN] * 6)
+        return message
+    message.twist.twist.linear.x, message.twist.twist.linear.y = twist.forward, twist.left
+    message.twist.twist.angular.z = twist.turn
+    message.twist.covariance = diagonal(twist.forward_variance, twist.left_variance, UNKNOWN, UNKNOWN, UNKNOWN,
+                                        twist.turn_variance)
     return message
 
 

@@ -1,37 +1,97 @@
-"""The state of one of the filter's sensors, for /diagnostics."""
+"""The states of the filter and of its sensors, for /diagnostics."""
+from math import radians, sqrt
+
 import rospy
 from diagnostic_msgs.msg import DiagnosticStatus
 from diagnostic_updater import Updater
 
+from rbx1_nav.estimation.filter import BIAS, STRAIGHT, TURNING
 
-def make_diagnostics(sensors, diagnose):
-    """An Updater of the sensors with these names. diagnose(sensor, status): fills in the DiagnosticStatus of one."""
-    diagnostics = Updater()
-    diagnostics.setHardwareID('none')
-    for sensor in sensors:
-        diagnostics.add(sensor, lambda status, sensor=sensor: diagnose(sensor, status))
-    return diagnostics
+OK, WARN = DiagnosticStatus.OK, DiagnosticStatus.WARN
+CONTRADICTION = WARN, 'Wheels and gyro contradict each other'
+JUMPED = WARN, 'Odometry ignored: faster than ~max_speed or ~max_turn_rate'
+SUMMARIES = {'standstill': (OK, 'Standstill'), 'agreement': (OK, 'Wheels and gyro agree'),
+             'contradiction': CONTRADICTION, 'carried': (WARN, 'Carried, or turned by hand')}
 
 
-class SensorStatus:
-    """Counts a sensor's messages, and fills in its DiagnosticStatus."""
+class Diagnostics:
+    """Counts the messages to the filter, and publishes a DiagnosticStatus of it and one of each sensor."""
 
-    def __init__(self, timeout):
-        """timeout: age of the last message from which on the sensor has timed out, s."""
+    def __init__(self, sensors, timeout, lock, get_filter):
+        """sensors: names; timeout: age of the last message from which on a sensor has timed out, s; lock: to be held
+        while the filter is read; get_filter(): the CombinedOdometry, or None, and the number of poses published."""
         self.timeout = timeout
-        self.received = None    # rospy.Time of the last message
-        self.rejected = 0
+        self.lock = lock
+        self.get_filter = get_filter
+        self.received = dict.fromkeys(sensors)      # rospy.Time of the last message of each
+        self.rejected = dict.fromkeys([*sensors, 'set_pose'], 0)    # messages
+        self.filter = self.case = None
+        self.starts = 0
+        self.counts = {'contradiction': 0, 'carried': 0}
+        self.updater = Updater()
+        self.updater.setHardwareID('none')
+        self.updater.add('filter', self._diagnose_filter)
+        for sensor in sensors:
+            self.updater.add(sensor, lambda status, sensor=sensor: self._diagnose_sensor(sensor, status))
 
-    def diagnose(self, status, timed_out, contradicts):
-        """Fill in a DiagnosticStatus. timed_out: whether the filter does not use this sensor; contradicts: whether
-        wheels and gyro contradict each other."""
-        age = None if self.received is None else (rospy.Time.now() - self.received).to_sec()
-        # below 0: the clock has jumped back since
-        if timed_out or age is None or not -1 <= age <= self.timeout:
-            status.summary(DiagnosticStatus.WARN, 'No message yet' if age is None else 'Timed out, not used')
-        elif contradicts:
-            status.summary(DiagnosticStatus.WARN, 'Wheels and gyro contradict each other')
-        else:
-            status.summary(DiagnosticStatus.OK, 'Used')
-        status.add('Age of the last message (s)', 'never' if age is None else '%.3f' % age)
-        status.add('Rejected messages', self.rejected)
+    def count(self, topic, now, combined):
+        """To be called after each message on a topic that the CombinedOdometry has accepted at `now`, a rospy.Time."""
+        self.received[topic] = now
+        if combined.filter is not self.filter:
+            self.filter = combined.filter
+            self.starts += self.filter is not None
+        case = combined.case
+        if case != self.case:
+            self.case = case
+            if case in self.counts:
+                self.counts[case] += 1
+
+    def publish(self):
+        """Publish all of them."""
+        self.updater.force_update()
+
+    def _diagnose_filter(self, status):
+        with self.lock:
+            combined, published = self.get_filter()
+            ekf = combined and combined.filter
+            case = combined.case if ekf else None
+            if not ekf:
+                status.summary(WARN, 'No estimate yet')
+            elif case:
+                status.summary(*SUMMARIES[case])
+            elif any(combined.timed_out.values()):
+                status.summary(WARN, 'A sensor has timed out')
+            elif combined.suspect:
+                status.summary(*JUMPED)
+            else:
+                status.summary(OK, 'The gyro is not used')
+            status.add('Case', case or 'none')
+            for key, index, unit in (('Gyro bias (degrees/s)', BIAS, radians(1)), ('Slip in turns', TURNING, 1),
+                                     ('Slip in straight motion', STRAIGHT, 1)):
+                sigma = sqrt(ekf.root[index] @ ekf.root[index]) if ekf else None
+                status.add(key, '%.4f +- %.4f' % (ekf.state[index] / unit, sigma / unit) if ekf else 'unknown')
+            sigma = sqrt(combined.estimate.covariance[2, 2]) / radians(1) if ekf else None
+            status.add('Standard deviation of the heading (degrees)', '%.2f' % sigma if ekf else 'unknown')
+            status.add('Contradictions', self.counts['contradiction'])
+            status.add('Times carried', self.counts['carried'])
+            status.add('Restarts', max(0, self.starts - 1))
+            status.add('Poses published', published)
+            status.add('Rejected messages on set_pose', self.rejected['set_pose'])
+        return status
+
+    def _diagnose_sensor(self, sensor, status):
+        with self.lock:
+            combined, received = self.get_filter()[0], self.received[sensor]
+            age = None if received is None else (rospy.Time.now() - received).to_sec()
+            # below 0: the clock has jumped back since
+            if age is None or not -1 <= age <= self.timeout or combined.timed_out[sensor]:
+                status.summary(WARN, 'No message yet' if age is None else 'Timed out, not used')
+            elif sensor == 'odom' and combined.suspect:
+                status.summary(*JUMPED)
+            elif combined.case == 'contradiction':
+                status.summary(*CONTRADICTION)
+            else:
+                status.summary(OK, 'Used')
+            status.add('Age of the last message (s)', 'never' if age is None else '%.3f' % age)
+            status.add('Rejected messages', self.rejected[sensor])
+        return status

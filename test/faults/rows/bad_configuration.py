@@ -68,7 +68,7 @@ def use_text(text):
 def use_filter(values):
     """The filter's numbers, and its period."""
     parameters = read_parameters(values)
-    return [parameters['sensor_timeout']], 1 / parameters['freq']
+    return [parameters['sensor_timeout'], *parameters['limits']], 1 / parameters['freq']
 
 
 def use_script(values):
@@ -109,7 +109,7 @@ def generate(row):
         (use_robot, load_robot(row.random.choice(['turtlebot.yaml', 'pi_robot.yaml']))),
         (use_surface, load('surfaces', row.random.choice(['hard_floor.yaml', 'low_ply_carpet.yaml']))),
         (use_filter, dict(freq=10.0, sensor_timeout=1.0, publish_tf=True, odom_used=True, imu_used=True, vo_used=False,
-                          output_frame='odom', surface='hard_floor')),
+                          output_frame='odom', surface='hard_floor', max_speed=6.0, gyro_bias=10.0)),
         (use_script, dict(rate=50, linear_speed=0.2))][kind - 2]
     return (use,) + mutate(row.random, values)
 

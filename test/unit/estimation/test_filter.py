@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rbx1_nav.estimation.filter import BIAS, SCALE, SLIP_WALK, STRAIGHT, TURNING, UNKNOWN, X, YAW, Filter
-from rbx1_nav.model.kinematics import ORIGIN
+from rbx1_nav.model.kinematics import ORIGIN, Pose
 from sample_priors import IDEAL, PRIORS
 
 angles = st.floats(-3, 3)
@@ -231,11 +231,57 @@ def test_another_floor_is_noticed():
 
 @pytest.mark.parametrize('slip, factor', [(0.0, -1.0), (0.9, 1.0), (0.0, 1.5)])
 def test_a_contradiction_makes_the_heading_as_uncertain_as_wheels_and_gyro_differ(slip, factor):
-    ekf, _, contradiction = drive(UNKNOWN, slip, factor)
-    # after 6 rad, less what was not clear yet
-    whole = 6 * abs(1 / (1 - slip) - factor)
-    assert 0.3 * whole < contradiction < 1.02 * whole
+    # when it is noticed: after a turn of 1.5 rad, or more for a difference that the slip of a floor nearly explains
+    differ = abs(1 / (1 - slip) - factor) / max(1 / (1 - slip), abs(factor))
+    for turned in numpy.arange(0.1, 4.0, 0.02):
+        ekf, _, contradiction = drive(UNKNOWN, slip, factor, turned)
+        if contradiction:
+            break
+    assert 1.4 * differ < contradiction < 4.3 * differ
     assert sqrt(ekf.covariance[YAW, YAW]) == pytest.approx(contradiction, rel=0.1)
+
+
+def test_a_doubt_shrinks_when_wheels_and_gyro_agree_again():
+    doubtful, _, contradiction = drive(UNKNOWN, 0.5, turned=1.0)
+    # wheels that always slip by half agree with the gyro as soon as that is known
+    later, _, same = drive(UNKNOWN, 0.5, turned=10.0)
+    assert same == contradiction > 0.5 and sqrt(doubtful.covariance[YAW, YAW]) > 0.5
+    # the least that the heading is uncertain by: 1.5 % scale error of the gyro
+    assert 0.05 < sqrt(later.covariance[YAW, YAW]) < 0.2
+
+
+def test_a_contradiction_changes_neither_the_bias_nor_the_scale():
+    ekf, _, contradiction = drive(UNKNOWN, 0.5, turned=1.0)
+    before = ekf.state[BIAS], ekf.state[SCALE]
+    for _ in range(300):
+        ekf.move(0.02, ekf.turn(0.02, (0.04, 1e-8), (0.02, 1e-9)))
+    assert contradiction and (ekf.state[BIAS], ekf.state[SCALE]) == before
+
+
+def test_wheels_that_agree_with_the_gyro_leave_little_scale_error_and_little_noise():
+    agree, _, _ = drive(UNKNOWN, 0.0, turned=10.0)
+    # 1.5 % of 10 rad would be 0.15 rad
+    assert sqrt(agree.covariance[YAW, YAW]) < 0.06
+    agree.place(ORIGIN, 1e-9 * numpy.eye(3))
+    for _ in range(100):
+        agree.move(0.02, agree.turn(0.02, (0.0, 1e-8), (0.0, 1e-9), 0.01), 0.0, 0.01)
+    # after 1 m, by the noise of an unknown floor alone: 0.044 m; by a slip of 5 %: 0.05 m
+    noise = agree.covariance[X, X] - float(agree.root[STRAIGHT] @ agree.root[STRAIGHT])
+    assert noise < 0.03 ** 2
+
+
+def test_the_straight_slip_stays_possible_however_far_the_robot_drives():
+    ekf = Filter(UNKNOWN, ORIGIN)
+    for _ in range(2000):
+        ekf.move(1.0, ekf.turn(1.0, (0.0, 1e-8), (0.0, 1e-9), 1.0), 0.0, 1.0)
+    assert 0.05 < sqrt(ekf.root[STRAIGHT] @ ekf.root[STRAIGHT]) < 0.11
+
+
+def test_place_leaves_no_doubt():
+    ekf, _, contradiction = drive(UNKNOWN, 0.5, turned=2.0)
+    covariance = numpy.diag([0.01, 0.02, 0.03])
+    ekf.place(Pose(1.0, 2.0, 3.0), covariance)
+    assert contradiction and ekf.covariance == pytest.approx(covariance)
 
 
 @given(st.floats(-0.07, 0.07), st.floats(1.5, 60))

@@ -1,0 +1,43 @@
+"""How large noise and drift of the sensors are, learned from what is measured."""
+from math import sqrt
+
+FIRST_COUNT = 5.0   # differences that seem to have been as large as expected, before the first one
+GREATEST = 9.0      # square of a difference / its variance: a larger one counts as this
+
+
+class NoiseFactor:
+    """Noise of the wheels, as a fraction (at most 1) of the assumed variance.
+
+    It is learned from the squares of the differences of wheels and gyro, relative to what is expected (covariance
+    matching: Mehra, Approaches to Adaptive Filtering, IEEE Transactions on Automatic Control 17, 1972).
+    """
+
+    def __init__(self):
+        self.mean, self.count = 1.0, FIRST_COUNT
+        self.value = 1.0
+
+    def add(self, square, share):
+        """square: of a difference, divided by its variance; share: the fraction of this variance that is noise of the
+        wheels."""
+        self.count += share ** 2
+        # toward the factor with which the square would be as large as expected
+        self.mean *= 1 + share * (min(square, GREATEST) - 1) / self.count
+        # cautious at first, by 2 sigma: the relative variance of a mean of squares of normal numbers is 2 / count
+        self.value = min(1.0, self.mean * (1 + 2 * sqrt(2 / self.count)))
+
+
+class Drift:
+    """Variance (rad^2/s^4) of the rate at which the gyro's bias changes between two standstills, by least squares.
+    Only what exceeds the noise by 1 sigma counts."""
+
+    def __init__(self):
+        self.num = self.den = self.noise = self.value = 0.0
+
+    def add(self, time, square, noise):
+        """time: s since the bias was last known; square: of its change, rad^2/s^2; noise: the expected square without a
+        drift."""
+        weight = time ** 2
+        self.num += weight * (square - noise)
+        self.den += weight ** 2
+        self.noise += 2 * (weight * noise) ** 2     # the variance of the square of a normal number is 2
+        self.value = max(0.0, self.num - sqrt(self.noise)) / self.den

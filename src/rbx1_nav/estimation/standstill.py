@@ -1,0 +1,132 @@
+"""Standstill: what the gyro measures while the wheels are at rest is its bias, unless the robot is carried.
+
+The wheels are at rest if the pose of the odometry has not changed for REST. Its variances are not used: many drivers
+publish constants. The gyro's turns are then added up in parts of PART. There are two cases:
+
+- standstill: the rate of a part is the bias that is known, or the robot has just been switched on and the rate is steady
+  and within the limit. It is the bias.
+- carried: any other rate. Someone turns the robot by hand: it turns as the gyro measures, and its pose is uncertain.
+  A rate that is steady for longer than a hand can be is a bias that has changed. If it was steady for a shorter time
+  when the robot drives off, the bias is uncertain.
+"""
+from math import inf, radians, sqrt
+from typing import NamedTuple
+
+from rbx1_nav.units import SECOND, wrap_angle
+
+STANDSTILL, CARRIED = 'standstill', 'carried'
+
+REST = SECOND // 2          # ns for which the pose has not changed
+ROUNDING = 1e-6             # s
+SAME = 1e-4                 # m and rad: a smaller change is rounding
+PART = 0.1                  # s over which the gyro's rate is averaged
+STEADY = radians(1)         # rad/s: a bias changes less from one standstill to the next
+FIRST_STEADY = 0.2          # s for which a rate must be steady to be the first bias
+BIAS_DEVIATIONS = 2.0       # standard deviations by which the bias may have changed
+STEADY_DOUBT = 1.0          # s for which another rate must be steady to make the bias uncertain
+STEADY_AGAIN = 10.0         # s for which another rate must be steady to be a bias that has changed
+DEVIATIONS = 5.0            # standard deviations of the gyro's noise that are no chance
+MIN_SAMPLES = 10            # differences of rates from which the noise is measured
+NOISE_FACTOR = 2.0          # claimed variance of the noise / measured one, above which the claimed one is too large
+MIN_DENSITY = radians(0.005) ** 2   # rad^2/s: square of the noise density of a quiet MEMS gyro
+
+
+class Part(NamedTuple):
+    """What the gyro has measured in some time: s, rad, rad^2."""
+    time: float = 0.0
+    angle: float = 0.0
+    variance: float = 0.0
+
+    def plus(self, other):
+        """The sum of both."""
+        return Part(self.time + other.time, self.angle + other.angle, self.variance + other.variance)
+
+
+class Standstill:
+    """Watches the odometry and the gyro, and tells the filter what they mean while the wheels are at rest."""
+
+    def __init__(self, max_bias):
+        """max_bias: rad/s, the largest bias of a gyro."""
+        self.max_bias = max_bias
+        self.pose = None            # the pose that does not change
+        self.since = None           # ns, stamp of the first message with it
+        self.case = None            # STANDSTILL or CARRIED while the wheels are at rest
+        self.density = 0.0          # rad^2/s, measured noise of the gyro
+        self.samples = 0            # that it is measured from
+        self.max_density = inf      # rad^2/s: a reading that claims more noise than that is not believed
+        self._clear()
+
+    def _clear(self):
+        self.case = None
+        self.part = Part()          # the present one
+        self.complete = None        # the one before, used once the wheels are at rest after it, too
+        self.undecided = Part()     # parts with a steady rate that is not known to be the bias
+        self.last = None            # the last Part that was used
+
+    def rests(self, stamp, pose):
+        """Whether the wheels are at rest at the Pose with this stamp (ns)."""
+        last = self.pose
+        if (last is None or abs(pose.x - last.x) > SAME or abs(pose.y - last.y) > SAME
+                or abs(wrap_angle(pose.yaw - last.yaw)) > SAME):
+            self.pose, self.since = pose, stamp
+        return stamp - self.since >= REST
+
+    def leave(self, ekf):
+        """The wheels are not at rest. Returns the Part in which the robot may have begun to move: the Filter has not used
+        it."""
+        unused = self.part.plus(self.complete or Part())
+        if ekf.bias_known and self.undecided.time > STEADY_DOUBT - ROUNDING:
+            ekf.doubt_bias(self.undecided.angle / self.undecided.time)
+        self._clear()
+        return unused
+
+    def add(self, step, ekf):
+        """Add a step (Part) at rest, and tell the Filter what the parts before it mean."""
+        self.case = self.case or STANDSTILL
+        if self.complete:
+            self._use(self.complete, ekf)
+            self.complete = None
+        self.part = self.part.plus(step)
+        if self.part.time > PART - ROUNDING:
+            self.complete, self.part = self.part, Part()
+
+    def _use(self, part, ekf):
+        """Tell the Filter what a Part means."""
+        rate = part.angle / part.time
+        margin = STEADY + DEVIATIONS * sqrt(part.variance) / part.time
+        possible = abs(rate) <= self.max_bias
+        if ekf.bias_known and possible and abs(rate - ekf.bias) <= margin + BIAS_DEVIATIONS * ekf.bias_sigma:
+            self._measure_noise(part, rate)
+            self._learn(part, ekf)
+            return
+        self.last = None
+        before, self.undecided = self.undecided, part
+        if before.time and abs(rate - before.angle / before.time) <= margin:
+            self.undecided = before.plus(part)
+        elif before.time and not ekf.bias_known:
+            self._carry(before, ekf)
+        if ekf.bias_known or not possible:
+            self._carry(part, ekf)
+        if not possible:
+            self.undecided = Part()
+        elif self.undecided.time >= (STEADY_AGAIN if ekf.bias_known else FIRST_STEADY) - ROUNDING:
+            self._learn(self.undecided, ekf)
+
+    def _measure_noise(self, part, rate):
+        """The noise by the differences of successive rates: the variance of each is that of the angle / time^2."""
+        if self.last:
+            sample = (rate - self.last.angle / self.last.time) ** 2 / (1 / part.time + 1 / self.last.time)
+            self.samples += 1
+            self.density += (sample - self.density) / min(self.samples, 100)
+            if self.samples >= MIN_SAMPLES:
+                self.max_density = NOISE_FACTOR * max(self.density, MIN_DENSITY)
+        self.last = part
+
+    def _learn(self, part, ekf):
+        ekf.learn_bias(part.angle / part.time, part.variance / part.time ** 2)
+        self.undecided = Part()
+        self.case = STANDSTILL
+
+    def _carry(self, part, ekf):
+        ekf.carry(part.angle - ekf.bias * part.time, part.time)
+        self.case = CARRIED

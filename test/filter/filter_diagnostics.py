@@ -1,0 +1,69 @@
+#!/usr/bin/python3
+"""/diagnostics has the case that the filter is in, the errors that it has learned, and counts."""
+import math
+import unittest
+
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+
+from still_robot import Sender, make_imu, make_odom
+import support
+
+BIAS = 2.0      # degrees/s
+
+
+class TestFilterDiagnostics(unittest.TestCase):
+    def test_cases_bias_and_counts(self):
+        support.init_node('filter_diagnostics')
+        diagnostics = support.Watch('/diagnostics', DiagnosticArray)
+
+        def status():
+            """(level, message, values) of the filter in the latest message that has it."""
+            for message in reversed(list(diagnostics.messages)):
+                for each in message.status:
+                    if each.name.endswith(': filter'):
+                        return each.level, each.message, {pair.key: pair.value for pair in each.values}
+            return None, None, {}
+
+        def wait_for_case(case, level, text):
+            support.wait_for(lambda: status()[2].get('Case') == case, 'the case %s' % case)
+            self.assertEqual(status()[:2], (level, text))
+        wait_for_case('none', DiagnosticStatus.WARN, 'No estimate yet')
+        self.assertEqual(status()[2]['Gyro bias (degrees/s)'], 'unknown')
+
+        rate, heading = [math.radians(BIAS)], [0.0, 0.0]     # rad/s; rad, and rad for each message
+
+        def imu():
+            message = make_imu()
+            message.angular_velocity.z = rate[0]
+            return message
+
+        def odom():
+            message = make_odom()
+            heading[0] += heading[1]
+            message.pose.pose.orientation.z = math.sin(heading[0] / 2)
+            message.pose.pose.orientation.w = math.cos(heading[0] / 2)
+            return message
+        Sender('odom', odom)
+        Sender('imu_data', imu)
+        wait_for_case('standstill', DiagnosticStatus.OK, 'Standstill')
+        support.wait_for(lambda: abs(float(status()[2]['Gyro bias (degrees/s)'].split(' +- ')[0]) - BIAS) < 0.05,
+                         'the bias')
+        self.assertRegex(status()[2]['Slip in turns'], r'^-?0\.0\d\d\d \+- 0\.0\d\d\d$')
+        self.assertRegex(status()[2]['Slip in straight motion'], r'^-?0\.0\d\d\d \+- 0\.0\d\d\d$')
+
+        rate[0] += 0.5
+        heading[1] = 0.5 * 0.02     # about as fast: the senders have no exact rate
+        wait_for_case('agreement', DiagnosticStatus.OK, 'Wheels and gyro agree')
+        heading[1] = -0.5 * 0.02
+        wait_for_case('contradiction', DiagnosticStatus.WARN, 'Wheels and gyro contradict each other')
+        heading[1] = 0.0
+        wait_for_case('carried', DiagnosticStatus.WARN, 'Carried, or turned by hand')
+        rate[0] -= 0.5
+        wait_for_case('standstill', DiagnosticStatus.OK, 'Standstill')
+        values = status()[2]
+        self.assertEqual((values['Contradictions'], values['Times carried'], values['Restarts']), ('1', '1', '0'))
+        self.assertGreater(int(values['Poses published']), 30)
+
+
+if __name__ == '__main__':
+    support.main('filter_diagnostics', TestFilterDiagnostics)

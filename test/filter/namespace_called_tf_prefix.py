@@ -1,0 +1,22 @@
+#!/usr/bin/python3
+"""A namespace that is called tf_prefix is no prefix: the filter starts, with the frames that it has without one."""
+import unittest
+
+from geometry_msgs.msg import PoseWithCovarianceStamped
+
+from still_robot import Sender, make_imu, make_odom
+import support
+
+
+class TestNamespaceCalledTfPrefix(unittest.TestCase):
+    def test_the_filter_starts(self):
+        support.init_node('namespace_called_tf_prefix')
+        poses = support.Watch('/robot_pose_ekf/odom_combined', PoseWithCovarianceStamped)
+        Sender('odom', make_odom)
+        Sender('imu_data', make_imu)
+        support.wait_for(lambda: poses.last, 'a pose')
+        self.assertEqual(poses.last.header.frame_id, 'odom_combined')
+
+
+if __name__ == '__main__':
+    support.main('namespace_called_tf_prefix', TestNamespaceCalledTfPrefix)
