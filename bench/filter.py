@@ -3,12 +3,11 @@
 import argparse
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import nullcontext
-import json
 import math
 
 import yaml
 
-from floors import UNKNOWN, Follower, KnownHeading, figures, limits, misses, markdown, table
+from floors import UNKNOWN, Follower, KnownHeading, figures, limits, misses, markdown, report, table
 from robot_pose_ekf import RobotPoseEkf
 from rbx1_nav.control.legs import StuckError
 from rbx1_nav.estimation.combined_odometry import CombinedOdometry
@@ -132,11 +131,7 @@ def main():
                           {name: assumed[name] for name in arguments.assumed or assumed},
                           methods, arguments.seeds, arguments.jobs),
                   key=lambda row: order.index((row['true'], row['assumed'], row['method'])))
-    print('\n'.join((markdown if arguments.markdown else table)(rows)))
-    print('%d of %d rows within all limits' % (sum(not row['misses'] for row in rows), len(rows)))
-    if arguments.json:
-        with open(arguments.json, 'w', encoding='utf-8') as file:
-            json.dump(rows, file, indent=1)
+    report(rows, (markdown if arguments.markdown else table)(rows), arguments.json)
 
 
 if __name__ == '__main__':

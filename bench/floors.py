@@ -3,6 +3,7 @@
 Units: metres, radians; headings in the results in degrees. A pose is (x, y, yaw).
 """
 from collections import namedtuple
+import json
 import math
 
 import numpy
@@ -110,7 +111,7 @@ def limits(true, assumed, values, unobservable):
 def misses(values, bounds):
     """The figures that are beyond their limits, and `stuck` if a run never ended."""
     return ([name for name, (least, greatest) in bounds.items() if not least <= values[name] <= greatest]
-            + ['stuck'] * (values['stuck'] > 0))
+            + ['stuck'] * (values.get('stuck', 0) > 0))
 
 
 def digits(value):
@@ -118,15 +119,29 @@ def digits(value):
     return '-' if math.isnan(value) else '%.3g' % value if value < 100 or value >= 1e5 else '%.0f' % value
 
 
+def aligned(lines, texts):
+    """Lines of cells as columns. texts: the number of first columns that are text, as the last one is."""
+    widths = [max(map(len, column)) for column in zip(*lines)]
+    for line in lines:
+        yield '  '.join(text.ljust(width) if number < texts or number == len(line) - 1 else text.rjust(width)
+                        for number, (text, width) in enumerate(zip(line, widths))).rstrip()
+
+
+def report(rows, lines, path):
+    """Print the lines of a table and how many of its rows have no `misses`; write the rows to `path` (JSON) if given."""
+    print('\n'.join(lines))
+    print('%d of %d rows within all limits' % (sum(not row['misses'] for row in rows), len(rows)))
+    if path:
+        with open(path, 'w', encoding='utf-8') as file:
+            json.dump(rows, file, indent=1)
+
+
 def table(rows):
     """One line per row: a dict with `true`, `assumed`, `method`, `misses` and what figures() returns."""
     lines = [['true', 'assumed', 'method', *(title for _, title in COLUMNS), 'misses']]
     lines += [[row['true'], row['assumed'], row['method'], *(digits(row.get(name, math.nan)) for name, _ in COLUMNS),
                ', '.join(row['misses']) or '-'] for row in rows]
-    widths = [max(map(len, column)) for column in zip(*lines)]
-    for line in lines:
-        yield '  '.join(text.ljust(width) if number < 3 or number == len(line) - 1 else text.rjust(width)
-                        for number, (text, width) in enumerate(zip(line, widths))).rstrip()
+    return aligned(lines, 3)
 
 
 def markdown(rows):

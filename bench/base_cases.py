@@ -1,0 +1,62 @@
+"""Other people's bases: the cases of bases.py."""
+from typing import NamedTuple, Optional
+
+SMALL, MEDIUM, LARGE = (1e-5, 1e-5), (0.001, 0.03), (0.1, 0.5)      # variances, see Case
+LAB, HARD, CARPET = 'create_lab_floor', 'hard_floor', 'low_ply_carpet'
+
+
+class Case(NamedTuple):
+    """A base and the messages that it sends. Pairs of variances of odometry: of x and y (m^2) and of yaw (rad^2), which
+    are also those of the speeds (per s^2); of an IMU: of the rate (rad^2/s^2) and of the orientation (rad^2)."""
+    name: str
+    floor: str
+    odom: Optional[tuple] = None        # variances; None: those of the simulated base
+    odom_at_rest: Optional[tuple] = None    # None: the same
+    twist: bool = True                  # whether the twist has a covariance, too; otherwise it is 0
+    imu: Optional[tuple] = None         # variances; None: those of the simulated gyro
+    bias: Optional[float] = None        # degrees/s, at the start; None: drawn, see the floor's file
+    drift: float = 0.0                  # of the bias, degrees/s per minute
+    scale: Optional[float] = None       # error of the gyro, fraction of the rate; None: drawn, see the floor's file
+    ratio: float = 1.0                  # mean ratio of the wheels' turn and the true one; 1: the floor's slip
+    speed: float = 0.2                  # m/s
+    odom_rate: int = 50                 # Hz
+    imu_rate: int = 50                  # Hz
+    unbiased: str = ''                  # the name of the same case with a bias of 0
+
+
+# the driver or robot that a case is taken from is beside it; the other cases vary one property
+CASES = {case.name: case for case in (
+    Case('lab_small', LAB, SMALL),
+    Case('lab_medium', LAB, MEDIUM),            # husky_control, jackal_control: control.yaml of diff_drive_controller
+    Case('lab_large', LAB, LARGE),
+    Case('hard_small', HARD, SMALL),
+    Case('hard_medium', HARD, MEDIUM),
+    Case('hard_large', HARD, LARGE),
+    Case('carpet_small', CARPET, SMALL),
+    Case('carpet_medium', CARPET, MEDIUM),
+    Case('carpet_large', CARPET, LARGE),
+    Case('carpet_bias_0', CARPET, bias=0.0),
+    Case('carpet_bias_1', CARPET, bias=1.0, unbiased='carpet_bias_0'),
+    Case('carpet_bias_3', CARPET, bias=3.0, unbiased='carpet_bias_0'),
+    Case('carpet_bias_6', CARPET, bias=6.0, unbiased='carpet_bias_0'),
+    Case('hard_bias_0', HARD, bias=0.0),
+    Case('hard_bias_6', HARD, bias=6.0, unbiased='hard_bias_0'),
+    Case('lab_medium_bias_0', LAB, MEDIUM, bias=0.0),
+    Case('lab_medium_bias_6', LAB, MEDIUM, bias=6.0, unbiased='lab_medium_bias_0'),
+    Case('bias_drift', CARPET, MEDIUM, bias=1.0, drift=0.5),
+    Case('gyro_scale', CARPET, bias=1.6, scale=0.02),
+    Case('skid_1.5', CARPET, MEDIUM, ratio=1.5),    # jackal_control: wheel_separation_multiplier 1.5, not applied here
+    Case('skid_2', CARPET, MEDIUM, ratio=2.0),      # husky_control: 1.875, not applied here
+    Case('skid_3', CARPET, MEDIUM, ratio=3.0),
+    Case('fast', HARD, MEDIUM, speed=3.0, odom_rate=25),    # husky_control: max_velocity 3.0
+    Case('odom_10_imu_30', CARPET, MEDIUM, odom_rate=10, imu_rate=30),      # robot_localization, test1.bag: a Husky
+    Case('odom_25_imu_100', CARPET, MEDIUM, odom_rate=25, imu_rate=100),
+    Case('odom_50_imu_400', CARPET, MEDIUM, imu_rate=400),
+    Case('pose_only', CARPET, MEDIUM, twist=False),
+    # kobuki_node, use_imu_heading false: odometry.cpp, slot_callbacks.cpp
+    Case('kobuki', HARD, (0.1, 0.2), twist=False, imu=(0.005, 0.005)),
+    # create_node: covariances.py, turtlebot_node.py (update_rate), gyro.py (subtracts the bias from the rate)
+    Case('create_node', CARPET, (1e-3, 1e3), odom_at_rest=(1e-9, 1e-9), imu=(1e-6, 1e-6), bias=0.0, odom_rate=30,
+         imu_rate=30),
+    # robot_localization, test1.bag: variances and rates of a Husky
+    Case('husky', CARPET, MEDIUM, imu=(4e-4, 1.225e-3), bias=1.0, ratio=2.0, speed=1.0, odom_rate=10, imu_rate=30))}

@@ -1,0 +1,123 @@
+"""The judge of the filter on other people's bases: its messages and its figures."""
+import math
+import os
+
+import numpy
+import pytest
+import yaml
+
+import bases
+from base_cases import CASES, Case
+from rbx1_nav.model.robot import read_robot
+from rbx1_nav.model.surfaces import load_surface
+
+CONFIG = os.path.join(os.path.dirname(__file__), '..', 'config')
+GOOD = dict(case='a', seeds=1, heading=1.0, port_heading=2.0, reckoned_heading=1.0, position=0.1, port_position=0.1,
+            reckoned_position=0.1, nees=3.0)
+IDEAL = Case('ideal', 'ideal')
+
+
+@pytest.fixture(name='robot', scope='module')
+def fixture_robot():
+    with open(os.path.join(CONFIG, 'turtlebot.yaml'), encoding='utf-8') as file:
+        return read_robot(yaml.safe_load(file))
+
+
+def surface_of(case):
+    return load_surface(case.floor, os.path.join(CONFIG, 'surfaces'))
+
+
+@pytest.mark.parametrize('name', CASES)
+def test_each_case_has_finite_errors(name, robot, monkeypatch):
+    monkeypatch.setattr(bases, 'PATHS', (((1, 1, 0.5), (1, 0, 0)),))     # short
+    case = CASES[name]
+    errors = bases.judge(case, bases.drive(robot, case, surface_of(case), 0))
+    assert numpy.isfinite(errors).all() and (errors > 0).all()
+
+
+@pytest.mark.parametrize('case', CASES.values())
+def test_a_case_with_a_bias_differs_from_its_reference_in_nothing_else(case):
+    if case.unbiased:
+        assert case._replace(name=case.unbiased, bias=0.0, unbiased='') == CASES[case.unbiased]
+
+
+@pytest.mark.parametrize('seed', range(6))      # each path, to both sides
+def test_dead_reckoning_is_exact_without_errors(seed, robot):
+    record = bases.drive(robot, IDEAL, None, seed)
+    assert bases.reckon(record) == pytest.approx(record.truth[-1], abs=1e-9)        # rounding
+    assert max(abs(pose.yaw) for pose in record.truth) > 1.0
+
+
+def test_dead_reckoning_and_port_have_the_heading_of_an_imu_at_another_rate(robot):
+    record = bases.drive(robot, IDEAL._replace(odom_rate=25, imu_rate=100), None, 0)
+    assert bases.reckon(record)[2] == pytest.approx(record.truth[-1].yaw, abs=1e-9)
+    assert math.remainder(bases.run_port(record)[2] - record.truth[-1].yaw, 2 * math.pi) == pytest.approx(0, abs=1e-6)
+
+
+def test_the_messages_have_the_rates_the_bias_and_the_variances_of_the_case(robot):
+    case = CASES['husky']._replace(twist=False, drift=0.5)
+    record = bases.drive(robot, case, surface_of(case), 0)
+    (first, variances), (last, _) = record.odom[0], record.odom[-1]
+    duration = (last.stamp - first.stamp) / bases.SECOND
+    assert len(record.odom) == pytest.approx(10 * duration, abs=1.5)
+    assert len(record.imu) == pytest.approx(30 * duration, abs=1.5)
+    assert variances == (0.001, 0.001, 0.03) and first.linear_variance == first.angular_variance == 0.0
+    assert record.imu[0][0].variance == 4e-4 and record.imu[0][1][1] == 1.225e-3
+    # both at rest; 0.1 degrees/s of noise in 30 readings
+    for readings, bias in (record.imu[:30], 1.0), (record.imu[-30:], 1.0 + 0.5 * duration / 60):
+        assert math.degrees(numpy.mean([imu.rate for imu, _ in readings])) == pytest.approx(bias, abs=0.06)
+
+
+def test_the_wheels_of_a_skid_steer_report_more_than_the_true_turn(robot, monkeypatch):
+    case = CASES['skid_3']
+    even = surface_of(case)._replace(heading_noise_turning=0.0, heading_noise_straight=0.0)
+
+    def ratio():
+        record = bases.drive(robot, case, even, 0)      # always turns to the same side, 17 rad or more
+        return record.odom[-1][0].pose.yaw / record.truth[-1].yaw
+    varied = ratio()
+    assert varied == pytest.approx(3.0, abs=0.4)        # 6 turns, 10 % each: three sigma of the mean
+    monkeypatch.setattr(bases, 'RATIO_SPREAD', 0.0)
+    assert ratio() == pytest.approx(3.0, abs=1e-3) != varied    # a tick, 1 mrad, in 50 rad
+
+
+def test_an_estimate_that_stays_behind_is_compared_with_the_truth_of_now(robot):
+    record = bases.drive(robot, IDEAL, None, 0)
+    odom, variances = record.odom[400]
+    record.odom[400] = odom._replace(pose=odom.pose._replace(x=odom.pose.x + 50.0)), variances     # an outlier
+    estimates = bases.run_filter(record)
+    assert len(estimates) == len(record.truth)
+    assert [estimates[number].stamp for number in (399, 400, 401)] == [
+        record.odom[number][0].stamp for number in (399, 399, 401)]
+
+
+def test_errors_are_root_mean_squares_over_the_seeds():
+    row = bases.figures('a', 2, numpy.array([8.0, 2.0, 18.0, 0.5, 50.0, 0.02, 5.0]))
+    assert row.pop('case') == 'a'
+    assert row == pytest.approx(dict(seeds=2, heading=2.0, position=1.0, port_heading=3.0, port_position=0.5,
+                                     reckoned_heading=5.0, reckoned_position=0.1, nees=2.5))
+
+
+@pytest.mark.parametrize('values, missed', [
+    ({}, []),
+    ({'heading': 1.19}, []),
+    ({'heading': 1.21}, ['heading']),       # 1.1 times that of dead reckoning, and 0.1
+    ({'heading': 0.66, 'port_heading': 0.5}, ['heading']),
+    ({'nees': 0.29}, ['nees']),
+    ({'nees': 6.1}, ['nees']),
+    ({'nees': math.inf}, ['nees'])])
+def test_limits(values, missed):
+    assert bases.judged({**GOOD, **values})['misses'] == missed
+
+
+@pytest.mark.parametrize('unbiased, missed', [(0.84, []), (0.83, ['by_bias'])])
+def test_the_heading_with_a_bias_is_compared_with_that_without(unbiased, missed):
+    row = bases.judged(GOOD, dict(GOOD, heading=unbiased))
+    assert row['by_bias'] == pytest.approx(1 / unbiased) and row['misses'] == missed
+
+
+def test_both_tables_show_what_misses():
+    rows = [bases.judged(GOOD), bases.judged(dict(GOOD, case='b', nees=7.0))]
+    assert [line.split()[-1] for line in bases.table(rows)] == ['misses', '-', 'nees']
+    assert list(bases.markdown(rows))[2:] == ['| %s | 1.00 | 2.00 | 1.00 | 0.10 | 0.10 | 0.10 | %s | - |' % cells
+                                              for cells in (('a', '3.0'), ('b', '**7.0**'))]
