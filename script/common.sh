@@ -48,5 +48,5 @@ loopback_only() {       # DIR: use the loopback interface only, and a directory 
 }
 
 free_port() {           # print a free TCP port of the loopback interface
-  /usr/bin/python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0)); print(s.getsockname()[1])'
+  /usr/bin/python3 "$source_dir/test/ports.py"
 }

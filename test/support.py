@@ -3,7 +3,6 @@ import math
 import os
 import re
 import signal
-import socket
 import subprocess
 import threading
 import time
@@ -36,13 +35,6 @@ def wait_for(condition, what, limit=LIMIT):
             return value
         time.sleep(0.005)
     raise AssertionError('timed out after %g s waiting for %s' % (limit, what))
-
-
-def free_port():
-    """A TCP port of the loopback interface that nobody uses."""
-    with socket.socket() as sock:
-        sock.bind(('127.0.0.1', 0))
-        return sock.getsockname()[1]
 
 
 def twist(linear=0.0, angular=0.0):

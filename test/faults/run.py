@@ -20,7 +20,7 @@ FOLDER = os.path.dirname(os.path.abspath(__file__))
 sys.path[:0] = [FOLDER, os.path.dirname(FOLDER)]
 
 import processes    # noqa: E402, pylint: disable=wrong-import-position
-import support      # noqa: E402, pylint: disable=wrong-import-position
+from ports import free_port     # noqa: E402, pylint: disable=wrong-import-position
 
 LIMIT = 20 * 60     # s of wall time for a row: longer means that it hangs
 
@@ -58,7 +58,7 @@ def run_row(name, module, times, seed):
                     seconds=0)
     start = time.monotonic()
     with tempfile.TemporaryDirectory(prefix='rbx1_nav-faults.') as folder:
-        environment = dict(os.environ, ROS_MASTER_URI='http://127.0.0.1:%d' % support.free_port(), ROS_IP='127.0.0.1',
+        environment = dict(os.environ, ROS_MASTER_URI='http://127.0.0.1:%d' % free_port(), ROS_IP='127.0.0.1',
                            ROS_HOME=folder, ROS_LOG_DIR=os.path.join(folder, 'log'))
         environment.pop('ROS_NAMESPACE', None)
         process = running[folder] = subprocess.Popen(

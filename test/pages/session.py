@@ -1,8 +1,9 @@
 """Follows a Markdown page as a reader does, with a home directory, terminals and a ROS master of its own."""
 import os
 import re
-import socket
 import time
+
+from ports import free_port
 
 from . import blocks, expected, processes
 from .master import Master
@@ -43,9 +44,7 @@ class Session:
         self.last = None            # name of the terminal used last
         self.first = {}             # by name: index of the first line in which output is searched
         self.shown = set()          # (name, index) of the lines that the page shows
-        with socket.socket() as free:
-            free.bind(('127.0.0.1', 0))
-            uri = 'http://127.0.0.1:%d' % free.getsockname()[1]
+        uri = 'http://127.0.0.1:%d' % free_port()
         self.master = Master(uri)
         # nothing is inherited: the page has to set up what its commands need
         self.env = {

@@ -12,6 +12,7 @@ sys.path[:0] = [FOLDER, os.path.dirname(FOLDER)]    # as a station, this is a pr
 import rospy            # noqa: E402, pylint: disable=wrong-import-position
 from nav_msgs.msg import Odometry   # noqa: E402, pylint: disable=wrong-import-position
 
+from ports import free_port     # noqa: E402, pylint: disable=wrong-import-position
 from row import Row     # noqa: E402, pylint: disable=wrong-import-position
 import support          # noqa: E402, pylint: disable=wrong-import-position
 
@@ -31,7 +32,7 @@ def run(row):
     counts = [len(range(number, row.times, STATIONS)) for number in range(STATIONS)]
     stations = []
     for seed, count in zip(seeds, counts):
-        master = 'http://127.0.0.1:%d' % support.free_port()
+        master = 'http://127.0.0.1:%d' % free_port()
         row.start('/usr/bin/python3', '-c', 'while True: pass')
         stations.append(row.start('/usr/bin/python3', __file__, str(seed), str(count), ROS_MASTER_URI=master))
     for station in stations:
