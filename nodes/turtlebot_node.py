@@ -29,6 +29,7 @@ Parameters, with the names of create_node's:
     ~moving_yaw_variance            variance of the heading while the robot moves, rad^2, in place of the calculated one, as
                                     create_node has it: 1000; 0: none (default: 0)
     ~odom_frame, ~base_frame        frames (default: odom, base_footprint)
+    ~left_wheel, ~right_wheel       names of the wheels' joints (default: base_l_wheel_joint, base_r_wheel_joint)
     ~publish_tf                     whether to publish the transform to the base frame (default: true)
     ~drive_mode, ~diagnostic_period accepted: twist, and any number; /diagnostics has 1 Hz
 """

@@ -118,9 +118,10 @@ class Section:
         return value
 
     def frame(self, key, default):
-        """A tf2 frame name. A leading slash, as in old files, is removed."""
+        """A tf2 frame name, of at most 200 characters. A leading slash, as in old files, is removed."""
         value = self.get(key, default)
-        if not (isinstance(value, str) and re.fullmatch(r'/?[^/\s]+(/[^/\s]+)*', value) and value.isprintable()):
+        if not (isinstance(value, str) and re.fullmatch(r'/?[^/\s]+(/[^/\s]+)*', value) and value.isprintable()
+                and len(value) <= 200):     # lines of the log contain it
             raise ConfigError('%s: %s: expected the name of a frame' % (self.path(key), show(value)))
         return value.lstrip('/')
 

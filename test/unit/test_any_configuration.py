@@ -17,6 +17,8 @@ from rbx1_nav.simulated_base import make_base, make_wheels_and_gyro
 CONFIG = os.path.join(os.path.dirname(__file__), '..', '..', 'config')
 ROBOTS, SURFACES = ([yaml.safe_load(open(path)) for path in sorted(glob.glob(os.path.join(CONFIG, *pattern)))]
                     for pattern in (['*.yaml'], ['surfaces', '*d*_*.yaml']))
+ROBOTS.append({'controllers': {'base': {'type': 'diff_controller', 'base_width': 0.26, 'left_wheel': 'left',
+                                        'right_wheel': 'right'}}, 'joints': {'pan': {}}})
 FILTER = ['freq', 'sensor_timeout', 'diagnostic_period', 'publish_tf', 'imu_used', 'output_frame', 'odom_used',
           'vo_used', 'surface', 'max_speed', 'max_turn_rate', 'max_angular_acceleration', 'gyro_bias',
           'gyro_scale_error']
@@ -57,7 +59,9 @@ def test_a_robot(data):
     except ConfigError as error:
         assert one_line(str(error))
         return
-    assert all(map(one_line, robot.hardware + robot.unknown + [robot.name, robot.odom_frame_id, robot.base_frame_id]))
+    assert all(map(one_line, robot.hardware + robot.unknown + [robot.name, robot.odom_frame_id, robot.base_frame_id,
+                                                          *robot.wheel_joints]))
+    assert len({*robot.wheel_joints, *(joint.name for joint in robot.joints)}) == 2 + len(robot.joints)
     base = make_base(robot, None, 0)
     base.command(0, 0.2, 1.0)
     base.advance(10 ** 9)

@@ -6,7 +6,7 @@ from rbx1_nav.config import AUTO, ConfigError, Section, show
 from rbx1_nav.create import protocol
 from rbx1_nav.create.fractions import KINDS
 from rbx1_nav.create.odometry import Errors
-from rbx1_nav.model.robot import Limits, Robot
+from rbx1_nav.model.robot import Limits, Robot, read_wheel_joints
 from rbx1_nav.units import SECOND
 
 GYRO_CORRECTION = 1.35  # create_node's default
@@ -65,7 +65,7 @@ def read_settings(params):
         wheel_radius=WHEEL_RADIUS, rate=settings.update_rate,
         timeout=round(SECOND * section.number('cmd_vel_timeout', 0.05, 10, 0.6, 'a time', 's')),
         limits=Limits(inf, max_yaw_speed), publish_tf=section.flag('publish_tf', True), joints=[],
-        hardware=[], unknown=[])
+        wheel_joints=read_wheel_joints(section), hardware=[], unknown=[])
     if robot.odom_frame_id == robot.base_frame_id:
         raise ConfigError('base_frame: %s: expected a frame other than odom_frame' % show(robot.base_frame_id))
     return settings, robot

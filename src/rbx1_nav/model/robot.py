@@ -15,16 +15,17 @@ JOINT_KEYS = {'id', 'neutral', 'invert', 'ticks', 'range'}
 MAX_ANGLE = 36000   # degrees: a joint of 100 turns
 MIN_TIMEOUT = 0.01  # s
 
-WHEEL_JOINTS = ('base_l_wheel_joint', 'base_r_wheel_joint')
+# the keys of diff_drive_controller, and the names in this package's URDF files
+WHEEL_JOINTS = {'left_wheel': 'base_l_wheel_joint', 'right_wheel': 'base_r_wheel_joint'}
 
 Limits = namedtuple('Limits', 'linear angular')
 Limits.__doc__ = 'Maximum speeds, m/s and rad/s; infinite where there is no limit.'
 
 Robot = namedtuple('Robot', 'name odom_frame_id base_frame_id base_width wheel_radius rate timeout limits publish_tf '
-                            'joints hardware unknown')
+                            'joints wheel_joints hardware unknown')
 Robot.__doc__ = """A robot's configuration. base_width and wheel_radius in m, rate in Hz, timeout in ns; limits: Limits;
-joints: Joint objects; hardware, unknown: sorted names of keys without effect: those that only hardware needs, and those
-of a controller or joint that are unknown."""
+joints: Joint objects; wheel_joints: names of the joints of the left and the right wheel; hardware, unknown: sorted names
+of keys without effect: those that only hardware needs, and those of a controller or joint that are unknown."""
 
 
 def read_joint(name, section):
@@ -35,6 +36,30 @@ def read_joint(name, section):
         raise ConfigError('%s: %r: expected an angle below max_angle, %r' % (section.path('min_angle'), lower, upper))
     speed = section.number('max_speed', 0.01, MAX_ANGLE, 90.0, 'a speed', 'degrees per second')
     return Joint(name, radians(lower), radians(upper), radians(speed))
+
+
+def read_wheel_joints(section, servos=()):
+    """(left, right) names of the wheels' joints, from the Section that has their keys. Raises ConfigError.
+
+    servos: names of other joints, which neither key may have. A default is not compared with them.
+    """
+    names = tuple(section.get(key, default) for key, default in WHEEL_JOINTS.items())
+    for key, name in zip(WHEEL_JOINTS, names):
+        if key not in section.values:
+            continue
+        # more characters than a servo's name may have: no topic has this one
+        if not (isinstance(name, str) and re.fullmatch(r'[A-Za-z][\w./-]{0,199}', name, re.ASCII)):
+            raise ConfigError('%s: %s: expected the name of a joint: a letter, then up to 199 letters, digits or _ - . /'
+                              % (section.path(key), show(name)))
+        if name in servos:
+            raise ConfigError('%s: %s: expected the joint of a wheel, which is not one of joints'
+                              % (section.path(key), show(name)))
+    if names[0] == names[1]:
+        key, other = 'right_wheel', 'left_wheel'
+        if key not in section.values:   # the other one has its default
+            key, other = other, key
+        raise ConfigError('%s: %s: expected a joint other than %s' % (section.path(key), show(names[0]), other))
+    return names
 
 
 def read_robot(params):
@@ -58,10 +83,11 @@ def read_robot(params):
 
     joints = []
     all_joints = top.section('joints', default={})
+    wheel_joints = read_wheel_joints(base, all_joints.values)
     for joint in all_joints.values:
-        if not (isinstance(joint, str) and re.fullmatch(r'[A-Za-z]\w*', joint, re.ASCII)) or joint in WHEEL_JOINTS:
+        if not (isinstance(joint, str) and re.fullmatch(r'[A-Za-z]\w*', joint, re.ASCII)) or joint in wheel_joints:
             raise ConfigError('joints: %s: expected a name of letters, digits and underscores, other than %s'
-                              % (show(joint), ' and '.join(WHEEL_JOINTS)))
+                              % (show(joint), ' and '.join(wheel_joints)))
         section = all_joints.section(joint, JOINT_KEYS)
         joints.append(read_joint(joint, section))
         sections.append(section)
@@ -80,7 +106,8 @@ def read_robot(params):
         limits=Limits(base.number('max_linear_speed', 0.001, 1000, inf, 'a speed', 'm/s'),
                       base.number('max_angular_speed', 0.001, 1000, inf, 'a speed', 'rad/s')),
         publish_tf=publish_tf,
-        joints=joints)
+        joints=joints,
+        wheel_joints=wheel_joints)
     if fields['odom_frame_id'] == fields['base_frame_id']:
         raise ConfigError('%s: %s: expected a frame other than odom_frame_id'
                           % (base.path('base_frame_id'), show(fields['base_frame_id'])))

@@ -4,7 +4,6 @@ from nav_msgs.msg import Odometry
 from sensor_msgs.msg import Imu, JointState
 from tf2_msgs.msg import TFMessage
 
-from rbx1_nav.model.robot import WHEEL_JOINTS
 from rbx1_nav.ros import messages
 
 
@@ -37,5 +36,5 @@ class BasePublisher:
         linear, angular = velocity
         difference = angular * self.robot.base_width / 2
         wheels = [(name, distance / self.robot.wheel_radius, speed / self.robot.wheel_radius) for name, distance, speed
-                  in zip(WHEEL_JOINTS, travel, (linear - difference, linear + difference))]
+                  in zip(self.robot.wheel_joints, travel, (linear - difference, linear + difference))]
         self.joint_states.publish(messages.joint_states(stamp, self.robot.joints, wheels))

@@ -25,7 +25,7 @@ def test_a_comment_with_a_parameter_has_its_default_too():
     with open(os.path.join(FOLDER, 'parameters.yaml'), encoding='utf-8') as file:
         lines = [line[2:] for line in file if line.startswith('# ') and ': ' in line.split('  ')[0]]
     params = yaml.safe_load(''.join(lines))
-    assert len(params) == 8 and read_settings(params) == read_settings({})
+    assert len(params) == 10 and read_settings(params) == read_settings({})
 
 
 @pytest.mark.parametrize('path', CALIBRATIONS, ids=os.path.basename)

@@ -13,11 +13,16 @@ def test_the_defaults():
     assert settings.linear_correction == settings.angular_correction == 1
     assert robot.timeout == 600000000 and robot.rate == 30 and robot.publish_tf
     assert (robot.odom_frame_id, robot.base_frame_id, robot.base_width) == ('odom', 'base_footprint', 0.26)
+    assert robot.wheel_joints == ('base_l_wheel_joint', 'base_r_wheel_joint')
 
 
 def test_a_create_2_has_no_gyro():
     settings, robot = read_settings({'robot_type': 'create2'})
     assert not settings.has_gyro and robot.base_width == 0.235
+
+
+def test_own_names_of_the_wheels():
+    assert read_settings({'left_wheel': 'l', 'right_wheel': 'r'})[1].wheel_joints == ('l', 'r')
 
 
 @pytest.mark.parametrize('params, text', [
@@ -34,6 +39,9 @@ def test_a_create_2_has_no_gyro():
     ({'update_rate': float('nan')}, 'update_rate: nan: expected a rate from 5 to 60 in Hz'),
     ({'min_abs_yaw_vel': 2.0, 'max_abs_yaw_vel': 1.0}, 'min_abs_yaw_vel: 2.0: expected at most max_abs_yaw_vel, 1.0'),
     ({'odom_frame': 'x', 'base_frame': 'x'}, "base_frame: 'x': expected a frame other than odom_frame"),
+    ({'left_wheel': ''},
+     "left_wheel: '': expected the name of a joint: a letter, then up to 199 letters, digits or _ - . /"),
+    ({'left_wheel': 'x', 'right_wheel': 'x'}, "right_wheel: 'x': expected a joint other than left_wheel"),
 ])
 def test_what_makes_no_sense(params, text):
     with pytest.raises(ConfigError) as caught:

@@ -60,6 +60,11 @@ def test_unknown_keys_are_reported():
     ('wheel_radius', [], 'radius'), ('wheel_radius', 1e-320, 'from 0.001'),
     ('base_frame_id', '', 'frame'), ('base_frame_id', 7, 'frame'),
     ('base_frame_id', 'odom', 'other than odom_frame_id'),
+    ('left_wheel', '', 'the name of a joint'), ('left_wheel', None, 'the name of a joint'), ('right_wheel', 7, 'a joint'),
+    ('right_wheel', ['front', 'rear'], 'the name of a joint'), ('left_wheel', 'left wheel', 'the name of a joint'),
+    ('left_wheel', 'r\u00e4d', 'letters, digits'), ('right_wheel', 'two\nlines', 'the name of a joint'),
+    ('right_wheel', 'base_l_wheel_joint', 'other than left_wheel'),
+    ('left_wheel', 'base_r_wheel_joint', 'other than right_wheel'),
     ('type', 'follow_controller', 'one of: diff_controller')])
 def test_an_invalid_value_is_named_with_its_key_and_what_is_expected(key, value, expected):
     params = load('turtlebot.yaml')
@@ -106,6 +111,23 @@ def test_a_joint_needs_a_name_of_its_own_that_can_be_a_topic(name):
     params = load('turtlebot.yaml')
     params['joints'] = {name: {}}
     with pytest.raises(ConfigError, match="'%s'.*expected a name" % name):
+        read_robot(params)
+
+
+def test_wheels_have_the_names_of_the_urdf_file():
+    params = load('pi_robot.yaml')
+    assert read_robot(params).wheel_joints == ('base_l_wheel_joint', 'base_r_wheel_joint')
+    params['controllers']['base_controller'].update(left_wheel='wheel-left.joint', right_wheel='base/right_wheel')
+    params['joints']['base_l_wheel_joint'] = {}     # free, as the wheels have other names
+    robot = read_robot(params)
+    assert robot.wheel_joints == ('wheel-left.joint', 'base/right_wheel') and robot.unknown == []
+
+
+@pytest.mark.parametrize('key', ['left_wheel', 'right_wheel'])
+def test_a_wheel_is_no_servo(key):
+    params = load('pi_robot.yaml')
+    params['controllers']['base_controller'][key] = 'head_pan_joint'
+    with pytest.raises(ConfigError, match="/base_controller/%s: 'head_pan_joint': expected .* not one of joints" % key):
         read_robot(params)
 
 

@@ -7,7 +7,7 @@ import re
 import pytest
 
 from rbx1_nav.create.body import Errors, Quirks
-from rbx1_nav.model.robot import DRIVER_KEYS
+from rbx1_nav.model.robot import DRIVER_KEYS, WHEEL_JOINTS
 from rbx1_nav.ros.arguments import parameter_names
 
 ROOT = os.path.join(os.path.dirname(__file__), '..', '..', '..')
@@ -52,7 +52,7 @@ def test_the_base():
 
 def test_the_base_of_a_create():
     read_there = re.findall(r"section\.\w+\('(\w+)'", read('src', 'rbx1_nav', 'create', 'parameters.py'))
-    assert usage('turtlebot_node.py') == sorted(set(read_there) | {'diagnostic_period'})
+    assert usage('turtlebot_node.py') == sorted({*read_there, *WHEEL_JOINTS, 'diagnostic_period'})
 
 
 @pytest.mark.parametrize('node', ['odom_ekf.py', 'pose.py'])
