@@ -63,6 +63,7 @@ def init_node(name, usage, wait_for_master=True, check=None):
     Raises ROSInterruptException if the node is to end before it is registered, ROSException if the master does not
     answer, or for a parameter that makes no sense.
     """
+    sys.stdout, sys.stderr = _Terminal(sys.stdout), _Terminal(sys.stderr)
     check_command_line(usage)
     if not wait_for_master:
         require_master()
@@ -76,7 +77,6 @@ def init_node(name, usage, wait_for_master=True, check=None):
             signal.signal(number, lambda *_: None)
     threading.Thread(target=_wait_for_signal, args=(read_end,), daemon=True).start()
     rospy.on_shutdown(_request_end)
-    sys.stdout, sys.stderr = _Terminal(sys.stdout), _Terminal(sys.stderr)
     try:
         rospy.init_node(name, disable_signals=True)
     except (OSError, rospy.ROSInitException) as error:

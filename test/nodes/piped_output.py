@@ -1,0 +1,35 @@
+#!/usr/bin/python3
+"""What a program prints to stdout reaches a pipe while the program runs, not when it exits."""
+import unittest
+
+import support
+
+CASES = [(('rosrun', 'rbx1_nav', 'timed_out_and_back.py'), r'INFO.*Waiting for a base'),
+         (('roslaunch', 'rbx1_nav', 'fake_turtlebot.launch'), r'INFO.*Ready: base_footprint'),
+         # so many runs take hours
+         (('rosrun', 'rbx1_nav', 'simulate.py', '--runs', '1000000', '--jobs', '1'), r'Runs of each method on ideal: 1000000')]
+
+
+class TestPipedOutput(unittest.TestCase):
+    def start(self, *command):
+        """Run a command as its user does: the Process of the other tests is unbuffered."""
+        process = support.Process('env', '-u', 'PYTHONUNBUFFERED', *command)
+        self.addCleanup(process.kill)
+        return process
+
+    def test_a_line_arrives_while_the_program_runs(self):
+        support.init_node('piped_output')
+        for command, line in CASES:
+            process = self.start(*command)
+            process.wait_for_line(line)
+            self.assertIsNone(process.process.poll(), process.output)
+            process.kill()
+
+    def test_a_reader_that_leaves_causes_no_traceback(self):
+        reader = self.start('bash', '-c', 'rosrun rbx1_nav pose.py --help | true; echo "status ${PIPESTATUS[0]}"')
+        self.assertEqual(reader.wait(), 0)
+        self.assertEqual(reader.lines, ['status 0'])
+
+
+if __name__ == '__main__':
+    support.main('piped_output', TestPipedOutput)
