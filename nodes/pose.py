@@ -53,7 +53,7 @@ def row(topic, latest):
 
 def main():
     """Print a table. Returns the exit status."""
-    node.init_node('pose', __doc__, wait_for_master=False)
+    node.init_node('pose', __doc__, requires_master=True)
     latest = receive()
     if not any(latest.values()):
         rospy.logerr('No message on %s for %g s: expected a running base',

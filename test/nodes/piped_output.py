@@ -7,7 +7,8 @@ import support
 CASES = [(('rosrun', 'rbx1_nav', 'timed_out_and_back.py'), r'INFO.*Waiting for a base'),
          (('roslaunch', 'rbx1_nav', 'fake_turtlebot.launch'), r'INFO.*Ready: base_footprint'),
          # so many runs take hours
-         (('rosrun', 'rbx1_nav', 'simulate.py', '--runs', '1000000', '--jobs', '1'), r'Runs of each method on ideal: 1000000')]
+         (('rosrun', 'rbx1_nav', 'simulate.py', '--runs', '1000000', '--jobs', '1'),
+          r'Runs of each method on ideal: 1000000')]
 
 
 class TestPipedOutput(unittest.TestCase):

@@ -14,8 +14,8 @@ import rospy
 from rospy.impl.paramserver import get_param_server_cache
 
 from rbx1_nav.ros.arguments import check_command_line, report_parameters
-from rbx1_nav.ros.master import require_master
-from rbx1_nav.ros.params import check_before_start
+from rbx1_nav.ros.master import require_master, wait_for_master
+from rbx1_nav.ros.params import check_before_start, future_name, read_wait_timeout
 
 EXIT_DEADLINE = 1.4         # s of wall time from the request to the end of the process, whatever hangs
 UNREGISTER_TIMEOUT = 0.25   # s of wall time for the master to unregister the node
@@ -54,21 +54,20 @@ class _Terminal:
             os.dup2(os.open(os.devnull, os.O_WRONLY), self._stream.fileno())
 
 
-def init_node(name, usage, wait_for_master=True, check=None):
+def init_node(name, usage, requires_master=False, check=None):
     """Start the node `name`. From here on, Ctrl-C, kill, a closed terminal and `rosnode kill` set end_requested.
 
     usage: printed for --help, and for a command line that does not fit the parameters it lists; both end the process.
-    wait_for_master: whether to wait, as rospy does, for a master that is not running yet.
+    requires_master: whether a master that does not answer is an error. Otherwise the node waits for it, for at most
+    ~wait_timeout if the usage lists this parameter.
     check(params): raises ConfigError for private parameters that make no sense, before they can end an older node.
     Raises ROSInterruptException if the node is to end before it is registered, ROSException if the master does not
     answer, or for a parameter that makes no sense.
     """
     sys.stdout, sys.stderr = _Terminal(sys.stdout), _Terminal(sys.stderr)
     check_command_line(usage)
-    if not wait_for_master:
+    if requires_master:
         require_master()
-    if check:
-        check_before_start(name, check)
     read_end, write_end = os.pipe()
     os.set_blocking(write_end, False)
     signal.set_wakeup_fd(write_end)     # a signal writes to the pipe; the handler itself does nothing
@@ -77,6 +76,11 @@ def init_node(name, usage, wait_for_master=True, check=None):
             signal.signal(number, lambda *_: None)
     threading.Thread(target=_wait_for_signal, args=(read_end,), daemon=True).start()
     rospy.on_shutdown(_request_end)
+    wait_for_master(future_name(name), lambda: read_wait_timeout(name, usage), end_requested.is_set, sleep)
+    if check and not end_requested.is_set():
+        check_before_start(name, check)
+    if end_requested.is_set():
+        raise rospy.ROSInterruptException('shutdown requested')
     try:
         rospy.init_node(name, disable_signals=True)
     except (OSError, rospy.ROSInitException) as error:

@@ -1,0 +1,76 @@
+#!/usr/bin/python3
+"""Without a master, the scripts give up with one line, and bases and filter say that they wait, until it comes."""
+import os
+import signal
+import sys
+import unittest
+
+import rospkg
+
+import support
+
+sys.path.insert(0, os.path.join(rospkg.RosPack().get_path('rbx1_nav'), 'test'))
+from ports import free_port     # noqa: E402  pylint: disable=wrong-import-position
+
+SCRIPTS = ['timed_out_and_back.py', 'odom_out_and_back.py', 'calibrate_linear.py', 'calibrate_angular.py']
+WAITING = ['fake_base.py', 'turtlebot_node.py', 'fake_create.py', 'ekf.py', 'odom_ekf.py', 'true_robot.py']
+BASE = '_controllers:={base: {type: diff_controller, base_width: 0.26}}'
+
+
+class TestNoMaster(unittest.TestCase):
+    def setUp(self):
+        self.port = free_port()
+        self.uri = 'http://127.0.0.1:%d' % self.port
+
+    def start(self, *command):
+        process = support.Process(*command, ROS_MASTER_URI=self.uri)
+        self.addCleanup(process.kill)
+        return process
+
+    def node(self, *command):
+        return self.start('rosrun', 'rbx1_nav', *command)
+
+    def test_a_script_gives_up(self):
+        for script in SCRIPTS:
+            node = self.node(script, '_wait_timeout:=1')
+            self.assertEqual(node.wait(), 1, node.output)
+            self.assertEqual(len(node.lines), 2, node.output)
+            self.assertRegex(node.lines[0], r'^\[INFO\].*Waiting for the master at %s$' % self.uri)
+            self.assertRegex(node.lines[1], r'^\[ERROR\].*The master at %s does not answer \(timed out after 1 s\): '
+                                            r'expected a running roscore$' % self.uri)
+
+    def test_an_invalid_limit(self):
+        node = self.node('timed_out_and_back.py', '_wait_timeout:=long')
+        self.assertEqual(node.wait(), 1, node.output)
+        self.assertEqual(len(node.lines), 1, node.output)
+        self.assertIn("/out_and_back/wait_timeout: 'long': expected a number from 1e-06 to 1000000", node.output)
+
+    def test_ctrl_c_while_a_node_waits(self):
+        for name in WAITING + SCRIPTS:
+            node = self.node(name)
+            node.wait_for_line('Waiting for the master at ' + self.uri)
+            node.signal(signal.SIGINT)
+            self.assertEqual(node.wait(), 130 if name.startswith('calibrate') else 0, node.output)
+            self.assertFalse([line for line in node.lines if not line.startswith('[INFO]')], node.output)
+
+    def test_a_base_that_is_started_before_the_master(self):
+        base, script = self.node('fake_base.py', BASE), self.node('timed_out_and_back.py')
+        for node in base, script:
+            node.wait_for_line('Waiting for the master')
+        master = self.start('roscore', '-p', str(self.port))
+        self.addCleanup(master.wait)        # it ends its processes, which are not in its process group
+        self.addCleanup(master.signal, signal.SIGINT)
+        base.wait_for_line('Ready: base_link stands at the origin of odom')
+        script.wait_for_line('forward: 1.00 m')
+        self.assertEqual(base.output.count('Waiting'), 1, base.output)
+        self.assertNotIn('register', base.output)       # rospy's own line for this
+
+    def test_pose_requires_a_master(self):
+        node = self.node('pose.py')
+        self.assertEqual(node.wait(), 1, node.output)
+        self.assertEqual(len(node.lines), 1, node.output)
+        self.assertIn('The master at %s does not answer' % self.uri, node.output)
+
+
+if __name__ == '__main__':
+    support.main('no_master', TestNoMaster)
