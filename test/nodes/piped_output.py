@@ -1,5 +1,6 @@
 #!/usr/bin/python3
 """What a program prints to stdout reaches a pipe while the program runs, not when it exits."""
+import signal
 import unittest
 
 import support
@@ -16,6 +17,8 @@ class TestPipedOutput(unittest.TestCase):
         """Run a command as its user does: the Process of the other tests is unbuffered."""
         process = support.Process('env', '-u', 'PYTHONUNBUFFERED', *command)
         self.addCleanup(process.kill)
+        self.addCleanup(process.wait)       # roslaunch ends its nodes, which are not in its process group
+        self.addCleanup(process.signal, signal.SIGINT)
         return process
 
     def test_a_line_arrives_while_the_program_runs(self):
@@ -24,7 +27,8 @@ class TestPipedOutput(unittest.TestCase):
             process = self.start(*command)
             process.wait_for_line(line)
             self.assertIsNone(process.process.poll(), process.output)
-            process.kill()
+            process.signal(signal.SIGINT)
+            process.wait()
 
     def test_a_reader_that_leaves_causes_no_traceback(self):
         reader = self.start('bash', '-c', 'rosrun rbx1_nav pose.py --help | true; echo "status ${PIPESTATUS[0]}"')
