@@ -13,7 +13,7 @@ import rosgraph
 import rospy
 
 from rbx1_nav.ros import refusals
-from rbx1_nav.ros.master import call
+from rbx1_nav.ros.master import Server, call
 from rbx1_nav.ros.node import end_requested, sleep
 from rbx1_nav.ros.tcp import CLOSED_WINDOW, AcknowledgementTimer, read_connection
 
@@ -32,57 +32,66 @@ essential, because it publishes odometry, as a base does; whether it publishes /
 refused, None if it does not tell."""
 
 
-class Listener(threading.Thread):
+class Listener:
     """Watches one connection, until `problem` is a text that says what is wrong with it, or it has ended properly."""
 
     def __init__(self, publisher, connection, peer):
         """connection: one of the publisher's."""
-        super().__init__(daemon=True)
         self.publisher = publisher
         self.topic = publisher.resolved_name
         self.connection = connection
         self.peer = peer
         self.offset = publisher.impl.seq - connection.stat_num_msg
+        self.timer = AcknowledgementTimer()
         self.answered = 0.0     # s of the monotonic clock: when the last call began that the node answered
         self.problem = None
         self.refusal = None     # a text, if the node has not followed a command
+        self.closed = False
         self.ended = False      # properly: it is no longer watched
-
-    def run(self):
-        """Watch."""
-        if self.peer.uri:
+        if peer.uri:
             threading.Thread(target=self.ask, daemon=True).start()
-        self.watch()
-        # at once; the script stops the robot first
-        if self.problem and not end_requested.is_set():
-            rospy.logwarn('%s: %s', self.topic, self.problem)
 
-    def watch(self):
-        """Watch the connection."""
-        timer = AcknowledgementTimer()
-        while not self.problem:
-            try:
-                state = read_connection(self.connection.socket)
-            except (OSError, AttributeError):   # closed at this end
-                state = None
-            if not (state and state.established):
-                self.problem = self.why_it_closed()
-                return
-            if timer.silence(time.monotonic(), state) > LINK_TIMEOUT:
-                # who has closed the window is there, and does not read: a recorder may, a base may not
-                if state.window >= CLOSED_WINDOW:
-                    self.problem = '%s acknowledges nothing that is sent to it' % self.peer.name
-                elif self.peer.essential:
-                    self.problem = '%s, which publishes the odometry, does not read what is sent to it' % self.peer.name
-            time.sleep(LOOK_PERIOD)
+    def look(self, now):
+        """Look at the connection. now: s of the monotonic clock."""
+        if self.problem or self.closed:
+            return
+        state = self.read_connection()
+        if not state:
+            self.closed = True
+            # the master may need longer than the next command may wait
+            threading.Thread(target=self.find_out_why_it_closed, daemon=True).start()
+        elif self.timer.silence(now, state) > LINK_TIMEOUT:
+            # a node that has closed its window is alive, but does not read: a recorder may do so, a base may not
+            if state.window >= CLOSED_WINDOW:
+                self.fail('%s acknowledges nothing that is sent to it' % self.peer.name)
+            elif self.peer.essential:
+                self.fail('%s, which publishes the odometry, does not read what is sent to it' % self.peer.name)
+
+    def read_connection(self):
+        """The connection's state; None if it is closed at one end."""
+        try:
+            state = read_connection(self.connection.socket)
+        except (OSError, AttributeError):   # at this end
+            return None
+        return state if state.established else None
+
+    def fail(self, problem):
+        """Set the problem, if there is none yet, and log it."""
+        if self.problem:
+            return
+        self.problem = problem
+        # in a thread, because a log line may block, and the script has to stop the robot first
+        if not end_requested.is_set():
+            threading.Thread(target=rospy.logwarn, args=('%s: %s', self.topic, problem), daemon=True).start()
 
     def ask(self):
         """Call the node again and again."""
+        server = Server(self.peer.uri, ANSWER_TIMEOUT)  # kept: a new connection costs both nodes more than the call
         silent_since = None
         while not (self.problem or self.ended):
             start, before = time.monotonic(), rospy.get_rostime()
             try:
-                refused, reason = refusals.ask(self.peer.uri, ANSWER_TIMEOUT)
+                refused, reason = refusals.ask(server)
             except ConnectionRefusedError:      # it has ended, and so will its connection
                 return
             except Exception:   # pylint: disable=broad-except
@@ -93,7 +102,7 @@ class Listener(threading.Thread):
                 if self.peer.keeps_time and rospy.get_rostime() != before:
                     silent_since = None
                 elif time.monotonic() - silent_since > ANSWER_TIMEOUT:
-                    self.problem = self.problem or '%s no longer answers' % self.peer.name
+                    self.fail('%s no longer answers' % self.peer.name)
                 time.sleep(LOOK_PERIOD)
                 continue
             if refused and refused > (self.peer.refused or 0):
@@ -101,19 +110,20 @@ class Listener(threading.Thread):
             silent_since, self.answered = None, start
             time.sleep(ASK_PERIOD)
 
-    def why_it_closed(self):
-        """The problem with a connection that has closed; None if the node has ended properly and is not essential."""
+    def find_out_why_it_closed(self):
+        """Set the problem with a connection that has closed, unless the node has ended properly and is not essential."""
         deadline = time.monotonic() + UNREGISTER_TIME
         while self.is_registered():
             if time.monotonic() > deadline:
-                return '%s has gone' % self.peer.name
+                self.fail('%s has gone' % self.peer.name)
+                return
             time.sleep(LOOK_PERIOD)
         if self.peer.essential:
-            return '%s, which publishes the odometry, has gone' % self.peer.name
+            self.fail('%s, which publishes the odometry, has gone' % self.peer.name)
+            return
         self.ended = True
         if self.publisher.impl.connections and not end_requested.is_set():
             rospy.logwarn('%s: %s has gone: the others go on', self.topic, self.peer.name)
-        return None
 
     def is_registered(self):
         """Whether the master lists the node as a subscriber. If the master does not answer, nobody knows: yes."""
@@ -138,11 +148,10 @@ class Listener(threading.Thread):
     def has_all(self, published, last):
         """Whether there is nothing more to wait for: the node has acknowledged all commands, and has answered since the
         last one; last: s of the monotonic clock. A node that does not read is not waited for."""
-        try:
-            state = read_connection(self.connection.socket)
-        except (OSError, AttributeError):
-            return True
-        return (self.ended or state.window < CLOSED_WINDOW
+        state = self.read_connection()
+        if self.ended or not state:     # why it has closed is found out first
+            return self.ended
+        return (state.window < CLOSED_WINDOW
                 or not state.unacknowledged and (self.answered > last or not self.peer.uri)
                 and not (self.peer.keeps_time and self.lost(published)))
 
@@ -160,13 +169,19 @@ class Listeners:
         if not any(peer.essential for peer in peers.values()):
             rospy.logwarn('%s: no subscriber publishes odometry (%s): expected a base among them', self.topic,
                           ', '.join(sorted(peers)))
-        for listener in self.listeners:
-            listener.start()
+        self.next_look = 0.0    # s of the monotonic clock
         # on simulated time, whether one of them publishes /clock
         self.in_lockstep = not rospy.rostime.is_wallclock() and any(peer.keeps_time for peer in peers.values())
 
     def check(self):
-        """Raises ROSException if one of them no longer takes or follows the commands, or if none is left."""
+        """Look at all connections, if that is due; to be called at least every LOOK_PERIOD.
+
+        Raises ROSException if one of them no longer takes or follows the commands, or if none is left.
+        """
+        now = time.monotonic()
+        if now >= self.next_look:
+            self.next_look = now + LOOK_PERIOD
+            self.look(now)
         if not self.publisher.impl.connections:
             raise rospy.ROSException('%s: the last subscriber has gone: expected a base' % self.topic)
         for listener in self.listeners:
@@ -175,6 +190,11 @@ class Listeners:
             if listener.problem:
                 raise rospy.ROSException('%s: %s: expected it to listen until the end of the run'
                                          % (self.topic, listener.problem))
+
+    def look(self, now):
+        """Look at all connections. now: s of the monotonic clock."""
+        for listener in self.listeners:
+            listener.look(now)
 
     def wait_for_room(self):
         """Wait until the node that publishes /clock has been sent all commands: none may be lost in lockstep.
@@ -202,6 +222,8 @@ class Listeners:
         """
         published, last = self.publisher.impl.seq, time.monotonic() - STOP_TIME
         deadline = time.monotonic() + ANSWER_TIMEOUT + ASK_PERIOD
+        # nobody has looked since the last command: what is not acknowledged now was not acknowledged then either
+        self.look(last)
         while time.monotonic() < deadline and not end_requested.is_set() and not all(
                 each.has_all(published, last) for each in self.listeners):
             self.check()

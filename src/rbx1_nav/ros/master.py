@@ -25,10 +25,28 @@ class _TimeoutTransport(Transport):
         return connection
 
 
+class Server:
+    """The master or a node. Keeps its connection from call to call, and makes a new one if a call fails."""
+
+    def __init__(self, uri, timeout=TIMEOUT):
+        """timeout: s."""
+        self._proxy = ServerProxy(uri, transport=_TimeoutTransport(timeout))
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self._proxy('close')()
+
+    def call(self, method, *args):
+        """The result of a call. Raises OSError, http.client.HTTPException or xmlrpc.client.Error if it fails."""
+        return getattr(self._proxy, method)(rospy.get_name(), *args)[2]
+
+
 def call(uri, method, *args, timeout=TIMEOUT):
-    """The result of a call to the master or a node; timeout: s. Raises OSError or xmlrpc.client.Error if it fails."""
-    with ServerProxy(uri, transport=_TimeoutTransport(timeout)) as server:
-        return getattr(server, method)(rospy.get_name(), *args)[2]
+    """The result of one call, as of Server.call()."""
+    with Server(uri, timeout) as server:
+        return server.call(method, *args)
 
 
 def require_master():

@@ -7,7 +7,6 @@ import xmlrpc.client
 
 from rospy.impl.masterslave import ROSHandler
 
-from rbx1_nav.ros.master import TIMEOUT, call
 
 METHOD = 'getRefusals'
 
@@ -30,12 +29,12 @@ class Refusals:
         self._refused[sender] = count + 1, reason
 
 
-def ask(uri, timeout=TIMEOUT):
-    """How many commands of this node another one has refused, and why the last one; (None, '') of a node that does not tell.
-    uri: where that node answers. Raises OSError or xmlrpc.client.Error if it does not."""
+def ask(server):
+    """How many commands of this node another one has refused, and the reason for the last one; (None, '') if that node
+    does not report refusals. server: the Server of that node. Raises as Server.call() if it does not answer."""
     try:
-        count, reason = call(uri, METHOD, timeout=timeout)
+        count, reason = server.call(METHOD)
         return int(count), ''.join(filter(str.isprintable, reason))
     except xmlrpc.client.Fault:
-        call(uri, 'getPid', timeout=timeout)
+        server.call('getPid')
         return None, ''

@@ -7,7 +7,7 @@ import rospy
 
 from rbx1_nav.ros import refusals
 from rbx1_nav.ros.listeners import Listeners, Peer
-from rbx1_nav.ros.master import call
+from rbx1_nav.ros.master import Server, call
 from rbx1_nav.ros.node import end_requested, sleep
 
 
@@ -47,7 +47,8 @@ class _SubscriberMonitor(threading.Thread):
         try:
             address = call(master, 'lookupNode', name)
             if address not in self.dead:
-                return address, refusals.ask(address)[0]
+                with Server(address) as server:
+                    return address, refusals.ask(server)[0]
         except Exception:       # pylint: disable=broad-except
             self.dead.add(address)
             rospy.logwarn('%s is registered as a subscriber of %s but does not answer: ignored '
