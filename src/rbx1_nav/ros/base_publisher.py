@@ -8,7 +8,7 @@ from rbx1_nav.ros import messages
 
 
 class BasePublisher:
-    """The publishers of a base."""
+    """The publishers of a base. To make a message costs more than to send it: none is made without a subscriber."""
 
     def __init__(self, robot):
         """robot: a Robot."""
@@ -22,14 +22,15 @@ class BasePublisher:
 
     def publish_odometry(self, stamp, pose, velocity, uncertainty, covariance=None):
         """Publish odometry, and its pose as a transform; arguments as of messages.odometry()."""
-        odom = messages.odometry(stamp, self.robot, pose, velocity, uncertainty, covariance)
-        self.odom.publish(odom)
-        if self.robot.publish_tf:
-            self.tf.publish([messages.transform(stamp, odom.header.frame_id, odom.child_frame_id, pose)])
+        if self.odom.get_num_connections():
+            self.odom.publish(messages.odometry(stamp, self.robot, pose, velocity, uncertainty, covariance))
+        if self.robot.publish_tf and self.tf.get_num_connections():
+            self.tf.publish([messages.transform(stamp, self.robot.odom_frame_id, self.robot.base_frame_id, pose)])
 
     def publish_imu(self, stamp, reading):
         """Publish a gyro's Reading."""
-        self.imu.publish(messages.imu(stamp, self.robot.base_frame_id, reading))
+        if self.imu.get_num_connections():
+            self.imu.publish(messages.imu(stamp, self.robot.base_frame_id, reading))
 
     def publish_joints(self, stamp, travel, velocity):
         """Publish the joints, and the wheels' angles from their travel (left, right; m) and velocity (m/s, rad/s)."""
