@@ -12,7 +12,7 @@ Parameters:
     ~odom_frame         frame of the odometry (default: odom)
     ~base_frame         frame of the robot (default: base_footprint or base_link, whichever exists)
     ~base_node          node whose parameters are calibrated (default: turtlebot_node)
-    ~wait_timeout       how long to wait for the master, for a base, and for its pose, s (default: 30)
+    ~wait_timeout       how long to wait for roscore, for a base, and for its pose, s (default: 30)
     ~measured           how far the robot turned in the last run, degrees: in place of an answer; does not drive
 
 Mark on the floor where the robot points to. Facing the mark again it has turned by 360 degrees; 10 degrees before it,

@@ -12,7 +12,7 @@ Parameters:
     ~odom_frame         frame of the odometry (default: odom)
     ~base_frame         frame of the robot (default: base_footprint or base_link, whichever exists)
     ~base_node          node whose parameter is calibrated (default: turtlebot_node)
-    ~wait_timeout       how long to wait for the master, for a base, and for its pose, s (default: 30)
+    ~wait_timeout       how long to wait for roscore, for a base, and for its pose, s (default: 30)
     ~measured           how far the robot went in the last run, m: in place of an answer; does not drive
 
 Put a tape on the floor, the zero at a mark on the robot. The odometry should report what you measure: if the robot went

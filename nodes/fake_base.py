@@ -9,6 +9,8 @@ Parameters:
     ~surface            ideal, hard_floor, low_ply_carpet, or the absolute path of a surface file (default: ideal)
     ~seed               integer that slip and gyro errors are drawn from, or random; the log shows it (default: random)
     ~real_time_factor   simulated time, at most so many times as fast as real time (default: real time)
+    ~clock_step         step of simulated time, s (default: 0.02)
+    ~strict             whether a driver that is not in step with simulated time ends this node (default: false)
     ~publish_tf         whether to publish the transform to the base frame (default: true)
     ~sim, ~diagnostic_period, ~port, ~baud, ~rate, ~sync_write, ~sync_read, ~read_rate, ~write_rate
                         accepted, as in ArbotiX files; they change nothing here
@@ -24,14 +26,14 @@ from nav_msgs.msg import Odometry
 from std_msgs.msg import Empty
 from std_srvs.srv import Empty as EmptyService, EmptyResponse
 
-from rbx1_nav.config import ConfigError, Section
+from rbx1_nav.config import ConfigError
 from rbx1_nav.model.joints import JointGroup
 from rbx1_nav.model.robot import read_robot
 from rbx1_nav.model.surfaces import RANDOM, load_surface, read_seed
 from rbx1_nav.model.wheels import IdealWheels
 from rbx1_nav.ros import messages, node, resources
 from rbx1_nav.ros.base_publisher import BasePublisher
-from rbx1_nav.ros.clocks import make_clock
+from rbx1_nav.ros.clocks import read_clock
 from rbx1_nav.ros.commands import VelocityCommands, subscribe_joints
 from rbx1_nav.schedule import Schedule
 from rbx1_nav.simulated_base import make_base
@@ -106,18 +108,8 @@ class FakeBase:
         """Fill in the DiagnosticStatus of the controller."""
         status.summary(DiagnosticStatus.OK, 'Standing' if self.base.standing else 'Moving')
         self.commands.diagnose(status)
+        self.clock.diagnose(status)
         return status
-
-
-def read_factor():
-    """The private parameter real_time_factor, or None if it is not set. Raises ConfigError."""
-    factor = rospy.get_param('~real_time_factor', None)
-    if factor is None:
-        return None
-    factor = Section({'real_time_factor': factor}).number('real_time_factor', 0.01, 1000)
-    if rospy.rostime.is_wallclock():
-        raise ConfigError('real_time_factor: %g: expected /use_sim_time to be true' % factor)
-    return factor
 
 
 def main():
@@ -127,7 +119,7 @@ def main():
         robot = read_robot(rospy.get_param(rospy.get_name(), {}))
         surface = load_surface(rospy.get_param('~surface', 'ideal'), resources.surfaces())
         seed = read_seed(rospy.get_param('~seed', RANDOM))
-        factor = read_factor()
+        clock = read_clock(robot.rate)
     except ConfigError as error:
         rospy.logfatal('%s/%s', rospy.get_name(), error)
         return 1
@@ -136,7 +128,7 @@ def main():
     if robot.unknown:
         rospy.logwarn('Unknown parameters, without effect: %s', ', '.join(robot.unknown))
     rospy.loginfo('Surface: %s', '%s; seed:=%d repeats this run' % (surface.name, seed) if surface else 'ideal')
-    base = FakeBase(robot, make_base(robot, surface, seed), make_clock(factor, robot.rate))
+    base = FakeBase(robot, make_base(robot, surface, seed), clock)
     rospy.loginfo('Ready: %s stands at the origin of %s', robot.base_frame_id, robot.odom_frame_id)
     base.clock.run(base.step)
     return 0

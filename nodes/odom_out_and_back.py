@@ -14,7 +14,7 @@ Parameters:
     ~min_angular_speed  the same in a turn, rad/s (default: 0.2)
     ~odom_frame         frame that the pose is measured in; odom_combined: by wheels and gyro (default: odom)
     ~base_frame         frame of the robot (default: base_footprint or base_link, whichever exists)
-    ~wait_timeout       how long to wait for the master, for a base on /cmd_vel, and for its pose, s (default: 30)
+    ~wait_timeout       how long to wait for roscore, for a base on /cmd_vel, and for its pose, s (default: 30)
     ~transform_timeout  how long the robot stands and waits if its pose is lost, s (default: 5)
 
 The base counts how far its wheels turn, and publishes a pose: the transform from the frame odom to its own frame. So do

@@ -10,7 +10,7 @@ Parameters:
     ~goal_distance      length of the way out, m (default: 1)
     ~angular_speed      turning speed, rad/s (default: 1)
     ~goal_angle         angle of a turn to the left, rad (default: pi)
-    ~wait_timeout       how long to wait for the master, and for a base that subscribes to /cmd_vel, s (default: 30)
+    ~wait_timeout       how long to wait for roscore, and for a base that subscribes to /cmd_vel, s (default: 30)
 
 The script never asks where the robot is. Drive at a known speed for a known time, and it should end where it began.
 """

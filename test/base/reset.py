@@ -1,5 +1,6 @@
 #!/usr/bin/python3
 """~reset puts the base back at the origin, at a standstill, even while it drives."""
+import time
 import unittest
 
 import rospy
@@ -20,8 +21,13 @@ class TestReset(unittest.TestCase):
         rospy.wait_for_service('/arbotix/reset', support.LIMIT)
         resets = support.Watch('/reset_odometry', EmptyMessage)
         support.wait_for(lambda: resets.subscriber.get_num_connections(), 'the base to connect')
-        rospy.ServiceProxy('/arbotix/reset', Empty)()
-        support.wait_for(lambda: resets.last, '/reset_odometry')
+        reset = rospy.ServiceProxy('/arbotix/reset', Empty)
+
+        def is_announced():     # the base may know its subscriber a little later than the subscriber knows it
+            reset()
+            time.sleep(0.1)
+            return resets.last
+        support.wait_for(is_announced, '/reset_odometry')
         odom.wait_for_twist(0.0)
         self.assertEqual(odom.position(), (0.0, 0.0))
         self.assertEqual(support.yaw(odom.last), 0.0)

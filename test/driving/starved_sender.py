@@ -8,14 +8,18 @@ from geometry_msgs.msg import Twist
 
 import support
 
-# The script itself; what it sends to the node `peer` is delayed, by a number of seconds for each command.
+# The script itself; what it sends to the node `peer` is delayed, by a number of seconds for each command. On a busy machine a
+# thread does not sleep meanwhile, it waits for its turn; a recorder that reads slowly lets it sleep.
 STARVED = """
 import runpy, sys, time
 from rospy.impl.tcpros_base import TCPROSTransport
-send, (node, peer, delay) = TCPROSTransport.write_data, sys.argv[1:]
+send, (node, peer, delay, busy) = TCPROSTransport.write_data, sys.argv[1:]
 def write_data(self, data):
     if (self.name, self.endpoint_id) == ('/cmd_vel', peer):
-        time.sleep(float(delay))
+        end = time.monotonic() + float(delay)
+        while time.monotonic() < end:
+            if busy != 'busy':
+                time.sleep(float(delay))
     return send(self, data)
 TCPROSTransport.write_data = write_data
 sys.argv = [node]
@@ -30,10 +34,11 @@ class TestStarvedSender(unittest.TestCase):
         cls.odom = support.OdomWatch()
         cls.turned = 0.0
 
-    def drive(self, peer, delay):
+    def drive(self, peer, delay, busy=True):
         """Run the exercise; returns the Process when it has ended."""
         node = rospkg.RosPack().get_path('rbx1_nav') + '/nodes/timed_out_and_back.py'
-        driver = support.Process('/usr/bin/python3', '-c', STARVED, node, peer, str(delay))
+        driver = support.Process('/usr/bin/python3', '-c', STARVED, node, peer, str(delay),
+                                 'busy' if busy else 'asleep')
         self.addCleanup(driver.kill)
         driver.wait()
         self.assertNotIn('Traceback', driver.output)
@@ -52,7 +57,7 @@ class TestStarvedSender(unittest.TestCase):
         self.assertNotIn('lost', driver.output)
 
     def test_to_the_base_for_too_long(self):
-        driver = self.drive('/arbotix', 3)
+        driver = self.drive('/arbotix', 3, busy=False)
         self.assertEqual(driver.process.returncode, 1, driver.output)
         self.assertRegex(driver.output, '/cmd_vel: /arbotix took no command for 1 s')
 
@@ -60,7 +65,7 @@ class TestStarvedSender(unittest.TestCase):
         recorder = support.Watch('/cmd_vel', Twist)
         self.addCleanup(recorder.subscriber.unregister)
         before = support.yaw(self.odom.next())
-        driver = self.drive(rospy.get_name(), 0.2)
+        driver = self.drive(rospy.get_name(), 0.2, busy=False)
         self.check_end(driver, before)
         self.assertRegex(driver.output, r'\[WARN\].*: /cmd_vel: \d+ of 820 commands to /starved_sender\S* were lost')
 

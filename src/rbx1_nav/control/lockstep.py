@@ -1,23 +1,24 @@
 """Keeps a simulated clock in step with the nodes that drive by it.
 
-A driver on simulated time answers each tick of the clock with one command. If the clock holds the next tick until that
-command has arrived, a run has the same result on every machine and at every speed. A publisher that does not drive by
-this clock (a person at a keyboard, another rate, wall time) never gives such an answer. Three rules detect it, once per
-connection; from then on its commands take effect as they arrive.
+A tick is over when all that it has woken sleeps again: every driver has sent what it sends at this tick, and it has
+arrived. Only then does the next tick begin. So a run has the same result on every machine and at every speed, whatever
+the rates of the drivers are. That takes an eye on their processes, the `nodes`. Where it is not possible, answers.py
+counts commands instead.
 """
 from collections import deque
-from math import inf
+from functools import partial
 from threading import Condition
-from time import monotonic
+from time import monotonic, sleep
 
-COMMAND_TIMEOUT = 1.0   # s of wall time that a tick waits for its command
-PROOF = 25              # ticks: a driver that has answered so many drives by this clock
-PATIENCE = 5.0          # s of wall time that a tick waits for such a driver
-FIRST_QUIET = 0.1       # s of wall time without a command that end a driver's first burst
-QUIET = 0.03            # s, the same at the start of each later stream
-SLOW_ANSWER = 0.05      # s of wall time: a later command may not be an answer to the tick at all
-BURST_TIME = 1.0        # s of wall time: a burst answers at most the ticks of this time
-MAX_BACKLOG = 25        # commands: more of them in the queue than at the start mean more than one per tick
+from rbx1_nav.control.answers import BURST_TIME, Answers, NotInStep
+from rbx1_nav.control.stream import Stream
+
+PATIENCE = 5.0      # s of wall time that a tick waits for a node
+LOOK = 1e-4         # s of wall time between two looks at the nodes
+FRESH = 2e-4        # s of wall time after which a look is repeated
+PROOF = 3           # commands between two motions that no tick has prompted: one may be a stop after Ctrl-C
+STEADY = 25         # ticks: a driver that has sent one command at each of them will do so at the next
+ANSWER_TIME = 0.005     # s of wall time that such a command is waited for before a look
 
 
 class Driver:
@@ -26,35 +27,34 @@ class Driver:
     def __init__(self, connection, name):
         self.connection = connection
         self.name = name
-        self.queue = deque()        # one per tick; longer where the clock ran ahead of the driver at first
-        self.received = 0
-        self.heard_before = False
-        self.lag = 0                # length of the queue when the stream began
-        self.streaming = False      # its last command was a motion: the next tick will bring another
-        self.answered = 0           # ticks, each with one command
-        self.released = False       # does not drive by this clock
+        self.seen = None            # whether its process can be seen; None: not known yet
+        self.answers = None         # an Answers if not
+        self.stream = None          # a Stream, from its first motion to its next stop
+        self.released = False       # is not in step: its commands take effect as they arrive
 
-    @property
-    def proven(self):
-        """Whether it drives by this clock: what looks otherwise is a busy machine."""
-        return self.answered >= PROOF
+    def steady(self, tick):
+        """Whether it has sent one command at each of the last ticks before this one, and so will send one at this."""
+        return self.stream is not None and self.stream.in_a_row >= STEADY and self.stream.last == tick - 1
 
 
 class Lockstep:
-    """Applies one command per driver and tick: tuples that begin with linear (m/s) and angular (rad/s)."""
+    """Applies commands, tuples that begin with linear (m/s) and angular (rad/s), at the tick at which they were sent."""
 
-    def __init__(self, apply, warn, connected, unread, ended):
-        """apply(command): puts a command in force; warn(text): logs a warning; connected(connection): whether a
-        connection still exists; unread(connection): whether commands have come by it that are not received yet;
-        ended(): whether not to wait any more."""
+    def __init__(self, apply, report, nodes, ended):
+        """apply(command): puts a command in force; report(name, reason): a node is not in step; nodes: see
+        ros/driving_nodes.py; ended(): whether not to wait any more."""
         self.apply = apply
-        self.warn = warn
-        self.connected = connected
-        self.unread = unread
+        self.report = report
+        self.nodes = nodes
         self.ended = ended
         self.drivers = {}       # by the id of the connection, which the Driver keeps alive: so the id stays unique
+        self.arrived = []       # (driver, command, whether a tick may have prompted it), not in force yet
+        self.delayed = []       # commands for the next tick
+        self.tick = 0           # number of the present tick
+        self.ticks = deque()    # s of the monotonic clock: those of the last BURST_TIME
+        self.over = True        # whether it is over
+        self.over_since = 0.0   # s of the monotonic clock
         self.changed = Condition()
-        self.ticks = deque()    # s of the monotonic clock: the ticks of the last BURST_TIME
 
     def receive(self, connection, name, command):
         """Accept a command that just arrived, in any thread. connection: any object; name: of the node that sent it."""
@@ -62,83 +62,158 @@ class Lockstep:
             driver = self.drivers.get(id(connection))
             if not driver:
                 self.drivers = {key: each for key, each in self.drivers.items()
-                                if each.queue or self.connected(each.connection)}
+                                if each.answers and each.answers.queue or self.nodes.connected(each.connection)}
                 driver = self.drivers[id(connection)] = Driver(connection, name)
-            driver.received += 1
             if driver.released:
                 self.apply(command)
+            elif driver.answers:
+                driver.answers.receive(command)
             else:
-                driver.queue.append(command)
+                self.arrived.append((driver, command, not self.over))
             self.changed.notify()
 
-    def collect(self):
-        """Call before each tick: applies this tick's commands, and waits for those that are still to come."""
+    def begin_tick(self):
+        """Call before each tick. A node that has woken by itself is still at the tick before."""
+        waiting = self.nodes.drivers - {driver.name for driver in self._seen_drivers() if driver.stream}
+        if self.nodes.connecting() or waiting and monotonic() - self.over_since > FRESH:
+            self._wait_until_asleep()
+        self.nodes.mark(waiting)
+        while not self._begin():
+            self._wait_until_asleep()
+            self._apply_arrived()
+            self.nodes.mark(waiting)
+
+    def end_tick(self):
+        """Call after each tick: waits for the commands that are still to come, and puts them in force."""
+        delayed, self.delayed = self.delayed, []
+        for command in delayed:
+            self.apply(command)
+        if not self._all_have_answered():
+            self._wait_until_asleep()
+        self._apply_arrived()
+        self.over_since = monotonic()
+        for driver in list(self.drivers.values()):
+            if driver.answers:
+                self._collect(driver)
+
+    def _begin(self):
+        """Begin the next tick, unless there are commands of the present one."""
         with self.changed:
+            if self.arrived:
+                return False
+            self.over = False
+            self.tick += 1
             now = monotonic()
             self.ticks.append(now)
             while self.ticks[0] < now - BURST_TIME:
                 self.ticks.popleft()
-            for driver in list(self.drivers.values()):
-                if not driver.released:
-                    self._collect_from(driver)
+            return True
 
-    def _collect_from(self, driver):
-        if driver.queue and not driver.streaming:
-            # the clock ran freely until now: let the driver answer all ticks that it has seen
-            self._wait_until_quiet(driver, QUIET if driver.heard_before else FIRST_QUIET)
-            driver.heard_before = True
-            driver.lag = len(driver.queue)
-            if driver.lag > len(self.ticks) + MAX_BACKLOG:
-                self._release(driver, 'sends more than one command per tick')
-        elif driver.streaming:
-            start = monotonic()
-            patience = PATIENCE if driver.proven else COMMAND_TIMEOUT
-            if not self._wait_for(driver, lambda: driver.queue, patience):
-                if not self.connected(driver.connection):
-                    del self.drivers[id(driver.connection)]
-                elif not self.ended():
-                    self._release(driver, 'sent no command for a tick within %g s' % patience)
+    def _seen_drivers(self):
+        """The drivers that are in step and whose process is looked at."""
+        return [driver for driver in list(self.drivers.values())
+                if driver.seen and not driver.released and driver.name in self.nodes.drivers]
+
+    def _wait_until_asleep(self):
+        """Wait until all that a tick or anything else has woken sleeps again."""
+        self._wait_while_awake()
+        polling = self.nodes.polling()      # these may not have seen the tick yet
+        if polling:
+            while self.nodes.still_polling(polling) and not self.ended():
+                sleep(LOOK)
+            self._wait_while_awake()
+
+    def _wait_while_awake(self):
+        deadline = monotonic() + PATIENCE
+        while not self.ended():
+            name = self.nodes.awake()
+            if not name:
                 return
-            waited = monotonic() - start
-            if waited > SLOW_ANSWER and not driver.proven:
-                # a slow answer to this tick, or a stream that ignores the clock?
-                self._wait_until_quiet(driver, 2 * waited)
-        if driver.queue:
-            command = driver.queue.popleft()
-            linear, angular, *_ = command
-            driver.streaming = 0 < abs(linear) < inf or 0 < abs(angular) < inf      # neither is true of nan
-            driver.answered += driver.streaming and len(driver.queue) <= driver.lag
+            if monotonic() > deadline:
+                self._give_up(name)
+                deadline += PATIENCE
+            sleep(LOOK)
+
+    def _all_have_answered(self):
+        """Whether all nodes that may drive are steady, and each has sent its command. Spares a look at the nodes."""
+        self.nodes.update()     # a node that has connected since must be looked at
+        drivers = self._seen_drivers()
+        if not drivers or len(drivers) < len(self.nodes.drivers):
+            return False
+        if not all(driver.steady(self.tick) for driver in drivers):
+            return False
+        with self.changed:
+            return self.changed.wait_for(
+                lambda: self.ended() or {id(each[0]) for each in self.arrived} >= set(map(id, drivers)), ANSWER_TIME)
+
+    def _give_up(self, name):
+        """No longer wait for a node, which need not be a driver."""
+        for driver in self._seen_drivers():
+            driver.released = driver.released or driver.name == name
+        self.nodes.forget(name)
+        self.report(name, 'did not come to rest within %g s' % PATIENCE)
+
+    def _new_drivers(self):
+        with self.changed:
+            return [driver for driver, _, _ in self.arrived if driver.seen is None]
+
+    def _apply_arrived(self):
+        new = self._new_drivers()
+        while new:
+            for driver in new:      # not while a command may wait to be received
+                driver.seen = self.nodes.sees(driver.name)
+            new = self._new_drivers()       # another one may have sent its first command by now
+        with self.changed:
+            # the order at one tick must not be left to chance
+            arrived = sorted((each for each in self.arrived if each[0].seen is not None), key=lambda each: each[0].name)
+            self.arrived = [each for each in self.arrived if each[0].seen is None]
+            self.over = True
+            for driver, command, prompted in arrived:
+                if not (driver.seen or driver.answers):
+                    driver.answers = Answers(self.ticks, self.changed, partial(self.nodes.connected, driver.connection),
+                                             partial(self.nodes.unread, driver.connection), self.ended)
+                if driver.answers:
+                    driver.answers.receive(command)
+                else:
+                    self._apply(driver, command, prompted)
+
+    def _apply(self, driver, command, prompted):
+        """Put a command in force, now or at the next tick."""
+        velocity, lag = command[:2], 0
+        if driver.stream:
+            if not driver.released:
+                self._check_prompt(driver, prompted)
+            lag = driver.stream.lag_of(self.tick, velocity)
+        elif any(velocity):
+            driver.stream = Stream(self.tick, velocity, prompted and self.nodes.woke_by_itself(driver.name))
+        if not any(velocity):
+            driver.stream = None
+        if lag and not driver.released:
+            self.delayed.append(command)
+        else:
             self.apply(command)
-        if len(driver.queue) > driver.lag + MAX_BACKLOG and not driver.proven:
-            self._release(driver, 'sends more than one command per tick')
 
-    def _wait_until_quiet(self, driver, quiet):
-        """Hold the clock until the driver has sent nothing for `quiet` seconds of wall time."""
-        deadline = monotonic() + (PATIENCE if driver.proven else max(COMMAND_TIMEOUT, 3 * quiet))
-        while monotonic() < deadline and not self.ended():
-            received = driver.received
-            heard = self._wait_for(driver, lambda: driver.received > received, quiet)
-            # unread: the thread that receives may not have had its turn
-            if not heard and not self.unread(driver.connection):
-                return
-        if not (driver.proven or self.ended()):
-            self._release(driver, 'sends commands while the clock is held')
-
-    def _wait_for(self, driver, condition, timeout):
-        """Wait until condition(), for at most `timeout` s of wall time, or until the driver has gone or all is to end.
-        Returns condition()."""
-        deadline = monotonic() + timeout
-        while not condition() and self.connected(driver.connection) and not self.ended():
-            left = deadline - monotonic()
-            if left <= 0:
-                break
-            self.changed.wait(min(left, 0.1))
-        return condition()
+    def _check_prompt(self, driver, prompted):
+        """Release a driver that does not send its commands because of a tick."""
+        if not self.nodes.on_clock(driver.name):
+            self._release(driver, 'does not subscribe to /clock')
+        elif not prompted:
+            driver.stream.unprompted += 1
+            if driver.stream.unprompted >= PROOF and not self.nodes.update_upstream():
+                self._release(driver, 'sends commands that no tick of /clock has prompted')
 
     def _release(self, driver, reason):
         driver.released = True
-        self.warn('%s %s: the clock no longer waits for it, its commands take effect as they arrive'
-                  % (driver.name, reason))
-        if driver.queue:
-            self.apply(driver.queue[-1])
-            driver.queue.clear()
+        self.nodes.forget(driver.name)
+        self.report(driver.name, reason)
+
+    def _collect(self, driver):
+        with self.changed:
+            try:
+                command = driver.answers.next()
+            except NotInStep as error:
+                self._release(driver, str(error))
+                command = driver.answers.queue[-1] if driver.answers.queue else None
+                driver.answers = None
+            if command:
+                self.apply(command)

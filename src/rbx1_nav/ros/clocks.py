@@ -4,26 +4,41 @@
     stamp()                         the same moment as a rospy.Time, for message headers
     set_driver(apply, connections)  apply(command): puts a command in force; connections(): to publishers of cmd_vel
     command(twist, command)         calls apply(command) when a received command is to take effect
+    diagnose(status)                adds to a DiagnosticStatus
     run(step)                       calls step() at the rate of the odometry until the node is to end
 """
 import time
 
 import rospy
+from diagnostic_msgs.msg import DiagnosticStatus
 from rosgraph_msgs.msg import Clock as ClockMessage
 
+from rbx1_nav.config import ConfigError, Section
 from rbx1_nav.control.lockstep import Lockstep
 from rbx1_nav.ros import node
-from rbx1_nav.ros.tcp import unread_bytes
+from rbx1_nav.ros.driving_nodes import DrivingNodes
+from rbx1_nav.ros.rate import CLOCK_STEP
 from rbx1_nav.schedule import Schedule
 from rbx1_nav.units import SECOND
 
-TICK = SECOND // 50     # ns, the step of the simulated clock
 
+def read_clock(rate):
+    """The clock that the private parameters real_time_factor, clock_step and strict, and /use_sim_time ask for.
 
-def make_clock(factor, rate):
-    """The clock for a real-time factor (None if not set), an odometry rate (Hz), and /use_sim_time."""
-    if factor:
-        return OwnClock(factor, rate)
+    rate: of the odometry, Hz. Raises ConfigError.
+    """
+    names = ('real_time_factor', 'clock_step', 'strict')
+    section = Section({name: rospy.get_param('~' + name) for name in names if rospy.has_param('~' + name)})
+    step = section.number('clock_step', 0.001, 0.1, CLOCK_STEP, 'a time', 's')
+    strict = section.flag('strict', False)
+    if 'real_time_factor' in section.values:
+        factor = section.number('real_time_factor', 0.01, 1000)
+        if rospy.rostime.is_wallclock():
+            raise ConfigError('real_time_factor: %g: expected /use_sim_time to be true' % factor)
+        return OwnClock(factor, rate, round(step * SECOND), strict)
+    if strict or 'clock_step' in section.values:
+        raise ConfigError('%s: expected a simulated clock of this node: real_time_factor is not set'
+                          % ('strict: true' if strict else 'clock_step: %g' % step))
     return RealTimeClock(rate) if rospy.rostime.is_wallclock() else FollowedClock(rate)
 
 
@@ -48,6 +63,9 @@ class Clock:
     def command(self, _, command):
         """See above."""
         self.apply(command)
+
+    def diagnose(self, status):
+        """See above."""
 
 
 class RealTimeClock(Clock):
@@ -109,40 +127,54 @@ class FollowedClock(Clock):
 
 
 class OwnClock(FollowedClock):
-    """Simulated time that this node advances: at most `factor` times as fast as real time, in lockstep with the
-    drivers."""
+    """Simulated time that this node advances: at most `factor` times as fast as real time, in step with the drivers."""
 
-    def __init__(self, factor, rate):
+    def __init__(self, factor, rate, period, strict):
+        """factor, rate: see read_clock(); period: of the clock, ns; strict: whether a driver that is not in step is an
+        error."""
         super().__init__(rate)
         self.factor = factor
+        self.period = period
+        self.strict = strict
         self.publisher = rospy.Publisher('/clock', ClockMessage, queue_size=10, tcp_nodelay=True)
         self.lockstep = None
+        self.not_in_step = {}   # reasons, by the name of the node
 
     def set_driver(self, apply, connections):
         """See above."""
         super().set_driver(apply, connections)
-        self.lockstep = Lockstep(apply, rospy.logwarn, self.is_connected, self.has_unread, node.end_requested.is_set)
+        nodes = DrivingNodes(rospy.resolve_name('cmd_vel'), connections, lambda: self.publisher.impl.connections)
+        self.lockstep = Lockstep(apply, self.report, nodes, node.end_requested.is_set)
+
+    def report(self, name, reason):
+        """A node is not in step. Raises ROSException if that is an error."""
+        if self.strict:
+            raise rospy.ROSException('strict: %s %s: expected nodes that are in step with /clock' % (name, reason))
+        self.not_in_step[name] = reason
+        rospy.logwarn('%s %s: not in step with /clock. The clock no longer waits for it, and where the robot ends depends '
+                      'on the speed of the machine. Expected a node that sleeps on simulated time, as rospy.Rate does',
+                      name, reason)
 
     def command(self, twist, command):
-        """See above: with the tick that it answers."""
+        """See above: at the tick at which it was sent."""
         header = twist._connection_header       # one object per connection
         self.lockstep.receive(header, header['callerid'], command)
 
-    def is_connected(self, header):
-        """Whether a connection to a publisher of cmd_vel still exists."""
-        return any(connection.header is header for connection in self.connections())
-
-    def has_unread(self, header):
-        """Whether bytes have arrived by a connection that were not read yet."""
-        return any(unread_bytes(connection.socket) for connection in self.connections() if connection.header is header)
+    def diagnose(self, status):
+        """See above."""
+        if self.not_in_step:
+            status.mergeSummary(DiagnosticStatus.WARN, 'Not in step with /clock: ' + ', '.join(self.not_in_step))
+        status.add('Nodes not in step with /clock',
+                   '; '.join('%s %s' % each for each in self.not_in_step.items()) or 'none')
 
     def run(self, step):
         """See above."""
         beat = time.monotonic()
         while not node.end_requested.is_set():
-            self.time += TICK
+            self.lockstep.begin_tick()
+            self.time += self.period
             self.publisher.publish(rospy.Time(0, self.time))
             if self.schedule.due(self.time):
                 step()
-            beat = wait_for_beat(beat, TICK / SECOND / self.factor)
-            self.lockstep.collect()
+            self.lockstep.end_tick()
+            beat = wait_for_beat(beat, self.period / SECOND / self.factor)

@@ -170,8 +170,9 @@ class Listeners:
             rospy.logwarn('%s: no subscriber publishes odometry (%s): expected a base among them', self.topic,
                           ', '.join(sorted(peers)))
         self.next_look = 0.0    # s of the monotonic clock
-        # on simulated time, whether one of them publishes /clock
-        self.in_lockstep = not rospy.rostime.is_wallclock() and any(peer.keeps_time for peer in peers.values())
+        # on simulated time, the name of the one that publishes /clock
+        self.clock = None if rospy.rostime.is_wallclock() else next(
+            (peer.name for peer in peers.values() if peer.keeps_time), None)
 
     def check(self):
         """Look at all connections, if that is due; to be called at least every LOOK_PERIOD.
@@ -202,7 +203,7 @@ class Listeners:
         rospy deletes the oldest command if more wait than the size of the queue. Other nodes are never waited for.
         Raises ROSException after ROOM_TIMEOUT, ROSInterruptException.
         """
-        if not self.in_lockstep:
+        if not self.clock:
             return
         deadline = time.monotonic() + ROOM_TIMEOUT
         for listener in self.listeners:

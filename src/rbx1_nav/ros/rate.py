@@ -10,7 +10,7 @@ import rospy
 from rbx1_nav.ros.node import end_requested, sleep
 from rbx1_nav.units import SECOND
 
-SIMULATED_RATE = 50     # Hz, of the base's own clock
+CLOCK_STEP = 0.02       # s, of a simulated clock that does not say otherwise
 MAX_DELAY = SECOND      # ns
 FREE_TICKS = 25     # at the start of a motion, the base's clock may run ahead until the base has seen that it begins
 
@@ -72,13 +72,15 @@ class Rate:
 
         Raises ROSException if simulated time does not tick as often.
         """
-        if hz > SIMULATED_RATE and not rospy.rostime.is_wallclock():
-            raise rospy.ROSException('%s/rate: %g: expected at most %d Hz on simulated time: its clock ticks no faster'
-                                     % (rospy.get_name(), hz, SIMULATED_RATE))
+        if not rospy.rostime.is_wallclock():
+            step = rospy.get_param(listeners.clock + '/clock_step', CLOCK_STEP) if listeners.clock else CLOCK_STEP
+            if hz * step > 1 + 1e-9:
+                raise rospy.ROSException('%s/rate: %g: expected at most %g Hz on simulated time: the clock ticks every %g s'
+                                         % (rospy.get_name(), hz, 1 / step, step))
         self.listeners = listeners
         self.period = round(SECOND / hz)
         self.due = self.next = now() + self.period      # without delays, and with them
-        self.free_ticks = FREE_TICKS if listeners.in_lockstep else 0
+        self.free_ticks = FREE_TICKS if listeners.clock else 0
 
     def sleep(self):
         """Wait for the next tick. Raises as pause(), and ROSException for a delay that is too long."""

@@ -46,6 +46,7 @@ def test_the_filter():
 
 def test_the_base():
     read_here = re.findall(r"get_param\('~(\w+)'", read('nodes', 'fake_base.py'))
+    read_here += re.findall(r"section\.\w+\('(\w+)'", read('src', 'rbx1_nav', 'ros', 'clocks.py'))
     read_there = re.findall(r"top\.\w+\('(\w+)'", read('src', 'rbx1_nav', 'model', 'robot.py'))
     assert usage('fake_base.py') == sorted(set(read_here) | set(read_there) | DRIVER_KEYS | {'diagnostic_period'})
 

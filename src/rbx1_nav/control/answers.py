@@ -1,0 +1,115 @@
+"""Keeps a simulated clock in step with a driver whose process cannot be seen.
+
+It has to answer each tick with one command. While the robot rests, the clock runs freely. So when a stream of commands
+begins, the clock may be some ticks ahead of the driver, which then answers all of them at once. They wait in a queue,
+and each tick takes one. A publisher that does not drive by this clock never gives such answers. Three rules detect it.
+"""
+from collections import deque
+from math import inf
+from time import monotonic
+
+COMMAND_TIMEOUT = 1.0   # s of wall time that a tick waits for its command
+PROOF = 25              # ticks: a driver that has answered so many drives by this clock
+PATIENCE = 5.0          # s of wall time that a tick waits for such a driver
+FIRST_QUIET = 0.1       # s of wall time without a command that end a driver's first burst
+QUIET = 0.03            # s, the same at the start of each later stream
+SLOW_ANSWER = 0.05      # s of wall time: a later command may not be an answer to the tick at all
+BURST_TIME = 1.0        # s of wall time: a burst answers at most the ticks of this time
+MAX_BACKLOG = 25        # commands: more of them in the queue than at the start mean more than one per tick
+
+
+class NotInStep(Exception):
+    """The driver does not answer the ticks. The text says how it shows."""
+
+
+class Answers:
+    """The commands of one driver, one for each tick."""
+
+    def __init__(self, ticks, changed, connected, unread, ended):
+        """ticks: s of the monotonic clock, those of the last BURST_TIME; changed: a Condition that is notified when a
+        command arrives; connected(): whether the driver is still there; unread(): whether commands have come that are
+        not received yet; ended(): whether not to wait any more."""
+        self.ticks = ticks
+        self.changed = changed
+        self.connected = connected
+        self.unread = unread
+        self.ended = ended
+        self.queue = deque()        # one per tick; longer where the clock ran ahead of the driver at first
+        self.received = 0
+        self.quiet = FIRST_QUIET
+        self.lag = 0                # length of the queue when the stream began
+        self.streaming = False      # its last command was a motion: the next tick will bring another
+        self.answered = 0           # ticks, each with one command
+
+    @property
+    def proven(self):
+        """Whether it drives by this clock: what looks otherwise is a busy machine."""
+        return self.answered >= PROOF
+
+    def receive(self, command):
+        """Accept a command that just arrived."""
+        self.received += 1
+        self.queue.append(command)
+
+    def next(self):
+        """Wait for this tick's command, and return it; None if there is none. Raises NotInStep.
+
+        To be called for each tick, holding `changed`.
+        """
+        if self.streaming:
+            self._wait_for_answer()
+        elif self.queue:
+            self._begin_stream()
+        command = None
+        if self.queue:
+            command = self.queue.popleft()
+            linear, angular, *_ = command
+            self.streaming = 0 < abs(linear) < inf or 0 < abs(angular) < inf    # neither is true of nan
+            self.answered += self.streaming and len(self.queue) <= self.lag
+        if len(self.queue) > self.lag + MAX_BACKLOG and not self.proven:
+            raise NotInStep('sends more than one command per tick')
+        return command
+
+    def _begin_stream(self):
+        """The clock ran freely until now: let the driver answer all ticks that it has seen."""
+        self._wait_until_quiet(self.quiet)
+        self.quiet = QUIET
+        self.lag = len(self.queue)
+        if self.lag > len(self.ticks) + MAX_BACKLOG:
+            raise NotInStep('sends more than one command per tick')
+
+    def _wait_for_answer(self):
+        start = monotonic()
+        patience = PATIENCE if self.proven else COMMAND_TIMEOUT
+        if not self._wait_for(lambda: self.queue, patience):
+            self.streaming = False
+            if self.connected() and not self.ended():
+                raise NotInStep('sent no command for a tick within %g s' % patience)
+            return
+        waited = monotonic() - start
+        if waited > SLOW_ANSWER and not self.proven:
+            # a slow answer to this tick, or a stream that ignores the clock?
+            self._wait_until_quiet(2 * waited)
+
+    def _wait_until_quiet(self, quiet):
+        """Hold the clock until the driver has sent nothing for `quiet` seconds of wall time."""
+        deadline = monotonic() + (PATIENCE if self.proven else max(COMMAND_TIMEOUT, 3 * quiet))
+        while monotonic() < deadline and not self.ended():
+            received = self.received
+            heard = self._wait_for(lambda: self.received > received, quiet)     # pylint: disable=cell-var-from-loop
+            # unread: the thread that receives may not have had its turn
+            if not heard and not self.unread():
+                return
+        if not (self.proven or self.ended()):
+            raise NotInStep('sends commands while the clock is held')
+
+    def _wait_for(self, condition, timeout):
+        """Wait until condition(), for at most `timeout` s of wall time, or until the driver has gone or all is to end.
+        Returns condition()."""
+        deadline = monotonic() + timeout
+        while not condition() and self.connected() and not self.ended():
+            left = deadline - monotonic()
+            if left <= 0:
+                break
+            self.changed.wait(min(left, 0.1))
+        return condition()

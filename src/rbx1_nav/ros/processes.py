@@ -1,0 +1,275 @@
+"""Whether processes of this machine sleep: then they have done all that they were woken for.
+
+On one machine, a message wakes its receiver before the sender goes on (loopback TCP delivers in the sender's own call),
+and so do a notified condition and a released lock. So while anything is under way between processes, at least one of
+their threads runs or is about to. Sources: proc(5) and, for the clocks of other processes, clock_getcpuclockid(3).
+"""
+import os
+import socket
+import sys
+import threading
+import time
+
+POLL = 0.005    # s: a thread that sleeps for less than this polls; ros::Rate does so every millisecond on simulated time
+ENDED = b'X', b'Z'      # states of a thread that has ended
+LISTEN = '0A'           # state of a socket in /proc/net/tcp
+TIMED = b'sleep', b'poll', b'select'    # in the names of the kernel's functions that wait for a time
+
+
+def _cpu_clock(number, of_thread):
+    """The clock of the CPU time of a process or thread, for clock_gettime(2): its number is part of it."""
+    return ~number << 3 | (6 if of_thread else 2)
+
+
+class _Thread:
+    """One thread of a process."""
+
+    def __init__(self, folder, number):
+        """folder: of the thread, below /proc. Raises OSError if it has ended or must not be looked at."""
+        self.clock = _cpu_clock(number, True)
+        self.files = []
+        try:
+            for name in ('stat', 'wchan', 'schedstat'):
+                self.files.append(os.open(folder + name, os.O_RDONLY))
+        except OSError:
+            self.close()
+            raise
+        self.ran = None         # how long and how often it has run
+        self.changed = 0.0      # s of the monotonic clock: when `ran` was last seen to change
+        self.marked = None      # `ran` when mark() was called; None if it may have woken by itself before
+        self.timed = False      # needs_no_message() then
+        self.look()
+
+    def close(self):
+        """Close its files."""
+        for file in self.files:
+            os.close(file)
+        self.files = []
+
+    def look(self):
+        """Update `ran`, and return it."""
+        ran = os.pread(self.files[2], 64, 0)
+        if ran != self.ran:
+            self.ran, self.changed = ran, time.monotonic()
+        return ran
+
+    def waits_in(self):
+        """The name of the kernel's function in which it waits; 0 if it runs, or is about to."""
+        return os.pread(self.files[1], 64, 0)
+
+    def sleeps(self):
+        """Whether it waits, or has ended."""
+        # a state of S alone may belong to a thread that is about to wait, and may still find out that it need not;
+        # the name in parentheses may hold anything
+        state = os.pread(self.files[0], 512, 0).rpartition(b') ')[2][:1]
+        return self.waits_in() != b'0' if state == b'S' else state in ENDED
+
+    def needs_no_message(self):
+        """Whether it runs, is about to, or will wake by itself."""
+        name = self.waits_in()
+        return name == b'0' or any(part in name for part in TIMED)
+
+    def mark(self):
+        """See Process.mark()."""
+        before, now = self.ran, self.look()
+        self.marked = now if now == before else None
+        self.timed = self.needs_no_message()
+
+    def woke_by_itself(self):
+        """See Process.woke_by_itself()."""
+        return self.marked is None or self.timed and self.look() != self.marked
+
+    def polls(self):
+        """Whether it sleeps for a moment only, as far as can be known, or runs."""
+        self.look()
+        return time.monotonic() - self.changed < POLL and self.needs_no_message()
+
+
+class Process:
+    """A process of this machine."""
+
+    def __init__(self, pid, without=None):
+        """pid: its number; without: the number of a thread of this process that does not count. Raises OSError if it has
+        ended or must not be looked at."""
+        self.folder = '/proc/%d/task/' % pid
+        self.clock = _cpu_clock(pid, False)
+        self.without = without
+        self.socket = None      # by which it was found
+        self.threads = {}       # by number
+        self._update()
+        if not self.threads:
+            raise ProcessLookupError('no process %d' % pid)
+
+    def close(self):
+        """Close all files."""
+        for thread in self.threads.values():
+            thread.close()
+        self.threads = {}
+
+    def cpu_time(self):
+        """What the threads have run so far, ns; up to date only for those that wait."""
+        if self.without is None:
+            return time.clock_gettime_ns(self.clock)
+        return sum(time.clock_gettime_ns(thread.clock) for thread in self.threads.values())
+
+    def sleeps(self):
+        """Whether all threads sleep."""
+        if os.stat(self.folder).st_nlink != len(self.threads) + 2 + (self.without is not None):
+            self._update()
+            return False
+        return all(thread.sleeps() for thread in self.threads.values())
+
+    def mark(self):
+        """Remember what the threads do now, and have done since they were last looked at."""
+        self._each(_Thread.mark)
+
+    def polling(self):
+        """The threads that sleep for a moment only, each with what it has run so far."""
+        return [(thread, thread.ran) for thread in self._each(_Thread.polls)]
+
+    def woke_by_itself(self):
+        """Whether a thread has run since mark() that slept for a time then, or had just run."""
+        return bool(self._each(_Thread.woke_by_itself))
+
+    def ended(self):
+        """A thread has ended, or all of them: look again which there are."""
+        self._update()
+        return not self.threads
+
+    def _each(self, function):
+        """Call a function with each thread; returns those for which it is true."""
+        found = []
+        for thread in self.threads.values():
+            try:
+                if function(thread):
+                    found.append(thread)
+            except OSError:     # it has ended
+                pass
+        return found
+
+    def _update(self):
+        try:
+            numbers = set(map(int, os.listdir(self.folder))) - {self.without}
+        except FileNotFoundError:
+            numbers = set()     # it has ended
+        for number in self.threads.keys() - numbers:
+            self.threads.pop(number).close()
+        for number in numbers - self.threads.keys():
+            try:
+                self.threads[number] = _Thread('%s%d/' % (self.folder, number), number)
+            except (FileNotFoundError, ProcessLookupError):
+                pass
+
+
+class Network:
+    """The kernel's own threads that deliver messages on a busy machine, in place of the sender."""
+
+    def __init__(self):
+        self.files = []         # those of a container are not to be seen
+        for pid in filter(str.isdigit, os.listdir('/proc')):
+            try:
+                with open('/proc/%s/comm' % pid, encoding='ascii') as file:
+                    if file.read().startswith('ksoftirqd/'):
+                        self.files.append(os.open('/proc/%s/stat' % pid, os.O_RDONLY))
+            except (OSError, UnicodeDecodeError):
+                pass
+
+    def busy(self):
+        """Whether messages may be under way."""
+        return any(b') R' in os.pread(file, 512, 0) for file in self.files)
+
+
+def awake(processes):
+    """The first of some Process objects that does not sleep; None if all of them slept at one and the same moment."""
+    processes, before = list(processes), []
+    for process in processes:
+        try:
+            before.append(process.cpu_time())
+            if not process.sleeps():
+                return process
+        except OSError:
+            if not process.ended():
+                return process
+            before.append(None)
+    for process, cpu_time in zip(processes, before):
+        try:
+            if cpu_time is not None and process.cpu_time() != cpu_time:
+                return process
+        except OSError:
+            if not process.ended():
+                return process
+    return None
+
+
+def still_polling(threads):
+    """Whether one of these threads, as of Process.polling(), still sleeps as it did then."""
+    try:
+        return any(thread.polls() and thread.ran == ran for thread, ran in threads)
+    except OSError:     # it has ended
+        return False
+
+
+def own_process():
+    """The Process of the caller, without the thread that calls; None if the kernel does not tell what its threads do."""
+    try:
+        process = Process(os.getpid(), threading.get_native_id())
+        # the others wait for messages
+        return process if any(thread.waits_in() != b'0' for thread in process.threads.values()) else None
+    except OSError:
+        return None
+
+
+def peer_process(sock):
+    """The Process at the other end of a TCP connection; None if it is not to be seen from here: on another machine, in
+    another container, or of another user."""
+    try:
+        peer, own = sock.getpeername(), sock.getsockname()
+        addresses = [_address(sock.family, each) for each in (peer, own)]
+    except (OSError, AttributeError):   # closed
+        return None
+    return _process_with(lambda fields: fields[1:3] == addresses)
+
+
+def listening_process(port):
+    """The Process that listens on a TCP port of this machine; None if it is not to be seen from here."""
+    return _process_with(lambda fields: fields[3] == LISTEN and fields[1].endswith(':%04X' % port))
+
+
+def _process_with(matches):
+    """The Process that has a socket; matches(fields): whether a line of /proc/net/tcp is that of the socket."""
+    link = 'socket:[%s]' % _inode(matches)
+    for pid in filter(str.isdigit, os.listdir('/proc')):
+        folder = '/proc/%s/fd/' % pid
+        try:
+            if int(pid) != os.getpid() and any(_read_link(folder + file) == link for file in os.listdir(folder)):
+                return Process(int(pid))
+        except OSError:     # it has ended, or is another user's
+            pass
+    return None
+
+
+def _inode(matches):
+    """The inode of the first socket that matches, as a text; None if there is none."""
+    for table in ('/proc/net/tcp', '/proc/net/tcp6'):
+        try:
+            with open(table, encoding='ascii') as file:
+                for fields in map(str.split, file):
+                    if matches(fields):
+                        return fields[9]
+        except OSError:     # no IPv6
+            pass
+    return None
+
+
+def _address(family, address):
+    """An address as /proc/net/tcp has it: words of 32 bits in the machine's own order, and the port."""
+    host = socket.inet_pton(family, address[0])
+    words = (int.from_bytes(host[i:i + 4], sys.byteorder) for i in range(0, len(host), 4))
+    return '%s:%04X' % (''.join('%08X' % word for word in words), address[1])
+
+
+def _read_link(path):
+    try:
+        return os.readlink(path)
+    except OSError:     # closed meanwhile
+        return None

@@ -1,0 +1,26 @@
+// The same driver with roscpp: driver_at_rate RATE COUNT
+#include <cstdlib>
+
+#include <geometry_msgs/Twist.h>
+#include <ros/ros.h>
+
+int main(int argc, char** argv)
+{
+  ros::init(argc, argv, "driver", ros::init_options::AnonymousName);
+  ros::NodeHandle node;
+  ros::Publisher publisher = node.advertise<geometry_msgs::Twist>("/cmd_vel", 10);
+  while (publisher.getNumSubscribers() == 0)
+    ros::WallDuration(0.02).sleep();
+  ros::WallDuration(0.3).sleep();
+  geometry_msgs::Twist move;
+  move.linear.x = 0.2;
+  ros::Rate rate(std::atof(argv[1]));
+  for (int i = 0; i < std::atoi(argv[2]); i++)
+  {
+    publisher.publish(move);
+    rate.sleep();
+  }
+  publisher.publish(geometry_msgs::Twist());
+  ros::Duration(0.2).sleep();   // for the stop to be sent
+  return 0;
+}
