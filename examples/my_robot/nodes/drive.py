@@ -1,0 +1,31 @@
+#!/usr/bin/env python3
+"""Drives 1.000 m forward, 0.2 m/s for 5 s, and stops. Sends 20 commands per second."""
+import rospy
+from geometry_msgs.msg import Twist
+
+
+def main():
+    rospy.init_node('drive')
+    publisher = rospy.Publisher('/cmd_vel', Twist, queue_size=10)
+    # what is sent before the base is connected is lost
+    while not publisher.get_num_connections():
+        rospy.sleep(0.1)
+    # from now on, simulated time waits for this node: a rate that begins earlier may be some ticks late at first
+    rospy.sleep(1)
+
+    rate = rospy.Rate(20)
+    forward = Twist()
+    forward.linear.x = 0.2
+    for _ in range(5 * 20):
+        publisher.publish(forward)
+        rate.sleep()
+    publisher.publish(Twist())
+    # what a node sends just before it exits may be lost
+    rate.sleep()
+
+
+if __name__ == '__main__':
+    try:
+        main()
+    except rospy.ROSInterruptException:     # Ctrl-C
+        pass
