@@ -88,7 +88,9 @@ class Lockstep:
         delayed, self.delayed = self.delayed, []
         for command in delayed:
             self.apply(command)
-        if not self._all_have_answered():
+        if self._all_have_answered():
+            self._wait_while_awake(self.nodes.awake_drivers)
+        else:
             self._wait_until_asleep()
         self._apply_arrived()
         self.over_since = monotonic()
@@ -116,17 +118,18 @@ class Lockstep:
 
     def _wait_until_asleep(self):
         """Wait until all that a tick or anything else has woken sleeps again."""
-        self._wait_while_awake()
+        self._wait_while_awake(self.nodes.awake)
         polling = self.nodes.polling()      # these may not have seen the tick yet
         if polling:
             while self.nodes.still_polling(polling) and not self.ended():
                 sleep(LOOK)
-            self._wait_while_awake()
+            self._wait_while_awake(self.nodes.awake)
 
-    def _wait_while_awake(self):
+    def _wait_while_awake(self, look):
+        """look(): the name of a node that is awake, or None."""
         deadline = monotonic() + PATIENCE
         while not self.ended():
-            name = self.nodes.awake()
+            name = look()
             if not name:
                 return
             if monotonic() > deadline:
@@ -135,7 +138,7 @@ class Lockstep:
             sleep(LOOK)
 
     def _all_have_answered(self):
-        """Whether all nodes that may drive are steady, and each has sent its command. Spares a look at the nodes."""
+        """Whether all nodes that may drive are steady, and each has sent its command: nobody else need be looked at."""
         self.nodes.update()     # a node that has connected since must be looked at
         drivers = self._seen_drivers()
         if not drivers or len(drivers) < len(self.nodes.drivers):

@@ -116,6 +116,12 @@ class DrivingNodes:
         process = awake(processes.values())
         return process and next(name for name, each in processes.items() if each is process)
 
+    def awake_drivers(self):
+        """The same of the publishers of commands alone."""
+        names = sorted(self.drivers)
+        process = awake([self.processes[name] for name in names])
+        return process and next(name for name in names if self.processes[name] is process)
+
     def polling(self):
         """The threads that look at the time every moment, rather than wait for a tick: an object for still_polling()."""
         return [each for name in self.drivers & self.processes.keys() for each in self.processes[name].polling()]

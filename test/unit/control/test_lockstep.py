@@ -15,6 +15,7 @@ class Nodes:
         self.work = []          # functions, called one for each look: each time something is awake
         self.never_sleeps = None
         self.looks = 0
+        self.driver_looks = 0
         self.woken = set()      # names of those that have woken by themselves
         self.new_upstream = False
         self.off_clock = set()
@@ -43,6 +44,10 @@ class Nodes:
         if self.work:
             self.work.pop(0)()
             return 'a'
+        return self.never_sleeps
+
+    def awake_drivers(self):
+        self.driver_looks += 1
         return self.never_sleeps
 
     def polling(self):
