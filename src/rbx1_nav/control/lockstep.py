@@ -14,7 +14,7 @@ from rbx1_nav.control.answers import BURST_TIME, Answers, NotInStep
 from rbx1_nav.control.stream import Stream
 
 PATIENCE = 5.0      # s of wall time that a tick waits for a node
-LOOK = 1e-4         # s of wall time between two looks at the nodes
+LOOK = 2e-5         # s of wall time between two looks at the nodes
 FRESH = 2e-4        # s of wall time after which a look is repeated
 PROOF = 3           # commands between two motions that no tick has prompted: one may be a stop after Ctrl-C
 STEADY = 25         # ticks: a driver that has sent one command at each of them will do so at the next
