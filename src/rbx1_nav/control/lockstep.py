@@ -16,7 +16,7 @@ from rbx1_nav.control.stream import Stream
 PATIENCE = 5.0      # s of wall time that a tick waits for a node
 LOOK = 2e-5         # s of wall time between two looks at the nodes
 FRESH = 2e-4        # s of wall time after which a look is repeated
-PROOF = 3           # commands between two motions that no tick has prompted: one may be a stop after Ctrl-C
+PROOF = 3           # commands of a stream that no tick has prompted: a single one may be the stop after Ctrl-C
 STEADY = 25         # ticks: a driver that has sent one command at each of them will do so at the next
 ANSWER_TIME = 0.005     # s of wall time that such a command is waited for before a look
 
