@@ -12,12 +12,13 @@ import time
 import rospy
 from diagnostic_msgs.msg import DiagnosticStatus
 from rosgraph_msgs.msg import Clock as ClockMessage
+from rospy.impl import simtime
 
 from rbx1_nav.config import ConfigError, Section
 from rbx1_nav.control.lockstep import Lockstep
 from rbx1_nav.ros import node
 from rbx1_nav.ros.driving_nodes import DrivingNodes
-from rbx1_nav.ros.rate import CLOCK_STEP
+from rbx1_nav.ros.listeners import CLOCK_STEP
 from rbx1_nav.schedule import Schedule
 from rbx1_nav.units import SECOND
 
@@ -137,6 +138,8 @@ class OwnClock(FollowedClock):
         self.period = period
         self.strict = strict
         self.publisher = rospy.Publisher('/clock', ClockMessage, queue_size=10, tcp_nodelay=True)
+        # rospy subscribes each node to /clock; this one knows the time, and to be sent it costs a sixth of a tick
+        simtime._clock_sub.unregister()     # pylint: disable=protected-access
         self.lockstep = None
         self.not_in_step = {}   # reasons, by the name of the node
 
@@ -173,7 +176,8 @@ class OwnClock(FollowedClock):
         while not node.end_requested.is_set():
             self.lockstep.begin_tick()
             self.time += self.period
-            self.publisher.publish(rospy.Time(0, self.time))
+            rospy.rostime._set_rostime(self.stamp())    # pylint: disable=protected-access
+            self.publisher.publish(self.stamp())
             if self.schedule.due(self.time):
                 step()
             self.lockstep.end_tick()

@@ -25,6 +25,7 @@ LOOK_PERIOD = 0.05      # s
 UNREGISTER_TIME = 0.5   # s from the end of a connection to that of the registration, if a node ends as it should
 STOP_TIME = 1.0         # s that a script waits after its last command
 ROOM_TIMEOUT = 1.0      # s that a command waits for the one before it to be sent
+CLOCK_STEP = 0.02       # s, of a simulated clock that does not say otherwise
 
 Peer = namedtuple('Peer', 'name uri essential keeps_time refused')
 Peer.__doc__ = """A node that listens: its name; the address that it answers at, or None if it does not; whether it is
@@ -173,6 +174,8 @@ class Listeners:
         # on simulated time, the name of the one that publishes /clock
         self.clock = None if rospy.rostime.is_wallclock() else next(
             (peer.name for peer in peers.values() if peer.keeps_time), None)
+        # s of simulated time; read now, since the master may be gone when the robot moves
+        self.clock_step = rospy.get_param(self.clock + '/clock_step', CLOCK_STEP) if self.clock else CLOCK_STEP
 
     def check(self):
         """Look at all connections, if that is due; to be called at least every LOOK_PERIOD.

@@ -10,7 +10,6 @@ import rospy
 from rbx1_nav.ros.node import end_requested, sleep
 from rbx1_nav.units import SECOND
 
-CLOCK_STEP = 0.02       # s, of a simulated clock that does not say otherwise
 MAX_DELAY = SECOND      # ns
 FREE_TICKS = 25     # at the start of a motion, the base's clock may run ahead until the base has seen that it begins
 
@@ -73,7 +72,7 @@ class Rate:
         Raises ROSException if simulated time does not tick as often.
         """
         if not rospy.rostime.is_wallclock():
-            step = rospy.get_param(listeners.clock + '/clock_step', CLOCK_STEP) if listeners.clock else CLOCK_STEP
+            step = listeners.clock_step
             if hz * step > 1 + 1e-9:
                 raise rospy.ROSException('%s/rate: %g: expected at most %g Hz on simulated time: the clock ticks every %g s'
                                          % (rospy.get_name(), hz, 1 / step, step))
