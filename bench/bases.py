@@ -18,10 +18,10 @@ from replay import replay
 from robot_pose_ekf import RobotPoseEkf
 from rbx1_nav.estimation.filter import UNKNOWN
 from rbx1_nav.estimation.inputs import Imu, Odom
-from rbx1_nav.model.robot import read_robot
-from rbx1_nav.model.surfaces import load_surface
-from rbx1_nav.ros import resources
-from rbx1_nav.simulated_base import make_base
+from rbx1_nav.robot.description import read_robot
+from rbx1_nav.ros.node import resources
+from rbx1_nav.simulation.base import make_base
+from rbx1_nav.simulation.surfaces import load_surface
 from rbx1_nav.units import SECOND
 
 REST = 3.0              # s before the first motion

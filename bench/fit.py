@@ -8,16 +8,16 @@ import time
 import numpy
 import yaml
 
+from rbx1_nav.control.motions import out_and_back
 from rbx1_nav.fitting.comparison import region_share
 from rbx1_nav.fitting.recording import Commands, Rates, Recording, Track
 from rbx1_nav.fitting.whole import WholeFit
-from rbx1_nav.model.kinematics import Pose
-from rbx1_nav.model.robot import read_robot
-from rbx1_nav.model.surfaces import Surface, load_surface
-from rbx1_nav.ros import resources
-from rbx1_nav.simulated_base import make_base
-from rbx1_nav.simulation import EXERCISE, TICK
-from rbx1_nav.control.motions import out_and_back
+from rbx1_nav.robot.description import read_robot
+from rbx1_nav.robot.kinematics import Pose
+from rbx1_nav.ros.node import resources
+from rbx1_nav.simulation.base import make_base
+from rbx1_nav.simulation.exercise import EXERCISE, TICK
+from rbx1_nav.simulation.surfaces import Surface, load_surface
 from rbx1_nav.units import SECOND
 
 RUNS = 10

@@ -15,10 +15,10 @@ import numpy
 from rbx1_nav.estimation.combined_odometry import CombinedOdometry
 from rbx1_nav.estimation.filter import UNKNOWN, priors
 from rbx1_nav.estimation.inputs import MAX_VARIANCE, Imu, Odom, RejectedMessage
-from rbx1_nav.model.kinematics import Pose, arc
-from rbx1_nav.model.surfaces import known_surfaces, load_surface
-from rbx1_nav.model.wheels import MIN_VARIANCE
-from rbx1_nav.ros import resources
+from rbx1_nav.robot.kinematics import Pose, arc
+from rbx1_nav.robot.readings import MIN_VARIANCE
+from rbx1_nav.ros.node import resources
+from rbx1_nav.simulation.surfaces import known_surfaces, load_surface
 from rbx1_nav.units import SECOND
 
 LEAST_RATIO = -1e-12    # of the least eigenvalue to the greatest

@@ -18,9 +18,9 @@ from rbx1_nav.fitting.fit import Fitter, fit_floor
 from rbx1_nav.fitting.floor import NOISES, SPREADS, Prediction, Windows
 from rbx1_nav.fitting.mrclam import BASE_WIDTH, CAMERAS, read_set
 from rbx1_nav.fitting.run import Run
-from rbx1_nav.model.surfaces import load_surface
-from rbx1_nav.plots import check_picture
-from rbx1_nav.ros import resources
+from rbx1_nav.plotting.runs import check_picture
+from rbx1_nav.ros.node import resources
+from rbx1_nav.simulation.surfaces import load_surface
 
 LENGTHS = 5, 10, 20, 40     # s
 FITTED = 10     # s, the windows of the fit

@@ -132,8 +132,8 @@ def evaluate(path, surface):
     """The figures of a bag, and the lines of the filter. Raises Failure."""
     import rosbag
     from rbx1_nav.estimation.filter import priors
-    from rbx1_nav.model.surfaces import load_surface
-    from rbx1_nav.ros import resources
+    from rbx1_nav.simulation.surfaces import load_surface
+    from rbx1_nav.ros.node import resources
     try:
         recording = read(path)
     except (OSError, rosbag.ROSBagException) as error:

@@ -9,10 +9,10 @@ import numpy
 import yaml
 
 from floors import Follower, consistency
-from rbx1_nav.model.robot import read_robot
-from rbx1_nav.model.surfaces import load_surface
-from rbx1_nav.ros import resources
-from rbx1_nav.simulation import METHODS, simulate, simulate_many
+from rbx1_nav.robot.description import read_robot
+from rbx1_nav.ros.node import resources
+from rbx1_nav.simulation.exercise import METHODS, simulate, simulate_many
+from rbx1_nav.simulation.surfaces import load_surface
 
 
 def distance(pose, other=(0.0, 0.0)):

@@ -9,7 +9,7 @@ import random_messages
 from rbx1_nav.estimation import combined_odometry
 from rbx1_nav.estimation.filter import UNKNOWN, priors
 from rbx1_nav.estimation.inputs import MAX_VARIANCE, Imu
-from rbx1_nav.model.wheels import MIN_VARIANCE
+from rbx1_nav.robot.readings import MIN_VARIANCE
 from rbx1_nav.units import SECOND
 
 GOOD = numpy.diag([1.0, 2.0, 3.0])

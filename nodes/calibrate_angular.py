@@ -18,7 +18,7 @@ Parameters:
 Mark on the floor where the robot points to. Facing the mark again it has turned by 360 degrees; 10 degrees before it,
 by 350. The gyro is compared with the same turn.
 """
-import rbx1_nav.ros.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded
+import rbx1_nav.ros.node.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded
 
 from math import degrees, pi
 
@@ -27,15 +27,15 @@ from sensor_msgs.msg import Imu
 
 from rbx1_nav.config import ConfigError
 from rbx1_nav.control.legs import Turn
-from rbx1_nav.create.fractions import LOST
-from rbx1_nav.create.parameters import GYRO_CORRECTION
-from rbx1_nav.model.calibration import corrected, read_measured, turn_by_gyro
-from rbx1_nav.ros import node
-from rbx1_nav.ros.calibration import (
+from rbx1_nav.create.driver.fractions import LOST
+from rbx1_nav.create.driver.parameters import GYRO_CORRECTION
+from rbx1_nav.robot.calibration import corrected, read_measured, turn_by_gyro
+from rbx1_nav.ros.node import life
+from rbx1_nav.ros.driving.calibration import (
     Diagnosis, factor_in_force, forget_run, load_run, node_param, save_run, take_measured)
-from rbx1_nav.ros.leg_driver import LegDriver
-from rbx1_nav.ros.params import frame_param, positive_param
-from rbx1_nav.ros.question import ask
+from rbx1_nav.ros.driving.leg_driver import LegDriver
+from rbx1_nav.ros.node.params import frame_param, positive_param
+from rbx1_nav.ros.node.question import ask
 
 ODOM_KEY, GYRO_KEY = 'odom_angular_scale_correction', 'gyro_scale_correction'
 
@@ -90,7 +90,7 @@ def warn_of_gyro(error):
 
 def calibrate():
     """Turn, ask, and print the factors."""
-    node.init_node('calibrate_angular', __doc__)
+    life.init_node('calibrate_angular', __doc__)
     measured = take_measured()
     if measured is None:
         run = drive()
@@ -136,4 +136,4 @@ if __name__ == '__main__':
     except (rospy.ROSException, ValueError, OSError) as error:    # OSError: the master does not answer
         rospy.logerr('%s', error)
         status = 1
-    node.leave(status)
+    life.leave(status)

@@ -18,19 +18,19 @@ Parameters:
 Put a tape on the floor, the zero at a mark on the robot. The odometry should report what you measure: if the robot went
 less far than it reports, the factor becomes smaller.
 """
-import rbx1_nav.ros.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded
+import rbx1_nav.ros.node.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded
 
 from math import hypot
 
 import rospy
 
 from rbx1_nav.control.legs import Straight
-from rbx1_nav.model.calibration import corrected, read_measured
-from rbx1_nav.ros import node
-from rbx1_nav.ros.calibration import factor_in_force, forget_run, load_run, node_param, save_run, take_measured
-from rbx1_nav.ros.leg_driver import LegDriver
-from rbx1_nav.ros.params import frame_param, positive_param
-from rbx1_nav.ros.question import ask
+from rbx1_nav.robot.calibration import corrected, read_measured
+from rbx1_nav.ros.driving.calibration import factor_in_force, forget_run, load_run, node_param, save_run, take_measured
+from rbx1_nav.ros.driving.leg_driver import LegDriver
+from rbx1_nav.ros.node import life
+from rbx1_nav.ros.node.params import frame_param, positive_param
+from rbx1_nav.ros.node.question import ask
 
 KEY = 'odom_linear_scale_correction'
 
@@ -61,7 +61,7 @@ def drive():
 
 def calibrate():
     """Drive, ask, and print the factor."""
-    node.init_node('calibrate_linear', __doc__)
+    life.init_node('calibrate_linear', __doc__)
     measured = take_measured()
     if measured is None:
         run = drive()
@@ -92,4 +92,4 @@ if __name__ == '__main__':
     except (rospy.ROSException, ValueError, OSError) as error:    # OSError: the master does not answer
         rospy.logerr('%s', error)
         status = 1
-    node.leave(status)
+    life.leave(status)

@@ -19,7 +19,7 @@ Parameters:
     ~gyro_bias, ~gyro_scale_error   limit of the bias, degrees/s; 1 sigma of the scale error (default: 10, 0.015)
     ~diagnostic_period  of /diagnostics, s (default: 1)
 """
-import rbx1_nav.ros.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded
+import rbx1_nav.ros.node.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded
 
 from functools import partial
 import threading
@@ -32,14 +32,15 @@ from sensor_msgs.msg import Imu
 from std_msgs.msg import Empty
 
 from rbx1_nav.estimation.inputs import RejectedMessage, check
-from rbx1_nav.ros import messages, node
-from rbx1_nav.ros.estimate_publisher import EstimatePublisher
-from rbx1_nav.ros.filter_parameters import load_parameters, make_filter, read_parameters
-from rbx1_nav.ros.frame_tree import FrameTree
-from rbx1_nav.ros.imu_input import ImuInput
-from rbx1_nav.ros.limited_log import LimitedLog
-from rbx1_nav.ros.one_sender import OneSender
-from rbx1_nav.ros.sensor_status import Diagnostics
+from rbx1_nav.ros import messages
+from rbx1_nav.ros.filter.estimate_publisher import EstimatePublisher
+from rbx1_nav.ros.filter.frame_tree import FrameTree
+from rbx1_nav.ros.filter.imu_input import ImuInput
+from rbx1_nav.ros.filter.one_sender import OneSender
+from rbx1_nav.ros.filter.parameters import load_parameters, make_filter, read_parameters
+from rbx1_nav.ros.filter.sensor_status import Diagnostics
+from rbx1_nav.ros.node import life
+from rbx1_nav.ros.node.limited_log import LimitedLog
 from rbx1_nav.schedule import Schedule
 
 
@@ -124,26 +125,26 @@ class Ekf:
             self.log.add(rospy.logerr, '%s: %s; rejected' % (rospy.resolve_name(topic), error))
             return
         self.diagnostics.count(topic, now, self.combined)
-        if self.combined.estimate and not node.end_requested.is_set():      # topics are closed at the end
+        if self.combined.estimate and not life.end_requested.is_set():      # topics are closed at the end
             self.publisher.update(self.combined, *self.frames)
 
     def run(self):
         """Until the node is to end."""
         schedule = Schedule(1 / self.parameters['diagnostic_period'])
-        while not node.end_requested.is_set():
+        while not life.end_requested.is_set():
             if schedule.due(time.monotonic_ns()):   # wall time: a clock that stands still is worth a diagnosis too
                 self.diagnostics.publish()
             self.log.flush(time.monotonic())
             self.tree.listen(not (self.publisher.settled and self.imu.settled))
-            node.sleep(0.05)
+            life.sleep(0.05)
 
 
 def main():
     """Read the parameters, and run. Returns the exit status."""
-    node.init_node('robot_pose_ekf', __doc__, check=read_parameters)
+    life.init_node('robot_pose_ekf', __doc__, check=read_parameters)
     Ekf(load_parameters()).run()
     return 0
 
 
 if __name__ == '__main__':
-    node.run(main)
+    life.run(main)

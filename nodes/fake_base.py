@@ -15,7 +15,7 @@ Parameters:
     ~sim, ~diagnostic_period, ~port, ~baud, ~rate, ~sync_write, ~sync_read, ~read_rate, ~write_rate
                         accepted, as in ArbotiX files; they change nothing here
 """
-import rbx1_nav.ros.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded
+import rbx1_nav.ros.node.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded
 
 import threading
 
@@ -27,23 +27,24 @@ from std_msgs.msg import Empty
 from std_srvs.srv import Empty as EmptyService, EmptyResponse
 
 from rbx1_nav.config import ConfigError
-from rbx1_nav.model.joints import JointGroup
-from rbx1_nav.model.robot import read_robot
-from rbx1_nav.model.surfaces import RANDOM, load_surface, read_seed
-from rbx1_nav.model.wheels import IdealWheels
-from rbx1_nav.ros import messages, node, resources
-from rbx1_nav.ros.base_publisher import BasePublisher
-from rbx1_nav.ros.clocks import read_clock
-from rbx1_nav.ros.commands import VelocityCommands, subscribe_joints
+from rbx1_nav.robot.description import read_robot
+from rbx1_nav.robot.joints import JointGroup
+from rbx1_nav.ros import messages
+from rbx1_nav.ros.base.commands import VelocityCommands, subscribe_joints
+from rbx1_nav.ros.base.publisher import BasePublisher
+from rbx1_nav.ros.base.simulated_clock import read_clock
+from rbx1_nav.ros.node import life, resources
 from rbx1_nav.schedule import Schedule
-from rbx1_nav.simulated_base import make_base
+from rbx1_nav.simulation.base import make_base
+from rbx1_nav.simulation.surfaces import RANDOM, load_surface, read_seed
+from rbx1_nav.simulation.wheels import IdealWheels
 
 
 class FakeBase:
     """Connects a SimulatedBase with ROS."""
 
     def __init__(self, robot, base, clock):
-        """robot: a Robot; base: a SimulatedBase; clock: see ros/clocks.py."""
+        """robot: a Robot; base: a SimulatedBase; clock: see ros/base/clocks.py."""
         self.robot = robot
         self.base = base
         self.clock = clock
@@ -114,7 +115,7 @@ class FakeBase:
 
 def main():
     """Read the configuration, and run. Returns the exit status."""
-    node.init_node('arbotix', __doc__, check=read_robot)
+    life.init_node('arbotix', __doc__, check=read_robot)
     try:
         robot = read_robot(rospy.get_param(rospy.get_name(), {}))
         surface = load_surface(rospy.get_param('~surface', 'ideal'), resources.surfaces())
@@ -135,4 +136,4 @@ def main():
 
 
 if __name__ == '__main__':
-    node.run(main)
+    life.run(main)

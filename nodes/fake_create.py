@@ -27,7 +27,7 @@ What can happen to the robot:
 It publishes /ground_truth, where the robot really is, and /line: each command that it receives, with its time.
 A pseudo-terminal has no RTS and DTR: a driver that insists on them gets an error.
 """
-import rbx1_nav.ros.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded
+import rbx1_nav.ros.node.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded
 
 from collections import namedtuple
 from math import floor
@@ -38,16 +38,17 @@ from nav_msgs.msg import Odometry
 from std_msgs.msg import String
 
 from rbx1_nav.config import ConfigError, Section, show
-from rbx1_nav.create.body import CAPACITY, Body, Errors, Quirks
-from rbx1_nav.create.emulator import EmulatedCreate
+from rbx1_nav.create.emulator.body import CAPACITY, Body, Errors, Quirks
+from rbx1_nav.create.emulator.emulator import EmulatedCreate
+from rbx1_nav.create.emulator.pseudo_terminal import PseudoTerminal
+from rbx1_nav.create.emulator.serial_line import SerialLine
 from rbx1_nav.create.protocol import BAUD_RATES, MODELS
-from rbx1_nav.create.pseudo_terminal import PseudoTerminal
-from rbx1_nav.create.serial_line import SerialLine
-from rbx1_nav.model.surfaces import RANDOM, load_surface, read_seed
-from rbx1_nav.model.wheels import IdealWheels
-from rbx1_nav.ros import messages, node, resources
-from rbx1_nav.ros.robot_faults import RobotFaults
+from rbx1_nav.ros import messages
+from rbx1_nav.ros.base.robot_faults import RobotFaults
+from rbx1_nav.ros.node import life, resources
 from rbx1_nav.schedule import Schedule
+from rbx1_nav.simulation.surfaces import RANDOM, load_surface, read_seed
+from rbx1_nav.simulation.wheels import IdealWheels
 from rbx1_nav.units import SECOND
 
 TRUTH_RATE = 50     # Hz
@@ -71,14 +72,14 @@ class FakeCreate:
 
     def run(self):
         """Run until the node is to end."""
-        while not node.end_requested.is_set():
+        while not life.end_requested.is_set():
             self.step()
             self.terminal.wait(max(0.0, (self.robot.next_time - time.monotonic_ns()) / SECOND))
         # a driver that ends at the same time stops the robot first: to it, a robot that vanishes is a lost line
         deadline = time.monotonic() + CLIENT_TIMEOUT
         while self.terminal.has_client and time.monotonic() < deadline:
             self.step()
-            node.sleep(0.005)
+            life.sleep(0.005)
         self.terminal.unplug()
 
     def step(self):
@@ -113,7 +114,7 @@ class FakeCreate:
 
 def main():
     """Read the parameters, and run. Returns the exit status."""
-    node.init_node('fake_create', __doc__)
+    life.init_node('fake_create', __doc__)
     try:
         section = Section(rospy.get_param(rospy.get_name(), {}))
         model = MODELS[section.choice('robot_type', tuple(MODELS), 'create')]
@@ -140,4 +141,4 @@ def main():
 
 
 if __name__ == '__main__':
-    node.run(main)
+    life.run(main)

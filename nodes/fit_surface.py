@@ -11,7 +11,7 @@ The file of --ends has a line for each bag: its name without folder, and the end
   position_error: 0.01          # of the tape, 1 sigma, m (default)
   heading_error: 2              # the same of the heading, degrees (default)
 """
-import rbx1_nav.ros.early_interrupt     # Ctrl-C ends it quietly even while the rest is loaded
+import rbx1_nav.ros.node.early_interrupt     # Ctrl-C ends it quietly even while the rest is loaded
 
 import argparse
 import os
@@ -22,18 +22,18 @@ import sys
 os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
 
 from rbx1_nav.config import ConfigError, load_yaml, show_name
-from rbx1_nav.fit_picture import draw_fit
 from rbx1_nav.fitting.comparison import compare, shares
 from rbx1_nav.fitting.ends_file import read_ends
 from rbx1_nav.fitting.mrclam import is_commands_file, read_robot as read_text_files, truth_file
 from rbx1_nav.fitting.recording import in_force
 from rbx1_nav.fitting.surface_file import surface_text, table
 from rbx1_nav.fitting.whole import WholeFit
-from rbx1_nav.model.robot import read_robot
-from rbx1_nav.model.surfaces import known_surfaces, load_surface
-from rbx1_nav.plots import check_picture, check_writable, write_file
-from rbx1_nav.ros import resources
-from rbx1_nav.ros.bags import Topics, read_bag
+from rbx1_nav.plotting.fit import draw_fit
+from rbx1_nav.plotting.runs import check_picture, check_writable, write_file
+from rbx1_nav.robot.description import read_robot
+from rbx1_nav.ros.node import resources
+from rbx1_nav.ros.tools.bags import Topics, read_bag
+from rbx1_nav.simulation.surfaces import known_surfaces, load_surface
 
 START, CREATE_START = 'low_ply_carpet', 'create_lab_floor'
 

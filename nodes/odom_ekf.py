@@ -5,7 +5,7 @@ usage: odom_ekf.py [topic:=new_topic ...]      usually started by odom_ekf.launc
 
 Both odometries start where the robot does, so /odom_ekf has the frames of odom: RViz shows them side by side.
 """
-import rbx1_nav.ros.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded
+import rbx1_nav.ros.node.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded
 
 from math import inf
 import time
@@ -14,7 +14,8 @@ import rospy
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from nav_msgs.msg import Odometry
 
-from rbx1_nav.ros import messages, node
+from rbx1_nav.ros import messages
+from rbx1_nav.ros.node import life
 
 PATIENCE = 5    # s of wall time without a message before a warning
 
@@ -23,7 +24,7 @@ class OdomEkf:
     """Republishes each pose."""
 
     def __init__(self):
-        node.init_node('odom_ekf', __doc__)
+        life.init_node('odom_ekf', __doc__)
         self.frames = None      # (frame_id, child_frame_id) of the wheel odometry
         self.last = None        # PoseWithCovarianceStamped
         self.publisher = rospy.Publisher('/odom_ekf', Odometry, queue_size=10)
@@ -36,7 +37,7 @@ class OdomEkf:
 
     def on_pose(self, pose):
         """Republish a combined pose, with the mean velocity since the previous one."""
-        if self.frames and not node.end_requested.is_set():     # topics are closed at the end
+        if self.frames and not life.end_requested.is_set():     # topics are closed at the end
             self.publisher.publish(messages.odometry_of_pose(pose, self.last, *self.frames))
         self.last = pose
 
@@ -44,7 +45,7 @@ class OdomEkf:
         """Until the node is to end. Warns once if there is nothing to republish."""
         deadline = time.monotonic() + PATIENCE
         while not (self.frames and self.last):
-            if node.end_requested.is_set():
+            if life.end_requested.is_set():
                 return
             if time.monotonic() > deadline:
                 deadline = inf      # one warning is enough
@@ -52,9 +53,9 @@ class OdomEkf:
                 topic, source = ('odom_combined', 'filter') if self.frames else ('odom', 'base')
                 rospy.logwarn('No message on %s for %d s: expected a running %s; %s follows as soon as there is one',
                               rospy.resolve_name(topic), PATIENCE, source, self.publisher.resolved_name)
-            node.sleep(1)
+            life.sleep(1)
         rospy.loginfo('Publishing %s', self.publisher.resolved_name)
-        node.end_requested.wait()
+        life.end_requested.wait()
 
 
 def main():
@@ -64,4 +65,4 @@ def main():
 
 
 if __name__ == '__main__':
-    node.run(main)
+    life.run(main)

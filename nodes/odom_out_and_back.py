@@ -20,7 +20,7 @@ Parameters:
 The base counts how far its wheels turn, and publishes a pose: the transform from the frame odom to its own frame. So do
 not drive for a time: drive until you are there.
 """
-import rbx1_nav.ros.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded
+import rbx1_nav.ros.node.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded
 
 from math import degrees, hypot, pi
 import time
@@ -30,11 +30,11 @@ from geometry_msgs.msg import Twist
 from tqdm import tqdm
 
 from rbx1_nav.control.legs import out_and_back_by_odometry
-from rbx1_nav.ros import node
-from rbx1_nav.ros.params import frame_param, positive_param
-from rbx1_nav.ros.pose_listener import LostTransform, PoseListener
-from rbx1_nav.ros.rate import Rate, pause
-from rbx1_nav.ros.subscribers import wait_for_subscribers
+from rbx1_nav.ros.driving.pose_listener import LostTransform, PoseListener
+from rbx1_nav.ros.driving.rate import Rate, pause
+from rbx1_nav.ros.driving.subscribers import wait_for_subscribers
+from rbx1_nav.ros.node import life
+from rbx1_nav.ros.node.params import frame_param, positive_param
 from rbx1_nav.units import wrap_angle
 
 
@@ -43,7 +43,7 @@ class OutAndBack:
 
     def __init__(self):
         # Start the node under this name. From here on Ctrl-C leads to stop() below.
-        node.init_node('out_and_back', __doc__)
+        life.init_node('out_and_back', __doc__)
 
         # How often to look at the pose and to publish a command, in Hz.
         self.rate = positive_param('rate', 50, 2, 1000)
@@ -140,4 +140,4 @@ if __name__ == '__main__':
     except (rospy.ROSException, ValueError) as error:     # StuckError is a ValueError
         rospy.logerr('%s', error)
         status = 1
-    node.leave(status)
+    life.leave(status)

@@ -6,7 +6,7 @@ usage: pose.py [topic:=new_topic ...]      it has no parameters
 The start is the origin of the frame odom, where a simulated base stands after its launch and after each reset. Only a
 simulated base publishes /ground_truth, and only odom_ekf.launch /odom_ekf.
 """
-import rbx1_nav.ros.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded
+import rbx1_nav.ros.node.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded
 
 from math import degrees, hypot
 import time
@@ -14,7 +14,8 @@ import time
 import rospy
 from nav_msgs.msg import Odometry
 
-from rbx1_nav.ros import messages, node
+from rbx1_nav.ros import messages
+from rbx1_nav.ros.node import life
 from rbx1_nav.units import rounded
 
 TOPICS = {'ground_truth': 'truth', 'odom': 'odometry', 'odom_ekf': 'estimate'}
@@ -26,7 +27,7 @@ def receive():
     latest = {}
     subscribers = {}
     deadline = time.monotonic() + TIMEOUT
-    while time.monotonic() < deadline and not node.end_requested.is_set():
+    while time.monotonic() < deadline and not life.end_requested.is_set():
         published = {name for name, _ in rospy.get_published_topics()}
         for topic in TOPICS:
             if rospy.resolve_name(topic) in published and topic not in subscribers:
@@ -35,7 +36,7 @@ def receive():
                                                       latest.__setitem__(topic, message))
         if latest and all(latest.values()):
             break
-        node.sleep(0.05)
+        life.sleep(0.05)
     return latest
 
 
@@ -53,7 +54,7 @@ def row(topic, latest):
 
 def main():
     """Print a table. Returns the exit status."""
-    node.init_node('pose', __doc__, requires_master=True)
+    life.init_node('pose', __doc__, requires_master=True)
     latest = receive()
     if not any(latest.values()):
         rospy.logerr('No message on %s for %g s: expected a running base',
@@ -66,4 +67,4 @@ def main():
 
 
 if __name__ == '__main__':
-    node.run(main)
+    life.run(main)

@@ -3,7 +3,7 @@
 
 The motions, the base and the filter are those of the nodes.
 """
-import rbx1_nav.ros.early_interrupt     # Ctrl-C ends it quietly even while the rest is loaded
+import rbx1_nav.ros.node.early_interrupt     # Ctrl-C ends it quietly even while the rest is loaded
 
 import argparse
 from concurrent.futures.process import BrokenProcessPool
@@ -19,11 +19,11 @@ import numpy
 from tqdm import tqdm
 
 from rbx1_nav.config import ConfigError, load_yaml, show, show_name
-from rbx1_nav.model.robot import read_robot
-from rbx1_nav.model.surfaces import MAX_SEED, known_surfaces, load_surface
-from rbx1_nav.plots import PATHS, check_picture, draw
-from rbx1_nav.ros import resources
-from rbx1_nav.simulation import METHODS, simulate_many
+from rbx1_nav.plotting.runs import PATHS, check_picture, draw
+from rbx1_nav.robot.description import read_robot
+from rbx1_nav.ros.node import resources
+from rbx1_nav.simulation.exercise import METHODS, simulate_many
+from rbx1_nav.simulation.surfaces import MAX_SEED, known_surfaces, load_surface
 from rbx1_nav.units import rounded, wrap_angle
 
 MOMENT = 1.0    # s: what takes longer gets a progress bar and all processor cores

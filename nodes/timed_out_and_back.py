@@ -14,7 +14,7 @@ Parameters:
 
 The script never asks where the robot is. Drive at a known speed for a known time, and it should end where it began.
 """
-import rbx1_nav.ros.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded
+import rbx1_nav.ros.node.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded
 
 from math import pi
 import time
@@ -24,10 +24,10 @@ from geometry_msgs.msg import Twist
 from tqdm import tqdm
 
 from rbx1_nav.control.motions import out_and_back
-from rbx1_nav.ros import node
-from rbx1_nav.ros.params import positive_param
-from rbx1_nav.ros.rate import Rate, pause
-from rbx1_nav.ros.subscribers import wait_for_subscribers
+from rbx1_nav.ros.driving.rate import Rate, pause
+from rbx1_nav.ros.driving.subscribers import wait_for_subscribers
+from rbx1_nav.ros.node import life
+from rbx1_nav.ros.node.params import positive_param
 
 
 class OutAndBack:
@@ -35,7 +35,7 @@ class OutAndBack:
 
     def __init__(self):
         # Start the node under this name. From here on Ctrl-C leads to stop() below.
-        node.init_node('out_and_back', __doc__)
+        life.init_node('out_and_back', __doc__)
 
         # How often to publish a command, in Hz. Some robots stop when they receive none, so publish on every tick.
         self.rate = positive_param('rate', 50, 2, 1000)
@@ -107,4 +107,4 @@ if __name__ == '__main__':
     except (rospy.ROSException, ValueError) as error:
         rospy.logerr('%s', error)
         status = 1
-    node.leave(status)
+    life.leave(status)

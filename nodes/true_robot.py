@@ -8,7 +8,7 @@ Parameters:
 
 RViz's own RobotModel shows the robot where its odometry reports it.
 """
-import rbx1_nav.ros.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded
+import rbx1_nav.ros.node.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded
 
 import time
 
@@ -17,8 +17,9 @@ import tf2_ros
 from nav_msgs.msg import Odometry
 from visualization_msgs.msg import Marker, MarkerArray
 
-from rbx1_nav.model.urdf import read_visuals
-from rbx1_nav.ros import markers, node
+from rbx1_nav.robot.urdf import read_visuals
+from rbx1_nav.ros.node import life
+from rbx1_nav.ros.tools import markers
 from rbx1_nav.schedule import Schedule
 
 
@@ -26,7 +27,7 @@ class TrueRobot:
     """Publishes the robot's markers while somebody subscribes."""
 
     def __init__(self, visuals):
-        """visuals: of the robot, see model/urdf.py."""
+        """visuals: of the robot, see robot/urdf.py."""
         self.visuals = visuals
         self.schedule = Schedule(20)    # Hz of wall time, as the eye sees it
         self.buffer = tf2_ros.Buffer()
@@ -36,7 +37,7 @@ class TrueRobot:
 
     def on_truth(self, truth):
         """Publish the robot at its true pose."""
-        if node.end_requested.is_set():     # topics are closed at the end
+        if life.end_requested.is_set():     # topics are closed at the end
             return
         if self.publisher.get_num_connections() and self.schedule.due(time.monotonic_ns()):
             links = {}
@@ -54,17 +55,17 @@ class TrueRobot:
 
 def main():
     """Run until the node is to end. Returns the exit status."""
-    node.init_node('true_robot', __doc__)
+    life.init_node('true_robot', __doc__)
     try:
         visuals = read_visuals(str(rospy.get_param('~robot_description', '')))
     except ValueError as error:
         rospy.logfatal('%s/robot_description: %s', rospy.get_name(), error)
         return 1
     robot = TrueRobot(visuals)
-    node.end_requested.wait()
+    life.end_requested.wait()
     robot.remove()
     return 0
 
 
 if __name__ == '__main__':
-    node.run(main)
+    life.run(main)

@@ -33,19 +33,19 @@ Parameters, with the names of create_node's:
     ~publish_tf                     whether to publish the transform to the base frame (default: true)
     ~drive_mode, ~diagnostic_period accepted: twist, and any number; /diagnostics has 1 Hz
 """
-import rbx1_nav.ros.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded
+import rbx1_nav.ros.node.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded
 
 import rospy
 
 from rbx1_nav.config import ConfigError
-from rbx1_nav.create.parameters import read_settings
-from rbx1_nav.ros import node
-from rbx1_nav.ros.create_base import CreateBase
+from rbx1_nav.create.driver.parameters import read_settings
+from rbx1_nav.ros.base.create_base import CreateBase
+from rbx1_nav.ros.node import life
 
 
 def main():
     """Read the parameters, and run. Returns the exit status."""
-    node.init_node('turtlebot_node', __doc__, check=read_settings)
+    life.init_node('turtlebot_node', __doc__, check=read_settings)
     if not rospy.rostime.is_wallclock():
         rospy.logfatal('/use_sim_time: true: expected false, a robot on a serial line runs in real time')
         return 1
@@ -58,4 +58,4 @@ def main():
 
 
 if __name__ == '__main__':
-    node.run(main)
+    life.run(main)

@@ -1,6 +1,8 @@
 """Whether something periodic is due, on any clock."""
 from rbx1_nav.units import SECOND
 
+CLOCK_STEP = 0.02   # s, of a simulated clock that does not say otherwise
+
 
 class Schedule:
     """Whether something periodic is due, also on a clock that jumps."""

@@ -23,7 +23,7 @@ class TestByOdometry(unittest.TestCase):
         support.wait_for(lambda: truth.last, '/ground_truth')
         for topic in topics:
             rospy.wait_for_message(topic, rospy.AnyMsg, support.LIMIT)
-        # the filter estimates the bias of the gyro at standstill, for 2 s as in simulation.py
+        # the filter estimates the bias of the gyro at standstill, for 2 s as in simulation/exercise.py
         start = truth.last.header.stamp
         support.wait_for(lambda: (truth.last.header.stamp - start).to_sec() > 2, 'two seconds')
 

@@ -8,9 +8,9 @@ import rospkg
 import rospy
 import yaml
 
-from rbx1_nav.model.robot import read_robot
-from rbx1_nav.model.surfaces import load_surface, read_seed
-from rbx1_nav.simulation import simulate
+from rbx1_nav.robot.description import read_robot
+from rbx1_nav.simulation.exercise import simulate
+from rbx1_nav.simulation.surfaces import load_surface, read_seed
 import support
 
 

@@ -8,11 +8,11 @@ from hypothesis import strategies as st
 import yaml
 
 from rbx1_nav.config import ConfigError
-from rbx1_nav.model.robot import read_robot
-from rbx1_nav.model.surfaces import KEYS, OPTIONAL_KEYS, draw_run, read_seed, read_surface
-from rbx1_nav.ros.filter_parameters import read_parameters
+from rbx1_nav.robot.description import read_robot
+from rbx1_nav.ros.filter.parameters import read_parameters
 from rbx1_nav.schedule import Schedule
-from rbx1_nav.simulated_base import make_base, make_wheels_and_gyro
+from rbx1_nav.simulation.base import make_base, make_wheels_and_gyro
+from rbx1_nav.simulation.surfaces import KEYS, OPTIONAL_KEYS, draw_run, read_seed, read_surface
 
 CONFIG = os.path.join(os.path.dirname(__file__), '..', '..', 'config')
 ROBOTS, SURFACES = ([yaml.safe_load(open(path)) for path in sorted(glob.glob(os.path.join(CONFIG, *pattern)))]

@@ -6,7 +6,7 @@ from rbx1_nav.estimation.filter import BIAS, TURNING, UNKNOWN, X, Y, YAW, Filter
 from rbx1_nav.estimation.inputs import RejectedMessage, check_imu, check_odom
 from rbx1_nav.estimation.limits import Limits
 from rbx1_nav.estimation.standstill import Part, Standstill
-from rbx1_nav.model.kinematics import Pose
+from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.units import SECOND, wrap_angle
 
 JUMP_TOLERANCE = 0.02   # m and rad in addition

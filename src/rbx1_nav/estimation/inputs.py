@@ -1,7 +1,7 @@
 """What the filter accepts: odometry and gyro readings, and the checks that reject invalid ones."""
 from collections import namedtuple
 
-from rbx1_nav.model.wheels import MIN_VARIANCE
+from rbx1_nav.robot.readings import MIN_VARIANCE
 
 MAX_NUMBER = 1e6        # m or rad/s: above this, sums lose what is small
 MAX_VARIANCE = 1 / MIN_VARIANCE

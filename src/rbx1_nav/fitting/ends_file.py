@@ -3,7 +3,7 @@ from math import radians
 import os
 
 from rbx1_nav.config import ConfigError, Section, load_yaml, show, show_name
-from rbx1_nav.model.kinematics import Pose
+from rbx1_nav.robot.kinematics import Pose
 
 FARTHEST, MOST = 1000.0, 36000.0    # m, degrees
 ERRORS = dict(position_error=(1e-4, 10.0, 0.01, 'm'), heading_error=(0.01, 90.0, 2.0, 'degrees'))

@@ -2,7 +2,7 @@
 import numpy
 
 from rbx1_nav.fitting.floor import integrate
-from rbx1_nav.model.roughness import CELL_TRAVELLED, CELL_TURNED
+from rbx1_nav.simulation.floor_noise import CELL_TRAVELLED, CELL_TURNED
 
 
 def cell_noise(generator, count, path, cell):

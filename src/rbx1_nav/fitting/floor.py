@@ -1,13 +1,13 @@
 """The floor in arrays: where wheels that travel in Steps take a robot, and how sure that is.
 
-The same model as that of model/wheels.py and model/roughness.py, for many windows at once. Covariances are propagated
+The same model as that of simulation/wheels.py and simulation/floor_noise.py, for many windows at once. Covariances are propagated
 to first order: each error turns or shifts the rest of the path.
 """
 from collections import namedtuple
 
 import numpy
 
-from rbx1_nav.model.roughness import CELL_TRAVELLED, CELL_TURNED
+from rbx1_nav.simulation.floor_noise import CELL_TRAVELLED, CELL_TURNED
 
 Windows = namedtuple('Windows', 'first count ends')
 Windows.__doc__ = """Parts of a recording that have a measured end. first: (n,), the step that each begins with; count:

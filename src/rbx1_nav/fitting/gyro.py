@@ -2,7 +2,7 @@
 import numpy
 from scipy.stats import chi2, norm
 
-from rbx1_nav.model.gyro import NOISE_RATE
+from rbx1_nav.simulation.gyro import NOISE_RATE
 
 SETTLED = 1.5       # s after a stop command until a robot counts as standing
 INTERVAL = 1.0      # s: turns in intervals of this length are compared

@@ -5,7 +5,7 @@ import numpy
 
 from rbx1_nav.config import as_yaml_number, show_name
 from rbx1_nav.fitting.whole import limits_of
-from rbx1_nav.model.surfaces import KEYS, OPTIONAL_KEYS
+from rbx1_nav.simulation.surfaces import KEYS, OPTIONAL_KEYS
 
 UNITS = {'lag': 's', 'accel_limit': 'm/s^2', 'drag_straight': 'm/s', 'drag_turning': 'm/s at the wheel',
          'ticks_meter': 'ticks per metre', 'gyro_noise': 'degrees/s rms, at 50 readings per second',

@@ -3,7 +3,7 @@ from collections import namedtuple
 
 import numpy
 
-from rbx1_nav.model.wheels import Motor
+from rbx1_nav.simulation.wheels import Motor
 
 STEP = 0.05     # s
 

@@ -12,7 +12,7 @@ from rbx1_nav.fitting.gyro import fit_gyro, standing
 from rbx1_nav.fitting.motors import KEYS as MOTOR_KEYS, LIMITS, fit_motors
 from rbx1_nav.fitting.run import Run
 from rbx1_nav.fitting.tape import TYPICAL
-from rbx1_nav.model.surfaces import KEYS, OPTIONAL_KEYS
+from rbx1_nav.simulation.surfaces import KEYS, OPTIONAL_KEYS
 
 FLOOR = ('slip_straight', 'slip_turning', 'curvature', 'turning_loss')
 RESOLUTION = 0.0003, 0.0003, 0.001  # m, m, rad: of encoders; no end is measured better

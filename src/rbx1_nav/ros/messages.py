@@ -9,8 +9,8 @@ from sensor_msgs.msg import Imu, JointState
 from rbx1_nav.config import show
 from rbx1_nav.estimation.gyro_input import ImuData
 from rbx1_nav.estimation.inputs import Odom, check, check_number, check_variance
-from rbx1_nav.model.kinematics import Pose
-from rbx1_nav.model.wheels import MEASURED
+from rbx1_nav.robot.kinematics import Pose
+from rbx1_nav.robot.readings import MEASURED
 from rbx1_nav.units import wrap_angle
 
 ROUNDING = 1e-6     # of a correlation that somebody has calculated

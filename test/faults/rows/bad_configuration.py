@@ -10,11 +10,11 @@ from rospy.impl.paramserver import get_param_server_cache
 
 from bad_values import TEXTS, VALUES, mutate, shown
 from rbx1_nav.config import ConfigError
-from rbx1_nav.model.robot import read_robot
-from rbx1_nav.model.surfaces import load_surface, read_seed, read_surface
-from rbx1_nav.ros.filter_parameters import read_parameters
-from rbx1_nav.ros.params import positive_param
-from rbx1_nav.simulated_base import make_base
+from rbx1_nav.robot.description import read_robot
+from rbx1_nav.ros.filter.parameters import read_parameters
+from rbx1_nav.ros.node.params import positive_param
+from rbx1_nav.simulation.base import make_base
+from rbx1_nav.simulation.surfaces import load_surface, read_seed, read_surface
 from rbx1_nav.units import SECOND
 
 FAULT = 'generated configurations of robot, surface, seed, filter and scripts'

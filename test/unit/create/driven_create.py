@@ -2,12 +2,12 @@
 import os
 
 from rbx1_nav.control.gate import CommandGate, RefusedCommand
-from rbx1_nav.create.body import Body, Quirks
-from rbx1_nav.create.driver import Driver
-from rbx1_nav.create.emulator import EmulatedCreate
-from rbx1_nav.create.parameters import read_settings
+from rbx1_nav.create.driver.driver import Driver
+from rbx1_nav.create.driver.parameters import read_settings
+from rbx1_nav.create.emulator.body import Body, Quirks
+from rbx1_nav.create.emulator.emulator import EmulatedCreate
+from rbx1_nav.create.emulator.serial_line import SerialLine
 from rbx1_nav.create.protocol import MODELS
-from rbx1_nav.create.serial_line import SerialLine
 from rbx1_nav.units import SECOND
 
 SURFACES = os.path.join(os.path.dirname(__file__), '..', '..', '..', 'config', 'surfaces')

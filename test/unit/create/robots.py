@@ -1,8 +1,8 @@
 """An emulated robot for these tests, and what they do with it."""
-from rbx1_nav.create.body import Body, Errors
-from rbx1_nav.create.emulator import EmulatedCreate
+from rbx1_nav.create.emulator.body import Body, Errors
+from rbx1_nav.create.emulator.emulator import EmulatedCreate
+from rbx1_nav.create.emulator.serial_line import SerialLine
 from rbx1_nav.create.protocol import command, packets_format, single_packets
-from rbx1_nav.create.serial_line import SerialLine
 from rbx1_nav.units import SECOND
 
 

@@ -3,9 +3,9 @@ from math import degrees, pi, radians
 
 import pytest
 
-from rbx1_nav.create.body import Errors, Quirks
-from rbx1_nav.create.gyro_check import FEW, FEW_AT_REST
-from rbx1_nav.model.surfaces import load_surface
+from rbx1_nav.create.driver.gyro_check import FEW, FEW_AT_REST
+from rbx1_nav.create.emulator.body import Errors, Quirks
+from rbx1_nav.simulation.surfaces import load_surface
 
 from driven_create import SURFACES, DrivenCreate, started
 

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rbx1_nav.create.body import Errors, Tally
+from rbx1_nav.create.emulator.body import Errors, Tally
 from rbx1_nav.create.protocol import CREATE, CREATE_2, command, drive_direct
 from robots import Robot
 from sample_surface import SURFACE

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rbx1_nav.create.emulator import BOOT_TEXT
+from rbx1_nav.create.emulator.emulator import BOOT_TEXT
 from rbx1_nav.create.protocol import (
     CREATE, CREATE_2, FULL, MODELS, OFF, PASSIVE, SAFE, command, drive_direct, encode_frame, packets_format,
     single_packets)

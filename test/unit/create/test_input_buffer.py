@@ -1,9 +1,9 @@
 """The bytes that the robot has received and not yet executed: the longest command fits, and their number is limited."""
 import pytest
 
-from rbx1_nav.create.emulator import INPUT_SIZE
+from rbx1_nav.create.emulator.emulator import INPUT_SIZE
+from rbx1_nav.create.emulator.scripts import MAX_SCRIPT
 from rbx1_nav.create.protocol import COUNTED, CREATE, MODELS, NOTES, PASSIVE, SAFE, command
-from rbx1_nav.create.scripts import MAX_SCRIPT
 from robots import Robot
 
 LONG = [pytest.param(model, bytes((each.opcode, 255)) + bytes(255) if each.size == COUNTED else

@@ -8,12 +8,12 @@ from types import SimpleNamespace
 
 import pytest
 
-import rbx1_nav.create.link
+import rbx1_nav.create.driver.link
 from rbx1_nav.create import protocol
+from rbx1_nav.create.driver.link import BEAT, LineLost, Link
+from rbx1_nav.create.driver.search import Search
+from rbx1_nav.create.emulator.pseudo_terminal import PseudoTerminal
 from rbx1_nav.create.line_settings import read_rate
-from rbx1_nav.create.link import BEAT, LineLost, Link
-from rbx1_nav.create.pseudo_terminal import PseudoTerminal
-from rbx1_nav.create.search import Search
 from rbx1_nav.units import SECOND
 
 LIMIT = 30      # s after which a wait fails
@@ -128,7 +128,7 @@ def test_an_adapter_that_disconnects_while_its_lines_are_set_is_lost(line):
 
 
 def test_another_device_is_reported(tmp_path, monkeypatch):
-    monkeypatch.setattr(rbx1_nav.create.link, 'describe_adapter', os.path.realpath)
+    monkeypatch.setattr(rbx1_nav.create.driver.link, 'describe_adapter', os.path.realpath)
     terminals = [PseudoTerminal(str(tmp_path / 'port')) for _ in range(2)]     # the second one takes the link
     link, log = make_link(terminals[1].link)
     assert link.open(0)

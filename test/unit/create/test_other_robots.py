@@ -3,12 +3,13 @@ from math import degrees, pi
 
 import pytest
 
-from rbx1_nav.create import protocol, sequences
-from rbx1_nav.create.body import Quirks
-from rbx1_nav.create.emulator import EmulatedCreate
-from rbx1_nav.create.fractions import AUTO, KEPT, LOST
-from rbx1_nav.create.serial_line import SerialLine
-from rbx1_nav.model.surfaces import load_surface
+from rbx1_nav.create import protocol
+from rbx1_nav.create.driver import sequences
+from rbx1_nav.create.driver.fractions import AUTO, KEPT, LOST
+from rbx1_nav.create.emulator.body import Quirks
+from rbx1_nav.create.emulator.emulator import EmulatedCreate
+from rbx1_nav.create.emulator.serial_line import SerialLine
+from rbx1_nav.simulation.surfaces import load_surface
 
 from driven_create import SURFACES, DrivenCreate, started
 

@@ -5,8 +5,8 @@ import sys
 
 import pytest
 
-from rbx1_nav.create.port import PortError, group_of, open_port, reason
-from rbx1_nav.create.pseudo_terminal import PseudoTerminal
+from rbx1_nav.create.driver.port import PortError, group_of, open_port, reason
+from rbx1_nav.create.emulator.pseudo_terminal import PseudoTerminal
 
 
 @pytest.fixture(name='terminal')

@@ -3,7 +3,7 @@ from math import hypot, inf
 
 import pytest
 
-from rbx1_nav.create.programs import CIRCLE_TIME, SPIRAL_TIME
+from rbx1_nav.create.emulator.programs import CIRCLE_TIME, SPIRAL_TIME
 from rbx1_nav.create.protocol import CREATE, CREATE_2, MODELS, OFF, OPCODES, PASSIVE, command, drive_direct
 from robots import Robot
 

@@ -6,7 +6,7 @@ import pytest
 import serial
 
 from rbx1_nav.config import ConfigError
-from rbx1_nav.create.pseudo_terminal import PseudoTerminal
+from rbx1_nav.create.emulator.pseudo_terminal import PseudoTerminal
 
 
 @pytest.fixture(name='terminal')

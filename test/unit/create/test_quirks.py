@@ -1,7 +1,7 @@
 """How some robots differ from the documents: the mode, fractions of the angle, a gyro that is stuck."""
 import pytest
 
-from rbx1_nav.create.body import Quirks
+from rbx1_nav.create.emulator.body import Quirks
 from rbx1_nav.create.protocol import CREATE, CREATE_2, FULL, MODELS, PASSIVE, SAFE, command, drive_direct
 from robots import Robot
 

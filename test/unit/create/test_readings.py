@@ -4,8 +4,9 @@ import random
 from hypothesis import given, strategies
 import pytest
 
-from rbx1_nav.create import protocol, sequences
-from rbx1_nav.create.stream import FrameReader, ReplyReader
+from rbx1_nav.create import protocol
+from rbx1_nav.create.driver import sequences
+from rbx1_nav.create.driver.stream import FrameReader, ReplyReader
 
 MODEL, NUMBERS = protocol.CREATE_2, sequences.STREAMED
 PACKETS = protocol.single_packets(MODEL, NUMBERS)

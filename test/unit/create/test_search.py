@@ -3,9 +3,10 @@ from itertools import permutations
 
 import pytest
 
-from rbx1_nav.create import protocol, sequences
-from rbx1_nav.create.search import RATES, WAKE_TIME, Search, has_frames, is_battery
-from rbx1_nav.create.serial_line import misread
+from rbx1_nav.create import protocol
+from rbx1_nav.create.driver import sequences
+from rbx1_nav.create.driver.search import RATES, WAKE_TIME, Search, has_frames, is_battery
+from rbx1_nav.create.emulator.serial_line import misread
 from rbx1_nav.units import SECOND
 
 from driven_create import DrivenCreate

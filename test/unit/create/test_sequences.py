@@ -1,7 +1,8 @@
 """A stop holds whatever part of a command was sent before it."""
 import pytest
 
-from rbx1_nav.create import protocol, sequences
+from rbx1_nav.create import protocol
+from rbx1_nav.create.driver import sequences
 
 from driven_create import started
 

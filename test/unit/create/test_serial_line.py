@@ -3,8 +3,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from rbx1_nav.create.emulator.serial_line import SerialLine, misread
 from rbx1_nav.create.protocol import BAUD_RATES
-from rbx1_nav.create.serial_line import SerialLine, misread
 from rbx1_nav.units import SECOND
 
 rates = st.sampled_from(BAUD_RATES)

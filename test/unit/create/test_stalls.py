@@ -8,7 +8,7 @@ from driven_create import SURFACES, DrivenCreate
 from rbx1_nav.estimation.combined_odometry import CombinedOdometry
 from rbx1_nav.estimation.filter import UNKNOWN
 from rbx1_nav.estimation.inputs import Imu, Odom
-from rbx1_nav.model.surfaces import load_surface
+from rbx1_nav.simulation.surfaces import load_surface
 from rbx1_nav.units import SECOND, wrap_angle
 
 STALL = 0.35    # s; the driver itself regards 0.5 s as silence

@@ -2,7 +2,7 @@
 from hypothesis import given, strategies
 import pytest
 
-from rbx1_nav.create.speeds import Rounding, is_too_fast, wheel_speeds
+from rbx1_nav.create.driver.speeds import Rounding, is_too_fast, wheel_speeds
 
 SPEEDS = strategies.floats(-10, 10)
 

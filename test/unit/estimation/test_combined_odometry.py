@@ -11,7 +11,7 @@ from rbx1_nav.estimation.combined_odometry import CombinedOdometry
 from rbx1_nav.estimation.filter import BIAS, UNKNOWN, X, Y, YAW
 from rbx1_nav.estimation.inputs import Imu, Odom, RejectedMessage
 from rbx1_nav.estimation.limits import Limits
-from rbx1_nav.model.kinematics import ORIGIN, Pose, arc
+from rbx1_nav.robot.kinematics import ORIGIN, Pose, arc
 from rbx1_nav.units import SECOND
 from sample_priors import IDEAL, PRIORS
 from test_inputs import BAD_ODOMETRY, BAD_READINGS, VARIANCES, with_field

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rbx1_nav.estimation.filter import BIAS, SCALE, SLIP_WALK, STRAIGHT, TURNING, UNKNOWN, X, YAW, Filter
-from rbx1_nav.model.kinematics import ORIGIN, Pose
+from rbx1_nav.robot.kinematics import ORIGIN, Pose
 from sample_priors import IDEAL, PRIORS
 
 angles = st.floats(-3, 3)

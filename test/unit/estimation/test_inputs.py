@@ -4,8 +4,8 @@ from math import inf, nan
 import pytest
 
 from rbx1_nav.estimation.inputs import Imu, MAX_NUMBER, Odom, RejectedMessage, check, check_imu, check_odom
-from rbx1_nav.model.kinematics import ORIGIN
-from rbx1_nav.model.wheels import MIN_VARIANCE
+from rbx1_nav.robot.kinematics import ORIGIN
+from rbx1_nav.robot.readings import MIN_VARIANCE
 
 ODOM = Odom(0, ORIGIN, 1e-6, 1e-6)
 VARIANCES = (1e-6, 1e-6, 1e-6)      # of a pose, m^2 and rad^2

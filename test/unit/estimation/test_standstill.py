@@ -7,7 +7,7 @@ import pytest
 from rbx1_nav.estimation.combined_odometry import CombinedOdometry
 from rbx1_nav.estimation.filter import UNKNOWN
 from rbx1_nav.estimation.inputs import Imu, Odom
-from rbx1_nav.model.kinematics import ORIGIN, arc
+from rbx1_nav.robot.kinematics import ORIGIN, arc
 from rbx1_nav.units import SECOND
 
 ODOM_STEP, IMU_STEP = SECOND // 25, SECOND // 50

@@ -4,9 +4,9 @@ from math import pi
 import numpy
 
 from rbx1_nav.fitting.recording import Commands, Rates, Recording, Track
-from rbx1_nav.model.robot import read_robot
-from rbx1_nav.model.surfaces import Surface
-from rbx1_nav.simulated_base import make_base
+from rbx1_nav.robot.description import read_robot
+from rbx1_nav.simulation.base import make_base
+from rbx1_nav.simulation.surfaces import Surface
 from rbx1_nav.units import SECOND
 
 TICK = SECOND // 50     # ns

@@ -10,9 +10,9 @@ from rbx1_nav.fitting.ensemble import cell_noise, energy_score, inner_share, mah
 from rbx1_nav.fitting.floor import NOISES, SPREADS, Covariance, Prediction, Windows
 from rbx1_nav.fitting.recording import Commands
 from rbx1_nav.fitting.travel import STEP, commanded_travel, grid
-from rbx1_nav.model.roughness import Noise, make_roughness
-from rbx1_nav.model.surfaces import draw_run
-from rbx1_nav.model.wheels import Wheels
+from rbx1_nav.simulation.floor_noise import Noise, make_roughness
+from rbx1_nav.simulation.surfaces import draw_run
+from rbx1_nav.simulation.wheels import Wheels
 from sample_surface import SURFACE
 
 WIDTH = 0.26

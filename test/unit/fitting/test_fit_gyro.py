@@ -4,8 +4,8 @@ from math import radians
 import pytest
 
 from rbx1_nav.fitting.gyro import fit_gyro, root_mean_square, standing
-from rbx1_nav.model.kinematics import Pose
-from rbx1_nav.model.surfaces import draw_run
+from rbx1_nav.robot.kinematics import Pose
+from rbx1_nav.simulation.surfaces import draw_run
 from sample_runs import DRIVE, EXERCISE, FLOOR, FORWARD, record, wrapped
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from rbx1_nav.config import ConfigError
 from rbx1_nav.fitting.recording import Commands, Track, check_recording, in_force, relative
-from rbx1_nav.model.robot import read_robot
+from rbx1_nav.robot.description import read_robot
 from sample_runs import EXERCISE, record
 
 RUN = record(EXERCISE[:2])

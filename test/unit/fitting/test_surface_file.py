@@ -6,7 +6,7 @@ import yaml
 
 from rbx1_nav.fitting.surface_file import PARTS, in_file_units, surface_text, table
 from rbx1_nav.fitting.whole import Result, Value, limits_of
-from rbx1_nav.model.surfaces import KEYS, OPTIONAL_KEYS, Surface, read_surface
+from rbx1_nav.simulation.surfaces import KEYS, OPTIONAL_KEYS, Surface, read_surface
 
 ALL = [*KEYS, *OPTIONAL_KEYS]
 

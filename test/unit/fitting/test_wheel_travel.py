@@ -6,8 +6,8 @@ from hypothesis import strategies as st
 
 from rbx1_nav.fitting.recording import Commands, Track
 from rbx1_nav.fitting.travel import STEP, commanded_travel, grid, reported_travel
-from rbx1_nav.model.kinematics import Pose, arc
-from rbx1_nav.model.wheels import Wheels
+from rbx1_nav.robot.kinematics import Pose, arc
+from rbx1_nav.simulation.wheels import Wheels
 from sample_surface import RUN, SURFACE
 
 WIDTH = 0.26

@@ -8,7 +8,7 @@ from rbx1_nav.config import ConfigError
 from rbx1_nav.fitting.gyro import standing
 from rbx1_nav.fitting.recording import Commands
 from rbx1_nav.fitting.whole import WholeFit, truth_errors
-from rbx1_nav.model.kinematics import Pose
+from rbx1_nav.robot.kinematics import Pose
 from sample_runs import DRIVE, EXERCISE, FLOOR, FORWARD, REST, record, wrapped
 
 START = FLOOR._replace(name='start', lag=0.2, delay=0.0, drag_straight=0.002, drag_turning=0.003, slip_straight=0.011,

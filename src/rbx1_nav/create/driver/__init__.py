@@ -1,0 +1,1 @@
+"""Drives an iRobot Create: from commands to bytes, from bytes to odometry."""

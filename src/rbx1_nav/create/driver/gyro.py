@@ -1,0 +1,91 @@
+"""The TurtleBot's gyro, which the Create reads with its analog input."""
+from collections import deque
+from math import radians
+
+from rbx1_nav.create.driver.gyro_check import GyroCheck
+from rbx1_nav.robot.readings import MEASURED, Reading
+
+MAX_REST = 1000         # readings at rest that the offset is the mean of: half a minute, as in create_node
+MIN_REST = 10           # and at least so many: before, no angular velocity is reported
+JUMP, JUMP_TIME = 15, 1.0   # counts (4 degrees/s) and s at rest: an offset that is so far off has not drifted, but jumped
+COUNT_VARIANCE = 1.0    # of a reading, counts^2: rounding and the noise of the analog input
+SCALE_ERROR = 0.01      # 1 sigma of the calibrated scale, a fraction
+
+
+class AnalogGyro:
+    """Converts counts to an angular velocity, as create_node does: -(count - offset) / offset * range * correction.
+
+    The offset is the mean of the good readings while the robot stands, so it follows the temperature. After the gyro
+    broke, a new offset is measured.
+    """
+
+    def __init__(self, measurement_range, correction, error, info):
+        """measurement_range: degrees/s, of the chip; correction: factor; error(text), info(text): log a line."""
+        self.full_scale = radians(measurement_range) * correction
+        self.check = GyroCheck(self.full_scale, error, info)
+        self.rest = deque(maxlen=MAX_REST)
+        self.total = 0          # of the readings in `rest`
+        self.jumped = 0.0       # s of readings at rest in a row that are far from the offset
+        self.rate = 0.0         # rad/s, the last one
+        self.yaw = 0.0          # rad, the integrated rate
+        self.turned = 0.0       # rad, both directions counted positive
+        self.variance = MEASURED    # rad^2, of the yaw, except for the scale's
+
+    @property
+    def offset(self):
+        """The reading at rest, counts; None before there is one."""
+        return self.total / len(self.rest) if len(self.rest) >= MIN_REST else None
+
+    def update(self, count, step):
+        """The Reading of a count after a Step; None while there is no offset, or the count shows no angular velocity.
+
+        The rate is always the present one. The heading is the wheels' where the gyro does not measure it.
+        """
+        self._calibrate(count, step)
+        offset, before, reading = self.offset, self.yaw, None
+        if offset is None or self.check.problem or not self.check.accepts(count, step.standing):
+            self.yaw += step.turn
+            self.variance += step.variance
+        else:
+            reading = self._measure(count, offset, step)
+        if self.check.update(count, step, self.yaw - before):
+            self.yaw += self.check.unseen
+            self.variance += self.check.variance
+        return None if self.check.problem else reading
+
+    def _measure(self, count, offset, step):
+        scale = self.full_scale / offset
+        rate = (offset - count) * scale
+        variance = COUNT_VARIANCE * scale ** 2
+        if step.missing:
+            self._bridge((self.rate + rate) / 2 * step.elapsed, step.turn, step.variance)
+        else:
+            self.yaw += rate * step.elapsed
+            self.turned += abs(rate) * step.elapsed
+            self.variance += variance * (1 + 1 / len(self.rest)) * step.elapsed ** 2
+        self.rate = rate
+        return Reading(rate, variance, self.yaw, self.variance + (SCALE_ERROR * self.turned) ** 2)
+
+    def _calibrate(self, count, step):
+        """Add a count to the offset if it is good, and forget an offset that has become wrong."""
+        good = step.standing and self.check.accepts(count, True)
+        offset = self.offset
+        far = good and offset is not None and abs(count - offset) > JUMP
+        self.jumped = (self.jumped + step.elapsed) * far
+        if self.check.problem and self.check.rested is None or self.jumped > JUMP_TIME:
+            self.rest.clear()
+            self.total = self.jumped = 0
+        elif good and not far:
+            if len(self.rest) == MAX_REST:
+                self.total -= self.rest[0]
+            self.rest.append(count)
+            self.total += count
+
+    def _bridge(self, steady, turn, variance):
+        """Add the turn of a gap: the weighted mean of the turn at a steady rate and the turn by the odometry, which has
+        this variance. If the rate was not steady, the two differ: see estimation/filter.py."""
+        difference = turn - steady
+        wrong = variance / 2 + difference ** 2
+        share = wrong / (wrong + variance)      # of the odometry
+        self.yaw += steady + share * difference
+        self.variance += share * variance

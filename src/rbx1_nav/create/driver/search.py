@@ -1,0 +1,184 @@
+"""Finds the robot on a line: which one answers, at which rate.
+
+Until a robot has answered, its rate is not known, and at a wrong rate almost any command may be read as another one: a
+stop at 57600 baud is read at 115200 as 0x86, which starts spot cleaning. So the search sends only bytes that no receiver
+takes for a command: Start, and a query of the battery. At the right rate, Start ends every motion.
+"""
+from collections import namedtuple
+
+from rbx1_nav.create import protocol
+from rbx1_nav.create.driver import sequences
+from rbx1_nav.units import SECOND
+
+RATES = (57600, 115200, 19200)      # of a Create, of a Create 2, and of both after their buttons were held
+REPLY_TIME = SECOND * 12 // 100     # ns after the last byte of a query
+QUIET_TIME = SECOND // 20           # ns in which a stream that was paused ends
+SETTLE_TIME = SECOND // 50          # ns without another byte after a reply, which shows that it is one
+AGREED = 2                          # replies that agree
+TRIES = 4                           # of the question which robot it is
+STARTS, MANY_STARTS = 8, 64         # bytes before a query; many complete what garbage may have begun, within seconds
+FEW_ROUNDS = 2                      # rounds before there are many
+MAX_BUFFER = 4096                   # bytes
+WAKE_TIME = SECOND * 3 // 4         # ns, of both levels: 0.5 s wake a robot, three shorter pulses change its rate
+
+Found = namedtuple('Found', 'model baud')
+Found.__doc__ = 'A robot that answers: its protocol.Model, and the rate of the line in bits per second.'
+
+_BATTERY = protocol.single_packets(protocol.CREATE, [sequences.BATTERY])
+_HEADER = bytes((protocol.FRAME_HEADER,))
+_BATTERY_FORMAT = protocol.packets_format(_BATTERY)
+
+
+def is_battery(data):
+    """Whether bytes are the reply to a query of the battery: plausible values, and as many as there should be."""
+    if len(data) != _BATTERY_FORMAT.size:
+        return False
+    values = dict(zip((packet.name for packet in _BATTERY), _BATTERY_FORMAT.unpack(data)))
+    return (values['charging_state'] <= 5 and protocol.MIN_VOLTAGE <= values['voltage'] <= protocol.MAX_VOLTAGE
+            and -40 <= values['temperature'] <= 100)
+
+
+def has_frames(data):
+    """Whether bytes contain two frames of a stream, one right after the other: an earlier driver has left it on."""
+    def end_of_frame(start):
+        if data[start:start + 1] != _HEADER or start + 1 == len(data):
+            return None
+        end = start + 3 + data[start + 1]
+        return end if end <= len(data) and not sum(data[start:end]) & 0xff else None
+    ends = map(end_of_frame, range(len(data)))
+    return any(end_of_frame(end) for end in ends if end)
+
+
+class NoWakeLines(OSError):
+    """The line has no RTS and DTR."""
+
+
+class Search:
+    """Asks at one rate after the other. All times are in ns.
+
+    The line has set_rate(baud), write(data), write_apart(data), which pauses after each byte, and
+    set_wake_lines(on), which sets RTS and DTR, or clears them, and raises NoWakeLines if the line has none. All may raise
+    OSError.
+    """
+
+    def __init__(self, rates, wake=False):
+        """rates: to be tried, bits per second, the likeliest first; wake: whether to wake a robot that sleeps."""
+        self.rates = rates
+        self.wake = wake
+        self.rounds = 0         # complete ones without an answer
+        self.baud = rates[0]    # that is being tried
+        self._line = None
+        self._order = []        # rates of the round that are still to be tried
+        self._buffer = bytearray()
+        self._sizes = ()        # of the replies that are expected, bytes; the largest last
+        self._then = None       # what to do at the deadline: a function of the time, which may return Found
+        self._deadline = None
+        self._agreed = 0        # replies in a row
+        self._models = []       # which robot it is, by the replies so far; None for one that does not say
+
+    def begin(self, now, line, baud=None):
+        """Begin to search on a line. baud: the rate to be tried first, one of those above."""
+        self._line = line
+        self.rates = tuple(sorted(self.rates, key=lambda rate: rate != baud))
+        self.rounds, self._order = 0, list(self.rates)
+        self._next_rate(now)
+
+    def wait(self, now, duration):
+        """Try the next rate after a time."""
+        self._plan(now + duration, self._next_rate)
+
+    @property
+    def next_time(self):
+        """When tick() has something to do next."""
+        return self._deadline
+
+    @property
+    def missing(self):
+        """How many bytes complete the reply."""
+        return max(0, self._sizes[-1] - len(self._buffer)) if self._sizes else 0
+
+    def receive(self, now, data):
+        """Process bytes of the robot."""
+        self._buffer += data
+        del self._buffer[:-MAX_BUFFER]
+        if self._then == self._judge_battery and has_frames(self._buffer):
+            self._pause_stream(now)
+        elif len(self._buffer) in self._sizes:
+            self._deadline = min(self._deadline, now + SETTLE_TIME)
+
+    def tick(self, now):
+        """Do what is due. Returns Found as soon as it is known, else None."""
+        return self._then(now) if now >= self._deadline else None
+
+    def _plan(self, deadline, then, sizes=()):
+        self._buffer.clear()
+        self._deadline, self._then, self._sizes = deadline, then, sizes
+
+    def _next_rate(self, now):
+        self._agreed = 0
+        if not self._order:
+            self.rounds += 1
+            self._order = list(self.rates)
+            if self._begin_wake(now):
+                return
+        self.baud = self._order.pop(0)
+        self._line.set_rate(self.baud)
+        self._ask(now)
+
+    def _begin_wake(self, now):
+        """Begin to wake a robot, if that is wanted and possible. Returns whether it was begun."""
+        if self.wake:
+            try:
+                self._line.set_wake_lines(False)
+                self._plan(now + WAKE_TIME, self._end_wake)
+            except NoWakeLines:
+                self.wake = False
+        return self.wake
+
+    def _end_wake(self, now):
+        self._line.set_wake_lines(True)
+        self._plan(now + WAKE_TIME, self._next_rate)
+
+    def _send(self, now, data, then, *sizes):
+        """Send a query whose reply has one of these sizes."""
+        self._plan(now + (len(data) + max(sizes, default=0)) * 10 * SECOND // self.baud + REPLY_TIME, then, sizes)
+        self._line.write(data)
+
+    def _ask(self, now):
+        count = STARTS if self.rounds < FEW_ROUNDS else MANY_STARTS
+        self._line.write_apart(sequences.START * count)
+        self._send(now + count * sequences.PAUSE, sequences.ASK_BATTERY, self._judge_battery, _BATTERY_FORMAT.size)
+
+    def _judge_battery(self, now):
+        if not is_battery(self._buffer):
+            self._next_rate(now)
+            return
+        self._agreed += 1
+        if self._agreed < AGREED:
+            self._ask(now)
+        else:
+            self._pause_stream(now)
+
+    # the rate is right: now a command is what it is
+
+    def _pause_stream(self, now):
+        self._models = []
+        self._send(now, sequences.PAUSE_STREAM, self._ask_model)
+        self._deadline = now + QUIET_TIME
+
+    def _ask_model(self, now):
+        # a Create has no encoders, and answers the second question only
+        self._send(now, sequences.ASK_ENCODER + sequences.ASK_WALL, self._identify, 1, 3)
+
+    def _identify(self, now):
+        model = {1: protocol.CREATE, 3: protocol.CREATE_2}.get(len(self._buffer))
+        if model and model in self._models:
+            return Found(model, self.baud)
+        self._models.append(model)
+        if len(self._models) < TRIES:
+            self._ask_model(now)
+        elif any(self._models):
+            return Found(protocol.CREATE_2 if self.baud == protocol.CREATE_2.baud else protocol.CREATE, self.baud)
+        else:
+            self._next_rate(now)    # it no longer answers
+        return None

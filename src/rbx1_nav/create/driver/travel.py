@@ -1,0 +1,275 @@
+"""From what the robot counts to travel: wraps, gaps, and readings that cannot be true.
+
+Both classes have
+
+    update(reading, elapsed, expected)  the Travel since the last good reading; raises Implausible
+    miss(begun, elapsed, expected)      a reading was lost on the line; begun: whether a part of it arrived
+    restart()                           the robot counts from 0 again: the next reading is no travel
+    is_reset(reading)                   whether this may be the reading of a robot that counts from 0 again
+    rounding                            (m, rad): 1 sigma of a position and a heading that are counted in whole units
+
+    elapsed: s since the last good reading; expected: Expected travel by the commands in the same time.
+"""
+from collections import namedtuple
+from math import degrees, radians
+
+from rbx1_nav.create.driver.fractions import LOST
+from rbx1_nav.create.protocol import MAX_SPEED
+
+WHEEL_LIMIT = 1.3 * MAX_SPEED / 1000    # m/s: faster than any wheel
+MARGIN = 0.015          # m: the wheels' travel between two readings may be late by so much
+AGREED = 3              # implausible readings in a row that agree: the robot was reset
+LOST_SHARE = 0.1        # 1 sigma of an expected travel that was never read, a fraction of it
+MEMORY = 0.02           # weight of the last reply in the share of those that were lost: some 50 replies count
+BAD_LINE = 0.015        # such a share, of one lost reply: others may be corrupted without a sign of it
+DOUBT = 0.005           # m: a wheel's travel that differs more from what is expected is doubtful on a bad line
+REPLY_SIZE = 30         # bytes
+LONG = 0.3              # s without a reading, after which there is nothing that the next one could be compared with
+ROUND = 1 / 12 ** 0.5   # 1 sigma of rounding to a whole number
+
+Travel = namedtuple('Travel', 'distance angle distance_variance angle_variance')
+Travel.__doc__ = 'An arc: its length (m) and angle (rad), and their variances beyond rounding and slip (m^2, rad^2).'
+NOWHERE = Travel(0.0, 0.0, 0.0, 0.0)
+
+Expected = namedtuple('Expected', 'left right')
+Expected.__doc__ = 'The travel of the wheels by the commands that were sent, m.'
+
+STILL = Expected(0.0, 0.0)
+
+
+class Implausible(ValueError):
+    """A reading that no robot could produce: corrupted, or of a robot that was reset meanwhile."""
+
+
+def is_possible(left, right, elapsed):
+    """Whether wheels can travel so far (m) in `elapsed` seconds."""
+    return max(abs(left), abs(right)) <= WHEEL_LIMIT * elapsed + MARGIN
+
+
+def _distance(one, other):
+    """How far two Expected are apart: the larger difference of a wheel, m."""
+    return max(map(abs, (one.left - other.left, one.right - other.right)))
+
+
+def bridged(expected, measured, width):
+    """The Travel that was not read: as the commands would have it. measured: Expected, by the speeds of the last
+    reading; where the two differ, the wheels do not follow the commands, and who knows which is closer."""
+    left, right = expected
+    deviations = [abs(one - other) + LOST_SHARE * abs(one) for one, other in zip(expected, measured)]
+    variance = sum(deviation ** 2 for deviation in deviations)
+    return Travel((left + right) / 2, (right - left) / width, variance / 4, variance / width ** 2)
+
+
+def unknown(expected, width):
+    """The Travel of a robot that moved as commanded for some of the time, or not at all: uniform in between, from 0."""
+    left, right = expected
+    return Travel(0.0, 0.0, ((left + right) / 2) ** 2 / 3, ((right - left) / width) ** 2 / 3)
+
+
+class EncoderTravel:
+    """Of the Create 2: encoders of 16 bits that wrap."""
+
+    WRAP = 1 << 16
+
+    def __init__(self, model):
+        """model: a Model with encoders."""
+        self.scale = 1 / model.counts_per_metre
+        self.width = model.wheel_separation
+        self.rounding = self.scale * ROUND / 2 ** 0.5, 2 ** 0.5 * self.scale * ROUND / self.width
+        self.restart()
+
+    def restart(self):
+        """See above."""
+        self.counts = None
+        self.suspect = None     # counts that were implausible
+        self.suspected = 0      # how often in a row
+
+    def update(self, reading, elapsed, expected):
+        """See above."""
+        counts = reading['left_encoder'], reading['right_encoder']
+        if self.counts is None:
+            self.counts = counts
+            return NOWHERE
+        left, right = (self.difference(new, old, travel)
+                       for new, old, travel in zip(counts, self.counts, expected))
+        if not is_possible(left, right, elapsed):
+            self.check_reset(counts)
+            raise Implausible('encoders: %s and %s after %s and %s' % (counts + self.counts))
+        self.counts, self.suspected = counts, 0
+        # beyond half a wrap, the commands decide how many there were, and they may not have been followed
+        unsure = sum((self.WRAP * self.scale) ** 2 for travel in expected if abs(travel) > self.WRAP / 2 * self.scale)
+        return Travel((left + right) / 2, (right - left) / self.width, unsure / 4, unsure / self.width ** 2)
+
+    def is_reset(self, reading):
+        """See above."""
+        counts = [reading[name] for name in ('left_encoder', 'right_encoder')]
+        return (all(abs(self.difference(count, 0, 0.0)) < MARGIN for count in counts)
+                and not all(abs(self.difference(count, 0, 0.0)) < MARGIN for count in self.counts or (0, 0)))
+
+    def difference(self, new, old, expected):
+        """The travel (m) between two counts: of all that wrap to the same, the closest to that expected or to none."""
+        low = (new - old + self.WRAP // 2) % self.WRAP - self.WRAP // 2
+        wraps = round((expected / self.scale - low) / self.WRAP)
+        return (low + self.WRAP * wraps) * self.scale
+
+    def check_reset(self, counts):
+        """Readings that are implausible but agree with each other come from a robot that counts from 0 again."""
+        agrees = self.suspect and all(abs(self.difference(new, old, 0.0)) <= 2 * MARGIN
+                                      for new, old in zip(counts, self.suspect))
+        self.suspected = self.suspected + 1 if agrees else 1
+        self.suspect = counts
+        if self.suspected >= AGREED:
+            self.restart()
+            self.counts = counts
+
+    def miss(self, begun, elapsed, expected):
+        """See above: the encoders go on counting, nothing is lost."""
+
+
+class CounterTravel:
+    """Of the Create: distance and angle since the last reply. If a reply is lost, so is the travel that it reported.
+
+    Also has wants_angle(expected): whether the next query is to ask for the angle. Between two readings of a robot that
+    may lose fractions of a degree, the turn is that by the commands.
+    """
+
+    CAP = 32767     # mm or degrees, where the robot stops to count
+
+    def __init__(self, model, fractions):
+        """model: a Model without encoders; fractions: a Fractions."""
+        self.width = model.wheel_separation
+        self.fractions = fractions
+        self.rounding = 1e-3 * ROUND, radians(1) * ROUND
+        self.restart()
+
+    def restart(self):
+        """See above."""
+        self.first = True
+        self.lost = []          # Travel of replies that were lost
+        self.doubtful = STILL   # by the commands, before queries of which nobody knows if they arrived
+        self.speed = STILL      # m/s, of the wheels by the last reading
+        self.bad = 0.0          # share of the last replies that were lost
+        self.asks_angle = True  # whether the last query does
+        self._begin_angle()
+
+    def _begin_angle(self):
+        # since the angle was last read: s, and rad by the commands and as returned by update()
+        self.angle_time = self.commanded_turn = self.returned_turn = 0.0
+
+    def _turn(self, expected):
+        return (expected.right - expected.left) / self.width
+
+    def wants_angle(self, expected):
+        """expected: Expected since the last query."""
+        turn = degrees(self.commanded_turn + self._turn(expected))
+        self.asks_angle = self.fractions.is_due(turn, self.angle_time)
+        return self.asks_angle
+
+    def update(self, reading, elapsed, expected):
+        """See above."""
+        distance = reading['distance'] / 1000
+        if self.first:
+            self.restart()
+            self.first = False
+            return NOWHERE
+        time, turn = self.angle_time + elapsed, self._turn(expected)
+        # of the last interval, if the angle has not been read for longer
+        angle = radians(reading['angle']) * (elapsed / time if time else 1.0) if self.asks_angle else turn
+        wheels = Expected(distance - angle * self.width / 2, distance + angle * self.width / 2)
+        if not is_possible(*wheels, elapsed):
+            raise Implausible('distance: %s mm, angle: %s degrees in %.3f s'
+                              % (reading['distance'], reading.get('angle'), elapsed))
+        capped = abs(reading['distance']) >= self.CAP or self.asks_angle and abs(reading['angle']) >= self.CAP
+        angle, variance = self._read_angle(reading, time, turn)
+        doubtful = self._doubt(wheels, expected, elapsed)
+        resolved = self._resolve(wheels, expected)
+        if self.fractions.coarse:       # the robot goes on counting the angle
+            resolved = resolved._replace(angle=0.0)
+        parts = [Travel(distance, angle, 100.0 * capped, 100.0 * capped + variance), resolved, *self.lost, doubtful]
+        if elapsed > 0 and not self.lost and not any(resolved):
+            self.speed = Expected(*(wheel / elapsed for wheel in wheels))
+        self.lost.clear()
+        self.doubtful = STILL
+        return Travel(*map(sum, zip(*parts)))
+
+    def _doubt(self, wheels, expected, elapsed):
+        """The Travel by which a reading is to be corrected. wheels: what was read.
+
+        A reply has no checksum. Where others are corrupted, some are without a sign of it: those that differ from what is
+        expected are met halfway.
+        """
+        self.bad *= 1 - MEMORY
+        if self.bad < BAD_LINE or elapsed > LONG:
+            return NOWHERE
+        by_speed = Expected(*(speed * elapsed for speed in self.speed))
+        with_doubtful = Expected(*map(sum, zip(expected, self.doubtful)))
+        far = DOUBT + LOST_SHARE * max(map(abs, expected))
+        closest = min((expected, with_doubtful, by_speed), key=lambda each: _distance(wheels, each))
+        if _distance(wheels, closest) > far:
+            # corrupted, if the robot does what it did before; else it may be a change
+            share = 1.0 if _distance(expected, by_speed) < far else 0.5
+            less = Expected(*(share * (one - other) for one, other in zip(closest, wheels)))
+            unsure = Expected(*((1 - share) * each + DOUBT for each in map(abs, less)))
+            return bridged(less, less, self.width)._replace(
+                distance_variance=sum(each ** 2 for each in unsure) / 4,
+                angle_variance=sum(each ** 2 for each in unsure) / self.width ** 2)
+        # one bit of the two low bytes
+        variance = 2 * self.bad / REPLY_SIZE * DOUBT ** 2
+        return Travel(0.0, 0.0, variance / 4, variance / self.width ** 2)
+
+    def _read_angle(self, reading, time, turn):
+        """The turn since the last update (rad), and its variance beyond rounding. time: s since the angle was read before;
+        turn: by the commands since the last update."""
+        self.commanded_turn += turn
+        if self.asks_angle:
+            whole = self.fractions.add(degrees(self.commanded_turn), reading['angle'], time)
+            angle = radians(whole) - self.returned_turn
+            coarse = self.fractions.kind == LOST or bool(self.returned_turn)
+            self._begin_angle()
+        else:
+            angle, coarse, self.angle_time = turn, True, time
+            self.returned_turn += turn
+        angle += radians(self.fractions.make_up())
+        # what was returned so far was off by as much as the angle is now
+        return angle, ((angle - turn) ** 2 / 4 + self.asks_angle * self.rounding[1] ** 2) * coarse
+
+    def _resolve(self, wheels, expected):
+        """The Travel that doubtful queries cost. wheels: the travel that was read at last.
+
+        If they did not arrive, this includes the travel before them. If that cannot be seen: half, give or take half.
+        """
+        doubtful = self.doubtful
+        size = max(map(abs, doubtful))
+        if not size:
+            return NOWHERE
+        answered = max(abs(wheel - part) for wheel, part in zip(wheels, expected))
+        ignored = max(abs(wheel - part - other) for wheel, part, other in zip(wheels, expected, doubtful))
+        if size > 2 * (LOST_SHARE * max(map(abs, expected)) + self.rounding[0] + self.rounding[1] * self.width):
+            return NOWHERE if ignored < answered else bridged(doubtful, doubtful, self.width)
+        return bridged(Expected(*(part / 2 for part in doubtful)), STILL, self.width)
+
+    @staticmethod
+    def is_reset(reading):
+        """See above."""
+        return reading['distance'] == 0 and reading.get('angle', 0) == 0
+
+    def miss(self, begun, elapsed, expected):
+        """See above."""
+        self.fractions.disturb()
+        self.bad += (1 - self.bad) * MEMORY
+        if not begun:
+            self.doubtful = Expected(*map(sum, zip(self.doubtful, expected)))
+            return
+        measured = Expected(*(speed * elapsed for speed in self.speed))
+        part = bridged(expected, measured, self.width)
+        self.lost.append(part)
+        if self.asks_angle:
+            self._begin_angle()
+        else:
+            self.commanded_turn += self._turn(expected)
+            self.returned_turn += part.angle
+
+
+def travel_of(model, fractions):
+    """The object above for a Model. fractions: see Fractions; of a robot without encoders."""
+    return EncoderTravel(model) if model.counts_per_metre else CounterTravel(model, fractions)

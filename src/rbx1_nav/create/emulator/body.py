@@ -1,0 +1,154 @@
+"""The body of an emulated Create: wheels, gyro, switches and battery, and what the robot's sensors say of them."""
+from collections import namedtuple
+from math import degrees, floor, trunc
+
+from rbx1_nav.create.protocol import BUMP_LEFT, BUMP_RIGHT, CREATE, UPDATE_PERIOD, WHEEL_DROP_LEFT
+from rbx1_nav.simulation.base import make_wheels_and_gyro
+from rbx1_nav.units import SECOND
+
+Errors = namedtuple('Errors', 'gyro_sensitivity wheel_travel wheel_base', defaults=(1.0, 1.0, 1.0))
+Errors.__doc__ = """True errors of a robot, as factors: what the gyro's signal shows, of its nominal value; what the
+encoders count, of the wheels' true travel; the true distance of the wheels, of its nominal value."""
+
+Quirks = namedtuple('Quirks', 'mode_plus_one drops_fractions', defaults=(False, False))
+Quirks.__doc__ = """How some robots differ from the documents. mode_plus_one: packet 35 is the mode plus one, as on a
+Roomba 642 (create_robot issue 64); drops_fractions: each reading of the angle starts at 0 and loses the fraction of a
+degree, as on a Create (libcreate issue 22, create_robot issue 28)."""
+
+FINE = 1e6              # ticks per metre: the wheels travel without steps, and the encoders here count
+ADC_ZERO = 512          # the gyro's signal at rest, of 0 to 1023
+CAPACITY = 3000         # mAh
+EMPTY, FULL = 13.0, 16.5    # V
+FLOOR, NO_FLOOR = 1500, 20  # signals of a cliff sensor
+
+# values of packets that are not 0 and never change
+CONSTANT = {'temperature': 25, 'capacity': CAPACITY, **dict.fromkeys(
+    ('cliff_left_signal', 'cliff_front_left_signal', 'cliff_front_right_signal', 'cliff_right_signal'), FLOOR)}
+# nothing received; weak pull-ups on the digital inputs
+CONSTANT_1 = {'infrared': 255, 'digital_inputs': 15}
+
+
+class Tally:
+    """A sum that is read in whole units. What is left over counts for the next reading."""
+
+    def __init__(self):
+        self.total = 0.0
+        self._read = 0
+
+    @property
+    def pending(self):
+        """What take() will return."""
+        return max(-32768, min(32767, floor(self.total + 0.5) - self._read))
+
+    def take(self):
+        """The whole units since the last call, at most what 16 bits hold."""
+        value, self._read = self.pending, floor(self.total + 0.5)
+        return value
+
+
+class DroppingTally(Tally):
+    """A sum whose readings each start at 0: what is left over is lost."""
+
+    @property
+    def pending(self):
+        return max(-32768, min(32767, trunc(self.total - self._read)))
+
+    def take(self):
+        value, self._read = self.pending, self.total
+        return value
+
+
+class Body:
+    """The robot without its electronics. All times are in ns."""
+
+    def __init__(self, model, surface=None, seed=0, errors=Errors(), gyro_range=150.0, quirks=Quirks()):
+        """model: a protocol.Model; surface, seed: see simulated_base.make_base(); gyro_range: degrees/s."""
+        self.model = model
+        self.errors = errors
+        self.gyro_range = gyro_range
+        self.quirks = quirks
+        self.gyro_stuck = -1                # 0 to 1023: the analog input has this value whatever the gyro measures
+        self.wheels, self.gyro = make_wheels_and_gyro(
+            model.wheel_separation * errors.wheel_base, surface and surface._replace(ticks_meter=FINE), seed,
+            UPDATE_PERIOD)
+        self.left = self.right = 0          # mm/s, as commanded
+        self.bumped = self.wheel_dropped = self.cliff = self.docked = False
+        self.charge = CAPACITY              # mAh
+        self.now = None
+        self.reset_counters()
+
+    def reset_counters(self):
+        """Everything that the robot counts starts at 0."""
+        self._counted_left = self._counted_right = 0.0  # m
+        self.distance = Tally()     # mm
+        self.angle = DroppingTally() if self.quirks.drops_fractions else Tally()    # degrees
+        self.values = dict.fromkeys((packet.name for packet in self.model.packets.values()), 0)
+
+    def drive(self, left, right):
+        """Set the speeds of the wheels, mm/s by their encoders."""
+        self.left, self.right = left, right
+
+    @property
+    def moving(self):
+        """Whether a wheel is commanded to turn."""
+        return bool(self.left or self.right)
+
+    @property
+    def velocity(self):
+        """The commanded speeds as those of the true robot without slip, m/s and rad/s."""
+        left, right = (speed / 1000 / self.errors.wheel_travel for speed in (self.left, self.right))
+        return (left + right) / 2, (right - left) / self.wheels.base_width
+
+    def advance(self, now):
+        """Move up to `now`."""
+        duration, self.now = now - (now if self.now is None else self.now), now
+        if duration <= 0:
+            return
+        left, right = self.wheels.travel(*self.velocity, duration / SECOND)
+        self._counted_left += left * self.errors.wheel_travel
+        self._counted_right += right * self.errors.wheel_travel
+
+    def sample(self, duration, charging):
+        """Sense, `duration` (s) after the last time: afterwards `values` has what the packets say, by their names.
+
+        Distance and angle are not among them, since they change as they are read. charging: whether a charger would
+        charge the battery.
+        """
+        left, right = self._counted_left, self._counted_right
+        self.distance.total = 1000 * (left + right) / 2
+        self.angle.total = degrees((right - left) / self.model.wheel_separation)
+        charging = charging and self.docked
+        current = self._use_battery(duration, charging)
+        charge = max(0, min(CAPACITY, round(self.charge)))
+        linear, angular = self.velocity
+        rate = degrees(self.gyro.read(self.wheels.truth.pose.yaw, duration, False).rate) * self.errors.gyro_sensitivity
+        self.values.update(
+            CONSTANT,
+            bumps_and_wheel_drops=(BUMP_LEFT | BUMP_RIGHT) * self.bumped + WHEEL_DROP_LEFT * self.wheel_dropped,
+            cliff_front_left=int(self.cliff), cliff_front_right=int(self.cliff),
+            charging_state=(3 if charge == CAPACITY else 2) if charging else 0,     # trickle, full charging, none
+            charging_sources=2 * self.docked,
+            voltage=round(1000 * (EMPTY + (FULL - EMPTY) * charge / CAPACITY)), current=current, charge=charge)
+        if self.cliff:
+            self.values.update(cliff_front_left_signal=NO_FLOOR, cliff_front_right_signal=NO_FLOOR)
+        if self.model is CREATE:
+            # the TurtleBot's board with the gyro is on this robot only
+            signal = max(0, min(1023, round(ADC_ZERO * (1 - rate / self.gyro_range))))
+            self.values.update(CONSTANT_1, analog_input=signal if self.gyro_stuck < 0 else self.gyro_stuck)
+        else:
+            self.values.update(
+                left_encoder=self._encoder(left), right_encoder=self._encoder(right),
+                left_motor_current=150 * bool(self.left), right_motor_current=150 * bool(self.right),
+                stasis=int(linear > abs(angular * self.wheels.base_width / 2)))
+
+    def _encoder(self, travel):
+        return floor(travel * self.model.counts_per_metre + 0.5) & 0xffff
+
+    def _use_battery(self, duration, charging):
+        """Charge or discharge the battery for `duration` (s); returns the current in mA."""
+        if charging:
+            current = 1500 if self.charge < CAPACITY else 0
+        else:
+            current = -300 - 700 * self.moving
+        self.charge = max(0.0, min(CAPACITY, self.charge + current * duration / 3600))
+        return current

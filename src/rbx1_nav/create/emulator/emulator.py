@@ -1,0 +1,282 @@
+"""An emulated Create: what the robot's electronics do with the bytes on its serial line. All times are in ns."""
+from math import inf
+from struct import Struct
+
+from rbx1_nav.create.protocol import (
+    BAUD_RATES, COUNTED, CREATE, IN_PLACE_LEFT, IN_PLACE_RIGHT, MAX_SPEED, NOTES, OFF, PASSIVE, SAFE,
+    STRAIGHT, UPDATE_PERIOD, encode_frame, frame_format, packets_format, single_packets)
+from rbx1_nav.create.emulator.programs import Programs
+from rbx1_nav.create.emulator.scripts import MAX_SCRIPT, Scripts
+from rbx1_nav.units import SECOND, clamp
+
+TICK = round(UPDATE_PERIOD * SECOND)
+BOOT_TIME = SECOND      # the robot hears nothing for so long after it was switched on
+CREATE_RESET_TIME = 3 * SECOND      # the same after a reset of a Create, whose boot loader takes 3 s (Create p. 10)
+# the Create 2 names its firmware
+BOOT_TEXT = b'bl-start\r\nSTR730\r\nRoomba by iRobot!\r\nr3_robot/tags/release-3.5.4\r\n'
+INPUT_SIZE = 3 + 2 * 255    # bytes that wait while a script does; a song of 255 notes, the longest command, must fit
+MAX_NOTES = 16          # of a song (Create p. 11, Create 2 p. 20)
+MAX_FRAME = 255         # data bytes in a frame of the stream
+MAX_PWM = 255
+ROBOT_RADIUS = 0.165    # m
+BUTTON_TIME = SECOND // 6
+PAIR = Struct('>hh')
+
+
+def command_size(model, data):
+    """How many bytes the command has with which data begins; None as long as there are too few to know."""
+    size = model.commands[data[0]].size
+    if size == COUNTED:
+        return 2 + data[1] if len(data) > 1 else None
+    if size == NOTES:
+        return 3 + 2 * data[2] if len(data) > 2 else None
+    return 1 + size
+
+
+class EmulatedCreate:
+    """The robot at the end of a SerialLine."""
+
+    def __init__(self, model, body, line, now, on_command=None):
+        """model: a protocol.Model; body: a Body; line: a SerialLine at the baud rate that the robot starts with.
+
+        on_command(time, data): called with the bytes of each command that arrives, also of those that are ignored.
+        """
+        self.model = model
+        self.body = body
+        self.line = line
+        self.on_command = on_command or (lambda time, data: None)
+        self.outputs = {}           # data bytes of the latest command to LEDs, drivers and the like, by its name
+        self.programs = Programs(body)
+        self._baud = line.baud
+        self._deaf_until = now
+        self._start(now)
+
+    def switch_on(self, now):
+        """Start again, as after the battery was put in."""
+        self._start(now)
+        self._deaf_until = now + BOOT_TIME
+        if self.model is not CREATE:
+            self.line.from_robot(BOOT_TEXT, now)
+
+    def _start(self, now):
+        self.mode = OFF
+        self.now = now
+        self.line.baud = self._baud
+        self.body.drive(0, 0)
+        self.body.reset_counters()
+        self.outputs.clear()
+        self.programs.stop()
+        self._input = bytearray()
+        self._next_update = now + TICK
+        self._requested = dict.fromkeys(('requested_velocity', 'requested_radius', 'requested_right_velocity',
+                                         'requested_left_velocity'), 0)
+        self._stream, self._streaming = [], False
+        self._songs, self._song, self._song_end = {}, 0, now
+        self._buttons, self._buttons_end = 0, now
+        self._scripts = Scripts(self.body, lambda: dict(self._values(()), mode=self.mode))
+
+    # time
+
+    def receive(self, data, now):
+        """The host sends bytes."""
+        self._run(now)
+        self.line.from_host(data, now)
+
+    def advance(self, now):
+        """Go on to `now`. Returns the bytes that have arrived at the host."""
+        self._run(now)
+        return self.line.received(now)
+
+    @property
+    def next_time(self):
+        """When advance() has something to do next."""
+        times = (self._next_update, self.line.next_to_robot, self.line.next_to_host)
+        return min(time for time in times if time is not None)
+
+    def _run(self, now):
+        while True:
+            arrival = self.line.next_to_robot
+            if arrival is not None and arrival <= min(now, self._next_update):
+                self._go_to(arrival)
+                self._on_byte(self.line.receive_byte())
+            elif self._next_update <= now:
+                self._go_to(self._next_update)
+                self._next_update += TICK
+                self._update()
+            else:
+                break
+        self._go_to(now)
+
+    def _go_to(self, time):
+        self.now = max(time, self.now)
+        self.body.advance(self.now)
+
+    # what happens every 15 ms
+
+    def _update(self):
+        # in the other modes it does not charge (Create 2 p. 7)
+        self.body.sample(UPDATE_PERIOD, self.mode in (OFF, PASSIVE))
+        if not self.body.charge:
+            self._start(self.now)
+            return
+        if self.mode == SAFE and self._unsafe():
+            self._enter(PASSIVE)
+        if self.programs.running:
+            self._drive_curve(*self.programs.update(self.now))
+        self._input[:0] = self._scripts.update(self.now)
+        del self._input[INPUT_SIZE + MAX_SCRIPT:]   # a script may play itself again and again before its last command
+        self._execute()
+        if self._streaming:
+            self.line.from_robot(encode_frame(self.model, self._stream, self._values(self._stream)), self.now)
+
+    def _unsafe(self):
+        """Whether something has happened that ends safe mode (Create p. 6, Create 2 p. 7)."""
+        body = self.body
+        linear, angular = body.velocity
+        small_radius = abs(linear) < abs(angular) * ROBOT_RADIUS
+        return body.wheel_dropped or body.docked or body.cliff and (linear > 0 or small_radius)
+
+    def _enter(self, mode):
+        if mode in (OFF, PASSIVE):
+            self._drive(0, 0)
+            self._requested = dict.fromkeys(self._requested, 0)
+        if mode == SAFE:
+            self.outputs.pop('leds', None)
+        self.mode = mode
+
+    # bytes and commands
+
+    def _on_byte(self, byte):
+        if self.now < self._deaf_until or not self.body.charge or len(self._input) >= INPUT_SIZE:
+            return
+        self._input.append(byte)
+        self._execute()
+
+    def _execute(self):
+        """Execute the commands that are complete, up to one that waits."""
+        while self._input and not self._scripts.waiting:
+            command = self.model.commands.get(self._input[0])
+            if command is None or self.mode == OFF and OFF not in command.modes:
+                del self._input[0]      # an interface that is off does not count data bytes
+                continue
+            size = command_size(self.model, self._input)
+            if size is None or size > len(self._input):
+                break
+            data = bytes(self._input[:size])
+            del self._input[:size]
+            self.on_command(self.now, data)
+            if self.mode in command.modes:
+                self._do(command, data[1:])
+
+    def _do(self, command, data):
+        of_programs = getattr(self.programs, 'do_' + command.name, None)
+        handler = of_programs or getattr(self, '_do_' + command.name, None) or getattr(
+            self._scripts, 'do_' + command.name, None)
+        if handler:
+            handler(data)
+        elif data:
+            self.outputs[command.name] = data
+        if command.mode is not None:
+            self._enter(command.mode)
+            if not of_programs:
+                self.programs.stop()
+
+    def _do_reset(self, _):
+        self.switch_on(self.now)
+        if self.model is CREATE:
+            self._deaf_until = self.now + CREATE_RESET_TIME
+
+    def _do_power(self, _):
+        self._start(self.now)
+        self._deaf_until = inf      # until it is switched on
+
+    def _do_stop(self, _):
+        self._streaming = False
+
+    def _do_baud(self, data):
+        if data[0] < len(BAUD_RATES):
+            self.line.baud = BAUD_RATES[data[0]]
+
+    # wheels
+
+    def _drive(self, left, right):
+        self.body.drive(clamp(left, MAX_SPEED), clamp(right, MAX_SPEED))
+
+    def _do_drive(self, data):
+        velocity, radius = PAIR.unpack(data)
+        velocity = int(clamp(velocity, MAX_SPEED))
+        self._requested.update(requested_velocity=velocity, requested_radius=radius)
+        self._drive_curve(velocity, radius)
+
+    def _drive_curve(self, velocity, radius):
+        """velocity: mm/s; radius: mm, with the special values of the command Drive."""
+        if radius in STRAIGHT:
+            self._drive(velocity, velocity)
+        elif radius in (IN_PLACE_LEFT, IN_PLACE_RIGHT):
+            self._drive(-velocity * radius, velocity * radius)
+        else:
+            # a radius of 0 has no meaning in the documents
+            half = 500 * self.model.wheel_separation / radius if radius else 0
+            self._drive(velocity * (1 - half), velocity * (1 + half))
+
+    def _do_drive_direct(self, data):
+        right, left = (int(clamp(speed, MAX_SPEED)) for speed in PAIR.unpack(data))
+        self._requested.update(requested_right_velocity=right, requested_left_velocity=left)
+        self._drive(left, right)
+
+    def _do_drive_pwm(self, data):
+        right, left = (clamp(pwm, MAX_PWM) * MAX_SPEED / MAX_PWM for pwm in PAIR.unpack(data))
+        self._drive(left, right)
+
+    # sensors
+
+    def _values(self, numbers):
+        """The values of all packets, by name. Those that are requested are read, which starts a new distance and angle.
+
+        numbers: of packets and groups.
+        """
+        body = self.body
+        names = {packet.name for packet in single_packets(self.model, numbers)}
+        return dict(
+            body.values, **self._requested, mode=self.mode + self.body.quirks.mode_plus_one, song_number=self._song,
+            song_playing=int(self.now < self._song_end), stream_packets=len(self._stream),
+            buttons=self._buttons if self.now < self._buttons_end else 0,
+            distance=body.distance.take() if 'distance' in names else 0,
+            angle=body.angle.take() if 'angle' in names else 0)
+
+    def _known(self, numbers):
+        return all(number in self.model.packets or number in self.model.groups for number in numbers)
+
+    def _do_sensors(self, data):
+        self._do_query_list(bytes((1,)) + data)
+
+    def _do_query_list(self, data):
+        numbers = data[1:]
+        if self._known(numbers):
+            packets, values = single_packets(self.model, numbers), self._values(numbers)
+            self.line.from_robot(packets_format(packets).pack(*(values[packet.name] for packet in packets)), self.now)
+
+    def _do_stream(self, data):
+        numbers = list(data[1:])
+        if self._known(numbers) and frame_format(self.model, numbers).size - 3 <= MAX_FRAME:
+            self._stream, self._streaming = numbers, bool(numbers)
+
+    def _do_pause_resume_stream(self, data):
+        self._streaming = bool(data[0] and self._stream)
+
+    # songs, buttons, scripts
+
+    def _do_song(self, data):
+        if data[0] < self.model.songs and 0 < data[1] <= MAX_NOTES:
+            self._songs[data[0]] = sum(data[3::2]) * SECOND // 64
+
+    def _do_play_song(self, data):
+        if data[0] in self._songs and self.now >= self._song_end:
+            self._song, self._song_end = data[0], self.now + self._songs[data[0]]
+
+    def _do_push_buttons(self, data):
+        self._buttons, self._buttons_end = data[0], self.now + BUTTON_TIME
+
+    def _do_show_script(self, _):
+        self._streaming = False
+        self.line.from_robot(bytes((len(self._scripts.stored),)) + self._scripts.stored, self.now)

@@ -1,1 +1,0 @@
-"""What a robot is: kinematics, wheels, gyro, joints, and the surface below them."""

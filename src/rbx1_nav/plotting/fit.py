@@ -1,0 +1,80 @@
+"""A picture of a fit: recorded and simulated paths of the same commands, and where they end."""
+from math import atan2, degrees
+
+from matplotlib.figure import Figure
+from matplotlib.patches import Ellipse
+import numpy
+
+from rbx1_nav.fitting.comparison import shares
+from rbx1_nav.fitting.ensemble import mahalanobis
+from rbx1_nav.plotting.runs import save
+
+TRUTH, ODOMETRY, SIMULATED = '#0072b2', '#d55e00', '#009e73'    # as in script/report.py; safe for the colour-blind
+REGIONS = (0.9, 0.2), (0.5, 0.35)       # part of the simulated ends, opacity
+MARGIN = 0.08       # around all paths, as a part of their extent
+POINTS = 150        # simulated ends of each run that are shown
+
+
+def draw_fit(file, title, comparisons):
+    """Draw Comparisons side by side to a file. Raises OSError."""
+    figure = Figure(figsize=(15.5, 5.9), constrained_layout=True)
+    figure.suptitle(title)
+    recorded, simulated, ends = figure.subplots(1, 3)
+    for number, each in enumerate(comparisons):
+        if each.recorded is not None:
+            recorded.plot(*each.recorded, color=TRUTH if each.is_truth else ODOMETRY, linewidth=1, alpha=0.7,
+                          label=None if number else 'truth' if each.is_truth else 'odometry')
+        if each.end is not None:
+            for axes in (recorded, ends):
+                axes.plot(*each.end[:2], 's', color='black', markerfacecolor='white', markersize=6, zorder=5,
+                          label=None if number else 'end, measured')
+        simulated.plot(*each.simulated, color=SIMULATED, linewidth=1, alpha=0.7, label=None if number else 'simulated')
+        simulated.plot(*each.simulated[:, -1], 'o', color='black', markerfacecolor='white', markersize=5, zorder=5,
+                       label=None if number else 'end, simulated')
+        if not any(alike(each, other) for other in comparisons[:number]):
+            draw_regions(ends, each.ends[:, :2], label=not number)
+    set_extents(comparisons, recorded, simulated)
+    count, inside_50, inside_90 = shares(comparisons)
+    recorded.set_title('recorded', fontsize='medium')
+    simulated.set_title('simulated on the fitted floor, same commands', fontsize='medium')
+    ends.set_title('of %d measured ends, %d are inside 50 %%, %d inside 90 %%' % (count, inside_50, inside_90)
+                   if count else 'simulated ends', fontsize='medium')
+    for axes in (recorded, simulated, ends):
+        if axes is not ends:
+            axes.plot(0, 0, marker='+', markersize=14, color='black', linestyle='', label='start')
+        axes.set(xlabel='x (m)', ylabel='y (m)')
+        axes.grid(True, alpha=0.5)
+        axes.legend(loc='upper center', bbox_to_anchor=(0.5, -0.13), ncol=4, frameon=False, fontsize='small')
+    ends.set_aspect('equal', adjustable='datalim')
+    save(figure, file)
+
+
+def alike(comparison, other):
+    """Whether two runs have the same region, as far as can be seen: they had the same commands."""
+    return mahalanobis(other.ends[:, :2], comparison.ends[:, :2].mean(axis=0)[None])[0] < 0.02
+
+
+def draw_regions(axes, points, label):
+    """Simulated ends, (n, 2), and the regions that hold parts of them. label: whether they are for the legend."""
+    axes.plot(*points[:POINTS].T, '.', color=SIMULATED, markersize=4, alpha=0.6, zorder=1, markeredgewidth=0,
+              label='simulated' if label else None)
+    covariance = numpy.cov(points.T)
+    sizes, directions = numpy.linalg.eigh(covariance)
+    angle = degrees(atan2(directions[1, 1], directions[0, 1]))
+    distances = mahalanobis(points, points)
+    for part, alpha in REGIONS:
+        axis = 2 * (numpy.quantile(distances, part) * sizes.clip(0)) ** 0.5
+        axes.add_patch(Ellipse(points.mean(axis=0), axis[1], axis[0], angle=angle, facecolor=SIMULATED,
+                               edgecolor='black', linewidth=0.8, alpha=alpha,
+                               label='%.0f %%' % (100 * part) if label else None))
+
+
+def set_extents(comparisons, *panels):
+    """The same part of the floor for paths, however long."""
+    points = numpy.concatenate([path for each in comparisons for path in (each.recorded, each.simulated)
+                                if path is not None] + [numpy.zeros((2, 1))], axis=1)
+    low, high = points.min(axis=1), points.max(axis=1)
+    half = max(0.1, (high - low).max() * (0.5 + MARGIN))
+    x, y = (low + high) / 2
+    for axes in panels:
+        axes.set(xlim=(x - half, x + half), ylim=(y - half, y + half), aspect='equal')

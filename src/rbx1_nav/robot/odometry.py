@@ -1,0 +1,81 @@
+"""Odometry that knows how uncertain it is."""
+from collections import namedtuple
+from math import cos, sin
+
+import numpy
+
+from rbx1_nav.robot.kinematics import Odometry
+
+HELD = 0.3      # m: a robot that drives straight ahead leaves a rounded heading as it is for so long
+
+
+class Errors(namedtuple('Errors', 'linear angular heading')):
+    """Of the wheels' travel on the floor, 1 sigma: m after 1 m, rad after a turn of 1 rad, rad after 1 m. They grow
+    with the root of the travel."""
+
+    def variances(self, travel):
+        """Of the length (m^2) and the angle (rad^2) of a Travel."""
+        distance, angle = abs(travel.distance), abs(travel.angle)
+        return self.linear ** 2 * distance, self.angular ** 2 * angle + self.heading ** 2 * distance
+
+
+class UncertainOdometry:
+    """A pose with its 3x3 covariance (x, y in m, yaw in rad), propagated to first order along the path.
+
+    Each step adds independent errors of its length and angle, whose variances grow with the travel: Siegwart,
+    Nourbakhsh and Scaramuzza, Introduction to Autonomous Mobile Robots, 2nd ed., section 5.2.4.
+    """
+
+    def __init__(self, width, errors, rounding):
+        """width: between the wheels, m; errors: Errors; rounding: see travel.py."""
+        self.odometry = Odometry(width)
+        self.errors = errors
+        self.rounding = rounding[0] ** 2, rounding[1] ** 2      # m^2, rad^2
+        # the covariance without rounding, which does not add up: the next count makes up for it
+        self.xx = self.xy = self.yy = self.x_yaw = self.y_yaw = self.yaw_yaw = 0.0
+
+    @property
+    def pose(self):
+        """The Pose."""
+        return self.odometry.pose
+
+    @property
+    def covariance(self):
+        """Of x, y (m^2) and yaw (rad^2)."""
+        position, yaw = self.rounding
+        return numpy.array([[self.xx + position, self.xy, self.x_yaw],
+                            [self.xy, self.yy + position, self.y_yaw],
+                            [self.x_yaw, self.y_yaw, self.yaw_yaw + yaw]])
+
+    def _variances(self, travel):
+        """Variances of the length, the displacement to the side (m^2) and the angle (rad^2) of a Travel.
+
+        To the side: the heading is counted in whole units, and its rounding is the same until the next unit. So it adds
+        up over the path to that unit, or else is the mean of two roundings.
+        """
+        distance, angle = abs(travel.distance), abs(travel.angle)
+        length, turn = self.errors.variances(travel)
+        unit = (12 * self.rounding[1]) ** 0.5
+        path = HELD if angle * HELD <= unit * distance else unit * distance / angle
+        return (travel.distance_variance + length, self.rounding[1] * distance * max(path, distance / 2),
+                travel.angle_variance + turn)
+
+    def move(self, travel):
+        """Add a Travel."""
+        distance, angle = travel.distance, travel.angle
+        along, aside, turn = self._variances(travel)
+        if not (distance or angle or along or turn):
+            return
+        middle = self.pose.yaw + angle / 2
+        c, s = cos(middle), sin(middle)
+        # J C J' + K V K', with the Jacobians of the new pose by the old one, and by the travel: written out, since numpy
+        # needs six times as long for matrices this small, at each reading
+        x, y = -distance * s, distance * c
+        self.xx += (2 * self.x_yaw + x * self.yaw_yaw) * x + along * c * c + aside * s * s + turn * x * x / 4
+        self.xy += (self.y_yaw * x + self.x_yaw * y + self.yaw_yaw * x * y
+                    + (along - aside) * c * s + turn * x * y / 4)
+        self.yy += (2 * self.y_yaw + y * self.yaw_yaw) * y + along * s * s + aside * c * c + turn * y * y / 4
+        self.x_yaw += (self.yaw_yaw + turn / 2) * x
+        self.y_yaw += (self.yaw_yaw + turn / 2) * y
+        self.yaw_yaw += turn
+        self.odometry.move(distance, angle)

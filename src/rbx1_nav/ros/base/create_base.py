@@ -1,0 +1,126 @@
+"""The base of a Create: connects a Driver with its line and with ROS."""
+import threading
+import time
+
+from diagnostic_updater import Updater
+import rospy
+
+from rbx1_nav.control.gate import CommandGate
+from rbx1_nav.create.driver.driver import Driver
+from rbx1_nav.create.driver.link import Link
+from rbx1_nav.robot.readings import Uncertainty
+from rbx1_nav.ros.base.clocks import HardwareClock
+from rbx1_nav.ros.base.commands import VelocityCommands
+from rbx1_nav.ros.base.create_status import CreateStatus
+from rbx1_nav.ros.base.publisher import BasePublisher
+from rbx1_nav.ros.node import life
+from rbx1_nav.schedule import Schedule
+
+RETRY = 0.05        # s between two attempts to open the line
+LEAVE_TIME = 0.6    # s in which the robot must confirm that it has stopped
+
+
+class CreateBase:
+    """Drives a robot until the node is to end."""
+
+    def __init__(self, settings, robot):
+        """settings: Settings; robot: a Robot."""
+        gate = CommandGate(robot.limits, robot.timeout)
+        self.clock = HardwareClock(settings.update_rate)
+        self.lock = threading.Lock()
+        self.driver = Driver(settings, gate, rospy.loginfo, rospy.logwarn, rospy.logerr)
+        self.link = Link(settings, rospy.logwarn)
+        self.joint_schedule = Schedule(10)
+        self.diagnostics_schedule = Schedule(1)
+        self.publisher = BasePublisher(robot)
+        self.commands = VelocityCommands(self.driver, gate, self.clock, self.lock)
+        self.diagnostics = CreateStatus(Updater(), self.driver, self.link, self.commands)
+
+    def run(self):
+        """Drive the robot until the node is to end. Returns whether it stands then, as far as is known."""
+        while not life.end_requested.is_set():
+            self.guarded(self.step)
+            if self.diagnostics_schedule.due(self.clock.now()):
+                self.diagnostics.update()
+        return self.leave()
+
+    def guarded(self, step):
+        """Do a step, and give up the line if it is lost."""
+        try:
+            step()
+        except OSError as error:
+            rospy.logerr('Lost the serial connection (%s). The robot keeps executing its last command: stop it by hand',
+                         error)
+            self.disconnect()
+
+    def step(self):
+        """Process what has arrived, or try to open the line. Raises OSError if it is lost."""
+        if not self.link.port:
+            if not self.link.open(self.clock.now()):
+                life.sleep(RETRY)
+                return
+            rospy.loginfo('Serial port: %s', self.link.path)
+            with self.lock:
+                self.driver.attach(self.clock.now(), self.link)
+        if not self.link.is_guarded(self.clock.now()):
+            rospy.logwarn('The guardian process died: starting a new one')
+            with self.lock:
+                self.driver.stop(self.clock.now())
+            self.disconnect()
+            return
+        if self.link.disturbed:
+            self.link.disturbed = False
+            with self.lock:
+                self.driver.restore(self.clock.now())
+        timed_out, state = self.exchange()
+        # a robot that does not answer may not have stopped
+        if timed_out and self.driver.contact.answers:
+            self.commands.log_timeout()
+        if state:
+            self.publish(self.clock.now(), state)
+        if self.driver.is_ready:
+            self.commands.subscribe()
+
+    def exchange(self):
+        """Receive, and do what is due. Returns whether the command has timed out, and a State or None. Raises OSError."""
+        data = self.link.read(self.driver.until_tick(self.clock.now()), self.driver.awaited)
+        with self.lock:
+            now = self.clock.now()
+            self.driver.receive(now, data)
+            timed_out = self.driver.tick(now)
+            state = self.driver.state()
+        if self.driver.sender.error:
+            raise self.driver.sender.error
+        return timed_out, state
+
+    def publish(self, now, state):
+        """Publish a State."""
+        width = self.driver.model.wheel_separation
+        if self.publisher.robot.base_width != width:    # another robot than expected has answered
+            self.publisher.robot = self.publisher.robot._replace(base_width=width)
+        stamp = self.clock.stamp() - rospy.Duration(0, self.clock.now() - state.time)
+        self.publisher.publish_odometry(stamp, state.pose, state.velocity, Uncertainty(0.0, 0.0, *state.variances),
+                                        state.covariance)
+        if state.gyro:
+            self.publisher.publish_imu(stamp, state.gyro)
+        if self.joint_schedule.due(now):
+            self.publisher.publish_joints(stamp, state.travel, state.velocity)
+
+    def disconnect(self):
+        """Give up the line. Another one will be opened."""
+        with self.lock:
+            self.driver.detach()
+        self.link.close()
+
+    def leave(self):
+        """Stop the robot for good. Returns whether it has confirmed that, or cannot move."""
+        def stop():
+            with self.lock:
+                self.driver.leave(self.clock.now())
+        self.guarded(stop)
+        deadline = time.monotonic() + LEAVE_TIME
+        while not self.driver.left and self.link.port and time.monotonic() < deadline:
+            self.guarded(self.exchange)
+        if not self.driver.left:
+            rospy.logerr('The robot has not confirmed that it stopped. If it is still moving, stop it by hand')
+        return self.driver.left

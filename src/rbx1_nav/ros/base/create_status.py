@@ -1,0 +1,144 @@
+"""What /diagnostics says of a Create: the base, its battery, its sensors, its gyro and the serial line."""
+import rospy
+from diagnostic_msgs.msg import DiagnosticStatus
+
+from rbx1_nav.create import protocol
+from rbx1_nav.create.driver.supervisor import BUMPS, CLIFFS, WHEEL_DROPS
+
+LOW, EMPTY = 0.2, 0.05      # of the battery's charge, fractions of its capacity
+CHARGING_STATES = ('not charging', 'reconditioning', 'charging', 'trickle charging', 'waiting', 'charging fault')
+OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR
+
+
+def charge_of(reading):
+    """The charge of the battery, a fraction; None if the robot does not know its capacity."""
+    return reading['charge'] / reading['capacity'] if reading['capacity'] else None
+
+
+class CreateStatus:
+    """Fills in the DiagnosticStatus of each part."""
+
+    def __init__(self, updater, driver, link, commands):
+        """updater: a diagnostic_updater.Updater; driver: a Driver; link: a Link; commands: the VelocityCommands."""
+        self.driver, self.link, self.commands = driver, link, commands
+        self.battery_level = OK     # the last one
+        self.updater = updater
+        self.shows_gyro = False     # not before a robot with one was found
+        updater.setHardwareID(link.path)
+        for title, function in (('Base', self.base), ('Battery', self.battery), ('Sensors', self.sensors),
+                                ('Serial line', self.line)):
+            updater.add(title, function)
+
+    def update(self):
+        """Publish /diagnostics."""
+        if self.driver.gyro and self.driver.contact.found and not self.shows_gyro:
+            self.shows_gyro = True
+            self.updater.add('Gyro', self.gyro)
+        self.updater.force_update()
+
+    def base(self, status):
+        """Mode and commands."""
+        driver, supervisor = self.driver, self.driver.supervisor
+        if self.link.problem:
+            status.summary(ERROR, self.link.problem)
+        elif not driver.contact.answers:
+            status.summary(ERROR, 'The robot does not answer')
+        elif not supervisor.in_control:
+            status.summary(WARN, 'Not driven: %s' % (supervisor.reason or 'changing the mode'))
+        else:
+            status.summary(OK, 'Standing' if driver.motion.stands else 'Moving')
+        found = driver.contact.found
+        status.add('Robot type', found.model.name if found else 'unknown')
+        if driver.polled:
+            status.add('Fractions of a degree', driver.counter.fractions.kind)
+        mode = supervisor.mode
+        status.add('Mode', 'unknown' if mode is None else protocol.MODE_NAMES[mode])
+        status.add('Speed of the left wheel (mm/s)', driver.commanded.speeds[0])
+        status.add('Speed of the right wheel (mm/s)', driver.commanded.speeds[1])
+        self.commands.diagnose(status)
+        status.add('Commands above the speed of a wheel', driver.saturated)
+        return status
+
+    def battery(self, status):
+        """Charge, voltage and the rest."""
+        reading = self._reading(status)
+        if not reading:
+            return status
+        charge = charge_of(reading)
+        if charge is None or reading['charging_sources']:
+            level, text = OK, CHARGING_STATES[reading['charging_state']]
+        else:
+            level = ERROR if charge < EMPTY else WARN if charge < LOW else OK
+            text = '%s%.0f %%' % ('Low: ' if level else '', 100 * charge)
+        if level > self.battery_level:
+            rospy.logwarn('Battery: %s: charge it soon', text)
+        self.battery_level = level
+        status.summary(level, text)
+        status.add('Voltage (V)', reading['voltage'] / 1000)
+        status.add('Current (A)', reading['current'] / 1000)
+        status.add('Charge (Ah)', reading['charge'] / 1000)
+        status.add('Capacity (Ah)', reading['capacity'] / 1000)
+        status.add('Temperature (degrees C)', reading['temperature'])
+        status.add('Charging state', CHARGING_STATES[reading['charging_state']])
+        status.add('Charging sources', reading['charging_sources'])
+        return status
+
+    def sensors(self, status):
+        """Bumpers, wheel drops and cliffs."""
+        reading = self._reading(status)
+        if not reading:
+            return status
+        bits = reading['bumps_and_wheel_drops']
+        cliffs = [name for name in CLIFFS if reading[name]]
+        found = ['bumper'] * bool(bits & BUMPS) + ['wheel drop'] * bool(bits & WHEEL_DROPS) + cliffs
+        status.summary(WARN if found else OK, ', '.join(found).replace('_', ' ') or 'Nothing touched')
+        for name, bit in (('Bumper left', protocol.BUMP_LEFT), ('Bumper right', protocol.BUMP_RIGHT),
+                          ('Wheel drop left', protocol.WHEEL_DROP_LEFT),
+                          ('Wheel drop right', protocol.WHEEL_DROP_RIGHT),
+                          ('Wheel drop castor', protocol.WHEEL_DROP_CASTOR)):
+            status.add(name, bool(bits & bit))
+        for name in CLIFFS + ('wall', 'virtual_wall'):
+            status.add(name.replace('_', ' ').capitalize(), bool(reading[name]))
+        status.add('Overcurrents', reading['overcurrents'])
+        return status
+
+    def gyro(self, status):
+        """The gyro's present reading and its offset."""
+        gyro = self.driver.gyro
+        offset = gyro.offset
+        if gyro.check.problem:
+            status.summary(ERROR, gyro.check.problem)
+        elif offset is None:
+            status.summary(WARN, 'Not calibrated: keep the robot stationary')
+        else:
+            status.summary(OK, 'Calibrated')
+        if self.driver.reading:
+            status.add('Reading (counts)', self.driver.reading['analog_input'])
+        if offset is not None:
+            status.add('Offset (counts)', '%.2f' % offset)
+        status.add('Readings at rest', len(gyro.rest))
+        return status
+
+    def line(self, status):
+        """What went wrong on the line."""
+        driver = self.driver
+        if self.link.problem:
+            status.summary(ERROR, self.link.problem)
+        else:
+            status.summary(OK if driver.contact.answers else ERROR, 'Open')
+        status.add('Port', self.link.path)
+        status.add('Adapter', self.link.adapter or 'unknown')
+        status.add('Rate (baud)', self.link.baud)
+        status.add('Settings changed by other processes', self.link.changes)
+        status.add('Corrupted readings', driver.reader.rejected)
+        status.add('Bytes in no reading', driver.reader.skipped)
+        status.add('Implausible readings', driver.implausible)
+        status.add('Lost replies', driver.missed)
+        status.add('Dropouts', driver.contact.dropouts)
+        return status
+
+    def _reading(self, status):
+        if not self.driver.contact.answers:
+            status.summary(ERROR, 'The robot does not answer')
+            return None
+        return self.driver.reading

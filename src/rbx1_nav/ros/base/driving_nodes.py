@@ -1,0 +1,179 @@
+"""The nodes that drive a base on its own simulated clock, and whether they have done what a tick has woken them for."""
+import threading
+from time import monotonic
+from urllib.parse import urlparse
+
+import rosgraph
+import rospy
+
+from rbx1_nav.ros.network.master import call
+from rbx1_nav.ros.network.processes import Network, awake, listening_process, own_process, peer_process, still_polling
+from rbx1_nav.ros.network.tcp import unread_bytes
+
+MASTER = 'the master'
+CONNECT_TIME = 1.0      # s of wall time that a new connection of cmd_vel is waited for
+UPSTREAM_PERIOD = 1.0   # s of wall time between two looks at who publishes what
+
+
+class DrivingNodes:
+    """Watches the processes of the nodes that publish commands, and of those that they may wait for.
+
+    These are the publishers of what they subscribe to (a multiplexer passes on commands of others), their publishers, and
+    so on; the master, for parameters; and this node itself, where messages are sent and received. The methods belong to
+    the thread that runs the clock.
+    """
+
+    def __init__(self, topic, connections, clock_connections):
+        """topic: the name of cmd_vel; connections(): to its publishers; clock_connections(): to subscribers of /clock."""
+        self.topic = topic
+        self.connections = connections
+        self.clock_connections = clock_connections
+        self.known = None           # the connections at the last update
+        self.drivers = set()        # names of the publishers of commands that are watched
+        self.upstream = set()       # names of all nodes that commands may come from
+        self.watched = set()        # those that update() has seen
+        self.upstream_changed = threading.Event()
+        self.processes = {}         # by name
+        self.forgotten = {}         # sockets by name; None: not a matter of a connection
+        self.own = None             # of this node, without the thread that runs the clock
+        self.network = Network()
+        self.new = {}               # by connection that is being made: s of the monotonic clock when it was first seen
+
+    def update(self):
+        """Look who is connected. To be called often."""
+        connections = [each for each in self.connections() if each.header]
+        listeners = list(self.clock_connections())
+        if (connections, listeners, self.upstream) == self.known:
+            return
+        self.watched = self.upstream
+        self.known = connections, listeners, self.watched
+        drivers = {each.header['callerid']: each.socket for each in connections if self._can_look()}
+        sockets = {each.endpoint_id: each.socket for each in listeners if drivers and each.endpoint_id in self.watched}
+        sockets.update(drivers)
+        self.forgotten = {name: sock for name, sock in self.forgotten.items() if sock in (None, sockets.get(name))}
+        sockets = {name: sock for name, sock in sockets.items() if name not in self.forgotten}
+        for name in self.processes.keys() - sockets.keys():
+            self.processes.pop(name).close()
+        for name, sock in sockets.items():
+            if name not in self.processes or self.processes[name].socket is not sock:
+                self._watch(name, peer_process(sock), sock)
+        self.drivers = drivers.keys() & self.processes.keys()
+        if self.drivers:
+            self._watch(MASTER, listening_process(urlparse(rosgraph.get_master_uri()).port), None)
+            self.upstream_changed.set()
+
+    def _can_look(self):
+        """Whether the kernel tells what processes do."""
+        if self.own is None:
+            self.own = own_process()
+            if self.own:
+                threading.Thread(target=self._look_upstream, daemon=True).start()
+        return self.own is not None
+
+    def _watch(self, name, process, sock):
+        if name in self.processes:
+            self.processes.pop(name).close()
+        if process and name not in self.forgotten:
+            process.socket = sock
+            self.processes[name] = process
+
+    def sees(self, name):
+        """Whether the process of a node is watched."""
+        self.update()
+        return name in self.processes
+
+    def on_clock(self, name):
+        """Whether a node subscribes to /clock."""
+        return any(connection.endpoint_id == name for connection in list(self.clock_connections()))
+
+    def mark(self, names):
+        """Remember what the processes of these nodes do now, just before a tick."""
+        for name in names & self.processes.keys():
+            self.processes[name].mark()
+
+    def woke_by_itself(self, name):
+        """Whether a node may have woken by itself in the time between mark() and now."""
+        return name in self.processes and self.processes[name].woke_by_itself()
+
+    def connecting(self):
+        """Whether a publisher of commands is being connected. It may take itself for connected a little earlier."""
+        now = monotonic()
+        connections = [each for each in self.connections() if not each.header]
+        self.new = {each: self.new.get(each, now) for each in connections}
+        return any(now - begin < CONNECT_TIME for begin in self.new.values())
+
+    def awake(self):
+        """The name of a node that is awake; None if all sleep."""
+        if self.connecting():
+            return self.topic
+        self.update()
+        if not self.drivers:
+            return None
+        name = rospy.get_name()
+        processes = self.processes if name in self.forgotten else {**self.processes, name: self.own}
+        if self.network.busy():
+            return name
+        process = awake(processes.values())
+        return process and next(name for name, each in processes.items() if each is process)
+
+    def awake_drivers(self):
+        """The same of the publishers of commands alone."""
+        names = sorted(self.drivers)
+        process = awake([self.processes[name] for name in names])
+        return process and next(name for name in names if self.processes[name] is process)
+
+    def polling(self):
+        """The threads that look at the time every moment, rather than wait for a tick: an object for still_polling()."""
+        return [each for name in self.drivers & self.processes.keys() for each in self.processes[name].polling()]
+
+    @staticmethod
+    def still_polling(threads):
+        """Whether one of these has not looked since."""
+        return still_polling(threads)
+
+    def forget(self, name):
+        """Do not look at a node any more, as long as its connection lasts."""
+        process = self.processes.pop(name, None)
+        if process:
+            self.forgotten[name] = process.socket
+            process.close()
+        elif name == rospy.get_name():
+            self.forgotten[name] = None
+        self.drivers = self.drivers - {name}
+        self.known = None
+
+    def update_upstream(self):
+        """Ask the master who publishes what. Returns whether there are nodes that commands may come from, and that were
+        not known before."""
+        try:
+            publishers, subscribers, _ = call(rosgraph.get_master_uri(), 'getSystemState')
+        except Exception:       # pylint: disable=broad-except
+            return False
+        self.upstream = upstream = upstream_of(self.topic, publishers, subscribers) - {rospy.get_name()}
+        return not upstream <= self.watched
+
+    def connected(self, header):
+        """Whether a connection to a publisher of cmd_vel still exists. header: its own, one object for each."""
+        return any(connection.header is header for connection in self.connections())
+
+    def unread(self, header):
+        """Whether bytes have arrived by a connection that were not read yet."""
+        return any(unread_bytes(connection.socket) for connection in self.connections() if connection.header is header)
+
+    def _look_upstream(self):
+        while True:
+            self.upstream_changed.wait(UPSTREAM_PERIOD if self.drivers else None)
+            self.upstream_changed.clear()
+            self.update_upstream()
+
+
+def upstream_of(topic, publishers, subscribers):
+    """Names of all nodes whose messages may lead to one on a topic. publishers, subscribers: lists of [topic, names of
+    nodes], as of the master's getSystemState."""
+    publishers = dict(publishers)
+    found, new = set(), set(publishers.get(topic, ()))
+    while new:
+        found |= new
+        heard = {each for each, names in subscribers if new & set(names)}
+        new = {name for each in heard for name in publishers.get(each, ())} - found
+    return found

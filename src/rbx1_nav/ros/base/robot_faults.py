@@ -1,0 +1,70 @@
+"""What can happen to an emulated robot, as services and topics: it loses its cable, a wheel drops, and the like."""
+from concurrent.futures import Future
+from math import floor
+import queue
+
+import rospy
+from std_msgs.msg import Float64
+from std_srvs.srv import SetBool, SetBoolResponse, Trigger, TriggerResponse
+
+from rbx1_nav.config import ConfigError
+from rbx1_nav.create.emulator.body import CAPACITY
+from rbx1_nav.ros.node import life
+
+
+class RobotFaults:
+    """The services and topics. They do nothing by themselves: the thread that owns the robot calls apply()."""
+
+    def __init__(self, robot, terminal):
+        """robot: an EmulatedCreate; terminal: a PseudoTerminal."""
+        self.requests = queue.Queue()
+        body, line = robot.body, robot.line
+        for name, switch in [('pull_cable', lambda on: terminal.unplug() if on else terminal.plug()),
+                             ('silence', lambda on: setattr(line, 'silent', on)),
+                             ('drop_wheel', lambda on: setattr(body, 'wheel_dropped', on)),
+                             ('cliff', lambda on: setattr(body, 'cliff', on)),
+                             ('bump', lambda on: setattr(body, 'bumped', on)),
+                             ('dock', lambda on: setattr(body, 'docked', on))]:
+            self._offer_switch(name, switch)
+        rospy.Service('~power_cycle', Trigger, lambda _: TriggerResponse(
+            *self._request('power_cycle', lambda: robot.switch_on(robot.now))))
+        self._offer_number('charge', lambda value: setattr(body, 'charge', value * CAPACITY), 0, 1)
+        self._offer_number('corruption', lambda value: setattr(line, 'corruption', value), 0, 1)
+        self._offer_number('gyro_stuck', lambda value: setattr(body, 'gyro_stuck', floor(value)), -1, 1023)
+
+    def apply(self):
+        """Do what was asked for."""
+        while not self.requests.empty():
+            function, done = self.requests.get()
+            try:
+                function()
+                done.set_result('')
+            except ConfigError as error:    # the link cannot be made any more
+                done.set_result(str(error))
+
+    def _offer_switch(self, name, switch):
+        rospy.Service('~' + name, SetBool, lambda request: SetBoolResponse(
+            *self._request('%s: %s' % (name, request.data), lambda: switch(request.data))))
+
+    def _offer_number(self, name, function, low, high):
+        def on_message(message):
+            if low <= message.data <= high:
+                self._request('%s: %g' % (name, message.data), lambda: function(message.data))
+            else:
+                rospy.logerr('%s: %r: expected a number from %d to %d; rejected', topic, message.data, low, high)
+        topic = rospy.resolve_name('~' + name)
+        rospy.Subscriber(topic, Float64, on_message)
+
+    def _request(self, text, function):
+        """Have a function called, and wait until it was. Returns whether it succeeded, and the text that is logged."""
+        done = Future()
+        self.requests.put((function, done))
+        while not done.done():
+            if life.end_requested.is_set():
+                return False, '%s: the node ends' % text
+            life.sleep(0.001)
+        if done.result():
+            rospy.logerr('%s: %s', text, done.result())
+            return False, '%s: %s' % (text, done.result())
+        rospy.loginfo('%s', text)
+        return True, text

@@ -1,0 +1,92 @@
+"""The clock of a simulated base: simulated time that it advances itself, in step with its drivers."""
+import time
+
+import rospy
+from diagnostic_msgs.msg import DiagnosticStatus
+from rosgraph_msgs.msg import Clock as ClockMessage
+from rospy.impl import simtime
+
+from rbx1_nav.config import ConfigError, Section
+from rbx1_nav.ros.base.clocks import FollowedClock, RealTimeClock, wait_for_beat
+from rbx1_nav.ros.base.driving_nodes import DrivingNodes
+from rbx1_nav.ros.node import life
+from rbx1_nav.schedule import CLOCK_STEP
+from rbx1_nav.simulation.lockstep import Lockstep
+from rbx1_nav.units import SECOND
+
+
+def read_clock(rate):
+    """The clock that the private parameters real_time_factor, clock_step and strict, and /use_sim_time ask for.
+
+    rate: of the odometry, Hz. Raises ConfigError.
+    """
+    names = ('real_time_factor', 'clock_step', 'strict')
+    section = Section({name: rospy.get_param('~' + name) for name in names if rospy.has_param('~' + name)})
+    step = section.number('clock_step', 0.001, 0.1, CLOCK_STEP, 'a time', 's')
+    strict = section.flag('strict', False)
+    if 'real_time_factor' in section.values:
+        factor = section.number('real_time_factor', 0.01, 1000)
+        if rospy.rostime.is_wallclock():
+            raise ConfigError('real_time_factor: %g: expected /use_sim_time to be true' % factor)
+        return OwnClock(factor, rate, round(step * SECOND), strict)
+    if strict or 'clock_step' in section.values:
+        raise ConfigError('%s: expected a simulated clock of this node: real_time_factor is not set'
+                          % ('strict: true' if strict else 'clock_step: %g' % step))
+    return RealTimeClock(rate) if rospy.rostime.is_wallclock() else FollowedClock(rate)
+
+
+class OwnClock(FollowedClock):
+    """Simulated time that this node advances: at most `factor` times as fast as real time, in step with the drivers."""
+
+    def __init__(self, factor, rate, period, strict):
+        """factor, rate: see read_clock(); period: of the clock, ns; strict: whether a driver that is not in step is an
+        error."""
+        super().__init__(rate)
+        self.factor = factor
+        self.period = period
+        self.strict = strict
+        self.publisher = rospy.Publisher('/clock', ClockMessage, queue_size=10, tcp_nodelay=True)
+        # rospy subscribes each node to /clock; this one knows the time, and to be sent it costs a sixth of a tick
+        simtime._clock_sub.unregister()     # pylint: disable=protected-access
+        self.lockstep = None
+        self.not_in_step = {}   # reasons, by the name of the node
+
+    def set_driver(self, apply, connections):
+        """See above."""
+        super().set_driver(apply, connections)
+        nodes = DrivingNodes(rospy.resolve_name('cmd_vel'), connections, lambda: self.publisher.impl.connections)
+        self.lockstep = Lockstep(apply, self.report, nodes, life.end_requested.is_set)
+
+    def report(self, name, reason):
+        """A node is not in step. Raises ROSException if that is an error."""
+        if self.strict:
+            raise rospy.ROSException('strict: %s %s: expected nodes that are in step with /clock' % (name, reason))
+        self.not_in_step[name] = reason
+        rospy.logwarn('%s %s: not in step with /clock. The clock no longer waits for it, and where the robot ends depends '
+                      'on the speed of the machine. Expected a node that sleeps on simulated time, as rospy.Rate does',
+                      name, reason)
+
+    def command(self, twist, command):
+        """See above: at the tick at which it was sent."""
+        header = twist._connection_header       # one object per connection
+        self.lockstep.receive(header, header['callerid'], command)
+
+    def diagnose(self, status):
+        """See above."""
+        if self.not_in_step:
+            status.mergeSummary(DiagnosticStatus.WARN, 'Not in step with /clock: ' + ', '.join(self.not_in_step))
+        status.add('Nodes not in step with /clock',
+                   '; '.join('%s %s' % each for each in self.not_in_step.items()) or 'none')
+
+    def run(self, step):
+        """See above."""
+        beat = time.monotonic()
+        while not life.end_requested.is_set():
+            self.lockstep.begin_tick()
+            self.time += self.period
+            rospy.rostime._set_rostime(self.stamp())    # pylint: disable=protected-access
+            self.publisher.publish(self.stamp())
+            if self.schedule.due(self.time):
+                step()
+            self.lockstep.end_tick()
+            beat = wait_for_beat(beat, self.period / SECOND / self.factor)

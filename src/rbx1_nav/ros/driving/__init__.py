@@ -1,0 +1,1 @@
+"""What a driving script uses."""

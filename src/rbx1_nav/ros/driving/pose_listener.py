@@ -1,0 +1,130 @@
+"""The robot's pose by tf2, for a driving script that measures its way."""
+from math import atan2
+import time
+
+import rospy
+from std_msgs.msg import Empty
+import tf2_ros
+import yaml
+
+from rbx1_nav.control.legs import is_reachable
+from rbx1_nav.robot.kinematics import Pose
+from rbx1_nav.ros.node.life import end_requested, sleep
+from rbx1_nav.units import wrap_angle
+
+MAX_AGE = 0.5       # s: older transforms are not used
+BASE_FRAMES = ('base_footprint', 'base_link')   # usual names of a robot's base, REP 105 and REP 120
+
+
+def format_pose(pose):
+    """A Pose as text."""
+    return '(%.3f m, %.3f m, %.3f rad)' % (pose.x, pose.y, wrap_angle(pose.yaw))
+
+
+class LostTransform(Exception):
+    """There is no recent transform. The text names the frames."""
+
+
+class PoseListener:
+    """Looks up the pose of the robot's base in a frame."""
+
+    def __init__(self, odom_frame, base_frame, linear_speed, angular_speed):
+        """base_frame: a name; None for the first of BASE_FRAMES that exists; the robot's speeds: m/s, rad/s."""
+        self.speeds = linear_speed, angular_speed
+        self.odom_frame = odom_frame
+        self.base_frames = [base_frame] if base_frame else BASE_FRAMES
+        self.buffer = tf2_ros.Buffer()
+        self.listener = tf2_ros.TransformListener(self.buffer)
+        self.reset = False  # whether the base was reset
+        self.reset_sub = rospy.Subscriber('reset_odometry', Empty, self._on_reset)
+        self.before = None  # (stamp in s, Pose) of the last transform, None until a pose was returned
+        self.last = None    # the same, None also after a rest
+        self.velocity = Pose(0.0, 0.0, 0.0)     # between the last two transforms, m/s and rad/s
+
+    @property
+    def base_frame(self):
+        """The robot's frame, or the frames that it may be."""
+        return ' or '.join(self.base_frames)
+
+    def pose(self):
+        """The Pose now, extrapolated from the last two transforms; yaw not wrapped.
+
+        Raises LostTransform, and ROSException if the base was reset since the first pose, or the pose has jumped.
+        """
+        if self.reset:
+            raise rospy.ROSException('The base was reset in mid-run: its pose is no longer measured from the start')
+        transform = self._look_up()
+        stamp = transform.header.stamp.to_sec()
+        age = rospy.get_time() - stamp
+        if not -MAX_AGE <= age <= MAX_AGE:
+            raise LostTransform('The last transform from %s to %s is %.2f s old'
+                                % (self.odom_frame, transform.child_frame_id, age))
+        position, rotation = transform.transform.translation, transform.transform.rotation
+        pose = Pose(position.x, position.y, 2 * atan2(rotation.z, rotation.w))
+        self._check_jump(stamp, pose)
+        self._update(stamp, pose)
+        return Pose(*(value + rate * max(age, 0.0) for value, rate in zip(self.last[1], self.velocity)))
+
+    def forget_velocity(self):
+        """To be called when the robot was stopped: it does not move on as it did before."""
+        self.last = None
+
+    def wait(self, timeout, check=lambda: None):
+        """pose() as soon as there is one. check(): called again and again, and may raise.
+
+        Raises ROSException after `timeout` s of wall time, ROSInterruptException.
+        """
+        deadline = time.monotonic() + timeout
+        log_time = time.monotonic() + 0.5
+        while True:
+            try:
+                return self.pose()
+            except LostTransform as error:
+                if time.monotonic() > deadline:
+                    raise rospy.ROSException("Timed out after %g s waiting for the robot's pose: %s" % (timeout, error))
+                if time.monotonic() > log_time:
+                    log_time += 5
+                    rospy.loginfo("Waiting for the robot's pose: %s", error)
+            sleep(0.02)
+            check()
+            if end_requested.is_set():
+                raise rospy.ROSInterruptException('shutdown requested')
+
+    def _on_reset(self, _):
+        self.reset = self.before is not None
+
+    def _update(self, stamp, pose):
+        elapsed = stamp - self.last[0] if self.last else -1.0
+        if elapsed < 0:
+            self.velocity = Pose(0.0, 0.0, 0.0)
+        elif elapsed > 0:
+            before = self.last[1]
+            self.velocity = Pose((pose.x - before.x) / elapsed, (pose.y - before.y) / elapsed,
+                                 wrap_angle(pose.yaw - before.yaw) / elapsed)
+        self.last = stamp, pose
+
+    def _check_jump(self, stamp, pose):
+        """Raises ROSException if the robot cannot have got here since the last transform."""
+        if self.before and not is_reachable(self.before[1], pose, stamp - self.before[0], *self.speeds):
+            raise rospy.ROSException('The pose of %s in %s jumped from %s to %s: was the base restarted?' % (
+                self.base_frame, self.odom_frame, format_pose(self.before[1]), format_pose(pose)))
+        self.before = stamp, pose
+
+    def _look_up(self):
+        for frame in self.base_frames:
+            try:
+                transform = self.buffer.lookup_transform(self.odom_frame, frame, rospy.Time(0))
+            except tf2_ros.TransformException:
+                continue
+            self.base_frames = [frame]      # from now on this one
+            return transform
+        raise LostTransform('There is no transform from %s to %s%s' % (
+            self.odom_frame, self.base_frame, self._known_frames()))
+
+    def _known_frames(self):
+        """The end of a message that lists the frames that exist, if one of ours does not."""
+        tree = yaml.safe_load(self.buffer.all_frames_as_yaml()) or {}
+        frames = set(tree) | {frame['parent'] for frame in tree.values()} if tree else set()
+        if not frames or self.odom_frame in frames and frames.intersection(self.base_frames):
+            return ''
+        return '; frames that exist: %s' % ', '.join(sorted(frames))

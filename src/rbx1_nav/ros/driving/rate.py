@@ -1,0 +1,95 @@
+"""Keeps time for a driving script, on the wall clock or on simulated time.
+
+A driving script publishes from its main thread only. A request to end the node reaches it as an exception from its next
+sleep() or pause(), and the script itself stops the robot.
+"""
+import time
+
+import rospy
+
+from rbx1_nav.ros.node.life import end_requested, sleep
+from rbx1_nav.units import SECOND
+
+MAX_DELAY = SECOND      # ns
+FREE_TICKS = 25     # at the start of a motion, the base's clock may run ahead until the base has seen that it begins
+
+
+def now():
+    """ns of simulated time, or of the monotonic clock."""
+    return time.monotonic_ns() if rospy.rostime.is_wallclock() else rospy.get_rostime().to_nsec()
+
+
+def _wait_until(end, longest, listeners):
+    """Wait until now() is `end` (ns), but no longer than `longest` (ns) on a clock that jumped back.
+
+    Raises ROSInterruptException as soon as the node is to end, and ROSException as Listeners.check(): a clock that
+    stands still may have ended with the base.
+    """
+    listeners.wait_for_room()
+    warn_time = time.monotonic() + 5
+    last = None
+    while True:
+        if end_requested.is_set():
+            raise rospy.ROSInterruptException('shutdown requested')
+        listeners.check()
+        time_now = now()
+        end = min(end, time_now + longest)
+        if time_now >= end:
+            return
+        if rospy.rostime.is_wallclock():
+            sleep((end - time_now) / SECOND)
+            continue
+        clock_moved = rospy.rostime.get_rostime_cond()
+        with clock_moved:
+            if now() == time_now:
+                clock_moved.wait(0.05)
+        if time_now != last:
+            last, warn_time = time_now, time.monotonic() + 5
+        elif time.monotonic() > warn_time:
+            warn_time += 5
+            rospy.logwarn('/use_sim_time is true, but the time on /clock stands still')
+
+
+def pause(seconds, listeners):
+    """Wait for `seconds` of ROS time. listeners: see wait_for_subscribers().
+
+    Raises ROSInterruptException as soon as the node is to end, and ROSException if a listener no longer takes commands.
+    """
+    duration = round(seconds * SECOND)
+    _wait_until(now() + duration, duration, listeners)
+
+
+class Rate:
+    """rospy.Rate for commands: ends as soon as the node is to end, and never lets two ticks follow at once.
+
+    A delay is made up for over the next ticks, each at least 0.6 periods long: otherwise a base could receive two
+    commands in one step. A delay of more than MAX_DELAY is an error: the base has stopped meanwhile.
+    """
+
+    def __init__(self, hz, listeners):
+        """hz: ticks per second of ROS time, the first one a period from now; listeners: see wait_for_subscribers().
+
+        Raises ROSException if simulated time does not tick as often.
+        """
+        if not rospy.rostime.is_wallclock():
+            step = listeners.clock_step
+            if hz * step > 1 + 1e-9:
+                raise rospy.ROSException('%s/rate: %g: expected at most %g Hz on simulated time: the clock ticks every %g s'
+                                         % (rospy.get_name(), hz, 1 / step, step))
+        self.listeners = listeners
+        self.period = round(SECOND / hz)
+        self.due = self.next = now() + self.period      # without delays, and with them
+        self.free_ticks = FREE_TICKS if listeners.clock else 0
+
+    def sleep(self):
+        """Wait for the next tick. Raises as pause(), and ROSException for a delay that is too long."""
+        _wait_until(self.next, self.period, self.listeners)
+        time_now = now()
+        if self.free_ticks:
+            self.free_ticks -= 1
+            self.due = time_now
+        if time_now - self.due > MAX_DELAY:
+            raise rospy.ROSException('A command is %.1f s late: expected at most %g s, after which a base stops'
+                                     % ((time_now - self.due) / SECOND, MAX_DELAY / SECOND))
+        self.due = min(self.due, time_now) + self.period
+        self.next = max(self.due, time_now + self.period * 6 // 10)

@@ -1,0 +1,105 @@
+"""Waits for the subscribers of a topic: what is published before they are connected is lost."""
+import threading
+import time
+
+import rosgraph
+import rospy
+
+from rbx1_nav.ros.driving.listeners import Listeners, Peer
+from rbx1_nav.ros.network import refusals
+from rbx1_nav.ros.network.master import Server, call
+from rbx1_nav.ros.node.life import end_requested, sleep
+
+
+class _SubscriberMonitor(threading.Thread):
+    """Keeps the list of live subscribers of a topic up to date, until it is stopped."""
+
+    def __init__(self, topic):
+        super().__init__(daemon=True)
+        self.topic = topic
+        # (address, commands that it has refused) of each live subscriber by its name; None until the master has answered
+        self.live = None
+        self.dead = set()       # addresses
+        self.publishers = {}    # names of the nodes that publish a topic
+        self.odometry = []      # topics
+        self.rounds = 0         # how often all of that was asked for
+        self.done = threading.Event()
+
+    def run(self):
+        master = rosgraph.get_master_uri()
+        while not self.done.is_set():
+            try:
+                publishers, subscribers, _ = call(master, 'getSystemState')
+                self.publishers = dict(publishers)
+                self.odometry = [topic for topic, kind in call(master, 'getTopicTypes') if kind == 'nav_msgs/Odometry']
+                names = {name for topic, nodes in subscribers if topic == self.topic for name in nodes}
+                live = {name: self.find(master, name) for name in names}
+                self.live = {name: found for name, found in live.items() if found}
+                self.rounds += 1
+            except Exception as error:      # pylint: disable=broad-except
+                rospy.logwarn_throttle(5, 'The master at %s does not answer: %s' % (master, error))
+            self.done.wait(0.1)
+
+    def find(self, master, name):
+        """(address, commands that it has refused) of a node that answers, else None; an address that did not answer is not
+        called again."""
+        address = None
+        try:
+            address = call(master, 'lookupNode', name)
+            if address not in self.dead:
+                with Server(address) as server:
+                    return address, refusals.ask(server)[0]
+        except Exception:       # pylint: disable=broad-except
+            self.dead.add(address)
+            rospy.logwarn('%s is registered as a subscriber of %s but does not answer: ignored '
+                          '(`rosnode cleanup` removes it)', name, self.topic)
+        return None
+
+    def peer(self, name):
+        """The Peer of this name."""
+        uri, refused = self.live.get(name, (None, None))
+        return Peer(name, uri, any(name in self.publishers.get(topic, ()) for topic in self.odometry),
+                    name in self.publishers.get('/clock', ()), refused)
+
+
+def connected_nodes(publisher):
+    """Names of the nodes that are connected to a publisher now."""
+    return {connection.endpoint_id for connection in publisher.impl.connections}
+
+
+def wait_for_subscribers(publisher, timeout):
+    """Wait until all live subscribers of a publisher's topic are connected to it, and simulated time has begun.
+
+    All of them and not just the first: a recorder is not a base. Returns them as Listeners.
+
+    Raises ROSException if there is none, or one is missing, after `timeout` seconds of wall time, and
+    ROSInterruptException as soon as the node is to end.
+    """
+    topic = publisher.resolved_name
+    monitor = _SubscriberMonitor(topic)
+    monitor.start()
+    deadline = time.monotonic() + timeout
+    log_time = time.monotonic() + 0.5
+    before, known = set(), 0
+    try:
+        while True:
+            connected = connected_nodes(publisher)
+            if connected != before:     # a round that is under way may have begun before
+                before, known = connected, monitor.rounds + 2
+            if connected and monitor.rounds >= known and monitor.live.keys() <= connected and rospy.get_rostime():
+                return Listeners(publisher, [monitor.peer(name) for name in connected])
+            missing = ', '.join(sorted((monitor.live or {}).keys() - connected))
+            what = ('the master to list the subscribers of %s' % topic
+                    if monitor.live is None or connected and monitor.rounds < known
+                    else '%s to connect to %s' % (missing, topic) if missing
+                    else 'a base that subscribes to %s' % topic if not connected else 'the time on /clock')
+            if time.monotonic() > deadline:
+                raise rospy.ROSException('Timed out after %g s waiting for %s' % (timeout, what))
+            if time.monotonic() > log_time:
+                log_time += 5
+                rospy.loginfo('Waiting for %s', what)
+            sleep(0.02)
+            if end_requested.is_set():
+                raise rospy.ROSInterruptException('shutdown requested')
+    finally:
+        monitor.done.set()

@@ -1,0 +1,93 @@
+"""Publishes the combined odometry as a pose, as odometry and as a transform."""
+import time
+
+import rospy
+from geometry_msgs.msg import PoseWithCovarianceStamped
+from nav_msgs.msg import Odometry
+from tf2_msgs.msg import TFMessage
+
+from rbx1_nav.robot.kinematics import relative_frame
+from rbx1_nav.ros import messages
+from rbx1_nav.ros.filter.estimated_twist import estimate_twist
+from rbx1_nav.schedule import Schedule
+from rbx1_nav.units import SECOND
+
+PATIENCE = 2 * SECOND   # ns after the first estimate, in which a transform to the robot's frame may arrive
+MIN_WAIT = 1.0          # s of wall time for the same: a connection takes time, however fast simulated time passes
+
+
+class EstimatePublisher:
+    """Publishes Estimates at a given rate.
+
+    The transform leads from the output frame to the robot's, as in robot_pose_ekf. A frame has one parent: if another
+    node publishes a transform to the robot's frame, ours leads to the frame of the odometry instead.
+    """
+
+    def __init__(self, parameters, tree, log):
+        """parameters: those of the filter; tree: FrameTree; log(text): logs a line."""
+        self.output_frame = parameters['output_frame']
+        self.publish_tf = parameters['publish_tf']
+        self.tree = tree
+        self.log = log
+        self.schedule = Schedule(parameters['freq'])
+        self.pose_pub = rospy.Publisher('~odom_combined', PoseWithCovarianceStamped, queue_size=10)
+        self.odometry_pub = rospy.Publisher('~odometry', Odometry, queue_size=10)
+        self.tf_pub = rospy.Publisher('/tf', TFMessage, queue_size=100, tcp_nodelay=True)
+        self.frames = None, None    # of the odometry and of the robot
+        self.published = 0          # poses
+        self.last = self.before = None      # the latest Estimate, and the one that it follows without a jump
+        self.filter = None                  # Filter of `last`
+        self.placed = False                 # whether the next Estimate may be at another place, by set_pose
+        self.restart()
+
+    def restart(self):
+        """Look anew who publishes the transform to the robot's frame."""
+        self.tree.forget(self.frames[1])
+        self.child = None                       # frame that the transform leads to, None until that is known
+        self.settled = not self.publish_tf      # whether no transform of other nodes can make a difference
+        self.first = None                       # (ns, s of wall time) of the first estimate
+
+    def update(self, combined, odom_frame, base_frame):
+        """Publish the estimate of a CombinedOdometry if it is due. The frames are those of its odometry."""
+        estimate = combined.estimate
+        if estimate is not self.last:
+            self.before = None if self.placed or combined.filter is not self.filter else self.last
+            self.last, self.filter = estimate, combined.filter
+        self.placed = combined.placed is not None
+        if not self.schedule.due(estimate.stamp):
+            return
+        stamp = rospy.Time(0, estimate.stamp)
+        pose = messages.planar_pose(stamp, self.output_frame, estimate.pose, estimate.covariance)
+        self.pose_pub.publish(pose)
+        self.published += 1
+        if self.odometry_pub.get_num_connections():     # the message takes longer to make than the pose
+            twist = estimate_twist(combined, self.before) if self.before else None
+            self.odometry_pub.publish(messages.odometry_of_estimate(pose, base_frame, twist))
+        if not self.publish_tf:
+            return
+        if self.frames != (odom_frame, base_frame):
+            self.frames = odom_frame, base_frame
+            self.restart()
+        self._choose_child(estimate.stamp, odom_frame, base_frame)
+        if self.child:
+            pose = (estimate.pose if self.child == base_frame else relative_frame(estimate.pose, estimate.odom.pose))
+            self.tf_pub.publish([messages.transform(stamp, self.output_frame, self.child, pose)])
+
+    def _choose_child(self, now, odom_frame, base_frame):
+        """Set `child`. now: ns."""
+        other = self.tree.publisher(base_frame)
+        if self.output_frame == odom_frame:
+            self._set_child(base_frame, 'as the odometry has the same frame')
+            self.settled = True
+        elif other:
+            self._set_child(odom_frame, '%s publishes the one from %s to %s' % (other[1], other[0], base_frame))
+            self.settled = True
+        elif self.first is None or now < self.first[0]:     # also after a clock that has jumped back
+            self.first = now, time.monotonic()
+        elif now - self.first[0] >= PATIENCE and time.monotonic() - self.first[1] >= MIN_WAIT:
+            self._set_child(base_frame, 'no other node publishes one to %s' % base_frame)
+
+    def _set_child(self, child, why):
+        if child != self.child:
+            self.child = child
+            self.log('Transform from %s to %s: %s' % (self.output_frame, child, why))

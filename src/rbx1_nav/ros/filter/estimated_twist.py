@@ -1,0 +1,61 @@
+"""The robot's velocity from two consecutive estimates."""
+from collections import namedtuple
+from math import cos, sin
+
+from rbx1_nav.estimation.combined_odometry import DROPOUT_SPEED
+from rbx1_nav.estimation.filter import BIAS, SCALE, STRAIGHT, TURNING
+from rbx1_nav.robot.readings import MEASURED
+from rbx1_nav.simulation.floor_noise import CELL_TRAVELLED, CELL_TURNED
+from rbx1_nav.units import SECOND, wrap_angle
+
+Twist = namedtuple('Twist', 'forward left turn forward_variance left_variance turn_variance')
+Twist.__doc__ = "Mean velocities in the robot's frame (m/s, m/s, rad/s) and their variances."
+
+
+def _of_floor(noise, speed, elapsed, cell):
+    """The variance of a speed by a floor's noise: it is constant within a cell, and averages out over several cells."""
+    return noise ** 2 * speed ** 2 / max(cell, speed * elapsed)
+
+
+def estimate_twist(combined, before):
+    """The Twist from the Estimate `before` to the latest one of a CombinedOdometry; None if their stamps are equal.
+
+    The displacement is the odometry's, reduced by the estimated slip, and the turn is the filter's. An odometry dropout
+    leaves the displacement unknown: then it is 0, with the uncertainty that the filter assumes for a dropout. So does a
+    robot that is carried, because its wheels do not measure its motion.
+    """
+    last, ekf = combined.estimate, combined.filter
+    elapsed = (last.stamp - before.stamp) / SECOND
+    if elapsed <= 0:
+        return None
+    state, variance = ekf.state, lambda index: float(ekf.root[index] @ ekf.root[index])
+    turn = wrap_angle(last.pose.yaw - before.pose.yaw) / elapsed
+    travel_time = (last.odom.stamp - before.odom.stamp) / SECOND
+    forward = left = by_wheels = 0.0
+    forward_variance = left_variance = DROPOUT_SPEED ** 2
+    if travel_time > 0:
+        start, end = before.odom.pose, last.odom.pose
+        turned = wrap_angle(end.yaw - start.yaw)
+        c, s = cos(start.yaw + turned / 2), sin(start.yaw + turned / 2)
+        share = (1 - state[STRAIGHT]) / travel_time
+        dx, dy = end.x - start.x, end.y - start.y
+        forward, left = (dx * c + dy * s) * share, (dy * c - dx * s) * share
+        by_wheels = turned / travel_time
+        if combined.case != 'carried':
+            slip = variance(STRAIGHT)
+            floor = _of_floor(ekf.prior.distance_noise, abs(forward), travel_time, CELL_TRAVELLED)
+            forward_variance = MEASURED + max(last.odom.linear_variance, floor) + slip * forward ** 2
+            left_variance = MEASURED + slip * left ** 2      # wheels do not roll sideways
+
+    imu = combined.last_imu if combined.gyro_used and not combined.timed_out['imu_data'] else None
+    if imu:
+        step = last.stamp - before.stamp
+        averaged = imu.variance * min(1.0, (combined.period or step) / step)     # over the readings of the step
+        turn_variance = averaged + variance(BIAS) + variance(SCALE) * turn ** 2
+        if combined.case == 'contradiction':    # one of them is wrong
+            turn_variance += (by_wheels * (1 - state[TURNING]) - turn) ** 2
+    else:
+        floor = (_of_floor(ekf.prior.heading_noise_turning, abs(by_wheels), elapsed, CELL_TURNED)
+                 + _of_floor(ekf.prior.heading_noise_straight, abs(forward), elapsed, CELL_TRAVELLED))
+        turn_variance = max(last.odom.angular_variance, floor) + variance(TURNING) * turn ** 2
+    return Twist(forward, left, turn, forward_variance, left_variance, MEASURED + turn_variance)

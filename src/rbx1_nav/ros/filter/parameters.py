@@ -1,0 +1,126 @@
+"""The parameters of the filter node, and the floor that it starts with."""
+from math import degrees, radians
+import time
+import xmlrpc.client
+
+import rosgraph
+import rospy
+
+from rbx1_nav.config import ConfigError, Section, show
+from rbx1_nav.estimation.combined_odometry import MAX_AGE, MAX_LEAD, CombinedOdometry
+from rbx1_nav.estimation.filter import UNKNOWN, priors
+from rbx1_nav.estimation.limits import Limits
+from rbx1_nav.ros.network.master import call
+from rbx1_nav.ros.node import resources
+from rbx1_nav.simulation.surfaces import load_surface
+from rbx1_nav.units import SECOND
+
+AUTO = 'auto'       # the surface of the simulated base, or else
+ANY = 'unknown'     # any floor
+DEFAULT = Limits()
+
+
+def read_parameters(params):
+    """A dictionary of all parameters, with the names and defaults of robot_pose_ekf, from those that are set.
+
+    base_footprint_frame: '' unless it is set; limits: Limits; unsupported: a line for each that asks for what the
+    filter does not do. Raises ConfigError.
+    """
+    section = Section(params)
+    prefix = section.frame('tf_prefix', '/') if params.get('tf_prefix') else ''
+    values = dict(
+        freq=section.number('freq', 0.1, 1000, 30.0, 'a rate', 'Hz'),
+        sensor_timeout=section.number('sensor_timeout', 0.01, 1e6, 1.0, 'a time', 's'),
+        diagnostic_period=section.number('diagnostic_period', 0.1, 1e6, 1.0, 'a time', 's'),
+        limits=Limits(
+            section.number('max_speed', 0.01, 1000, DEFAULT.max_speed, 'a speed', 'm/s'),
+            section.number('max_turn_rate', 0.01, 1000, DEFAULT.max_turn_rate, 'a turn rate', 'rad/s'),
+            section.number('max_angular_acceleration', 0.01, 1e4, DEFAULT.max_angular_acceleration,
+                           'an angular acceleration', 'rad/s^2'),
+            radians(section.number('gyro_bias', 0.01, 1000, degrees(DEFAULT.gyro_bias), 'a bias', 'degrees/s')),
+            section.number('gyro_scale_error', 0.0, 0.5, DEFAULT.gyro_scale_error, 'a fraction')),
+        publish_tf=section.flag('publish_tf', True),
+        imu_used=section.flag('imu_used', True),
+        output_frame=_resolve(prefix, section.frame('output_frame', 'odom_combined'), params.get('output_frame')),
+        base_footprint_frame='',
+        default_base_frame=_resolve(prefix, section.frame('base_footprint_frame', 'base_footprint'),
+                                    params.get('base_footprint_frame')),
+        unsupported=[line for asked, line in [
+            (section.flag('vo_used', False), 'vo_used: visual odometry is not supported, and not used'),
+            (section.flag('gps_used', False), 'gps_used: GPS is not supported, and not used'),
+            (section.flag('debug', False), 'debug: no files are written; record the topics with rosbag'),
+            (section.flag('self_diagnose', False), 'self_diagnose: see /diagnostics')] if asked],
+        surface=section.get('surface', AUTO))
+    if not section.flag('odom_used', True):
+        raise ConfigError('odom_used: False: expected true, nothing else measures the distance')
+    if 'base_footprint_frame' in params:
+        values['base_footprint_frame'] = values['default_base_frame']
+        if values['base_footprint_frame'] == values['output_frame']:
+            raise ConfigError('base_footprint_frame: %s: expected a frame other than output_frame'
+                              % show(values['output_frame']))
+    if values['surface'] not in (AUTO, ANY):
+        try:
+            load_surface(values['surface'], resources.surfaces())
+        except ConfigError as error:
+            raise ConfigError('%s; or %s, or %s' % (error, AUTO, ANY))
+    return values
+
+
+def load_parameters():
+    """read_parameters() of this node. As in tf, tf_prefix may also be set in a namespace around it.
+
+    Logs what is asked for and not supported. Raises ROSException with one line.
+    """
+    params = rospy.get_param(rospy.get_name(), {})
+    prefix = search_value('tf_prefix', rospy.get_name(), rospy.get_param)
+    try:
+        values = read_parameters(params if prefix is None else dict(params, tf_prefix=prefix))
+    except ConfigError as error:
+        raise rospy.ROSException('%s/%s' % (rospy.get_name(), error))
+    for line in values['unsupported']:
+        rospy.logwarn('%s', line)
+    return values
+
+
+def search_value(key, node, get):
+    """The value of a parameter of a node or of the nearest namespace around it, None if there is none.
+
+    Unlike rospy.search_param(), it passes over a namespace that has the name of the parameter. get: rospy.get_param.
+    """
+    while node:
+        value = get(rosgraph.names.ns_join(node, key), None)
+        if value is not None and not isinstance(value, dict):
+            return value
+        node = '' if node == '/' else rosgraph.names.namespace(node).rstrip('/') or '/'
+    return None
+
+
+def _resolve(prefix, frame, given):
+    """A frame with the prefix. given: as in the parameter, where a leading slash means that it has none."""
+    return '%s/%s' % (prefix, frame) if prefix and not str(given).startswith('/') else frame
+
+
+def find_prior(name, base, log):
+    """The Priors of the surface of this name, UNKNOWN for ANY; for AUTO, those of the surface of the node `base`, which
+    has a parameter `surface` if it is simulated, or else UNKNOWN. log(function, text): logs a line.
+    """
+    try:
+        if name == AUTO:
+            key, master = base + '/surface', rosgraph.get_master_uri()
+            # not by rospy, which waits for a frozen master for ever
+            name = call(master, 'getParam', key) if call(master, 'hasParam', key) else ANY
+        prior = UNKNOWN if name == ANY else priors(load_surface(name, resources.surfaces()))
+    except (ConfigError, OSError, xmlrpc.client.Error) as error:     # or no answer from the master
+        log(rospy.logwarn, '%s/%s; using %s instead' % (base, error, ANY))
+        name, prior = ANY, UNKNOWN
+    log(rospy.loginfo, 'Floor that the filter starts with: %s' % name)
+    return prior
+
+
+def make_filter(parameters, base, add_line, warn):
+    """The CombinedOdometry for the odometry of the node `base`. parameters: those of the filter; add_line(function,
+    text): logs a line; warn(text): logs a warning."""
+    return CombinedOdometry(find_prior(parameters['surface'], base, add_line),
+                            round(SECOND * parameters['sensor_timeout']), parameters['imu_used'], warn,
+                            time.monotonic_ns, MAX_LEAD if rospy.rostime.is_wallclock() else MAX_AGE,
+                            parameters['limits'])

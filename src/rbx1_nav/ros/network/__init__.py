@@ -1,0 +1,1 @@
+"""What the master, other nodes, their connections and their processes do."""

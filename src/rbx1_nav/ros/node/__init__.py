@@ -1,0 +1,1 @@
+"""The life of a node: command line, parameters, logging, interrupts."""

@@ -1,0 +1,149 @@
+"""The life of a node: it starts and ends without hanging, neither on a lock that a signal interrupted nor on a master.
+
+Signals never interrupt the main thread. A thread waits for them and sets `end_requested`, as does every other way to
+end a node. The main thread checks it, does its last duty, and calls leave(). docs/design.md explains why.
+"""
+import os
+import signal
+import sys
+import threading
+import time
+
+import rosgraph
+import rospy
+from rospy.impl.paramserver import get_param_server_cache
+
+from rbx1_nav.ros.network.master import require_master, wait_for_master
+from rbx1_nav.ros.node.arguments import check_command_line, report_parameters
+from rbx1_nav.ros.node.params import check_before_start, future_name, read_wait_timeout
+
+EXIT_DEADLINE = 1.4         # s of wall time from the request to the end of the process, whatever hangs
+UNREGISTER_TIMEOUT = 0.25   # s of wall time for the master to unregister the node
+MAX_SLEEP = 0.05            # s
+
+# rospy of Debian 11 calls Thread.isAlive() on shutdown, a name that Python 3.9 has removed
+if not hasattr(threading.Thread, 'isAlive'):
+    threading.Thread.isAlive = threading.Thread.is_alive
+
+end_requested = threading.Event()
+_leaving = threading.Event()
+
+
+class _Terminal:
+    """An output stream that survives a closed terminal or a broken pipe."""
+
+    def __init__(self, stream):
+        self._stream = stream
+
+    def __getattr__(self, name):
+        return getattr(self._stream, name)
+
+    def write(self, text):
+        """Write, or drop the text."""
+        self._try(self._stream.write, text)
+        return len(text)
+
+    def flush(self):
+        """Flush, if possible."""
+        self._try(self._stream.flush)
+
+    def _try(self, function, *args):
+        try:
+            function(*args)
+        except OSError:
+            os.dup2(os.open(os.devnull, os.O_WRONLY), self._stream.fileno())
+
+
+def init_node(name, usage, requires_master=False, check=None):
+    """Start the node `name`. From here on, Ctrl-C, kill, a closed terminal and `rosnode kill` set end_requested.
+
+    usage: printed for --help, and for a command line that does not fit the parameters it lists; both end the process.
+    requires_master: whether a master that does not answer is an error. Otherwise the node waits for it, for at most
+    ~wait_timeout if the usage lists this parameter.
+    check(params): raises ConfigError for private parameters that make no sense, before they can end an older node.
+    Raises ROSInterruptException if the node is to end before it is registered, ROSException if the master does not
+    answer, or for a parameter that makes no sense.
+    """
+    sys.stdout, sys.stderr = _Terminal(sys.stdout), _Terminal(sys.stderr)
+    check_command_line(usage)
+    if requires_master:
+        require_master()
+    read_end, write_end = os.pipe()
+    os.set_blocking(write_end, False)
+    signal.set_wakeup_fd(write_end)     # a signal writes to the pipe; the handler itself does nothing
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        if number != signal.SIGHUP or signal.getsignal(number) is not signal.SIG_IGN:   # as under nohup
+            signal.signal(number, lambda *_: None)
+    threading.Thread(target=_wait_for_signal, args=(read_end,), daemon=True).start()
+    rospy.on_shutdown(_request_end)
+    wait_for_master(future_name(name), lambda: read_wait_timeout(name, usage), end_requested.is_set, sleep)
+    if check and not end_requested.is_set():
+        check_before_start(name, check)
+    if end_requested.is_set():
+        raise rospy.ROSInterruptException('shutdown requested')
+    try:
+        rospy.init_node(name, disable_signals=True)
+    except (OSError, rospy.ROSInitException) as error:
+        if not end_requested.is_set():
+            raise rospy.ROSException('The master at %s does not answer (%s): expected a running roscore'
+                                     % (rosgraph.get_master_uri(), error))
+    if end_requested.is_set():
+        raise rospy.ROSInterruptException('shutdown requested')
+    # For each line that is logged, rospy asks the master for this parameter. A frozen master would block the node, and
+    # a master that has given the name to another node would register this one again. The cached value avoids the call.
+    get_param_server_cache().set('/rosout_disable_topics_generation', False)
+    report_parameters(usage)
+
+
+def _wait_for_signal(pipe):
+    os.read(pipe, 1)
+    _set_end_requested()
+
+
+def _set_end_requested():
+    end_requested.set()
+    last_resort = threading.Timer(EXIT_DEADLINE, os._exit, [1])
+    last_resort.daemon = True
+    last_resort.start()
+
+
+def _request_end():
+    """Called by rospy on shutdown, in a thread of its own; publishers stay open until it returns."""
+    _set_end_requested()
+    _leaving.wait(EXIT_DEADLINE)
+
+
+def sleep(seconds):
+    """Sleep for `seconds` of wall time, at most MAX_SLEEP. To be called in a loop that checks end_requested.
+
+    end_requested.wait() would not do: before Python 3.11 it follows a system clock that is stepped.
+    """
+    time.sleep(max(0, min(seconds, MAX_SLEEP)))
+
+
+def leave(status):
+    """End the process with an exit status. Unregisters the node, but does not wait for a master that hangs."""
+    time.sleep(0.02)    # for the last line to reach /rosout
+    _leaving.set()
+    threading.Thread(target=rospy.signal_shutdown, args=('done',), daemon=True).start()
+    give_up = time.monotonic() + UNREGISTER_TIMEOUT
+    while not rospy.is_shutdown() and time.monotonic() < give_up:
+        time.sleep(0.01)
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(status)
+
+
+def run(main):
+    """Run main(), which starts a node and returns an exit status, and end the process with it."""
+    try:
+        status = main()
+    except rospy.ROSInterruptException:     # before it was registered
+        status = 0
+    except rospy.ROSException as error:
+        rospy.logfatal('%s', error)
+        status = 1
+    except OSError as error:
+        rospy.logfatal('The master at %s does not answer (%s)', rosgraph.get_master_uri(), error)
+        status = 1
+    leave(status)

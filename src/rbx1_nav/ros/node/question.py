@@ -1,0 +1,39 @@
+"""Asks the user for something that no sensor measures."""
+import os
+import select
+import sys
+
+import rospy
+
+from rbx1_nav.config import ConfigError
+from rbx1_nav.ros.node.life import end_requested
+
+
+def ask(question, check):
+    """Ask on the terminal until check(text) accepts the answer; returns what it returns.
+
+    check raises ConfigError for an answer that makes no sense. Returns None if there is nobody to answer: no terminal,
+    or its end. Raises ROSInterruptException as soon as the node is to end; input() would not notice.
+    """
+    source, text = sys.stdin.fileno(), b''
+    while True:
+        print(question, end=' ', flush=True)
+        while b'\n' not in text:
+            if end_requested.is_set():
+                print(flush=True)
+                raise rospy.ROSInterruptException('shutdown requested')
+            if not select.select([source], [], [], 0.05)[0]:
+                continue
+            try:
+                read = os.read(source, 4096)
+            except OSError:         # the terminal belongs to another session, as under roslaunch
+                read = b''
+            if not read:
+                print(flush=True)
+                return None
+            text += read
+        answer, _, text = text.partition(b'\n')
+        try:
+            return check(answer.decode(errors='replace').strip())
+        except ConfigError as error:
+            print(error, flush=True)

@@ -1,0 +1,109 @@
+"""A simulated differential-drive base: the gate for commands, the wheels that follow them, odometry, and a gyro."""
+from rbx1_nav.control.gate import CommandGate
+from rbx1_nav.robot.kinematics import ORIGIN, Odometry
+from rbx1_nav.simulation.floor_noise import make_roughness
+from rbx1_nav.simulation.gyro import Gyro, IdealGyro
+from rbx1_nav.simulation.surfaces import draw_run
+from rbx1_nav.simulation.wheels import IdealWheels, Wheels
+from rbx1_nav.units import SECOND
+
+MAX_SPEED_WINDOW = 0.1  # s: the longest time over which encoder counts are averaged to report a speed
+
+
+def make_base(robot, surface, seed):
+    """The SimulatedBase of a Robot on a Surface (None: ideal). seed: an integer that the run's random errors depend
+    on."""
+    wheels, gyro = make_wheels_and_gyro(robot.base_width, surface, seed, min(1 / robot.rate, MAX_SPEED_WINDOW))
+    return SimulatedBase(wheels, CommandGate(robot.limits, robot.timeout), gyro)
+
+
+def make_wheels_and_gyro(base_width, surface, seed, window):
+    """The wheels and the gyro of a robot. base_width: m; surface, seed: see make_base(); window: see Wheels."""
+    if surface is None:
+        return IdealWheels(base_width), IdealGyro()
+    run = draw_run(surface, seed)
+    return Wheels(base_width, surface, run, window, make_roughness(surface, seed)), Gyro(surface, run, seed)
+
+
+class SimulatedBase:
+    """A base on a clock that the caller chooses; all times are in ns.
+
+    A command is in force from its arrival until the next one arrives or until it times out. The pose is the exact
+    integral over those intervals, whenever it is asked for.
+    """
+
+    def __init__(self, wheels, gate, gyro):
+        """wheels: see simulation/wheels.py; gate: a CommandGate; gyro: see simulation/gyro.py."""
+        self.wheels = wheels
+        self.gate = gate
+        self.gyro = gyro
+        self.odometry = Odometry(wheels.base_width)
+        self.left = 0.0         # m, total travel that the left wheel's encoder counted
+        self.right = 0.0        # m
+        self.now = 0            # ns, up to where the motion is integrated
+        self._gyro_time = None  # ns, of the last reading
+
+    @property
+    def velocity(self):
+        """The speeds that the encoders report, m/s and rad/s."""
+        return self.wheels.velocity(self.gate.linear, self.gate.angular)
+
+    @property
+    def true_velocity(self):
+        """The speeds of the robot itself, m/s and rad/s."""
+        return self.wheels.true_velocity(self.gate.linear, self.gate.angular)
+
+    @property
+    def standing(self):
+        """Whether the robot is at a standstill and no command will change that."""
+        return not self.gate.moving and self.wheels.at_rest
+
+    def command(self, now, linear, angular, others=(), _sender=''):
+        """Put a command in force from `now` on; arguments, result and errors as of CommandGate.command()."""
+        self.advance(now)
+        return self.gate.command(now, linear, angular, others)
+
+    def advance(self, now):
+        """Integrate the motion up to `now`. Returns whether the command in force timed out on the way.
+
+        If the clock jumped back, the command in force is dropped: its age is no longer known.
+        """
+        gate = self.gate
+        timed_out = False
+        if now < self.now:
+            gate.forget()
+        elif gate.moving:
+            expiry = gate.expiry
+            self._move(min(now, expiry) - self.now)
+            timed_out = now >= expiry
+            if timed_out:
+                gate.halt()
+                self._roll_out(now - expiry)
+        else:
+            self._roll_out(now - self.now)
+        self.now = now
+        return timed_out
+
+    def read_gyro(self):
+        """The gyro's Reading since the last call; None if no time has passed, or at the first call."""
+        last, self._gyro_time = self._gyro_time, self.now
+        if last is None or self.now <= last:
+            return None
+        return self.gyro.read(self.wheels.truth.pose.yaw, (self.now - last) / SECOND, self.standing)
+
+    def reset(self):
+        """Stand still at the origin."""
+        self.gate.halt()
+        self.wheels.reset()
+        self.gyro.reset()
+        self.odometry.pose = ORIGIN
+
+    def _roll_out(self, duration):
+        if not self.wheels.at_rest:
+            self._move(duration)
+
+    def _move(self, duration):
+        left, right = self.wheels.travel(self.gate.linear, self.gate.angular, duration / SECOND)
+        self.left += left
+        self.right += right
+        self.odometry.update(left, right)

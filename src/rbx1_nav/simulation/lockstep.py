@@ -1,0 +1,222 @@
+"""Keeps a simulated clock in step with the nodes that drive by it.
+
+A tick is over when all that it has woken sleeps again: every driver has sent what it sends at this tick, and it has
+arrived. Only then does the next tick begin. So a run has the same result on every machine and at every speed, whatever
+the rates of the drivers are. That takes an eye on their processes, the `nodes`. Where it is not possible, answers.py
+counts commands instead.
+"""
+from collections import deque
+from functools import partial
+from threading import Condition
+from time import monotonic, sleep
+
+from rbx1_nav.simulation.answers import BURST_TIME, Answers, NotInStep
+from rbx1_nav.simulation.stream import Stream
+
+PATIENCE = 5.0      # s of wall time that a tick waits for a node
+LOOK = 2e-5         # s of wall time between two looks at the nodes
+FRESH = 2e-4        # s of wall time after which a look is repeated
+PROOF = 3           # commands of a stream that no tick has prompted: a single one may be the stop after Ctrl-C
+STEADY = 25         # ticks: a driver that has sent one command at each of them will do so at the next
+ANSWER_TIME = 0.005     # s of wall time that such a command is waited for before a look
+
+
+class Driver:
+    """One connection that brings commands."""
+
+    def __init__(self, connection, name):
+        self.connection = connection
+        self.name = name
+        self.seen = None            # whether its process can be seen; None: not known yet
+        self.answers = None         # an Answers if not
+        self.stream = None          # a Stream, from its first motion to its next stop
+        self.released = False       # is not in step: its commands take effect as they arrive
+
+    def steady(self, tick):
+        """Whether it has sent one command at each of the last ticks before this one, and so will send one at this."""
+        return self.stream is not None and self.stream.in_a_row >= STEADY and self.stream.last == tick - 1
+
+
+class Lockstep:
+    """Applies commands, tuples that begin with linear (m/s) and angular (rad/s), at the tick at which they were sent."""
+
+    def __init__(self, apply, report, nodes, ended):
+        """apply(command): puts a command in force; report(name, reason): a node is not in step; nodes: see
+        ros/base/driving_nodes.py; ended(): whether not to wait any more."""
+        self.apply = apply
+        self.report = report
+        self.nodes = nodes
+        self.ended = ended
+        self.drivers = {}       # by the id of the connection, which the Driver keeps alive: so the id stays unique
+        self.arrived = []       # (driver, command, whether a tick may have prompted it), not in force yet
+        self.delayed = []       # commands for the next tick
+        self.tick = 0           # number of the present tick
+        self.ticks = deque()    # s of the monotonic clock: those of the last BURST_TIME
+        self.over = True        # whether it is over
+        self.over_since = 0.0   # s of the monotonic clock
+        self.changed = Condition()
+
+    def receive(self, connection, name, command):
+        """Accept a command that just arrived, in any thread. connection: any object; name: of the node that sent it."""
+        with self.changed:
+            driver = self.drivers.get(id(connection))
+            if not driver:
+                self.drivers = {key: each for key, each in self.drivers.items()
+                                if each.answers and each.answers.queue or self.nodes.connected(each.connection)}
+                driver = self.drivers[id(connection)] = Driver(connection, name)
+            if driver.released:
+                self.apply(command)
+            elif driver.answers:
+                driver.answers.receive(command)
+            else:
+                self.arrived.append((driver, command, not self.over))
+            self.changed.notify()
+
+    def begin_tick(self):
+        """Call before each tick. A node that has woken by itself is still at the tick before."""
+        waiting = self.nodes.drivers - {driver.name for driver in self._seen_drivers() if driver.stream}
+        if self.nodes.connecting() or waiting and monotonic() - self.over_since > FRESH:
+            self._wait_until_asleep()
+        self.nodes.mark(waiting)
+        while not self._begin():
+            self._wait_until_asleep()
+            self._apply_arrived()
+            self.nodes.mark(waiting)
+
+    def end_tick(self):
+        """Call after each tick: waits for the commands that are still to come, and puts them in force."""
+        delayed, self.delayed = self.delayed, []
+        for command in delayed:
+            self.apply(command)
+        if self._all_have_answered():
+            self._wait_while_awake(self.nodes.awake_drivers)
+        else:
+            self._wait_until_asleep()
+        self._apply_arrived()
+        self.over_since = monotonic()
+        for driver in list(self.drivers.values()):
+            if driver.answers:
+                self._collect(driver)
+
+    def _begin(self):
+        """Begin the next tick, unless there are commands of the present one."""
+        with self.changed:
+            if self.arrived:
+                return False
+            self.over = False
+            self.tick += 1
+            now = monotonic()
+            self.ticks.append(now)
+            while self.ticks[0] < now - BURST_TIME:
+                self.ticks.popleft()
+            return True
+
+    def _seen_drivers(self):
+        """The drivers that are in step and whose process is looked at."""
+        return [driver for driver in list(self.drivers.values())
+                if driver.seen and not driver.released and driver.name in self.nodes.drivers]
+
+    def _wait_until_asleep(self):
+        """Wait until all that a tick or anything else has woken sleeps again."""
+        self._wait_while_awake(self.nodes.awake)
+        polling = self.nodes.polling()      # these may not have seen the tick yet
+        if polling:
+            while self.nodes.still_polling(polling) and not self.ended():
+                sleep(LOOK)
+            self._wait_while_awake(self.nodes.awake)
+
+    def _wait_while_awake(self, look):
+        """look(): the name of a node that is awake, or None."""
+        deadline = monotonic() + PATIENCE
+        while not self.ended():
+            name = look()
+            if not name:
+                return
+            if monotonic() > deadline:
+                self._give_up(name)
+                deadline += PATIENCE
+            sleep(LOOK)
+
+    def _all_have_answered(self):
+        """Whether all nodes that may drive are steady, and each has sent its command: nobody else need be looked at."""
+        self.nodes.update()     # a node that has connected since must be looked at
+        drivers = self._seen_drivers()
+        if not drivers or len(drivers) < len(self.nodes.drivers):
+            return False
+        if not all(driver.steady(self.tick) for driver in drivers):
+            return False
+        with self.changed:
+            return self.changed.wait_for(
+                lambda: self.ended() or {id(each[0]) for each in self.arrived} >= set(map(id, drivers)), ANSWER_TIME)
+
+    def _give_up(self, name):
+        """No longer wait for a node, which need not be a driver."""
+        for driver in self._seen_drivers():
+            driver.released = driver.released or driver.name == name
+        self.nodes.forget(name)
+        self.report(name, 'did not come to rest within %g s' % PATIENCE)
+
+    def _new_drivers(self):
+        with self.changed:
+            return [driver for driver, _, _ in self.arrived if driver.seen is None]
+
+    def _apply_arrived(self):
+        new = self._new_drivers()
+        while new:
+            for driver in new:      # not while a command may wait to be received
+                driver.seen = self.nodes.sees(driver.name)
+            new = self._new_drivers()       # another one may have sent its first command by now
+        with self.changed:
+            # the order at one tick must not be left to chance
+            arrived = sorted((each for each in self.arrived if each[0].seen is not None), key=lambda each: each[0].name)
+            self.arrived = [each for each in self.arrived if each[0].seen is None]
+            self.over = True
+            for driver, command, prompted in arrived:
+                if not (driver.seen or driver.answers):
+                    driver.answers = Answers(self.ticks, self.changed, partial(self.nodes.connected, driver.connection),
+                                             partial(self.nodes.unread, driver.connection), self.ended)
+                if driver.answers:
+                    driver.answers.receive(command)
+                else:
+                    self._apply(driver, command, prompted)
+
+    def _apply(self, driver, command, prompted):
+        """Put a command in force, now or at the next tick."""
+        velocity, lag = command[:2], 0
+        if driver.stream:
+            if not driver.released:
+                self._check_prompt(driver, prompted)
+            lag = driver.stream.lag_of(self.tick, velocity)
+        elif any(velocity):
+            driver.stream = Stream(self.tick, velocity, prompted and self.nodes.woke_by_itself(driver.name))
+        if not any(velocity):
+            driver.stream = None
+        if lag and not driver.released:
+            self.delayed.append(command)
+        else:
+            self.apply(command)
+
+    def _check_prompt(self, driver, prompted):
+        """Release a driver that does not send its commands because of a tick."""
+        if not self.nodes.on_clock(driver.name):
+            self._release(driver, 'does not subscribe to /clock')
+        elif not prompted:
+            driver.stream.unprompted += 1
+            if driver.stream.unprompted >= PROOF and not self.nodes.update_upstream():
+                self._release(driver, 'sends commands that no tick of /clock has prompted')
+
+    def _release(self, driver, reason):
+        driver.released = True
+        self.nodes.forget(driver.name)
+        self.report(driver.name, reason)
+
+    def _collect(self, driver):
+        with self.changed:
+            try:
+                command = driver.answers.next()
+            except NotInStep as error:
+                self._release(driver, str(error))
+                command = driver.answers.queue[-1] if driver.answers.queue else None
+                driver.answers = None
+            if command:
+                self.apply(command)

@@ -1,0 +1,166 @@
+"""The picture of simulated runs: one scale for what is to be compared, and none where there is nothing to see."""
+from contextlib import contextmanager
+from math import pi, radians
+import resource
+import signal
+
+import numpy
+import pytest
+from matplotlib.figure import Figure
+
+from rbx1_nav.config import ConfigError
+from rbx1_nav.plotting.runs import check_picture, common_extent, common_norm, draw, draw_ends, end_poses
+from rbx1_nav.robot.kinematics import Pose
+from rbx1_nav.simulation.exercise import Result, Snapshot
+
+
+def result(*poses):
+    """A Result with this path, the last pose of which is its end."""
+    snapshots = [Snapshot(0.02 * number, Pose(*pose), Pose(*pose), None) for number, pose in enumerate(poses)]
+    return Result(snapshots[-1], 1.0, None, snapshots)
+
+
+FAR = [result((0, 0, 0), (0.1, y, 2 * pi - radians(60))) for y in (0.4, 0.5, 0.6)]
+NEAR = [result((0, 0, 0), (0.0, y, 2 * pi + radians(10))) for y in (-0.01, 0.0, 0.02)]
+EQUAL = [result((0, 0, 0), (0.0, 0.0016, 6.28))] * 3
+
+
+def test_end_poses_have_the_absolute_heading_error_in_degrees():
+    assert end_poses(FAR)[:, 2] == pytest.approx([60] * 3) and end_poses(NEAR)[:, 2] == pytest.approx([10] * 3)
+
+
+def test_the_extent_is_square_and_holds_the_start_and_all_ends():
+    xmin, xmax, ymin, ymax = common_extent([end_poses(FAR), end_poses(NEAR)])
+    assert xmax - xmin == pytest.approx(ymax - ymin)
+    assert xmin < 0 < 0.1 < xmax and ymin < -0.01 and 0.6 < ymax
+
+
+def test_equal_ends_are_not_enlarged_until_rounding_shows():
+    xmin, xmax, _, _ = common_extent([end_poses(EQUAL)])
+    assert xmax - xmin == pytest.approx(0.1)
+
+
+def test_one_colour_scale_from_zero_for_all_methods():
+    norm = common_norm([end_poses(FAR), end_poses(NEAR)])
+    assert (norm.vmin, norm.vmax) == (0, pytest.approx(60))
+
+
+def test_no_colour_scale_for_headings_that_are_all_right():
+    assert common_norm([end_poses(EQUAL)]) is None
+
+
+@pytest.fixture
+def drawn(monkeypatch, tmp_path):
+    """draw(results) returns the Figure that it saves."""
+    figures = []
+    monkeypatch.setattr(Figure, 'savefig', lambda figure, *_, **__: figures.append(figure))
+
+    def call(results):
+        draw(str(tmp_path / 'a.png'), 'test', results, range(3))
+        return figures[-1]
+    return call
+
+
+def test_the_lower_row_has_one_scale_and_one_colour_bar(drawn):
+    figure = drawn({'timed': FAR, 'ekf': NEAR})
+    *panels, bar = figure.axes
+    lower = panels[2:]
+    assert len(panels) == 4 and bar.get_ylabel() == 'heading error (degrees)'
+    assert lower[0].get_xlim() == lower[1].get_xlim() and lower[0].get_ylim() == lower[1].get_ylim()
+    assert lower[0].collections[0].norm is lower[1].collections[0].norm
+
+
+def test_without_a_colour_scale_there_is_no_colour_bar(drawn):
+    figure = drawn({'timed': EQUAL})
+    assert len(figure.axes) == 2
+    assert figure.axes[1].get_title() == 'all end at (0.0 mm, 1.6 mm)'
+
+
+@pytest.mark.parametrize('results, insets', [(FAR, 0), (NEAR, 1), (EQUAL, 0)])
+def test_only_a_small_cloud_has_an_inset(results, insets):
+    axes = Figure().subplots()
+    draw_ends(axes, end_poses(results), (-0.5, 0.5, -0.3, 0.7), None)
+    assert len(axes.child_axes) == insets
+
+
+def test_a_title_names_surface_runs_and_seeds(drawn):
+    # _suptitle: matplotlib before 3.8 has no get_suptitle()
+    assert drawn({'timed': FAR})._suptitle.get_text() == 'Out and back on test, 3 runs (seeds 0 to 2)'
+    assert numpy.isclose(drawn({'timed': FAR}).axes[0].get_xlim()[0], -0.35)
+
+
+@contextmanager
+def full_disk():
+    """Files cannot have more than 1000 bytes: pytest's output neither, so not for a whole test.
+
+    Needs no root, unlike a small file system, and is an OSError too.
+    """
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    handler = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1000, before[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+        signal.signal(signal.SIGXFSZ, handler)
+
+
+@pytest.mark.parametrize('kind', ['png', 'pdf', 'svg'])
+def test_a_full_disk_is_an_oserror_and_leaves_no_file(tmp_path, kind):
+    with full_disk(), pytest.raises(OSError):
+        draw(str(tmp_path / ('a.' + kind)), 'test', {'timed': FAR}, range(3))
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize('kind', ['png', 'pdf', 'svg'])
+def test_an_older_picture_survives_a_full_disk(tmp_path, kind):
+    path = tmp_path / ('a.' + kind)
+    path.write_bytes(b'an older picture')
+    with full_disk(), pytest.raises(OSError):
+        draw(str(path), 'test', {'timed': FAR}, range(3))
+    assert list(tmp_path.iterdir()) == [path] and path.read_bytes() == b'an older picture'
+
+
+@pytest.mark.parametrize('kind, start', [('png', b'\x89PNG'), ('PDF', b'%PDF'), ('svg', b'<?xml')])
+def test_a_picture_takes_the_place_of_an_older_one(tmp_path, kind, start):
+    path = tmp_path / ('a.' + kind)
+    path.write_bytes(b'an older picture')
+    path.chmod(0o640)
+    (tmp_path / ('link.' + kind)).symlink_to(path)
+    draw(str(tmp_path / ('link.' + kind)), 'test', {'timed': FAR}, range(3))
+    assert path.read_bytes().startswith(start) and path.stat().st_mode & 0o777 == 0o640
+    assert len(list(tmp_path.iterdir())) == 2
+
+
+# whether a picture can be written is known before the runs
+
+@pytest.mark.parametrize('name', ['a.png', 'a.PNG', 'a.svg', 'a.pdf', 'a.b.jpg'])
+def test_a_good_path_is_left_as_it_was(tmp_path, name):
+    check_picture(str(tmp_path / name))
+    assert list(tmp_path.iterdir()) == []
+    (tmp_path / name).write_bytes(b'an older picture')
+    check_picture(str(tmp_path / name))
+    assert (tmp_path / name).read_bytes() == b'an older picture'
+
+
+@pytest.mark.parametrize('name', ['', 'a', 'png', '.png', 'a.doc', 'a.png.txt', 'a.pgf'])
+def test_a_name_that_says_no_format(tmp_path, name):
+    with pytest.raises(ConfigError, match=r'expected a name that ends in one of .*\.pdf, \.png, '):
+        check_picture(str(tmp_path) + '/' + name)
+
+
+def test_a_folder_that_does_not_exist(tmp_path):
+    with pytest.raises(ConfigError, match='expected a folder that exists'):
+        check_picture(str(tmp_path / 'nowhere' / 'a.png'))
+
+
+def test_a_folder_in_place_of_a_file(tmp_path):
+    (tmp_path / 'a.png').mkdir()
+    with pytest.raises(ConfigError, match='expected a file that can be written: Is a directory'):
+        check_picture(str(tmp_path / 'a.png'))
+
+
+def test_a_folder_in_which_nobody_can_write():
+    # where not even root can, whom permissions do not stop
+    with pytest.raises(ConfigError, match='expected a file that can be written: '):
+        check_picture('/proc/a.png')

@@ -1,0 +1,144 @@
+"""The YAML files of ArbotiX users: read as they are, and rejected with one line if a value is invalid."""
+import copy
+import glob
+import os
+from math import inf, nan, radians
+
+import pytest
+import yaml
+
+from rbx1_nav.config import ConfigError
+from rbx1_nav.robot.description import read_robot
+from rbx1_nav.units import SECOND
+
+CONFIG = os.path.join(os.path.dirname(__file__), '..', '..', '..', 'config')
+
+
+def load(name):
+    with open(os.path.join(CONFIG, name)) as file:
+        return yaml.safe_load(file)
+
+
+def test_turtlebot():
+    robot = read_robot(load('turtlebot.yaml'))
+    assert (robot.name, robot.odom_frame_id, robot.base_frame_id) == ('base_controller', 'odom', 'base_footprint')
+    # the rate of the driver is for its hardware; that of the controller is the rate of the odometry
+    assert (robot.base_width, robot.rate, robot.timeout) == (0.26, 50, SECOND)
+    assert robot.limits == (inf, inf) and robot.publish_tf is True
+    assert robot.joints == [] and robot.unknown == []
+    assert {'port', 'rate', 'controllers/base_controller/Kp'} <= set(robot.hardware)
+
+
+def test_pi_robot():
+    robot = read_robot(load('pi_robot.yaml'))
+    assert robot.base_frame_id == 'base_link' and robot.unknown == []
+    assert [joint.name for joint in robot.joints] == [
+        'arm_shoulder_pan_joint', 'arm_shoulder_lift_joint', 'arm_elbow_flex_joint', 'arm_wrist_flex_joint',
+        'gripper_joint', 'head_pan_joint', 'head_tilt_joint']
+    assert robot.joints[-1].upper == radians(60) and robot.joints[-1].max_speed == radians(90)
+
+
+def test_frame_names_of_old_files_lose_their_leading_slash():
+    params = load('turtlebot.yaml')
+    params['controllers']['base_controller'].update(base_frame_id='/base_footprint', odom_frame_id='/odom')
+    robot = read_robot(params)
+    assert (robot.odom_frame_id, robot.base_frame_id) == ('odom', 'base_footprint')
+
+
+def test_unknown_keys_are_reported():
+    params = load('turtlebot.yaml')
+    params['controllers']['base_controller']['time_out'] = 2
+    assert read_robot(params).unknown == ['controllers/base_controller/time_out (did you mean timeout?)']
+
+
+@pytest.mark.parametrize('key, value, expected', [
+    ('base_width', 0, 'from 0.001 to 100 in m'), ('base_width', '0.26', 'width'), ('base_width', nan, 'a width from'),
+    ('base_width', True, 'width'), ('rate', -5, 'from 0.1 to 1000 in Hz'), ('rate', 0, 'from 0.1'),
+    ('rate', inf, 'to 1000'), ('rate', 1e-320, 'from 0.1'), ('rate', 1e-9, 'from 0.1'),
+    ('timeout', -1, 'from 0 to'), ('timeout', 1e-9, '0 (never), or at least 0.01 s'),
+    ('max_linear_speed', 0, 'from 0.001'), ('max_angular_speed', 'fast', 'speed'),
+    ('wheel_radius', [], 'radius'), ('wheel_radius', 1e-320, 'from 0.001'),
+    ('base_frame_id', '', 'frame'), ('base_frame_id', 7, 'frame'),
+    ('base_frame_id', 'odom', 'other than odom_frame_id'),
+    ('left_wheel', '', 'the name of a joint'), ('left_wheel', None, 'the name of a joint'), ('right_wheel', 7, 'a joint'),
+    ('right_wheel', ['front', 'rear'], 'the name of a joint'), ('left_wheel', 'left wheel', 'the name of a joint'),
+    ('left_wheel', 'r\u00e4d', 'letters, digits'), ('right_wheel', 'two\nlines', 'the name of a joint'),
+    ('right_wheel', 'base_l_wheel_joint', 'other than left_wheel'),
+    ('left_wheel', 'base_r_wheel_joint', 'other than right_wheel'),
+    ('type', 'follow_controller', 'one of: diff_controller')])
+def test_an_invalid_value_is_named_with_its_key_and_what_is_expected(key, value, expected):
+    params = load('turtlebot.yaml')
+    params['controllers']['base_controller'][key] = value
+    with pytest.raises(ConfigError) as error:
+        read_robot(params)
+    text = str(error.value)
+    assert text.startswith('controllers/base_controller/%s: %r' % (key, value))
+    assert expected in text and '\n' not in text
+
+
+@pytest.mark.parametrize('path', [('controllers',), ('controllers', 'base_controller', 'base_width'),
+                                  ('controllers', 'base_controller', 'type')])
+def test_a_missing_key_is_named(path):
+    params = load('turtlebot.yaml')
+    parent = params
+    for key in path[:-1]:
+        parent = parent[key]
+    del parent[path[-1]]
+    with pytest.raises(ConfigError, match='^%s: missing' % '/'.join(path)):
+        read_robot(params)
+
+
+@pytest.mark.parametrize('params', [
+    7, [], 'text', {'controllers': 'base'}, {'controllers': {}}, {'controllers': {'base': None}},
+    {'controllers': {'a': {'type': 'diff_controller'}, 'b': {'type': 'diff_controller'}}}])
+def test_a_configuration_without_one_controller_is_rejected(params):
+    with pytest.raises(ConfigError, match='expected'):
+        read_robot(params)
+
+
+@pytest.mark.parametrize('joint, expected', [
+    ({'min_angle': 10, 'max_angle': -10}, 'below max_angle'), ({'max_speed': 0}, 'from 0.01'),
+    ({'min_angle': nan}, 'an angle from -36000 to 36000 in degrees'), (None, 'mapping')])
+def test_an_invalid_joint_is_rejected(joint, expected):
+    params = load('turtlebot.yaml')
+    params['joints'] = {'pan': joint}
+    with pytest.raises(ConfigError, match=expected):
+        read_robot(params)
+
+
+@pytest.mark.parametrize('name', ['my joint', 'base_l_wheel_joint', 'gel\u00e4nk'])
+def test_a_joint_needs_a_name_of_its_own_that_can_be_a_topic(name):
+    params = load('turtlebot.yaml')
+    params['joints'] = {name: {}}
+    with pytest.raises(ConfigError, match="'%s'.*expected a name" % name):
+        read_robot(params)
+
+
+def test_wheels_have_the_names_of_the_urdf_file():
+    params = load('pi_robot.yaml')
+    assert read_robot(params).wheel_joints == ('base_l_wheel_joint', 'base_r_wheel_joint')
+    params['controllers']['base_controller'].update(left_wheel='wheel-left.joint', right_wheel='base/right_wheel')
+    params['joints']['base_l_wheel_joint'] = {}     # free, as the wheels have other names
+    robot = read_robot(params)
+    assert robot.wheel_joints == ('wheel-left.joint', 'base/right_wheel') and robot.unknown == []
+
+
+@pytest.mark.parametrize('key', ['left_wheel', 'right_wheel'])
+def test_a_wheel_is_no_servo(key):
+    params = load('pi_robot.yaml')
+    params['controllers']['base_controller'][key] = 'head_pan_joint'
+    with pytest.raises(ConfigError, match="/base_controller/%s: 'head_pan_joint': expected .* not one of joints" % key):
+        read_robot(params)
+
+
+def test_sim_false_is_rejected():
+    with pytest.raises(ConfigError, match='sim: False'):
+        read_robot(dict(load('turtlebot.yaml'), sim=False))
+
+
+def test_reading_does_not_change_the_mapping():
+    for path in glob.glob(os.path.join(CONFIG, '*.yaml')):
+        params = load(os.path.basename(path))
+        before = copy.deepcopy(params)
+        read_robot(params)
+        assert params == before

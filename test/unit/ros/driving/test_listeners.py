@@ -1,0 +1,96 @@
+"""What a driving script makes of the state of its connections, without a master."""
+from types import SimpleNamespace
+import time
+
+import pytest
+import rospy
+
+from rbx1_nav.ros.driving import listeners
+from rbx1_nav.ros.driving.listeners import Listeners, Peer
+from rbx1_nav.ros.network.tcp import CLOSED_WINDOW, Connection
+
+OPEN = Connection(established=True, unacknowledged=0, acknowledged=520, window=60000)
+SILENT = OPEN._replace(unacknowledged=52)
+FULL = SILENT._replace(window=CLOSED_WINDOW - 1)
+CLOSED = OPEN._replace(established=False)
+
+
+@pytest.fixture(name='watch')
+def watch_one(monkeypatch):
+    """watch(essential) returns the Listeners of one connection, the state of which is their attribute `state`."""
+    monkeypatch.setenv('ROS_MASTER_URI', 'http://127.0.0.1:1/')    # nobody answers there
+    monkeypatch.setattr(rospy.rostime, 'is_wallclock', lambda: True)
+
+    def watch(essential=True):
+        connection = SimpleNamespace(endpoint_id='/node', stat_num_msg=0, socket=None)
+        publisher = SimpleNamespace(resolved_name='/cmd_vel', impl=SimpleNamespace(connections=[connection], seq=0))
+        # without an address it is not called
+        watched = Listeners(publisher, [Peer('/node', None, essential, False, None)])
+        watched.state = OPEN
+        monkeypatch.setattr(listeners, 'read_connection', lambda _: watched.state)
+        return watched
+    return watch
+
+
+def problem(watched):
+    return watched.listeners[0].problem
+
+
+def wait_for_problem(watched):
+    for _ in range(500):
+        if problem(watched):
+            return problem(watched)
+        time.sleep(0.01)
+    raise AssertionError('no problem')
+
+
+@pytest.mark.parametrize('state, essential, expected', [
+    (OPEN, True, None),
+    (SILENT, True, '/node acknowledges nothing that is sent to it'),
+    (SILENT, False, '/node acknowledges nothing that is sent to it'),
+    (FULL, True, '/node, which publishes the odometry, does not read what is sent to it'),
+    (FULL, False, None)])
+def test_silence_for_more_than_a_second(watch, state, essential, expected):
+    watched = watch(essential)
+    watched.look(10.0)
+    watched.state = state
+    watched.look(10.05)
+    watched.look(11.04)
+    assert problem(watched) is None
+    watched.look(11.1)
+    assert problem(watched) == expected
+
+
+def test_check_looks_and_raises(watch):
+    watched = watch()
+    watched.check()
+    watched.state = CLOSED
+    time.sleep(listeners.LOOK_PERIOD)
+    watched.check()
+    assert wait_for_problem(watched) == '/node has gone'    # nobody tells that it has unregistered
+    with pytest.raises(rospy.ROSException, match='/cmd_vel: /node has gone: expected it to listen'):
+        watched.check()
+
+
+def test_a_node_that_closes_after_the_last_command_is_not_taken_for_one_that_has_all(watch):
+    watched = watch()
+    watched.state = CLOSED
+    assert not watched.listeners[0].has_all(0, 0.0)
+    with pytest.raises(rospy.ROSException, match='/node has gone'):
+        watched.check_delivery()
+
+
+def test_silence_while_the_script_waits_for_the_robot_to_stop_counts(watch, monkeypatch):
+    watched = watch()
+    watched.check()
+    watched.state = SILENT
+    time.sleep(listeners.LOOK_PERIOD)   # so that the next check() looks
+    monkeypatch.setattr(listeners, 'sleep', lambda _: pytest.fail('check_delivery() waited'))
+    with pytest.raises(rospy.ROSException, match='acknowledges nothing'):
+        watched.check_delivery()
+
+
+def test_an_open_connection_has_all(watch, monkeypatch):
+    watched = watch()
+    monkeypatch.setattr(listeners, 'sleep', lambda _: pytest.fail('check_delivery() waited'))
+    watched.check_delivery()

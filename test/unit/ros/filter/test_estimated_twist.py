@@ -1,0 +1,117 @@
+"""The velocity that is published with the estimate: by odometry and gyro, and uncertain where they do not measure it."""
+from math import pi
+
+import pytest
+
+from rbx1_nav.estimation.combined_odometry import DROPOUT_SPEED, CombinedOdometry
+from rbx1_nav.estimation.filter import UNKNOWN, priors
+from rbx1_nav.estimation.inputs import Imu, Odom
+from rbx1_nav.robot.kinematics import ORIGIN, arc
+from rbx1_nav.ros.filter.estimated_twist import estimate_twist
+from rbx1_nav.units import SECOND
+
+STEP = SECOND // 50
+VARIANCES = (1e-6,) * 3
+IDEAL = priors(None)
+
+
+class Robot:
+    """Sends the messages of both sensors every 0.02 s, and keeps the last two estimates."""
+
+    def __init__(self, prior, **options):
+        self.combined = CombinedOdometry(prior, SECOND, **options)
+        self.now = 1000 * SECOND
+        self.pose = ORIGIN
+        self.before = None
+
+    def drive(self, ticks, linear, wheels, gyro, odom=True, imu=True):
+        """Odometry moves by linear (m/s) and wheels (rad/s), the gyro measures `gyro` (rad/s); returns the Twist."""
+        for _ in range(ticks):
+            last = self.combined.estimate
+            self.now += STEP
+            self.pose = arc(self.pose, linear * 0.02, wheels * 0.02)
+            if imu:
+                self.combined.add_imu(self.now, Imu(self.now, gyro, 3e-6))
+            if odom:
+                self.combined.add_odom(self.now, Odom(self.now, self.pose, 1e-6, 1e-6), VARIANCES)
+            if self.combined.estimate is not last:
+                self.before = last
+        return estimate_twist(self.combined, self.before)
+
+
+def test_sensors_without_errors():
+    robot = Robot(IDEAL)
+    robot.drive(150, 0.0, 0.0, 0.0)
+    twist = robot.drive(150, 0.3, 0.5, 0.5)
+    # the chord of an arc of 0.01 rad is shorter than the arc by a factor of 4e-6
+    assert twist[:3] == pytest.approx((0.3, 0.0, 0.5), abs=1e-4)
+    # backward, and through the angle of pi
+    for _ in range(10):
+        twist = robot.drive(50, -0.1, 1.0, 1.0)
+        assert twist[:3] == pytest.approx((-0.1, 0.0, 1.0), abs=1e-4)
+    assert robot.combined.estimate.pose.yaw > 2 * pi
+
+
+def test_the_displacement_is_reduced_by_the_slip_and_the_turn_is_the_gyros():
+    robot = Robot(UNKNOWN._replace(slip_straight=0.1, slip_turning=0.2))
+    robot.drive(150, 0.0, 0.0, 0.0)
+    twist = robot.drive(150, 0.3, 0.5, 0.4)
+    assert twist.forward == pytest.approx(0.27, abs=0.001)
+    assert twist.turn == pytest.approx(0.4, abs=0.01)
+
+
+def test_the_variances_cover_noise_slip_bias_and_scale():
+    robot = Robot(UNKNOWN)
+    twist = robot.drive(150, 0.5, 0.0, 0.0)
+    # on an unknown floor 5 % of slip, and the noise of a cell of 0.1 m: 0.044 ** 2 / 0.1
+    assert twist.forward_variance == pytest.approx(0.25 * (0.05 ** 2 + 0.0194), rel=0.05)
+    assert twist.left_variance < 1e-5
+    # the bias of the gyro is not known before it has stood
+    assert twist.turn_variance > 0.01 ** 2
+    robot = Robot(UNKNOWN)
+    robot.drive(500, 0.0, 0.0, 0.0)
+    assert robot.drive(10, 0.5, 0.0, 0.0).turn_variance < 0.003 ** 2
+    # a scale error of 1.5 %
+    assert robot.drive(10, 0.0, 2.0, 2.0).turn_variance == pytest.approx(0.03 ** 2, rel=0.1)
+
+
+def test_without_a_gyro_the_turn_is_as_uncertain_as_the_slip():
+    robot = Robot(UNKNOWN, gyro_used=False)
+    twist = robot.drive(50, 0.0, 1.0, None, imu=False)
+    assert twist.turn == pytest.approx(1.0)
+    # 5 % of slip, and the noise of a cell of 0.25 rad: 0.084 ** 2 / 0.25
+    assert twist.turn_variance == pytest.approx(0.05 ** 2 + 0.0282, rel=0.05)
+
+
+def test_a_dropout_of_the_odometry_leaves_the_displacement_unknown():
+    robot = Robot(UNKNOWN)
+    robot.drive(200, 0.3, 0.0, 0.0)
+    twist = robot.drive(100, 0.3, 0.5, 0.5, odom=False)
+    assert robot.combined.timed_out['odom']
+    assert (twist.forward, twist.forward_variance, twist.left_variance) == (0.0, DROPOUT_SPEED ** 2, DROPOUT_SPEED ** 2)
+    assert twist.turn == pytest.approx(0.5, abs=0.02)
+    # then it is the mean since the last odometry
+    assert robot.drive(1, 0.3, 0.5, 0.5).forward == pytest.approx(0.3, abs=0.02)
+
+
+def test_a_contradiction_makes_the_turn_as_uncertain_as_the_sensors_differ():
+    robot = Robot(UNKNOWN)
+    robot.drive(150, 0.0, 0.0, 0.0)
+    twist = robot.drive(300, 0.1, 1.0, 0.0)
+    assert robot.combined.case == 'contradiction'
+    assert twist.turn_variance > 0.5 ** 2
+
+
+def test_a_robot_that_is_carried_may_move_anywhere():
+    robot = Robot(UNKNOWN)
+    robot.drive(500, 0.0, 0.0, 0.0)
+    assert robot.drive(1, 0.0, 0.0, 0.0).forward_variance < 1e-5
+    twist = robot.drive(150, 0.0, 0.0, 1.0)
+    assert robot.combined.case == 'carried'
+    assert twist.forward_variance == twist.left_variance == DROPOUT_SPEED ** 2
+
+
+def test_no_time_between_two_estimates():
+    robot = Robot(UNKNOWN)
+    robot.drive(50, 0.3, 0.0, 0.0)
+    assert estimate_twist(robot.combined, robot.combined.estimate) is None

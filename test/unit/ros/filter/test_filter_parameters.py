@@ -1,0 +1,47 @@
+"""The parameters of the filter node: its limits, their units and ranges; a prefix from a namespace around the node."""
+from math import degrees
+
+import pytest
+
+from rbx1_nav.config import ConfigError
+from rbx1_nav.estimation.limits import Limits
+from rbx1_nav.ros.filter.parameters import read_parameters, search_value
+
+
+def test_the_defaults_of_the_limits():
+    assert read_parameters({})['limits'] == pytest.approx(Limits())
+
+
+def test_each_limit_has_its_unit():
+    limits = read_parameters({'max_speed': 2, 'max_turn_rate': 3, 'max_angular_acceleration': 4.5, 'gyro_bias': 5,
+                              'gyro_scale_error': 0})['limits']
+    assert limits._replace(gyro_bias=degrees(limits.gyro_bias)) == pytest.approx((2, 3, 4.5, 5, 0))
+
+
+@pytest.mark.parametrize('name, value, expected', [
+    ('max_speed', 0, 'max_speed: 0: expected a speed from 0.01 to 1000 in m/s'),
+    ('max_speed', float('nan'), 'max_speed: nan: expected a speed'),
+    ('max_speed', '5', r"max_speed: '5' \(text to YAML: write 5 without quotes\): expected a speed"),
+    ('max_turn_rate', -1, 'max_turn_rate: -1: expected a turn rate from 0.01 to 1000 in rad/s'),
+    ('max_angular_acceleration', 1e5,
+     r'max_angular_acceleration: 100000.0: expected an angular acceleration from 0.01 to 10000 in rad/s\^2'),
+    ('gyro_bias', 0, 'gyro_bias: 0: expected a bias from 0.01 to 1000 in degrees/s'),
+    ('gyro_bias', True, 'gyro_bias: True: expected a bias'),
+    ('gyro_scale_error', 2, 'gyro_scale_error: 2: expected a fraction from 0 to 0.5'),
+    ('gyro_scale_error', {}, 'gyro_scale_error: {}: expected a fraction')])
+def test_a_bad_value_is_one_line(name, value, expected):
+    with pytest.raises(ConfigError, match='^%s' % expected):
+        read_parameters({name: value})
+
+
+@pytest.mark.parametrize('params, value', [
+    ({'/a/b/ekf/tf_prefix': 'private', '/a/b/tf_prefix': 'near'}, 'private'),
+    ({'/a/b/tf_prefix': 'near', '/a/tf_prefix': 'far'}, 'near'),
+    ({'/tf_prefix': 'global'}, 'global'),
+    ({'/a/tf_prefix': ''}, ''),
+    ({'/b/tf_prefix': 'another'}, None),
+    # a namespace with the name of the parameter
+    ({'/tf_prefix': {'node': {'rate': 10}}}, None),
+    ({'/a/tf_prefix': {'node': {}}, '/tf_prefix': 'global'}, 'global')])
+def test_a_prefix_is_searched_for_in_the_namespaces_around_the_node(params, value):
+    assert search_value('tf_prefix', '/a/b/ekf', params.get) == value

@@ -1,0 +1,77 @@
+"""Calls to the master and to nodes, over the loopback interface."""
+import socket
+import threading
+from xmlrpc.client import Fault
+from xmlrpc.server import SimpleXMLRPCRequestHandler
+
+import pytest
+from rosgraph.xmlrpc import ThreadingXMLRPCServer
+
+from rbx1_nav.ros.network import refusals
+from rbx1_nav.ros.network.master import Server, call
+
+
+class Node:
+    """What answers at a node's address; counts its connections."""
+
+    def __init__(self):
+        self.connections = []
+        node = self
+
+        class Handler(SimpleXMLRPCRequestHandler):
+            protocol_version = 'HTTP/1.1'
+
+            def setup(self):
+                node.connections.append(self.request)
+                super().setup()
+
+            def log_message(self, *_):
+                pass
+
+        self.server = ThreadingXMLRPCServer(('127.0.0.1', 0))
+        self.server.RequestHandlerClass = Handler
+        self.server.register_function(lambda caller: (1, '', 7), 'getPid')
+        self.uri = 'http://127.0.0.1:%d/' % self.server.server_address[1]
+        threading.Thread(target=self.server.serve_forever, args=(0.01,), daemon=True).start()
+
+
+@pytest.fixture(name='node')
+def start_node():
+    """A Node."""
+    node = Node()
+    yield node
+    node.server.shutdown()
+    node.server.server_close()
+
+
+def test_calls_share_one_connection(node):
+    with Server(node.uri) as server:
+        assert [server.call('getPid') for _ in range(3)] == [7, 7, 7]
+        with pytest.raises(Fault):
+            server.call('noMethod')
+        assert refusals.ask(server) == (None, '')
+    assert len(node.connections) == 1
+    assert call(node.uri, 'getPid') == 7
+    assert len(node.connections) == 2
+
+
+def test_a_connection_that_the_node_has_closed_is_made_again(node):
+    with Server(node.uri) as server:
+        server.call('getPid')
+        node.connections[0].shutdown(socket.SHUT_RDWR)
+        assert server.call('getPid') == 7
+    assert len(node.connections) == 2
+
+
+def test_a_node_that_does_not_answer_is_called_by_a_new_connection():
+    with socket.socket() as listener:
+        listener.bind(('127.0.0.1', 0))
+        listener.listen()
+        with Server('http://127.0.0.1:%d/' % listener.getsockname()[1], timeout=0.05) as server:
+            for _ in range(2):
+                with pytest.raises(OSError):
+                    server.call('getPid')
+                listener.accept()[0].close()
+            listener.close()
+            with pytest.raises(ConnectionRefusedError):
+                server.call('getPid')

@@ -1,0 +1,248 @@
+"""What the kernel tells of other processes, with real ones."""
+import os
+import signal
+import socket
+import subprocess
+import threading
+import time
+from types import SimpleNamespace
+
+import pytest
+
+from rbx1_nav.ros.network.processes import Process, awake, listening_process, own_process, peer_process, still_polling
+
+LIMIT = 60      # s
+BEGIN = 'import socket, sys, threading, time\nprint("up", flush=True)\n'
+
+
+def wait_for(condition):
+    """Wait until condition() is true, and return what it returns."""
+    end = time.monotonic() + LIMIT
+    while time.monotonic() < end:
+        value = condition()
+        if value:
+            return value
+        time.sleep(0.002)
+    raise AssertionError('timed out')
+
+
+@pytest.fixture(name='start')
+def make_start():
+    """start(code): a process that runs some Python, and has said that it does."""
+    children = []
+
+    def start(code):
+        child = subprocess.Popen(['/usr/bin/python3', '-c', BEGIN + code],
+                                 stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+        children.append(child)
+        child.stdout.readline()
+        return child
+    yield start
+    for child in children:
+        child.kill()
+        child.communicate()
+
+
+def test_a_process_that_waits_for_input_sleeps(start):
+    process = Process(start('sys.stdin.read()').pid)
+    wait_for(lambda: not awake([process]))
+
+
+def test_a_process_that_computes_is_awake(start):
+    process = Process(start('while True: pass').pid)
+    for _ in range(1000):
+        assert awake([process]) is process
+
+
+def test_a_thread_that_is_started_later_is_seen(start):
+    child = start('sys.stdin.readline()\nthreading.Thread(target=exec, args=("while True: pass",)).start()\n'
+                  'print("computes", flush=True)\nsys.stdin.read()')
+    process = Process(child.pid)
+    wait_for(lambda: not awake([process]))
+    child.stdin.write(b'\n')
+    child.stdin.flush()
+    child.stdout.readline()
+    for _ in range(1000):
+        assert awake([process]) is process
+    assert len(process.threads) == 2
+
+
+def test_a_thread_that_has_ended_does_not_count(start):
+    child = start('thread = threading.Thread(target=sys.stdin.readline)\nthread.start()\nprint("two", flush=True)\n'
+                  'thread.join()\ntime.sleep(1000)')
+    child.stdout.readline()
+    process = Process(child.pid)
+    wait_for(lambda: len(process.threads) == 2 and not awake([process]))
+    child.stdin.write(b'\n')
+    child.stdin.flush()
+    wait_for(lambda: not awake([process]) and len(process.threads) == 1)
+
+
+def test_the_first_of_several_that_is_awake(start):
+    waits, computes = Process(start('sys.stdin.read()').pid), Process(start('while True: pass').pid)
+    wait_for(lambda: not awake([waits]))
+    for _ in range(100):
+        assert awake([waits, computes]) is computes
+        assert awake([computes, waits]) is computes
+    assert awake([]) is None
+
+
+def test_what_has_been_woken_is_awake_until_it_has_answered(start):
+    """The promise that the simulated clock rests on: no answer comes from a process that slept."""
+    with socket.socket() as server:
+        server.bind(('127.0.0.1', 0))
+        server.listen()
+        child = start('s = socket.create_connection(("127.0.0.1", %d))\n'
+                      'while s.recv(1): sum(range(1000)); s.send(b"x")' % server.getsockname()[1])
+        connection, _ = server.accept()
+        with connection:
+            process = Process(child.pid)
+            for _ in range(2000):
+                connection.send(b'x')
+                while awake([process]):
+                    pass
+                assert connection.recv(1, socket.MSG_DONTWAIT) == b'x'
+
+
+def test_a_stopped_process_has_not_finished(start):
+    child = start('sys.stdin.read()')
+    process = Process(child.pid)
+    wait_for(lambda: not awake([process]))
+    child.send_signal(signal.SIGSTOP)
+    wait_for(lambda: awake([process]))
+    for _ in range(100):
+        assert awake([process]) is process
+    child.send_signal(signal.SIGCONT)
+    wait_for(lambda: not awake([process]))
+
+
+def test_a_process_that_has_ended_counts_as_asleep(start):
+    child = start('sys.stdin.read()')
+    process = Process(child.pid)
+    child.kill()
+    wait_for(lambda: not awake([process]))
+    child.wait()
+    assert not awake([process]) and not process.polling()
+    with pytest.raises(OSError):
+        Process(child.pid)
+
+
+def test_a_thread_that_polls(start):
+    process = Process(start('while True: time.sleep(0.001)').pid)
+    polling = wait_for(process.polling)
+    wait_for(lambda: not still_polling(polling))
+    sleeper = Process(start('time.sleep(1000)').pid)
+    wait_for(lambda: not awake([sleeper]))
+    wait_for(lambda: not sleeper.polling())
+    # one that waits for a message does not poll, even if it has just run
+    reader = start('for line in sys.stdin: print("read", flush=True)')
+    process = Process(reader.pid)
+    for _ in range(20):
+        reader.stdin.write(b'\n')
+        reader.stdin.flush()
+        reader.stdout.readline()
+        wait_for(lambda: not awake([process]))
+        assert not process.polling()
+
+
+def test_a_polling_thread_that_has_not_looked_since(start):
+    child = start('while True: time.sleep(0.001)')
+    process = Process(child.pid)
+
+    # at once, most often
+    wait_for(lambda: still_polling(wait_for(process.polling)))
+    threads = wait_for(process.polling)
+    child.kill()
+    child.wait()
+    assert not still_polling(threads)
+
+
+def test_who_wakes_by_itself(start):
+    sleeper = Process(start('while True: time.sleep(0.05)').pid)
+    wait_for(lambda: not awake([sleeper]))
+    sleeper.mark()
+    wait_for(sleeper.woke_by_itself)
+    reader = start('while sys.stdin.read(1): pass')
+    process = Process(reader.pid)
+    wait_for(lambda: not awake([process]))
+    assert process.woke_by_itself()     # nobody knows what it did before
+    process.mark()
+    process.mark()      # nothing is new now
+    reader.stdin.write(b'x')
+    reader.stdin.flush()
+    wait_for(lambda: not awake([process]))
+    assert not process.woke_by_itself()
+    # it has run since the last look, for whatever reason, before the next mark
+    process.mark()
+    process.mark()
+    assert not process.woke_by_itself()
+    before = process.cpu_time()
+    reader.stdin.write(b'x')
+    reader.stdin.flush()
+    wait_for(lambda: process.cpu_time() != before and not awake([process]))
+    process.mark()
+    assert process.woke_by_itself()
+
+
+def test_the_process_at_the_other_end(start):
+    with socket.socket() as server:
+        server.bind(('127.0.0.1', 0))
+        server.listen()
+        child = start('s = socket.create_connection(("127.0.0.1", %d))\nsys.stdin.read()' % server.getsockname()[1])
+        connection, _ = server.accept()
+        with connection:
+            assert peer_process(connection).folder == '/proc/%d/task/' % child.pid
+        assert peer_process(connection) is None     # closed
+        # this process itself is none to wait for
+        with socket.create_connection(server.getsockname()) as own:
+            accepted, _ = server.accept()
+            with accepted:
+                assert peer_process(own) is None and peer_process(accepted) is None
+
+
+def test_the_process_that_listens(start):
+    child = start('s = socket.socket()\ns.bind(("0.0.0.0", 0))\ns.listen()\nprint(s.getsockname()[1], flush=True)\n'
+                  'sys.stdin.read()')
+    port = int(child.stdout.readline())
+    assert listening_process(port).folder == '/proc/%d/task/' % child.pid
+    child.kill()
+    child.wait()
+    assert listening_process(port) is None
+
+
+def test_the_thread_that_looks_does_not_count():
+    done = threading.Event()
+    other = threading.Thread(target=done.wait)
+    other.start()
+    try:
+        process = wait_for(own_process)
+        assert threading.get_native_id() not in process.threads
+        wait_for(lambda: not awake([process]))
+        assert awake([Process(os.getpid())])
+    finally:
+        done.set()
+        other.join()
+
+
+def test_a_process_that_has_run_between_two_looks_is_awake():
+    """It slept when it was looked at, but perhaps not at the same moment as the others."""
+    times = iter([1, 2])
+    fake = SimpleNamespace(cpu_time=lambda: next(times), sleeps=lambda: True)
+    assert awake([fake]) is fake
+    times = iter([1, 1])
+    assert awake([fake]) is None
+
+
+def test_a_thread_that_has_run_since_does_not_poll_any_more():
+    thread = SimpleNamespace(polls=lambda: True, ran=b'2')
+    assert still_polling([(thread, b'2')]) and still_polling([(thread, b'1'), (thread, b'2')])
+    assert not still_polling([(thread, b'1')]) and not still_polling([])
+
+
+def test_all_files_are_closed(start):
+    child = start('sys.stdin.read()')
+    before = len(os.listdir('/proc/self/fd'))
+    process = Process(child.pid)
+    assert len(os.listdir('/proc/self/fd')) > before
+    process.close()
+    assert len(os.listdir('/proc/self/fd')) == before

@@ -1,0 +1,71 @@
+"""What the kernel says of a TCP connection, over the loopback interface."""
+import socket
+import time
+
+import pytest
+
+from rbx1_nav.ros.network.tcp import CLOSED_WINDOW, AcknowledgementTimer, Connection, read_connection, unread_bytes
+
+
+@pytest.fixture(name='pair')
+def connect():
+    """Two connected sockets; the second has a small receive buffer."""
+    with socket.socket() as server:
+        server.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+        server.bind(('127.0.0.1', 0))
+        server.listen()
+        with socket.create_connection(server.getsockname()) as sender:
+            receiver, _ = server.accept()
+            with receiver:
+                yield sender, receiver
+
+
+def wait_for(condition):
+    for _ in range(1000):
+        if condition():
+            return
+        time.sleep(0.01)
+    raise AssertionError('timed out')
+
+
+def test_all_is_acknowledged_by_a_peer_that_reads(pair):
+    sender, receiver = pair
+    assert unread_bytes(receiver) == 0
+    sender.sendall(b'x' * 52)
+    wait_for(lambda: unread_bytes(receiver) == 52)
+    receiver.recv(100)
+    wait_for(lambda: read_connection(sender).unacknowledged == 0)
+    connection = read_connection(sender)
+    assert connection.established and connection.acknowledged >= 52 and connection.window > CLOSED_WINDOW
+
+
+def test_a_peer_that_does_not_read_closes_its_window(pair):
+    sender, _ = pair
+    sender.setblocking(False)
+
+    def fill():
+        try:
+            sender.send(b'x' * 1000)
+        except BlockingIOError:
+            pass
+        return read_connection(sender).window < CLOSED_WINDOW
+    wait_for(fill)
+    assert read_connection(sender).unacknowledged > 0
+
+
+def test_a_peer_that_has_gone(pair):
+    sender, receiver = pair
+    receiver.close()
+    wait_for(lambda: not read_connection(sender).established)
+    sender.close()
+    with pytest.raises(OSError):
+        read_connection(sender)
+    assert unread_bytes(sender) == unread_bytes(None) == 0
+
+
+def test_silence_begins_when_something_is_to_be_acknowledged_and_ends_with_an_acknowledgement():
+    timer = AcknowledgementTimer()
+    for now, unacknowledged, acknowledged, silence in ((10, 0, 100, 0), (11, 52, 100, 0), (11.5, 104, 100, 0.5),
+                                                       (13, 104, 100, 2), (14, 52, 152, 0), (15, 52, 152, 0),
+                                                       (16, 52, 152, 1), (17, 0, 204, 0)):
+        assert timer.silence(now, Connection(True, unacknowledged, acknowledged, 65536)) == silence

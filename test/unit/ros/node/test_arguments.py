@@ -1,0 +1,55 @@
+"""Command-line arguments that rospy would drop in silence are found, and the parameter that was meant is suggested."""
+import pytest
+
+from rbx1_nav.ros.node.arguments import find_problem, parameter_names
+
+USAGE = """Drives.
+
+usage: drive.py [_parameter:=value ...]
+
+Parameters:
+    ~rate               commands per second, Hz
+    ~goal_distance      length of the way out, m
+    ~port, ~baud        accepted
+                        only the names at the beginning count: not ~this one
+"""
+NAMES = ['rate', 'goal_distance', 'odom_frame', 'odom_used', 'imu_used', 'surface']
+EXPECTED = 'expected _parameter:=value or topic:=new_topic'
+
+
+def test_a_usage_text_lists_the_parameters():
+    assert parameter_names(USAGE) == ['rate', 'goal_distance', 'port', 'baud']
+    assert parameter_names('usage: pose.py') == []
+
+
+@pytest.mark.parametrize('argument', [
+    '_rate:=50', '_goal_distance:= 0.1', '_rate:=1.0e+5', '_surface:=low_ply_carpet', '_surface/nested:=1',
+    '__name:=x', '__log:=/tmp/a.log', '__ns:=robot', '/cmd_vel:=/x', 'cmd_vel:=robot/cmd_vel',
+    # names of topics that are not so different from those of parameters
+    'odom:=/other/odom', 'imu_data:=imu/data', 'odom_combined:=x', 'reset_odometry:=/reset_odometry'])
+def test_what_rospy_understands_passes(argument):
+    assert find_problem(argument, NAMES) is None
+
+
+@pytest.mark.parametrize('argument, problem', [
+    ('goal_distance:=0.1', 'this renames a topic: did you mean _goal_distance:=0.1?'),
+    ('~goal_distance:=0.1', 'this renames a topic: did you mean _goal_distance:=0.1?'),
+    ('goal_distanc:=0.1', 'this renames a topic: did you mean _goal_distance:=0.1?'),
+    ('odom_fram:=odom', 'this renames a topic: did you mean _odom_frame:=odom?'),
+    ('_goal_distanc:=0.1', 'unknown parameter: did you mean _goal_distance:=0.1?'),
+    ('_distance:=0.1', 'unknown parameter: did you mean _goal_distance:=0.1?'),
+    ('_colour:=red', 'unknown parameter'),
+    ('_goal_distance=0.1', 'unknown argument: did you mean _goal_distance:=0.1?'),
+    ('--goal-distance=0.1', 'unknown argument: did you mean _goal_distance:=0.1?'),
+    ('--goal-distance', 'unknown argument: did you mean _goal_distance:=VALUE?'),
+    ('0.1', 'unknown argument: ' + EXPECTED), ('-v', 'unknown argument: ' + EXPECTED),
+    ('__name', 'unknown argument: ' + EXPECTED), ('colour:=0.1', EXPECTED), ('cmd_vel:=', EXPECTED),
+    ('_rate:=', 'expected a value'), ('_rate:=[', 'expected a value'), ('_rate:=1:=2', 'expected a value')])
+def test_what_rospy_would_drop_is_named(argument, problem):
+    assert find_problem(argument, NAMES) == problem
+
+
+@pytest.mark.parametrize('argument', ['_rate:=50', '50', 'rate:=50'])
+def test_a_node_without_parameters_accepts_none(argument):
+    assert find_problem(argument, [])
+    assert find_problem('odom:=/other/odom', []) is None

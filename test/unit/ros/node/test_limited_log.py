@@ -1,0 +1,49 @@
+"""A log of at most two lines a second: nothing is lost without being counted, and no kind hides another one."""
+import re
+
+from rbx1_nav.ros.node.limited_log import LimitedLog
+
+
+class Log:
+    """A LimitedLog on a clock of its own, flushed 20 times a second."""
+
+    def __init__(self):
+        self.limited, self.now, self.lines = LimitedLog(), 1000.0, []
+
+    def run(self, seconds, *texts):
+        """Add texts 50 times a second, each with another number."""
+        for _ in range(round(seconds * 50)):
+            for text in texts:
+                self.limited.add(lambda form, line: self.lines.append((self.now, form % line)), text % self.now)
+            self.limited.flush(self.now)
+            self.now += 0.02
+
+
+def test_one_line_is_logged_as_it_is():
+    log = Log()
+    log.run(0.02, 'odom: header.stamp: %.3f')
+    log.run(5)
+    assert log.lines == [(1000.0, 'odom: header.stamp: 1000.000')]
+
+
+def test_a_flood_is_one_line_a_second_that_counts_the_others():
+    log = Log()
+    log.run(10, 'odom: header.stamp: %.9f: expected 1e-05')
+    assert 9 <= len(log.lines) <= 11
+    # 49 others in a second, or 50 with the tick that rounding adds
+    assert re.search(r' \(and (49|50) more of this kind\)$', log.lines[1][1])
+
+
+def test_many_kinds_are_two_lines_a_second_and_all_get_their_turn():
+    log, kinds = Log(), ['%s: %%g' % name for name in 'abcdefgh']
+    log.run(20, *kinds)
+    assert 38 <= len(log.lines) <= 41
+    assert all(second[0] - first[0] > 0.99 for first, second in zip(log.lines, log.lines[2:]))
+    assert all(sum(line.startswith(kind[:2]) for _, line in log.lines) >= 4 for kind in kinds)
+
+
+def test_any_number_of_kinds_needs_little_memory():
+    log = Log()
+    for number in range(10 ** 4):
+        log.limited.add(print, 'x' * number)
+    assert len(log.limited.pending) <= 100

@@ -1,0 +1,55 @@
+"""A question on the terminal: answers that make no sense, nobody to answer, and the end of the node."""
+import os
+import threading
+
+import pytest
+import rospy
+
+from rbx1_nav.config import ConfigError
+from rbx1_nav.ros.node import question
+
+
+def check(text):
+    """An answer that is accepted."""
+    if text != 'right':
+        raise ConfigError('%s: expected right' % text)
+    return text
+
+
+@pytest.fixture(name='terminal')
+def fixture_terminal(monkeypatch):
+    """A file descriptor: what is written to it is typed."""
+    read_end, write_end = os.pipe()
+    with os.fdopen(read_end) as source:
+        monkeypatch.setattr(question.sys, 'stdin', source)
+        monkeypatch.setattr(question, 'end_requested', threading.Event())
+        yield write_end
+    try:
+        os.close(write_end)
+    except OSError:     # closed by the test
+        pass
+
+
+def test_it_asks_until_the_answer_makes_sense(terminal, capsys):
+    os.write(terminal, b'wrong\n\n  right \nmore\n')
+    assert question.ask('What?', check) == 'right'
+    assert capsys.readouterr().out == 'What? wrong: expected right\nWhat? : expected right\nWhat? '
+
+
+def test_a_line_may_arrive_in_pieces_and_in_any_encoding(terminal, capsys):
+    os.write(terminal, b'\xff\nri')
+    threading.Timer(0.2, os.write, [terminal, b'ght\n']).start()
+    assert question.ask('What?', check) == 'right'
+    assert '\ufffd: expected right' in capsys.readouterr().out
+
+
+def test_nobody_answers(terminal):
+    os.write(terminal, b'wrong\nri')
+    os.close(terminal)
+    assert question.ask('What?', check) is None
+
+
+def test_the_node_ends_meanwhile(terminal):     # pylint: disable=unused-argument
+    threading.Timer(0.2, question.end_requested.set).start()
+    with pytest.raises(rospy.ROSInterruptException):
+        question.ask('What?', check)

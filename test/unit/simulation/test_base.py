@@ -1,0 +1,122 @@
+"""The base on the ideal surface: each command counts for exactly as long as it is in force."""
+from math import cos, inf, nan, sin
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rbx1_nav.control.gate import CommandGate, RejectedCommand
+from rbx1_nav.control.motions import out_and_back
+from rbx1_nav.robot.description import Limits
+from rbx1_nav.robot.kinematics import ORIGIN, arc
+from rbx1_nav.simulation.base import SimulatedBase
+from rbx1_nav.simulation.gyro import IdealGyro
+from rbx1_nav.simulation.wheels import IdealWheels
+from rbx1_nav.units import SECOND
+
+STEP = SECOND // 50
+
+
+def make_base(timeout=1.0, limits=Limits(inf, inf)):
+    return SimulatedBase(IdealWheels(0.26), CommandGate(limits, round(timeout * SECOND)), IdealGyro())
+
+
+def test_the_exercise_ends_where_the_tutorial_says():
+    base, now = make_base(), SECOND
+    for motion in out_and_back(0.2, 1.0, 1.0, 3.141592653589793, 50):
+        for _ in range(motion.ticks):
+            base.command(now, motion.linear, motion.angular)
+            now += STEP
+        base.command(now, 0.0, 0.0)
+        now += SECOND
+    pose = base.odometry.pose
+    assert pose == pytest.approx((1 + cos(3.14), sin(3.14), 6.28), abs=1e-12)
+    assert (round(pose.x, 7), round(pose.y, 7)) == (0.0000013, 0.0015927)
+
+
+@given(st.lists(st.integers(0, 3 * SECOND), min_size=1, max_size=20))
+def test_the_pose_does_not_depend_on_when_it_is_asked_for(moments):
+    often, once = make_base(), make_base()
+    for base in (often, once):
+        base.command(0, 0.2, 0.5)
+    for now in sorted(moments):
+        often.advance(now)
+        expected = arc(ORIGIN, 0.2 * min(now, SECOND) / SECOND, 0.5 * min(now, SECOND) / SECOND)
+        assert often.odometry.pose == pytest.approx(expected, abs=1e-12)
+    once.advance(max(moments))
+    assert often.odometry.pose == pytest.approx(once.odometry.pose, abs=1e-12)
+
+
+def test_a_timeout_stops_the_base_exactly_then_even_if_noticed_late():
+    base = make_base(timeout=0.5)
+    base.command(0, 0.2, 0.0)
+    assert not base.advance(SECOND // 2 - 1)
+    assert base.advance(3600 * SECOND)
+    assert base.odometry.pose.x == pytest.approx(0.1, abs=1e-12)
+    assert not base.gate.moving and not base.advance(3601 * SECOND)
+
+
+def test_a_timeout_of_zero_never_stops_the_base():
+    base = make_base(timeout=0)
+    base.command(0, 0.2, 0.0)
+    assert not base.advance(3600 * SECOND)
+    assert base.odometry.pose.x == pytest.approx(720)
+
+
+@given(st.lists(st.tuples(st.integers(-10 ** 13, 10 ** 13), st.booleans()), max_size=30))
+def test_on_every_clock_a_command_moves_the_base_by_at_most_timeout_times_speed(steps):
+    base, now, commands = make_base(), 10 ** 14, 0
+    for step, command in steps:
+        now += step
+        if command:
+            base.command(now, 0.2, 0.0)
+            commands += 1
+        else:
+            base.advance(now)
+        assert 0 <= base.odometry.pose.x <= 0.2 * commands + 1e-9
+
+
+def test_a_clock_that_jumps_back_ends_the_command():
+    base = make_base()
+    base.command(10 * SECOND, 0.2, 0.0)
+    base.advance(5 * SECOND)
+    base.advance(6 * SECOND)
+    assert base.odometry.pose == ORIGIN and not base.gate.moving
+
+
+@pytest.mark.parametrize('command', [(nan, 0.0), (0.2, inf), (-inf, nan), (0.2, 0.0, (0.0, nan)), (1e308, 1e308)])
+def test_a_rejected_command_stops_the_base_at_its_arrival(command):
+    base = make_base()
+    base.command(0, 0.2, 0.0)
+    with pytest.raises(RejectedCommand):
+        base.command(SECOND // 2, *command)
+    base.advance(SECOND)
+    assert base.odometry.pose.x == pytest.approx(0.1)
+    assert base.gate.rejected == 1 and not base.gate.moving
+
+
+def test_a_command_above_the_limits_moves_the_base_at_the_limits():
+    base = make_base(limits=Limits(0.3, 0.5))
+    assert not base.command(0, 0.3, 0.0) and base.command(0, 1.0, 0.0)
+    base.advance(SECOND // 2)
+    assert base.odometry.pose.x == pytest.approx(0.15)
+
+
+def test_reset_puts_the_base_at_the_origin_at_a_standstill():
+    base = make_base()
+    base.command(0, 0.2, 1.0)
+    base.advance(SECOND // 2)
+    base.reset()
+    base.advance(SECOND)
+    assert base.odometry.pose == ORIGIN
+
+
+def test_the_true_pose_is_that_of_the_odometry_bit_for_bit():
+    base, step = make_base(), SECOND // 49
+    while base.now < 2 * SECOND:
+        base.command(base.now, 0.2, 0.7)
+        base.advance(base.now + step)
+    base.command(base.now, 0.0, 0.0)
+    for _ in range(100):
+        base.advance(base.now + step)
+    assert base.wheels.truth.pose == base.odometry.pose != ORIGIN

@@ -1,0 +1,64 @@
+"""The gyro: its errors are those of its surface."""
+from math import radians
+from statistics import mean, pstdev
+
+import pytest
+
+from rbx1_nav.simulation.gyro import Gyro, IdealGyro
+from rbx1_nav.simulation.surfaces import Run
+from sample_surface import SURFACE
+
+RUN = Run(0.0, 0.0, radians(0.5), 0.01)
+STEP = 0.02     # s
+
+
+def readings(gyro, rate, number, standing=False, start=0.0):
+    return [gyro.read(start + rate * STEP * (i + 1), STEP, standing) for i in range(number)]
+
+
+def test_an_ideal_gyro_has_no_errors():
+    gyro = IdealGyro()
+    measured = readings(gyro, 1.5, 10)
+    assert [reading.rate for reading in measured] == pytest.approx([1.5] * 10)
+    assert measured[-1].yaw == pytest.approx(0.3)
+    assert measured[-1].rate_variance > 0 and measured[-1].yaw_variance > 0
+    gyro.reset()
+    assert gyro.read(0.02, STEP, False).rate == pytest.approx(1.0)
+
+
+def test_readings_have_bias_scale_error_and_noise():
+    measured = readings(Gyro(SURFACE, RUN, 1), 1.0, 5000)
+    rates = [reading.rate for reading in measured]
+    # 1 sigma of the mean of 5000 is noise / 70, of their spread 1 %: five of those
+    assert mean(rates) == pytest.approx(1.01 + radians(0.5), abs=SURFACE.gyro_noise / 14)
+    assert pstdev(rates) == pytest.approx(SURFACE.gyro_noise, rel=0.05)
+    assert measured[0].rate_variance == pytest.approx(SURFACE.gyro_noise ** 2)
+
+
+def test_a_reading_over_a_longer_time_has_less_noise():
+    gyro = Gyro(SURFACE, RUN, 1)
+    assert gyro.read(0.0, 4 * STEP, False).rate_variance == pytest.approx(SURFACE.gyro_noise ** 2 / 4)
+
+
+@pytest.mark.parametrize('rate', [4.0, -4.0])
+def test_readings_are_limited_to_the_measurement_range(rate):
+    measured = readings(Gyro(SURFACE, RUN, 1), rate, 5)
+    assert {abs(reading.rate) for reading in measured} == {SURFACE.gyro_measurement_range}
+    assert all(reading.rate * rate > 0 for reading in measured)
+
+
+def test_the_heading_is_calibrated_at_standstill_before_the_first_motion_only():
+    gyro = Gyro(SURFACE, RUN, 1)
+    at_rest = readings(gyro, 0.0, 200, standing=True)
+    assert {reading.yaw for reading in at_rest} == {0.0}
+    moved = readings(gyro, 1.0, 100)[-1]
+    # 2 s at 1 rad/s, 1 % too much; the noise of calibration and of 100 readings amounts to 0.6 mrad
+    assert moved.yaw == pytest.approx(2.02, abs=0.003)
+    at_rest_again = readings(gyro, 0.0, 100, standing=True, start=2.0)
+    assert at_rest_again[-1].yaw != at_rest_again[0].yaw
+    assert at_rest_again[-1].yaw_variance > moved.yaw_variance > at_rest[0].yaw_variance
+
+
+def test_the_noise_depends_on_the_seed_only():
+    one, same, other = ([reading.rate for reading in readings(Gyro(SURFACE, RUN, seed), 0.0, 5)] for seed in (1, 1, 2))
+    assert one == same != other

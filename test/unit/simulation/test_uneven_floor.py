@@ -1,0 +1,152 @@
+"""Wheels on a floor that is not even: curvature, the loss of speed in a turn, and noise."""
+from math import cos, hypot, sin
+from statistics import mean
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rbx1_nav.robot.readings import MEASURED
+from rbx1_nav.simulation.floor_noise import make_roughness
+from rbx1_nav.simulation.surfaces import Run
+from rbx1_nav.simulation.wheels import Wheels
+from sample_surface import SURFACE
+
+WIDTH = 0.26
+NO_SLIP = Run(0.0, 0.0, 0.0, 0.0)
+EVEN = SURFACE._replace(slip_straight=0.0, slip_straight_spread=0.0, slip_turning=0.0, slip_turning_spread=0.0,
+                        ticks_meter=1e6)
+# motors without drag, far from their limit: both modes follow their commands alike, so a motion is one arc
+LINEAR = EVEN._replace(drag_straight=0.0, drag_turning=0.0, accel_limit=1e3, delay=0.23, curvature=-0.04,
+                       turning_loss=0.1)
+SEEDS = range(600)
+
+speeds = st.floats(-1, 1)
+
+
+def make_wheels(surface, seed=0):
+    return Wheels(WIDTH, surface, NO_SLIP, 0.02, make_roughness(surface, seed))
+
+
+def counted(wheels):
+    """(straight in m, turn in rad) by the wheels' travel, not rounded."""
+    return (wheels.left.total + wheels.right.total) / 2, (wheels.right.total - wheels.left.total) / WIDTH
+
+
+def drive(wheels, linear, angular, duration, step=0.05):
+    for _ in range(round(duration / step)):
+        wheels.travel(linear, angular, step)
+
+
+@given(st.lists(st.floats(0.001, 0.5), max_size=40))
+def test_the_end_does_not_depend_on_the_length_of_the_steps(steps):
+    commands = [(0.2, 0.5, 3.0), (0.0, 0.0, 4.0), (0.0, -1.0, 2.0), (0.0, 0.0, 4.0), (-0.3, 0.4, 1.0), (0.0, 0.0, 4.0)]
+    whole, parts = make_wheels(LINEAR), make_wheels(LINEAR)
+    steps = iter(steps)
+    for linear, angular, duration in commands:
+        whole.travel(linear, angular, duration)
+        while duration > 0:
+            step = min(duration, next(steps, duration))
+            parts.travel(linear, angular, step)
+            duration -= step
+    # the speed that is left after a stop of 4 s is below 1e-15 m/s
+    assert parts.truth.pose == pytest.approx(whole.truth.pose, abs=1e-9)
+    assert hypot(*whole.truth.pose[:2]) > 0.1
+
+
+@given(st.floats(-2, 2), st.floats(-1, 1).filter(lambda speed: abs(speed) > 0.1))
+def test_curvature_turns_the_robot_by_each_metre_forwards_and_back(curvature, speed):
+    wheels = make_wheels(EVEN._replace(curvature=curvature))
+    drive(wheels, speed, 0.0, 3)
+    straight, turn = counted(wheels)
+    assert turn == 0 and wheels.truth.pose.yaw == pytest.approx(curvature * straight, abs=1e-12)
+    linear, angular = wheels.true_velocity()
+    assert angular == pytest.approx(curvature * linear, abs=1e-12)
+
+
+def test_turning_loss_shortens_the_way_by_each_radian():
+    wheels, lossless = make_wheels(LINEAR), make_wheels(LINEAR._replace(turning_loss=0.0))
+    for each in (wheels, lossless):
+        each.travel(0.2, -0.5, 10)
+    # 0.2 m/s less 0.1 m * 0.5 rad/s; what the encoders count stays
+    assert wheels.true_velocity() == pytest.approx((0.15, -0.5 - 0.04 * 0.2), abs=1e-9)
+    assert lossless.true_velocity() == pytest.approx((0.2, -0.5 - 0.04 * 0.2), abs=1e-9)
+    assert counted(wheels) == counted(lossless)
+    assert wheels.truth.pose.yaw == lossless.truth.pose.yaw
+
+
+@given(st.lists(st.tuples(speeds, speeds, st.floats(0, 1)), max_size=20), st.floats(0, 1))
+def test_turning_loss_never_drives_the_robot_against_its_wheels(commands, loss):
+    wheels = make_wheels(EVEN._replace(turning_loss=loss))
+    for command in commands:
+        before, pose = counted(wheels)[0], wheels.truth.pose
+        wheels.travel(*command)
+        straight, (linear, _) = counted(wheels)[0] - before, wheels.true_velocity()
+        x, y, yaw = wheels.truth.pose
+        middle = (yaw + pose.yaw) / 2
+        # the chord of an arc of 1 rad at the most points forward if the arc does
+        forward = (x - pose.x) * cos(middle) + (y - pose.y) * sin(middle)
+        assert forward * straight >= -1e-12 and abs(forward) <= abs(straight) + 1e-9
+        assert linear * wheels.straight.speed >= 0
+
+
+def test_a_turn_on_the_spot_loses_nothing():
+    wheels = make_wheels(EVEN._replace(turning_loss=0.5))
+    drive(wheels, 0.0, 1.0, 3)
+    assert wheels.truth.pose[:2] == (0.0, 0.0) and wheels.truth.pose.yaw == pytest.approx(counted(wheels)[1])
+
+
+def ends(surface, linear, angular, duration):
+    """The Wheels of all SEEDS after a motion."""
+    runs = []
+    for seed in SEEDS:
+        runs.append(make_wheels(surface, seed))
+        drive(runs[-1], linear, angular, duration)
+    return runs
+
+
+def variance(values):
+    return mean(value ** 2 for value in values)
+
+
+@pytest.mark.parametrize('key, linear, angular', [('heading_noise_turning', 0.0, 1.0),
+                                                  ('heading_noise_straight', 0.2, 0.0)])
+def test_the_uncertainty_of_the_heading_is_the_spread_of_many_runs(key, linear, angular):
+    runs = ends(EVEN._replace(**{key: 0.1}), linear, angular, 10)
+    true = variance(wheels.truth.pose.yaw - counted(wheels)[1] for wheels in runs)
+    # 1 sigma of a variance of 600 is 5.8 %; the reported one has 4 % more, for the cells at both ends
+    assert 0.7 < true / runs[0].uncertainty.yaw < 1.25
+
+
+def test_the_uncertainty_of_the_distance_is_the_spread_of_many_runs():
+    runs = ends(EVEN._replace(distance_noise=0.05), 0.2, 0.0, 10)
+    true = variance(wheels.truth.pose.x - counted(wheels)[0] for wheels in runs)
+    assert 0.7 < true / runs[0].uncertainty.position < 1.25
+    assert runs[0].uncertainty.yaw < 1e-9
+
+
+def test_the_uncertainty_of_the_position_is_an_upper_bound():
+    runs = ends(EVEN._replace(heading_noise_straight=0.1), 0.2, 0.0, 10)
+    # an error of the heading shifts only the path after it: on a straight line, a third of the bound
+    assert 0.22 < variance(wheels.truth.pose.y for wheels in runs) / runs[0].uncertainty.position < 0.44
+
+
+def test_the_uncertainty_of_the_speeds_is_that_of_white_noise():
+    surface = EVEN._replace(distance_noise=0.05, heading_noise_turning=0.1, heading_noise_straight=0.08)
+    wheels, smooth = (Wheels(WIDTH, each, NO_SLIP, 0.05) for each in (surface, EVEN))
+    for each in (wheels, smooth):
+        drive(each, 0.2, 0.5, 5)
+    linear, angular = each.velocity()
+    # summed up over the windows of a second: the variance that a second adds to the pose
+    more, less = wheels.uncertainty, smooth.uncertainty
+    assert (more.linear - less.linear) * 0.05 == pytest.approx(0.05 ** 2 * linear)
+    assert (more.angular - less.angular) * 0.05 == pytest.approx(0.1 ** 2 * angular + 0.08 ** 2 * linear)
+    for each in (wheels, smooth):
+        drive(each, 0.0, 0.0, 5)
+        assert each.at_rest and each.uncertainty[2:] == (MEASURED, MEASURED)
+
+
+def test_encoders_do_not_see_the_noise():
+    rough = ends(EVEN._replace(distance_noise=0.05, heading_noise_turning=0.1), 0.2, 0.5, 1)
+    assert {counted(wheels) for wheels in rough} == {counted(rough[0])}
+    assert len({wheels.truth.pose for wheels in rough}) == len(rough)
