@@ -153,7 +153,7 @@ def figures(name, seeds, sums):
     means = [float(value) / seeds for value in sums]
     row = dict(case=name, seeds=seeds, nees=means[-1])
     for prefix, heading, position in zip(ESTIMATORS, means[0::2], means[1::2]):
-        row.update({prefix + 'heading': math.sqrt(heading), prefix + 'position': math.sqrt(position)})
+        row.update({f'{prefix}heading': math.sqrt(heading), f'{prefix}position': math.sqrt(position)})
     return row
 
 
@@ -189,8 +189,8 @@ def table(rows):
 
 def markdown(rows):
     """The same in Markdown. What is beyond its limit is bold."""
-    yield '| case | %s |' % ' | '.join(title for _, title, _ in COLUMNS)
-    yield '|---' * (len(COLUMNS) + 1) + '|'
+    yield f"| case | {' | '.join((title for _, title, _ in COLUMNS))} |"
+    yield f"{'|---' * (len(COLUMNS) + 1)}|"
     for row in rows:
         yield '| %s |' % ' | '.join([row['case'], *(markdown_value(row, name, 1, places) if name in row else '-'
                                                     for name, _, places in COLUMNS)])
@@ -210,7 +210,7 @@ def main():
             parser.error('--%s: %d: expected an integer above 0' % (name, getattr(arguments, name)))
     for name in arguments.case or ():
         if name not in CASES:
-            parser.error('--case: %s: expected one of %s' % (name, ', '.join(CASES)))
+            parser.error(f"--case: {name}: expected one of {', '.join(CASES)}")
     wanted = set(arguments.case or CASES)
     wanted |= {CASES[name].unbiased for name in wanted}     # a limit is relative to these
     with open(resources.path('config', 'turtlebot.yaml'), encoding='utf-8') as file:

@@ -251,12 +251,12 @@ def line(name, values, remark=''):
     for (heading, _, factor, decimals), value in zip(COLUMNS, values):
         width = max(len(heading), WIDTH)
         cells.append(f'{value * factor:{width}.{decimals}f}' if value is not None else f'{"-":>{width}}')
-    return f'{name:>6} ' + ' '.join(cells) + ('  ' + remark if remark else '')
+    return f"{name:>6} {' '.join(cells)}{(f'  {remark}' if remark else '')}"
 
 
 def header():
     """The first line of the table."""
-    return f'{"run":>6} ' + ' '.join(f'{heading:>{max(len(heading), WIDTH)}}' for heading, *_ in COLUMNS)
+    return f"{'run':>6} {' '.join((f'{heading:>{max(len(heading), WIDTH)}}' for heading, *_ in COLUMNS))}"
 
 
 def summary(rows):

@@ -122,7 +122,7 @@ def main():
     for name, known in ('true', surfaces), ('assumed', assumed):
         for value in getattr(arguments, name) or ():
             if value not in known:
-                parser.error('--%s: %s: expected one of %s' % (name, value, ', '.join(known)))
+                parser.error(f"--{name}: {value}: expected one of {', '.join(known)}")
     with open(resources.path('config', 'turtlebot.yaml'), encoding='utf-8') as file:
         robot = read_robot(yaml.safe_load(file))
     methods = [method for method in METHODS if method in (arguments.method or METHODS)]

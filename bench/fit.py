@@ -110,13 +110,13 @@ def judge_values(robot, start, seeds, odometry=True):
             key, len(some), 100 * (abs(some) < 2).mean(), (some ** 2).mean() ** 0.5, numpy.median(some),
             len(left.get(key, []))))
     everything = abs(numpy.concatenate(list(errors.values())))
-    print('all values: %d, %.1f %% within 2 standard errors' % (len(everything), 100 * (everything < 2).mean()))
+    print(f'all values: {len(everything)}, {100 * (everything < 2).mean():.1f} % within 2 standard errors')
     for key, some in parts.items():
         if some:
             print('%-24s %3d of %d identifiable, %3.0f %% of them within 5 %%, the worst by %.1f %%' % (
                 ('scale, by ' if key.startswith('slip') else '') + key, len(some), len(list(seeds)),
                 100 * (numpy.array(some) < 0.05).mean(), 100 * max(some)))
-    print('longest fit: %.1f s of CPU time' % longest)
+    print(f'longest fit: {longest:.1f} s of CPU time')
 
 
 def judge_tape(robot, start, seeds, odometry=True):
@@ -136,7 +136,7 @@ def judge_tape(robot, start, seeds, odometry=True):
         with_heading.append(ends[1])
     for name, some in (('x, y', shares), ('x, y, heading', with_heading)):
         print('tape%s, %-14s fourth ends in the region of 50 %%: %3.0f of 100, of 90 %%: %3.0f of 100 (%d trials)' % (
-            '' if odometry else ', no odometry', name + ':', 100 * (numpy.array(some) < 0.5).mean(),
+            '' if odometry else ', no odometry', f'{name}:', 100 * (numpy.array(some) < 0.5).mean(),
             100 * (numpy.array(some) < 0.9).mean(), len(some)), flush=True)
 
 
@@ -147,7 +147,7 @@ def main():
     parser.add_argument('--trials', type=int, default=100, metavar='N', help='trials with a tape; default: 100')
     parser.add_argument('--seed', type=int, default=0, metavar='S', help='the first seed; default: 0')
     parser.add_argument('--no-odometry', action='store_true', help='from commands and truth alone')
-    parser.add_argument('--start', default=START, metavar='NAME', help='starting surface; default: ' + START)
+    parser.add_argument('--start', default=START, metavar='NAME', help=f'starting surface; default: {START}')
     arguments = parser.parse_args()
     with open(resources.path('config', 'turtlebot.yaml'), encoding='utf-8') as file:
         robot = read_robot(yaml.safe_load(file))

@@ -83,13 +83,13 @@ def figures(runs, stuck, errors, port, best):
     errors, port, best = (Errors(*map(float, each)) for each in (errors, port, best))
     values = dict(runs=runs, stuck=stuck, nees=errors.nees / runs)
     for name, sums in ('', errors), ('port_', port), ('best_', best):
-        values.update({name + 'heading': math.sqrt(sums.heading / sums.ticks),
-                       name + 'position': math.sqrt(sums.position / sums.ticks),
-                       name + 'end_heading': math.sqrt(sums.end_heading / runs),
-                       name + 'end_position': math.sqrt(sums.end_position / runs)})
+        values.update({f'{name}heading': math.sqrt(sums.heading / sums.ticks),
+                       f'{name}position': math.sqrt(sums.position / sums.ticks),
+                       f'{name}end_heading': math.sqrt(sums.end_heading / runs),
+                       f'{name}end_position': math.sqrt(sums.end_position / runs)})
     for name in 'heading', 'position':
-        if values['port_' + name] > 1e-9:   # on the ideal floor, the port's errors are those of rounding
-            values[name + '_ratio'] = values[name] / values['port_' + name]
+        if values[f'port_{name}'] > 1e-9:   # on the ideal floor, the port's errors are those of rounding
+            values[f'{name}_ratio'] = values[name] / values[f'port_{name}']
     return values
 
 
@@ -116,7 +116,7 @@ def misses(values, bounds):
 
 def digits(value):
     """A figure as text, with three digits that count."""
-    return '-' if math.isnan(value) else '%.3g' % value if value < 100 or value >= 1e5 else '%.0f' % value
+    return '-' if math.isnan(value) else f'{value:.3g}' if value < 100 or value >= 1e5 else f'{value:.0f}'
 
 
 def aligned(lines, texts):
@@ -147,8 +147,8 @@ def table(rows):
 def markdown(rows):
     """The same in Markdown, one line per pair of floors. Each cell has a value per method, bold if beyond its limit."""
     titles = 'true floor', 'assumed', 'heading (degrees)', 'the port', 'position (cm)', 'the port', 'best', 'NEES'
-    yield '| %s |' % ' | '.join(titles)
-    yield '|' + '---|' * len(titles)
+    yield f"| {' | '.join(titles)} |"
+    yield f"|{'---|' * len(titles)}"
     pairs = {}
     for row in rows:
         pairs.setdefault((row['true'], row['assumed']), []).append(row)

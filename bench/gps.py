@@ -37,7 +37,7 @@ def read_record(path, odom, imu, fix):
                 found[topic].append(message)
     for (topic, each), kind in zip(found.items(), TYPES):
         if len(each) < 2:
-            raise ValueError('%s: %d messages of type %s: expected at least 2' % (topic, len(each), kind))
+            raise ValueError(f'{topic}: {len(each)} messages of type {kind}: expected at least 2')
         each.sort(key=lambda message: message.header.stamp)
     twists = [message.twist.twist for message in found[odom]]
     return Record([messages.from_odometry(message) for message in found[odom]], gyro_readings(found[imu]),
@@ -125,12 +125,12 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('bag')
     for name, topic, kind in zip(('--odom', '--imu', '--fix'), ('/odom', '/imu/data', '/fix'), TYPES):
-        parser.add_argument(name, metavar='TOPIC', default=topic, help='%s; default: %s' % (kind, topic))
+        parser.add_argument(name, metavar='TOPIC', default=topic, help=f'{kind}; default: {topic}')
     arguments = parser.parse_args()
     try:
         figures = judge(read_record(arguments.bag, arguments.odom, arguments.imu, arguments.fix))
     except (OSError, ValueError, rosbag.ROSBagException) as error:
-        print('%s: %s' % (arguments.bag, getattr(error, 'strerror', None) or error), file=sys.stderr)
+        print(f"{arguments.bag}: {getattr(error, 'strerror', None) or error}", file=sys.stderr)
         return 1
     print('rms distance from the GPS: filter %(filter).2f m, wheels %(wheels).2f m, wheels with the gyro '
           '%(reckoned).2f m\nat the end, the filter claims 1 sigma of %(position_sigma).1f m and %(yaw_sigma).3f rad'

@@ -98,6 +98,6 @@ def memory(pid, file, key):
     """The value (bytes) of one 'Key:  N kB' line of a file in /proc/<pid>; 0 if it has none."""
     with open(f'/proc/{pid}/{file}') as lines:
         for line in lines:
-            if line.startswith(key + ':'):
+            if line.startswith(f'{key}:'):
                 return 1024 * int(line.split()[1])
     return 0

@@ -225,7 +225,7 @@ def main():
     for result in failures:
         print('--seed %d --sequences 1 --messages %d: %s: %s'
               % (result['seed'], arguments.messages, result['floor'], result['failure']))
-    print('%d of %d sequences failed' % (len(failures), len(results)))
+    print(f'{len(failures)} of {len(results)} sequences failed')
     if arguments.json:
         with open(arguments.json, 'w', encoding='utf-8') as file:
             json.dump(dict(sums, messages=arguments.messages, failures=failures), file, indent=1)

@@ -142,7 +142,7 @@ def plot(folder, surface, floor, judgements):
 def show(surface, errors):
     """Print the fitted values."""
     for key, error in errors.items():
-        print('  %-24s %8.4f +- %.4f' % (key, getattr(surface, key), error))
+        print(f'  {key:24} {getattr(surface, key):8.4f} +- {error:.4f}')
 
 
 def leave_out(first, second, judgements):
@@ -158,7 +158,7 @@ def leave_out(first, second, judgements):
                 return 100 * (others.mean() / some.mean() - 1)
             texts.append('%5.1f (%5.1f to %5.1f)' % (growth(full.scores, less.scores),
                                                    *full.interval(growth, full.scores, less.scores)))
-        print('%-24s %s' % (key, '  '.join(texts)), flush=True)
+        print(f"{key:24} {'  '.join(texts)}", flush=True)
 
 
 def main():
@@ -175,13 +175,13 @@ def main():
             for name in PICTURES:
                 check_picture(os.path.join(args.plot, name))
         except ConfigError as error:
-            parser.error('--plot: %s: %s' % (show_name(args.plot), error))
+            parser.error(f'--plot: {show_name(args.plot)}: {error}')
     start = time.monotonic()
     try:
         first, second = halves(read_set(args.data, args.set))
         given = load_surface(args.surface, resources.surfaces()) if args.surface else None
     except ConfigError as error:
-        sys.exit('real_creates: %s' % error)
+        sys.exit(f'real_creates: {error}')
     surface, errors = (given, {}) if args.surface else fit(first, MOTIONS, NOISES)
     if errors:
         print('Fitted to the first halves of set %d:' % args.set)
@@ -194,7 +194,7 @@ def main():
         try:
             plot(args.plot, surface, floor, judgements)
         except OSError as error:
-            sys.exit('real_creates: --plot: %s: %s' % (show_name(args.plot), error.strerror))
+            sys.exit(f'real_creates: --plot: {show_name(args.plot)}: {error.strerror}')
     if not args.surface:
         old, errors = fit(first, OLD_MOTIONS, SPREADS)
         judge('constant slip, fitted', second, old)
@@ -203,7 +203,7 @@ def main():
         show(old, errors)
         if args.leave_out:
             leave_out(first, second, judgements)
-    print('%.0f s' % (time.monotonic() - start))
+    print(f'{time.monotonic() - start:.0f} s')
 
 
 if __name__ == '__main__':

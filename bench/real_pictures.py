@@ -60,7 +60,7 @@ def draw_ends(file, title, judgement):
     figure.suptitle(title)
     panels = figure.subplots(len(QUARTILES), len(found), squeeze=False, gridspec_kw=dict(wspace=0.3))
     for row, (part, name) in zip(panels, QUARTILES):
-        row[0].set_ylabel('score: %s\n\ny (m)' % name)
+        row[0].set_ylabel(f'score: {name}\n\ny (m)')
         for axes, robot in zip(row, found):
             index = ranked(judgement, robot, part)
             ends = judgement.ends[index][:, :2]

@@ -170,7 +170,7 @@ def report(rows):
           f'rejected messages; in {len(same)} runs the filter got the messages that were recorded'
           + (f': at most {1e3 * max(row["difference_m"] for row in same):.4f} mm and '
              f'{max(row["difference_deg"] for row in same):.5f} degrees from the replay' if same else ''))
-    print('\n'.join('beyond the limits: ' + text for text in found) or 'within all limits')
+    print('\n'.join(f'beyond the limits: {text}' for text in found) or 'within all limits')
     return mean, found
 
 

@@ -132,7 +132,7 @@ def exercise(recording):
     begin, end = begin - STANDSTILL, end + STANDSTILL
     stamps = [odom.stamp for odom, _ in recording.odom]
     if stamps[0] > begin or stamps[-1] < end:
-        raise Unusable('the robot stood for less than %g s before or after its motion' % (STANDSTILL / SECOND))
+        raise Unusable(f'the robot stood for less than {STANDSTILL / SECOND:g} s before or after its motion')
     return begin, end
 
 
@@ -141,7 +141,7 @@ def live_figures(recording, prior, period):
     replay, from its restart to the end of the exercise. period: of what it publishes, ns. Raises Unusable."""
     start, (begin, end) = find_start(recording, prior), exercise(recording)
     if start > begin:
-        raise Unusable('the filter was restarted less than %g s before the motion' % (STANDSTILL / SECOND))
+        raise Unusable(f'the filter was restarted less than {STANDSTILL / SECOND:g} s before the motion')
     estimates = replay(recording, prior, start, end)
     # the gyro may be ahead at a restart: what is published at once differs
     published = [each for each in recording.combined if start + SECOND < each.stamp <= end]
@@ -197,8 +197,8 @@ def misses(rows):
     mean = means(rows)
     for name, port in ('error_m', 'port_m'), ('error_deg', 'port_deg'):
         if not mean[name] <= mean[port]:
-            found.append('mean %s: %.3g, the port %.3g' % (name, mean[name], mean[port]))
+            found.append(f'mean {name}: {mean[name]:.3g}, the port {mean[port]:.3g}')
     least, greatest = LIMITS['nees']
     if not least <= mean['nees'] <= greatest:
-        found.append('mean NEES: %.3g: expected %g to %g' % (mean['nees'], least, greatest))
+        found.append(f"mean NEES: {mean['nees']:.3g}: expected {least:g} to {greatest:g}")
     return found

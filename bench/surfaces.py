@@ -29,12 +29,12 @@ def ends(robot, surface, seeds):
     """(name, values) of the end poses of each method: the true one, and the error of the odometry."""
     for method in METHODS:
         runs = list(simulate_many(method, robot, surface, seeds))
-        yield method + ': true end, from the start (m)', [distance(r.end.truth) for r in runs]
-        yield method + ': true end, to the left (m)', [r.end.truth.y for r in runs]
-        yield method + ': true end, angle (degrees)', [turned(r.end.truth) for r in runs]
-        yield method + ': true first leg (m)', [r.first_leg for r in runs]
-        yield method + ': error of /odom at the end (m)', [distance(r.end.truth, r.end.odometry) for r in runs]
-        yield method + ': error of /odom at the end (degrees)', [turned(r.end.truth, r.end.odometry) for r in runs]
+        yield f'{method}: true end, from the start (m)', [distance(r.end.truth) for r in runs]
+        yield f'{method}: true end, to the left (m)', [r.end.truth.y for r in runs]
+        yield f'{method}: true end, angle (degrees)', [turned(r.end.truth) for r in runs]
+        yield f'{method}: true first leg (m)', [r.first_leg for r in runs]
+        yield f'{method}: error of /odom at the end (m)', [distance(r.end.truth, r.end.odometry) for r in runs]
+        yield f'{method}: error of /odom at the end (degrees)', [turned(r.end.truth, r.end.odometry) for r in runs]
 
 
 def errors(method, robot, surface, seeds):
@@ -50,7 +50,7 @@ def errors(method, robot, surface, seeds):
     values = {}
     for title, field in ('heading RMSE (degrees)', 'heading'), ('position RMSE (m)', 'position'):
         for topic, follower in followers.items():
-            values['%s %s' % (topic, title)] = math.sqrt(getattr(follower, field) / follower.ticks)
+            values[f'{topic} {title}'] = math.sqrt(getattr(follower, field) / follower.ticks)
     return {**values, 'mean normalised estimation error squared': numpy.mean(nees)}
 
 
@@ -83,10 +83,10 @@ def main():
         report(name, min=min(values), median=numpy.median(values), max=max(values))
     for method in METHODS:
         for name, value in errors(method, robot, surface, range(arguments.filter_seeds)).items():
-            report('%s: %s' % (method, name), value=value)
+            report(f'{method}: {name}', value=value)
     for method in METHODS:
         values = list(speed(method, robot, surface, range(arguments.seeds)))
-        report(method + ': times real time, one core', min=min(values), median=numpy.median(values), max=max(values))
+        report(f'{method}: times real time, one core', min=min(values), median=numpy.median(values), max=max(values))
     start = time.perf_counter()
     for _ in simulate_many('timed', robot, surface, range(10000)):
         pass

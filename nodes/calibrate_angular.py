@@ -73,9 +73,9 @@ def drive():
         run[GYRO_KEY] = GYRO_CORRECTION if gyro.last else 1.0
     try:
         if gyro.error:
-            raise ConfigError('the base reports an error: %s' % gyro.error)
+            raise ConfigError(f'the base reports an error: {gyro.error}')
         if not readings:
-            raise ConfigError('nothing arrives on %s' % rospy.resolve_name('imu/data'))
+            raise ConfigError(f"nothing arrives on {rospy.resolve_name('imu/data')}")
         run['gyro'] = degrees(turn_by_gyro(list(readings), start, end, leg.done()))
     except ConfigError as error:
         warn_of_gyro(error)
@@ -97,12 +97,12 @@ def calibrate():
         save_run('angular', run)
     else:
         run = load_run('angular', 'reported', 'loses_fractions', ODOM_KEY, GYRO_KEY)
-    print('The odometry reports %.1f degrees.' % run['reported'])
+    print(f"The odometry reports {run['reported']:.1f} degrees.")
     if run['loses_fractions']:
         print('The robot loses fractions of a degree. The base noticed it in a turn, and now corrects its odometry. With '
               'the line angle_fractions in your file, it does so from the start.')
     if 'gyro' in run:
-        print('The gyro reports %.1f degrees.' % run['gyro'])
+        print(f"The gyro reports {run['gyro']:.1f} degrees.")
 
     def check(answer):
         return read_measured('measured', answer, run['reported'], 'an angle', 'degrees')
@@ -121,9 +121,9 @@ def calibrate():
     print('The %s %s. Now %s should be:' % ('factors were' if len(factors) > 1 else 'factor was', ', '.join(
         '%.4f' % run[key] for key in factors), 'they' if len(factors) > 1 else 'it'))
     for key, factor in factors.items():
-        print('%s: %.4f' % (key, factor))
+        print(f'{key}: {factor:.4f}')
     if run['loses_fractions']:
-        print('angle_fractions: %s' % LOST)
+        print(f'angle_fractions: {LOST}')
 
 
 if __name__ == '__main__':

@@ -68,7 +68,7 @@ def calibrate():
         save_run('linear', run)
     else:
         run = load_run('linear', 'reported', KEY)
-    print('The odometry reports %.3f m.' % run['reported'])
+    print(f"The odometry reports {run['reported']:.3f} m.")
 
     def check(answer):
         return read_measured('measured', answer, run['reported'], 'a distance', 'm')
@@ -79,7 +79,7 @@ def calibrate():
               '_measured:=METRES')
         return
     factor = corrected(KEY, run[KEY], measured, run['reported'])
-    print('The factor was %.4f. Now it should be:\n%s: %.4f' % (run[KEY], KEY, factor))
+    print(f'The factor was {run[KEY]:.4f}. Now it should be:\n{KEY}: {factor:.4f}')
 
 
 if __name__ == '__main__':

@@ -122,7 +122,7 @@ class Ekf:
             add(now.to_nsec(), message)
         except RejectedMessage as error:
             self.diagnostics.rejected[topic] += 1
-            self.log.add(rospy.logerr, '%s: %s; rejected' % (rospy.resolve_name(topic), error))
+            self.log.add(rospy.logerr, f'{rospy.resolve_name(topic)}: {error}; rejected')
             return
         self.diagnostics.count(topic, now, self.combined)
         if self.combined.estimate and not life.end_requested.is_set():      # topics are closed at the end

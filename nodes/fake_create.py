@@ -109,7 +109,7 @@ class FakeCreate:
         """Publish a command that arrived: its time in seconds of ROS time, and its bytes in hexadecimal."""
         if self.line_pub.get_num_connections():
             stamp = rospy.Time.now().to_sec() - (time.monotonic_ns() - now) / SECOND
-            self.line_pub.publish('%.6f %s' % (stamp, data.hex()))
+            self.line_pub.publish(f'{stamp:.6f} {data.hex()}')
 
 
 def main():
@@ -129,13 +129,13 @@ def main():
         body.gyro_stuck = floor(section.number('gyro_stuck', -1, 1023, -1.0, 'a count'))
         link = section.get('link', '')
         if not isinstance(link, str):
-            raise ConfigError('link: %s: expected a path' % show(link))
+            raise ConfigError(f'link: {show(link)}: expected a path')
         terminal = PseudoTerminal(link or None)
     except ConfigError as error:
         rospy.logfatal('%s/%s', rospy.get_name(), error)
         return 1
     rospy.loginfo('Emulated %s: serial port %s%s; seed:=%d repeats this robot', model.name, terminal.device,
-                  ', linked as %s' % terminal.link if terminal.link else '', seed)
+                  f', linked as {terminal.link}' if terminal.link else '', seed)
     FakeCreate(EmulatedCreate(model, body, line, time.monotonic_ns()), terminal).run()
     return 0
 

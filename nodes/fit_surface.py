@@ -55,7 +55,7 @@ def read_arguments():
     parser.add_argument('--config', default=resources.path('config', 'turtlebot.yaml'), metavar='FILE',
                         help="ArbotiX YAML file of the base: its width, limits and timeout; default: the TurtleBot's")
     for name, topic in (('cmd-vel', '/cmd_vel'), ('odom', '/odom'), ('imu', '/imu/data')):
-        parser.add_argument('--' + name, default=topic, metavar='TOPIC', help='default: %s' % topic)
+        parser.add_argument(f'--{name}', default=topic, metavar='TOPIC', help=f'default: {topic}')
     arguments = parser.parse_args()
     for name, check in (('output', check_output), ('plot', check_picture)):
         path = getattr(arguments, name)
@@ -63,11 +63,11 @@ def read_arguments():
             if path is not None:
                 check(path)
         except ConfigError as error:
-            parser.error('--%s: %s: %s' % (name, show_name(path), error))
+            parser.error(f'--{name}: {show_name(path)}: {error}')
     topics = [each.lstrip('/') for each in (arguments.cmd_vel, arguments.odom, arguments.imu, arguments.truth) if each]
     for topic in topics:
         if topics.count(topic) > 1:
-            parser.error('/%s: given twice: expected a topic of its own for commands, odometry, gyro and truth' % topic)
+            parser.error(f'/{topic}: given twice: expected a topic of its own for commands, odometry, gyro and truth')
     text_files = [path for path in arguments.runs if is_commands_file(path)]
     # without odometry, the drags stay: those of a carpet would be far from a Create's
     arguments.start = arguments.start or (CREATE_START if text_files else START)
@@ -101,10 +101,10 @@ def load_files(arguments):
     try:
         robot = read_robot(load_yaml(arguments.config))
     except ConfigError as error:
-        raise ConfigError('%s: %s' % (show_name(arguments.config), error))
+        raise ConfigError(f'{show_name(arguments.config)}: {error}')
     start = load_surface(arguments.start, resources.surfaces())
     if start is None:
-        raise ConfigError('--start: %s: the ideal surface: expected one with values' % show_name(arguments.start))
+        raise ConfigError(f'--start: {show_name(arguments.start)}: the ideal surface: expected one with values')
     return robot, start
 
 
@@ -126,12 +126,12 @@ def main():
                   % (count, inside_50, inside_90))
         text = surface_text(result, os.path.basename(arguments.start), [each.name for each in recordings])
         write_file(arguments.output, text.encode())
-        print('Surface: %s' % arguments.output)
+        print(f'Surface: {arguments.output}')
         if arguments.plot:
-            draw_fit(arguments.plot, 'Fitted: %s' % result.description, comparisons)
-            print('Picture: %s' % arguments.plot)
+            draw_fit(arguments.plot, f'Fitted: {result.description}', comparisons)
+            print(f'Picture: {arguments.plot}')
     except (OSError, ValueError) as error:
-        print('fit_surface.py: %s' % ' '.join(str(error).split()), file=sys.stderr)
+        print(f"fit_surface.py: {' '.join(str(error).split())}", file=sys.stderr)
         return 1
     return 0
 

@@ -42,14 +42,14 @@ def receive():
 
 def row(topic, latest):
     """One line of the table."""
-    text = '%-9s %-14s' % (TOPICS[topic], rospy.resolve_name(topic))
+    text = f'{TOPICS[topic]:9} {rospy.resolve_name(topic):14}'
     if topic not in latest:
-        return text + ' not published'
+        return f'{text} not published'
     if latest[topic] is None:
-        return text + ' no message for %g s' % TIMEOUT
+        return f'{text} no message for {TIMEOUT:g} s'
     pose = latest[topic].pose.pose
     x, y, yaw = pose.position.x, pose.position.y, messages.yaw_of(pose.orientation)
-    return text + ' %7.3f %7.3f %19.1f %20.3f' % (rounded(x, 3), rounded(y, 3), rounded(degrees(yaw), 1), hypot(x, y))
+    return f'{text} {rounded(x, 3):7.3f} {rounded(y, 3):7.3f} {rounded(degrees(yaw), 1):19.1f} {hypot(x, y):20.3f}'
 
 
 def main():

@@ -57,7 +57,7 @@ def read_arguments():
         try:
             check_picture(arguments.plot)
         except ConfigError as error:
-            parser.error('--plot: %s: %s' % (show_name(arguments.plot), error))
+            parser.error(f'--plot: {show_name(arguments.plot)}: {error}')
     arguments.method = list(dict.fromkeys(arguments.method or METHODS))
     return arguments
 
@@ -76,14 +76,14 @@ def run_all(method, robot, surface, seeds, arguments):
 
 def spread(values):
     """Mean and standard deviation, as text."""
-    return '%8.3f +- %5.3f' % (rounded(numpy.mean(values), 3), numpy.std(values))
+    return f'{rounded(numpy.mean(values), 3):8.3f} +- {numpy.std(values):5.3f}'
 
 
 def spread_of_angles(angles):
     """The same for angles in rad, in degrees: their mean is that of their directions."""
     mean = atan2(sum(map(sin, angles)), sum(map(cos, angles)))
     around = [degrees(wrap_angle(angle - mean)) for angle in angles]
-    return '%8.2f +- %5.2f' % (rounded(degrees(mean) + numpy.mean(around), 2), numpy.std(around))
+    return f'{rounded(degrees(mean) + numpy.mean(around), 2):8.2f} +- {numpy.std(around):5.2f}'
 
 
 def report(method, results):
@@ -105,7 +105,7 @@ def load_robot(path):
     try:
         return read_robot(load_yaml(path))
     except ConfigError as error:
-        raise ConfigError('%s: %s' % (show_name(path), error))
+        raise ConfigError(f'{show_name(path)}: {error}')
 
 
 def main():
@@ -129,9 +129,9 @@ def main():
             print('%-6s %.0f s of the robot in %.2f s, %.0f times real time' % ('', simulated, took, simulated / took))
         if arguments.plot:
             draw(arguments.plot, arguments.surface, results, seeds)
-            print('Picture: %s' % arguments.plot)
+            print(f'Picture: {arguments.plot}')
     except (OSError, ValueError) as error:     # or a robot that is stuck
-        print('simulate.py: %s' % ' '.join(str(error).split()), file=sys.stderr)
+        print(f"simulate.py: {' '.join(str(error).split())}", file=sys.stderr)
         return 1
     except BrokenProcessPool:
         print('simulate.py: a process was killed, perhaps because memory ran out: expected all of --jobs %d to run'

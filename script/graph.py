@@ -37,7 +37,7 @@ def node_graph(publishers, subscribers, hidden):
                 continue
             for node in map(plain, set(nodes) - LOGGING - set(hidden)):
                 ids = identifier('node', node), identifier('topic', topic)
-                shapes.update(('%s(["%s"])' % (ids[0], node), '%s["%s"]' % (ids[1], topic)))
+                shapes.update((f'{ids[0]}(["{node}"])', f'{ids[1]}["{topic}"]'))
                 arrows.add(arrow.format(*ids))
     return '\n    '.join(['flowchart LR'] + sorted(shapes) + sorted(arrows))
 
@@ -46,7 +46,7 @@ def frame_tree(frames):
     """The tree as Mermaid text, each transform with the node that publishes it. frames: all_frames_as_yaml() of tf2."""
     tree = yaml.safe_load(frames) or {}
     names = set(tree).union(frame['parent'] for frame in tree.values())
-    shapes = ['%s["%s"]' % (identifier('frame', name), name) for name in sorted(names)]
+    shapes = [f"{identifier('frame', name)}[\"{name}\"]" for name in sorted(names)]
     arrows = ['%s -->|"%s"| %s' % (identifier('frame', frame['parent']), plain(frame['broadcaster']),
                                    identifier('frame', name)) for name, frame in sorted(tree.items())]
     return '\n    '.join(['flowchart LR'] + shapes + arrows)
@@ -75,7 +75,7 @@ def main():
     system = RunningSystem()
     time.sleep(seconds)
     for picture in system.draw():
-        print('```mermaid\n%s\n```\n' % picture)
+        print(f'```mermaid\n{picture}\n```\n')
 
 
 if __name__ == '__main__':

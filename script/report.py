@@ -61,8 +61,8 @@ def draw(paths, picture, surface):
     points = [point for path in paths.values() for point in path]
     for axis, index, low, high in (('x', 0, -0.5, 1.5), ('y', 1, -0.6, 0.9)):
         values = [point[index] for point in points]
-        axes.set(**{axis + 'lim': (min(low, min(values) - 0.4), max(high, max(values) + 0.4))})
-    axes.set(title='Out and back on %s' % surface, xlabel='x (m)', ylabel='y (m)', aspect='equal')
+        axes.set(**{f'{axis}lim': (min(low, min(values) - 0.4), max(high, max(values) + 0.4))})
+    axes.set(title=f'Out and back on {surface}', xlabel='x (m)', ylabel='y (m)', aspect='equal')
     axes.grid(True)
     axes.legend(loc='upper center', bbox_to_anchor=(0.5, -0.1), ncol=5, frameon=False)
     figure.savefig(picture, dpi=100, bbox_inches='tight')
@@ -77,15 +77,15 @@ def main(bag, picture, surface='an unknown surface'):
     """Report one run."""
     paths = read_paths(bag)
     if '/odom' not in paths:
-        sys.exit('%s: no odometry: expected messages on /odom' % bag)
+        sys.exit(f'{bag}: no odometry: expected messages on /odom')
     for topic, path in reversed(list(paths.items())):
         (x0, y0, yaw0), (x, y, yaw) = path[0], path[-1]
         print('End by %-14s x %s m, y %s m, heading %s degrees; %s m from the start, %s degrees turned' % (
-            topic + ':', rounded(x, 4), rounded(y, 4), rounded(degrees(atan2(sin(yaw), cos(yaw))), 2),
+            f'{topic}:', rounded(x, 4), rounded(y, 4), rounded(degrees(atan2(sin(yaw), cos(yaw))), 2),
             rounded(hypot(x - x0, y - y0), 4), rounded(degrees(yaw - yaw0), 2)))
     draw(paths, picture, surface)
-    print('Bag:     %s' % bag)
-    print('Picture: %s' % picture)
+    print(f'Bag:     {bag}')
+    print(f'Picture: {picture}')
 
 
 if __name__ == '__main__':

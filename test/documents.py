@@ -26,7 +26,7 @@ def read_steps(page):
     try:
         return blocks.parse(markdown.read(ROOT, page))
     except ValueError as error:
-        raise PageFailed('%s:%s' % (page, error)) from None
+        raise PageFailed(f'{page}:{error}') from None
 
 
 def typed(steps, kind):
@@ -73,7 +73,7 @@ class Documents(unittest.TestCase):
         for page in cls.pages:
             # no dots or slashes: rosunit would cut the name there
             name = re.sub(r'\W+', '_', os.path.splitext(page)[0])
-            setattr(cls, 'test_' + name, lambda self, page=page: self.check(page))
+            setattr(cls, f'test_{name}', lambda self, page=page: self.check(page))
 
     def check(self, page):
         """Fail with the message of the page, without the traceback of its thread."""

@@ -34,7 +34,7 @@ def wait_for(condition, what, limit=LIMIT):
         if value:
             return value
         time.sleep(0.005)
-    raise AssertionError('timed out after %g s waiting for %s' % (limit, what))
+    raise AssertionError(f'timed out after {limit:g} s waiting for {what}')
 
 
 def twist(linear=0.0, angular=0.0):
@@ -78,7 +78,7 @@ class Watch:
     def next(self):
         """Wait for the next message, and return the latest."""
         count = len(self.messages)
-        wait_for(lambda: len(self.messages) > count, 'a message on ' + self.subscriber.name)
+        wait_for(lambda: len(self.messages) > count, f'a message on {self.subscriber.name}')
         return self.messages[-1]
 
 
@@ -100,7 +100,7 @@ class OdomWatch(Watch):
             message = self.messages[-1]
             velocity = message.twist.twist
             return (velocity.linear.x, velocity.angular.z) == (linear, angular) and message
-        return wait_for(check, 'odometry with the velocity %s, %s' % (linear, angular))
+        return wait_for(check, f'odometry with the velocity {linear}, {angular}')
 
 
 class Commander:
@@ -157,11 +157,11 @@ class Process:
         try:
             return wait_for(lambda: re.search(pattern, self.output), repr(pattern))
         except AssertionError as error:
-            raise AssertionError('%s, in:\n%s' % (error, self.output))
+            raise AssertionError(f'{error}, in:\n{self.output}')
 
     def type(self, line):
         """Type a line."""
-        self.process.stdin.write(line + '\n')
+        self.process.stdin.write(f"{line}\n")
         self.process.stdin.flush()
 
     def signal(self, number):
@@ -170,7 +170,7 @@ class Process:
 
     def wait(self):
         """Wait for the end; returns the exit status."""
-        wait_for(lambda: self.process.poll() is not None, 'the end of:\n%s' % self.output)
+        wait_for(lambda: self.process.poll() is not None, f'the end of:\n{self.output}')
         self.reader.join(5)
         return self.process.returncode
 

@@ -45,11 +45,11 @@ class TestFakeRobot(unittest.TestCase):
     def check_servos(self, joints):
         goals = {'head_pan_joint': (0.5, 0.5), 'head_tilt_joint': (9.0, 1.0471975511965976)}   # its limit is 60 degrees
         for name, (goal, _) in goals.items():
-            command = rospy.Publisher('/%s/command' % name, Float64, queue_size=1, latch=True)
+            command = rospy.Publisher(f'/{name}/command', Float64, queue_size=1, latch=True)
             command.publish(goal)
         for name, (_, end) in goals.items():
             index = joints.last.name.index(name)
-            support.wait_for(lambda i=index, e=end: abs(joints.last.position[i] - e) < 1e-9, name + ' at its goal')
+            support.wait_for(lambda i=index, e=end: abs(joints.last.position[i] - e) < 1e-9, f'{name} at its goal')
             # 90 degrees per second, and rounding
             self.assertLessEqual(max(abs(m.velocity[index]) for m in joints.messages), 1.5708)
 

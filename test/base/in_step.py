@@ -100,7 +100,7 @@ class TestInStep(unittest.TestCase):
 
     def test_two_drivers(self):
         rospy.ServiceProxy('/arbotix/reset', Empty)()
-        drivers = [self.start(DRIVER, 'rate', rate, round(rate), speed, '__name:=' + name)
+        drivers = [self.start(DRIVER, 'rate', rate, round(rate), speed, f'__name:={name}')
                    for name, rate, speed in (('a', 20, SPEED), ('b', self.rate, SPEED / 4))]
         for driver in drivers:
             driver.wait_for_line('ready')

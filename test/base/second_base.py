@@ -39,7 +39,7 @@ class TestSecondBase(unittest.TestCase):
         buffer = tf2_ros.Buffer(debug=False)
         listener = tf2_ros.TransformListener(buffer)
         for link in links:
-            support.wait_for(lambda: buffer.can_transform('odom', link, rospy.Time(0)), 'a transform to ' + link)
+            support.wait_for(lambda: buffer.can_transform('odom', link, rospy.Time(0)), f'a transform to {link}')
         listener.unregister()
 
     def test_the_same_base_twice(self):

@@ -32,7 +32,7 @@ class TestSystemClock(unittest.TestCase):
                 file.write(offset)
 
         step('+0')
-        node = rospkg.RosPack().get_path('rbx1_nav') + '/nodes/fake_base.py'
+        node = f"{rospkg.RosPack().get_path('rbx1_nav')}/nodes/fake_base.py"
         base = support.Process('/usr/bin/python3', '-c', STEPPED, node, scratch.name)
         self.addCleanup(base.kill)
         odom = support.OdomWatch()

@@ -25,7 +25,7 @@ class TestAngularCalibration(unittest.TestCase):
         # on carpet the wheels slip by 3 % in a turn, with a standard deviation of 2 % over two turns
         self.assertGreater(abs(reported - real), 3)
 
-        script.type('%.1f' % real)
+        script.type(f'{real:.1f}')
         self.assertEqual(script.wait(), 0, script.output)
         factors = {key: float(value) for key, value in re.findall(r'^(\w+_correction): (\S+)$', script.output,
                                                                   re.MULTILINE)}

@@ -16,18 +16,18 @@ class TestAnsweredLater(unittest.TestCase):
 
     def check(self, node, argument, keys, wrong, expected):
         """A run without an answer, then a result that makes no sense, then the same result twice."""
-        script = 'calibrate_%s.py' % node
+        script = f'calibrate_{node}.py'
         run = support.Process('rosrun', 'rbx1_nav', script)
         self.addCleanup(run.kill)
         run.process.stdin.close()
         self.assertEqual(run.wait(), 0, run.output)
-        self.assertIn('rosrun rbx1_nav %s _measured:=' % script, run.output)
+        self.assertIn(f'rosrun rbx1_nav {script} _measured:=', run.output)
         self.assertNotIn('_correction: ', run.output)
         reported, = re.findall('The odometry reports .*', run.output)
 
         commands = support.Watch('/cmd_vel', Twist)
         for measured, status in [(wrong, 1), (argument, 0), (argument, 0)]:
-            later = support.Process('rosrun', 'rbx1_nav', script, '_measured:=%s' % measured)
+            later = support.Process('rosrun', 'rbx1_nav', script, f'_measured:={measured}')
             self.addCleanup(later.kill)
             self.assertEqual(later.wait(), status, later.output)
             factors = dict(re.findall(r'^(\w+_correction): (\S+)$', later.output, re.MULTILINE))
@@ -39,7 +39,7 @@ class TestAnsweredLater(unittest.TestCase):
                 # the odometry of the simulated base reports about the goal, whose sixth part is missing
                 self.assertEqual(sorted(factors), sorted(keys))
                 self.assertAlmostEqual(float(factors[keys[0]]), 5 / 6, delta=0.005)
-            self.assertFalse(rospy.has_param('/calibrate_%s/measured' % node), 'it belongs to this run only')
+            self.assertFalse(rospy.has_param(f'/calibrate_{node}/measured'), 'it belongs to this run only')
         self.assertFalse(commands.messages)
 
     def test_linear(self):

@@ -19,7 +19,7 @@ class TestInterruptedCalibration(unittest.TestCase):
         """Interrupt a script in motion, or after this line."""
         commands = support.Watch('/cmd_vel', Twist)
         self.addCleanup(commands.subscriber.unregister)
-        kept = '/last_calibration/' + script[len('calibrate_'):-len('.py')]
+        kept = f"/last_calibration/{script[len('calibrate_'):-len('.py')]}"
         rospy.set_param(kept, {'reported': 1.0})
         process = support.Process('rosrun', 'rbx1_nav', script)
         self.addCleanup(process.kill)

@@ -23,10 +23,10 @@ class TestLinearCalibration(unittest.TestCase):
         # on carpet the wheels slip by 2 % in the mean, with a standard deviation of 4 % over 1 m
         self.assertGreater(abs(reported - real), 0.003)
 
-        for answer, shown in [('about 1', "'about 1'"), ('%.0f' % (100 * real), r'9\d.0')]:
+        for answer, shown in [('about 1', "'about 1'"), (f'{100 * real:.0f}', r'9\d.0')]:
             script.type(answer)
-            script.wait_for_line('measured: %s: expected a distance from' % shown)
-        script.type('%.3f' % real)
+            script.wait_for_line(f'measured: {shown}: expected a distance from')
+        script.type(f'{real:.3f}')
         self.assertEqual(script.wait(), 0, script.output)
         # what it reports is rounded to millimetres
         shown = float(re.search(r'The odometry reports (\S+) m', script.output)[1])

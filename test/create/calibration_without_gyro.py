@@ -38,7 +38,7 @@ class TestCalibrationWithoutGyro(unittest.TestCase):
         self.assertEqual(len(lines), 1, output)
         self.assertRegex(lines[0], r'\[WARN\].* The gyro is not calibrated: the base reports an error: %s.*\. '
                                    'See /diagnostics of the base' % reason)
-        output = self.run_script('calibrate_angular.py', '_measured:=%.2f' % measured)
+        output = self.run_script('calibrate_angular.py', f'_measured:={measured:.2f}')
         factors = dict(FACTOR.findall(output))
         self.assertEqual(list(factors), ['odom_angular_scale_correction'], output)
         self.assertAlmostEqual(float(factors['odom_angular_scale_correction']) * 1.1, 1, delta=0.03)

@@ -17,7 +17,7 @@ class TestCreatePort(unittest.TestCase):
         robot = DrivenRobot(self, 'create2')
         pid = support.pid_of('/turtlebot_node')
         second = robot.start_node('__name:=second')
-        second.wait_for_line(r'%s: in use by \S+ \(process \d+\): expected a port that nobody uses' % robot.link)
+        second.wait_for_line(rf'{robot.link}: in use by \S+ \(process \d+\): expected a port that nobody uses')
         # nothing disturbs the first
         robot.wait_for_motion()
         # when the port is free, the second one uses it
@@ -40,7 +40,7 @@ class TestCreatePort(unittest.TestCase):
         robot.end_node(robot.node)
         robot.switch('pull_cable', True)
         node = robot.start_node()
-        node.wait_for_line('%s: no such device: expected the adapter of the robot to be plugged in' % robot.link)
+        node.wait_for_line(f'{robot.link}: no such device: expected the adapter of the robot to be plugged in')
         robot.switch('pull_cable', False)
         node.wait_for_line('in safe mode')
 
@@ -48,10 +48,10 @@ class TestCreatePort(unittest.TestCase):
         for name, argument, text in (
                 ('bad_type', '_robot_type:=roomba', "robot_type: 'roomba': expected one of auto, create, create2"),
                 ('bad_rate', '_update_rate:=fast', "update_rate: 'fast': expected a rate from 5 to 60 in Hz")):
-            node = support.Process('rosrun', 'rbx1_nav', 'turtlebot_node.py', argument, '__name:=' + name)
+            node = support.Process('rosrun', 'rbx1_nav', 'turtlebot_node.py', argument, f'__name:={name}')
             self.addCleanup(node.kill)
             self.assertEqual(node.wait(), 1)
-            self.assertIn('/%s/%s' % (name, text), node.output)
+            self.assertIn(f'/{name}/{text}', node.output)
             self.assertNotIn('Traceback', node.output)
 
 

@@ -15,7 +15,7 @@ class TestCreateRefuses(unittest.TestCase):
         """Start a script, and wait until it drives the robot."""
         script = support.out_and_back()
         self.addCleanup(script.kill)
-        support.wait_for(lambda: robot.moving, 'the script to drive: %s' % script.output)
+        support.wait_for(lambda: robot.moving, f'the script to drive: {script.output}')
         return script
 
     def check_refusal(self, script, reason):

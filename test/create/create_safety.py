@@ -18,7 +18,7 @@ class TestCreateSafety(unittest.TestCase):
             robot.wait_for_motion()
             robot.switch(service, True)
             robot.drive(0.2, 0.0, lambda: not robot.moving, 'the robot to stop')
-            robot.drive(0.2, 0.0, lambda why=reason: robot.status().message == 'Not driven: ' + why, reason)
+            robot.drive(0.2, 0.0, lambda why=reason: robot.status().message == f'Not driven: {why}', reason)
             robot.node.wait_for_line('it changed from safe to passive mode')
             count = len(robot.received())
             # commands do not change that

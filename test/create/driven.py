@@ -19,7 +19,7 @@ def guardian_of(pid):
     """The process id of the guardian of a node's process; None if there is none."""
     for name in glob.glob('/proc/[0-9]*'):
         try:
-            with open(name + '/stat', encoding='ascii') as stat, open(name + '/cmdline', 'rb') as command:
+            with open(f'{name}/stat', encoding='ascii') as stat, open(f'{name}/cmdline', 'rb') as command:
                 parent = int(stat.read().rpartition(')')[2].split()[1])
                 if parent == pid and b'guardian.py' in command.read():
                     return int(os.path.basename(name))
@@ -39,7 +39,7 @@ class DrivenRobot(EmulatedRobot):
         if obstacle:
             self.switch(obstacle, True)
         self.diagnostics = support.Watch('/diagnostics', DiagnosticArray)
-        self.node = self.start_node(**{'_' + name: value for name, value in params.items()})
+        self.node = self.start_node(**{f'_{name}': value for name, value in params.items()})
         self.odom = support.OdomWatch()
         self.commander = support.Commander()
         if obstacle:
@@ -52,7 +52,7 @@ class DrivenRobot(EmulatedRobot):
         """Another base node on this port."""
         if rospy.has_param('/turtlebot_node'):
             rospy.delete_param('/turtlebot_node')
-        node = support.Process('rosrun', 'rbx1_nav', 'turtlebot_node.py', '_port:=' + self.link, *arguments,
+        node = support.Process('rosrun', 'rbx1_nav', 'turtlebot_node.py', f'_port:={self.link}', *arguments,
                                *('%s:=%s' % item for item in params.items()))
         self.case.addCleanup(self.end_node, node)
         return node
@@ -69,7 +69,7 @@ class DrivenRobot(EmulatedRobot):
         """The latest status of a part of the robot, by default of the base; None if there is none."""
         name = name or 'Base'
         statuses = [status for message in list(self.diagnostics.messages) for status in message.status]
-        return next((status for status in reversed(statuses) if status.name == 'turtlebot_node: ' + name), None)
+        return next((status for status in reversed(statuses) if status.name == f'turtlebot_node: {name}'), None)
 
     def value(self, part, key):
         """A value in the status of a part."""
@@ -80,7 +80,7 @@ class DrivenRobot(EmulatedRobot):
         try:
             return support.wait_for(lambda: message in getattr(self.status(name), 'message', ''), repr(message))
         except AssertionError as error:
-            raise AssertionError('%s; status: %s; node: %s' % (error, self.status(name), self.node.output))
+            raise AssertionError(f'{error}; status: {self.status(name)}; node: {self.node.output}')
 
     def drive(self, linear, angular, condition, what):
         """Repeat a command until a condition holds."""
@@ -92,15 +92,15 @@ class DrivenRobot(EmulatedRobot):
 
     def wait_for_motion(self, linear=0.2, angular=0.0):
         """Drive until the robot moves."""
-        self.drive(linear, angular, lambda: self.moving, 'the robot to move: %s' % self.node.output)
+        self.drive(linear, angular, lambda: self.moving, f'the robot to move: {self.node.output}')
 
     def wait_for_standstill(self):
         """Wait until the robot stands, by ground truth."""
-        support.wait_for(lambda: not self.moving, 'the robot to stop: %s' % self.node.output)
+        support.wait_for(lambda: not self.moving, f'the robot to stop: {self.node.output}')
 
     def wait_for_mode(self, mode):
         """Wait until diagnostics show a mode."""
-        support.wait_for(lambda: self.value(None, 'Mode') == mode, 'mode ' + mode)
+        support.wait_for(lambda: self.value(None, 'Mode') == mode, f'mode {mode}')
 
     def commands_since(self, count):
         """The commands that the robot has received after the first `count`."""

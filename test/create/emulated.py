@@ -24,8 +24,8 @@ class EmulatedRobot:
         self.link = os.path.join(folder.name, 'port')
         if rospy.has_param('/fake_create'):
             rospy.delete_param('/fake_create')
-        self.process = support.Process('rosrun', 'rbx1_nav', 'fake_create.py', '_link:=' + self.link,
-                                       '_robot_type:=' + robot_type, '_seed:=1',
+        self.process = support.Process('rosrun', 'rbx1_nav', 'fake_create.py', f'_link:={self.link}',
+                                       f'_robot_type:={robot_type}', '_seed:=1',
                                        *('_%s:=%s' % item for item in params.items()))
         case.addCleanup(self.process.kill)
         self.ended = False
@@ -61,7 +61,7 @@ class EmulatedRobot:
             received = self.received()[count:]
             return [data for _, data in received[-len(commands):]] == list(commands) and received[-1][0]
         self.port.write(b''.join(commands))
-        return support.wait_for(arrived, '%s on /line' % (commands,))
+        return support.wait_for(arrived, f'{commands} on /line')
 
     def wait_until_read(self):
         """Wait until the robot has read all that was sent so far."""
@@ -86,11 +86,11 @@ class EmulatedRobot:
     def wait_for(self, number, value):
         """Wait until a packet has a value."""
         packet = self.model.packets[number]
-        support.wait_for(lambda: self.read(number)[packet.name] == value, '%s = %r' % (packet.name, value))
+        support.wait_for(lambda: self.read(number)[packet.name] == value, f'{packet.name} = {value!r}')
 
     def switch(self, service, on):
         """Call one of the services that have a SetBool."""
-        name = '/fake_create/' + service
+        name = f'/fake_create/{service}'
         rospy.wait_for_service(name, support.LIMIT)
         assert rospy.ServiceProxy(name, SetBool)(on).success
 
@@ -100,10 +100,10 @@ class EmulatedRobot:
 
     def publish(self, topic, value):
         """Publish a number to one of its topics."""
-        publisher = rospy.Publisher('/fake_create/' + topic, Float64, queue_size=1, latch=True)
-        support.wait_for(publisher.get_num_connections, 'the robot to subscribe to ' + topic)
+        publisher = rospy.Publisher(f'/fake_create/{topic}', Float64, queue_size=1, latch=True)
+        support.wait_for(publisher.get_num_connections, f'the robot to subscribe to {topic}')
         publisher.publish(value)
-        self.process.wait_for_line('%s: ' % topic)
+        self.process.wait_for_line(f'{topic}: ')
 
     @property
     def position(self):

@@ -67,7 +67,7 @@ class TestCable(unittest.TestCase):
         response = rospy.ServiceProxy('/fake_create/pull_cable', SetBool)(False)
         os.rmdir(robot.link)
         self.assertFalse(response.success)
-        self.assertIn('link: %s: exists, and is not a link: expected' % robot.link, response.message)
+        self.assertIn(f'link: {robot.link}: exists, and is not a link: expected', response.message)
         robot.switch('pull_cable', False)
         robot.open()
 

@@ -54,7 +54,7 @@ class TestParameters(unittest.TestCase):
             self.assertEqual(process.wait(), 1, process.output)
             errors = [line for line in process.lines if '[FATAL]' in line]
             self.assertEqual(len(errors), 1, process.output)
-            self.assertIn('/fake_create/' + expected, errors[0])
+            self.assertIn(f'/fake_create/{expected}', errors[0])
             self.assertNotIn('Traceback', process.output)
             rospy.delete_param('/fake_create')
 

@@ -29,7 +29,7 @@ class TestFoundErrors(unittest.TestCase):
         process = support.Process('rosrun', 'rbx1_nav', script)
         self.addCleanup(process.kill)
         process.wait_for_line(line)
-        process.type('%.3f' % measure(start, support.pose(self.truth.next())))
+        process.type(f'{measure(start, support.pose(self.truth.next())):.3f}')
         self.assertEqual(process.wait(), 0, process.output)
         return {key: float(value) for key, value in re.findall(r'^(\w+_correction): (\S+)$', process.output,
                                                                re.MULTILINE)}

@@ -20,12 +20,12 @@ def import_pycreate2(folder):
     """Install pycreate2 there, and import it. Raises SkipTest."""
     try:
         subprocess.run([sys.executable, '-m', 'pip', 'install', '--quiet', '--no-deps', '--retries', '0',
-                        '--target', folder, 'pycreate2==' + VERSION],
+                        '--target', folder, f'pycreate2=={VERSION}'],
                        check=True, capture_output=True, text=True, timeout=120)
     except (OSError, subprocess.SubprocessError) as error:
         text = (getattr(error, 'stderr', None) or str(error)).strip().splitlines()[-1]
-        print('pycreate2 cannot be installed, so it is not tried: ' + text, file=sys.stderr)
-        raise unittest.SkipTest('pycreate2 cannot be installed: ' + text)
+        print(f'pycreate2 cannot be installed, so it is not tried: {text}', file=sys.stderr)
+        raise unittest.SkipTest(f'pycreate2 cannot be installed: {text}')
     sys.path.insert(0, folder)
     import pycreate2
     return pycreate2

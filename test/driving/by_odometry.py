@@ -27,7 +27,7 @@ class TestByOdometry(unittest.TestCase):
         start = truth.last.header.stamp
         support.wait_for(lambda: (truth.last.header.stamp - start).to_sec() > 2, 'two seconds')
 
-        driver = support.by_odometry('_odom_frame:=' + frame)
+        driver = support.by_odometry(f'_odom_frame:={frame}')
         self.addCleanup(driver.kill)
         self.assertEqual(driver.wait(), 0, driver.output)
         x, y, yaw = support.pose(truth.next())

@@ -33,7 +33,7 @@ class TestClosedTerminal(unittest.TestCase):
         self.assertEqual(driver.returncode, 0)
         odom.wait_for_twist(0.0)
         for line in ('Stopping the robot...', 'Out-and-Back node terminated.'):
-            support.wait_for(lambda: any(m.msg == line for m in log.messages), line + ' on /rosout')
+            support.wait_for(lambda: any(m.msg == line for m in log.messages), f'{line} on /rosout')
 
 
 if __name__ == '__main__':

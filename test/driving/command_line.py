@@ -24,7 +24,7 @@ class TestCommandLine(unittest.TestCase):
                 driver = start(argument)
                 self.addCleanup(driver.kill)
                 self.assertEqual(driver.wait(), 2, driver.output)
-                self.assertTrue(driver.lines[-1].endswith('.py: error: %s: %s' % (argument, problem)), driver.output)
+                self.assertTrue(driver.lines[-1].endswith(f'.py: error: {argument}: {problem}'), driver.output)
         self.assertEqual(commands.messages, [])
         self.assertFalse(rospy.has_param('/out_and_back'))
 

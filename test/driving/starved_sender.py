@@ -36,7 +36,7 @@ class TestStarvedSender(unittest.TestCase):
 
     def drive(self, peer, delay, busy=True):
         """Run the exercise; returns the Process when it has ended."""
-        node = rospkg.RosPack().get_path('rbx1_nav') + '/nodes/timed_out_and_back.py'
+        node = f"{rospkg.RosPack().get_path('rbx1_nav')}/nodes/timed_out_and_back.py"
         driver = support.Process('/usr/bin/python3', '-c', STARVED, node, peer, str(delay),
                                  'busy' if busy else 'asleep')
         self.addCleanup(driver.kill)

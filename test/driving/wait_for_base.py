@@ -26,7 +26,7 @@ class TestWaitForBase(unittest.TestCase):
 
     def base(self, name):
         rospy.set_param(name, {'controllers': {'base': {'type': 'diff_controller', 'base_width': 0.26}}})
-        process = support.Process('rosrun', 'rbx1_nav', 'fake_base.py', '__name:=' + name)
+        process = support.Process('rosrun', 'rbx1_nav', 'fake_base.py', f'__name:={name}')
         self.addCleanup(process.kill)
         process.wait_for_line('at the origin')
         return process

@@ -11,7 +11,7 @@ VALUES = [0, -1, 1, 2 ** 31, 2 ** 63, 10 ** 400, -10 ** 400, 16 ** 5000, 0.0, -0
 KEYS = ['new\nline', '', '/', 'a/b', 7, None, True, 'rate ', '\x1b[31m', 'é', 'a\u2028b', '\ud800', 'long' * 1000]
 # %s: a key of the file
 TEXTS = ['%s: !!bool maybe', '%s: !!float ""', '%s: !!int ""', '%s: !!timestamp never', '%s: !!python/name:os.system',
-         '%s: 0x' + 'f' * 5000, '%s: 2024-13-45', '%s: 1e400', '%s: "\\ud800"', '%s: ' + '[' * 500, '%s: &a [*a]',
+         f"%s: 0x{'f' * 5000}", '%s: 2024-13-45', '%s: 1e400', '%s: "\\ud800"', f"%s: {'[' * 500}", '%s: &a [*a]',
          '%s: =', '%s: \t1', '%s: *missing', '? {%s: 1}\n: 1', '- %s', '%s: \0', '%s: 1\n%s: [',
          '%s: !!binary "/w=="', '%s: -']
 

@@ -8,8 +8,8 @@ def with_variable(name, value):
     found = []
     for pid in filter(str.isdigit, os.listdir('/proc')):
         try:
-            with open('/proc/%s/environ' % pid, 'rb') as file:      # empty for a zombie
-                if ('%s=%s' % (name, value)).encode() in file.read().split(b'\0'):
+            with open(f'/proc/{pid}/environ', 'rb') as file:      # empty for a zombie
+                if (f'{name}={value}').encode() in file.read().split(b'\0'):
                     found.append(int(pid))
         except OSError:     # it has ended, or is somebody else's
             pass
@@ -35,7 +35,7 @@ def wait_for_end(find, limit):
         pids = find()
         if not pids:
             return time.monotonic() - start
-        assert time.monotonic() < start + limit, 'still there after %g s:\n%s' % (limit, commands(pids))
+        assert time.monotonic() < start + limit, f'still there after {limit:g} s:\n{commands(pids)}'
         time.sleep(0.02)
 
 
@@ -58,14 +58,14 @@ def listening(pid):
             for line in list(file)[1:]:
                 fields = line.split()
                 # TCP: 0A is LISTEN; UDP: 07 is not connected
-                if 'socket:[%s]' % fields[9] in inodes and fields[3] == ('0A' if protocol[:3] == 'tcp' else '07'):
+                if f'socket:[{fields[9]}]' in inodes and fields[3] == ('0A' if protocol[:3] == 'tcp' else '07'):
                     found.append((protocol, fields[1].split(':')[0]))
     return found
 
 
 def is_loopback(address):
     """Whether an address of /proc/net, hexadecimal in the machine's order (little-endian), is of this machine only."""
-    if len(address) == 32 and address[:24] in (24 * '0', 16 * '0' + 'FFFF0000'):
+    if len(address) == 32 and address[:24] in (24 * '0', f"{16 * '0'}FFFF0000"):
         address = address[24:]
         if address == '01000000':       # ::1
             return True

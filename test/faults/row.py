@@ -49,9 +49,9 @@ class Row:
         try:
             yield
         except AssertionError as error:
-            self.failures.append('%s: %s' % (text, error or traceback.format_exc().splitlines()[-2].strip()))
+            self.failures.append(f'{text}: {error or traceback.format_exc().splitlines()[-2].strip()}')
         except Exception:       # pylint: disable=broad-except
-            self.failures.append('%s: %s' % (text, traceback.format_exc(limit=-5)))
+            self.failures.append(f'{text}: {traceback.format_exc(limit=-5)}')
 
     def figure(self, name, value):
         """A measured value; the table shows the spread of all values of one name."""
@@ -95,7 +95,7 @@ class Row:
         else:
             off = math.hypot(x - support.EXACT_X, y - support.EXACT_Y)
             turn = support.wrapped(yaw - support.EXACT_TURN)
-            assert off < support.MICROMETRE and abs(turn) < 1e-6, '%g m and %g rad off' % (off, turn)
+            assert off < support.MICROMETRE and abs(turn) < 1e-6, f'{off:g} m and {turn:g} rad off'
 
     def end(self, *processes):
         """End processes as Ctrl-C does, and kill those that do not end."""
@@ -119,12 +119,12 @@ def main():
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
     row = Row(name, times, seed)
     try:
-        importlib.import_module('rows.' + name).run(row)
+        importlib.import_module(f'rows.{name}').run(row)
     except Exception:   # pylint: disable=broad-except
         row.failures.append(traceback.format_exc())
     finally:
         row.end()
-        sys.stdout.write('\n%s\n' % json.dumps(row.result()))
+        sys.stdout.write(f'\n{json.dumps(row.result())}\n')
         sys.stdout.flush()
         os._exit(0)     # rospy's threads may wait for a master that has gone
 

@@ -31,7 +31,7 @@ running = {}        # the processes of the rows that run now, by their ROS_HOME
 def read_arguments(names):
     """The command line."""
     parser = argparse.ArgumentParser(prog='script/test --faults', description=__doc__.split('\n')[0])
-    parser.add_argument('rows', nargs='*', metavar='ROW', help='one of %s; default: all' % ', '.join(names))
+    parser.add_argument('rows', nargs='*', metavar='ROW', help=f"one of {', '.join(names)}; default: all")
     parser.add_argument('--short', action='store_true', help='fewer faults of each kind')
     parser.add_argument('--seed', type=int, default=random.randrange(10 ** 6), metavar='S',
                         help='repeats the same random faults; default: a new one')
@@ -40,7 +40,7 @@ def read_arguments(names):
     arguments = parser.parse_args()
     for name in arguments.rows:
         if name not in names:
-            parser.error('%s: expected one of %s' % (name, ', '.join(names)))
+            parser.error(f"{name}: expected one of {', '.join(names)}")
     return arguments
 
 
@@ -153,7 +153,7 @@ class Suite:
             result = run_row(name, module, self.times(module), self.arguments.seed)
         result['repeated'] = repeated
         self.results[name] = result
-        self.show(result, 'skipped: ' + result['skipped'] if result['skipped'] else
+        self.show(result, f"skipped: {result['skipped']}" if result['skipped'] else
                   'FAILED' if result['failures'] else 'passed')
 
     def show(self, result, word):
@@ -165,7 +165,7 @@ class Suite:
             if len(result['failures']) > 5:
                 print('    and %d more' % (len(result['failures']) - 5))
             for figure, values in sorted(result['figures'].items()):
-                print('    %s: %s' % (figure, spread(values)))
+                print(f'    {figure}: {spread(values)}')
             sys.stdout.flush()
 
 
@@ -173,8 +173,8 @@ def spread(values):
     """Numbers as text: one, or smallest, median and largest."""
     values = sorted(values)
     if len(values) == 1:
-        return '%.4g' % values[0]
-    return '%.3g to %.3g, median %.3g' % (values[0], values[-1], values[len(values) // 2])
+        return f'{values[0]:.4g}'
+    return f'{values[0]:.3g} to {values[-1]:.3g}, median {values[len(values) // 2]:.3g}'
 
 
 def write_table(path, modules, results, seed):
@@ -184,12 +184,12 @@ def write_table(path, modules, results, seed):
                    % seed)
         for result in results:
             module = modules[result['name']]
-            happened = ('skipped: %s' % result['skipped'] if result['skipped'] else
-                        'all held' if not result['failures'] else '%d failed' % len(result['failures']))
+            happened = (f"skipped: {result['skipped']}" if result['skipped'] else
+                        'all held' if not result['failures'] else f"{len(result['failures'])} failed")
             if result['repeated'] and not result['failures']:
                 happened += ', at the second try'
             for figure, values in sorted(result['figures'].items()):
-                happened += '; %s: %s' % (figure, spread(values))
+                happened += f'; {figure}: {spread(values)}'
             file.write('| `%s` | %s | %d | %s | %s |\n' % (result['name'], module.FAULT, result['faults'],
                                                          module.PROMISE, happened))
 
@@ -198,7 +198,7 @@ def main():
     """Run the rows. Returns the exit status."""
     names = sorted(name[:-len('.py')] for name in os.listdir(os.path.join(FOLDER, 'rows')) if name.endswith('.py'))
     arguments = read_arguments(names)
-    modules = {name: importlib.import_module('rows.' + name) for name in arguments.rows or names}
+    modules = {name: importlib.import_module(f'rows.{name}') for name in arguments.rows or names}
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, on_signal)
     print('Seed %d: `script/test --faults --seed %d%s ROW` repeats a row' % (

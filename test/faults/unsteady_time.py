@@ -46,7 +46,7 @@ class Time:
 
     def start(self, node, *arguments):
         """Start a node whose system clock can be stepped."""
-        return self.row.start('/usr/bin/python3', '-c', STEPPED, '%s/nodes/%s' % (PACKAGE, node), 'offset', *arguments)
+        return self.row.start('/usr/bin/python3', '-c', STEPPED, f'{PACKAGE}/nodes/{node}', 'offset', *arguments)
 
     def disturb(self):
         """One random disturbance."""

@@ -28,7 +28,7 @@ class AlteredRobot:
         for topic, target, kind, alter in [('/odom', '/odom_altered', Odometry, odom),
                                            ('/imu/data', '/imu_altered', Imu, imu)]:
             publisher = rospy.Publisher(target, kind, queue_size=10000, tcp_nodelay=True)
-            support.wait_for(publisher.get_num_connections, 'the filter to subscribe to ' + target)
+            support.wait_for(publisher.get_num_connections, f'the filter to subscribe to {target}')
             rospy.Subscriber(topic, kind, self._pass_on, (publisher, alter), tcp_nodelay=True)
 
     def _pass_on(self, message, where):
@@ -42,7 +42,7 @@ class AlteredRobot:
 
     def wait_for_line(self, text):
         """Wait until the filter has logged a line with a text."""
-        support.wait_for(lambda: self.lines(text), 'a line of the filter with %r' % text)
+        support.wait_for(lambda: self.lines(text), f'a line of the filter with {text!r}')
 
     def turn(self):
         """Stand, turn left, and stand again."""

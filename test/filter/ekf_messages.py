@@ -27,13 +27,13 @@ class TestEkfMessages(unittest.TestCase):
     def wait_for_log(self, *texts):
         """Wait until the filter has logged a line with all these texts."""
         support.wait_for(lambda: any(m.name == '/robot_pose_ekf' and all(text in m.msg for text in texts)
-                                     for m in list(self.log.messages)), 'a line of the filter with %s' % (texts,))
+                                     for m in list(self.log.messages)), f'a line of the filter with {texts}')
 
     def wait_for_status(self, sensor, level):
         """Wait until /diagnostics has this level for a sensor."""
         support.wait_for(lambda: self.diagnostics.messages and any(
             status.name.endswith(sensor) and status.level == level
-            for m in self.diagnostics.messages[-3:] for status in m.status), '%s in /diagnostics: %s' % (sensor, level))
+            for m in self.diagnostics.messages[-3:] for status in m.status), f'{sensor} in /diagnostics: {level}')
 
     def test_invalid_messages_are_rejected_by_the_name_of_the_field(self):
         nan = float('nan')

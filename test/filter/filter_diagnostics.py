@@ -25,7 +25,7 @@ class TestFilterDiagnostics(unittest.TestCase):
             return None, None, {}
 
         def wait_for_case(case, level, text):
-            support.wait_for(lambda: status()[2].get('Case') == case, 'the case %s' % case)
+            support.wait_for(lambda: status()[2].get('Case') == case, f'the case {case}')
             self.assertEqual(status()[:2], (level, text))
         wait_for_case('none', DiagnosticStatus.WARN, 'No estimate yet')
         self.assertEqual(status()[2]['Gyro bias (degrees/s)'], 'unknown')

@@ -46,7 +46,7 @@ class TestSetPose(unittest.TestCase):
         support.wait_for(lambda: estimates.last and is_at(0.5, 0.0, 0.0), 'the pose of the odometry')
         for frame_id, pose in ('odom_combined', (3.0, 4.0, 1.0)), ('', (-2.0, 1.0, -3.0)):
             publisher.publish(make_pose(frame_id, *pose))
-            support.wait_for(lambda: is_at(*pose), 'the pose %s' % (pose,))
+            support.wait_for(lambda: is_at(*pose), f'the pose {pose}')
             covariance = poses.next().pose.covariance
             self.assertAlmostEqual(covariance[0], 0.25, delta=0.01)
             self.assertAlmostEqual(covariance[35], 0.01, delta=0.001)

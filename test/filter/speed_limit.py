@@ -18,7 +18,7 @@ class TestSpeedLimit(unittest.TestCase):
     def test_a_fast_robot(self):
         support.init_node('speed_limit')
         log = support.Watch('/rosout', Log)
-        poses = {node: support.Watch('/%s/odom_combined' % node, PoseWithCovarianceStamped)
+        poses = {node: support.Watch(f'/{node}/odom_combined', PoseWithCovarianceStamped)
                  for node in ('standard', 'slow')}
         diagnostics = support.Watch('/diagnostics', DiagnosticArray)
         start, driving = [], []
@@ -37,7 +37,7 @@ class TestSpeedLimit(unittest.TestCase):
         support.wait_for(lambda: start and rospy.Time.now() - start[0] > rospy.Duration(3), '3 s at 3 m/s')
 
         def lines(node):
-            return [m.msg for m in list(log.messages) if m.name == '/' + node and (
+            return [m.msg for m in list(log.messages) if m.name == f'/{node}' and (
                 'is too far from' in m.msg or 'jumped' in m.msg)]
         support.wait_for(lambda: lines('slow'), 'a line of the filter with the lower limit')
         support.wait_for(lambda: {('slow: odom', IGNORED), ('slow: filter', IGNORED)} <= {

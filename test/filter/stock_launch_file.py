@@ -58,7 +58,7 @@ class TestStockLaunchFile(unittest.TestCase):
         self.assertIn('/robot_pose_ekf/get_loggers', services)
         self.assertNotIn('/robot_pose_ekf/get_status', services)
         for frame in 'base_footprint', 'base_link', 'base_l_wheel_link', 'gyro_link':
-            support.wait_for(lambda: buffer.can_transform('odom_combined', frame, rospy.Time()), 'the frame ' + frame)
+            support.wait_for(lambda: buffer.can_transform('odom_combined', frame, rospy.Time()), f'the frame {frame}')
 
         # 30 Hz of messages that come 50 times a second: every second one, or two of three
         stamps = [m.header.stamp.to_sec() for m in poses.messages]

@@ -16,7 +16,7 @@ class TestUnsupportedInputs(unittest.TestCase):
     def start(self, value):
         """Start the filter with this value of all four parameters, and wait for a pose; returns the process."""
         ekf = support.Process('rosrun', 'rbx1_nav', 'ekf.py', '_imu_used:=false', *(
-            '_%s:=%s' % (line.split(':')[0], value) for line in LINES))
+            f"_{line.split(':')[0]}:={value}" for line in LINES))
         self.addCleanup(ekf.kill)
         poses = support.Watch('/robot_pose_ekf/odom_combined', PoseWithCovarianceStamped)
         odometry = rospy.Publisher('/odom', Odometry, queue_size=10)

@@ -14,7 +14,7 @@ class TestWrongFloor(unittest.TestCase):
     def test_it_is_noticed(self):
         support.init_node('wrong_floor')
         log, truth = support.Watch('/rosout', Log), support.Watch('/ground_truth', Odometry)
-        right, wrong = (support.Watch('/%s/odom_combined' % name, PoseWithCovarianceStamped)
+        right, wrong = (support.Watch(f'/{name}/odom_combined', PoseWithCovarianceStamped)
                         for name in ('right', 'wrong'))
         support.wait_for(lambda: min(len(right.messages), len(wrong.messages)) > 60, 'two seconds of both filters')
         driver = support.out_and_back()

@@ -55,9 +55,9 @@ class TestBadParameters(unittest.TestCase):
                 ('linear', '_measured:=1', ['/last_calibration/linear: missing: expected a run before this one']),
                 ('angular', '_turns:=many', ['/calibrate_angular/turns', "'many'"]),
                 ('angular', '_measured:=360', ['/last_calibration/angular: missing'])]:
-            self.check(support.Process('rosrun', 'rbx1_nav', 'calibrate_%s.py' % node, argument), expected)
-            if rospy.has_param('/calibrate_' + node):
-                rospy.delete_param('/calibrate_' + node)
+            self.check(support.Process('rosrun', 'rbx1_nav', f'calibrate_{node}.py', argument), expected)
+            if rospy.has_param(f'/calibrate_{node}'):
+                rospy.delete_param(f'/calibrate_{node}')
         self.assertFalse(commands.messages)
 
     def test_filter(self):

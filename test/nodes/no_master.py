@@ -35,7 +35,7 @@ class TestNoMaster(unittest.TestCase):
             node = self.node(script, '_wait_timeout:=1')
             self.assertEqual(node.wait(), 1, node.output)
             self.assertEqual(len(node.lines), 2, node.output)
-            self.assertRegex(node.lines[0], r'^\[INFO\].*Waiting for the master at %s$' % self.uri)
+            self.assertRegex(node.lines[0], rf'^\[INFO\].*Waiting for the master at {self.uri}$')
             self.assertRegex(node.lines[1], r'^\[ERROR\].*The master at %s does not answer \(timed out after 1 s\): '
                                             r'expected a running roscore$' % self.uri)
 
@@ -48,7 +48,7 @@ class TestNoMaster(unittest.TestCase):
     def test_ctrl_c_while_a_node_waits(self):
         for name in WAITING + SCRIPTS:
             node = self.node(name)
-            node.wait_for_line('Waiting for the master at ' + self.uri)
+            node.wait_for_line(f'Waiting for the master at {self.uri}')
             node.signal(signal.SIGINT)
             self.assertEqual(node.wait(), 130 if name.startswith('calibrate') else 0, node.output)
             self.assertFalse([line for line in node.lines if not line.startswith('[INFO]')], node.output)
@@ -69,7 +69,7 @@ class TestNoMaster(unittest.TestCase):
         node = self.node('pose.py')
         self.assertEqual(node.wait(), 1, node.output)
         self.assertEqual(len(node.lines), 1, node.output)
-        self.assertIn('The master at %s does not answer' % self.uri, node.output)
+        self.assertIn(f'The master at {self.uri} does not answer', node.output)
 
 
 if __name__ == '__main__':

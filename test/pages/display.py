@@ -18,7 +18,7 @@ def virtual_display():
             number = answer.readline().strip()
         if not number:
             raise RuntimeError('Xvfb does not start')
-        yield ':' + number
+        yield f':{number}'
     finally:
         server.terminate()
         server.wait()

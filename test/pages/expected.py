@@ -12,7 +12,7 @@ def pattern(expected):
         if token['any']:
             parts.append('.*')
         elif token['number']:
-            parts.append('(%s)' % NUMBER)
+            parts.append(f'({NUMBER})')
             decimals = len(token['number'].partition('e')[0].partition('.')[2])
             numbers.append((float(token['number']), 10 ** -decimals))
         else:

@@ -92,7 +92,7 @@ def problems(root):
         if page not in reached:
             reached.add(page)
             ahead.extend(graph.get(page, ()))
-    found += ['%s: README.md does not lead to this page' % page for page in graph
+    found += [f'{page}: README.md does not lead to this page' for page in graph
               if page.startswith('docs/') and page not in reached]
-    found += ['%s: no page shows this picture' % each for each in markdown.files(root, PICTURES) if each not in shown]
+    found += [f'{each}: no page shows this picture' for each in markdown.files(root, PICTURES) if each not in shown]
     return found

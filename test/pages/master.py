@@ -55,5 +55,5 @@ def listed(lines):
         if match['namespace']:
             namespace = match['namespace'].rstrip('/')
         else:
-            nodes.add(namespace + '/' + match['node'])
+            nodes.add(f"{namespace}/{match['node']}")
     return nodes

@@ -9,9 +9,9 @@ def find(home):
     mark, found = b'HOME=' + home.encode(), {}
     for pid in filter(str.isdigit, os.listdir('/proc')):
         try:
-            with open('/proc/%s/environ' % pid, 'rb') as file:
+            with open(f'/proc/{pid}/environ', 'rb') as file:
                 ours = mark in file.read().split(b'\0')
-            with open('/proc/%s/cmdline' % pid, 'rb') as file:
+            with open(f'/proc/{pid}/cmdline', 'rb') as file:
                 if ours:
                     found[int(pid)] = file.read().replace(b'\0', b' ').decode(errors='replace')
         except OSError:     # another user's, or gone

@@ -100,7 +100,7 @@ class Session:
         terminal.type(step.command)
         if wait:
             self.wait_for(lambda: terminal.status is not None or self.master.is_up(
-                before, terminal.lines[self.first[step.terminal]:]), step.terminal, '%s is not up' % step.command)
+                before, terminal.lines[self.first[step.terminal]:]), step.terminal, f'{step.command} is not up')
             if terminal.status is not None:
                 self.fail('%s ended with status %d' % (step.command, terminal.status), step.terminal)
 
@@ -146,7 +146,7 @@ class Session:
         deadline = time.monotonic() + self.limit
         while processes.find(self.home):
             if time.monotonic() > deadline:
-                raise PageFailed('%s: processes left at the end: %s' % (self.page, processes.find(self.home)))
+                raise PageFailed(f'{self.page}: processes left at the end: {processes.find(self.home)}')
             time.sleep(0.05)
 
     # the terminals
@@ -171,14 +171,14 @@ class Session:
         terminal = self.terminals[name]
         for command in commands:
             terminal.type(command)
-            self.wait_for(lambda: terminal.status is not None, name, '%s does not end' % command)
+            self.wait_for(lambda: terminal.status is not None, name, f'{command} does not end')
             if terminal.status != status:
                 self.fail('%s ended with status %d, expected %d' % (command, terminal.status, status), name)
 
     def wait_for(self, condition, name, trouble):
         """Wait for a condition of a terminal, or fail."""
         if not self.wait(condition, self.limit):
-            self.fail('%s after %g s' % (trouble, self.limit), name)
+            self.fail(f'{trouble} after {self.limit:g} s', name)
 
     @staticmethod
     def wait(condition, limit):
@@ -196,7 +196,7 @@ class Session:
             for index, line in enumerate(terminal.lines):
                 if (ERROR.search(line) and not line.startswith(PROMPT) and (name, index) not in self.shown
                         and not is_harmless(terminal.lines[index:])):
-                    self.fail('the page does not show %r' % line, name)
+                    self.fail(f'the page does not show {line!r}', name)
 
     def fail(self, trouble, name):
         """Fail with what the terminals show, the one in question last."""

@@ -12,7 +12,7 @@ import threading
 PROMPT = '$ '
 # For ~/.bashrc. With each prompt the shell reports the exit status of the last command, in the escape sequence that
 # terminals with shell integration use (OSC 133;D). It comes last: then typing cannot get ahead of the prompt.
-BASHRC = "unset PROMPT_COMMAND; PS1='%s\\e]133;D;$?\\a'\n" % PROMPT
+BASHRC = f"unset PROMPT_COMMAND; PS1='{PROMPT}\\e]133;D;$?\\a'\n"
 STATUS = re.compile('\033]133;D;(\\d+)\007')
 ESCAPE = re.compile('\033\\[[0-?]*[ -/]*[@-~]|\033][^\007\033]*(?:\007|\033\\\\)')
 ROWS, COLUMNS = 40, 120

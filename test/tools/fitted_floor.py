@@ -73,10 +73,10 @@ class TestFittedFloor(unittest.TestCase):
                 ('slip_straight', 0.07), ('slip_turning', 0.07),
                 # the recorder stamps commands when they arrive, in simulated time, which runs at 10 times its clock
                 ('drag_straight', 0.003), ('drag_turning', 0.003)):
-            self.assertAlmostEqual(getattr(fitted, key), getattr(floor, key), delta=tolerance, msg=key + '\n' + output)
-            self.assertRegex(text, r'\n%s: .*fitted, \+- ' % key)
+            self.assertAlmostEqual(getattr(fitted, key), getattr(floor, key), delta=tolerance, msg=f"{key}\n{output}")
+            self.assertRegex(text, rf'\n{key}: .*fitted, \+- ')
         for key in 'heading_noise_turning', 'heading_noise_straight', 'distance_noise':     # within a factor of 3
-            self.assertTrue(1 / 3 < getattr(fitted, key) / getattr(floor, key) < 3, key + '\n' + output)
+            self.assertTrue(1 / 3 < getattr(fitted, key) / getattr(floor, key) < 3, f"{key}\n{output}")
         self.assertGreater(abs(start.drag_turning - floor.drag_turning), 0.01)      # so the start would not do
         self.assertRegex(text, r'\nticks_meter: 4100 .*left as it was')
 

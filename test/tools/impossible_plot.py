@@ -18,7 +18,7 @@ class TestImpossiblePlot(unittest.TestCase):
                 process = support.Process('rosrun', 'rbx1_nav', 'simulate.py', '--runs', '1', '--plot', path)
                 self.addCleanup(process.kill)
                 self.assertEqual(process.wait(), 2, process.output)
-                self.assertIn('simulate.py: error: --plot: %s: %s' % (path, expected), process.lines[-1])
+                self.assertIn(f'simulate.py: error: --plot: {path}: {expected}', process.lines[-1])
                 self.assertNotIn('Runs', process.output)
             self.assertEqual(os.listdir(folder), ['taken.png'])
 

@@ -22,8 +22,8 @@ class TestLaunchArguments(unittest.TestCase):
         for name in 'mode_plus_one', 'drops_fractions':
             for value in 'false', 'true':
                 params = roslaunch('--dump-params', 'rbx1_bringup', 'fake_turtlebot_create.launch',
-                                   '%s:=%s' % (name, value))
-                self.assertIn('/fake_create/%s: %s\n' % (name, value), params)
+                                   f'{name}:={value}')
+                self.assertIn(f'/fake_create/{name}: {value}\n', params)
 
     def test_arguments(self):
         texts = {}

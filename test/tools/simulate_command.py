@@ -79,7 +79,7 @@ class TestSimulateCommand(unittest.TestCase):
             lambda: len(children(process.process.pid)) == 2 and children(process.process.pid), 'two processes')
 
     def check_children_end(self, pids):
-        support.wait_for(lambda: not any(map(runs, pids)), 'the end of the processes %s' % pids)
+        support.wait_for(lambda: not any(map(runs, pids)), f'the end of the processes {pids}')
 
     def test_a_process_that_is_killed(self):
         process, pids = self.start_long()
@@ -102,7 +102,7 @@ class TestSimulateCommand(unittest.TestCase):
     def test_a_full_disk(self):
         for kind in 'png', 'pdf', 'svg':
             with tempfile.TemporaryDirectory() as folder:
-                status, output = simulate_with_limit(os.path.join(folder, 'a.' + kind))
+                status, output = simulate_with_limit(os.path.join(folder, f'a.{kind}'))
                 self.assertEqual((status, os.listdir(folder)), (1, []), output)
             self.assertEqual(output.splitlines()[-1], 'simulate.py: [Errno 27] File too large')
             self.assertNotIn('Traceback', output)

@@ -24,14 +24,14 @@ class TestUsage(unittest.TestCase):
             for argument in '-h', '--help':
                 status, process = self.run_to_its_end(name, argument)
                 self.assertEqual(status, 0, process.output)
-                self.assertIn('usage: ' + name, process.output)
+                self.assertIn(f'usage: {name}', process.output)
                 self.assertNotIn('master', process.output)
 
     def test_unknown_arguments(self):
         for name in NODES:
             status, process = self.run_to_its_end(name, '0.1')
             self.assertEqual(status, 2, process.output)
-            self.assertIn('usage: ' + name, process.output)
+            self.assertIn(f'usage: {name}', process.output)
             self.assertEqual(process.lines[-1], '%s: error: 0.1: unknown argument: expected _parameter:=value or '
                                                 'topic:=new_topic' % name)
 

@@ -22,18 +22,18 @@ def number(key, value):
 @pytest.mark.parametrize('text, hint', [
     ('1e-1', '1.0e-1'), ('1e5', '1.0e+5'), ('-2.5e3', '-2.5e+3'), (' 3E2', '3.0e+2'), ('0.26', '0.26 without quotes')])
 def test_a_number_that_is_text_to_yaml_gets_a_hint(text, hint):
-    expected = 'base_width: %r (text to YAML: write %s): expected a width from 0.5 to 10 in m' % (text, hint)
+    expected = f'base_width: {text!r} (text to YAML: write {hint}): expected a width from 0.5 to 10 in m'
     assert rejection(number, 'base_width', text) == expected
 
 
 @pytest.mark.parametrize('text', ['wide', 'nan', '', '1e999'])
 def test_other_text_gets_no_hint(text):
-    assert rejection(number, 'base_width', text) == 'base_width: %r: expected a width from 0.5 to 10 in m' % text
+    assert rejection(number, 'base_width', text) == f'base_width: {text!r}: expected a width from 0.5 to 10 in m'
 
 
 @pytest.mark.parametrize('value', [0, 0.49, 11, -1, nan, inf, -inf, 1e-320, True, None, [1.0]])
 def test_a_number_is_in_its_range(value):
-    assert rejection(number, 'rate', value) == 'rate: %r: expected a width from 0.5 to 10 in m' % value
+    assert rejection(number, 'rate', value) == f'rate: {value!r}: expected a width from 0.5 to 10 in m'
 
 
 @pytest.mark.parametrize('value', [10 ** 400, -10 ** 400, 1 << 20000, 'x' * 10 ** 6, '1' * 400, [[1] * 10 ** 6] * 1000],
@@ -53,7 +53,7 @@ def test_a_choice_is_one_of_several_values():
     assert value == 19200 and isinstance(value, int)
     for value in (301, '300', True, [300], None):
         assert rejection(Section({'baud': value}).choice, 'baud', (300, 19200), 300) == (
-            'baud: %r: expected one of 300, 19200' % value)
+            f'baud: {value!r}: expected one of 300, 19200')
 
 
 def test_only_a_default_may_be_out_of_range():
@@ -70,7 +70,7 @@ def test_a_key_is_named_as_rosparam_spells_it():
 @pytest.mark.parametrize('value', ['true', 1, 0, None])
 def test_a_flag_is_true_or_false(value):
     assert Section({'flag': False}).flag('flag', True) is False and Section({}).flag('flag', True) is True
-    assert rejection(Section({'flag': value}).flag, 'flag', True) == 'flag: %r: expected true or false' % value
+    assert rejection(Section({'flag': value}).flag, 'flag', True) == f'flag: {value!r}: expected true or false'
 
 
 def test_a_frame_loses_its_leading_slash():
@@ -81,7 +81,7 @@ def test_a_frame_loses_its_leading_slash():
 @pytest.mark.parametrize('value', ['', '/', 'a b', 7, 'odom/', None, 'odom\n', 'a\0b', 'a\x1b[1m'])
 def test_a_name_that_no_frame_can_have_is_rejected(value):
     assert rejection(Section({'frame': value}).frame, 'frame', 'odom') == (
-        'frame: %r: expected the name of a frame' % value)
+        f'frame: {value!r}: expected the name of a frame')
 
 
 def test_keys_are_sorted_into_read_hardware_and_unknown():
@@ -92,8 +92,8 @@ def test_keys_are_sorted_into_read_hardware_and_unknown():
 
 @pytest.mark.parametrize('values', [7, [], 'text', None])
 def test_a_section_is_a_mapping(values):
-    assert rejection(Section, values) == 'configuration: %r: expected a mapping of keys to values' % (values,)
-    assert rejection(Section, values, 'joints') == 'joints: %r: expected a mapping of keys to values' % (values,)
+    assert rejection(Section, values) == f'configuration: {values!r}: expected a mapping of keys to values'
+    assert rejection(Section, values, 'joints') == f'joints: {values!r}: expected a mapping of keys to values'
 
 
 @pytest.mark.parametrize('key, shown', [
@@ -101,8 +101,8 @@ def test_a_section_is_a_mapping(values):
     ('radius of the wheel', 'radius of the wheel'),
     (1 << 20000, 'an integer of 20001 bits')], ids=lambda value: type(value).__name__)
 def test_a_key_is_shown_in_one_line(key, shown):
-    assert Section({key: 1}, 'base').unknown() == ['base/' + shown] and show_name(key) == shown
-    assert rejection(Section({key: 0}).flag, key, True).startswith(shown + ': 0: ')
+    assert Section({key: 1}, 'base').unknown() == [f'base/{shown}'] and show_name(key) == shown
+    assert rejection(Section({key: 0}).flag, key, True).startswith(f'{shown}: 0: ')
 
 
 def test_a_mapping_that_contains_itself_is_shown():

@@ -61,7 +61,7 @@ def room_of(module):
 def is_module(name):
     """Whether a full name is that of a module or a package in SOURCE."""
     path = os.path.join(SOURCE, *name.split('.'))
-    return os.path.isdir(path) or os.path.isfile(path + '.py')
+    return os.path.isdir(path) or os.path.isfile(f'{path}.py')
 
 
 def imported_modules(source, module, is_package):
@@ -76,7 +76,7 @@ def imported_modules(source, module, is_package):
                 parent = importlib.util.resolve_name('.' * node.level + parent, package)
             # what is imported may be a module itself: `from rbx1_nav import units`
             yield from {name if is_module(name) else parent for name in (
-                '%s.%s' % (parent, alias.name) for alias in node.names)}
+                f'{parent}.{alias.name}' for alias in node.names)}
         elif isinstance(node, ast.Call):
             function = getattr(node.func, 'attr', getattr(node.func, 'id', None))
             if function in ('__import__', 'import_module'):
@@ -115,7 +115,7 @@ def modules():
         is_package = parts[-1] == '__init__'
         yield path, '.'.join(parts[:-1] if is_package else parts), is_package
     for path in python_files(os.path.join(ROOT, 'nodes')):
-        yield path, 'nodes.' + os.path.basename(path)[:-len('.py')], False
+        yield path, f"nodes.{os.path.basename(path)[:-len('.py')]}", False
 
 
 @pytest.mark.parametrize('path, module, is_package', [pytest.param(*each, id=each[1]) for each in modules()])
@@ -134,7 +134,7 @@ def test_no_two_rooms_import_each_other():
     remaining = dict(ALLOWED)
     while remaining:
         free = [room for room, imports in remaining.items() if not imports & set(remaining)]
-        assert free, 'a circle among %s' % sorted(remaining)
+        assert free, f'a circle among {sorted(remaining)}'
         for room in free:
             del remaining[room]
 

@@ -29,7 +29,7 @@ def test_a_test_has_the_name_of_its_file(path):
     folder, name = os.path.split(os.path.splitext(path)[0])
     unique = NAMES[os.path.basename(path)] == 1
     assert [test.get('test-name') for test in elements(path)] == [
-        name if unique else '%s_%s' % (os.path.basename(folder), name)]
+        name if unique else f'{os.path.basename(folder)}_{name}']
 
 
 @pytest.mark.parametrize('path', FILES, ids=os.path.basename)

@@ -44,9 +44,9 @@ def test_angles_wrap_at_pi(angle, wrapped):
 @pytest.mark.parametrize('value, text', [(-0.0, '0.000'), (-0.0004, '0.000'), (-0.0006, '-0.001'), (0.0004, '0.000'),
                                          (-1.2345, '-1.234'), (2.0, '2.000')])
 def test_a_rounded_number_has_no_minus_before_a_zero(value, text):
-    assert '%.3f' % rounded(value, 3) == text
+    assert f'{rounded(value, 3):.3f}' == text
 
 
 @given(st.floats(-1e6, 1e6))
 def test_rounding_changes_nothing_else(value):
-    assert '%.3f' % rounded(value, 3) in ('%.3f' % value, ('%.3f' % value).lstrip('-'))
+    assert f'{rounded(value, 3):.3f}' in (f'{value:.3f}', (f'{value:.3f}').lstrip('-'))

@@ -37,7 +37,7 @@ class RvizEkf(RvizTest):
         before = self.wait_for('ekf_before', lambda picture: picture.ready)
         ahead = before.x > 0.4
         for name in ARROWS:
-            self.assertEqual(arrow_pixels(before, name, ahead), 0, 'arrows before the run: ' + name)
+            self.assertEqual(arrow_pixels(before, name, ahead), 0, f'arrows before the run: {name}')
 
         subprocess.run(['rosrun', PACKAGE, 'timed_out_and_back.py'], check=True, timeout=WAIT)
         # out to 0.92 m and a half-star there; back to the left of the start, where the robot hides some of the arrows
@@ -47,7 +47,7 @@ class RvizEkf(RvizTest):
             arrow_pixels(picture, name, where) > ARROW for name in ARROWS for where in (star, home)))
         self.assertFalse(after.warnings or after.errors, after.status)
         for name in ARROWS:
-            self.assertFalse(arrow_pixels(after, name, before.y < -0.05), 'arrows to the right: ' + name)
+            self.assertFalse(arrow_pixels(after, name, before.y < -0.05), f'arrows to the right: {name}')
 
         # the solid robot is white on its rim; the ghost is seen where the other one does not cover it
         from_truth, from_odometry = distance(after, truth.last), distance(after, reported.last)

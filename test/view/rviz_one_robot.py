@@ -19,11 +19,11 @@ class RvizOneRobot(RvizTest):
 
     def test_one_solid_robot(self):
         self.start_rviz(os.path.join(self.path, self.FILE))
-        before = self.wait_for(NAME + '_before', lambda picture: picture.ready)
+        before = self.wait_for(f'{NAME}_before', lambda picture: picture.ready)
         subprocess.run(['rosrun', PACKAGE, 'timed_out_and_back.py'], check=True, timeout=WAIT)
         star = (before.x > 0.6) & (before.y > 0.05)
         # where all poses are the same, the arrows of one may cover those of another
-        after = self.wait_for(NAME + '_after', lambda picture: picture.ready and sum(
+        after = self.wait_for(f'{NAME}_after', lambda picture: picture.ready and sum(
             arrow_pixels(picture, name, star) for name in ARROWS) > 5 * ARROW)
         # all of its marks are where it is ready: another robot would double them; the edges of arrows count as marks too
         self.assertLess(after.marks.sum(), 1.75 * after.robot())

@@ -179,7 +179,7 @@ class RvizTest(unittest.TestCase):
                     '-nolisten', 'tcp', '-noreset'], pass_fds=[its], stdout=log, stderr=log)
         os.close(its)
         with open(ours) as answer:
-            self.display = ':' + answer.readline().strip()
+            self.display = f':{answer.readline().strip()}'
         self.assertNotEqual(self.display, ':', 'Xvfb does not start')
 
     def start_rviz(self, path):
@@ -210,7 +210,7 @@ class RvizTest(unittest.TestCase):
                 self.fail('%s: not seen. %s. Arrows: %s. Errors: %s%s' % (
                     what, picture.status, picture.opened and picture.drawn(), self.console_errors(), self.rosout))
             time.sleep(0.5)
-        screenshot.save(os.path.join(self.pictures, what + '.png'))
+        screenshot.save(os.path.join(self.pictures, f'{what}.png'))
         return picture
 
 
@@ -222,14 +222,14 @@ class RvizSmoke(RvizTest):
         self.start_rviz(os.path.join(self.path, 'sim.rviz'))
         before = self.wait_for('before', lambda picture: picture.ready)
         for where, pixels in before.drawn().items():
-            self.assertEqual(sum(pixels), 0, 'arrows before the run: ' + where)
+            self.assertEqual(sum(pixels), 0, f'arrows before the run: {where}')
 
         subprocess.run(['rosrun', PACKAGE, 'timed_out_and_back.py'], check=True, timeout=WAIT)
         after = self.wait_for('after', lambda picture: picture.ready and all(
             min(pixels) > ARROW for pixels in picture.drawn().values()))
 
         for where, pixels in after.blank().items():
-            self.assertEqual(sum(pixels), 0, 'arrows where none belong: ' + where)
+            self.assertEqual(sum(pixels), 0, f'arrows where none belong: {where}')
         self.assertEqual(self.console_errors(), [])
         self.assertEqual(self.rosout, [])
 

@@ -48,7 +48,7 @@ class CommandGate:
             if not abs(value) <= MAX_COMMAND:   # written so that nan is rejected too
                 self.rejected += 1
                 self.halt()
-                raise RejectedCommand('%s: expected finite numbers of at most %g' % (value, MAX_COMMAND))
+                raise RejectedCommand(f'{value}: expected finite numbers of at most {MAX_COMMAND:g}')
         self.linear = clamp(linear, self.limits.linear)
         self.angular = clamp(angular, self.limits.angular)
         clamped = (self.linear, self.angular) != (linear, angular)

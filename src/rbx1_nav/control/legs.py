@@ -57,7 +57,7 @@ class Leg:
         try:
             ticks(goal, self.min_speed, rate)
         except ValueError as error:
-            raise ValueError('%s: at the lowest speed, %s' % (self.keys, error))
+            raise ValueError(f'{self.keys}: at the lowest speed, {error}')
 
     def next_speed(self, pose):
         """The speed for the next tick, with the robot at `pose`. Raises StuckError.

@@ -24,9 +24,9 @@ def out_and_back(linear_speed, goal_distance, angular_speed, goal_angle, rate):
     try:
         forward = Motion('forward', linear_speed, 0.0, ticks(goal_distance, linear_speed, rate))
     except ValueError as error:
-        raise ValueError('goal_distance, linear_speed: %s' % error)
+        raise ValueError(f'goal_distance, linear_speed: {error}')
     try:
         turn = Motion('turn left', 0.0, angular_speed, ticks(goal_angle, angular_speed, rate))
     except ValueError as error:
-        raise ValueError('goal_angle, angular_speed: %s' % error)
+        raise ValueError(f'goal_angle, angular_speed: {error}')
     return [forward, turn, forward, turn]

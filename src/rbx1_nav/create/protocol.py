@@ -189,13 +189,13 @@ def single_packets(model, numbers):
 
 def packets_format(packets):
     """The Struct of the values of Packets, one after another."""
-    return Struct('>' + ''.join(packet.format for packet in packets))
+    return Struct(f">{''.join((packet.format for packet in packets))}")
 
 
 def frame_format(model, numbers):
     """The Struct of a frame of the stream: header, length, each number with its values, and the checksum."""
     return Struct('>BB%sB' % ''.join(
-        'B' + ''.join(packet.format for packet in single_packets(model, [number])) for number in numbers))
+        f"B{''.join((packet.format for packet in single_packets(model, [number])))}" for number in numbers))
 
 
 def checksum(data):

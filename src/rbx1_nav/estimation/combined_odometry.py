@@ -81,7 +81,7 @@ class CombinedOdometry:
     def restart(self, reason=None):
         """Forget everything; the next odometry message gives the initial pose."""
         if reason:
-            self.warn('%s: restarting at the pose of the odometry' % reason)
+            self.warn(f'{reason}: restarting at the pose of the odometry')
         self.start = 0              # ns, stamp of the first message that counts
         self.filter = None
         self.estimate = None        # the latest Estimate
@@ -171,7 +171,7 @@ class CombinedOdometry:
     def _check_stamp(self, sensor, now, stamp):
         """Check and store a stamp; returns the previous one, or None."""
         if now < self.now - MAX_LEAD:
-            self.restart('The clock jumped back by %.3f s' % ((self.now - now) / SECOND))
+            self.restart(f'The clock jumped back by {(self.now - now) / SECOND:.3f} s')
             self.last_stamp = {'odom': None, 'imu_data': None}
         self.now = now
         before = self.last_stamp[sensor]
@@ -179,15 +179,14 @@ class CombinedOdometry:
                                      (stamp >= now - MAX_AGE, 'a stamp not much older than now', now),
                                      (before is None or stamp > before, 'a stamp later than the last', before or 0)):
             if not good:
-                raise RejectedMessage('header.stamp: %.9f: expected %s, %.9f'
-                                      % (stamp / SECOND, expected, time / SECOND))
+                raise RejectedMessage(f'header.stamp: {stamp / SECOND:.9f}: expected {expected}, {time / SECOND:.9f}')
         self.last_stamp[sensor] = stamp
         self._add_arrival(sensor, self.clock() if self.clock else now)
         other = self.last_stamp['odom' if sensor == 'imu_data' else 'imu_data']
         # not if it is still as late as when it was given up
         if self.timed_out[sensor] and (sensor == 'odom' or (other or 0) - stamp <= MAX_WAIT):
             self.timed_out[sensor] = False
-            self.warn('%s has recovered' % sensor)
+            self.warn(f'{sensor} has recovered')
         return before
 
     def _add_arrival(self, sensor, clock):
@@ -225,7 +224,7 @@ class CombinedOdometry:
         if not self.gyro_used or self.timed_out['imu_data'] or reported is not None and reported >= first.stamp:
             return True
         if self.arrival - arrival > MAX_WAIT:
-            self._set_timed_out('imu_data', 'its messages come more than %g s late' % (MAX_WAIT / SECOND))
+            self._set_timed_out('imu_data', f'its messages come more than {MAX_WAIT / SECOND:g} s late')
         elif (last.stamp - (first.stamp if reported is None else reported) > self.timeout
               and self._is_silent('imu_data', arrival)):
             self._set_timed_out('imu_data')
@@ -238,7 +237,7 @@ class CombinedOdometry:
         suspect, self.suspect = self.suspect, None
         if (suspect and not has_jumped(suspect, odom, self.limits)
                 and distance(suspect, odom) <= distance(self.odom, odom)):
-            self.restart('odom: jumped from %s to %s' % (format_pose(self.odom), format_pose(odom)))
+            self.restart(f'odom: jumped from {format_pose(self.odom)} to {format_pose(odom)}')
         elif self.filter and has_jumped(self.odom, odom, self.limits):
             self.warn('odom: %s is too far from %s for the %.3f s between them (~max_speed, ~max_turn_rate): ignored'
                       % (format_pose(odom), format_pose(self.odom), (odom.stamp - self.odom.stamp) / SECOND))
@@ -307,10 +306,10 @@ class CombinedOdometry:
         sums = ekf.agreement
         if not sums.add(wheels, gyro[0] - ekf.state[BIAS] * duration, gyro[1], travelled, duration):
             return
-        measured = 'odom turned by %.2f rad, imu_data by %.2f rad' % (sums.wheels, sums.gyro)
+        measured = f'odom turned by {sums.wheels:.2f} rad, imu_data by {sums.gyro:.2f} rad'
         if ekf.doubt_heading():
             if not self.contradicts:
-                self.warn('%s: one of them is wrong; the heading is uncertain' % measured)
+                self.warn(f'{measured}: one of them is wrong; the heading is uncertain')
             self.contradicted = self.time
         elif not self.another_floor and ekf.doubt_floor():
             self.another_floor = True

@@ -75,7 +75,7 @@ class GyroInput:
     def _from_rates(self, data, vertical):
         axes = [axis for axis in range(3) if abs(vertical[axis]) >= MIN_SHARE]
         for axis in axes:
-            check_number('angular_velocity.%s' % 'xyz'[axis], data.rates[axis])
+            check_number(f"angular_velocity.{'xyz'[axis]}", data.rates[axis])
             if data.rate_variances[axis] != 0:
                 check_variance('angular_velocity_covariance[%d]' % (4 * axis), data.rate_variances[axis])
         # an axis without a variance is used only if no other one has a variance

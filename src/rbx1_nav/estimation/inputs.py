@@ -21,18 +21,18 @@ class RejectedMessage(ValueError):
 def check(field, value, good, expected):
     """Raises RejectedMessage if a value is not good."""
     if not good:
-        raise RejectedMessage('%s: %s: expected %s' % (field, value, expected))
+        raise RejectedMessage(f'{field}: {value}: expected {expected}')
 
 
 def check_number(field, value):
     """Raises RejectedMessage if a value is not finite, or above MAX_NUMBER."""
-    check(field, value, abs(value) <= MAX_NUMBER, 'a number of at most %g' % MAX_NUMBER)
+    check(field, value, abs(value) <= MAX_NUMBER, f'a number of at most {MAX_NUMBER:g}')
 
 
 def check_variance(field, value):
     """Raises RejectedMessage if a variance is not between MIN_VARIANCE and MAX_VARIANCE."""
     check(field, value, MIN_VARIANCE <= value <= MAX_VARIANCE,
-          'a variance above 0, from %g to %g' % (MIN_VARIANCE, MAX_VARIANCE))
+          f'a variance above 0, from {MIN_VARIANCE:g} to {MAX_VARIANCE:g}')
 
 
 def check_odom(odom, pose_variances):
@@ -41,7 +41,7 @@ def check_odom(odom, pose_variances):
     pose_variances: of x, y (m^2) and yaw (rad^2). A variance of 0 of a speed means that the sender does not give it.
     """
     for field, value in zip(('position.x', 'position.y', 'orientation'), odom.pose):
-        check_number('pose.pose.' + field, value)
+        check_number(f'pose.pose.{field}', value)
     for index, variance in zip((0, 7, 35), pose_variances):
         check_variance('pose.covariance[%d]' % index, variance)
     for index, variance in ((0, odom.linear_variance), (35, odom.angular_variance)):

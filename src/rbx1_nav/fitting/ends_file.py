@@ -22,13 +22,13 @@ def read_ends(path, bags):
         names = [os.path.basename(bag) for bag in bags]
         twice = [name for name in names if names.count(name) > 1]
         if twice:
-            raise ConfigError('%s: two bags of this name: expected names that differ' % show_name(twice[0]))
+            raise ConfigError(f'{show_name(twice[0])}: two bags of this name: expected names that differ')
         ends = [read_end(section, name) for name in names]
         if section.unknown():
             raise ConfigError('%s: unknown: expected %s and names of bags on the command line'
                               % (section.unknown()[0], ', '.join(ERRORS)))
     except ConfigError as error:
-        raise ConfigError('%s: %s' % (show_name(path), error))
+        raise ConfigError(f'{show_name(path)}: {error}')
     return ends, (errors['position_error'], errors['position_error'], radians(errors['heading_error']))
 
 
@@ -37,7 +37,7 @@ def read_end(section, name):
     expected = '[x in m, y in m, heading in degrees]'
     values = section.get(name, expected=expected)
     if not (isinstance(values, list) and len(values) == 3):
-        raise ConfigError('%s: %s: expected %s' % (section.path(name), show(values), expected))
+        raise ConfigError(f'{section.path(name)}: {show(values)}: expected {expected}')
     part = Section(dict(zip(('x', 'y', 'heading'), values)), section.path(name))
     return Pose(part.number('x', -FARTHEST, FARTHEST, unit='m'), part.number('y', -FARTHEST, FARTHEST, unit='m'),
                 radians(part.number('heading', -MOST, MOST, unit='degrees')))

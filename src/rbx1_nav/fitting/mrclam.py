@@ -33,7 +33,7 @@ def read_table(path):
             warnings.simplefilter('ignore', UserWarning)    # a file without numbers: its columns are counted below
             table = numpy.loadtxt(path, ndmin=2)
     except (OSError, ValueError, UnicodeDecodeError) as error:
-        raise ConfigError('%s: expected a text file of numbers: %s' % (show_name(path), ' '.join(str(error).split())))
+        raise ConfigError(f"{show_name(path)}: expected a text file of numbers: {' '.join(str(error).split())}")
     return table.T
 
 
@@ -56,5 +56,5 @@ def read_set(folder, number):
     pattern = 'D%dR*%s' % (number, COMMANDS)
     paths = sorted(glob.glob(os.path.join(glob.escape(folder), pattern)))
     if not paths:
-        raise ConfigError('%s: no files %s: expected the folder of an unpacked set' % (show(folder), pattern))
+        raise ConfigError(f'{show(folder)}: no files {pattern}: expected the folder of an unpacked set')
     return [read_robot(path, truth_file(path)) for path in paths]

@@ -48,13 +48,13 @@ def check_recording(recording):
     """
     name, commands = recording.name, recording.commands
     if not len(commands.time):
-        raise ConfigError('%s: no commands: expected the velocity commands of a run' % name)
+        raise ConfigError(f'{name}: no commands: expected the velocity commands of a run')
     for field in ('commands', 'odometry', 'gyro', 'truth'):
         series = getattr(recording, field)
         if series is not None:
-            check_series('%s: %s' % (name, field), series)
+            check_series(f'{name}: {field}', series)
     if not (numpy.any(commands.linear) or numpy.any(commands.angular)):
-        raise ConfigError('%s: no motion: expected commands other than 0' % name)
+        raise ConfigError(f'{name}: no motion: expected commands other than 0')
     for field in ('odometry', 'gyro', 'truth'):
         series = getattr(recording, field)
         if series is None:
@@ -65,8 +65,7 @@ def check_recording(recording):
                               'by one clock' % (name, field, series.time[0], series.time[-1], *commands.time[[0, -1]]))
         if field != 'gyro' and not (max(numpy.ptp(series.x), numpy.ptp(series.y)) > MIN_TRAVEL
                                     or numpy.ptp(series.yaw) > MIN_TURN):
-            raise ConfigError('%s: %s: no motion, although it was commanded: expected a robot that moves'
-                              % (name, field))
+            raise ConfigError(f'{name}: {field}: no motion, although it was commanded: expected a robot that moves')
     return recording
 
 

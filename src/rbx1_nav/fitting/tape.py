@@ -45,7 +45,7 @@ def fit_ends(runs, surface, end_errors):
         if not unknown:
             break
         worst = max(unknown, key=lambda key: errors[key])
-        reasons[worst] = 'found %.3g +- %.2g: too uncertain' % (getattr(surface, worst), errors[worst])
+        reasons[worst] = f'found {getattr(surface, worst):.3g} +- {errors[worst]:.2g}: too uncertain'
         means.remove(worst)
         surface = surface._replace(**{worst: getattr(start, worst)})
     degrees = 3 * len(runs) - len(means)
@@ -63,7 +63,7 @@ def fit_ends(runs, surface, end_errors):
              "runs (Student's t distribution). The spreads also contain the standard errors of the mean slips."
              % (factor, len(runs), wider, 3 * len(runs))]
     warnings = [] if 1 / FAR_OFF < factor < FAR_OFF else [
-        'noise: %.2f times that of the starting surface: check the ends, and their order' % factor]
+        f'noise: {factor:.2f} times that of the starting surface: check the ends, and their order']
     return EndsFit({key: float(value) for key, value in values.items()}, {**errors, **found}, reasons, notes, warnings)
 
 

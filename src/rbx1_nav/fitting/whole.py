@@ -59,7 +59,7 @@ class WholeFit:
         elif recordings[0].end:
             self._fit_to_ends()
         elif not self.has_odometry:
-            raise ConfigError('%s: neither odometry nor truth: expected at least one of them' % recordings[0].name)
+            raise ConfigError(f'{recordings[0].name}: neither odometry nor truth: expected at least one of them')
         self._fit_gyro()
 
     def result(self):
@@ -75,10 +75,10 @@ class WholeFit:
         """Keep a fitted value, unless its standard error is too large."""
         low, high = bounds or limits_of(key)
         if not error <= LARGEST[key]:
-            self.reasons[key] = 'found %.3g +- %.2g: too uncertain' % (value, error)
+            self.reasons[key] = f'found {value:.3g} +- {error:.2g}: too uncertain'
             return False
         if bounds and (value <= low * 1.001 + 1e-9 or value >= high * 0.999) and low != 0:
-            self.warnings.append('%s: %.4g: at the end of its range' % (key, value))
+            self.warnings.append(f'{key}: {value:.4g}: at the end of its range')
         self.surface = self.surface._replace(**{key: float(numpy.clip(value, *limits_of(key)))})
         self.errors[key] = float(error)
         self.reasons.pop(key, None)
@@ -110,7 +110,7 @@ class WholeFit:
         runs, windows = zip(*((run, run.windows(length)) for run in runs))
         number = sum(len(each.first) for each in windows)
         if not number:
-            raise ConfigError('truth: no %.1f s without a gap, in %d recordings: expected some' % (length, len(runs)))
+            raise ConfigError(f'truth: no {length:.1f} s without a gap, in {len(runs)} recordings: expected some')
         runs, windows = zip(*((run, each) for run, each in zip(runs, windows) if len(each.first)))
         self.description = 'floor from %s to the truth, in %d windows of %.1f s' % (
             'odometry' if self.has_odometry else 'commands', number, length)
@@ -147,7 +147,7 @@ class WholeFit:
                 break
             # the worst first: without it, the others may be known
             worst = max(unknown, key=lambda key: errors[key] / LARGEST[key])
-            self.reasons[worst] = 'found %.3g +- %.2g: too uncertain' % (getattr(surface, worst), errors[worst])
+            self.reasons[worst] = f'found {getattr(surface, worst):.3g} +- {errors[worst]:.2g}: too uncertain'
             start = surface._replace(**{worst: getattr(self.surface, worst)})
             means, noises = ([key for key in keys if key != worst] for keys in (means, noises))
             if not means and not noises:
@@ -187,7 +187,7 @@ class WholeFit:
             if error == numpy.inf and len(self.recordings) == 1:
                 self.reasons[key] = 'one run only'
             elif not error < value:
-                self.reasons[key] = 'found %.2g: less than its own uncertainty' % value
+                self.reasons[key] = f'found {value:.2g}: less than its own uncertainty'
             else:
                 self._set(key, value, error)
 
@@ -204,8 +204,7 @@ def check_alike(recordings):
         having = [recording for recording in recordings if getattr(recording, field) is not None]
         if 0 < len(having) < len(recordings):
             without = next(each for each in recordings if getattr(each, field) is None)
-            raise ConfigError('%s: no %s, but %s has it: expected all runs alike'
-                              % (without.name, field, having[0].name))
+            raise ConfigError(f'{without.name}: no {field}, but {having[0].name} has it: expected all runs alike')
 
 
 def truth_errors(recordings, delay):

@@ -66,7 +66,7 @@ def draw_regions(axes, points, label):
         axis = 2 * (numpy.quantile(distances, part) * sizes.clip(0)) ** 0.5
         axes.add_patch(Ellipse(points.mean(axis=0), axis[1], axis[0], angle=angle, facecolor=SIMULATED,
                                edgecolor='black', linewidth=0.8, alpha=alpha,
-                               label='%.0f %%' % (100 * part) if label else None))
+                               label=f'{100 * part:.0f} %' if label else None))
 
 
 def set_extents(comparisons, *panels):

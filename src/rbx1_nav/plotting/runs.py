@@ -19,7 +19,7 @@ def check_picture(path):
     """Try whether a picture can be written to this path. Raises ConfigError."""
     formats = sorted(set(Figure().canvas.get_supported_filetypes()) - {'pgf'})      # that one needs LaTeX
     if os.path.splitext(path)[1][1:].lower() not in formats:
-        raise ConfigError('expected a name that ends in one of .%s' % ', .'.join(formats))
+        raise ConfigError(f"expected a name that ends in one of .{', .'.join(formats)}")
     check_writable(path)
 
 
@@ -33,7 +33,7 @@ def check_writable(path):
         if new:
             os.remove(path)
     except OSError as error:
-        raise ConfigError('expected a file that can be written: %s' % error.strerror)
+        raise ConfigError(f'expected a file that can be written: {error.strerror}')
 
 
 def draw(file, surface, results, seeds):
@@ -45,7 +45,7 @@ def draw(file, surface, results, seeds):
     panels = figure.subplots(2, len(results), squeeze=False)
     runs = '1 run (seed %d)' % seeds[0] if len(seeds) == 1 else '%d runs (seeds %d to %d)' % (
         len(seeds), seeds[0], seeds[-1])
-    figure.suptitle('Out and back on %s, %s' % (surface, runs))
+    figure.suptitle(f'Out and back on {surface}, {runs}')
     ends = {method: end_poses(each) for method, each in results.items()}
     extent, norm = common_extent(ends.values()), common_norm(ends.values())
     for (above, below), method in zip(panels.T, results):

@@ -18,9 +18,9 @@ def read_measured(key, value, expected, what, unit):
     """
     if isinstance(value, str):
         if re.search(r'\d,\d', value):
-            raise ConfigError('%s: %s: expected a decimal point, not a comma' % (key, show(value)))
+            raise ConfigError(f'{key}: {show(value)}: expected a decimal point, not a comma')
         try:
-            value = float(re.sub(r'\s*(%s)\s*$' % UNITS[unit], '', value))
+            value = float(re.sub(rf'\s*({UNITS[unit]})\s*$', '', value))
         except ValueError:
             pass
     low, high = (round(limit, 3) for limit in (expected / MAX_ERROR, expected * MAX_ERROR))
@@ -48,18 +48,18 @@ def turn_by_gyro(readings, start, end, expected):
     """
     rest = [rate for time, rate in readings if time <= start]
     if not rest or start - readings[0][0] < REST:
-        raise ConfigError('%d readings at rest: expected %g s of them' % (len(rest), REST))
+        raise ConfigError(f'{len(rest)} readings at rest: expected {REST:g} s of them')
     bias = sum(rest) / len(rest)
     turned, before = 0.0, readings[len(rest) - 1][0]
     for time, rate in readings[len(rest):]:
         if not 0 <= time - before <= MAX_GAP:
-            raise ConfigError('%.2f s between two readings: expected at most %g s' % (time - before, MAX_GAP))
+            raise ConfigError(f'{time - before:.2f} s between two readings: expected at most {MAX_GAP:g} s')
         turned += (rate - bias) * (time - before)
         before = time
     if end - before > MAX_GAP:
-        raise ConfigError('no reading in the last %.1f s of the turn' % (end - before))
+        raise ConfigError(f'no reading in the last {end - before:.1f} s of the turn')
     if not isfinite(turned):
-        raise ConfigError('a turn of %g rad: expected finite readings' % turned)
+        raise ConfigError(f'a turn of {turned:g} rad: expected finite readings')
     if abs(turned) < abs(expected) / MAX_FACTOR:
-        raise ConfigError('it reports no turn (%.1f degrees)' % degrees(turned))
+        raise ConfigError(f'it reports no turn ({degrees(turned):.1f} degrees)')
     return turned

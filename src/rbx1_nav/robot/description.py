@@ -33,7 +33,7 @@ def read_joint(name, section):
     lower = section.number('min_angle', -MAX_ANGLE, MAX_ANGLE, -150.0, 'an angle', 'degrees')
     upper = section.number('max_angle', -MAX_ANGLE, MAX_ANGLE, 150.0, 'an angle', 'degrees')
     if lower >= upper:
-        raise ConfigError('%s: %r: expected an angle below max_angle, %r' % (section.path('min_angle'), lower, upper))
+        raise ConfigError(f"{section.path('min_angle')}: {lower!r}: expected an angle below max_angle, {upper!r}")
     speed = section.number('max_speed', 0.01, MAX_ANGLE, 90.0, 'a speed', 'degrees per second')
     return Joint(name, radians(lower), radians(upper), radians(speed))
 
@@ -58,7 +58,7 @@ def read_wheel_joints(section, servos=()):
         key, other = 'right_wheel', 'left_wheel'
         if key not in section.values:   # the other one has its default
             key, other = other, key
-        raise ConfigError('%s: %s: expected a joint other than %s' % (section.path(key), show(names[0]), other))
+        raise ConfigError(f'{section.path(key)}: {show(names[0])}: expected a joint other than {other}')
     return names
 
 
@@ -94,7 +94,7 @@ def read_robot(params):
 
     timeout = base.number('timeout', 0, 1e6, 1.0, 'a time', 's')
     if 0 < timeout < MIN_TIMEOUT:   # less would become 0, which is no timeout at all
-        raise ConfigError('%s: %r: expected 0 (never), or at least %g s' % (base.path('timeout'), timeout, MIN_TIMEOUT))
+        raise ConfigError(f"{base.path('timeout')}: {timeout!r}: expected 0 (never), or at least {MIN_TIMEOUT:g} s")
     fields = dict(
         name=show_name(name),
         odom_frame_id=base.frame('odom_frame_id', 'odom'),

@@ -19,7 +19,7 @@ class Joint:
     def command(self, goal):
         """Set the goal (rad), limited to the joint's range. Raises ValueError if it is not finite."""
         if not isfinite(goal):
-            raise ValueError('%s: expected a finite angle in rad' % goal)
+            raise ValueError(f'{goal}: expected a finite angle in rad')
         self.goal = min(max(goal, self.lower), self.upper)
 
     def advance(self, duration):

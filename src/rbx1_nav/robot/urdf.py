@@ -14,13 +14,13 @@ def read_visuals(text):
     try:
         root = ElementTree.fromstring(text)
         if root.tag != 'robot':
-            raise ValueError('<%s>: expected <robot>' % root.tag)
+            raise ValueError(f'<{root.tag}>: expected <robot>')
         colors = {material.get('name'): material.find('color') for material in root.iter('material')
                   if material.find('color') is not None}
         return [_read_visual(link.get('name'), visual, colors)
                 for link in root.findall('link') for visual in link.findall('visual')]
     except (ElementTree.ParseError, AttributeError, IndexError, TypeError, ValueError) as error:
-        raise ValueError('not a URDF file: %s' % error)
+        raise ValueError(f'not a URDF file: {error}')
 
 
 def _numbers(text, count=3):
@@ -38,7 +38,7 @@ def _read_visual(link, visual, colors):
         color = colors.get(material.get('name'))
     shape, = visual.find('geometry')
     if shape.tag not in SHAPES:
-        raise ValueError('<%s>: expected one of %s' % (shape.tag, ', '.join(SHAPES)))
+        raise ValueError(f"<{shape.tag}>: expected one of {', '.join(SHAPES)}")
     return Visual(link, _numbers(values.get('xyz', '0 0 0')), _numbers(values.get('rpy', '0 0 0')), shape.tag,
                   _size(shape), shape.get('filename', ''), None if color is None else _numbers(color.get('rgba'), 4))
 

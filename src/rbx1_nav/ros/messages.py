@@ -177,14 +177,14 @@ def from_set_pose(message, output_frame):
     output_frame: the frame that the pose must be in; an empty frame_id stands for it.
     """
     frame = message.header.frame_id.lstrip('/')
-    check('header.frame_id', show(frame), frame in ('', output_frame), '%s, the output_frame' % output_frame)
+    check('header.frame_id', show(frame), frame in ('', output_frame), f'{output_frame}, the output_frame')
     point = message.pose.pose.position
     orientation = message.pose.pose.orientation
     pose = Pose(point.x, point.y, yaw_of(orientation))
-    check('pose.pose.orientation', '(%g, %g, %g, %g)' % (orientation.x, orientation.y, orientation.z, orientation.w),
+    check('pose.pose.orientation', f'({orientation.x:g}, {orientation.y:g}, {orientation.z:g}, {orientation.w:g})',
           not isnan(pose.yaw), 'a normalized quaternion (x, y, z, w)')
     for field, value in zip(('position.x', 'position.y'), pose):
-        check_number('pose.pose.' + field, value)
+        check_number(f'pose.pose.{field}', value)
     covariance = numpy.reshape(message.pose.covariance, (6, 6))[numpy.ix_((0, 1, 5), (0, 1, 5))]
     for index, value in zip((0, 7, 35), covariance.diagonal().tolist()):
         check_variance('pose.covariance[%d]' % index, value)

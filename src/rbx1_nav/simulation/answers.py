@@ -84,7 +84,7 @@ class Answers:
         if not self._wait_for(lambda: self.queue, patience):
             self.streaming = False
             if self.connected() and not self.ended():
-                raise NotInStep('sent no command for a tick within %g s' % patience)
+                raise NotInStep(f'sent no command for a tick within {patience:g} s')
             return
         waited = monotonic() - start
         if waited > SLOW_ANSWER and not self.proven:

@@ -154,7 +154,7 @@ class Lockstep:
         for driver in self._seen_drivers():
             driver.released = driver.released or driver.name == name
         self.nodes.forget(name)
-        self.report(name, 'did not come to rest within %g s' % PATIENCE)
+        self.report(name, f'did not come to rest within {PATIENCE:g} s')
 
     def _new_drivers(self):
         with self.changed:

@@ -71,25 +71,25 @@ def load_surface(name, folder):
     if not is_path and name not in known_surfaces(folder):
         raise ConfigError('surface: %s: expected one of %s, or the absolute path of a surface file'
                           % (show(name), ', '.join(known_surfaces(folder))))
-    path = name if is_path else os.path.join(folder, name + '.yaml')
+    path = name if is_path else os.path.join(folder, f'{name}.yaml')
     try:
         values = load_yaml(path)
     except ConfigError as error:
-        raise ConfigError('surface: %s: %s' % (show_name(path), error))
+        raise ConfigError(f'surface: {show_name(path)}: {error}')
     return read_surface(values, os.path.basename(path)[:-len('.yaml')] if path.endswith('.yaml') else name)
 
 
 def read_surface(values, name):
     """The Surface of a mapping with all KEYS, and some OPTIONAL_KEYS; None, the ideal surface, for an empty mapping.
     Raises ConfigError."""
-    section = Section(values, 'surface %s' % show_name(name))
+    section = Section(values, f'surface {show_name(name)}')
     if not values:
         return None
     surface = Surface(name, *(convert(section.number(key, **limits)) for key, (limits, convert) in KEYS.items()),
                       *(convert(section.number(key, default=0.0, **limits))
                         for key, (limits, convert) in OPTIONAL_KEYS.items()))
     if section.unknown():
-        raise ConfigError('%s: unknown: expected only %s' % (section.unknown()[0], ', '.join([*KEYS, *OPTIONAL_KEYS])))
+        raise ConfigError(f"{section.unknown()[0]}: unknown: expected only {', '.join([*KEYS, *OPTIONAL_KEYS])}")
     return surface
 
 

@@ -82,8 +82,7 @@ class Node:
     @property
     def leak(self):
         """What a node that does not close its connections holds."""
-        return '%s to close its connections: %s threads and file descriptors, before %s' % (
-            self.name, self.held(), self.before)
+        return f'{self.name} to close its connections: {self.held()} threads and file descriptors, before {self.before}'
 
     def random_ports(self, random, count):
         """So many of its ports."""

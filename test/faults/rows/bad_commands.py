@@ -53,7 +53,7 @@ def run(row):
             assert rss(pid) <= memory + MEMORY_LIMIT, 'the memory grew by %d KB' % (rss(pid) - memory)
             for message in odom.messages:
                 values = numbers(message)
-                assert all(map(math.isfinite, values)), 'odometry that is not finite: %s' % values[:7]
+                assert all(map(math.isfinite, values)), f'odometry that is not finite: {values[:7]}'
             del odom.messages[:-1]
             commander.publisher.unregister()
             row.reset()
@@ -67,7 +67,7 @@ def check_obeys(row, odom):
     assert driver.wait() == 0, driver.output
     x, y, yaw = support.pose(odom.next())
     off = math.hypot(x - 0.1 - 0.1 * math.cos(0.5), y - 0.1 * math.sin(0.5))
-    assert off < support.MICROMETRE and abs(yaw - 1) < 1e-6, '%g m and %g rad off' % (off, yaw - 1)
+    assert off < support.MICROMETRE and abs(yaw - 1) < 1e-6, f'{off:g} m and {yaw - 1:g} rad off'
 
 
 def each_value(row, commander, _, odom):
@@ -120,7 +120,7 @@ def two_publishers(row, commander, base, _):
         row.end(other)
         diagnostics.subscriber.unregister()
     for where, lines in (('a warning', warnings), ('/diagnostics', texts)):
-        assert any('/rostopic_' in line and rospy.get_name() in line for line in lines), 'not named in ' + where
+        assert any('/rostopic_' in line and rospy.get_name() in line for line in lines), f'not named in {where}'
 
 
 def numbers(message):

@@ -91,11 +91,11 @@ def check(use, values, key):
         numbers, period = use(values)
     except (ConfigError, rospy.ROSException) as error:
         text = str(error)
-        assert len(text.splitlines()) == 1 and 'expected' in text, 'expected one line: %r' % text[:500]
-        assert text.isprintable() and len(text) < 1000, 'unreadable: %d characters, %r' % (len(text), text[:500])
-        assert key is None or str(key) in text, '%s is not named in: %s' % (key, text)
+        assert len(text.splitlines()) == 1 and 'expected' in text, f'expected one line: {text[:500]!r}'
+        assert text.isprintable() and len(text) < 1000, f'unreadable: {len(text)} characters, {text[:500]!r}'
+        assert key is None or str(key) in text, f'{key} is not named in: {text}'
     else:
-        assert all(map(math.isfinite, numbers)) and period <= 3600, '%s, a period of %g s' % (numbers, period)
+        assert all(map(math.isfinite, numbers)) and period <= 3600, f'{numbers}, a period of {period:g} s'
 
 
 def generate(row):
@@ -119,5 +119,5 @@ def run(row):
     row.roscore()   # which is asked for what is missing
     for _ in range(row.times):
         use, values, key = generate(row)
-        with row.fault('%s(%s)' % (use.__name__, shown(values))):
+        with row.fault(f'{use.__name__}({shown(values)})'):
             check(use, values, key)

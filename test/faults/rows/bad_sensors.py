@@ -38,20 +38,20 @@ def faults(row):
     def shift(message, seconds):
         message.header.stamp = rospy.Time.from_sec(message.header.stamp.to_sec() + seconds)
     for field in 'x', 'y':
-        kind('position.%s = %g' % (field, value), lambda o, i, f=field: setattr(o.pose.pose.position, f, value))
+        kind(f'position.{field} = {value:g}', lambda o, i, f=field: setattr(o.pose.pose.position, f, value))
     for field in 'xyzw':
-        kind('orientation.%s = %g' % (field, value), lambda o, i, f=field: setattr(o.pose.pose.orientation, f, value))
-    kind('rate = %g' % value, lambda o, i: setattr(i.angular_velocity, 'z', value))
+        kind(f'orientation.{field} = {value:g}', lambda o, i, f=field: setattr(o.pose.pose.orientation, f, value))
+    kind(f'rate = {value:g}', lambda o, i: setattr(i.angular_velocity, 'z', value))
     kind('no orientation', lambda o, i: setattr(o.pose.pose.orientation, 'w', 0.0),
          lambda o, i: setattr(o.pose.pose.orientation, 'z', 0.0))
     for bad in 0.0, -1e-6, 5e-324, 1e308, math.nan, math.inf:
-        kind('variances %g of pose and speed' % bad, lambda o, i, b=bad: setattr(o.pose, 'covariance', [b] * 36),
+        kind(f'variances {bad:g} of pose and speed', lambda o, i, b=bad: setattr(o.pose, 'covariance', [b] * 36),
              lambda o, i, b=bad: setattr(o.twist, 'covariance', [b] * 36))
-        kind('variance %g of speed' % bad, lambda o, i, b=bad: setattr(o.twist, 'covariance', [b] * 36))
-        kind('variance %g of gyro' % bad, lambda o, i, b=bad: setattr(i, 'angular_velocity_covariance', [b] * 9))
+        kind(f'variance {bad:g} of speed', lambda o, i, b=bad: setattr(o.twist, 'covariance', [b] * 36))
+        kind(f'variance {bad:g} of gyro', lambda o, i, b=bad: setattr(i, 'angular_velocity_covariance', [b] * 9))
     for seconds in -3600.0, -5.0, -0.1, 0.4, 3600.0, uniform(-20, 20):
-        kind('odometry %+.3f s' % seconds, lambda o, i, s=seconds: shift(o, s))
-        kind('gyro %+.3f s' % seconds, lambda o, i, s=seconds: shift(i, s))
+        kind(f'odometry {seconds:+.3f} s', lambda o, i, s=seconds: shift(o, s))
+        kind(f'gyro {seconds:+.3f} s', lambda o, i, s=seconds: shift(i, s))
     kind('random stamps', lambda o, i: shift(o, uniform(-2, 2)), lambda o, i: shift(i, uniform(-2, 2)))
     kind('stamps of 0', lambda o, i: [setattr(m.header, 'stamp', rospy.Time()) for m in (o, i)])
     start = rospy.Time.now()

@@ -36,7 +36,7 @@ def change(row, case, robot_type, seconds, rate, at_once):
         robot.wait_for_status('Standing')
         error = robot.normalized_error()
         row.figure('squared error, normalized', error)
-        assert error < CHI_SQUARE, 'squared error %.1f of %s' % (error, robot.error())
+        assert error < CHI_SQUARE, f'squared error {error:.1f} of {robot.error()}'
         robot.wait_for_motion()
         count = len(robot.received())
     robot.node.signal(signal.SIGTERM)

@@ -33,7 +33,7 @@ def check_create(row, robot):
     error = robot.normalized_error()
     row.figure('Create: error, m', (x * x + y * y) ** 0.5)
     row.figure('Create: squared error, normalized', error)
-    assert error < CHI_SQUARE, 'squared error %.1f of %s' % (error, robot.error())
+    assert error < CHI_SQUARE, f'squared error {error:.1f} of {robot.error()}'
     assert int(robot.value('Serial line', 'Lost replies')) > 10
 
 

@@ -41,7 +41,7 @@ def kill(row, robot, seconds, group, gap):
     robot.wait_for_standstill()
     delay = next(stamp for stamp, data in robot.received()[count:] if data == STOP and stamp > killed) - killed
     row.figure('stop after, s', delay)
-    assert delay < LIMIT, '%.3f s' % delay
+    assert delay < LIMIT, f'{delay:.3f} s'
     robot.node.wait()
     robot.node = robot.start_node()
     robot.node.wait_for_line('in safe mode')

@@ -10,7 +10,7 @@ PROMISE = 'one line that names the key, and a non-zero exit status'
 FULL, SHORT = 20, 8
 ROOT = ALONE = False
 
-HUGE = '1' + 400 * '0'
+HUGE = f"1{400 * '0'}"
 # (the base reads a file, the filter and the scripts parameters, simulate.py files), each rejected by its node
 BASE = 'controllers: {base: {type: diff_controller, %s}}'
 # all of them are rejected; roslaunch itself has no line for an integer that XML-RPC cannot hold, so no base gets HUGE
@@ -19,10 +19,10 @@ REAL = [('base', BASE % 'base_width: .nan'), ('base', BASE % 'base_width: 0.26, 
         ('base', BASE % 'base_width: 0.26, odom_frame_id: "two\\nlines"'),
         ('filter', 'freq: 1.0e-320'), ('filter', 'sensor_timeout: .nan'), ('filter', 'output_frame: "two\\nlines"'),
         ('filter', 'imu_used: [1]'), ('filter', 'surface: {a: "two\\nlines"}'),
-        ('script', 'rate: ' + HUGE), ('script', 'rate: 1.0e-320'), ('script', 'linear_speed: .nan'),
+        ('script', f'rate: {HUGE}'), ('script', 'rate: 1.0e-320'), ('script', 'linear_speed: .nan'),
         ('script', 'goal_distance: 1.0e+308'), ('script', 'goal_angle: [1, 2'),
-        ('--config', 'controllers: ' + 500 * '['), ('--config', BASE % ('base_width: ' + HUGE)),
-        ('--surface', 'lag: !!bool maybe'), ('--surface', 'lag: ' + HUGE), ('--surface', '\0')]
+        ('--config', f"controllers: {500 * '['}"), ('--config', BASE % (f'base_width: {HUGE}')),
+        ('--surface', 'lag: !!bool maybe'), ('--surface', f'lag: {HUGE}'), ('--surface', '\0')]
 
 
 def check(row, kind, text):
@@ -31,7 +31,7 @@ def check(row, kind, text):
     with open(path, 'w', encoding='utf-8') as file:
         file.write(text)
     if kind == 'base':
-        process = row.start('roslaunch', '--wait', 'rbx1_nav', 'fake_turtlebot.launch', 'config:=' + path)
+        process = row.start('roslaunch', '--wait', 'rbx1_nav', 'fake_turtlebot.launch', f'config:={path}')
         process.wait()
         # roslaunch's own status is 0 whatever happened to its nodes
         assert 'exit code 1, ' in process.output, process.output
@@ -44,7 +44,7 @@ def check(row, kind, text):
         assert process.wait() == 1, process.output
         rospy.delete_param('/robot_pose_ekf')
     else:
-        process = row.start('rosrun', 'rbx1_nav', 'timed_out_and_back.py', '_' + text.replace(': ', ':='))
+        process = row.start('rosrun', 'rbx1_nav', 'timed_out_and_back.py', f"_{text.replace(': ', ':=')}")
         assert process.wait() in (1, 2), process.output
     assert 'Traceback' not in process.output, process.output[-1500:]
     # roslaunch lists all parameters before it starts a process, each as it is
@@ -58,5 +58,5 @@ def run(row):
     """See FAULT."""
     row.roscore()
     for kind, text in row.random.sample(REAL, min(row.times, len(REAL))):
-        with row.fault('%s, %s' % (kind, text[:100])):
+        with row.fault(f'{kind}, {text[:100]}'):
             check(row, kind, text)

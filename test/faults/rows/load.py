@@ -31,7 +31,7 @@ def drive(row, odom, commands, loops):
     # what the odometry reports, without repetitions: a stop in between would be one more
     changes = [new for old, new in zip([None] + velocities, velocities) if new != old]
     expected = [(0.0, 0.0)] + 2 * [(0.2, 0.0), (0.0, 0.0), (0.0, 1.0), (0.0, 0.0)]
-    assert changes == expected, 'reported velocities: %s' % changes
+    assert changes == expected, f'reported velocities: {changes}'
     moving = [m.header.stamp for m, velocity in zip(odom.messages, velocities) if any(velocity)]
     return (moving[-1] - moving[0]).to_sec()
 

@@ -59,7 +59,7 @@ def station(seed, count):
         text = 'run %d of the station with seed %d' % (number, seed)
         if number % 4 == 0:
             who, delay, length = (generator.choice(('script', 'base')), generator.uniform(0, 3), generator.uniform(0.01, 0.5))
-            text += ', %s stopped after %.2f s for %.0f ms' % (who, delay, 1000 * length)
+            text += f', {who} stopped after {delay:.2f} s for {1000 * length:.0f} ms'
             time.sleep(delay)
             suspend(driver.process.pid if who == 'script' else base, length)
         driver.process.wait()
@@ -71,7 +71,7 @@ def station(seed, count):
         trouble = '' if error < support.MICROMETRE and driver.process.returncode == 0 else \
             'status %d, %g m or rad off\n%s\n%s' % (
                 driver.process.returncode, error, driver.output, '\n'.join(launch.lines[-5:]))
-        print('=' + json.dumps([text, trouble]), flush=True)
+        print(f'={json.dumps([text, trouble])}', flush=True)
     row.end()
     os._exit(0)
 

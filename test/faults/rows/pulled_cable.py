@@ -28,7 +28,7 @@ def pull(row, robot, seconds, gap, velocity):
     robot.wait_for_status('Standing')
     error = robot.normalized_error()
     row.figure('squared error, normalized', error)
-    assert error < CHI_SQUARE, 'squared error %.1f of %s' % (error, robot.error())
+    assert error < CHI_SQUARE, f'squared error {error:.1f} of {robot.error()}'
 
 
 def run(row):

@@ -36,7 +36,7 @@ def run(row):
             time.sleep(pause)
             core = row.roscore()
             row.check_home(driver, odom)
-            assert base.process.poll() is None, 'roslaunch ended:\n%s' % base.output
+            assert base.process.poll() is None, f'roslaunch ended:\n{base.output}'
             # the new master knows neither the base nor its topics
             state = rosgraph.Master('/faults').getSystemState()
             known = {node for kind in state for _, nodes in kind for node in nodes}

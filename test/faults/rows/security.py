@@ -48,7 +48,7 @@ def sockets(row):
                     processes.with_variable('ROS_MASTER_URI', os.environ['ROS_MASTER_URI'] + end)}:
             for protocol, address in processes.listening(pid):
                 found.setdefault((processes.is_python(pid), processes.is_loopback(address)), set()).add(
-                    '%s %s: %s' % (protocol, address, processes.commands([pid])))
+                    f'{protocol} {address}: {processes.commands([pid])}')
         assert driver.wait() == 0, driver.output
     row.end(base, ekf)
     row.figure('open sockets of ours on loopback', len(found.get((True, True), ())))
@@ -63,16 +63,16 @@ def temporary_files(row):
     folder = os.path.abspath('tmp.%d' % row.faults)
     os.mkdir(folder)
     variables, find = marked(row)
-    demo = row.start('bash', '-c', 'umask 0; exec %s/script/demo --fast' % PACKAGE, TMPDIR=folder, **variables)
+    demo = row.start('bash', '-c', f'umask 0; exec {PACKAGE}/script/demo --fast', TMPDIR=folder, **variables)
     support.wait_for(lambda: len(os.listdir(folder)) >= 2, 'temporary folders')
     time.sleep(row.random.uniform(0, 15))
     for name in os.listdir(folder) + ['..']:
         mode = stat.S_IMODE(os.stat(os.path.join(folder, name)).st_mode)
-        assert mode & 0o077 == 0, '%s has the mode %o' % (name, mode)
+        assert mode & 0o077 == 0, f'{name} has the mode {mode:o}'
     os.killpg(demo.process.pid, row.random.choice([signal.SIGINT, signal.SIGTERM, signal.SIGHUP]))
     demo.wait()
     processes.wait_for_end(find, 1.0)
-    assert not glob.glob(folder + '/rbx1_nav-scratch.*'), os.listdir(folder)
+    assert not glob.glob(f'{folder}/rbx1_nav-scratch.*'), os.listdir(folder)
 
 
 def foreign_code(row):
@@ -82,24 +82,24 @@ def foreign_code(row):
     path = os.path.abspath('code.yaml')
     for command in (['rosrun', 'rbx1_nav', 'simulate.py', '--runs', '1', '--config', path],
                     ['rosrun', 'rbx1_nav', 'simulate.py', '--runs', '1', '--surface', path],
-                    ['roslaunch', '--wait', 'rbx1_nav', 'fake_turtlebot.launch', 'config:=' + path],
+                    ['roslaunch', '--wait', 'rbx1_nav', 'fake_turtlebot.launch', f'config:={path}'],
                     ['rosparam', 'load', path, '/robot_pose_ekf'],
-                    ['rosrun', 'rbx1_nav', 'ekf.py', '_surface:=' + path],
-                    ['rosrun', 'rbx1_nav', 'timed_out_and_back.py', '_rate:=' + CODE % os.path.abspath('ran')]):
+                    ['rosrun', 'rbx1_nav', 'ekf.py', f'_surface:={path}'],
+                    ['rosrun', 'rbx1_nav', 'timed_out_and_back.py', f"_rate:={CODE % os.path.abspath('ran')}"]):
         process = row.start(*command)
-        assert process.wait() != 0, '%s: %s' % (command, process.output)
-        assert not os.path.exists('ran'), '%s ran a command' % command
+        assert process.wait() != 0, f'{command}: {process.output}'
+        assert not os.path.exists('ran'), f'{command} ran a command'
 
 
 def sources(_):
     """No source evaluates what it has read."""
     files = [path for folder in ('src', 'nodes', 'script')
-             for path in glob.glob('%s/%s/**/*.py' % (PACKAGE, folder), recursive=True)]
+             for path in glob.glob(f'{PACKAGE}/{folder}/**/*.py', recursive=True)]
     assert len(files) > 40
     for path in files:
         with open(path, encoding='utf-8') as file:
             for node in ast.walk(ast.parse(file.read())):
-                where = '%s:%s' % (path, getattr(node, 'lineno', ''))
+                where = f"{path}:{getattr(node, 'lineno', '')}"
                 if isinstance(node, (ast.Import, ast.ImportFrom)):
                     names = {alias.name.split('.')[0] for alias in node.names} | {getattr(node, 'module', None)}
                     assert not names & MODULES, where
@@ -107,7 +107,7 @@ def sources(_):
                     name = getattr(node.func, 'attr', getattr(node.func, 'id', None))
                     module = getattr(getattr(node.func, 'value', None), 'id', None)
                     regular = (module, name) == ('re', 'compile')
-                    assert name not in EVALUATE or regular, '%s: %s' % (where, name)
+                    assert name not in EVALUATE or regular, f'{where}: {name}'
                     assert (module, name) != ('yaml', 'load'), where
                     assert not any(keyword.arg == 'shell' for keyword in node.keywords), where
 

@@ -19,7 +19,7 @@ def run(row):
     odom = support.OdomWatch()
     for _ in range(row.times):
         moment = row.random.uniform(0, 2)
-        with row.fault('SIGKILL %.3f s of simulated time after the start of the motion' % moment):
+        with row.fault(f'SIGKILL {moment:.3f} s of simulated time after the start of the motion'):
             driver = row.start('rosrun', 'rbx1_nav', 'timed_out_and_back.py')
             start = odom.wait_for_twist(SPEED).header.stamp
             support.wait_for(lambda: (odom.last.header.stamp - start).to_sec() >= moment, 'the moment')
@@ -29,4 +29,4 @@ def run(row):
             way = math.dist(killed, odom.position())
             row.figure('way after the end, m', way)
             # odometry that was under way when it was killed may be a period old
-            assert way <= SPEED * (TIMEOUT + 2 * PERIOD), 'it went on for %.4f m' % way
+            assert way <= SPEED * (TIMEOUT + 2 * PERIOD), f'it went on for {way:.4f} m'

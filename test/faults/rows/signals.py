@@ -59,9 +59,9 @@ def run(row):
         script, number, pid = SCRIPTS[count % 2], SIGNALS[count // 2 % 3], pids[(count + count // 6) % 3]
         moment = row.random.uniform(0, 3)
         freeze = row.random.uniform(0, moment) if row.random.random() < 0.5 else moment
-        text = '%s to %s after %.3f s' % (number.name, script, moment)
+        text = f'{number.name} to {script} after {moment:.3f} s'
         if pid:
-            text += ', %s suspended after %.3f s' % ('the master' if pid == pids[1] else 'the base', freeze)
+            text += f", {'the master' if pid == pids[1] else 'the base'} suspended after {freeze:.3f} s"
         with row.fault(text):
             try_signal(row, script, number, (moment, freeze, pid), (odom, commands), python_start)
 
@@ -81,15 +81,15 @@ def try_signal(row, script, number, moments, watches, python_start):
         duration = seconds(driver)
         allowed = max(DEADLINE, DEADLINE - 0.1 + seconds(control))
     row.figure('process gone after, s', duration)
-    assert duration <= allowed, 'the process had gone after %.3f s\n%s' % (duration, driver.output)
+    assert duration <= allowed, f'the process had gone after {duration:.3f} s\n{driver.output}'
     assert driver.process.returncode in (0, 1, -number), driver.output
     assert 'Traceback' not in driver.output or moment < python_start or EARLY in driver.output, driver.output
     support.wait_for(lambda: not commands.subscriber.get_num_connections(), 'the end of the connection')
     moves = [(message.linear.x, message.angular.z) != (0, 0) for message in commands.messages]
-    assert moves[-1:] != [True], 'the last of %d commands is not a stop' % len(moves)
+    assert moves[-1:] != [True], f'the last of {len(moves)} commands is not a stop'
     after = moves[sent:]
     assert True not in after or False not in after or after.index(False) > len(after) - 1 - after[::-1].index(True), \
-        'commands to move after a stop: %s' % after
+        f'commands to move after a stop: {after}'
     if not moves:
         return
     # the clock goes on, so that a robot that moved would show it

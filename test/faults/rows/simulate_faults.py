@@ -77,7 +77,7 @@ class Simulation:
 
 def full_disk(row, kind):
     """The disk is full in the middle of a picture."""
-    path = os.path.abspath(os.path.join(FOLDER, 'picture.' + kind))
+    path = os.path.abspath(os.path.join(FOLDER, f'picture.{kind}'))
     errors = Simulation(row, '--method', 'timed', '--runs', '20', '--surface', 'hard_floor', '--jobs', '1',
                         '--plot', path, limit=FULL_AT).check_end(1)
     assert 'simulate.py: ' in errors, errors
@@ -130,6 +130,6 @@ def run(row):
         with row.fault(' '.join([fault.__name__, *map(str, arguments)])):
             fault(row, *arguments)
             left = os.listdir(FOLDER)
-            assert not left, 'left behind: %s' % left
+            assert not left, f'left behind: {left}'
         for name in os.listdir(FOLDER):
             os.remove(os.path.join(FOLDER, name))

@@ -44,9 +44,9 @@ def run(row):
     first = rospy.wait_for_message('/odom', Odometry).header.stamp.to_sec()
     elapsed = 0
     while elapsed < 60 * row.times:
-        with row.fault('%.0f minutes' % (elapsed / 60)):
-            driver = row.start('rosrun', 'rbx1_nav', 'timed_out_and_back.py', '_goal_distance:=%g' % DISTANCE,
-                               '_goal_angle:=%g' % TURN)
+        with row.fault(f'{elapsed / 60:.0f} minutes'):
+            driver = row.start('rosrun', 'rbx1_nav', 'timed_out_and_back.py', f'_goal_distance:={DISTANCE:g}',
+                               f'_goal_angle:={TURN:g}')
             assert driver.wait() == 0, driver.output
             pose = after_run(pose)
             odom = rospy.wait_for_message('/odom', Odometry)
@@ -54,7 +54,7 @@ def run(row):
             away, turned = math.hypot(x - pose[0], y - pose[1]), abs(support.wrapped(heading - pose[2]))
             row.figure('distance from the exact pose, m', away)
             row.figure('turned from the exact heading, rad', turned)
-            assert away < 1e-3 and turned < 1e-3, '%.6f m and %.6f rad from the exact pose' % (away, turned)
+            assert away < 1e-3 and turned < 1e-3, f'{away:.6f} m and {turned:.6f} rad from the exact pose'
         elapsed = odom.header.stamp.to_sec() - first
         samples = []
         for _ in range(20):     # 2 s for the connections to end
@@ -63,7 +63,7 @@ def run(row):
         usages.append([min(column) for column in zip(*samples)])
     row.figure('simulated hours', elapsed / 3600)
     with row.fault('what grows'):
-        assert len(usages) >= WARM_UP + 4, 'only %d runs in this time' % len(usages)
+        assert len(usages) >= WARM_UP + 4, f'only {len(usages)} runs in this time'
         early, late = usages[WARM_UP:WARM_UP + 2], usages[-2:]
         row.figure('memory after warm-up and at the end, MB', min(u[0] for u in early) / 1024)
         row.figure('memory after warm-up and at the end, MB', min(u[0] for u in late) / 1024)

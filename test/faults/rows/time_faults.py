@@ -22,7 +22,7 @@ NEAR = 0.03     # m and rad: an end that counts as exact in real time
 
 def start_base(clock, stepped):
     """Start a base at the origin; returns its odometry. stepped: whether its system clock is the one that steps."""
-    with open(PACKAGE + '/config/turtlebot.yaml', encoding='utf-8') as file:
+    with open(f'{PACKAGE}/config/turtlebot.yaml', encoding='utf-8') as file:
         rospy.set_param('/arbotix', yaml.safe_load(file))
     base = clock.start('fake_base.py') if stepped else clock.row.start('rosrun', 'rbx1_nav', 'fake_base.py')
     base.wait_for_line('Ready: ')
@@ -41,7 +41,7 @@ def base_in_motion(row, clock, jump):
         odom.wait_for_twist(0.0)
         travel = odom.last.pose.pose.position.x - start
         row.figure('travel after a jump, m', travel)
-        assert -1e-9 <= travel <= JUMP, 'it travelled %.4f m' % travel
+        assert -1e-9 <= travel <= JUMP, f'it travelled {travel:.4f} m'
     assert all(math.isfinite(n) for m in odom.messages for n in support.pose(m)), 'a number that is not finite'
 
 
@@ -63,7 +63,7 @@ def script_in_motion(row, clock, jump, script):
     if status == 0:
         row.figure('distance from the exact end with status 0, m', off)
         turned = abs(support.wrapped(heading))
-        assert off < NEAR and turned < NEAR, 'status 0, but %.3f m and %.3f rad off' % (off, turned)
+        assert off < NEAR and turned < NEAR, f'status 0, but {off:.3f} m and {turned:.3f} rad off'
 
 
 def filter_in_use(row, clock, jump):

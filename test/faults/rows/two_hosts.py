@@ -30,7 +30,7 @@ def two_hosts():
             ip('-n', name, 'link', 'set', 'lo', 'up')
         ip('link', 'add', cables[0], 'netns', names[0], 'type', 'veth', 'peer', 'name', cables[1], 'netns', names[1])
         for name, cable, host in zip(names, cables, HOSTS):
-            ip('-n', name, 'address', 'add', host + '/24', 'dev', cable)
+            ip('-n', name, 'address', 'add', f'{host}/24', 'dev', cable)
             ip('-n', name, 'link', 'set', cable, 'up')
         yield names, cables
     finally:
@@ -45,7 +45,7 @@ def ip(*arguments):
 
 def run(row):
     """See FAULT. As docs/installation.md says, each host has the ROS_MASTER_URI of the master, and its own ROS_IP."""
-    master = 'http://%s:11311' % HOSTS[0]
+    master = f'http://{HOSTS[0]}:11311'
     with two_hosts() as (names, cables):
         def start(number, *command):
             return row.start('ip', 'netns', 'exec', names[number], *command,
@@ -58,7 +58,7 @@ def run(row):
         for number in range(row.times):
             outage, delay = OUTAGES[number % 3], row.random.uniform(0.5, 3)
             with row.fault('no link %s after %.2f s' % ('for good' if outage is None else 'for %g s' % outage, delay)):
-                try_one(row, lambda: start(1, 'rosrun', 'rbx1_nav', 'timed_out_and_back.py', '_linear_speed:=%g' % SPEED,
+                try_one(row, lambda: start(1, 'rosrun', 'rbx1_nav', 'timed_out_and_back.py', f'_linear_speed:={SPEED:g}',
                                            '_angular_speed:=3', '_goal_distance:=0.8'), poses, names, cables, outage, delay)
             ip('-n', names[0], 'link', 'set', cables[0], 'up')
             # for some seconds the other host may still take this one for unreachable
@@ -78,7 +78,7 @@ def try_one(row, start, poses, names, cables, outage, delay):
         ip('-n', names[0], 'link', 'set', cables[0], 'up')
         assert driver.wait() == 0, driver.output
         return
-    support.wait_for(lambda: 'Stopping the robot...' in driver.output, 'the script to notice:\n' + driver.output)
+    support.wait_for(lambda: 'Stopping the robot...' in driver.output, f"the script to notice:\n{driver.output}")
     noticed = time.monotonic() - pulled
     row.figure('noticed after, s', noticed)
     time.sleep(max(0, TIMEOUT + 0.5 - noticed))
@@ -89,9 +89,9 @@ def try_one(row, start, poses, names, cables, outage, delay):
         ip('-n', names[0], 'link', 'set', cables[0], 'up')
     status = driver.wait()
     assert status == 1 and '/arbotix' in driver.output and 'Traceback' not in driver.output, driver.output
-    assert noticed <= NOTICE, 'noticed after %.2f s' % noticed
+    assert noticed <= NOTICE, f'noticed after {noticed:.2f} s'
     # a command may be on its way, and the last line of odometry be a period old
-    assert way <= SPEED * (TIMEOUT + 3 * PERIOD), 'it went on for %.3f m' % way
+    assert way <= SPEED * (TIMEOUT + 3 * PERIOD), f'it went on for {way:.3f} m'
 
 
 def position(poses):

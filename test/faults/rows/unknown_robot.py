@@ -28,10 +28,10 @@ SEARCH_COMMANDS = {command('start'), command('sensors', 3), command('sensors', 4
 
 def meet(case, robot, robot_type, kill_after):
     """One fault. kill_after: s after which the node is killed, or None."""
-    node = support.Process('rosrun', 'rbx1_nav', 'turtlebot_node.py', '_port:=' + robot.link,
-                           '_robot_type:=' + robot_type)
+    node = support.Process('rosrun', 'rbx1_nav', 'turtlebot_node.py', f'_port:={robot.link}',
+                           f'_robot_type:={robot_type}')
     case.addCleanup(node.kill)
-    support.wait_for(robot.received, 'the search: %s' % node.output)
+    support.wait_for(robot.received, f'the search: {node.output}')
     end = time.monotonic() + (SEARCH if kill_after is None else kill_after)
     while time.monotonic() < end and 'The robot answers' not in node.output:
         time.sleep(0.005)

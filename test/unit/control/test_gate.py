@@ -44,7 +44,7 @@ def test_values_that_are_not_finite_or_too_large_are_rejected(command, value):
     gate.command(0, 0.2, 0.3)
     with pytest.raises(RejectedCommand) as error:
         gate.command(7, *command)
-    assert str(error.value) == '%s: expected finite numbers of at most 1e+06' % value
+    assert str(error.value) == f'{value}: expected finite numbers of at most 1e+06'
     assert (gate.linear, gate.angular) == (0.0, 0.0) and not gate.moving
     assert (gate.rejected, gate.command_time) == (1, 7)
 

@@ -12,7 +12,7 @@ from rbx1_nav.create.protocol import (
 from robots import Robot
 
 both = pytest.mark.parametrize('model', list(MODELS.values()), ids=list(MODELS))
-COMMANDS = [pytest.param(model, each, id='%s-%s' % (model.name, each.name))
+COMMANDS = [pytest.param(model, each, id=f'{model.name}-{each.name}')
             for model in MODELS.values() for each in model.commands.values()]
 ENTER = {OFF: b'', PASSIVE: command('start'), SAFE: command('start') + command('safe'),
          FULL: command('start') + command('full')}

@@ -7,7 +7,7 @@ from rbx1_nav.create.protocol import COUNTED, CREATE, MODELS, NOTES, PASSIVE, SA
 from robots import Robot
 
 LONG = [pytest.param(model, bytes((each.opcode, 255)) + bytes(255) if each.size == COUNTED else
-                     bytes((each.opcode, 0, 255)) + bytes(2 * 255), id='%s-%s' % (model.name, each.name))
+                     bytes((each.opcode, 0, 255)) + bytes(2 * 255), id=f'{model.name}-{each.name}')
         for model in MODELS.values() for each in model.commands.values() if each.size in (COUNTED, NOTES)]
 
 

@@ -72,7 +72,7 @@ def test_a_rate_that_another_process_has_set_is_set_back(line):
     _, link, log = line
     subprocess.run(['stty', '-F', link.path, '9600'], check=True)
     assert link.is_guarded(BEAT)
-    assert log == ['%s: another process has changed the rate to 9600 baud: expected 115200; set back' % link.path]
+    assert log == [f'{link.path}: another process has changed the rate to 9600 baud: expected 115200; set back']
     assert link.port.baudrate == 115200 and link.changes == 1
     assert '115200' in subprocess.run(['stty', '-F', link.path, 'speed'], stdout=subprocess.PIPE, check=True,
                                       text=True).stdout
@@ -93,7 +93,7 @@ def test_an_echo_that_another_process_has_set_is_cleared(line):
     robot, link, log = line
     subprocess.run(['stty', '-F', link.path, 'sane'], check=True)
     link.write(b'\x91')
-    assert log == ['%s: another process has changed the settings; set back' % link.path]
+    assert log == [f'{link.path}: another process has changed the settings; set back']
     os.read(robot, 1)
     os.write(robot, b'\x85')
     assert link.read(LIMIT, SimpleNamespace(missing=1)) == b'\x85'

@@ -31,14 +31,14 @@ def test_a_port_is_opened_by_its_link(terminal):
 
 def test_no_device(tmp_path):
     path = tmp_path / 'none'
-    assert refusal(path) == '%s: no such device: expected the adapter of the robot to be plugged in' % path
+    assert refusal(path) == f'{path}: no such device: expected the adapter of the robot to be plugged in'
 
 
 def test_not_a_serial_port(tmp_path):
     path = tmp_path / 'file'
     path.write_text('')
-    assert refusal(path) == '%s: not a serial port: expected the device of an adapter, such as /dev/ttyUSB0' % path
-    assert refusal(tmp_path) == '%s: not a serial port: expected the device of an adapter, such as /dev/ttyUSB0' % tmp_path
+    assert refusal(path) == f'{path}: not a serial port: expected the device of an adapter, such as /dev/ttyUSB0'
+    assert refusal(tmp_path) == f'{tmp_path}: not a serial port: expected the device of an adapter, such as /dev/ttyUSB0'
 
 
 def test_not_permitted(terminal):
@@ -55,7 +55,7 @@ def test_not_permitted(terminal):
             open_port(terminal.device, 115200)
         except PortError as error:
             # such a user may not even see the device
-            os.write(write_end, ('%s\n%s' % (group_of(terminal.device), error)).encode())
+            os.write(write_end, (f'{group_of(terminal.device)}\n{error}').encode())
         os._exit(0)
     os.waitpid(child, 0)
     os.close(write_end)

@@ -9,7 +9,7 @@ from robots import Robot
 
 both = pytest.mark.parametrize('model', list(MODELS.values()), ids=list(MODELS))
 CLEANING = {CREATE.name: ['spot', 'cover', 'dock'], CREATE_2.name: ['spot', 'cover', 'max', 'dock']}
-CLEANING_OF = [pytest.param(model, name, id='%s-%s' % (model.name, name))
+CLEANING_OF = [pytest.param(model, name, id=f'{model.name}-{name}')
                for model in MODELS.values() for name in CLEANING[model.name]]
 SPIN, STANDING = (6, 7), (5, 8, 9)      # demos that turn in place, and that do not drive
 
@@ -105,7 +105,7 @@ def test_a_figure_of_eight():
 
 
 @pytest.mark.parametrize('model, name', [
-    pytest.param(model, name, id='%s-%s' % (model.name, name)) for model in MODELS.values()
+    pytest.param(model, name, id=f'{model.name}-{name}') for model in MODELS.values()
     for name in ('start', 'control', 'safe', 'full', 'power', 'reset', 'stop') if OPCODES[name] in model.commands])
 def test_commands_that_stop_a_program(model, name):
     robot = running(model, command('cover'))

@@ -119,7 +119,7 @@ def test_no_link():
 @pytest.mark.parametrize('name, text', [('file', 'exists, and is not a link'), ('none/port', 'No such file')])
 def test_a_link_that_cannot_be_made(tmp_path, name, text):
     (tmp_path / 'file').write_text('')
-    with pytest.raises(ConfigError, match='link: .*%s.*expected' % text):
+    with pytest.raises(ConfigError, match=f'link: .*{text}.*expected'):
         PseudoTerminal(str(tmp_path / name))
 
 

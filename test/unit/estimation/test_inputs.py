@@ -46,13 +46,13 @@ def rejection(function, *arguments):
 def test_invalid_odometry_is_rejected(field, value):
     expected = 'a number of at most 1e+06' if field in POSE else 'a variance above 0, from 1e-12 to 1e+12'
     assert rejection(check_odom, *with_field(ODOM, VARIANCES, field, value)) == (
-        '%s: %s: expected %s' % (field, value, expected))
+        f'{field}: {value}: expected {expected}')
 
 
 @pytest.mark.parametrize('field, rate, variance', BAD_READINGS)
 def test_an_invalid_gyro_reading_is_rejected(field, rate, variance):
     text = rejection(check_imu, Imu(0, rate, variance))
-    assert text.startswith(field + ': ') and ': expected a ' in text
+    assert text.startswith(f'{field}: ') and ': expected a ' in text
 
 
 def test_valid_messages_are_accepted():

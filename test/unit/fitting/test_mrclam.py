@@ -42,10 +42,10 @@ def test_the_robots_of_a_set_are_read(tmp_path):
     (b'\xff\xfe\x00 1 2\n', TRUTH, 'Odometry.dat: expected a text file of numbers'),
     (b'\x00' * 100, TRUTH, 'Odometry.dat: expected a text file of numbers'),
     ('1 nan 0\n', TRUTH, 'D6R1: commands: linear of message 1: nan: expected a finite number'),
-    (COMMANDS, TRUTH + '12 0 0 inf\n', 'D6R1: truth: yaw of message 4: inf: expected a finite number'),
-    (COMMANDS, TRUTH + '12 1e999 0 0\n', 'D6R1: truth: x of message 4: inf: expected a finite number'),
-    (COMMANDS + '10.5 0 0\n', TRUTH, 'D6R1: commands: stamp of message 4: 0.500 s before that of message 3'),
-    (COMMANDS, TRUTH + '10.9 0 0 0\n', 'D6R1: truth: stamp of message 4: 0.100 s before that of message 3'),
+    (COMMANDS, f"{TRUTH}12 0 0 inf\n", 'D6R1: truth: yaw of message 4: inf: expected a finite number'),
+    (COMMANDS, f"{TRUTH}12 1e999 0 0\n", 'D6R1: truth: x of message 4: inf: expected a finite number'),
+    (f"{COMMANDS}10.5 0 0\n", TRUTH, 'D6R1: commands: stamp of message 4: 0.500 s before that of message 3'),
+    (COMMANDS, f"{TRUTH}10.9 0 0 0\n", 'D6R1: truth: stamp of message 4: 0.100 s before that of message 3'),
     ('10 0 0\n11 0 0\n', TRUTH, 'D6R1: no motion: expected commands other than 0'),
 ])
 @pytest.mark.filterwarnings('error')

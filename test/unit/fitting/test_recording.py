@@ -55,7 +55,7 @@ def test_no_commands():
 @pytest.mark.parametrize('name', ['odometry', 'truth'])
 def test_no_motion(name):
     time = getattr(RUN, name).time
-    with pytest.raises(ConfigError, match='^run: %s: no motion, although' % name):
+    with pytest.raises(ConfigError, match=f'^run: {name}: no motion, although'):
         check_recording(RUN._replace(**{name: Track(time, 0 * time, 0 * time, 0 * time)}))
     zero = 0 * RUN.commands.linear
     with pytest.raises(ConfigError, match='^run: no motion: expected commands other than 0'):
@@ -65,7 +65,7 @@ def test_no_motion(name):
 @pytest.mark.parametrize('name', ['odometry', 'gyro', 'truth'])
 def test_all_stamps_are_of_one_clock(name):
     series = getattr(RUN, name)
-    with pytest.raises(ConfigError, match='^run: %s from 1000.0 to .*: expected the same time, by one clock' % name):
+    with pytest.raises(ConfigError, match=f'^run: {name} from 1000.0 to .*: expected the same time, by one clock'):
         check_recording(RUN._replace(**{name: series._replace(time=series.time + 1000)}))
 
 

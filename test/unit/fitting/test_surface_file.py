@@ -45,7 +45,7 @@ def test_it_can_be_read_again(result):
 def test_each_value_is_explained(result):
     lines = surface_text(result, 'low_ply_carpet', ['run1.bag']).splitlines()
     for value in result.values:
-        line, = (each for each in lines if each.startswith(value.key + ':'))
+        line, = (each for each in lines if each.startswith(f'{value.key}:'))
         assert ('fitted, +- ' in line) == (value.error is not None) == ('left as it was: no gyro' not in line)
     assert any('too far off' in line for line in lines) == bool(result.warnings)
     printed = table(result, 'low_ply_carpet')

@@ -51,8 +51,8 @@ def test_fine(tmp_path):
 ])
 def test_broken(tmp_path, link, trouble):
     """In any Markdown file of the repository."""
-    found, = problems(tmp_path, **{'CONTRIBUTING.md': 'Text\n' + link + '\n'})
-    assert found.startswith('CONTRIBUTING.md:2: ') and found.endswith(': ' + trouble)
+    found, = problems(tmp_path, **{'CONTRIBUTING.md': f"Text\n{link}\n"})
+    assert found.startswith('CONTRIBUTING.md:2: ') and found.endswith(f': {trouble}')
 
 
 def test_out_of_reach(tmp_path):

@@ -19,7 +19,7 @@ def follow(home, page, limit=LIMIT):
 
 def run(command, marker='run'):
     """A block."""
-    return '<!-- %s -->\n```sh\n%s\n```\n' % (marker, command)
+    return f'<!-- {marker} -->\n```sh\n{command}\n```\n'
 
 
 def shows(*lines, marker='output'):
@@ -117,7 +117,7 @@ def test_left_behind(tmp_path):
 
 def test_others_live_on(tmp_path):
     """A page that fails kills only its own processes."""
-    with subprocess.Popen(['sleep', '1000'], env=dict(os.environ, HOME=str(tmp_path) + '2')) as other:
+    with subprocess.Popen(['sleep', '1000'], env=dict(os.environ, HOME=f'{tmp_path!s}2')) as other:
         failure(tmp_path, run('false'))
         assert other.poll() is None
         other.send_signal(signal.SIGKILL)

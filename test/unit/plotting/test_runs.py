@@ -108,13 +108,13 @@ def full_disk():
 @pytest.mark.parametrize('kind', ['png', 'pdf', 'svg'])
 def test_a_full_disk_is_an_oserror_and_leaves_no_file(tmp_path, kind):
     with full_disk(), pytest.raises(OSError):
-        draw(str(tmp_path / ('a.' + kind)), 'test', {'timed': FAR}, range(3))
+        draw(str(tmp_path / (f'a.{kind}')), 'test', {'timed': FAR}, range(3))
     assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize('kind', ['png', 'pdf', 'svg'])
 def test_an_older_picture_survives_a_full_disk(tmp_path, kind):
-    path = tmp_path / ('a.' + kind)
+    path = tmp_path / (f'a.{kind}')
     path.write_bytes(b'an older picture')
     with full_disk(), pytest.raises(OSError):
         draw(str(path), 'test', {'timed': FAR}, range(3))
@@ -123,11 +123,11 @@ def test_an_older_picture_survives_a_full_disk(tmp_path, kind):
 
 @pytest.mark.parametrize('kind, start', [('png', b'\x89PNG'), ('PDF', b'%PDF'), ('svg', b'<?xml')])
 def test_a_picture_takes_the_place_of_an_older_one(tmp_path, kind, start):
-    path = tmp_path / ('a.' + kind)
+    path = tmp_path / (f'a.{kind}')
     path.write_bytes(b'an older picture')
     path.chmod(0o640)
-    (tmp_path / ('link.' + kind)).symlink_to(path)
-    draw(str(tmp_path / ('link.' + kind)), 'test', {'timed': FAR}, range(3))
+    (tmp_path / (f'link.{kind}')).symlink_to(path)
+    draw(str(tmp_path / (f'link.{kind}')), 'test', {'timed': FAR}, range(3))
     assert path.read_bytes().startswith(start) and path.stat().st_mode & 0o777 == 0o640
     assert len(list(tmp_path.iterdir())) == 2
 
@@ -146,7 +146,7 @@ def test_a_good_path_is_left_as_it_was(tmp_path, name):
 @pytest.mark.parametrize('name', ['', 'a', 'png', '.png', 'a.doc', 'a.png.txt', 'a.pgf'])
 def test_a_name_that_says_no_format(tmp_path, name):
     with pytest.raises(ConfigError, match=r'expected a name that ends in one of .*\.pdf, \.png, '):
-        check_picture(str(tmp_path) + '/' + name)
+        check_picture(f'{tmp_path!s}/{name}')
 
 
 def test_a_folder_that_does_not_exist(tmp_path):

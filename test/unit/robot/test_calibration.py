@@ -34,7 +34,7 @@ def test_its_unit_may_follow(unit, text):
 
 @pytest.mark.parametrize('text', ['0,96', '1,000.5 m'])
 def test_a_comma_is_not_guessed(text):
-    assert rejection(measured, text) == "measured: '%s': expected a decimal point, not a comma" % text
+    assert rejection(measured, text) == f"measured: '{text}': expected a decimal point, not a comma"
 
 
 @pytest.mark.parametrize('value, shown', [
@@ -44,7 +44,7 @@ def test_a_comma_is_not_guessed(text):
     (10 ** 400, 'an integer of')])
 def test_what_is_no_such_distance_is_rejected(value, shown):
     text = rejection(measured, value)
-    assert text.startswith('measured: ' + shown) and text.endswith('expected a distance from 0.5 to 2 in m')
+    assert text.startswith(f'measured: {shown}') and text.endswith('expected a distance from 0.5 to 2 in m')
 
 
 @given(true=st.floats(0.55, 1.8), factor=st.floats(0.3, 3), sensitivity=st.floats(0.5, 2))

@@ -72,7 +72,7 @@ def test_an_invalid_value_is_named_with_its_key_and_what_is_expected(key, value,
     with pytest.raises(ConfigError) as error:
         read_robot(params)
     text = str(error.value)
-    assert text.startswith('controllers/base_controller/%s: %r' % (key, value))
+    assert text.startswith(f'controllers/base_controller/{key}: {value!r}')
     assert expected in text and '\n' not in text
 
 
@@ -84,7 +84,7 @@ def test_a_missing_key_is_named(path):
     for key in path[:-1]:
         parent = parent[key]
     del parent[path[-1]]
-    with pytest.raises(ConfigError, match='^%s: missing' % '/'.join(path)):
+    with pytest.raises(ConfigError, match=f"^{'/'.join(path)}: missing"):
         read_robot(params)
 
 
@@ -110,7 +110,7 @@ def test_an_invalid_joint_is_rejected(joint, expected):
 def test_a_joint_needs_a_name_of_its_own_that_can_be_a_topic(name):
     params = load('turtlebot.yaml')
     params['joints'] = {name: {}}
-    with pytest.raises(ConfigError, match="'%s'.*expected a name" % name):
+    with pytest.raises(ConfigError, match=f"'{name}'.*expected a name"):
         read_robot(params)
 
 
@@ -127,7 +127,7 @@ def test_wheels_have_the_names_of_the_urdf_file():
 def test_a_wheel_is_no_servo(key):
     params = load('pi_robot.yaml')
     params['controllers']['base_controller'][key] = 'head_pan_joint'
-    with pytest.raises(ConfigError, match="/base_controller/%s: 'head_pan_joint': expected .* not one of joints" % key):
+    with pytest.raises(ConfigError, match=f"/base_controller/{key}: 'head_pan_joint': expected .* not one of joints"):
         read_robot(params)
 
 

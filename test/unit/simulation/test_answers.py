@@ -54,7 +54,7 @@ class Recorder:
         self.nodes = Nodes()
         self.closed, self.unread = self.nodes.closed, self.nodes.unread_from
         self.ended = threading.Event()
-        self.lockstep = Lockstep(self.applied.append, lambda name, reason: self.warnings.append(name + ' ' + reason),
+        self.lockstep = Lockstep(self.applied.append, lambda name, reason: self.warnings.append(f'{name} {reason}'),
                                  self.nodes, self.ended.is_set)
 
     def collect(self):

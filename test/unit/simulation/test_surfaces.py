@@ -71,7 +71,7 @@ def test_a_file_without_a_surface_is_rejected(tmp_path, text):
     ('heading_noise_turning', 2), ('heading_noise_straight', True), ('heading_noise_straight', -1e-9),
     ('distance_noise', 1.5), ('distance_noise', None)])
 def test_an_invalid_value_is_named_with_its_key(key, value):
-    with pytest.raises(ConfigError, match='^surface x/%s: .*expected a ' % key):
+    with pytest.raises(ConfigError, match=f'^surface x/{key}: .*expected a '):
         read_surface(dict(carpet(), **{key: value}), 'x')
 
 
@@ -79,7 +79,7 @@ def test_an_invalid_value_is_named_with_its_key(key, value):
 def test_a_missing_key_is_named(key):
     values = carpet()
     del values[key]
-    with pytest.raises(ConfigError, match='surface x/%s: missing' % key):
+    with pytest.raises(ConfigError, match=f'surface x/{key}: missing'):
         read_surface(values, 'x')
 
 
@@ -104,7 +104,7 @@ def test_the_range_of_a_key(key, low, high):
         # the others as in the file
         assert surface == read_surface(without_optional_keys(), 'x')._replace(**{key: value})
     for value in (low - 0.01, high + 0.01):
-        with pytest.raises(ConfigError, match='^surface x/%s: ' % key):
+        with pytest.raises(ConfigError, match=f'^surface x/{key}: '):
             read_surface(dict(without_optional_keys(), **{key: value}), 'x')
 
 

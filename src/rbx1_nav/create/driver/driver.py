@@ -297,9 +297,8 @@ class Driver:
         if self.reading is None:
             self.info('The robot answers: %s at %d baud' % (self.model.name, self.contact.found.baud))
             return
-        what = 'the robot was switched off or reset' if reset else 'the robot did not answer for %.1f s' % elapsed
-        self.warn('The robot answers again, after %.1f s%s'
-                  % (elapsed, ': it was switched off or reset' if reset else ''))
+        what = 'the robot was switched off or reset' if reset else f'the robot did not answer for {elapsed:.1f} s'
+        self.warn(f"The robot answers again, after {elapsed:.1f} s{': it was switched off or reset' if reset else ''}")
         if reset or elapsed > OUTAGE / SECOND:
             self.acceptance.lock(what)
 

@@ -72,7 +72,7 @@ class GyroCheck:
             self._kind, self.problem = kind, text
             if kind not in self._logged:
                 self._logged.add(kind)
-                self.error('Gyro: %s; the heading is measured by the wheels alone' % text)
+                self.error(f'Gyro: {text}; the heading is measured by the wheels alone')
         if self.problem and not before:
             self._changed, self.rested = False, None
             return True

@@ -58,11 +58,11 @@ class Link:
             self.guardian = Guardian(self.port.fd, sequences.START)
         except OSError as error:
             self.close()
-            self.problem = str(error) if isinstance(error, PortError) else '%s: %s' % (self.path, error)
+            self.problem = str(error) if isinstance(error, PortError) else f'{self.path}: {error}'
             self.lost_at = now if self.lost_at is None else self.lost_at
             if now - self.lost_at >= PATIENCE and self.logged != self.problem:
                 self.logged = self.problem
-                self.warn('%s; trying again' % self.problem)
+                self.warn(f'{self.problem}; trying again')
             return False
         self.problem, self.logged, self.lost_at = '', None, None
         self.guarded = True
@@ -91,7 +91,7 @@ class Link:
         try:
             self.port.baudrate = baud
         except (OSError, ValueError, termios.error) as error:
-            raise LineLost('%s: %s' % (self.path, error))
+            raise LineLost(f'{self.path}: {error}')
         self.settings = read_settings(self.port.fd)
 
     def set_wake_lines(self, on):
@@ -100,7 +100,7 @@ class Link:
             self.port.rts = self.port.dtr = on
         except OSError as error:
             if error.errno not in (errno.ENOTTY, errno.EINVAL):
-                raise LineLost('%s: RTS and DTR: %s' % (self.path, error.strerror))
+                raise LineLost(f'{self.path}: RTS and DTR: {error.strerror}')
             self.warn('wake_robot:=true: %s has no RTS and DTR: expected an adapter that has these lines; searching '
                       'without waking the robot' % self.path)
             raise NoWakeLines(error.errno, error.strerror)
@@ -136,9 +136,9 @@ class Link:
         try:
             written = os.write(self.port.fd, data)
         except OSError as error:
-            raise LineLost('%s: %s' % (self.path, error.strerror))
+            raise LineLost(f'{self.path}: {error.strerror}')
         if written < len(data):
-            raise LineLost('%s: write timed out' % self.path)
+            raise LineLost(f'{self.path}: write timed out')
 
     def write_apart(self, data):
         """Send bytes with a pause after each, so that a receiver at another rate does not mix them. Raises LineLost."""
@@ -173,7 +173,7 @@ class Link:
         try:
             data = os.read(self.port.fd, 4096)
         except OSError as error:
-            raise LineLost('%s: %s' % (self.path, error.strerror))
+            raise LineLost(f'{self.path}: {error.strerror}')
         if not data:
-            raise LineLost('%s: device disconnected' % self.path)
+            raise LineLost(f'{self.path}: device disconnected')
         return data

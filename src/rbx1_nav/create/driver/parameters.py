@@ -28,16 +28,16 @@ def read_settings(params):
     model = protocol.MODELS.get(name, protocol.CREATE)
     port = section.get('port', '/dev/ttyUSB0')
     if not (isinstance(port, str) and port.startswith('/')):
-        raise ConfigError('port: %s: expected the absolute path of a device' % show(port))
+        raise ConfigError(f'port: {show(port)}: expected the absolute path of a device')
     section.choice('drive_mode', ('twist',), 'twist')
     baud = section.choice('baud', (AUTO, *protocol.BAUD_RATES), AUTO)
     mode = section.get('operation_mode', protocol.SAFE)
     if mode not in (protocol.PASSIVE, protocol.SAFE, protocol.FULL) or isinstance(mode, bool):
-        raise ConfigError('operation_mode: %s: expected 1 (passive), 2 (safe) or 3 (full)' % show(mode))
+        raise ConfigError(f'operation_mode: {show(mode)}: expected 1 (passive), 2 (safe) or 3 (full)')
     mode_plus_one = section.choice('oi_mode_workaround', (AUTO, True, False), AUTO)
     has_gyro = section.flag('has_gyro', model is protocol.CREATE)
     if has_gyro and model is not protocol.CREATE:
-        raise ConfigError('has_gyro: True: expected false, a %s has no analog input for a gyro' % name)
+        raise ConfigError(f'has_gyro: True: expected false, a {name} has no analog input for a gyro')
     settings = Settings(
         robot_type=name, model=model, port=port, baud=None if baud == AUTO else baud,
         wake=section.flag('wake_robot', False), mode=int(mode),
@@ -67,5 +67,5 @@ def read_settings(params):
         limits=Limits(inf, max_yaw_speed), publish_tf=section.flag('publish_tf', True), joints=[],
         wheel_joints=read_wheel_joints(section), hardware=[], unknown=[])
     if robot.odom_frame_id == robot.base_frame_id:
-        raise ConfigError('base_frame: %s: expected a frame other than odom_frame' % show(robot.base_frame_id))
+        raise ConfigError(f'base_frame: {show(robot.base_frame_id)}: expected a frame other than odom_frame')
     return settings, robot

@@ -31,7 +31,7 @@ def open_port(path, baud):
     except (OSError, ValueError) as error:
         cause = error.__context__       # of an error in termios, pyserial passes on the text only
         number = getattr(error, 'errno', None) or (cause.args[0] if isinstance(cause, termios.error) else None)
-        raise PortError('%s: %s' % (path, reason(path, number, error)))
+        raise PortError(f'{path}: {reason(path, number, error)}')
 
 
 def reason(path, number, error):
@@ -90,7 +90,7 @@ def user_of(path):
                 locked = 'FLOCK' in file.read()
             pid = link.split('/')[2]
             if locked and int(pid) != os.getpid():
-                return '%s (process %s)' % (command_of(pid), pid)
+                return f'{command_of(pid)} (process {pid})'
         except OSError:     # it has ended, or belongs to another user
             continue
     return ''
@@ -98,6 +98,6 @@ def user_of(path):
 
 def command_of(pid):
     """The file name of a process's program; of a script, the script's."""
-    with open('/proc/%s/cmdline' % pid, 'rb') as file:
+    with open(f'/proc/{pid}/cmdline', 'rb') as file:
         words = [os.path.basename(os.fsdecode(word)) for word in file.read().split(b'\0') if word]
     return next((word for word in words if word.endswith('.py')), words[0] if words else '?')

@@ -137,7 +137,7 @@ class Supervisor:
     def _contradiction(self, reported):
         """Why a robot that has no reason to disobey may seem to. reported: the mode."""
         workaround = '' if self.plus_one is None else (
-            ' with oi_mode_workaround:=%s; without this parameter the base finds out' % str(self.plus_one).lower())
+            f' with oi_mode_workaround:={str(self.plus_one).lower()}; without this parameter the base finds out')
         return 'it reports mode %d after it was asked for %s mode: expected %d%s' % (
             reported, protocol.MODE_NAMES[self.wanted], self.wanted + (self.offset.value or 0), workaround)
 
@@ -145,7 +145,7 @@ class Supervisor:
         before, self.mode = self.mode, mode
         if mode == self.wanted and before != mode:
             self.had_control, self.reason = True, ''
-            self.info('The robot is in %s mode' % protocol.MODE_NAMES[mode])
+            self.info(f'The robot is in {protocol.MODE_NAMES[mode]} mode')
         elif before == self.wanted and mode != before:
             self.reason = None
             self.warn('The robot is no longer driven: it changed from %s to %s mode' % (
@@ -154,4 +154,4 @@ class Supervisor:
     def _explain(self, reason):
         before, self.reason = self.reason, reason
         if reason and reason != before:
-            self.warn('The robot is not driven: %s' % reason)
+            self.warn(f'The robot is not driven: {reason}')

@@ -169,9 +169,9 @@ class EmulatedCreate:
                 self._do(command, data[1:])
 
     def _do(self, command, data):
-        of_programs = getattr(self.programs, 'do_' + command.name, None)
-        handler = of_programs or getattr(self, '_do_' + command.name, None) or getattr(
-            self._scripts, 'do_' + command.name, None)
+        of_programs = getattr(self.programs, f'do_{command.name}', None)
+        handler = of_programs or getattr(self, f'_do_{command.name}', None) or getattr(
+            self._scripts, f'do_{command.name}', None)
         if handler:
             handler(data)
         elif data:

@@ -97,5 +97,4 @@ class PseudoTerminal:
             raise self._error(error.strerror)
 
     def _error(self, text):
-        return ConfigError('link: %s: %s: expected a path where a symbolic link may be made'
-                           % (show_name(self.link), text))
+        return ConfigError(f'link: {show_name(self.link)}: {text}: expected a path where a symbolic link may be made')

@@ -69,7 +69,7 @@ class CreateStatus:
             level, text = OK, CHARGING_STATES[reading['charging_state']]
         else:
             level = ERROR if charge < EMPTY else WARN if charge < LOW else OK
-            text = '%s%.0f %%' % ('Low: ' if level else '', 100 * charge)
+            text = f"{'Low: ' if level else ''}{100 * charge:.0f} %"
         if level > self.battery_level:
             rospy.logwarn('Battery: %s: charge it soon', text)
         self.battery_level = level
@@ -115,7 +115,7 @@ class CreateStatus:
         if self.driver.reading:
             status.add('Reading (counts)', self.driver.reading['analog_input'])
         if offset is not None:
-            status.add('Offset (counts)', '%.2f' % offset)
+            status.add('Offset (counts)', f'{offset:.2f}')
         status.add('Readings at rest', len(gyro.rest))
         return status
 

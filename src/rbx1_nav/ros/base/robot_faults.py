@@ -43,16 +43,16 @@ class RobotFaults:
                 done.set_result(str(error))
 
     def _offer_switch(self, name, switch):
-        rospy.Service('~' + name, SetBool, lambda request: SetBoolResponse(
-            *self._request('%s: %s' % (name, request.data), lambda: switch(request.data))))
+        rospy.Service(f'~{name}', SetBool, lambda request: SetBoolResponse(
+            *self._request(f'{name}: {request.data}', lambda: switch(request.data))))
 
     def _offer_number(self, name, function, low, high):
         def on_message(message):
             if low <= message.data <= high:
-                self._request('%s: %g' % (name, message.data), lambda: function(message.data))
+                self._request(f'{name}: {message.data:g}', lambda: function(message.data))
             else:
                 rospy.logerr('%s: %r: expected a number from %d to %d; rejected', topic, message.data, low, high)
-        topic = rospy.resolve_name('~' + name)
+        topic = rospy.resolve_name(f'~{name}')
         rospy.Subscriber(topic, Float64, on_message)
 
     def _request(self, text, function):
@@ -61,10 +61,10 @@ class RobotFaults:
         self.requests.put((function, done))
         while not done.done():
             if life.end_requested.is_set():
-                return False, '%s: the node ends' % text
+                return False, f'{text}: the node ends'
             life.sleep(0.001)
         if done.result():
             rospy.logerr('%s: %s', text, done.result())
-            return False, '%s: %s' % (text, done.result())
+            return False, f'{text}: {done.result()}'
         rospy.loginfo('%s', text)
         return True, text

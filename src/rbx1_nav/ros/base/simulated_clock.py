@@ -21,13 +21,13 @@ def read_clock(rate):
     rate: of the odometry, Hz. Raises ConfigError.
     """
     names = ('real_time_factor', 'clock_step', 'strict')
-    section = Section({name: rospy.get_param('~' + name) for name in names if rospy.has_param('~' + name)})
+    section = Section({name: rospy.get_param(f'~{name}') for name in names if rospy.has_param(f'~{name}')})
     step = section.number('clock_step', 0.001, 0.1, CLOCK_STEP, 'a time', 's')
     strict = section.flag('strict', False)
     if 'real_time_factor' in section.values:
         factor = section.number('real_time_factor', 0.01, 1000)
         if rospy.rostime.is_wallclock():
-            raise ConfigError('real_time_factor: %g: expected /use_sim_time to be true' % factor)
+            raise ConfigError(f'real_time_factor: {factor:g}: expected /use_sim_time to be true')
         return OwnClock(factor, rate, round(step * SECOND), strict)
     if strict or 'clock_step' in section.values:
         raise ConfigError('%s: expected a simulated clock of this node: real_time_factor is not set'
@@ -60,7 +60,7 @@ class OwnClock(FollowedClock):
     def report(self, name, reason):
         """A node is not in step. Raises ROSException if that is an error."""
         if self.strict:
-            raise rospy.ROSException('strict: %s %s: expected nodes that are in step with /clock' % (name, reason))
+            raise rospy.ROSException(f'strict: {name} {reason}: expected nodes that are in step with /clock')
         self.not_in_step[name] = reason
         rospy.logwarn('%s %s: not in step with /clock. The clock no longer waits for it, and where the robot ends depends '
                       'on the speed of the machine. Expected a node that sleeps on simulated time, as rospy.Rate does',
@@ -74,7 +74,7 @@ class OwnClock(FollowedClock):
     def diagnose(self, status):
         """See above."""
         if self.not_in_step:
-            status.mergeSummary(DiagnosticStatus.WARN, 'Not in step with /clock: ' + ', '.join(self.not_in_step))
+            status.mergeSummary(DiagnosticStatus.WARN, f"Not in step with /clock: {', '.join(self.not_in_step)}")
         status.add('Nodes not in step with /clock',
                    '; '.join('%s %s' % each for each in self.not_in_step.items()) or 'none')
 

@@ -64,9 +64,9 @@ class Listener:
         elif self.timer.silence(now, state) > LINK_TIMEOUT:
             # a node that has closed its window is alive, but does not read: a recorder may do so, a base may not
             if state.window >= CLOSED_WINDOW:
-                self.fail('%s acknowledges nothing that is sent to it' % self.peer.name)
+                self.fail(f'{self.peer.name} acknowledges nothing that is sent to it')
             elif self.peer.essential:
-                self.fail('%s, which publishes the odometry, does not read what is sent to it' % self.peer.name)
+                self.fail(f'{self.peer.name}, which publishes the odometry, does not read what is sent to it')
 
     def read_connection(self):
         """The connection's state; None if it is closed at one end."""
@@ -103,11 +103,11 @@ class Listener:
                 if self.peer.keeps_time and rospy.get_rostime() != before:
                     silent_since = None
                 elif time.monotonic() - silent_since > ANSWER_TIMEOUT:
-                    self.fail('%s no longer answers' % self.peer.name)
+                    self.fail(f'{self.peer.name} no longer answers')
                 time.sleep(LOOK_PERIOD)
                 continue
             if refused and refused > (self.peer.refused or 0):
-                self.refusal = '%s refused a command: %s' % (self.peer.name, reason)
+                self.refusal = f'{self.peer.name} refused a command: {reason}'
             silent_since, self.answered = None, start
             time.sleep(ASK_PERIOD)
 
@@ -116,11 +116,11 @@ class Listener:
         deadline = time.monotonic() + UNREGISTER_TIME
         while self.is_registered():
             if time.monotonic() > deadline:
-                self.fail('%s has gone' % self.peer.name)
+                self.fail(f'{self.peer.name} has gone')
                 return
             time.sleep(LOOK_PERIOD)
         if self.peer.essential:
-            self.fail('%s, which publishes the odometry, has gone' % self.peer.name)
+            self.fail(f'{self.peer.name}, which publishes the odometry, has gone')
             return
         self.ended = True
         if self.publisher.impl.connections and not end_requested.is_set():
@@ -175,7 +175,7 @@ class Listeners:
         self.clock = None if rospy.rostime.is_wallclock() else next(
             (peer.name for peer in peers.values() if peer.keeps_time), None)
         # s of simulated time; read now, since the master may be gone when the robot moves
-        self.clock_step = rospy.get_param(self.clock + '/clock_step', CLOCK_STEP) if self.clock else CLOCK_STEP
+        self.clock_step = rospy.get_param(f'{self.clock}/clock_step', CLOCK_STEP) if self.clock else CLOCK_STEP
 
     def check(self):
         """Look at all connections, if that is due; to be called at least every LOOK_PERIOD.
@@ -187,10 +187,10 @@ class Listeners:
             self.next_look = now + LOOK_PERIOD
             self.look(now)
         if not self.publisher.impl.connections:
-            raise rospy.ROSException('%s: the last subscriber has gone: expected a base' % self.topic)
+            raise rospy.ROSException(f'{self.topic}: the last subscriber has gone: expected a base')
         for listener in self.listeners:
             if listener.refusal:
-                raise rospy.ROSException('%s: %s' % (self.topic, listener.refusal))
+                raise rospy.ROSException(f'{self.topic}: {listener.refusal}')
             if listener.problem:
                 raise rospy.ROSException('%s: %s: expected it to listen until the end of the run'
                                          % (self.topic, listener.problem))

@@ -18,7 +18,7 @@ BASE_FRAMES = ('base_footprint', 'base_link')   # usual names of a robot's base,
 
 def format_pose(pose):
     """A Pose as text."""
-    return '(%.3f m, %.3f m, %.3f rad)' % (pose.x, pose.y, wrap_angle(pose.yaw))
+    return f'({pose.x:.3f} m, {pose.y:.3f} m, {wrap_angle(pose.yaw):.3f} rad)'
 
 
 class LostTransform(Exception):
@@ -81,7 +81,7 @@ class PoseListener:
                 return self.pose()
             except LostTransform as error:
                 if time.monotonic() > deadline:
-                    raise rospy.ROSException("Timed out after %g s waiting for the robot's pose: %s" % (timeout, error))
+                    raise rospy.ROSException(f"Timed out after {timeout:g} s waiting for the robot's pose: {error}")
                 if time.monotonic() > log_time:
                     log_time += 5
                     rospy.loginfo("Waiting for the robot's pose: %s", error)
@@ -118,8 +118,7 @@ class PoseListener:
                 continue
             self.base_frames = [frame]      # from now on this one
             return transform
-        raise LostTransform('There is no transform from %s to %s%s' % (
-            self.odom_frame, self.base_frame, self._known_frames()))
+        raise LostTransform(f'There is no transform from {self.odom_frame} to {self.base_frame}{self._known_frames()}')
 
     def _known_frames(self):
         """The end of a message that lists the frames that exist, if one of ours does not."""
@@ -127,4 +126,4 @@ class PoseListener:
         frames = set(tree) | {frame['parent'] for frame in tree.values()} if tree else set()
         if not frames or self.odom_frame in frames and frames.intersection(self.base_frames):
             return ''
-        return '; frames that exist: %s' % ', '.join(sorted(frames))
+        return f"; frames that exist: {', '.join(sorted(frames))}"

@@ -37,7 +37,7 @@ class _SubscriberMonitor(threading.Thread):
                 self.live = {name: found for name, found in live.items() if found}
                 self.rounds += 1
             except Exception as error:      # pylint: disable=broad-except
-                rospy.logwarn_throttle(5, 'The master at %s does not answer: %s' % (master, error))
+                rospy.logwarn_throttle(5, f'The master at {master} does not answer: {error}')
             self.done.wait(0.1)
 
     def find(self, master, name):
@@ -89,12 +89,12 @@ def wait_for_subscribers(publisher, timeout):
             if connected and monitor.rounds >= known and monitor.live.keys() <= connected and rospy.get_rostime():
                 return Listeners(publisher, [monitor.peer(name) for name in connected])
             missing = ', '.join(sorted((monitor.live or {}).keys() - connected))
-            what = ('the master to list the subscribers of %s' % topic
+            what = (f'the master to list the subscribers of {topic}'
                     if monitor.live is None or connected and monitor.rounds < known
-                    else '%s to connect to %s' % (missing, topic) if missing
-                    else 'a base that subscribes to %s' % topic if not connected else 'the time on /clock')
+                    else f'{missing} to connect to {topic}' if missing
+                    else f'a base that subscribes to {topic}' if not connected else 'the time on /clock')
             if time.monotonic() > deadline:
-                raise rospy.ROSException('Timed out after %g s waiting for %s' % (timeout, what))
+                raise rospy.ROSException(f'Timed out after {timeout:g} s waiting for {what}')
             if time.monotonic() > log_time:
                 log_time += 5
                 rospy.loginfo('Waiting for %s', what)

@@ -80,14 +80,14 @@ class EstimatePublisher:
             self._set_child(base_frame, 'as the odometry has the same frame')
             self.settled = True
         elif other:
-            self._set_child(odom_frame, '%s publishes the one from %s to %s' % (other[1], other[0], base_frame))
+            self._set_child(odom_frame, f'{other[1]} publishes the one from {other[0]} to {base_frame}')
             self.settled = True
         elif self.first is None or now < self.first[0]:     # also after a clock that has jumped back
             self.first = now, time.monotonic()
         elif now - self.first[0] >= PATIENCE and time.monotonic() - self.first[1] >= MIN_WAIT:
-            self._set_child(base_frame, 'no other node publishes one to %s' % base_frame)
+            self._set_child(base_frame, f'no other node publishes one to {base_frame}')
 
     def _set_child(self, child, why):
         if child != self.child:
             self.child = child
-            self.log('Transform from %s to %s: %s' % (self.output_frame, child, why))
+            self.log(f'Transform from {self.output_frame} to {child}: {why}')

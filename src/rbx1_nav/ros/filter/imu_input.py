@@ -20,7 +20,7 @@ class ImuInput:
         self.topic = rospy.resolve_name(topic)
         self.tree = tree
         self.log = log
-        self.gyro = GyroInput(lambda text: log('%s: %s' % (self.topic, text)))
+        self.gyro = GyroInput(lambda text: log(f'{self.topic}: {text}'))
         self.frames = self.vertical = None      # frames of the robot and of the IMU, and vertical_axis() for them
         self.deadline = None
 
@@ -38,7 +38,7 @@ class ImuInput:
             self.vertical = self._find_vertical(*frames)
             if self.vertical is None:
                 check('header.frame_id', show(frames[1]), time.monotonic() < self.deadline,
-                      'a transform from %s to it' % base_frame)
+                      f'a transform from {base_frame} to it')
                 return
         data = messages.from_imu(message)
         accept(self.gyro.read(data, self.vertical))

@@ -62,7 +62,7 @@ def read_parameters(params):
         try:
             load_surface(values['surface'], resources.surfaces())
         except ConfigError as error:
-            raise ConfigError('%s; or %s, or %s' % (error, AUTO, ANY))
+            raise ConfigError(f'{error}; or {AUTO}, or {ANY}')
     return values
 
 
@@ -76,7 +76,7 @@ def load_parameters():
     try:
         values = read_parameters(params if prefix is None else dict(params, tf_prefix=prefix))
     except ConfigError as error:
-        raise rospy.ROSException('%s/%s' % (rospy.get_name(), error))
+        raise rospy.ROSException(f'{rospy.get_name()}/{error}')
     for line in values['unsupported']:
         rospy.logwarn('%s', line)
     return values
@@ -97,7 +97,7 @@ def search_value(key, node, get):
 
 def _resolve(prefix, frame, given):
     """A frame with the prefix. given: as in the parameter, where a leading slash means that it has none."""
-    return '%s/%s' % (prefix, frame) if prefix and not str(given).startswith('/') else frame
+    return f'{prefix}/{frame}' if prefix and not str(given).startswith('/') else frame
 
 
 def find_prior(name, base, log):
@@ -106,14 +106,14 @@ def find_prior(name, base, log):
     """
     try:
         if name == AUTO:
-            key, master = base + '/surface', rosgraph.get_master_uri()
+            key, master = f'{base}/surface', rosgraph.get_master_uri()
             # not by rospy, which waits for a frozen master for ever
             name = call(master, 'getParam', key) if call(master, 'hasParam', key) else ANY
         prior = UNKNOWN if name == ANY else priors(load_surface(name, resources.surfaces()))
     except (ConfigError, OSError, xmlrpc.client.Error) as error:     # or no answer from the master
-        log(rospy.logwarn, '%s/%s; using %s instead' % (base, error, ANY))
+        log(rospy.logwarn, f'{base}/{error}; using {ANY} instead')
         name, prior = ANY, UNKNOWN
-    log(rospy.loginfo, 'Floor that the filter starts with: %s' % name)
+    log(rospy.loginfo, f'Floor that the filter starts with: {name}')
     return prior
 
 

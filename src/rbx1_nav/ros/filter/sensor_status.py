@@ -69,9 +69,9 @@ class Diagnostics:
             for key, index, unit in (('Gyro bias (degrees/s)', BIAS, radians(1)), ('Slip in turns', TURNING, 1),
                                      ('Slip in straight motion', STRAIGHT, 1)):
                 sigma = sqrt(ekf.root[index] @ ekf.root[index]) if ekf else None
-                status.add(key, '%.4f +- %.4f' % (ekf.state[index] / unit, sigma / unit) if ekf else 'unknown')
+                status.add(key, f'{ekf.state[index] / unit:.4f} +- {sigma / unit:.4f}' if ekf else 'unknown')
             sigma = sqrt(combined.estimate.covariance[2, 2]) / radians(1) if ekf else None
-            status.add('Standard deviation of the heading (degrees)', '%.2f' % sigma if ekf else 'unknown')
+            status.add('Standard deviation of the heading (degrees)', f'{sigma:.2f}' if ekf else 'unknown')
             status.add('Contradictions', self.counts['contradiction'])
             status.add('Times carried', self.counts['carried'])
             status.add('Restarts', max(0, self.starts - 1))
@@ -92,6 +92,6 @@ class Diagnostics:
                 status.summary(*CONTRADICTION)
             else:
                 status.summary(OK, 'Used')
-            status.add('Age of the last message (s)', 'never' if age is None else '%.3f' % age)
+            status.add('Age of the last message (s)', 'never' if age is None else f'{age:.3f}')
             status.add('Rejected messages', self.rejected[sensor])
         return status

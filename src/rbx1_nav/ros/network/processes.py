@@ -168,9 +168,9 @@ class Network:
         self.files = []         # those of a container are not to be seen
         for pid in filter(str.isdigit, os.listdir('/proc')):
             try:
-                with open('/proc/%s/comm' % pid, encoding='ascii') as file:
+                with open(f'/proc/{pid}/comm', encoding='ascii') as file:
                     if file.read().startswith('ksoftirqd/'):
-                        self.files.append(os.open('/proc/%s/stat' % pid, os.O_RDONLY))
+                        self.files.append(os.open(f'/proc/{pid}/stat', os.O_RDONLY))
             except (OSError, UnicodeDecodeError):
                 pass
 
@@ -232,14 +232,14 @@ def peer_process(sock):
 
 def listening_process(port):
     """The Process that listens on a TCP port of this machine; None if it is not to be seen from here."""
-    return _process_with(lambda fields: fields[3] == LISTEN and fields[1].endswith(':%04X' % port))
+    return _process_with(lambda fields: fields[3] == LISTEN and fields[1].endswith(f':{port:04X}'))
 
 
 def _process_with(matches):
     """The Process that has a socket; matches(fields): whether a line of /proc/net/tcp is that of the socket."""
-    link = 'socket:[%s]' % _inode(matches)
+    link = f'socket:[{_inode(matches)}]'
     for pid in filter(str.isdigit, os.listdir('/proc')):
-        folder = '/proc/%s/fd/' % pid
+        folder = f'/proc/{pid}/fd/'
         try:
             if int(pid) != os.getpid() and any(_read_link(folder + file) == link for file in os.listdir(folder)):
                 return Process(int(pid))

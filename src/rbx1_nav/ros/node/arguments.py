@@ -44,23 +44,23 @@ def find_problem(argument, names):
     left, assigned, right = argument.partition(':=')
     if not assigned:
         left, _, right = argument.partition('=')
-        return 'unknown argument' + (_suggestion(left, right, names, 0.6) or ': ' + EXPECTED)
+        return f"unknown argument{_suggestion(left, right, names, 0.6) or f': {EXPECTED}'}"
     if left.startswith('__'):       # __name and the like, for rospy
         return None
     if left.startswith('_'):
         if left[1:].split('/')[0] not in names:
-            return 'unknown parameter' + _suggestion(left, right, names, 0.6)
+            return f'unknown parameter{_suggestion(left, right, names, 0.6)}'
         return None if _is_value(right) else 'expected a value'
     # a remapping: only a name very close to a parameter's is a mistake
     suggestion = _suggestion(left, right, names, 0.8)
     if suggestion:
-        return 'this renames a topic' + suggestion
+        return f'this renames a topic{suggestion}'
     return None if right and is_legal_name(right) else EXPECTED
 
 
 def _suggestion(left, value, names, cutoff):
     close = difflib.get_close_matches(left.lstrip('-_~/').replace('-', '_'), names, 1, cutoff)
-    return ': did you mean _%s:=%s?' % (close[0], show_name(value or 'VALUE')) if close else ''
+    return f": did you mean _{close[0]}:={show_name(value or 'VALUE')}?" if close else ''
 
 
 def _is_value(text):
@@ -84,7 +84,7 @@ def report_parameters(usage):
             rospy.logwarn('Unknown parameters, without effect: %s', ', '.join(unknown))
         return
     given = {argument.split(':=')[0][1:].split('/')[0] for argument in sys.argv[1:] if argument.startswith('_')}
-    in_force = ['%s = %s' % (each, show_name(stored[each])) for each in sorted(set(stored) & set(names) - given)]
+    in_force = [f'{each} = {show_name(stored[each])}' for each in sorted(set(stored) & set(names) - given)]
     # a mapping was loaded from a file, on purpose too
     if in_force and not any(isinstance(value, dict) for value in stored.values()):
         rospy.logwarn('Left by an earlier command, still in force: %s (`rosparam delete %s` removes all)',

@@ -32,7 +32,7 @@ def check_before_start(name, check):
         check(dict(stored if isinstance(stored, dict) else {}, **given))
     except ConfigError as error:
         rospy.core.configure_logging(name)      # as init_node() would, for the line to look like any other
-        raise rospy.ROSException('%s/%s' % (name, error))
+        raise rospy.ROSException(f'{name}/{error}')
 
 
 def future_name(name):
@@ -52,15 +52,15 @@ def read_wait_timeout(name, usage):
     try:
         return Section(given).number('wait_timeout', *POSITIVE, default)
     except ConfigError as error:
-        raise rospy.ROSException('%s/%s' % (future_name(name), error))
+        raise rospy.ROSException(f'{future_name(name)}/{error}')
 
 
 def positive_param(name, default, low=POSITIVE[0], high=POSITIVE[1]):
     """The private parameter `name`, a number from `low` to `high`. Raises ROSException with one line if it is not."""
     try:
-        return Section({name: rospy.get_param('~' + name, default)}).number(name, low, high)
+        return Section({name: rospy.get_param(f'~{name}', default)}).number(name, low, high)
     except ConfigError as error:
-        raise rospy.ROSException('%s/%s' % (rospy.get_name(), error))
+        raise rospy.ROSException(f'{rospy.get_name()}/{error}')
 
 
 def frame_param(name, default):
@@ -68,9 +68,9 @@ def frame_param(name, default):
 
     default: may also be None.
     """
-    if not rospy.has_param('~' + name):
+    if not rospy.has_param(f'~{name}'):
         return default
     try:
-        return Section({name: rospy.get_param('~' + name)}).frame(name, '')
+        return Section({name: rospy.get_param(f'~{name}')}).frame(name, '')
     except ConfigError as error:
-        raise rospy.ROSException('%s/%s' % (rospy.get_name(), error))
+        raise rospy.ROSException(f'{rospy.get_name()}/{error}')

@@ -64,11 +64,11 @@ def read_bag(path, topics, end=None):
     """The Recording of a bag; topics: Topics; end: Pose measured by hand. Raises ConfigError."""
     name = show_name(path)
     series = Topics(*(topic and Series(topic, types) for topic, types in zip(topics, TYPES)))
-    by_topic = {'/' + one.topic.lstrip('/'): one for one in series if one}
+    by_topic = {f"/{one.topic.lstrip('/')}": one for one in series if one}
     found = set()
 
     def choose(topic, datatype, md5sum, *_):
-        one = by_topic.get('/' + topic.lstrip('/'))
+        one = by_topic.get(f"/{topic.lstrip('/')}")
         found.add(topic)
         return one is not None and one.accepts(datatype, md5sum)
 
@@ -76,10 +76,10 @@ def read_bag(path, topics, end=None):
         with rosbag.Bag(path) as bag:
             for topic, message, time, header in bag.read_messages(connection_filter=choose,
                                                                   return_connection_header=True):
-                by_topic['/' + topic.lstrip('/')].add(message, time.to_sec(), header)
+                by_topic[f"/{topic.lstrip('/')}"].add(message, time.to_sec(), header)
     except Exception as error:      # pylint: disable=broad-except
         # a damaged bag ends in whatever the first wrong byte leads to: struct.error, KeyError, MemoryError, ...
-        raise ConfigError('%s: expected a bag: %s' % (name, ' '.join(str(error).split()) or type(error).__name__))
+        raise ConfigError(f"{name}: expected a bag: {' '.join(str(error).split()) or type(error).__name__}")
     for one in by_topic.values():
         check(name, one)
     required = [series.cmd_vel] + ([series.truth] if series.truth else [])

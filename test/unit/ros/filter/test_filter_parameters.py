@@ -30,7 +30,7 @@ def test_each_limit_has_its_unit():
     ('gyro_scale_error', 2, 'gyro_scale_error: 2: expected a fraction from 0 to 0.5'),
     ('gyro_scale_error', {}, 'gyro_scale_error: {}: expected a fraction')])
 def test_a_bad_value_is_one_line(name, value, expected):
-    with pytest.raises(ConfigError, match='^%s' % expected):
+    with pytest.raises(ConfigError, match=f'^{expected}'):
         read_parameters({name: value})
 
 

@@ -42,8 +42,8 @@ def test_what_rospy_understands_passes(argument):
     ('_goal_distance=0.1', 'unknown argument: did you mean _goal_distance:=0.1?'),
     ('--goal-distance=0.1', 'unknown argument: did you mean _goal_distance:=0.1?'),
     ('--goal-distance', 'unknown argument: did you mean _goal_distance:=VALUE?'),
-    ('0.1', 'unknown argument: ' + EXPECTED), ('-v', 'unknown argument: ' + EXPECTED),
-    ('__name', 'unknown argument: ' + EXPECTED), ('colour:=0.1', EXPECTED), ('cmd_vel:=', EXPECTED),
+    ('0.1', f'unknown argument: {EXPECTED}'), ('-v', f'unknown argument: {EXPECTED}'),
+    ('__name', f'unknown argument: {EXPECTED}'), ('colour:=0.1', EXPECTED), ('cmd_vel:=', EXPECTED),
     ('_rate:=', 'expected a value'), ('_rate:=[', 'expected a value'), ('_rate:=1:=2', 'expected a value')])
 def test_what_rospy_would_drop_is_named(argument, problem):
     assert find_problem(argument, NAMES) == problem

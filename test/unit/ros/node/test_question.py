@@ -12,7 +12,7 @@ from rbx1_nav.ros.node import question
 def check(text):
     """An answer that is accepted."""
     if text != 'right':
-        raise ConfigError('%s: expected right' % text)
+        raise ConfigError(f'{text}: expected right')
     return text
 
 

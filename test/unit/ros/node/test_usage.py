@@ -31,7 +31,7 @@ def test_the_driving_scripts(script):
     others = ['measured'] if 'take_measured()' in read('nodes', script) else []
     assert usage(script) == sorted([name for name, _ in read_here] + others)
     for name, default in read_here:
-        listed, = re.findall(r'~%s .*\(default: (.*)\)' % name, read('nodes', script))
+        listed, = re.findall(rf'~{name} .*\(default: (.*)\)', read('nodes', script))
         if default == 'None':
             continue
         assert (pi if listed == 'pi' else float(listed) if listed[0].isdigit() else listed) == (
@@ -70,4 +70,4 @@ def test_the_emulated_robot():
     text = ast.get_docstring(ast.parse(source))
     assert len(offered) == 10
     for name in offered:
-        assert '~%s' % name in text
+        assert f'~{name}' in text

@@ -110,7 +110,7 @@ def test_one_line_for_a_bag_that_is_no_run(path, messages, senders, text):
     write_bag(path, messages, senders)
     with pytest.raises(ConfigError) as error:
         read_bag(path, TOPICS)
-    assert text in str(error.value) and str(error.value).startswith(path + ': ')
+    assert text in str(error.value) and str(error.value).startswith(f'{path}: ')
     assert '\n' not in str(error.value)
 
 
