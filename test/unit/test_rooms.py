@@ -13,6 +13,7 @@ SOURCE = os.path.join(ROOT, 'src')
 # inner one counts
 ALLOWED = {
     '__init__': set(),
+    'arrays': set(),
     'units': set(),
     'config': set(),
     'schedule': {'units'},
@@ -20,14 +21,14 @@ ALLOWED = {
     'robot': {'config', 'units'},
     'simulation': {'config', 'robot', 'units'},
     'simulation.base': {'control', 'robot', 'simulation', 'units'},
-    'simulation.exercise': {'control', 'estimation', 'simulation.base', 'units'},
-    'estimation': {'robot', 'units'},
-    'fitting': {'config', 'robot', 'simulation', 'units'},
-    'plotting': {'config', 'fitting', 'units'},
+    'simulation.exercise': {'arrays', 'control', 'estimation', 'simulation.base', 'units'},
+    'estimation': {'arrays', 'robot', 'units'},
+    'fitting': {'arrays', 'config', 'robot', 'simulation', 'units'},
+    'plotting': {'arrays', 'config', 'fitting', 'units'},
     'create': {'config', 'units'},
     'create.driver': {'config', 'control', 'create', 'robot', 'schedule', 'units'},
     'create.emulator': {'config', 'create', 'simulation.base', 'units'},
-    'ros': {'config', 'estimation', 'robot', 'units'},
+    'ros': {'arrays', 'config', 'estimation', 'robot', 'units'},
     'ros.network': set(),
     'ros.node': {'config', 'ros.network'},
     'ros.driving': {'config', 'control', 'robot', 'ros.network', 'ros.node', 'schedule', 'units'},
@@ -35,8 +36,9 @@ ALLOWED = {
                  'units'},
     'ros.base.simulated_clock': {'config', 'ros.base', 'ros.node', 'schedule', 'simulation', 'units'},
     'ros.base.robot_faults': {'config', 'create.emulator', 'ros', 'ros.node'},
-    'ros.filter': {'config', 'estimation', 'robot', 'ros', 'ros.network', 'ros.node', 'schedule', 'simulation', 'units'},
-    'ros.tools': {'config', 'estimation', 'fitting', 'ros'},
+    'ros.filter': {'arrays', 'config', 'estimation', 'robot', 'ros', 'ros.network', 'ros.node', 'schedule', 'simulation',
+                   'units'},
+    'ros.tools': {'arrays', 'config', 'estimation', 'fitting', 'ros'},
 }
 ALLOWED['nodes'] = set(ALLOWED) - {'__init__'}
 WITH_ROS = {room for room in ALLOWED if room.split('.')[0] == 'ros'} | {'nodes'}
