@@ -16,7 +16,7 @@ from base_cases import CASES
 from floors import aligned, consistency, digits, markdown_value, misses, report, squared_errors
 from replay import replay
 from robot_pose_ekf import RobotPoseEkf
-from rbx1_nav.estimation.filter import UNKNOWN
+from rbx1_nav.estimation.filter import UNKNOWN_FLOOR
 from rbx1_nav.estimation.inputs import Imu, Odom
 from rbx1_nav.robot.description import read_robot
 from rbx1_nav.ros.node import resources
@@ -91,7 +91,7 @@ def odometry(case, base, stamp):
     """(Odom, variances of its pose's x, y and yaw) of a base."""
     position, yaw, linear, angular = base.wheels.uncertainty
     if case.odom:
-        position, yaw = linear, angular = case.odom_at_rest if case.odom_at_rest and base.standing else case.odom
+        position, yaw = linear, angular = case.odom_at_rest if case.odom_at_rest and base.at_rest else case.odom
     if not case.twist:
         linear = angular = 0.0
     return Odom(stamp, base.odometry.pose, linear, angular), (position, position, yaw)
@@ -99,7 +99,7 @@ def odometry(case, base, stamp):
 
 def run_filter(record):
     """The Estimate of the filter at the stamp of each Odom; where it has none, the one before."""
-    estimates = replay(record, UNKNOWN, 0)
+    estimates = replay(record, UNKNOWN_FLOOR, 0)
     stamps = sorted(estimates)
     return [estimates[stamps[bisect_right(stamps, odom.stamp) - 1]] for odom, _ in record.odom]
 

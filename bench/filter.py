@@ -7,11 +7,11 @@ import math
 
 import yaml
 
-from floors import UNKNOWN, Follower, KnownHeading, figures, limits, misses, markdown, report, table
+from floors import UNKNOWN_FLOOR, Follower, KnownHeading, figures, limits, misses, markdown, report, table
 from robot_pose_ekf import RobotPoseEkf
 from rbx1_nav.control.legs import StuckError
 from rbx1_nav.estimation.combined_odometry import CombinedOdometry
-from rbx1_nav.estimation.filter import UNKNOWN as any_floor, priors
+from rbx1_nav.estimation.filter import UNKNOWN_FLOOR as any_floor, priors
 from rbx1_nav.robot.description import read_robot
 from rbx1_nav.ros.node import resources
 from rbx1_nav.simulation.exercise import EXERCISE, METHODS, feed, simulate
@@ -118,7 +118,7 @@ def main():
             parser.error('--%s: %d: expected an integer above 0' % (name, getattr(arguments, name)))
     folder = resources.surfaces()
     surfaces = {name: load_surface(name, folder) for name in known_surfaces(folder)}
-    assumed = {**{name: priors(surface) for name, surface in surfaces.items()}, UNKNOWN: any_floor}
+    assumed = {**{name: priors(surface) for name, surface in surfaces.items()}, UNKNOWN_FLOOR: any_floor}
     for name, known in ('true', surfaces), ('assumed', assumed):
         for value in getattr(arguments, name) or ():
             if value not in known:

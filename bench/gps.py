@@ -10,7 +10,7 @@ import numpy
 import rosbag
 
 from replay import replay
-from rbx1_nav.estimation.filter import UNKNOWN
+from rbx1_nav.estimation.filter import UNKNOWN_FLOOR
 from rbx1_nav.estimation.gyro_input import GyroInput
 from rbx1_nav.ros import messages
 from rbx1_nav.units import SECOND
@@ -110,7 +110,7 @@ def judge(record):
     stamps, gps = [odom.stamp for odom, _ in record.odom], local(record.fixes)
     if not stamps[0] <= gps[0][-1] or not gps[0][0] <= stamps[-1]:
         raise ValueError('the odometry and the GPS have no time in common')
-    estimates = replay(record, UNKNOWN, stamps[0])
+    estimates = replay(record, UNKNOWN_FLOOR, stamps[0])
     last = estimates[max(estimates)]
     return dict(
         filter=rms_to_gps(sorted(estimates), [estimates[stamp].pose[:2] for stamp in sorted(estimates)], gps),

@@ -13,7 +13,7 @@ import sys
 import numpy
 
 from rbx1_nav.estimation.combined_odometry import CombinedOdometry
-from rbx1_nav.estimation.filter import UNKNOWN, priors
+from rbx1_nav.estimation.filter import UNKNOWN_FLOOR, priors
 from rbx1_nav.estimation.inputs import MAX_VARIANCE, Imu, Odom, RejectedMessage
 from rbx1_nav.robot.kinematics import Pose, arc
 from rbx1_nav.robot.readings import MIN_VARIANCE
@@ -210,7 +210,7 @@ def main():
         if getattr(arguments, name) < 1:
             parser.error('--%s: %d: expected an integer above 0' % (name, getattr(arguments, name)))
     folder = resources.surfaces()
-    floors = {**{name: priors(load_surface(name, folder)) for name in known_surfaces(folder)}, 'unknown': UNKNOWN}
+    floors = {**{name: priors(load_surface(name, folder)) for name in known_surfaces(folder)}, 'unknown': UNKNOWN_FLOOR}
     seeds = range(arguments.seed, arguments.seed + arguments.sequences)
     with ProcessPoolExecutor(arguments.jobs) if arguments.jobs > 1 else nullcontext() as pool:
         work = partial(run, floors, arguments.messages)

@@ -17,7 +17,7 @@ from rbx1_nav.fitting.ensemble import energy_score, inner_share, simulate_ends
 from rbx1_nav.fitting.fit import Fitter, fit_floor
 from rbx1_nav.fitting.floor import NOISES, SPREADS, Prediction, Windows
 from rbx1_nav.fitting.mrclam import BASE_WIDTH, CAMERAS, read_set
-from rbx1_nav.fitting.run import Run
+from rbx1_nav.fitting.run import PreparedRun
 from rbx1_nav.plotting.runs import check_picture
 from rbx1_nav.ros.node import resources
 from rbx1_nav.simulation.surfaces import load_surface
@@ -35,13 +35,13 @@ OLD_MOTIONS = 'lag', 'slip_straight', 'slip_turning', 'drag_straight', 'drag_tur
 
 
 def halves(recordings):
-    """(first, second): Run objects of the halves of each record."""
+    """(first, second): PreparedRun objects of the halves of each record."""
     first, second = [], []
     for recording in recordings:
         start = max(recording.commands.time[0], recording.truth.time[0])
         end = min(recording.commands.time[-1], recording.truth.time[-1])
-        first.append(Run(recording, BASE_WIDTH, start, (start + end) / 2))
-        second.append(Run(recording, BASE_WIDTH, (start + end) / 2, end))
+        first.append(PreparedRun(recording, BASE_WIDTH, start, (start + end) / 2))
+        second.append(PreparedRun(recording, BASE_WIDTH, (start + end) / 2, end))
     return first, second
 
 
@@ -79,7 +79,7 @@ class Judgement:
 
     def __init__(self, runs, surface, length, seed=1):
         generator = numpy.random.default_rng(seed)
-        self.windows, self.ends = [], []    # (Run, Windows with one); simulated
+        self.windows, self.ends = [], []    # (PreparedRun, Windows with one); simulated
         self.blocks, inside, scores, errors = [], [], [], []
         for number, run in enumerate(runs):
             windows = run.windows(length, length / 2)

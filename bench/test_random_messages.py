@@ -7,7 +7,7 @@ import pytest
 
 import random_messages
 from rbx1_nav.estimation import combined_odometry
-from rbx1_nav.estimation.filter import UNKNOWN, priors
+from rbx1_nav.estimation.filter import UNKNOWN_FLOOR, priors
 from rbx1_nav.estimation.inputs import MAX_VARIANCE, Imu
 from rbx1_nav.robot.readings import MIN_VARIANCE
 from rbx1_nav.units import SECOND
@@ -38,7 +38,7 @@ def test_a_pose_that_is_not_finite_is_found():
 
 
 def test_a_sequence_can_be_repeated():
-    once, again = (random_messages.run({'unknown': UNKNOWN}, 300, 7) for _ in range(2))
+    once, again = (random_messages.run({'unknown': UNKNOWN_FLOOR}, 300, 7) for _ in range(2))
     assert once == again and once['counts']['messages'] >= 300
 
 
@@ -63,4 +63,4 @@ def test_the_sequences_have_every_fault():
 
 def test_an_exception_of_the_filter_is_a_failure(monkeypatch):
     monkeypatch.setattr(combined_odometry.CombinedOdometry, '_step', lambda self, odom: 1 / 0)
-    assert 'ZeroDivisionError' in random_messages.run({'unknown': UNKNOWN}, 100, 0)['failure']
+    assert 'ZeroDivisionError' in random_messages.run({'unknown': UNKNOWN_FLOOR}, 100, 0)['failure']

@@ -36,9 +36,9 @@ from rbx1_nav.ros import messages
 from rbx1_nav.ros.filter.estimate_publisher import EstimatePublisher
 from rbx1_nav.ros.filter.frame_tree import FrameTree
 from rbx1_nav.ros.filter.imu_input import ImuInput
-from rbx1_nav.ros.filter.one_sender import OneSender
 from rbx1_nav.ros.filter.parameters import load_parameters, make_filter, read_parameters
 from rbx1_nav.ros.filter.sensor_status import Diagnostics
+from rbx1_nav.ros.filter.single_publisher import OneSender
 from rbx1_nav.ros.node import life
 from rbx1_nav.ros.node.limited_log import LimitedLog
 from rbx1_nav.schedule import Schedule

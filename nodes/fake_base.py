@@ -107,7 +107,7 @@ class FakeBase:
 
     def diagnose(self, status):
         """Fill in the DiagnosticStatus of the controller."""
-        status.summary(DiagnosticStatus.OK, 'Standing' if self.base.standing else 'Moving')
+        status.summary(DiagnosticStatus.OK, 'Standing' if self.base.at_rest else 'Moving')
         self.commands.diagnose(status)
         self.clock.diagnose(status)
         return status

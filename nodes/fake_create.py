@@ -38,7 +38,7 @@ from nav_msgs.msg import Odometry
 from std_msgs.msg import String
 
 from rbx1_nav.config import ConfigError, Section, show
-from rbx1_nav.create.emulator.body import CAPACITY, Body, Errors, Quirks
+from rbx1_nav.create.emulator.body import CAPACITY, Body, BodyErrors, Quirks
 from rbx1_nav.create.emulator.emulator import EmulatedCreate
 from rbx1_nav.create.emulator.pseudo_terminal import PseudoTerminal
 from rbx1_nav.create.emulator.serial_line import SerialLine
@@ -122,7 +122,7 @@ def main():
         line = SerialLine(section.choice('baud', BAUD_RATES, model.baud), seed)
         line.corruption = section.number('corruption', 0, 1, 0.0)
         body = Body(model, load_surface(section.get('surface', 'ideal'), resources.surfaces()), seed,
-                    Errors(*(section.number(name, 0.1, 10, 1.0, 'a factor') for name in Errors._fields)),
+                    BodyErrors(*(section.number(name, 0.1, 10, 1.0, 'a factor') for name in BodyErrors._fields)),
                     section.number('gyro_measurement_range', 1, 1e5, 150.0, unit='degrees/s'),
                     Quirks(*(section.flag(name, False) for name in Quirks._fields)))
         body.charge = CAPACITY * section.number('charge', 0, 1, 1.0)

@@ -17,7 +17,7 @@ from nav_msgs.msg import Odometry
 from rbx1_nav.ros import messages
 from rbx1_nav.ros.node import life
 
-PATIENCE = 5    # s of wall time without a message before a warning
+MESSAGE_WARN_TIME = 5    # s of wall time without a message before a warning
 
 
 class OdomEkf:
@@ -43,7 +43,7 @@ class OdomEkf:
 
     def run(self):
         """Until the node is to end. Warns once if there is nothing to republish."""
-        deadline = time.monotonic() + PATIENCE
+        deadline = time.monotonic() + MESSAGE_WARN_TIME
         while not (self.frames and self.last):
             if life.end_requested.is_set():
                 return
@@ -52,7 +52,7 @@ class OdomEkf:
                 # the filter needs odometry too: without a base both topics are silent
                 topic, source = ('odom_combined', 'filter') if self.frames else ('odom', 'base')
                 rospy.logwarn('No message on %s for %d s: expected a running %s; %s follows as soon as there is one',
-                              rospy.resolve_name(topic), PATIENCE, source, self.publisher.resolved_name)
+                              rospy.resolve_name(topic), MESSAGE_WARN_TIME, source, self.publisher.resolved_name)
             life.sleep(1)
         rospy.loginfo('Publishing %s', self.publisher.resolved_name)
         life.end_requested.wait()

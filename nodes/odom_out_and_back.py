@@ -32,7 +32,7 @@ from tqdm import tqdm
 from rbx1_nav.control.legs import out_and_back_by_odometry
 from rbx1_nav.ros.driving.pose_listener import LostTransform, PoseListener
 from rbx1_nav.ros.driving.rate import Rate, pause
-from rbx1_nav.ros.driving.subscribers import wait_for_subscribers
+from rbx1_nav.ros.driving.waiting import wait_for_subscribers
 from rbx1_nav.ros.node import life
 from rbx1_nav.ros.node.params import frame_param, positive_param
 from rbx1_nav.units import wrap_angle

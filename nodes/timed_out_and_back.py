@@ -25,7 +25,7 @@ from tqdm import tqdm
 
 from rbx1_nav.control.motions import out_and_back
 from rbx1_nav.ros.driving.rate import Rate, pause
-from rbx1_nav.ros.driving.subscribers import wait_for_subscribers
+from rbx1_nav.ros.driving.waiting import wait_for_subscribers
 from rbx1_nav.ros.node import life
 from rbx1_nav.ros.node.params import positive_param
 

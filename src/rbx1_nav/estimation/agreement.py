@@ -2,7 +2,7 @@
 from math import copysign, exp, sqrt
 
 TURN = 0.2          # rad: the parts in which a turn is looked at
-PATIENCE = 5.0      # s: a robot that has not turned that far by then goes straight, or stands
+TURN_TIMEOUT = 5.0      # s: a robot that has not turned that far by then goes straight, or stands
 MEMORY = 10.0       # rad: a turn is forgotten with the exponential of what the robot has turned since
 LEAST = 1.5         # rad: less says too little
 DEVIATIONS = 5.0    # standard deviations that are no chance any more
@@ -38,7 +38,7 @@ class Agreement:
         part[3] += travelled
         part[4] += duration
         if abs(part[0]) < TURN and abs(part[1]) < TURN:
-            if part[4] > PATIENCE:
+            if part[4] > TURN_TIMEOUT:
                 self.part = [0.0] * 5
             return False
         # in its direction by the wheels, unless they have hardly turned

@@ -2,7 +2,7 @@
 from collections import deque, namedtuple
 from math import cos, hypot, sin
 
-from rbx1_nav.estimation.filter import BIAS, TURNING, UNKNOWN, X, Y, YAW, Filter
+from rbx1_nav.estimation.filter import BIAS, TURNING, UNKNOWN_FLOOR, X, Y, YAW, Filter
 from rbx1_nav.estimation.inputs import RejectedMessage, check_imu, check_odom
 from rbx1_nav.estimation.limits import Limits
 from rbx1_nav.estimation.standstill import Part, Standstill
@@ -55,7 +55,7 @@ class CombinedOdometry:
         """prior: Priors; timeout: ns; gyro_used: whether to wait for a gyro at all; warn(text): logs a warning;
         clock(): ns, tells when a message arrives if `now` may be simulated time; max_lead: ns, of a stamp."""
         self.prior = prior
-        if prior == UNKNOWN:
+        if prior == UNKNOWN_FLOOR:
             self.prior = prior._replace(gyro_scale_error=limits.gyro_scale_error,
                                         gyro_measurement_range=limits.max_turn_rate)
         self.limits = limits        # Limits

@@ -67,7 +67,7 @@ Priors.__doc__ = 'What is assumed before the first message; fields of a Surface,
 
 # any floor. The noise is that of five real robots, config/surfaces/create_lab_floor.yaml; the spreads are as wide as
 # the slips of all files are apart
-UNKNOWN = Priors(0.0, 0.05, 0.0, 0.05, Limits().gyro_scale_error, Limits().max_turn_rate, 0.084, 0.066, 0.044)
+UNKNOWN_FLOOR = Priors(0.0, 0.05, 0.0, 0.05, Limits().gyro_scale_error, Limits().max_turn_rate, 0.084, 0.066, 0.044)
 
 
 def priors(surface):
@@ -77,8 +77,8 @@ def priors(surface):
     return Priors(*(getattr(surface, field) for field in Priors._fields))
 
 
-Turn = namedtuple('Turn', 'angle variance by_bias by_scale by_slip')
-Turn.__doc__ = "A turn (rad), its variance (rad^2), its derivatives by the gyro's bias and scale error and the slip."
+HeadingChange = namedtuple('HeadingChange', 'angle variance by_bias by_scale by_slip')
+HeadingChange.__doc__ = "A turn (rad), its variance (rad^2), its derivatives by the gyro's bias and scale error and the slip."
 
 DOUBT, DRIFT, APART = 0, 1, 2   # columns of `columns`, see Filter; the number of them
 SPARE = 32      # columns of the root for noise, before it is made square again
@@ -145,7 +145,7 @@ class Filter:
         self._use_columns(3)
 
     def turn(self, duration, wheels=None, gyro=None, travelled=0.0, missing=0.0):
-        """Estimate the Turn of a step of `duration` (s) for move(), and update the errors in the state.
+        """Estimate the HeadingChange of a step of `duration` (s) for move(), and update the errors in the state.
 
         wheels, gyro: the measured (angle in rad, variance in rad^2), or None; travelled: m, by the wheels; missing:
         additional variance (rad^2) of the gyro's turn because readings are missing within this step. If wheels and gyro
@@ -163,25 +163,25 @@ class Filter:
         if gyro:
             scale = 1 + self.state[SCALE]
             angle = (gyro[0] - self.state[BIAS] * duration) / scale
-            return Turn(angle, (gyro[1] + missing) / scale ** 2, -duration / scale, -angle / scale, 0.0)
+            return HeadingChange(angle, (gyro[1] + missing) / scale ** 2, -duration / scale, -angle / scale, 0.0)
         if wheels:
             grip = 1 - self.state[TURNING]
-            return Turn(wheels[0] * grip, wheels[1] * grip ** 2, 0.0, 0.0, -wheels[0])
-        return Turn(0.0, 0.0, 0.0, 0.0, 0.0)
+            return HeadingChange(wheels[0] * grip, wheels[1] * grip ** 2, 0.0, 0.0, -wheels[0])
+        return HeadingChange(0.0, 0.0, 0.0, 0.0, 0.0)
 
     def doubt_floor(self):
         """If wheels and gyro show a slip that the prior's floor does not have, the straight slip, which nothing
         measures, becomes as uncertain as on an unknown floor. Returns whether that is so."""
         if self.loose or not self.agreement.difference(self.prior, self._bias_variance):
             return False
-        self._add_noise(STRAIGHT, UNKNOWN.slip_straight_spread)
+        self._add_noise(STRAIGHT, UNKNOWN_FLOOR.slip_straight_spread)
         return True
 
     def doubt_heading(self):
         """If wheels and gyro differ more than on any floor, one of them is wrong: the heading becomes as uncertain as
         they differ, and a new comparison begins. If they agree, that uncertainty shrinks. Returns the angle (rad) by
         which they differ, or 0."""
-        floor = UNKNOWN._replace(slip_turning=self.state[TURNING] if self.loose else 0.0)
+        floor = UNKNOWN_FLOOR._replace(slip_turning=self.state[TURNING] if self.loose else 0.0)
         difference = self.agreement.difference(floor, self._bias_variance)
         if difference:
             self.columns[YAW, DOUBT] += abs(difference)
@@ -251,7 +251,7 @@ class Filter:
         angle = (gyro[0] - state[BIAS] * duration) / scale
         wheel_noise, gyro_noise = wheels[1] * grip ** 2, gyro[1] / scale ** 2
         share = gyro_noise / (wheel_noise + gyro_noise)     # of the wheels
-        return Turn(share * wheels[0] * grip + (1 - share) * angle, share * wheel_noise,
+        return HeadingChange(share * wheels[0] * grip + (1 - share) * angle, share * wheel_noise,
                     (share - 1) * duration / scale, (share - 1) * angle / scale, -share * wheels[0])
 
     def _spread(self, duration, wheels, gyro):
@@ -333,7 +333,7 @@ class Filter:
         self._add_noise(BIAS, abs(rate - self.state[BIAS]))
 
     def move(self, duration, turn, direction=0.0, forward=0.0, left=0.0, variance=0.0):
-        """Predict the state after a step of `duration` (s) with a Turn from turn() and a displacement.
+        """Predict the state after a step of `duration` (s) with a HeadingChange from turn() and a displacement.
 
         forward, left: displacement (m) measured by the wheels, in a frame that is rotated by `direction` (rad) against
         the robot's own half way through the turn; variance: of the displacement, m^2.

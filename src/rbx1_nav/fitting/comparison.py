@@ -6,7 +6,7 @@ import numpy
 from rbx1_nav.fitting.ensemble import inner_share, simulate_paths
 from rbx1_nav.fitting.floor import Prediction, Windows
 from rbx1_nav.fitting.recording import relative
-from rbx1_nav.fitting.run import Run
+from rbx1_nav.fitting.run import PreparedRun
 
 ENDS = 500      # simulated, of each run
 LONG = 60.0     # s: of longer runs, parts are compared, each from where the robot really was
@@ -20,8 +20,8 @@ simulated x, y (m) and yaw (rad); end: the true one, or None."""
 
 
 def predict(surface, recording, base_width, start=None, end=None):
-    """(Run without its odometry, Prediction for the whole of it by its commands)."""
-    run = Run(recording._replace(odometry=None), base_width, start, end)
+    """(PreparedRun without its odometry, Prediction for the whole of it by its commands)."""
+    run = PreparedRun(recording._replace(odometry=None), base_width, start, end)
     windows = Windows(numpy.array([0]), len(run.times) - 1, numpy.zeros((1, 3)))
     return run, Prediction(surface, run.steps(surface), windows)
 

@@ -11,7 +11,7 @@ ROLL_OUT = 3.0      # s after the last command, until the end was measured by ha
 MOTORS = ('delay', 'lag', 'accel_limit', 'drag_straight', 'drag_turning')
 
 
-class Run:
+class PreparedRun:
     """A Recording with its time cut into steps. Times are in s."""
 
     def __init__(self, recording, base_width, start=None, end=None):

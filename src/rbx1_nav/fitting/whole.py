@@ -8,9 +8,9 @@ from rbx1_nav.config import ConfigError
 from rbx1_nav.fitting import tape
 from rbx1_nav.fitting.fit import BOUNDS, MEANS, MIN_STRENGTH, Fitter, fit_floor
 from rbx1_nav.fitting.floor import NOISES, SPREADS, Covariance
-from rbx1_nav.fitting.gyro import fit_gyro, standing
+from rbx1_nav.fitting.gyro_errors import fit_gyro, rests_at
 from rbx1_nav.fitting.motors import KEYS as MOTOR_KEYS, LIMITS, fit_motors
-from rbx1_nav.fitting.run import Run
+from rbx1_nav.fitting.run import PreparedRun
 from rbx1_nav.fitting.tape import TYPICAL
 from rbx1_nav.simulation.surfaces import KEYS, OPTIONAL_KEYS
 
@@ -33,8 +33,8 @@ Value = namedtuple('Value', 'key value error reason')
 Value.__doc__ = """A value of a surface, in SI units; error: 1 sigma; for a value that was left as it was, error is
 None, and reason says why."""
 
-Result = namedtuple('Result', 'surface values warnings description notes')
-Result.__doc__ = """surface: Surface; values: Value of each key, in the order of a file; warnings, notes: texts;
+FitResult = namedtuple('FitResult', 'surface values warnings description notes')
+FitResult.__doc__ = """surface: Surface; values: Value of each key, in the order of a file; warnings, notes: texts;
 description: one line that says from what to what was fitted."""
 
 
@@ -63,13 +63,13 @@ class WholeFit:
         self._fit_gyro()
 
     def result(self):
-        """The Result."""
+        """The FitResult."""
         values = []
         for key in [*KEYS, *OPTIONAL_KEYS]:
             error = self.errors.get(key)
             reason = None if error is not None else self.reasons.get(key, 'the recordings do not tell it')
             values.append(Value(key, getattr(self.surface, key), error, reason))
-        return Result(self.surface, values, self.warnings, self.description, self.notes)
+        return FitResult(self.surface, values, self.warnings, self.description, self.notes)
 
     def _set(self, key, value, error, bounds=None):
         """Keep a fitted value, unless its standard error is too large."""
@@ -104,7 +104,7 @@ class WholeFit:
                                  'check that the commands are those of this robot' % (1e3 * fit.rms, 1e3 * fit.travel))
 
     def _fit_to_truth(self):
-        runs = [Run(recording, self.base_width) for recording in self.recordings]
+        runs = [PreparedRun(recording, self.base_width) for recording in self.recordings]
         total = sum(run.times[-1] - run.times[0] for run in runs)
         length = float(numpy.clip(total / WINDOWS, SHORTEST, LONGEST))
         runs, windows = zip(*((run, run.windows(length)) for run in runs))
@@ -168,7 +168,7 @@ class WholeFit:
                                      '%.0f s after the start' % (run.recording.name, len(far), len(squares), first))
 
     def _fit_to_ends(self):
-        runs = [Run(recording, self.base_width) for recording in self.recordings]
+        runs = [PreparedRun(recording, self.base_width) for recording in self.recordings]
         self.description = 'floor from %s to %d ends measured by hand' % (
             'odometry' if self.has_odometry else 'commands', len(runs))
         fit = tape.fit_ends(runs, self.surface, self.end_errors)
@@ -214,7 +214,7 @@ def truth_errors(recordings, delay):
     squares, number = numpy.zeros(3), 0
     for recording in recordings:
         truth = recording.truth
-        still = standing(recording, truth.time, delay)
+        still = rests_at(recording, truth.time, delay)
         borders = numpy.flatnonzero(numpy.diff(still.astype(int))) + 1
         for part in numpy.split(numpy.arange(len(still)), borders):
             if len(part) >= 20 and still[part[0]]:

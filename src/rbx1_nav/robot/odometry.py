@@ -9,7 +9,7 @@ from rbx1_nav.robot.kinematics import Odometry
 HELD = 0.3      # m: a robot that drives straight ahead leaves a rounded heading as it is for so long
 
 
-class Errors(namedtuple('Errors', 'linear angular heading')):
+class OdometryErrors(namedtuple('OdometryErrors', 'linear angular heading')):
     """Of the wheels' travel on the floor, 1 sigma: m after 1 m, rad after a turn of 1 rad, rad after 1 m. They grow
     with the root of the travel."""
 
@@ -27,7 +27,7 @@ class UncertainOdometry:
     """
 
     def __init__(self, width, errors, rounding):
-        """width: between the wheels, m; errors: Errors; rounding: see travel.py."""
+        """width: between the wheels, m; errors: OdometryErrors; rounding: see travel.py."""
         self.odometry = Odometry(width)
         self.errors = errors
         self.rounding = rounding[0] ** 2, rounding[1] ** 2      # m^2, rad^2

@@ -10,7 +10,7 @@ from time import monotonic
 
 COMMAND_TIMEOUT = 1.0   # s of wall time that a tick waits for its command
 PROOF = 25              # ticks: a driver that has answered so many drives by this clock
-PATIENCE = 5.0          # s of wall time that a tick waits for such a driver
+PROVEN_TIMEOUT = 5.0          # s of wall time that a tick waits for such a driver
 FIRST_QUIET = 0.1       # s of wall time without a command that end a driver's first burst
 QUIET = 0.03            # s, the same at the start of each later stream
 SLOW_ANSWER = 0.05      # s of wall time: a later command may not be an answer to the tick at all
@@ -80,7 +80,7 @@ class Answers:
 
     def _wait_for_answer(self):
         start = monotonic()
-        patience = PATIENCE if self.proven else COMMAND_TIMEOUT
+        patience = PROVEN_TIMEOUT if self.proven else COMMAND_TIMEOUT
         if not self._wait_for(lambda: self.queue, patience):
             self.streaming = False
             if self.connected() and not self.ended():
@@ -93,7 +93,7 @@ class Answers:
 
     def _wait_until_quiet(self, quiet):
         """Hold the clock until the driver has sent nothing for `quiet` seconds of wall time."""
-        deadline = monotonic() + (PATIENCE if self.proven else max(COMMAND_TIMEOUT, 3 * quiet))
+        deadline = monotonic() + (PROVEN_TIMEOUT if self.proven else max(COMMAND_TIMEOUT, 3 * quiet))
         while monotonic() < deadline and not self.ended():
             received = self.received
             heard = self._wait_for(lambda: self.received > received, quiet)     # pylint: disable=cell-var-from-loop

@@ -54,7 +54,7 @@ class SimulatedBase:
         return self.wheels.true_velocity(self.gate.linear, self.gate.angular)
 
     @property
-    def standing(self):
+    def at_rest(self):
         """Whether the robot is at a standstill and no command will change that."""
         return not self.gate.moving and self.wheels.at_rest
 
@@ -89,7 +89,7 @@ class SimulatedBase:
         last, self._gyro_time = self._gyro_time, self.now
         if last is None or self.now <= last:
             return None
-        return self.gyro.read(self.wheels.truth.pose.yaw, (self.now - last) / SECOND, self.standing)
+        return self.gyro.read(self.wheels.truth.pose.yaw, (self.now - last) / SECOND, self.at_rest)
 
     def reset(self):
         """Stand still at the origin."""

@@ -32,8 +32,8 @@ CALIBRATION = 100   # ticks at rest before the first motion, in which the filter
 Snapshot = namedtuple('Snapshot', 'time truth odometry estimate')
 Snapshot.__doc__ = 'Time since the start (s) and three Poses; estimate: of the filter, None if there is none.'
 
-Result = namedtuple('Result', 'end first_leg covariance path')
-Result.__doc__ = """A run: Snapshot of its end, true distance at the end of the first motion (m), the 3x3 covariance of
+SimulationResult = namedtuple('SimulationResult', 'end first_leg covariance path')
+SimulationResult.__doc__ = """A run: Snapshot of its end, true distance at the end of the first motion (m), the 3x3 covariance of
 the filter's pose (m and rad; None without a filter), and the Snapshots of all ticks (None if not kept)."""
 
 Messages = namedtuple('Messages', 'imu orientation odom pose_variances')
@@ -113,7 +113,7 @@ class Simulation:
 
 
 def simulate(method, robot, surface, seed, filtered=False, keep=False, prior=None, listen=None):
-    """The exercise by one of METHODS; returns a Result. Raises StuckError.
+    """The exercise by one of METHODS; returns a SimulationResult. Raises StuckError.
 
     robot: a Robot; surface: a Surface, or None; seed: of the run's random errors; filtered: whether to run the filter,
     as `ekf` always does; keep: whether to keep the path; prior: Priors of the filter, if not those of the surface;
@@ -136,7 +136,7 @@ def simulate(method, robot, surface, seed, filtered=False, keep=False, prior=Non
         if first_leg is None:
             first_leg = simulation.base.wheels.truth.pose.x
     covariance = simulation.filter.estimate.covariance if simulation.filter else None
-    return Result(simulation.snapshot(), first_leg, covariance, simulation.path)
+    return SimulationResult(simulation.snapshot(), first_leg, covariance, simulation.path)
 
 
 def simulate_many(method, robot, surface, seeds, keep=0, jobs=1):

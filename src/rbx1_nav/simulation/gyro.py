@@ -16,7 +16,7 @@ class IdealGyro:
     def __init__(self):
         self.yaw = 0.0
 
-    def read(self, yaw, duration, standing):        # pylint: disable=unused-argument
+    def read(self, yaw, duration, at_rest):        # pylint: disable=unused-argument
         """See Gyro.read."""
         rate = (yaw - self.yaw) / duration
         self.yaw = yaw
@@ -42,10 +42,10 @@ class Gyro:
         self.noise = random.Random('gyro %d' % seed).gauss
         self.reset()
 
-    def read(self, yaw, duration, standing):
+    def read(self, yaw, duration, at_rest):
         """A Reading, `duration` (s, above 0) after the previous one; the robot's true heading is now `yaw` (rad).
 
-        The rate is the mean over that time, as of a gyro that samples faster than it is read. standing: whether the
+        The rate is the mean over that time, as of a gyro that samples faster than it is read. at_rest: whether the
         wheels stood still meanwhile.
         """
         surface = self.surface
@@ -53,7 +53,7 @@ class Gyro:
         rate = (yaw - self._true_yaw) / duration * (1 + self.run.gyro_scale_error) + self.run.gyro_bias
         rate = clamp(rate + self.noise(0.0, noise), surface.gyro_measurement_range)
         self._true_yaw = yaw
-        if standing and self._calibrating:
+        if at_rest and self._calibrating:
             self._rest += duration
             self._rest_angle += rate * duration
         else:

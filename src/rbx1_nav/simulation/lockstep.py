@@ -13,7 +13,7 @@ from time import monotonic, sleep
 from rbx1_nav.simulation.answers import BURST_TIME, Answers, NotInStep
 from rbx1_nav.simulation.stream import Stream
 
-PATIENCE = 5.0      # s of wall time that a tick waits for a node
+NODE_TIMEOUT = 5.0      # s of wall time that a tick waits for a node
 LOOK = 2e-5         # s of wall time between two looks at the nodes
 FRESH = 2e-4        # s of wall time after which a look is repeated
 PROOF = 3           # commands of a stream that no tick has prompted: a single one may be the stop after Ctrl-C
@@ -21,7 +21,7 @@ STEADY = 25         # ticks: a driver that has sent one command at each of them 
 ANSWER_TIME = 0.005     # s of wall time that such a command is waited for before a look
 
 
-class Driver:
+class CommandSource:
     """One connection that brings commands."""
 
     def __init__(self, connection, name):
@@ -47,7 +47,7 @@ class Lockstep:
         self.report = report
         self.nodes = nodes
         self.ended = ended
-        self.drivers = {}       # by the id of the connection, which the Driver keeps alive: so the id stays unique
+        self.drivers = {}       # by the id of the connection, which the CommandSource keeps alive: so the id stays unique
         self.arrived = []       # (driver, command, whether a tick may have prompted it), not in force yet
         self.delayed = []       # commands for the next tick
         self.tick = 0           # number of the present tick
@@ -63,7 +63,7 @@ class Lockstep:
             if not driver:
                 self.drivers = {key: each for key, each in self.drivers.items()
                                 if each.answers and each.answers.queue or self.nodes.connected(each.connection)}
-                driver = self.drivers[id(connection)] = Driver(connection, name)
+                driver = self.drivers[id(connection)] = CommandSource(connection, name)
             if driver.released:
                 self.apply(command)
             elif driver.answers:
@@ -127,14 +127,14 @@ class Lockstep:
 
     def _wait_while_awake(self, look):
         """look(): the name of a node that is awake, or None."""
-        deadline = monotonic() + PATIENCE
+        deadline = monotonic() + NODE_TIMEOUT
         while not self.ended():
             name = look()
             if not name:
                 return
             if monotonic() > deadline:
                 self._give_up(name)
-                deadline += PATIENCE
+                deadline += NODE_TIMEOUT
             sleep(LOOK)
 
     def _all_have_answered(self):
@@ -154,7 +154,7 @@ class Lockstep:
         for driver in self._seen_drivers():
             driver.released = driver.released or driver.name == name
         self.nodes.forget(name)
-        self.report(name, f'did not come to rest within {PATIENCE:g} s')
+        self.report(name, f'did not come to rest within {NODE_TIMEOUT:g} s')
 
     def _new_drivers(self):
         with self.changed:

@@ -50,8 +50,8 @@ OPTIONAL_KEYS = {
 Surface = namedtuple('Surface', ['name', *KEYS, *OPTIONAL_KEYS], defaults=[0.0] * len(OPTIONAL_KEYS))
 Surface.__doc__ = 'A surface, with the keys of its file as fields, in s, m/s, m/s^2 and (unlike the file) rad/s.'
 
-Run = namedtuple('Run', 'slip_straight slip_turning gyro_bias gyro_scale_error')
-Run.__doc__ = 'The random errors of one run: fractions of the travel, rad/s, fraction of the rate.'
+RandomErrors = namedtuple('RandomErrors', 'slip_straight slip_turning gyro_bias gyro_scale_error')
+RandomErrors.__doc__ = 'The random errors of one run: fractions of the travel, rad/s, fraction of the rate.'
 
 
 def known_surfaces(folder):
@@ -104,9 +104,9 @@ def read_seed(value):
 
 
 def draw_run(surface, seed):
-    """The Run that a seed (an integer) stands for."""
+    """The RandomErrors that a seed (an integer) stands for."""
     normal = random.Random(seed).gauss
-    return Run(normal(surface.slip_straight, surface.slip_straight_spread),
+    return RandomErrors(normal(surface.slip_straight, surface.slip_straight_spread),
                normal(surface.slip_turning, surface.slip_turning_spread),
                normal(0.0, surface.gyro_bias),
                normal(0.0, surface.gyro_scale_error))

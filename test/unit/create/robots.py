@@ -1,5 +1,5 @@
 """An emulated robot for these tests, and what they do with it."""
-from rbx1_nav.create.emulator.body import Body, Errors
+from rbx1_nav.create.emulator.body import Body, BodyErrors
 from rbx1_nav.create.emulator.emulator import EmulatedCreate
 from rbx1_nav.create.emulator.serial_line import SerialLine
 from rbx1_nav.create.protocol import command, packets_format, single_packets
@@ -9,7 +9,7 @@ from rbx1_nav.units import SECOND
 class Robot:
     """An EmulatedCreate with a host that reads all it sends."""
 
-    def __init__(self, model, surface=None, errors=Errors(), baud=None, **options):
+    def __init__(self, model, surface=None, errors=BodyErrors(), baud=None, **options):
         self.body = Body(model, surface, 1, errors, **options)
         self.model = model
         self.commands = []

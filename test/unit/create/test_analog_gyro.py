@@ -4,7 +4,7 @@ from math import degrees, pi, radians
 import pytest
 
 from rbx1_nav.create.driver.gyro_check import FEW, FEW_AT_REST
-from rbx1_nav.create.emulator.body import Errors, Quirks
+from rbx1_nav.create.emulator.body import BodyErrors, Quirks
 from rbx1_nav.simulation.surfaces import load_surface
 
 from driven_create import SURFACES, DrivenCreate, started
@@ -224,7 +224,7 @@ def test_a_turn_of_a_robot_that_is_held_or_lifted_is_not_judged(event):
     ('low_ply_carpet', 1.4, False), ('create_lab_floor', 1.0, False)])
 def test_a_gyro_that_works_is_never_taken_for_broken(surface, sensitivity, drops):
     driven = started('create', 4, surface=load_surface(surface, SURFACES), quirks=Quirks(drops_fractions=drops))
-    driven.body.errors = Errors(gyro_sensitivity=sensitivity)
+    driven.body.errors = BodyErrors(gyro_sensitivity=sensitivity)
     for linear, angular, seconds in [(0.5, 0, 6), (0.1, 0.2, 20), (0, 0.05, 20), (0, 0.3, 10), (0.3, -1, 10), (0, 2, 5)]:
         driven.drive(linear, angular, seconds)
         driven.command_zero()

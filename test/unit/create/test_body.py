@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rbx1_nav.create.emulator.body import Errors, Tally
+from rbx1_nav.create.emulator.body import BodyErrors, Tally
 from rbx1_nav.create.protocol import CREATE, CREATE_2, command, drive_direct
 from robots import Robot
 from sample_surface import SURFACE
@@ -26,7 +26,7 @@ def driven(model, right, left, seconds, **options):
 @settings(max_examples=20)
 @given(factors)
 def test_wheel_travel_is_what_the_encoders_count_of_the_true_travel(factor):
-    robot = driven(CREATE_2, 200, 200, 2, errors=Errors(wheel_travel=factor))
+    robot = driven(CREATE_2, 200, 200, 2, errors=BodyErrors(wheel_travel=factor))
     # the firmware keeps the commanded speed by its encoders, so that the robot is what goes wrong
     assert robot.pose.x * factor == pytest.approx(0.4, abs=0.02)
     values = robot.read(101)
@@ -38,14 +38,14 @@ def test_wheel_travel_is_what_the_encoders_count_of_the_true_travel(factor):
 @settings(max_examples=20)
 @given(factors)
 def test_wheel_base_is_the_true_distance_of_the_wheels(factor):
-    robot = driven(CREATE, 100, -100, 2, errors=Errors(wheel_base=factor))
+    robot = driven(CREATE, 100, -100, 2, errors=BodyErrors(wheel_base=factor))
     assert robot.pose.yaw * factor == pytest.approx(0.2 / 0.13 * 2 / 2, abs=0.05)
     assert radians(robot.read(20)['angle']) == pytest.approx(robot.pose.yaw * factor, abs=radians(0.5))
 
 
 @given(st.floats(0.5, 1.5), st.sampled_from([75.0, 150.0, 300.0]))
 def test_gyro_sensitivity_is_what_the_signal_shows_of_the_true_rate(factor, gyro_range):
-    robot = Robot(CREATE, errors=Errors(gyro_sensitivity=factor), gyro_range=gyro_range)
+    robot = Robot(CREATE, errors=BodyErrors(gyro_sensitivity=factor), gyro_range=gyro_range)
     robot.send(command('start'), command('full'), drive_direct(-65, 65))    # -0.5 rad/s
     adc = robot.read(33)['analog_input']
     assert radians(-(adc - 512) / 512 * gyro_range) == pytest.approx(-0.5 * factor, abs=radians(gyro_range / 512))

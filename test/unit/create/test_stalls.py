@@ -6,7 +6,7 @@ import pytest
 
 from driven_create import SURFACES, DrivenCreate
 from rbx1_nav.estimation.combined_odometry import CombinedOdometry
-from rbx1_nav.estimation.filter import UNKNOWN
+from rbx1_nav.estimation.filter import UNKNOWN_FLOOR
 from rbx1_nav.estimation.inputs import Imu, Odom
 from rbx1_nav.simulation.surfaces import load_surface
 from rbx1_nav.units import SECOND, wrap_angle
@@ -35,7 +35,7 @@ def half_turn(floor, seed, starts):
 
 def estimate(driven, delay=0):
     """The filter's Estimate from the messages of a run, in which those of the gyro arrive so many States late."""
-    combined = CombinedOdometry(UNKNOWN, SECOND)
+    combined = CombinedOdometry(UNKNOWN_FLOOR, SECOND)
     readings = []
     for state in driven.states:
         combined.add_odom(state.time, Odom(state.time, state.pose, *state.variances), (1e-3, 1e-3, 1e-3))

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rbx1_nav.estimation.combined_odometry import CombinedOdometry
-from rbx1_nav.estimation.filter import BIAS, UNKNOWN, X, Y, YAW
+from rbx1_nav.estimation.filter import BIAS, UNKNOWN_FLOOR, X, Y, YAW
 from rbx1_nav.estimation.inputs import Imu, Odom, RejectedMessage
 from rbx1_nav.estimation.limits import Limits
 from rbx1_nav.robot.kinematics import ORIGIN, Pose, arc
@@ -123,7 +123,7 @@ def test_a_slip_that_the_floor_does_not_have_is_reported_as_another_floor():
     # a curve of 60 m, in which unequal wheels may turn the robot by 0.066 rad times the square root of the distance
     dict(factor=1.6, linear=0.5, angular=0.06)])
 def test_neither_a_bias_in_a_slow_turn_nor_unequal_wheels_in_a_long_curve_are_a_contradiction(motion):
-    robot = Robot(UNKNOWN)
+    robot = Robot(UNKNOWN_FLOOR)
     robot.send(500, bias=motion.get('bias', 0.0))
     turn_with_wheels(robot, 6000, **motion)
     assert not robot.warnings

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rbx1_nav.estimation.filter import BIAS, SCALE, SLIP_WALK, STRAIGHT, TURNING, UNKNOWN, X, YAW, Filter
+from rbx1_nav.estimation.filter import BIAS, SCALE, SLIP_WALK, STRAIGHT, TURNING, UNKNOWN_FLOOR, X, YAW, Filter
 from rbx1_nav.robot.kinematics import ORIGIN, Pose
 from sample_priors import IDEAL, PRIORS
 
@@ -117,7 +117,7 @@ def test_short_steps_are_compared_by_their_sum(count):
 
 @pytest.mark.parametrize('rate', [0.2, 0.5, 1.0, 1.5])
 def test_a_rounded_turn_of_the_wheels_is_no_slip(rate):
-    ekf = Filter(UNKNOWN, ORIGIN)
+    ekf = Filter(UNKNOWN_FLOOR, ORIGIN)
     steps, degree = round(3 / rate * 30), pi / 180
     counted = [round(rate * step / 30 / degree) for step in range(steps + 1)]
     for before, after in zip(counted, counted[1:]):
@@ -160,13 +160,13 @@ def test_slip_and_bias_walk():
 
 @given(st.floats(0.01, 3), st.floats(0.01, 3), st.integers(1, 50))
 def test_the_noise_of_a_floor_does_not_depend_on_the_step(turned, travelled, count):
-    ekf = Filter(UNKNOWN, ORIGIN)
+    ekf = Filter(UNKNOWN_FLOOR, ORIGIN)
     ekf.root[TURNING] = 0.0
     with patch('rbx1_nav.estimation.filter.SLIP_WALK', 0.0):
         for _ in range(count):
             ekf.move(0.0, ekf.turn(0.0, (turned / count, 1e-12), travelled=travelled / count))
     assert ekf.covariance[YAW, YAW] == pytest.approx(0.084 ** 2 * turned + 0.066 ** 2 * travelled + 1e-9)
-    straight = Filter(UNKNOWN, ORIGIN)
+    straight = Filter(UNKNOWN_FLOOR, ORIGIN)
     straight.root[STRAIGHT] = 0.0
     with patch('rbx1_nav.estimation.filter.SLIP_WALK', 0.0):
         for _ in range(count):
@@ -234,7 +234,7 @@ def test_a_contradiction_makes_the_heading_as_uncertain_as_wheels_and_gyro_diffe
     # when it is noticed: after a turn of 1.5 rad, or more for a difference that the slip of a floor nearly explains
     differ = abs(1 / (1 - slip) - factor) / max(1 / (1 - slip), abs(factor))
     for turned in numpy.arange(0.1, 4.0, 0.02):
-        ekf, _, contradiction = drive(UNKNOWN, slip, factor, turned)
+        ekf, _, contradiction = drive(UNKNOWN_FLOOR, slip, factor, turned)
         if contradiction:
             break
     assert 1.4 * differ < contradiction < 4.3 * differ
@@ -242,16 +242,16 @@ def test_a_contradiction_makes_the_heading_as_uncertain_as_wheels_and_gyro_diffe
 
 
 def test_a_doubt_shrinks_when_wheels_and_gyro_agree_again():
-    doubtful, _, contradiction = drive(UNKNOWN, 0.5, turned=1.0)
+    doubtful, _, contradiction = drive(UNKNOWN_FLOOR, 0.5, turned=1.0)
     # wheels that always slip by half agree with the gyro as soon as that is known
-    later, _, same = drive(UNKNOWN, 0.5, turned=10.0)
+    later, _, same = drive(UNKNOWN_FLOOR, 0.5, turned=10.0)
     assert same == contradiction > 0.5 and sqrt(doubtful.covariance[YAW, YAW]) > 0.5
     # the least that the heading is uncertain by: 1.5 % scale error of the gyro
     assert 0.05 < sqrt(later.covariance[YAW, YAW]) < 0.2
 
 
 def test_a_contradiction_changes_neither_the_bias_nor_the_scale():
-    ekf, _, contradiction = drive(UNKNOWN, 0.5, turned=1.0)
+    ekf, _, contradiction = drive(UNKNOWN_FLOOR, 0.5, turned=1.0)
     before = ekf.state[BIAS], ekf.state[SCALE]
     for _ in range(300):
         ekf.move(0.02, ekf.turn(0.02, (0.04, 1e-8), (0.02, 1e-9)))
@@ -259,7 +259,7 @@ def test_a_contradiction_changes_neither_the_bias_nor_the_scale():
 
 
 def test_wheels_that_agree_with_the_gyro_leave_little_scale_error_and_little_noise():
-    agree, _, _ = drive(UNKNOWN, 0.0, turned=10.0)
+    agree, _, _ = drive(UNKNOWN_FLOOR, 0.0, turned=10.0)
     # 1.5 % of 10 rad would be 0.15 rad
     assert sqrt(agree.covariance[YAW, YAW]) < 0.06
     agree.place(ORIGIN, 1e-9 * numpy.eye(3))
@@ -271,14 +271,14 @@ def test_wheels_that_agree_with_the_gyro_leave_little_scale_error_and_little_noi
 
 
 def test_the_straight_slip_stays_possible_however_far_the_robot_drives():
-    ekf = Filter(UNKNOWN, ORIGIN)
+    ekf = Filter(UNKNOWN_FLOOR, ORIGIN)
     for _ in range(2000):
         ekf.move(1.0, ekf.turn(1.0, (0.0, 1e-8), (0.0, 1e-9), 1.0), 0.0, 1.0)
     assert 0.05 < sqrt(ekf.root[STRAIGHT] @ ekf.root[STRAIGHT]) < 0.11
 
 
 def test_place_leaves_no_doubt():
-    ekf, _, contradiction = drive(UNKNOWN, 0.5, turned=2.0)
+    ekf, _, contradiction = drive(UNKNOWN_FLOOR, 0.5, turned=2.0)
     covariance = numpy.diag([0.01, 0.02, 0.03])
     ekf.place(Pose(1.0, 2.0, 3.0), covariance)
     assert contradiction and ekf.covariance == pytest.approx(covariance)
@@ -286,11 +286,11 @@ def test_place_leaves_no_doubt():
 
 @given(st.floats(-0.07, 0.07), st.floats(1.5, 60))
 def test_no_slip_of_a_known_floor_is_a_contradiction(slip, turned):
-    assert drive(UNKNOWN, slip, turned=turned)[1:] == (False, 0.0)
+    assert drive(UNKNOWN_FLOOR, slip, turned=turned)[1:] == (False, 0.0)
 
 
 def test_the_noise_of_a_robot_that_stands_or_goes_straight_is_no_turn():
-    ekf = Filter(UNKNOWN, ORIGIN)
+    ekf = Filter(UNKNOWN_FLOOR, ORIGIN)
     generator = numpy.random.default_rng(1)
     for wheels, gyro in generator.normal(0, 1e-3, (100000, 2)):
         ekf.agreement.add(wheels, gyro, 1e-9, 0.004, 0.02)

@@ -5,7 +5,7 @@ import numpy
 import pytest
 
 from rbx1_nav.estimation.combined_odometry import CombinedOdometry
-from rbx1_nav.estimation.filter import UNKNOWN
+from rbx1_nav.estimation.filter import UNKNOWN_FLOOR
 from rbx1_nav.estimation.inputs import Imu, Odom
 from rbx1_nav.robot.kinematics import ORIGIN, arc
 from rbx1_nav.units import SECOND
@@ -20,7 +20,7 @@ class Robot:
 
     def __init__(self, imu_variance=NOISE ** 2):
         self.warnings = []
-        self.combined = CombinedOdometry(UNKNOWN, SECOND, warn=self.warnings.append)
+        self.combined = CombinedOdometry(UNKNOWN_FLOOR, SECOND, warn=self.warnings.append)
         self.generator = numpy.random.default_rng(1)
         self.imu_variance = imu_variance
         self.now = 1000 * SECOND

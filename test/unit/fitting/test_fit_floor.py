@@ -6,7 +6,7 @@ import pytest
 from rbx1_nav.fitting.ensemble import cell_noise, simulate_ends
 from rbx1_nav.fitting.fit import MEANS, Fitter
 from rbx1_nav.fitting.floor import Covariance, Prediction, Windows, cell_covariance
-from rbx1_nav.fitting.run import Run
+from rbx1_nav.fitting.run import PreparedRun
 from sample_runs import DRIVE, EXERCISE, FLOOR, FORWARD, REST, record
 
 QUIET = 1e-4, 1e-4, 1e-4    # m, m, rad
@@ -30,7 +30,7 @@ def test_the_covariance_is_that_of_simulated_noise():
 
 
 def test_ends_have_the_predicted_covariance():
-    run = Run(record(EXERCISE), 0.26)
+    run = PreparedRun(record(EXERCISE), 0.26)
     prediction = Prediction(FLOOR, run.steps(FLOOR), Windows(numpy.array([0]), len(run.times) - 1, numpy.zeros((1, 3))))
     ends = simulate_ends(FLOOR, prediction, 0, 20000, numpy.random.default_rng(2))
     roots = Covariance(FLOOR, prediction.sensitivities(by_cells=True), numpy.diag(numpy.square(QUIET))).roots[0]
@@ -42,7 +42,7 @@ def test_ends_have_the_predicted_covariance():
 
 
 def test_what_the_runs_do_not_tell_has_a_large_standard_error():
-    run = Run(record((REST, FORWARD, REST)), 0.26)
+    run = PreparedRun(record((REST, FORWARD, REST)), 0.26)
     _, covariance = Fitter([run], [run.windows(2.0)], QUIET, by_cells=True).fit_means(FLOOR, ['slip_straight',
                                                                                         'slip_turning'])
     assert covariance[0, 0] ** 0.5 < MEANS['slip_straight'][1]
@@ -50,7 +50,7 @@ def test_what_the_runs_do_not_tell_has_a_large_standard_error():
 
 
 def test_two_values_of_which_only_the_sum_is_told_are_both_unknown():
-    run = Run(record((REST, FORWARD, REST, FORWARD, REST))._replace(odometry=None), 0.26)
+    run = PreparedRun(record((REST, FORWARD, REST, FORWARD, REST))._replace(odometry=None), 0.26)
     # without turns, a curvature looks like nothing else; delay and lag are told apart only at starts and stops
     windows = run.windows(3.0)
     _, covariance = Fitter([run], [Windows(windows.first[1:2], windows.count, windows.ends[1:2])], QUIET).fit_means(
@@ -62,8 +62,8 @@ def test_two_values_of_which_only_the_sum_is_told_are_both_unknown():
 def test_windows_skip_gaps_of_the_truth():
     recording = record(DRIVE)
     keep = (recording.truth.time < 5.0) | (recording.truth.time > 6.0)
-    whole = Run(recording, 0.26)
-    cut = Run(recording._replace(truth=type(recording.truth)(*(values[keep] for values in recording.truth))), 0.26)
+    whole = PreparedRun(recording, 0.26)
+    cut = PreparedRun(recording._replace(truth=type(recording.truth)(*(values[keep] for values in recording.truth))), 0.26)
     starts = [run.times[run.windows(2.0).first] for run in (whole, cut)]
     lost = set(numpy.round(starts[0], 6)) - set(numpy.round(starts[1], 6))
     assert lost and all(3.0 - 1e-6 <= start <= 6.0 for start in lost)

@@ -5,7 +5,7 @@ from hypothesis import given, settings, strategies as st
 import yaml
 
 from rbx1_nav.fitting.surface_file import PARTS, in_file_units, surface_text, table
-from rbx1_nav.fitting.whole import Result, Value, limits_of
+from rbx1_nav.fitting.whole import FitResult, Value, limits_of
 from rbx1_nav.simulation.surfaces import KEYS, OPTIONAL_KEYS, Surface, read_surface
 
 ALL = [*KEYS, *OPTIONAL_KEYS]
@@ -17,13 +17,13 @@ ERRORS = st.none() | st.floats(1e-9, 1e4)       # as a part of the value
 
 @st.composite
 def results(draw):
-    """A Result with any values, some of them fitted."""
+    """A FitResult with any values, some of them fitted."""
     values = []
     for key in ALL:
         value, part = draw(VALUES[key]), draw(ERRORS)
         values.append(Value(key, value, part and part * max(abs(value), 1e-6), None if part else 'no gyro'))
     surface = Surface('x', **{value.key: value.value for value in values})
-    return Result(surface, values, draw(st.sampled_from([[], ['too far off']])), 'floor',
+    return FitResult(surface, values, draw(st.sampled_from([[], ['too far off']])), 'floor',
                   draw(st.sampled_from([[], ['a long note ' * 99]])))
 
 

@@ -5,7 +5,7 @@ import numpy
 import pytest
 
 from rbx1_nav.config import ConfigError
-from rbx1_nav.fitting.gyro import standing
+from rbx1_nav.fitting.gyro_errors import rests_at
 from rbx1_nav.fitting.recording import Commands
 from rbx1_nav.fitting.whole import WholeFit, truth_errors
 from rbx1_nav.robot.kinematics import Pose
@@ -121,7 +121,7 @@ def test_a_robot_that_was_pushed_is_warned_of():
 
 def test_a_truth_that_is_worse_in_motion_is_not_taken_for_noise_of_the_floor():
     def shaken(run, generator):
-        moving = ~standing(run, run.truth.time, 0.75)
+        moving = ~rests_at(run, run.truth.time, 0.75)
         return run._replace(truth=run.truth._replace(**{
             key: getattr(run.truth, key) + moving * generator.normal(0, sigma, len(moving))
             for key, sigma in (('x', 0.003), ('y', 0.003), ('yaw', 0.01))}))

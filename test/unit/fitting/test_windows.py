@@ -3,20 +3,20 @@ import numpy
 import pytest
 
 from rbx1_nav.fitting.recording import Commands, Recording, Track
-from rbx1_nav.fitting.run import MAX_GAP, Run
+from rbx1_nav.fitting.run import MAX_GAP, PreparedRun
 
 WIDTH = 0.26
 COMMANDS = Commands(numpy.array([0.0, 40.0]), numpy.array([0.2, 0.2]), numpy.array([0.1, 0.1]))
 
 
 def make_run(gaps=(), rate=100.0):
-    """A Run of 40 s on a circle of 2 m; its truth is missing between the pairs of `gaps` (s)."""
+    """A PreparedRun of 40 s on a circle of 2 m; its truth is missing between the pairs of `gaps` (s)."""
     times = numpy.arange(round(40 * rate) + 1) / rate
     for start, end in gaps:
         times = times[(times <= start) | (times >= end)]
     yaw = 1.0 + 0.1 * times
     truth = Track(times, 2 * numpy.sin(yaw), -2 * numpy.cos(yaw), yaw)
-    return Run(Recording('circle', COMMANDS, None, None, truth, None), WIDTH)
+    return PreparedRun(Recording('circle', COMMANDS, None, None, truth, None), WIDTH)
 
 
 def starts(run, windows):
@@ -57,7 +57,7 @@ def test_a_short_gap_is_interpolated():
 
 def test_the_window_of_a_whole_run_ends_after_the_predicted_number_of_turns():
     recording = Recording('taped', COMMANDS, None, None, None, (1.0, 0.5, 0.1))
-    run = Run(recording, WIDTH)
+    run = PreparedRun(recording, WIDTH)
     windows = run.whole(4 * numpy.pi - 0.2)
     assert windows.ends == pytest.approx(numpy.array([[1.0, 0.5, 4 * numpy.pi + 0.1]]))
     assert (windows.first, windows.count) == (0, len(run.times) - 1)

@@ -11,13 +11,13 @@ from matplotlib.figure import Figure
 from rbx1_nav.config import ConfigError
 from rbx1_nav.plotting.runs import check_picture, common_extent, common_norm, draw, draw_ends, end_poses
 from rbx1_nav.robot.kinematics import Pose
-from rbx1_nav.simulation.exercise import Result, Snapshot
+from rbx1_nav.simulation.exercise import SimulationResult, Snapshot
 
 
 def result(*poses):
-    """A Result with this path, the last pose of which is its end."""
+    """A SimulationResult with this path, the last pose of which is its end."""
     snapshots = [Snapshot(0.02 * number, Pose(*pose), Pose(*pose), None) for number, pose in enumerate(poses)]
-    return Result(snapshots[-1], 1.0, None, snapshots)
+    return SimulationResult(snapshots[-1], 1.0, None, snapshots)
 
 
 FAR = [result((0, 0, 0), (0.1, y, 2 * pi - radians(60))) for y in (0.4, 0.5, 0.6)]

@@ -42,7 +42,7 @@ def test_odometry_counts_the_slip_and_the_robot_moves_without_it():
     base.reset()
     drive(base, 0.0, 1.0, pi)
     assert base.wheels.truth.pose.yaw == pytest.approx(base.odometry.pose.yaw * 0.97, abs=2 * tick / WIDTH)
-    assert base.standing
+    assert base.at_rest
 
 
 def test_the_reported_speed_is_a_whole_number_of_ticks():
@@ -67,7 +67,7 @@ def test_a_robot_rolls_on_after_its_last_command_and_comes_to_a_standstill():
     base.advance(2 * SECOND)
     rest = base.wheels.truth.pose
     base.advance(3600 * SECOND)
-    assert base.wheels.truth.pose == rest and base.standing and base.velocity == (0.0, 0.0)
+    assert base.wheels.truth.pose == rest and base.at_rest and base.velocity == (0.0, 0.0)
 
 
 @given(st.lists(st.integers(0, 3 * SECOND), min_size=1, max_size=20))
@@ -92,7 +92,7 @@ def test_a_clock_that_jumps_back_lets_the_robot_roll_to_a_standstill():
     base.advance(60 * SECOND)
     base.advance(61 * SECOND)
     # no farther than with the acceleration limit all the way, and the lag after it
-    assert base.standing and 0 < base.wheels.truth.pose.x - x < 0.2 ** 2 / 2 / SURFACE.accel_limit + 0.2 * SURFACE.lag
+    assert base.at_rest and 0 < base.wheels.truth.pose.x - x < 0.2 ** 2 / 2 / SURFACE.accel_limit + 0.2 * SURFACE.lag
 
 
 def test_reset_puts_the_robot_back_and_stops_its_motors():
@@ -102,7 +102,7 @@ def test_reset_puts_the_robot_back_and_stops_its_motors():
     base.advance(base.now + SECOND)
     base.reset()
     base.advance(base.now + SECOND)
-    assert base.odometry.pose == base.wheels.truth.pose == ORIGIN and base.standing
+    assert base.odometry.pose == base.wheels.truth.pose == ORIGIN and base.at_rest
 
 
 def test_uncertainty_of_the_pose_grows_with_the_path_and_that_of_the_speed_ends_at_standstill():

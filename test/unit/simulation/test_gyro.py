@@ -5,15 +5,15 @@ from statistics import mean, pstdev
 import pytest
 
 from rbx1_nav.simulation.gyro import Gyro, IdealGyro
-from rbx1_nav.simulation.surfaces import Run
+from rbx1_nav.simulation.surfaces import RandomErrors
 from sample_surface import SURFACE
 
-RUN = Run(0.0, 0.0, radians(0.5), 0.01)
+RUN = RandomErrors(0.0, 0.0, radians(0.5), 0.01)
 STEP = 0.02     # s
 
 
-def readings(gyro, rate, number, standing=False, start=0.0):
-    return [gyro.read(start + rate * STEP * (i + 1), STEP, standing) for i in range(number)]
+def readings(gyro, rate, number, at_rest=False, start=0.0):
+    return [gyro.read(start + rate * STEP * (i + 1), STEP, at_rest) for i in range(number)]
 
 
 def test_an_ideal_gyro_has_no_errors():
@@ -49,12 +49,12 @@ def test_readings_are_limited_to_the_measurement_range(rate):
 
 def test_the_heading_is_calibrated_at_standstill_before_the_first_motion_only():
     gyro = Gyro(SURFACE, RUN, 1)
-    at_rest = readings(gyro, 0.0, 200, standing=True)
+    at_rest = readings(gyro, 0.0, 200, at_rest=True)
     assert {reading.yaw for reading in at_rest} == {0.0}
     moved = readings(gyro, 1.0, 100)[-1]
     # 2 s at 1 rad/s, 1 % too much; the noise of calibration and of 100 readings amounts to 0.6 mrad
     assert moved.yaw == pytest.approx(2.02, abs=0.003)
-    at_rest_again = readings(gyro, 0.0, 100, standing=True, start=2.0)
+    at_rest_again = readings(gyro, 0.0, 100, at_rest=True, start=2.0)
     assert at_rest_again[-1].yaw != at_rest_again[0].yaw
     assert at_rest_again[-1].yaw_variance > moved.yaw_variance > at_rest[0].yaw_variance
 

@@ -8,12 +8,12 @@ from hypothesis import strategies as st
 
 from rbx1_nav.robot.readings import MEASURED
 from rbx1_nav.simulation.floor_noise import make_roughness
-from rbx1_nav.simulation.surfaces import Run
+from rbx1_nav.simulation.surfaces import RandomErrors
 from rbx1_nav.simulation.wheels import Wheels
 from sample_surface import SURFACE
 
 WIDTH = 0.26
-NO_SLIP = Run(0.0, 0.0, 0.0, 0.0)
+NO_SLIP = RandomErrors(0.0, 0.0, 0.0, 0.0)
 EVEN = SURFACE._replace(slip_straight=0.0, slip_straight_spread=0.0, slip_turning=0.0, slip_turning_spread=0.0,
                         ticks_meter=1e6)
 # motors without drag, far from their limit: both modes follow their commands alike, so a motion is one arc

@@ -9,7 +9,7 @@ SILENCE = SECOND // 2           # without a reading: the robot does not answer
 FLUSH_WAIT = SECOND // 10       # without an answer to a stop, after which garbage may have swallowed it
 FIRST_WAIT = 3 * SECOND // 10   # that a robot that is on may need to answer, before it is started
 START_WAIT = SECOND             # that a robot may need to start, before it is searched for
-PATIENCE = 2                    # rounds of the search before the first warning
+ROUNDS_BEFORE_WARNING = 2                    # rounds of the search before the first warning
 
 
 class Contact:
@@ -146,7 +146,7 @@ class Contact:
                       % (before, found.model.name, found.baud, found.model.name))
 
     def _warn_of_silence(self):
-        if self.search.rounds >= PATIENCE and not self._warned and not self.found and not self._refused:
+        if self.search.rounds >= ROUNDS_BEFORE_WARNING and not self._warned and not self.found and not self._refused:
             self._warned = True
             self.warn('No robot answers at %s baud: expected a Create, Create 2 or Roomba that is switched on and connected'
                       % ', '.join(map(str, self.search.rates)))

@@ -5,11 +5,11 @@ The clock must go on while the computer is suspended, and must never be set.
 from rbx1_nav.create import protocol
 from rbx1_nav.create.driver import sequences
 from rbx1_nav.create.driver.acceptance import OUTAGE, Acceptance
+from rbx1_nav.create.driver.analog_gyro import AnalogGyro
 from rbx1_nav.create.driver.contact import SILENCE, Contact
 from rbx1_nav.create.driver.fractions import Fractions
-from rbx1_nav.create.driver.gyro import AnalogGyro
 from rbx1_nav.create.driver.gyro_check import Step
-from rbx1_nav.create.driver.motion import Motion
+from rbx1_nav.create.driver.motion_report import MotionReport
 from rbx1_nav.create.driver.sender import Sender
 from rbx1_nav.create.driver.speeds import is_too_fast
 from rbx1_nav.create.driver.stream import FrameReader, ReplyReader
@@ -69,7 +69,7 @@ class Driver:
         if self.reading is not None:
             return
         self.counter = travel_of(model, Fractions(self.settings.angle_fractions, self.warn))
-        self.motion = Motion(self.settings, model, self.counter.rounding)
+        self.motion = MotionReport(self.settings, model, self.counter.rounding)
         self.gyro = (AnalogGyro(self.settings.gyro_range, self.settings.gyro_correction, self.error, self.info)
                      if model is protocol.CREATE and self.settings.has_gyro else None)
 

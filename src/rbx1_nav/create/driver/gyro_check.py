@@ -22,9 +22,9 @@ WRONG_TURN = radians(90)    # turn that a count shows while it does not change .
 SHARE = 0.1                 # ... of which the wheels turn less than this, however wrong the gyro's scale is
 UNCERTAIN = radians(10) ** 2    # variance (rad^2) of a turn of the wheels that proves nothing: replies were lost
 
-Step = namedtuple('Step', 'elapsed turn variance commanded standing driven touched missing')
+Step = namedtuple('Step', 'elapsed turn variance commanded at_rest driven touched missing')
 Step.__doc__ = """What the robot did since the reading before. elapsed: s; turn, variance: by the odometry (rad, rad^2);
-commanded: the turn by the commands, rad; standing: whether it is stationary on the floor; driven: whether it is in the
+commanded: the turn by the commands, rad; at_rest: whether it is stationary on the floor; driven: whether it is in the
 mode in which the base drives it and has switched on the power of its sensors; touched: whether a bumper is pressed or a
 wheel has dropped; missing: whether readings are missing."""
 
@@ -56,16 +56,16 @@ class GyroCheck:
         self._wheels = self._commanded = self._shown = 0.0      # rad, by wheels, commands and gyro
         self._stood = False         # whether the robot stood meanwhile: at a steady rate, a gyro that works does not change
 
-    def accepts(self, count, standing):
+    def accepts(self, count, at_rest):
         """Whether a count shows an angular velocity."""
-        return LOWEST <= count <= HIGHEST if standing else NO_POWER <= count < FULL_SCALE
+        return LOWEST <= count <= HIGHEST if at_rest else NO_POWER <= count < FULL_SCALE
 
     def update(self, count, step, shown):
         """Look at a count. step: a Step; shown: the turn of this step (rad) as it was added to the gyro's heading. Returns
         whether the gyro broke now."""
         self._follow_count(count, step, shown)
         self._follow_power(count, step)
-        self._wrong_rest = (self._wrong_rest + 1) * (step.standing and count >= NO_POWER and not LOWEST <= count <= HIGHEST)
+        self._wrong_rest = (self._wrong_rest + 1) * (step.at_rest and count >= NO_POWER and not LOWEST <= count <= HIGHEST)
         before = self.problem
         kind, text = self._find_problem(count)
         if kind and kind != self._kind:
@@ -88,7 +88,7 @@ class GyroCheck:
         if changed or uncertain:
             self._lowest = self._highest = count
             self._forget()
-        self._stood |= step.standing
+        self._stood |= step.at_rest
         if uncertain:
             return
         self.unseen += step.turn - shown
@@ -127,7 +127,7 @@ class GyroCheck:
         return size > WRONG_TURN and max(side * self._wheels, side * self._commanded) < SHARE * size
 
     def _look_for_repair(self, count, step):
-        good = self._changed and step.standing and not step.missing and LOWEST <= count <= HIGHEST
+        good = self._changed and step.at_rest and not step.missing and LOWEST <= count <= HIGHEST
         self.rested = None if not good else 0.0 if self.rested is None else self.rested + step.elapsed
         if good and self.rested >= REPAIRED:
             self._kind = self.problem = ''

@@ -13,7 +13,7 @@ from rbx1_nav.create.line_settings import rate_in, read_settings
 from rbx1_nav.units import SECOND
 
 RETRY = SECOND // 5     # ns between two attempts to open the port
-PATIENCE = SECOND       # ns that a port may be unavailable before it is logged: an old guardian needs a moment
+PORT_WARN_TIME = SECOND       # ns that a port may be unavailable before it is logged: an old guardian needs a moment
 BEAT = SECOND // 10     # ns between two signs of life to the guardian
 
 
@@ -60,7 +60,7 @@ class Link:
             self.close()
             self.problem = str(error) if isinstance(error, PortError) else f'{self.path}: {error}'
             self.lost_at = now if self.lost_at is None else self.lost_at
-            if now - self.lost_at >= PATIENCE and self.logged != self.problem:
+            if now - self.lost_at >= PORT_WARN_TIME and self.logged != self.problem:
                 self.logged = self.problem
                 self.warn(f'{self.problem}; trying again')
             return False

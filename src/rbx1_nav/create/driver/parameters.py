@@ -6,7 +6,7 @@ from rbx1_nav.config import AUTO, ConfigError, Section, show
 from rbx1_nav.create import protocol
 from rbx1_nav.create.driver.fractions import KINDS
 from rbx1_nav.robot.description import Limits, Robot, read_wheel_joints
-from rbx1_nav.robot.odometry import Errors
+from rbx1_nav.robot.odometry import OdometryErrors
 from rbx1_nav.units import SECOND
 
 GYRO_CORRECTION = 1.35  # create_node's default
@@ -18,7 +18,7 @@ Settings = namedtuple('Settings', 'robot_type model port baud wake update_rate m
 Settings.__doc__ = """What the driver depends on. robot_type: a name of a Model, or AUTO; model: the Model that is expected;
 baud: bits per second, None to find out; wake: whether to wake a robot by RTS and DTR; update_rate in Hz; mode: that in which
 the robot is driven; mode_plus_one: whether it reports its mode plus one, None to find out; gyro_range in degrees/s;
-angle_fractions: see fractions.KINDS; errors: Errors; moving_yaw_variance in rad^2, 0 for none; min_yaw_speed in rad/s."""
+angle_fractions: see fractions.KINDS; errors: OdometryErrors; moving_yaw_variance in rad^2, 0 for none; min_yaw_speed in rad/s."""
 
 
 def read_settings(params):
@@ -48,7 +48,7 @@ def read_settings(params):
         gyro_correction=section.number('gyro_scale_correction', 0.01, 100, GYRO_CORRECTION, 'a factor'),
         linear_correction=section.number('odom_linear_scale_correction', 0.01, 100, 1.0, 'a factor'),
         angular_correction=section.number('odom_angular_scale_correction', 0.01, 100, 1.0, 'a factor'),
-        errors=Errors(section.number('odom_linear_error', 0, 1, 0.05, 'a distance', 'm'),
+        errors=OdometryErrors(section.number('odom_linear_error', 0, 1, 0.05, 'a distance', 'm'),
                       section.number('odom_angular_error', 0, 1, 0.09, 'an angle', 'rad'),
                       section.number('odom_heading_error', 0, 1, 0.07, 'an angle', 'rad')),
         moving_yaw_variance=section.number('moving_yaw_variance', 0, 1e6, 0.0, 'a variance', 'rad^2'),

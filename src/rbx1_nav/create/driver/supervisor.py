@@ -5,7 +5,7 @@ from rbx1_nav.units import SECOND
 HOLD = SECOND           # ns that the cause must be gone before the driver takes control again
 RETRY = SECOND // 2     # ns between two attempts
 SETTLE = SECOND // 10   # ns after which a reading shows the mode that was asked for
-PATIENCE = 3            # attempts without a cause for their failure, after which it is logged
+ATTEMPTS_BEFORE_LOG = 3            # attempts without a cause for their failure, after which it is logged
 CLIFFS = ('cliff_left', 'cliff_front_left', 'cliff_front_right', 'cliff_right')
 WHEEL_DROPS = protocol.WHEEL_DROP_LEFT | protocol.WHEEL_DROP_RIGHT | protocol.WHEEL_DROP_CASTOR
 BUMPS = protocol.BUMP_LEFT | protocol.BUMP_RIGHT
@@ -117,7 +117,7 @@ class Supervisor:
         if obstructed:
             self.failures = 0
         self._explain(', '.join(found + ['on the dock: carry it off if a command does not move it'] * docked
-                                + [self._contradiction(reported)] * (self.failures > PATIENCE)))
+                                + [self._contradiction(reported)] * (self.failures > ATTEMPTS_BEFORE_LOG)))
         if found or docked and not wants_motion:
             self.clear_since = None
             return False

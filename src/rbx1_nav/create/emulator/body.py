@@ -6,8 +6,8 @@ from rbx1_nav.create.protocol import BUMP_LEFT, BUMP_RIGHT, CREATE, UPDATE_PERIO
 from rbx1_nav.simulation.base import make_wheels_and_gyro
 from rbx1_nav.units import SECOND
 
-Errors = namedtuple('Errors', 'gyro_sensitivity wheel_travel wheel_base', defaults=(1.0, 1.0, 1.0))
-Errors.__doc__ = """True errors of a robot, as factors: what the gyro's signal shows, of its nominal value; what the
+BodyErrors = namedtuple('BodyErrors', 'gyro_sensitivity wheel_travel wheel_base', defaults=(1.0, 1.0, 1.0))
+BodyErrors.__doc__ = """True errors of a robot, as factors: what the gyro's signal shows, of its nominal value; what the
 encoders count, of the wheels' true travel; the true distance of the wheels, of its nominal value."""
 
 Quirks = namedtuple('Quirks', 'mode_plus_one drops_fractions', defaults=(False, False))
@@ -61,7 +61,7 @@ class DroppingTally(Tally):
 class Body:
     """The robot without its electronics. All times are in ns."""
 
-    def __init__(self, model, surface=None, seed=0, errors=Errors(), gyro_range=150.0, quirks=Quirks()):
+    def __init__(self, model, surface=None, seed=0, errors=BodyErrors(), gyro_range=150.0, quirks=Quirks()):
         """model: a protocol.Model; surface, seed: see simulated_base.make_base(); gyro_range: degrees/s."""
         self.model = model
         self.errors = errors

@@ -4,8 +4,8 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import Twist
 from std_msgs.msg import Float64
 
+from rbx1_nav.control.contradiction import Senders
 from rbx1_nav.control.gate import RefusedCommand, RejectedCommand
-from rbx1_nav.control.senders import Senders
 from rbx1_nav.ros import messages
 from rbx1_nav.ros.network.refusals import Refusals
 from rbx1_nav.units import SECOND

@@ -7,7 +7,7 @@ from tqdm import tqdm
 
 from rbx1_nav.ros.driving.pose_listener import LostTransform, PoseListener
 from rbx1_nav.ros.driving.rate import Rate, pause
-from rbx1_nav.ros.driving.subscribers import wait_for_subscribers
+from rbx1_nav.ros.driving.waiting import wait_for_subscribers
 
 
 class LegDriver:

@@ -12,7 +12,7 @@ from rbx1_nav.ros.filter.estimated_twist import estimate_twist
 from rbx1_nav.schedule import Schedule
 from rbx1_nav.units import SECOND
 
-PATIENCE = 2 * SECOND   # ns after the first estimate, in which a transform to the robot's frame may arrive
+TRANSFORM_TIME = 2 * SECOND   # ns after the first estimate, in which a transform to the robot's frame may arrive
 MIN_WAIT = 1.0          # s of wall time for the same: a connection takes time, however fast simulated time passes
 
 
@@ -84,7 +84,7 @@ class EstimatePublisher:
             self.settled = True
         elif self.first is None or now < self.first[0]:     # also after a clock that has jumped back
             self.first = now, time.monotonic()
-        elif now - self.first[0] >= PATIENCE and time.monotonic() - self.first[1] >= MIN_WAIT:
+        elif now - self.first[0] >= TRANSFORM_TIME and time.monotonic() - self.first[1] >= MIN_WAIT:
             self._set_child(base_frame, f'no other node publishes one to {base_frame}')
 
     def _set_child(self, child, why):

@@ -9,7 +9,7 @@ from rbx1_nav.estimation.gyro_input import UPRIGHT, GyroInput, vertical_axis
 from rbx1_nav.estimation.inputs import check
 from rbx1_nav.ros import messages
 
-PATIENCE = 1.0      # s of wall time for a transform to arrive before a line is logged
+TRANSFORM_WARN_TIME = 1.0      # s of wall time for a transform to arrive before a line is logged
 
 
 class ImuInput:
@@ -33,7 +33,7 @@ class ImuInput:
         """Call accept(imu) with an Imu. base_frame: of the robot. Raises RejectedMessage, as accept() may."""
         frames = base_frame, message.header.frame_id.lstrip('/') or base_frame
         if frames != self.frames:
-            self.frames, self.vertical, self.deadline = frames, None, time.monotonic() + PATIENCE
+            self.frames, self.vertical, self.deadline = frames, None, time.monotonic() + TRANSFORM_WARN_TIME
         if self.vertical is None:
             self.vertical = self._find_vertical(*frames)
             if self.vertical is None:

@@ -8,7 +8,7 @@ import rospy
 
 from rbx1_nav.config import ConfigError, Section, show
 from rbx1_nav.estimation.combined_odometry import MAX_AGE, MAX_LEAD, CombinedOdometry
-from rbx1_nav.estimation.filter import UNKNOWN, priors
+from rbx1_nav.estimation.filter import UNKNOWN_FLOOR, priors
 from rbx1_nav.estimation.limits import Limits
 from rbx1_nav.ros.network.master import call
 from rbx1_nav.ros.node import resources
@@ -101,18 +101,18 @@ def _resolve(prefix, frame, given):
 
 
 def find_prior(name, base, log):
-    """The Priors of the surface of this name, UNKNOWN for ANY; for AUTO, those of the surface of the node `base`, which
-    has a parameter `surface` if it is simulated, or else UNKNOWN. log(function, text): logs a line.
+    """The Priors of the surface of this name, UNKNOWN_FLOOR for ANY; for AUTO, those of the surface of the node `base`, which
+    has a parameter `surface` if it is simulated, or else UNKNOWN_FLOOR. log(function, text): logs a line.
     """
     try:
         if name == AUTO:
             key, master = f'{base}/surface', rosgraph.get_master_uri()
             # not by rospy, which waits for a frozen master for ever
             name = call(master, 'getParam', key) if call(master, 'hasParam', key) else ANY
-        prior = UNKNOWN if name == ANY else priors(load_surface(name, resources.surfaces()))
+        prior = UNKNOWN_FLOOR if name == ANY else priors(load_surface(name, resources.surfaces()))
     except (ConfigError, OSError, xmlrpc.client.Error) as error:     # or no answer from the master
         log(rospy.logwarn, f'{base}/{error}; using {ANY} instead')
-        name, prior = ANY, UNKNOWN
+        name, prior = ANY, UNKNOWN_FLOOR
     log(rospy.loginfo, f'Floor that the filter starts with: {name}')
     return prior
 

@@ -4,7 +4,7 @@ from math import pi
 import pytest
 
 from rbx1_nav.estimation.combined_odometry import DROPOUT_SPEED, CombinedOdometry
-from rbx1_nav.estimation.filter import UNKNOWN, priors
+from rbx1_nav.estimation.filter import UNKNOWN_FLOOR, priors
 from rbx1_nav.estimation.inputs import Imu, Odom
 from rbx1_nav.robot.kinematics import ORIGIN, arc
 from rbx1_nav.ros.filter.estimated_twist import estimate_twist
@@ -53,7 +53,7 @@ def test_sensors_without_errors():
 
 
 def test_the_displacement_is_reduced_by_the_slip_and_the_turn_is_the_gyros():
-    robot = Robot(UNKNOWN._replace(slip_straight=0.1, slip_turning=0.2))
+    robot = Robot(UNKNOWN_FLOOR._replace(slip_straight=0.1, slip_turning=0.2))
     robot.drive(150, 0.0, 0.0, 0.0)
     twist = robot.drive(150, 0.3, 0.5, 0.4)
     assert twist.forward == pytest.approx(0.27, abs=0.001)
@@ -61,14 +61,14 @@ def test_the_displacement_is_reduced_by_the_slip_and_the_turn_is_the_gyros():
 
 
 def test_the_variances_cover_noise_slip_bias_and_scale():
-    robot = Robot(UNKNOWN)
+    robot = Robot(UNKNOWN_FLOOR)
     twist = robot.drive(150, 0.5, 0.0, 0.0)
     # on an unknown floor 5 % of slip, and the noise of a cell of 0.1 m: 0.044 ** 2 / 0.1
     assert twist.forward_variance == pytest.approx(0.25 * (0.05 ** 2 + 0.0194), rel=0.05)
     assert twist.left_variance < 1e-5
     # the bias of the gyro is not known before it has stood
     assert twist.turn_variance > 0.01 ** 2
-    robot = Robot(UNKNOWN)
+    robot = Robot(UNKNOWN_FLOOR)
     robot.drive(500, 0.0, 0.0, 0.0)
     assert robot.drive(10, 0.5, 0.0, 0.0).turn_variance < 0.003 ** 2
     # a scale error of 1.5 %
@@ -76,7 +76,7 @@ def test_the_variances_cover_noise_slip_bias_and_scale():
 
 
 def test_without_a_gyro_the_turn_is_as_uncertain_as_the_slip():
-    robot = Robot(UNKNOWN, gyro_used=False)
+    robot = Robot(UNKNOWN_FLOOR, gyro_used=False)
     twist = robot.drive(50, 0.0, 1.0, None, imu=False)
     assert twist.turn == pytest.approx(1.0)
     # 5 % of slip, and the noise of a cell of 0.25 rad: 0.084 ** 2 / 0.25
@@ -84,7 +84,7 @@ def test_without_a_gyro_the_turn_is_as_uncertain_as_the_slip():
 
 
 def test_a_dropout_of_the_odometry_leaves_the_displacement_unknown():
-    robot = Robot(UNKNOWN)
+    robot = Robot(UNKNOWN_FLOOR)
     robot.drive(200, 0.3, 0.0, 0.0)
     twist = robot.drive(100, 0.3, 0.5, 0.5, odom=False)
     assert robot.combined.timed_out['odom']
@@ -95,7 +95,7 @@ def test_a_dropout_of_the_odometry_leaves_the_displacement_unknown():
 
 
 def test_a_contradiction_makes_the_turn_as_uncertain_as_the_sensors_differ():
-    robot = Robot(UNKNOWN)
+    robot = Robot(UNKNOWN_FLOOR)
     robot.drive(150, 0.0, 0.0, 0.0)
     twist = robot.drive(300, 0.1, 1.0, 0.0)
     assert robot.combined.case == 'contradiction'
@@ -103,7 +103,7 @@ def test_a_contradiction_makes_the_turn_as_uncertain_as_the_sensors_differ():
 
 
 def test_a_robot_that_is_carried_may_move_anywhere():
-    robot = Robot(UNKNOWN)
+    robot = Robot(UNKNOWN_FLOOR)
     robot.drive(500, 0.0, 0.0, 0.0)
     assert robot.drive(1, 0.0, 0.0, 0.0).forward_variance < 1e-5
     twist = robot.drive(150, 0.0, 0.0, 1.0)
@@ -112,6 +112,6 @@ def test_a_robot_that_is_carried_may_move_anywhere():
 
 
 def test_no_time_between_two_estimates():
-    robot = Robot(UNKNOWN)
+    robot = Robot(UNKNOWN_FLOOR)
     robot.drive(50, 0.3, 0.0, 0.0)
     assert estimate_twist(robot.combined, robot.combined.estimate) is None

@@ -6,7 +6,7 @@ import re
 
 import pytest
 
-from rbx1_nav.create.emulator.body import Errors, Quirks
+from rbx1_nav.create.emulator.body import BodyErrors, Quirks
 from rbx1_nav.robot.description import DRIVER_KEYS, WHEEL_JOINTS
 from rbx1_nav.ros.node.arguments import parameter_names
 
@@ -64,7 +64,7 @@ def test_nodes_without_parameters(node):
 def test_the_emulated_robot():
     source = read('nodes', 'fake_create.py')
     read_here = re.findall(r"section\.(?:get|choice|number)\('(\w+)'", source)
-    assert usage('fake_create.py') == sorted(set(read_here) | set(Errors._fields) | set(Quirks._fields))
+    assert usage('fake_create.py') == sorted(set(read_here) | set(BodyErrors._fields) | set(Quirks._fields))
     faults = read('src', 'rbx1_nav', 'ros', 'base', 'robot_faults.py')
     offered = set(re.findall(r"\('(\w+)', lambda", faults))
     text = ast.get_docstring(ast.parse(source))

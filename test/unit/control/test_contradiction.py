@@ -1,5 +1,5 @@
 """Which commands of several senders contradict each other."""
-from rbx1_nav.control.senders import Senders
+from rbx1_nav.control.contradiction import Senders
 from rbx1_nav.units import SECOND
 
 TICK = SECOND // 50

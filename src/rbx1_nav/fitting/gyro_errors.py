@@ -9,7 +9,7 @@ INTERVAL = 1.0      # s: turns in intervals of this length are compared
 MIN_TURN = 3.0      # rad: no scale from less
 
 
-def standing(recording, times, delay=0.0):
+def rests_at(recording, times, delay=0.0):
     """Whether the robot stood still at each of `times` (s): no command to move since SETTLED and a delay (s)."""
     commands = recording.commands
     moving = (commands.linear != 0) | (commands.angular != 0)
@@ -25,7 +25,7 @@ def rest_of(recording, delay):
     """(bias in rad/s, noise at NOISE_RATE in rad/s, number of readings) of the gyro while the robot stood; None if
     that was never long enough."""
     time, rate = recording.gyro
-    at_rest = standing(recording, time, delay)
+    at_rest = rests_at(recording, time, delay)
     period = numpy.median(numpy.diff(time)) if len(time) > 1 else 0.0
     if at_rest.sum() < 20 or not period > 0:
         return None

@@ -43,7 +43,7 @@ class AnalogGyro:
         """
         self._calibrate(count, step)
         offset, before, reading = self.offset, self.yaw, None
-        if offset is None or self.check.problem or not self.check.accepts(count, step.standing):
+        if offset is None or self.check.problem or not self.check.accepts(count, step.at_rest):
             self.yaw += step.turn
             self.variance += step.variance
         else:
@@ -68,7 +68,7 @@ class AnalogGyro:
 
     def _calibrate(self, count, step):
         """Add a count to the offset if it is good, and forget an offset that has become wrong."""
-        good = step.standing and self.check.accepts(count, True)
+        good = step.at_rest and self.check.accepts(count, True)
         offset = self.offset
         far = good and offset is not None and abs(count - offset) > JUMP
         self.jumped = (self.jumped + step.elapsed) * far

@@ -13,7 +13,7 @@ State.__doc__ = """time: ns, of the last reading; pose: Pose; covariance: 3x3; v
 the last State; variances: of these; travel: of both wheels, m; gyro: Reading or None."""
 
 
-class Motion:
+class MotionReport:
     """Adds up Travel. Times are in ns."""
 
     def __init__(self, settings, model, rounding):

@@ -5,7 +5,7 @@ import time
 import rosgraph
 import rospy
 
-from rbx1_nav.ros.driving.listeners import Listeners, Peer
+from rbx1_nav.ros.driving.watching import Listeners, Peer
 from rbx1_nav.ros.network import refusals
 from rbx1_nav.ros.network.master import Server, call
 from rbx1_nav.ros.node.life import end_requested, sleep

@@ -3,7 +3,7 @@ from math import radians
 
 import pytest
 
-from rbx1_nav.fitting.gyro import fit_gyro, root_mean_square, standing
+from rbx1_nav.fitting.gyro_errors import fit_gyro, root_mean_square, rests_at
 from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.simulation.surfaces import draw_run
 from sample_runs import DRIVE, EXERCISE, FLOOR, FORWARD, record, wrapped
@@ -45,7 +45,7 @@ def test_one_run_tells_no_spread():
 
 def test_a_robot_that_may_still_roll_does_not_stand():
     run = record(EXERCISE)
-    at_rest = standing(run, run.truth.time, delay=0.5)
+    at_rest = rests_at(run, run.truth.time, delay=0.5)
     assert at_rest[run.truth.time < 2].all()                # before the first motion
     assert not at_rest[(run.truth.time > 2.01) & (run.truth.time < 7.99)].any()     # drives, and 2 s of delay and rest
 

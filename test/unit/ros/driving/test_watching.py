@@ -5,8 +5,8 @@ import time
 import pytest
 import rospy
 
-from rbx1_nav.ros.driving import listeners
-from rbx1_nav.ros.driving.listeners import Listeners, Peer
+from rbx1_nav.ros.driving import watching
+from rbx1_nav.ros.driving.watching import Listeners, Peer
 from rbx1_nav.ros.network.tcp import CLOSED_WINDOW, Connection
 
 OPEN = Connection(established=True, unacknowledged=0, acknowledged=520, window=60000)
@@ -27,7 +27,7 @@ def watch_one(monkeypatch):
         # without an address it is not called
         watched = Listeners(publisher, [Peer('/node', None, essential, False, None)])
         watched.state = OPEN
-        monkeypatch.setattr(listeners, 'read_connection', lambda _: watched.state)
+        monkeypatch.setattr(watching, 'read_connection', lambda _: watched.state)
         return watched
     return watch
 
@@ -65,7 +65,7 @@ def test_check_looks_and_raises(watch):
     watched = watch()
     watched.check()
     watched.state = CLOSED
-    time.sleep(listeners.LOOK_PERIOD)
+    time.sleep(watching.LOOK_PERIOD)
     watched.check()
     assert wait_for_problem(watched) == '/node has gone'    # nobody tells that it has unregistered
     with pytest.raises(rospy.ROSException, match='/cmd_vel: /node has gone: expected it to listen'):
@@ -84,13 +84,13 @@ def test_silence_while_the_script_waits_for_the_robot_to_stop_counts(watch, monk
     watched = watch()
     watched.check()
     watched.state = SILENT
-    time.sleep(listeners.LOOK_PERIOD)   # so that the next check() looks
-    monkeypatch.setattr(listeners, 'sleep', lambda _: pytest.fail('check_delivery() waited'))
+    time.sleep(watching.LOOK_PERIOD)   # so that the next check() looks
+    monkeypatch.setattr(watching, 'sleep', lambda _: pytest.fail('check_delivery() waited'))
     with pytest.raises(rospy.ROSException, match='acknowledges nothing'):
         watched.check_delivery()
 
 
 def test_an_open_connection_has_all(watch, monkeypatch):
     watched = watch()
-    monkeypatch.setattr(listeners, 'sleep', lambda _: pytest.fail('check_delivery() waited'))
+    monkeypatch.setattr(watching, 'sleep', lambda _: pytest.fail('check_delivery() waited'))
     watched.check_delivery()
