@@ -181,24 +181,28 @@ class Network:
 
 def awake(processes):
     """The first of some Process objects that does not sleep; None if all of them slept at one and the same moment."""
-    processes, before = list(processes), []
+    processes = list(processes)
+    # of all before the first look: one that has been looked at may be woken by one that sleeps before it is looked at
+    before = [_cpu_time(process) for process in processes]
     for process in processes:
         try:
-            before.append(process.cpu_time())
             if not process.sleeps():
                 return process
         except OSError:
             if not process.ended():
                 return process
-            before.append(None)
     for process, cpu_time in zip(processes, before):
-        try:
-            if cpu_time is not None and process.cpu_time() != cpu_time:
-                return process
-        except OSError:
-            if not process.ended():
-                return process
+        if _cpu_time(process) != cpu_time and not process.ended():
+            return process
     return None
+
+
+def _cpu_time(process):
+    """As Process.cpu_time(); None if it has ended."""
+    try:
+        return process.cpu_time()
+    except OSError:
+        return None
 
 
 def still_polling(threads):

@@ -227,10 +227,18 @@ def test_the_thread_that_looks_does_not_count():
 def test_a_process_that_has_run_between_two_looks_is_awake():
     """It slept when it was looked at, but perhaps not at the same moment as the others."""
     times = iter([1, 2])
-    fake = SimpleNamespace(cpu_time=lambda: next(times), sleeps=lambda: True)
+    fake = SimpleNamespace(cpu_time=lambda: next(times), sleeps=lambda: True, ended=lambda: False)
     assert awake([fake]) is fake
     times = iter([1, 1])
     assert awake([fake]) is None
+
+
+def test_a_process_that_ran_while_another_one_was_looked_at_is_awake():
+    times = [5]
+    sender = SimpleNamespace(cpu_time=lambda: times[-1], sleeps=lambda: True, ended=lambda: False)
+    # it sleeps when it is looked at; then the sender wakes it, and is asleep itself when its turn comes
+    woken = SimpleNamespace(cpu_time=lambda: 7, sleeps=lambda: times.append(6) is None, ended=lambda: False)
+    assert awake([woken, sender]) is sender
 
 
 def test_a_thread_that_has_run_since_does_not_poll_any_more():
