@@ -164,7 +164,7 @@ def test_a_thread_that_polls_is_waited_for(world):
 
 
 def test_a_node_that_never_sleeps_is_waited_for_once(world, monkeypatch):
-    monkeypatch.setattr(lockstep, 'PATIENCE', 0.05)
+    monkeypatch.setattr(lockstep, 'NODE_TIMEOUT', 0.05)
     world.tick(('a', MOVE))
     world.nodes.never_sleeps = 'a'
     for _ in range(3):
@@ -175,7 +175,7 @@ def test_a_node_that_never_sleeps_is_waited_for_once(world, monkeypatch):
 
 
 def test_a_node_that_is_no_driver_is_given_up_alone(world, monkeypatch):
-    monkeypatch.setattr(lockstep, 'PATIENCE', 0.05)
+    monkeypatch.setattr(lockstep, 'NODE_TIMEOUT', 0.05)
     world.tick(('a', MOVE), ('b', MOVE))
     world.nodes.never_sleeps = 'the master'
     world.tick(('a', MOVE))
@@ -188,7 +188,7 @@ def test_a_node_that_is_no_driver_is_given_up_alone(world, monkeypatch):
 
 
 def test_a_command_of_the_tick_in_which_its_driver_is_given_up_is_not_lost(world, monkeypatch):
-    monkeypatch.setattr(lockstep, 'PATIENCE', 0.05)
+    monkeypatch.setattr(lockstep, 'NODE_TIMEOUT', 0.05)
     world.tick(('a', MOVE))
     world.nodes.never_sleeps = 'a'
     world.tick(('a', FASTER))
