@@ -3,7 +3,6 @@
 import argparse
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import nullcontext
-import math
 
 import yaml
 

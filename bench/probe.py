@@ -132,17 +132,17 @@ def decode(received, kind):
 def decode_commands(received):
     """(received, v, w) of each Twist."""
     from geometry_msgs.msg import Twist
-    twists = [(time, decode(message, Twist)) for time, message in received]
-    return [(time, twist.linear.x, twist.angular.z) for time, twist in twists]
+    twists = [(arrival, decode(message, Twist)) for arrival, message in received]
+    return [(arrival, twist.linear.x, twist.angular.z) for arrival, twist in twists]
 
 
 def decode_odometry(received):
     """(received, stamp, x, y, heading, v, w) of each Odometry."""
     from nav_msgs.msg import Odometry
     records = []
-    for time, message in received:
+    for arrival, message in received:
         odom = decode(message, Odometry)
         p, q, twist = odom.pose.pose.position, odom.pose.pose.orientation, odom.twist.twist
-        records.append((time, odom.header.stamp.to_sec(), p.x, p.y, figures.yaw(q.x, q.y, q.z, q.w),
+        records.append((arrival, odom.header.stamp.to_sec(), p.x, p.y, figures.yaw(q.x, q.y, q.z, q.w),
                         twist.linear.x, twist.angular.z))
     return records

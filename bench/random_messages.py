@@ -169,7 +169,7 @@ def run(floors, count, seed):
                 combined.add_odom(now, *message)
         except RejectedMessage:
             counts['rejected'] += 1
-        except Exception as error:      # pylint: disable=broad-except
+        except Exception as error:
             failure = 'message %d: %s: %s' % (number, type(error).__name__, error)
             break
         if combined.estimate is not None and combined.estimate is not estimate:

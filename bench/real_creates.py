@@ -47,7 +47,7 @@ def halves(recordings):
 
 def separate(windows):
     """Each of some Windows, alone."""
-    return [Windows(windows.first[index:index + 1], windows.count, windows.ends[index:index + 1])
+    return [Windows(windows.first[index:index + 1], windows.length, windows.ends[index:index + 1])
             for index in range(len(windows.first))]
 
 

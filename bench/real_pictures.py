@@ -32,7 +32,7 @@ def draw_paths(file, title, judgement, surface, ideal):
         run, window = judgement.windows[ranked(judgement, robot, 0.5)]
         on_floor, exact = (Prediction(each, run.steps(each), window) for each in (surface, ideal))
         paths = simulate_paths(surface, on_floor, 0, PATHS, numpy.random.default_rng(1))
-        times, truth = run.times[window.first[0]:][:window.count + 1], run.recording.truth
+        times, truth = run.times[window.first[0]:][:window.length + 1], run.recording.truth
         poses = numpy.array([numpy.interp(times, truth.time, values) for values in truth[1:]])
         for path in paths:
             simulated, = axes.plot(*path[:2], color=SIMULATED, linewidth=0.8, alpha=0.6)

@@ -18,9 +18,10 @@ Parameters:
 Mark on the floor where the robot points to. Facing the mark again it has turned by 360 degrees; 10 degrees before it,
 by 350. The gyro is compared with the same turn.
 """
-import rbx1_nav.ros.node.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded
+from rbx1_nav.ros.driving.script import exit_status, frame_param, init_node, positive_param
 
 from math import degrees, pi
+import sys
 
 import rospy
 from sensor_msgs.msg import Imu
@@ -30,17 +31,16 @@ from rbx1_nav.control.legs import Turn
 from rbx1_nav.create.driver.fractions import LOST
 from rbx1_nav.create.driver.parameters import GYRO_CORRECTION
 from rbx1_nav.robot.calibration import corrected, read_measured, turn_by_gyro
-from rbx1_nav.ros.node import life
 from rbx1_nav.ros.driving.calibration import (
     Diagnosis, factor_in_force, forget_run, load_run, node_param, save_run, take_measured)
-from rbx1_nav.ros.driving.leg_driver import LegDriver
-from rbx1_nav.ros.node.params import frame_param, positive_param
+from rbx1_nav.ros.driving.pose_drive import CalibrationDrive
+from rbx1_nav.ros.driving.pose_listener import PoseListener
 from rbx1_nav.ros.node.question import ask
 
 ODOM_KEY, GYRO_KEY = 'odom_angular_scale_correction', 'gyro_scale_correction'
 
 
-def drive():
+def measure():
     """Turn once. Returns what odometry and gyro reported, degrees, and the factors with which they did."""
     rate = positive_param('rate', 50, 2, 1000)                          # Hz
     angular_speed = positive_param('angular_speed', 0.5)                # rad/s
@@ -49,25 +49,20 @@ def drive():
                angular_speed,
                positive_param('min_angular_speed', 0.2),                # rad/s
                rate)
-    wait_timeout = positive_param('wait_timeout', 30)                   # s
     base_node = node_param('base_node', 'turtlebot_node')
-    driver = LegDriver(frame_param('odom_frame', 'odom'), frame_param('base_frame', None), 0.0, angular_speed, rate)
+    poses = PoseListener(frame_param('odom_frame', 'odom'), frame_param('base_frame', None), 0.0, angular_speed)
     readings = []       # of the gyro: (s, rad/s)
     rospy.Subscriber('imu/data', Imu, lambda message: readings.append((message.header.stamp.to_sec(),
                                                                        message.angular_velocity.z)))
     base, gyro = Diagnosis(base_node, 'Base'), Diagnosis(base_node, 'Gyro')
     forget_run('angular')
-    try:
-        driver.wait_for_base(wait_timeout)
+    with CalibrationDrive(rate, poses) as drive:
         run = {ODOM_KEY: factor_in_force(base_node, ODOM_KEY), GYRO_KEY: factor_in_force(base_node, GYRO_KEY, None)}
         # What the gyro reports at rest is its bias.
-        driver.rest(2)
+        drive.rest(2)
         start = rospy.get_time()
-        driver.drive(leg)
+        drive.drive(leg)
         end = rospy.get_time()
-    finally:
-        # However it ended: the most important thing that a mobile robot must do.
-        driver.stop()
     run['reported'] = degrees(leg.done())
     if run[GYRO_KEY] is None:   # the default of a Create's base
         run[GYRO_KEY] = GYRO_CORRECTION if gyro.last else 1.0
@@ -90,10 +85,10 @@ def warn_of_gyro(error):
 
 def calibrate():
     """Turn, ask, and print the factors."""
-    life.init_node('calibrate_angular', __doc__)
+    init_node('calibrate_angular', __doc__)
     measured = take_measured()
     if measured is None:
-        run = drive()
+        run = measure()
         save_run('angular', run)
     else:
         run = load_run('angular', 'reported', 'loses_fractions', ODOM_KEY, GYRO_KEY)
@@ -118,8 +113,9 @@ def calibrate():
             factors[GYRO_KEY] = corrected(GYRO_KEY, run[GYRO_KEY], measured, run['gyro'])
         except ConfigError as error:
             warn_of_gyro(error)
-    print('The %s %s. Now %s should be:' % ('factors were' if len(factors) > 1 else 'factor was', ', '.join(
-        '%.4f' % run[key] for key in factors), 'they' if len(factors) > 1 else 'it'))
+    before = ', '.join(f'{run[key]:.4f}' for key in factors)
+    print(f'The factors were {before}. Now they should be:' if len(factors) > 1 else
+          f'The factor was {before}. Now it should be:')
     for key, factor in factors.items():
         print(f'{key}: {factor:.4f}')
     if run['loses_fractions']:
@@ -127,13 +123,9 @@ def calibrate():
 
 
 if __name__ == '__main__':
-    status = 0
-    try:
-        calibrate()
-    except rospy.ROSInterruptException:
-        rospy.loginfo('Calibration terminated.')
-        status = 130
-    except (rospy.ROSException, ValueError, OSError) as error:    # OSError: the master does not answer
-        rospy.logerr('%s', error)
-        status = 1
-    life.leave(status)
+    with exit_status():
+        try:
+            calibrate()
+        except rospy.ROSInterruptException:
+            rospy.loginfo('Calibration terminated.')
+            sys.exit(130)

@@ -18,24 +18,24 @@ Parameters:
 Put a tape on the floor, the zero at a mark on the robot. The odometry should report what you measure: if the robot went
 less far than it reports, the factor becomes smaller.
 """
-import rbx1_nav.ros.node.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded
+from rbx1_nav.ros.driving.script import exit_status, frame_param, init_node, positive_param
 
 from math import hypot
+import sys
 
 import rospy
 
 from rbx1_nav.control.legs import Straight
 from rbx1_nav.robot.calibration import corrected, read_measured
 from rbx1_nav.ros.driving.calibration import factor_in_force, forget_run, load_run, node_param, save_run, take_measured
-from rbx1_nav.ros.driving.leg_driver import LegDriver
-from rbx1_nav.ros.node import life
-from rbx1_nav.ros.node.params import frame_param, positive_param
+from rbx1_nav.ros.driving.pose_drive import CalibrationDrive
+from rbx1_nav.ros.driving.pose_listener import PoseListener
 from rbx1_nav.ros.node.question import ask
 
 KEY = 'odom_linear_scale_correction'
 
 
-def drive():
+def measure():
     """Drive once. Returns what the odometry reported, m, and the factor with which it did."""
     rate = positive_param('rate', 50, 2, 1000)                          # Hz
     linear_speed = positive_param('linear_speed', 0.15)                 # m/s
@@ -44,27 +44,22 @@ def drive():
                    linear_speed,
                    positive_param('min_linear_speed', 0.05),            # m/s
                    rate)
-    wait_timeout = positive_param('wait_timeout', 30)                   # s
     base_node = node_param('base_node', 'turtlebot_node')
-    driver = LegDriver(frame_param('odom_frame', 'odom'), frame_param('base_frame', None), linear_speed, 0.0, rate)
+    poses = PoseListener(frame_param('odom_frame', 'odom'), frame_param('base_frame', None), linear_speed, 0.0)
     forget_run('linear')
-    try:
-        driver.wait_for_base(wait_timeout)
+    with CalibrationDrive(rate, poses) as drive:
         factor = factor_in_force(base_node, KEY)
-        driver.drive(leg)
-    finally:
-        # However it ended: the most important thing that a mobile robot must do.
-        driver.stop()
+        drive.drive(leg)
     # A tape measures from mark to mark, not along the robot's first heading.
     return {'reported': hypot(leg.last.x - leg.start.x, leg.last.y - leg.start.y), KEY: factor}
 
 
 def calibrate():
     """Drive, ask, and print the factor."""
-    life.init_node('calibrate_linear', __doc__)
+    init_node('calibrate_linear', __doc__)
     measured = take_measured()
     if measured is None:
-        run = drive()
+        run = measure()
         save_run('linear', run)
     else:
         run = load_run('linear', 'reported', KEY)
@@ -83,13 +78,9 @@ def calibrate():
 
 
 if __name__ == '__main__':
-    status = 0
-    try:
-        calibrate()
-    except rospy.ROSInterruptException:
-        rospy.loginfo('Calibration terminated.')
-        status = 130
-    except (rospy.ROSException, ValueError, OSError) as error:    # OSError: the master does not answer
-        rospy.logerr('%s', error)
-        status = 1
-    life.leave(status)
+    with exit_status():
+        try:
+            calibrate()
+        except rospy.ROSInterruptException:
+            rospy.loginfo('Calibration terminated.')
+            sys.exit(130)

@@ -128,7 +128,7 @@ def main():
         rospy.loginfo('Simulated base: %d parameters that only hardware needs are ignored', len(robot.hardware))
     if robot.unknown:
         rospy.logwarn('Unknown parameters, without effect: %s', ', '.join(robot.unknown))
-    rospy.loginfo('Surface: %s', '%s; seed:=%d repeats this run' % (surface.name, seed) if surface else 'ideal')
+    rospy.loginfo('Surface: %s', f'{surface.name}; seed:={seed} repeats this run' if surface else 'ideal')
     base = FakeBase(robot, make_base(robot, surface, seed), clock)
     rospy.loginfo('Ready: %s stands at the origin of %s', robot.base_frame_id, robot.odom_frame_id)
     base.clock.run(base.step)

@@ -49,9 +49,9 @@ def read_arguments():
     parser.add_argument('--output', required=True, metavar='FILE', help='the surface file to write')
     parser.add_argument('--plot', metavar='FILE', help='draw recorded and simulated paths (PNG, PDF, SVG)')
     parser.add_argument('--start', metavar='SURFACE',
-                        help='what the runs do not tell is as on this surface: one of %s, or a YAML file; default: '
-                             '%s, for text files %s'
-                             % (', '.join(known_surfaces(resources.surfaces())), START, CREATE_START))
+                        help='what the runs do not tell is as on this surface: one of '
+                             f"{', '.join(known_surfaces(resources.surfaces()))}, or a YAML file; default: {START}, "
+                             f'for text files {CREATE_START}')
     parser.add_argument('--config', default=resources.path('config', 'turtlebot.yaml'), metavar='FILE',
                         help="ArbotiX YAML file of the base: its width, limits and timeout; default: the TurtleBot's")
     for name, topic in (('cmd-vel', '/cmd_vel'), ('odom', '/odom'), ('imu', '/imu/data')):
@@ -74,8 +74,8 @@ def read_arguments():
     if os.path.splitext(arguments.start)[1]:        # a name has none
         arguments.start = os.path.abspath(arguments.start)
     if text_files and (arguments.truth or arguments.ends or len(text_files) < len(arguments.runs)):
-        parser.error('%s: a text file has its truth beside it: expected neither bags nor --truth nor --ends'
-                     % show_name(text_files[0]))
+        parser.error(f'{show_name(text_files[0])}: a text file has its truth beside it: expected neither bags nor --truth '
+                     'nor --ends')
     return arguments
 
 
@@ -122,8 +122,8 @@ def main():
         comparisons = compare(result.surface, recordings, robot.base_width)
         count, inside_50, inside_90 = shares(comparisons)
         if count:
-            print('Of %d ends, %d are in the region of 50 %% of the simulated ones, %d in that of 90 %%'
-                  % (count, inside_50, inside_90))
+            print(f'Of {count} ends, {inside_50} are in the region of 50 % of the simulated ones, {inside_90} in that of '
+                  '90 %')
         text = surface_text(result, os.path.basename(arguments.start), [each.name for each in recordings])
         write_file(arguments.output, text.encode())
         print(f'Surface: {arguments.output}')

@@ -20,124 +20,86 @@ Parameters:
 The base counts how far its wheels turn, and publishes a pose: the transform from the frame odom to its own frame. So do
 not drive for a time: drive until you are there.
 """
-import rbx1_nav.ros.node.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded
+from rbx1_nav.ros.driving.script import exit_status, frame_param, init_node, positive_param
 
-from math import degrees, hypot, pi
+from math import pi
 import time
 
 import rospy
 from geometry_msgs.msg import Twist
-from tqdm import tqdm
 
-from rbx1_nav.control.legs import out_and_back_by_odometry
-from rbx1_nav.ros.driving.pose_listener import LostTransform, PoseListener
-from rbx1_nav.ros.driving.rate import Rate, pause
-from rbx1_nav.ros.driving.waiting import wait_for_subscribers
-from rbx1_nav.ros.node import life
-from rbx1_nav.ros.node.params import frame_param, positive_param
-from rbx1_nav.units import wrap_angle
+from rbx1_nav.control.legs import Straight, Turn
+from rbx1_nav.ros.driving.pose_drive import ReportingDrive
+from rbx1_nav.ros.driving.pose_listener import PoseListener
 
 
 class OutAndBack:
     """Drives the robot once out and back; creating one runs it."""
 
     def __init__(self):
-        # Start the node under this name. From here on Ctrl-C leads to stop() below.
-        life.init_node('out_and_back', __doc__)
+        # The name of the node.
+        init_node('out_and_back', __doc__)
 
-        # How often to look at the pose and to publish a command, in Hz.
-        self.rate = positive_param('rate', 50, 2, 1000)
-
-        # How far to go, and how fast. Near the goal the robot slows down, to the lowest speed that moves it.
-        linear_speed = positive_param('linear_speed', 0.2)                  # m/s
-        angular_speed = positive_param('angular_speed', 1.0)                # rad/s
-        legs = out_and_back_by_odometry(
-            linear_speed=linear_speed,
-            goal_distance=positive_param('goal_distance', 1.0),             # m
-            angular_speed=angular_speed,
-            goal_angle=positive_param('goal_angle', pi),                    # rad
-            rate=self.rate,
-            min_linear_speed=positive_param('min_linear_speed', 0.05),      # m/s
-            min_angular_speed=positive_param('min_angular_speed', 0.2))     # rad/s
-        wait_timeout = positive_param('wait_timeout', 30)                   # s
-        self.transform_timeout = positive_param('transform_timeout', 5)     # s
-
-        # Where the robot is: the pose of its base in the frame of its odometry.
-        self.poses = PoseListener(frame_param('odom_frame', 'odom'), frame_param('base_frame', None),
-                                  linear_speed, angular_speed)
-
-        # The robot's base subscribes to this topic. With a queue, a slow subscriber does not hold up the others.
+        # A robot's base listens on this topic. Up to five commands wait for a slow listener; the others get theirs at once.
         self.cmd_vel = rospy.Publisher('/cmd_vel', Twist, queue_size=5)
 
-        try:
-            # What is published before anyone subscribes is lost.
-            self.listeners = wait_for_subscribers(self.cmd_vel, wait_timeout)
-            start = self.poses.wait(wait_timeout)
-            rospy.loginfo('Measuring the pose of %s in the frame %s', self.poses.base_frame, self.poses.odom_frame)
+        # How often to look at the pose and to send a command, Hz.
+        rate = positive_param('rate', 50, 2, 1000)
 
-            for leg in legs:
-                rospy.loginfo('%s: %.2f %s', leg.name, leg.goal, leg.unit)
-                with tqdm(total=leg.goal, desc=leg.name, unit=leg.unit, disable=None,
-                          bar_format='{desc:9}: |{bar}| {n:.2f} of {total:.2f} {unit}') as bar:
-                    # A leg stops twice: just before its goal, to see how far the robot rolls on, and at its goal.
-                    self.drive(leg, bar)
-                    self.rest(0.5)
-                    self.drive(leg, bar)
-                self.rest(1)
+        # The way out: how fast (m/s) and how far (m). Near the goal the robot slows down, to the lowest speed that moves it.
+        linear_speed = positive_param('linear_speed', 0.2)
+        goal_distance = positive_param('goal_distance', 1.0)
+        min_linear_speed = positive_param('min_linear_speed', 0.05)
 
+        # The turn to the left: the same in rad/s and rad.
+        angular_speed = positive_param('angular_speed', 1.0)
+        goal_angle = positive_param('goal_angle', pi)
+        min_angular_speed = positive_param('min_angular_speed', 0.2)
+
+        # Two legs: out, and back. Each motion knows how far it is to its goal, and how fast to go there.
+        legs = [(Straight('forward', goal_distance, linear_speed, min_linear_speed, rate),
+                 Turn('turn left', goal_angle, angular_speed, min_angular_speed, rate)) for _ in range(2)]
+
+        # Where the robot is: the pose of its base in the frame of its odometry.
+        transform_timeout = positive_param('transform_timeout', 5)
+        poses = PoseListener(frame_param('odom_frame', 'odom'), frame_param('base_frame', None), linear_speed, angular_speed)
+
+        # Wait until a base listens, and watch it from then on. However this block ends, it ends with shutdown().
+        with ReportingDrive(self.cmd_vel, rate, self.shutdown, poses, transform_timeout) as drive:
+            for forward, turn_left in legs:
+                # Drive forward: on each tick, look at the pose, publish the command, and sleep until the next tick.
+                move_cmd = Twist()
+                r = drive.Rate()
+                for speed in drive.speeds(forward):
+                    move_cmd.linear.x = speed
+                    self.cmd_vel.publish(move_cmd)
+                    r.sleep()
+                # Stop before the turn, and come to rest.
+                self.cmd_vel.publish(Twist())
+                drive.rest(1)
+                # Turn left in the same way.
+                move_cmd = Twist()
+                r = drive.Rate()
+                for speed in drive.speeds(turn_left):
+                    move_cmd.angular.z = speed
+                    self.cmd_vel.publish(move_cmd)
+                    r.sleep()
+                # Stop before the next leg, and come to rest.
+                self.cmd_vel.publish(Twist())
+                drive.rest(1)
+            # Stop the robot for good.
             self.cmd_vel.publish(Twist())
-        finally:
-            # However it ended: the most important thing that a mobile robot must do.
-            self.stop()
 
-        # Say so if the base did not get every command.
-        self.listeners.check_delivery()
-        end = self.poses.wait(self.transform_timeout)
-        rospy.loginfo('Done: measured in %s, the robot is %.3f m from its start and %.1f degrees off its first heading',
-                      self.poses.odom_frame, hypot(end.x - start.x, end.y - start.y),
-                      degrees(abs(wrap_angle(end.yaw - start.yaw))))
-
-    def drive(self, leg, bar):
-        """Look at the pose, and drive on until the leg is to stop. Shows its progress."""
-        rate = Rate(self.rate, self.listeners)
-        command = Twist()
-        speed = leg.next_speed(self.pose())
-        while speed:
-            command.linear.x, command.angular.z = leg.velocity(speed)
-            self.cmd_vel.publish(command)
-            rate.sleep()
-            speed = leg.next_speed(self.pose())
-            bar.update(max(0, min(leg.done(), leg.goal) - bar.n))
-
-    def rest(self, seconds):
-        """Stop, and come to rest."""
-        self.cmd_vel.publish(Twist())
-        pause(seconds, self.listeners)
-        self.poses.forget_velocity()
-
-    def pose(self):
-        """The robot's pose. If it is lost, the robot stands and waits for it."""
-        try:
-            return self.poses.pose()
-        except LostTransform as error:
-            self.cmd_vel.publish(Twist())
-            rospy.logwarn('%s: the robot waits for a new one', error)
-            return self.poses.wait(self.transform_timeout, self.listeners.check)
-
-    def stop(self):
-        """Stop the robot, and give it the time to do so."""
+    def shutdown(self):
+        """Stop the robot, whatever ended the run: nothing that a mobile robot does is more important."""
         self.cmd_vel.publish(Twist())
         rospy.loginfo('Stopping the robot...')
-        time.sleep(1)   # wall time: a simulated clock may have stopped
+        time.sleep(1)   # of wall time: a simulated clock may have stopped
 
 
 if __name__ == '__main__':
-    status = 0
-    try:
-        OutAndBack()
-    except rospy.ROSInterruptException:
-        rospy.loginfo('Out-and-Back node terminated.')
-    except (rospy.ROSException, ValueError) as error:     # StuckError is a ValueError
-        rospy.logerr('%s', error)
-        status = 1
-    life.leave(status)
+    with exit_status():
+        try:
+            OutAndBack()
+        except rospy.ROSInterruptException:
+            rospy.loginfo('Out-and-Back node terminated.')

@@ -60,7 +60,7 @@ def main():
         rospy.logerr('No message on %s for %g s: expected a running base',
                      ', '.join(map(rospy.resolve_name, TOPICS)), TIMEOUT)
         return 1
-    print('%-24s %7s %7s %19s %20s' % ('', 'x (m)', 'y (m)', 'heading (degrees)', 'from the start (m)'))
+    print(f"{'':24} {'x (m)':>7} {'y (m)':>7} {'heading (degrees)':>19} {'from the start (m)':>20}")
     for topic in TOPICS:
         print(row(topic, latest))
     return 0

@@ -33,8 +33,7 @@ def read_arguments():
     """The command line."""
     parser = argparse.ArgumentParser(description=__doc__.split('\n')[0])
     parser.add_argument('--surface', default='ideal', metavar='NAME',
-                        help='one of %s, or a YAML file; default: ideal'
-                             % ', '.join(known_surfaces(resources.surfaces())))
+                        help=f"one of {', '.join(known_surfaces(resources.surfaces()))}, or a YAML file; default: ideal")
     parser.add_argument('--method', choices=METHODS, action='append',
                         help='timed: by time alone; odom: by odometry; ekf: by odometry and gyro. Can be given more '
                              'than once; default: all three')
@@ -50,7 +49,7 @@ def read_arguments():
     for name, low, high in (('runs', 1, 10 ** 6), ('jobs', 1, 10 ** 6), ('seed', 0, MAX_SEED + 1 - arguments.runs)):
         value = getattr(arguments, name)
         if not low <= value <= high:
-            parser.error('--%s: %s: expected an integer from %d to %d' % (name, show(value), low, high))
+            parser.error(f'--{name}: {show(value)}: expected an integer from {low} to {high}')
     if os.path.splitext(arguments.surface)[1]:      # a name has none
         arguments.surface = os.path.abspath(arguments.surface)
     if arguments.plot is not None:
@@ -93,11 +92,11 @@ def report(method, results):
         rows.append(('/odom_ekf', [r.end.estimate for r in results]))
     for name, poses in rows:
         x, y, yaw = zip(*poses)
-        print('%-6s %-14s  %s  %s  %s  %s' % (method, name, spread(x), spread(y), spread_of_angles(yaw),
-                                             spread([hypot(*pose[:2]) for pose in poses])))
+        print(f'{method:6} {name:14}  {spread(x)}  {spread(y)}  {spread_of_angles(yaw)}  '
+              f'{spread([hypot(*pose[:2]) for pose in poses])}')
         method = ''
     legs = [r.first_leg for r in results]
-    print('%-6s first leg %.3f m (%.3f to %.3f)' % ('', numpy.mean(legs), min(legs), max(legs)))
+    print(f"{'':6} first leg {numpy.mean(legs):.3f} m ({min(legs):.3f} to {max(legs):.3f})")
 
 
 def load_robot(path):
@@ -118,15 +117,14 @@ def main():
         surface = load_surface(arguments.surface, resources.surfaces())
         seeds = range(arguments.seed, arguments.seed + arguments.runs)
         robot = load_robot(arguments.config)
-        print('Runs of each method on %s: %d. Mean and spread (1 sigma) at the end:\n'
-              '%-6s %-14s  %17s  %17s  %17s  %17s' % (arguments.surface, arguments.runs, 'method', '', 'x (m)', 'y (m)',
-                                                      'heading (degrees)', 'from start (m)'))
+        print(f'Runs of each method on {arguments.surface}: {arguments.runs}. Mean and spread (1 sigma) at the end:\n'
+              f"{'method':6} {'':14}  {'x (m)':>17}  {'y (m)':>17}  {'heading (degrees)':>17}  {'from start (m)':>17}")
         results = {}
         for method in arguments.method:
             results[method], took = run_all(method, robot, surface, seeds, arguments)
             report(method, results[method])
             simulated = sum(r.end.time for r in results[method])
-            print('%-6s %.0f s of the robot in %.2f s, %.0f times real time' % ('', simulated, took, simulated / took))
+            print(f"{'':6} {simulated:.0f} s of the robot in {took:.2f} s, {simulated / took:.0f} times real time")
         if arguments.plot:
             draw(arguments.plot, arguments.surface, results, seeds)
             print(f'Picture: {arguments.plot}')
@@ -134,8 +132,8 @@ def main():
         print(f"simulate.py: {' '.join(str(error).split())}", file=sys.stderr)
         return 1
     except BrokenProcessPool:
-        print('simulate.py: a process was killed, perhaps because memory ran out: expected all of --jobs %d to run'
-              % arguments.jobs, file=sys.stderr)
+        print('simulate.py: a process was killed, perhaps because memory ran out: '
+              f'expected all of --jobs {arguments.jobs} to run', file=sys.stderr)
         return 1
     return 0
 

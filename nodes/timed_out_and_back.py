@@ -14,97 +14,77 @@ Parameters:
 
 The script never asks where the robot is. Drive at a known speed for a known time, and it should end where it began.
 """
-import rbx1_nav.ros.node.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded
+from rbx1_nav.ros.driving.script import TimedDrive, exit_status, init_node, positive_param, whole_ticks
 
 from math import pi
 import time
 
 import rospy
 from geometry_msgs.msg import Twist
-from tqdm import tqdm
-
-from rbx1_nav.control.motions import out_and_back
-from rbx1_nav.ros.driving.rate import Rate, pause
-from rbx1_nav.ros.driving.waiting import wait_for_subscribers
-from rbx1_nav.ros.node import life
-from rbx1_nav.ros.node.params import positive_param
 
 
 class OutAndBack:
     """Drives the robot once out and back; creating one runs it."""
 
     def __init__(self):
-        # Start the node under this name. From here on Ctrl-C leads to stop() below.
-        life.init_node('out_and_back', __doc__)
+        # The name of the node.
+        init_node('out_and_back', __doc__)
 
-        # How often to publish a command, in Hz. Some robots stop when they receive none, so publish on every tick.
-        self.rate = positive_param('rate', 50, 2, 1000)
-
-        # Distance is speed times time: what to cover, and how fast, gives the number of ticks.
-        motions = out_and_back(
-            linear_speed=positive_param('linear_speed', 0.2),       # m/s
-            goal_distance=positive_param('goal_distance', 1.0),     # m
-            angular_speed=positive_param('angular_speed', 1.0),     # rad/s
-            goal_angle=positive_param('goal_angle', pi),            # rad
-            rate=self.rate)
-        wait_timeout = positive_param('wait_timeout', 30)           # s
-
-        # The robot's base subscribes to this topic. With a queue, a slow subscriber does not hold up the others.
+        # A robot's base listens on this topic. Up to five commands wait for a slow listener; the others get theirs at once.
         self.cmd_vel = rospy.Publisher('/cmd_vel', Twist, queue_size=5)
 
-        try:
-            # What is published before anyone subscribes is lost.
-            self.listeners = wait_for_subscribers(self.cmd_vel, wait_timeout)
+        # How often to send a command, Hz. Many robots stop when they hear nothing for a while.
+        rate = positive_param('rate', 50, 2, 1000)
 
-            for motion in motions:
-                self.drive(motion)
-                # Stop, and come to rest, before the next motion.
+        # The way out: how fast (m/s), how far (m), and so for how long (s), and with how many commands.
+        linear_speed = positive_param('linear_speed', 0.2)
+        goal_distance = positive_param('goal_distance', 1.0)
+        linear_duration = goal_distance / linear_speed
+        linear_ticks = whole_ticks(linear_duration * rate, 'goal_distance / linear_speed * rate')
+
+        # The turn to the left: the same in rad/s and rad.
+        angular_speed = positive_param('angular_speed', 1.0)
+        goal_angle = positive_param('goal_angle', pi)
+        angular_duration = goal_angle / angular_speed
+        angular_ticks = whole_ticks(angular_duration * rate, 'goal_angle / angular_speed * rate')
+
+        # Wait until a base listens, and watch it from then on. However this block ends, it ends with shutdown().
+        with TimedDrive(self.cmd_vel, rate, self.shutdown) as drive:
+            # Two legs: out, and back.
+            for _ in range(2):
+                # Drive forward: on each tick, publish the command and sleep until the next tick.
+                move_cmd = Twist()
+                move_cmd.linear.x = linear_speed
+                r = drive.Rate()
+                for _ in drive.progress('forward', linear_ticks, move_cmd):
+                    self.cmd_vel.publish(move_cmd)
+                    r.sleep()
+                # Stop before the turn, and come to rest.
                 self.cmd_vel.publish(Twist())
-                pause(1, self.listeners)
-
+                drive.rest(1)
+                # Turn left in the same way.
+                move_cmd = Twist()
+                move_cmd.angular.z = angular_speed
+                r = drive.Rate()
+                for _ in drive.progress('turn left', angular_ticks, move_cmd):
+                    self.cmd_vel.publish(move_cmd)
+                    r.sleep()
+                # Stop before the next leg, and come to rest.
+                self.cmd_vel.publish(Twist())
+                drive.rest(1)
+            # Stop the robot for good.
             self.cmd_vel.publish(Twist())
-        finally:
-            # However it ended: the most important thing that a mobile robot must do.
-            self.stop()
 
-        # Say so if the base did not get every command.
-        self.listeners.check_delivery()
-        rospy.loginfo('Done: commanded %.2f m forward and %.2f rad to the left. To see where that led: '
-                      'rosrun rbx1_nav pose.py',
-                      sum(motion.ticks * motion.linear for motion in motions) / self.rate,
-                      sum(motion.ticks * motion.angular for motion in motions) / self.rate)
-
-    def drive(self, motion):
-        """One motion: the same command on every tick, for a number of ticks."""
-        command = Twist()
-        command.linear.x = motion.linear        # forward, m/s
-        command.angular.z = motion.angular      # to the left, rad/s
-
-        speed, unit = (motion.linear, 'm') if motion.linear else (motion.angular, 'rad')
-        rospy.loginfo('%s: %.2f %s at %g %s/s', motion.name, motion.ticks * speed / self.rate, unit, speed, unit)
-
-        # With disable=None, tqdm shows its progress bar only in a terminal.
-        ticks = tqdm(range(motion.ticks), desc=motion.name, disable=None,
-                     bar_format='{desc:9}: |{bar}| {n} of {total} commands')
-        rate = Rate(self.rate, self.listeners)
-        for _ in ticks:
-            self.cmd_vel.publish(command)
-            rate.sleep()
-
-    def stop(self):
-        """Stop the robot, and give it the time to do so."""
+    def shutdown(self):
+        """Stop the robot, whatever ended the run: nothing that a mobile robot does is more important."""
         self.cmd_vel.publish(Twist())
         rospy.loginfo('Stopping the robot...')
-        time.sleep(1)   # wall time: a simulated clock may have stopped
+        time.sleep(1)   # of wall time: a simulated clock may have stopped
 
 
 if __name__ == '__main__':
-    status = 0
-    try:
-        OutAndBack()
-    except rospy.ROSInterruptException:
-        rospy.loginfo('Out-and-Back node terminated.')
-    except (rospy.ROSException, ValueError) as error:
-        rospy.logerr('%s', error)
-        status = 1
-    life.leave(status)
+    with exit_status():
+        try:
+            OutAndBack()
+        except rospy.ROSInterruptException:
+            rospy.loginfo('Out-and-Back node terminated.')

@@ -1,4 +1,6 @@
 """Whether something periodic is due, on any clock."""
+from __future__ import annotations
+
 from rbx1_nav.units import SECOND
 
 CLOCK_STEP = 0.02   # s, of a simulated clock that does not say otherwise
@@ -7,12 +9,12 @@ CLOCK_STEP = 0.02   # s, of a simulated clock that does not say otherwise
 class Schedule:
     """Whether something periodic is due, also on a clock that jumps."""
 
-    def __init__(self, rate):
+    def __init__(self, rate: float) -> None:
         """rate: Hz."""
         self.period = round(SECOND / rate)
         self.last = self.next = 0
 
-    def due(self, now):
+    def due(self, now: int) -> bool:
         """Whether it is due at `now` (ns). To be called about once per period or more often."""
         jumped_back = now < self.last
         self.last = now

@@ -7,7 +7,6 @@ import os
 import sys
 import unittest
 
-import rospkg
 import rospy
 from nav_msgs.msg import Odometry
 from std_srvs.srv import Empty

@@ -13,7 +13,9 @@ class TestReleasedPublisher(unittest.TestCase):
         support.init_node('released_publisher')
         odom = support.OdomWatch()
         log = support.Watch('/rosout', Log)
-        releases = lambda: [m.msg for m in log.messages if 'not in step with /clock' in m.msg]
+
+        def releases():
+            return [m.msg for m in log.messages if 'not in step with /clock' in m.msg]
 
         # ten commands per second of wall time
         commander = support.Commander()

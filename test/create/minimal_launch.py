@@ -19,7 +19,7 @@ class TestMinimalLaunch(unittest.TestCase):
         message = self.odom.last
         self.assertEqual((message.header.frame_id, message.child_frame_id), ('odom', 'base_footprint'))
         buffer = tf2_ros.Buffer()
-        listener = tf2_ros.TransformListener(buffer)    # pylint: disable=unused-variable
+        self.listener = tf2_ros.TransformListener(buffer)
         # the base publishes the first transform; robot_state_publisher the others, the wheel's with the joint states
         for frame in 'base_footprint', 'gyro_link', 'base_l_wheel_link':
             support.wait_for(lambda frame=frame: buffer.can_transform('odom', frame, rospy.Time(0)), frame)

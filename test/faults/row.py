@@ -23,11 +23,11 @@ import traceback
 FOLDER = os.path.dirname(os.path.abspath(__file__))
 sys.path[:0] = [FOLDER, os.path.dirname(FOLDER)]
 
-import roslib.packages                  # noqa: E402, pylint: disable=wrong-import-position
-import rospy                            # noqa: E402, pylint: disable=wrong-import-position
-from std_srvs.srv import Empty          # noqa: E402, pylint: disable=wrong-import-position
+import roslib.packages
+import rospy
+from std_srvs.srv import Empty
 
-import support                          # noqa: E402, pylint: disable=wrong-import-position
+import support
 
 
 class Row:
@@ -50,7 +50,7 @@ class Row:
             yield
         except AssertionError as error:
             self.failures.append(f'{text}: {error or traceback.format_exc().splitlines()[-2].strip()}')
-        except Exception:       # pylint: disable=broad-except
+        except Exception:
             self.failures.append(f'{text}: {traceback.format_exc(limit=-5)}')
 
     def figure(self, name, value):
@@ -120,7 +120,7 @@ def main():
     row = Row(name, times, seed)
     try:
         importlib.import_module(f'rows.{name}').run(row)
-    except Exception:   # pylint: disable=broad-except
+    except Exception:
         row.failures.append(traceback.format_exc())
     finally:
         row.end()

@@ -19,8 +19,8 @@ import time
 FOLDER = os.path.dirname(os.path.abspath(__file__))
 sys.path[:0] = [FOLDER, os.path.dirname(FOLDER)]
 
-import processes    # noqa: E402, pylint: disable=wrong-import-position
-from ports import free_port     # noqa: E402, pylint: disable=wrong-import-position
+import processes
+from ports import free_port
 
 LIMIT = 20 * 60     # s of wall time for a row: longer means that it hangs
 

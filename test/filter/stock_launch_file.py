@@ -21,7 +21,7 @@ class TestStockLaunchFile(unittest.TestCase):
         poses = support.Watch('/robot_pose_ekf/odom_combined', PoseWithCovarianceStamped)
         transforms = support.Watch('/tf', TFMessage)
         buffer = tf2_ros.Buffer()
-        listener = tf2_ros.TransformListener(buffer)    # pylint: disable=unused-variable
+        self.listener = tf2_ros.TransformListener(buffer)
         commander = support.Commander()
 
         def combined_transforms():

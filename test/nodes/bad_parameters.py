@@ -31,7 +31,7 @@ class TestBadParameters(unittest.TestCase):
                                       ('_angular_speed:=.nan', '/angular_speed', 'nan'),
                                       ('_goal_distance:=far', '/goal_distance', "'far'"),
                                       ('_goal_angle:=true', '/goal_angle', 'True'),
-                                      ('_linear_speed:=1.0e+5', '/ speed 100000', 'between 1 tick and a day'),
+                                      ('_linear_speed:=1.0e+5', 'linear_speed * rate: 0.0005 ticks', 'from 1'),
                                       ('_linear_speed:=1.0e+300', '/linear_speed', '1e+300')]:
             self.check(support.out_and_back(argument), [name, value, 'expected'])
             rospy.delete_param('/out_and_back')

@@ -10,7 +10,7 @@ import rospkg
 import support
 
 sys.path.insert(0, os.path.join(rospkg.RosPack().get_path('rbx1_nav'), 'test'))
-from ports import free_port     # noqa: E402  pylint: disable=wrong-import-position
+from ports import free_port
 
 SCRIPTS = ['timed_out_and_back.py', 'odom_out_and_back.py', 'calibrate_linear.py', 'calibrate_angular.py']
 WAITING = ['fake_base.py', 'turtlebot_node.py', 'fake_create.py', 'ekf.py', 'odom_ekf.py', 'true_robot.py']

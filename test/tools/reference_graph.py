@@ -11,7 +11,7 @@ import support
 
 PACKAGE = rospkg.RosPack().get_path('rbx1_nav')
 sys.path.insert(0, os.path.join(PACKAGE, 'script'))
-import graph        # noqa: E402  (found there)
+import graph
 
 
 class TestReferenceGraph(unittest.TestCase):

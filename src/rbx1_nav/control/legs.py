@@ -1,8 +1,13 @@
 """The exercise by odometry: a list of legs, each of which ends when the robot's pose says so."""
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
 from collections import deque
+from enum import Enum
 from math import cos, pi, sin, sqrt
 
 from rbx1_nav.control.motions import ticks
+from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.units import wrap_angle
 
 SLOW_DOWN = 0.5     # s: the distance at which a leg begins to slow down, as a travel time
@@ -12,7 +17,7 @@ POSE_TOLERANCE = 0.1    # m, and twice as many rad: what a pose may be corrected
 STUCK_TIME = 5.0    # s without progress: something holds the robot, or turns it the wrong way
 
 
-def is_reachable(before, after, elapsed, linear_speed, angular_speed):
+def is_reachable(before: Pose, after: Pose, elapsed: float, linear_speed: float, angular_speed: float) -> bool:
     """Whether a robot that drives forward (m/s) and turns left (rad/s) can get from one Pose to another in `elapsed` s.
 
     Half as fast again is allowed. A robot whose pose is lost for long is stopped, so no more than COASTING counts.
@@ -31,74 +36,132 @@ class StuckError(ValueError):
     """A leg that makes no progress towards its goal."""
 
 
-class Leg:
+class State(Enum):
+    """What a Leg is about."""
+
+    NEW = 'it has no pose yet'
+    APPROACH = 'it drives, slower and slower'
+    TRIAL_STOP = 'it has stopped just before its goal, and is called again when the robot is at a standstill'
+    LAST_PART = 'it goes on, and knows how far the robot rolls on'
+    FINISHED = 'it has stopped at its goal'
+
+
+class Leg(ABC):
     """One motion, slower and slower towards its goal, with a trial stop just before it.
 
     A robot rolls on after a stop. How far depends on the robot, the floor, and all delays in between. The trial stop
-    measures it. Then the robot goes on at its lowest speed, and stops that far before the goal. So a leg is driven in two
-    parts, with a rest between them.
+    measures it. Then the robot goes on at its lowest speed, and stops that far before the goal. So a leg is driven in
+    two parts, with a rest between them.
     """
 
-    def __init__(self, name, goal, speed, min_speed, rate):
+    unit: str
+    keys: str               # of the configuration, for errors
+    deceleration: float     # m/s^2 or rad/s^2
+    start: Pose             # at the first call of next_speed()
+    last: Pose              # at the last one
+
+    def __init__(self, name: str, goal: float, speed: float, min_speed: float, rate: float) -> None:
         """goal: m or rad; speed, min_speed: m/s or rad/s; rate: of the calls, Hz. Raises ValueError, see ticks()."""
         self.name = name
         self.goal = goal
         self.speed = speed
         self.min_speed = min(min_speed, speed)
         self.rate = rate
-        self.start = self.last = None   # Pose
+        self.state = State.NEW
         self.turned = 0.0       # rad
         self.nearest = goal     # m or rad
         self.patience = self.stuck_ticks = max(2, int(min(STUCK_TIME * rate, 1e9)))
-        self.recent = deque(maxlen=1 + round(min(max(1, SPEED_WINDOW * rate), 1000)))   # m or rad to go
-        self.trial = None       # m or rad to go, and travel per tick, when the trial stop began
-        self.roll_out = None    # m or rad from there to the standstill
-        self.finished = False
+        # m or rad to go, at the last calls
+        self.recent: deque[float] = deque(maxlen=1 + round(min(max(1, SPEED_WINDOW * rate), 1000)))
+        self.trial_to_go = 0.0      # m or rad to go when the trial stop began
+        self.trial_travel = 0.0     # m or rad per tick at that moment
+        self.roll_out = 0.0         # m or rad from there to the standstill
         try:
             ticks(goal, self.min_speed, rate)
         except ValueError as error:
-            raise ValueError(f'{self.keys}: at the lowest speed, {error}')
+            raise ValueError(f'{self.keys}: at the lowest speed, {error}') from error
 
-    def next_speed(self, pose):
+    @abstractmethod
+    def done(self) -> float:
+        """What is covered of the goal, m or rad."""
+
+    @staticmethod
+    @abstractmethod
+    def velocity(speed: float) -> tuple[float, float]:
+        """(linear, angular) for a speed, m/s and rad/s."""
+
+    @property
+    def finished(self) -> bool:
+        """Whether it has stopped at its goal."""
+        return self.state is State.FINISHED
+
+    def next_speed(self, pose: Pose) -> float:
         """The speed for the next tick, with the robot at `pose`. Raises StuckError.
 
-        0 is a stop: first the trial stop, after which it is called again when the robot is at a standstill; then the goal.
+        0 is a stop: first the trial stop, after which it is called again when the robot is at a standstill; then the
+        goal.
         """
-        if self.start is None:
-            self.start = self.last = pose
-        self.turned += wrap_angle(pose.yaw - self.last.yaw)
-        self.last = pose
+        self._follow(pose)
         to_go = self.goal - self.done()
-        if self.trial and self.roll_out is None:
-            self.roll_out = max(0.0, self.trial[0] - to_go)
-            self.recent.clear()
-        self.recent.append(to_go)
-        travel = max(0.0, self.recent[0] - to_go) / max(1, len(self.recent) - 1)    # m or rad per tick
-        # half of a tick's travel is as near as it can get
-        if self.finished or to_go - self._expected_roll_out(travel) <= min(travel, self.min_speed / self.rate) / 2:
-            self.finished = True
+        if self.state is State.FINISHED:
             return 0.0
-        self.patience -= 1
-        if to_go < self.nearest - self.min_speed / self.rate:
-            self.nearest = to_go
-            self.patience = self.stuck_ticks
-        if self.patience < 0:
-            raise StuckError('%s: no progress for %g s, %.3f of %.3f %s to go'
-                             % (self.name, STUCK_TIME, to_go, self.goal, self.unit))
+        if self.state is State.TRIAL_STOP:
+            self._end_trial(to_go)
+        travel = self._measure_travel(to_go)
+        # half of a tick's travel is as near as it can get
+        if to_go - self._expected_roll_out(travel) <= min(travel, self.min_speed / self.rate) / 2:
+            self.state = State.FINISHED
+            return 0.0
+        self._check_progress(to_go)
         # it has reached its lowest speed, with SLOW_DOWN left to go on at it
-        if not self.trial and to_go < SLOW_DOWN * self.min_speed:
-            self.trial = to_go, max(travel, 1e-9)   # never divide by 0
+        if self.state is State.APPROACH and to_go < SLOW_DOWN * self.min_speed:
+            self._begin_trial(to_go, travel)
             return 0.0
         # no faster than it can brake, and never past the goal within two ticks
         limit = min(to_go / max(SLOW_DOWN, 2 / self.rate), sqrt(2 * self.deceleration * to_go))
         return min(self.speed, max(self.min_speed, limit))
 
-    def _expected_roll_out(self, travel):
+    def _follow(self, pose: Pose) -> None:
+        """The robot has got to a pose."""
+        if self.state is State.NEW:
+            self.start = self.last = pose
+            self.state = State.APPROACH
+        self.turned += wrap_angle(pose.yaw - self.last.yaw)
+        self.last = pose
+
+    def _begin_trial(self, to_go: float, travel: float) -> None:
+        """Stop, to see how far the robot rolls on. travel: per tick, m or rad."""
+        self.trial_to_go = to_go
+        self.trial_travel = max(travel, 1e-9)   # never divide by 0
+        self.state = State.TRIAL_STOP
+
+    def _end_trial(self, to_go: float) -> None:
+        """The robot is at a standstill, and goes on."""
+        self.roll_out = max(0.0, self.trial_to_go - to_go)
+        self.recent.clear()
+        self.state = State.LAST_PART
+
+    def _measure_travel(self, to_go: float) -> float:
+        """The robot's present travel per tick, m or rad."""
+        self.recent.append(to_go)
+        return max(0.0, self.recent[0] - to_go) / max(1, len(self.recent) - 1)
+
+    def _expected_roll_out(self, travel: float) -> float:
         """How far the robot would roll on (m or rad): as in the trial stop, or less if it is slower now.
 
         travel: per tick, m or rad.
         """
-        return self.roll_out * min(1.0, travel / self.trial[1]) if self.roll_out else 0.0
+        return self.roll_out * min(1.0, travel / self.trial_travel) if self.roll_out else 0.0
+
+    def _check_progress(self, to_go: float) -> None:
+        """Raises StuckError if the robot has not come nearer for STUCK_TIME."""
+        self.patience -= 1
+        if to_go < self.nearest - self.min_speed / self.rate:
+            self.nearest = to_go
+            self.patience = self.stuck_ticks
+        if self.patience < 0:
+            raise StuckError(f'{self.name}: no progress for {STUCK_TIME:g} s, '
+                             f'{to_go:.3f} of {self.goal:.3f} {self.unit} to go')
 
 
 class Straight(Leg):
@@ -108,13 +171,12 @@ class Straight(Leg):
     keys = 'goal_distance, min_linear_speed'
     deceleration = 0.4      # m/s^2
 
-    def done(self):
+    def done(self) -> float:
         """The distance covered in the direction of the start, m."""
         return ((self.last.x - self.start.x) * cos(self.start.yaw) + (self.last.y - self.start.y) * sin(self.start.yaw))
 
     @staticmethod
-    def velocity(speed):
-        """(linear, angular) for a speed."""
+    def velocity(speed: float) -> tuple[float, float]:
         return speed, 0.0
 
 
@@ -125,18 +187,17 @@ class Turn(Leg):
     keys = 'goal_angle, min_angular_speed'
     deceleration = 2.0      # rad/s^2
 
-    def done(self):
+    def done(self) -> float:
         """The angle turned, rad."""
         return self.turned
 
     @staticmethod
-    def velocity(speed):
-        """(linear, angular) for a speed."""
+    def velocity(speed: float) -> tuple[float, float]:
         return 0.0, speed
 
 
-def out_and_back_by_odometry(linear_speed, goal_distance, angular_speed, goal_angle, rate, min_linear_speed,
-                             min_angular_speed):
+def out_and_back_by_odometry(linear_speed: float, goal_distance: float, angular_speed: float, goal_angle: float,
+                             rate: float, min_linear_speed: float, min_angular_speed: float) -> list[Leg]:
     """The same exercise as four Legs; in m/s, m, rad/s, rad, Hz, m/s and rad/s. Raises ValueError, see ticks()."""
     return [leg for _ in range(2)
             for leg in (Straight('forward', goal_distance, linear_speed, min_linear_speed, rate),

@@ -1,5 +1,7 @@
 """Keeps a robot that was stopped by something else from being driven on by a sender that has not noticed."""
 
+from __future__ import annotations
+
 MAX_SENDERS = 20    # that are remembered before those are forgotten that have been silent
 
 
@@ -9,18 +11,18 @@ class Lockout:
     All times are in ns.
     """
 
-    def __init__(self, silence):
+    def __init__(self, silence: int) -> None:
         """silence: how long a sender must have sent nothing."""
         self.silence = silence
         self.reason = ''        # of the last event
-        self._released = None   # the senders that are obeyed; None for all of them
-        self._latest = {}       # by sender: when its last command arrived
+        self._released: set[str] | None = None      # the senders that are obeyed; None for all of them
+        self._latest: dict[str, int] = {}   # by sender: when its last command arrived
 
-    def lock(self, reason):
-        """Something has stopped the robot. reason: a text."""
+    def lock(self, reason: str) -> None:
+        """Something has stopped the robot."""
         self.reason, self._released = reason, set()
 
-    def refuses(self, now, sender, moving):
+    def refuses(self, now: int, sender: str, moving: bool) -> bool:
         """Whether a command that arrives now is not to be obeyed. sender: its name; moving: whether it is a motion."""
         last = self._latest.get(sender)
         self._latest[sender] = now

@@ -1,32 +1,44 @@
 """The exercise by time alone: a list of motions, each a velocity for a number of ticks."""
-from collections import namedtuple
+from __future__ import annotations
+
 from math import isfinite
+from typing import NamedTuple
 
-Motion = namedtuple('Motion', 'name linear angular ticks')
-Motion.__doc__ = 'One motion: linear in m/s, angular in rad/s (positive to the left), for a number of ticks.'
+MAX_TICKS = 10 ** 8    # three weeks at 50 Hz
 
 
-def ticks(goal, speed, rate):
-    """Number of ticks, at `rate` per second, to cover `goal` (m or rad) at `speed` (m/s or rad/s), rounded down.
+class Motion(NamedTuple):
+    """One motion: the same command for a number of ticks."""
 
-    Raises ValueError if that is less than one tick or more than a day.
+    name: str
+    linear: float   # m/s
+    angular: float  # rad/s, positive to the left
+    ticks: int
+
+
+def whole_ticks(number: float, formula: str) -> int:
+    """A number of ticks, rounded down. Raises ValueError if it is less than 1 or more than MAX_TICKS.
+
+    formula: how the number was calculated, for the message.
     """
-    number = goal / speed * rate
-    if not (isfinite(number) and 1 <= number + 1e-9 <= 24 * 3600 * rate):
-        raise ValueError('goal %g / speed %g * rate %g = %g ticks: expected between 1 tick and a day of them'
-                         % (goal, speed, rate, number))
+    if not (isfinite(number) and 1 <= number + 1e-9 <= MAX_TICKS):
+        raise ValueError(f'{formula}: {number:g} ticks: expected from 1 to {MAX_TICKS}')
     # 0.3 / 0.1 is a little less than 3 in floating point: do not lose a tick to that
     return int(number + 1e-9)
 
 
-def out_and_back(linear_speed, goal_distance, angular_speed, goal_angle, rate):
+def ticks(goal: float, speed: float, rate: float, keys: str = 'goal / speed') -> int:
+    """Number of ticks, at `rate` per second, to cover `goal` (m or rad) at `speed` (m/s or rad/s), rounded down.
+
+    Raises ValueError, see whole_ticks(); keys: names of goal and speed.
+    """
+    return whole_ticks(goal / speed * rate, f'{keys} * rate: {goal:g} / {speed:g} * {rate:g}')
+
+
+def out_and_back(linear_speed: float, goal_distance: float, angular_speed: float, goal_angle: float,
+                 rate: float) -> list[Motion]:
     """The tutorial's exercise: forward and turn left, twice, as four Motions. Raises ValueError, see ticks()."""
-    try:
-        forward = Motion('forward', linear_speed, 0.0, ticks(goal_distance, linear_speed, rate))
-    except ValueError as error:
-        raise ValueError(f'goal_distance, linear_speed: {error}')
-    try:
-        turn = Motion('turn left', 0.0, angular_speed, ticks(goal_angle, angular_speed, rate))
-    except ValueError as error:
-        raise ValueError(f'goal_angle, angular_speed: {error}')
+    forward = Motion('forward', linear_speed, 0.0,
+                     ticks(goal_distance, linear_speed, rate, 'goal_distance / linear_speed'))
+    turn = Motion('turn left', 0.0, angular_speed, ticks(goal_angle, angular_speed, rate, 'goal_angle / angular_speed'))
     return [forward, turn, forward, turn]

@@ -1,4 +1,6 @@
 """The settings of a serial port, as they are now."""
+from __future__ import annotations
+
 import fcntl
 import struct
 
@@ -6,7 +8,7 @@ import struct
 TCGETS2, TERMIOS2 = 0x802c542a, struct.Struct('=4I20s2I')
 
 
-def read_settings(descriptor):
+def read_settings(descriptor: int) -> bytes | None:
     """All settings of an open terminal, as bytes that can be compared; None if it has disconnected."""
     try:
         return fcntl.ioctl(descriptor, TCGETS2, bytes(TERMIOS2.size))
@@ -14,12 +16,13 @@ def read_settings(descriptor):
         return None
 
 
-def read_rate(descriptor):
+def read_rate(descriptor: int) -> int | None:
     """The rate of an open terminal, bits per second; None if it has disconnected."""
     settings = read_settings(descriptor)
-    return settings and rate_in(settings)
+    return None if settings is None else rate_in(settings)
 
 
-def rate_in(settings):
+def rate_in(settings: bytes) -> int:
     """The rate in the result of read_settings()."""
-    return TERMIOS2.unpack(settings)[-1]
+    rate: int = TERMIOS2.unpack(settings)[-1]
+    return rate

@@ -9,9 +9,11 @@ iRobot Create 2 Open Interface (OI) Specification based on the iRobot Roomba 600
     serial port 4, dimensions 5, modes 7, start 8-9, modes 10, cleaning 11-12, actuators 13-20, input 21-22,
     sensor packets 23-36, quick reference 37-39
 """
-from collections import namedtuple
+from __future__ import annotations
+
 from math import pi
 from struct import Struct
+from typing import Iterable, Mapping, NamedTuple, Optional, Tuple
 
 MAX_SPEED = 500         # mm/s, of a wheel either way (Create p. 9, Create 2 p. 13)
 UPDATE_PERIOD = 0.015   # s, between two frames of the stream (Create p. 13, Create 2 p. 21)
@@ -31,12 +33,22 @@ IN_PLACE_LEFT, IN_PLACE_RIGHT = 1, -1
 # by the code in the command Baud, bits per second (Create p. 7, Create 2 p. 9)
 BAUD_RATES = (300, 600, 1200, 2400, 4800, 9600, 14400, 19200, 28800, 38400, 57600, 115200)
 
-Packet = namedtuple('Packet', 'number name format low high unit')
-Packet.__doc__ = """A sensor packet with one value. format: as in struct, big-endian; low, high: its range; unit: '' for
-none, or for bits."""
+
+class Packet(NamedTuple):
+    """A sensor packet with one value."""
+
+    number: int
+    name: str
+    format: str     # as in struct, big-endian
+    low: int        # the range of the value
+    high: int
+    unit: str       # '' for none, or for bits
+
+
+_Range = Tuple[int, int]
 
 # number, name, format, range on the Create, range on the Create 2 (None: not there), unit
-_PACKETS = (
+_PACKETS: Tuple[Tuple[int, str, str, Optional[_Range], _Range, str], ...] = (
     (7, 'bumps_and_wheel_drops', 'B', (0, 31), (0, 15), ''),
     (8, 'wall', 'B', (0, 1), (0, 1), ''),
     (9, 'cliff_left', 'B', (0, 1), (0, 1), ''),
@@ -100,9 +112,16 @@ NOTES = 'notes'         # the second data byte is the number of pairs that follo
 STARTED, DRIVING = (PASSIVE, SAFE, FULL), (SAFE, FULL)
 ALWAYS = (OFF,) + STARTED
 
-Command = namedtuple('Command', 'opcode name size modes mode')
-Command.__doc__ = """A command. size: number of data bytes, COUNTED or NOTES; modes: those that accept it; mode: the one
-that it leads to, or None."""
+
+class Command(NamedTuple):
+    """A command."""
+
+    opcode: int
+    name: str
+    size: int | str         # number of data bytes, COUNTED or NOTES
+    modes: tuple[int, ...]  # that accept it
+    mode: int | None        # that it leads to
+
 
 _BOTH = (
     Command(128, 'start', 0, ALWAYS, PASSIVE),
@@ -151,59 +170,79 @@ _CREATE_2 = (
     Command(168, 'set_day_time', 3, STARTED, None),
     Command(173, 'stop', 0, STARTED, OFF))
 
-Model = namedtuple('Model', 'name baud wheel_separation counts_per_metre packets groups commands songs')
-Model.__doc__ = """A robot. baud: bits per second after it was switched on; wheel_separation: m; counts_per_metre: of an
-encoder, None without; packets: Packet by number; groups: numbers of packets by the number of their group; commands:
-Command by opcode; songs: how many it stores."""
+
+class Model(NamedTuple):
+    """A robot."""
+
+    name: str
+    baud: int                           # bits per second after it was switched on
+    wheel_separation: float             # m
+    counts_per_metre: float | None      # of an encoder, None without
+    packets: dict[int, Packet]          # by number
+    groups: dict[int, tuple[int, ...]]  # numbers of packets by the number of their group
+    commands: dict[int, Command]        # by opcode
+    songs: int                          # how many it stores
 
 
-def _make_model(name, column, groups, commands, **values):
-    packets = {row[0]: Packet(*row[:3], *row[column], row[5]) for row in _PACKETS if row[column]}
-    return Model(name=name, packets=packets, commands={command.opcode: command for command in commands},
-                 groups={number: tuple(range(first, last + 1)) for number, (first, last) in groups.items()}, **values)
+def _packets_by_number(packets: Iterable[Packet]) -> dict[int, Packet]:
+    return {packet.number: packet for packet in packets}
 
 
+def _packets_of(groups: Mapping[int, tuple[int, int]]) -> dict[int, tuple[int, ...]]:
+    return {number: tuple(range(first, last + 1)) for number, (first, last) in groups.items()}
+
+
+def _commands_by_opcode(commands: Iterable[Command]) -> dict[int, Command]:
+    return {each.opcode: each for each in commands}
+
+
+CREATE = Model(
+    name='create', baud=57600, wheel_separation=0.26, counts_per_metre=None,
+    packets=_packets_by_number(Packet(number, name, form, *values, unit)
+                               for number, name, form, values, _, unit in _PACKETS if values),
+    groups=_packets_of(_GROUPS), commands=_commands_by_opcode(_BOTH + _CREATE), songs=16)
 # wheels of 72 mm, 508.8 counts a turn (Create 2, at packet 43)
-CREATE = _make_model('create', 3, _GROUPS, _BOTH + _CREATE, baud=57600, wheel_separation=0.26, counts_per_metre=None,
-                     songs=16)
-CREATE_2 = _make_model('create2', 4, {**_GROUPS, **_GROUPS_2}, _BOTH + _CREATE_2, baud=115200, wheel_separation=0.235,
-                       counts_per_metre=508.8 / (pi * 0.072), songs=4)
+CREATE_2 = Model(
+    name='create2', baud=115200, wheel_separation=0.235, counts_per_metre=508.8 / (pi * 0.072),
+    packets=_packets_by_number(Packet(number, name, form, *values, unit)
+                               for number, name, form, _, values, unit in _PACKETS),
+    groups=_packets_of({**_GROUPS, **_GROUPS_2}), commands=_commands_by_opcode(_BOTH + _CREATE_2), songs=4)
 MODELS = {model.name: model for model in (CREATE, CREATE_2)}
 OPCODES = {command.name: command.opcode for command in _BOTH + _CREATE + _CREATE_2}
 
 
-def command(name, *data):
+def command(name: str, *data: int) -> bytes:
     """The bytes of a command. data: its data bytes, from 0 to 255."""
     return bytes((OPCODES[name], *data))
 
 
-def drive_direct(right, left):
+def drive_direct(right: int, left: int) -> bytes:
     """The bytes of the command Drive Direct. right, left: speeds of the wheels, mm/s. Raises struct.error."""
     return command('drive_direct', *Struct('>hh').pack(right, left))
 
 
-def single_packets(model, numbers):
+def single_packets(model: Model, numbers: Iterable[int]) -> list[Packet]:
     """The Packets that numbers of packets and groups stand for, in the order that they are sent in. Raises KeyError."""
     return [model.packets[each] for number in numbers for each in model.groups.get(number, (number,))]
 
 
-def packets_format(packets):
+def packets_format(packets: Iterable[Packet]) -> Struct:
     """The Struct of the values of Packets, one after another."""
-    return Struct(f">{''.join((packet.format for packet in packets))}")
+    return Struct('>' + ''.join(packet.format for packet in packets))
 
 
-def frame_format(model, numbers):
+def frame_format(model: Model, numbers: Iterable[int]) -> Struct:
     """The Struct of a frame of the stream: header, length, each number with its values, and the checksum."""
-    return Struct('>BB%sB' % ''.join(
-        f"B{''.join((packet.format for packet in single_packets(model, [number])))}" for number in numbers))
+    formats = (''.join(packet.format for packet in single_packets(model, [number])) for number in numbers)
+    return Struct('>BB' + ''.join(f'B{each}' for each in formats) + 'B')
 
 
-def checksum(data):
+def checksum(data: bytes) -> int:
     """The byte that makes the sum of a frame a multiple of 256. data: the frame without it."""
     return -sum(data) & 0xff
 
 
-def encode_frame(model, numbers, values):
+def encode_frame(model: Model, numbers: Iterable[int], values: Mapping[str, int]) -> bytes:
     """A frame of the stream. numbers: of packets and groups; values: by the name of the packet."""
     data = bytearray()
     for number in numbers:

@@ -1,32 +1,44 @@
 """Recorded runs beside simulated ones of the same commands."""
-from collections import namedtuple
+from __future__ import annotations
+
+from typing import Iterator, NamedTuple, Sequence
 
 import numpy
 
+from rbx1_nav.arrays import Array
 from rbx1_nav.fitting.ensemble import inner_share, simulate_paths
 from rbx1_nav.fitting.floor import Prediction, Windows
-from rbx1_nav.fitting.recording import relative
+from rbx1_nav.fitting.recording import Recording, relative
 from rbx1_nav.fitting.run import PreparedRun
+from rbx1_nav.simulation.surfaces import Surface
 
 ENDS = 500      # simulated, of each run
 LONG = 60.0     # s: of longer runs, parts are compared, each from where the robot really was
 PART = 20.0     # s: length of such a part
 MAX_SHOWN = 12  # runs, or parts
 
-Comparison = namedtuple('Comparison', 'name recorded is_truth simulated ends end')
-Comparison.__doc__ = """One run or a part of it, in the frame of its start. recorded: x and y (m) of its path; is_truth:
-whether this is the truth, and not odometry; simulated: x and y of one path with the same commands; ends: (ENDS, 3),
-simulated x, y (m) and yaw (rad); end: the true one, or None."""
+
+class Comparison(NamedTuple):
+    """One run or a part of it, in the frame of its start."""
+
+    name: str
+    recorded: Array | None      # x and y (m) of its path
+    is_truth: bool      # whether this is the truth, and not odometry
+    simulated: Array    # x and y (m) of one path with the same commands
+    ends: Array         # (ENDS, 3): simulated x, y (m) and yaw (rad)
+    end: Array | None   # the true one
 
 
-def predict(surface, recording, base_width, start=None, end=None):
+def predict(surface: Surface, recording: Recording, base_width: float, start: float | None = None,
+            end: float | None = None) -> tuple[PreparedRun, Prediction]:
     """(PreparedRun without its odometry, Prediction for the whole of it by its commands)."""
     run = PreparedRun(recording._replace(odometry=None), base_width, start, end)
     windows = Windows(numpy.array([0]), len(run.times) - 1, numpy.zeros((1, 3)))
     return run, Prediction(surface, run.steps(surface), windows)
 
 
-def region_share(surface, recording, base_width, end, seed):
+def region_share(surface: Surface, recording: Recording, base_width: float, end: Array,
+                 seed: int) -> tuple[float, float]:
     """inner_share() of a true end (x, y in m, yaw in rad, not wrapped) of a run, by its commands alone: of x and y, and
     of all three."""
     _, prediction = predict(surface, recording, base_width)
@@ -34,21 +46,23 @@ def region_share(surface, recording, base_width, end, seed):
     return inner_share(ends[:, :2], end[:2]), inner_share(ends, end)
 
 
-def compare(surface, recordings, base_width, seed=1):
+def compare(surface: Surface, recordings: Sequence[Recording], base_width: float,
+            seed: int = 1) -> list[Comparison]:
     """The Comparisons of Recordings with a Surface that was fitted to them; at most MAX_SHOWN."""
-    comparisons = []
+    comparisons: list[Comparison] = []
     for recording, start, end in choose(recordings):
         run, prediction = predict(surface, recording, base_width, start, end)
         # another path in each, but the same region for the same commands
         number = len(comparisons)
         paths = simulate_paths(surface, prediction, 0, ENDS, numpy.random.default_rng(seed))
         track = recording.truth or recording.odometry
-        path, true = None, None
+        path: Array | None = None
+        true: Array | None = None
         if track:
             path = relative(*(numpy.array([numpy.interp(time, track.time, values) for values in track[1:]])
                               for time in (run.times[0], run.times)))
             path = numpy.concatenate([numpy.zeros((3, 1)), path], axis=1)
-        if recording.truth:
+        if recording.truth and path is not None:
             true = path[:, -1]
         elif recording.end:
             true = numpy.array(recording.end)
@@ -58,7 +72,7 @@ def compare(surface, recordings, base_width, seed=1):
     return comparisons
 
 
-def choose(recordings):
+def choose(recordings: Sequence[Recording]) -> Iterator[tuple[Recording, float | None, float | None]]:
     """(Recording, start, end) of what is compared; start and end (s) are None for the whole."""
     if len(recordings) > MAX_SHOWN:
         recordings = [recordings[index] for index in numpy.linspace(0, len(recordings) - 1, MAX_SHOWN).astype(int)]
@@ -74,7 +88,7 @@ def choose(recordings):
             yield recording, start, start + PART
 
 
-def shares(comparisons):
+def shares(comparisons: Sequence[Comparison]) -> tuple[int, int, int]:
     """(number of true ends, of those inside the region of 50 %, and of 90 %), by x and y."""
     inside = numpy.array([inner_share(each.ends[:, :2], each.end[:2]) for each in comparisons if each.end is not None])
     return len(inside), int((inside < 0.5).sum()), int((inside < 0.9).sum())

@@ -1,6 +1,9 @@
 """Reads the ends of runs that were measured by hand."""
+from __future__ import annotations
+
 from math import radians
 import os
+from typing import Sequence
 
 from rbx1_nav.config import ConfigError, Section, load_yaml, show, show_name
 from rbx1_nav.robot.kinematics import Pose
@@ -9,7 +12,7 @@ FARTHEST, MOST = 1000.0, 36000.0    # m, degrees
 ERRORS = dict(position_error=(1e-4, 10.0, 0.01, 'm'), heading_error=(0.01, 90.0, 2.0, 'degrees'))
 
 
-def read_ends(path, bags):
+def read_ends(path: str, bags: Sequence[str]) -> tuple[list[Pose], tuple[float, float, float]]:
     """([Pose of each bag], (error of x, of y in m, of the heading in rad)) of a YAML file. bags: paths.
 
     The file maps the name of each bag, without folder, to [x (m), y (m), heading (degrees)] of its end, in the frame of
@@ -25,14 +28,14 @@ def read_ends(path, bags):
             raise ConfigError(f'{show_name(twice[0])}: two bags of this name: expected names that differ')
         ends = [read_end(section, name) for name in names]
         if section.unknown():
-            raise ConfigError('%s: unknown: expected %s and names of bags on the command line'
-                              % (section.unknown()[0], ', '.join(ERRORS)))
+            raise ConfigError(f"{section.unknown()[0]}: unknown: expected {', '.join(ERRORS)} and names of bags on "
+                              'the command line')
     except ConfigError as error:
-        raise ConfigError(f'{show_name(path)}: {error}')
+        raise ConfigError(f'{show_name(path)}: {error}') from error
     return ends, (errors['position_error'], errors['position_error'], radians(errors['heading_error']))
 
 
-def read_end(section, name):
+def read_end(section: Section, name: str) -> Pose:
     """The Pose of one bag. Raises ConfigError."""
     expected = '[x in m, y in m, heading in degrees]'
     values = section.get(name, expected=expected)

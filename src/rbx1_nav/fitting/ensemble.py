@@ -1,12 +1,16 @@
 """Where many robots end that drive alike on the same floor, and whether a real one ends among them."""
+from __future__ import annotations
+
 import numpy
 
-from rbx1_nav.fitting.floor import integrate
+from rbx1_nav.arrays import Array
+from rbx1_nav.fitting.floor import Prediction, integrate
 from rbx1_nav.simulation.floor_noise import CELL_TRAVELLED, CELL_TURNED
+from rbx1_nav.simulation.surfaces import Surface
 
 
-def cell_noise(generator, count, path, cell):
-    """The errors (count, m) in each of m steps of `path`, by noise of strength 1: model.roughness.Noise in arrays."""
+def cell_noise(generator: numpy.random.Generator, count: int, path: Array, cell: float) -> Array:
+    """The errors (count, m) in each of m steps of `path`, by noise of strength 1: simulation.floor_noise.Noise in arrays."""
     borders = numpy.concatenate([[0.0], numpy.cumsum(path)]) / cell + generator.random((count, 1))
     number = borders.astype(int)
     sums = numpy.cumsum(generator.laplace(0.0, (cell / 2) ** 0.5, (count, number[:, -1].max() + 1)), axis=1)
@@ -16,7 +20,8 @@ def cell_noise(generator, count, path, cell):
     return numpy.diff(before + (borders - number) * (after - before), axis=1)
 
 
-def simulate_paths(surface, prediction, index, count, generator):
+def simulate_paths(surface: Surface, prediction: Prediction, index: int, count: int,
+                   generator: numpy.random.Generator) -> Array:
     """(count, 3, steps): x, y (m), yaw (rad) after each step of a window of a Prediction, each in a run of its own on a
     Surface."""
     straight, turn = prediction.straight[index], prediction.turn[index]
@@ -33,29 +38,34 @@ def simulate_paths(surface, prediction, index, count, generator):
     return numpy.stack(integrate(distance, angle), axis=1)
 
 
-def simulate_ends(surface, prediction, index, count, generator):
+def simulate_ends(surface: Surface, prediction: Prediction, index: int, count: int,
+                  generator: numpy.random.Generator) -> Array:
     """(count, 3): the ends of such paths."""
-    return simulate_paths(surface, prediction, index, count, generator)[:, :, -1]
+    ends: Array = simulate_paths(surface, prediction, index, count, generator)[:, :, -1]
+    return ends
 
 
-def mahalanobis(ends, points):
+def mahalanobis(ends: Array, points: Array) -> Array:
     """The squared Mahalanobis distances of points (n, d), by mean and covariance of `ends` (count, d)."""
     away = points - ends.mean(axis=0)
     covariance = numpy.cov(ends.T)
     # a robot that stands has no spread, and a Mahalanobis distance all the same
     covariance += 1e-12 * numpy.eye(len(covariance))
-    return (away * numpy.linalg.solve(covariance, away.T).T).sum(axis=1)
+    squares: Array = (away * numpy.linalg.solve(covariance, away.T).T).sum(axis=1)
+    return squares
 
 
-def inner_share(ends, end):
+def inner_share(ends: Array, end: Array) -> float:
     """The share of simulated ends that are closer, by Mahalanobis distance, to their mean than `end` is: below p for an
     end inside the region that holds p of them. ends: (count, d); end: (d,)."""
-    return (mahalanobis(ends, ends) < mahalanobis(ends, end[None])).mean()
+    share: float = (mahalanobis(ends, ends) < mahalanobis(ends, end[None])).mean()
+    return share
 
 
-def energy_score(ends, point):
+def energy_score(ends: Array, point: Array) -> float:
     """How well an ensemble (count, d) predicted a point (d,), in its unit: the smaller, the better (Gneiting and
     Raftery, Strictly proper scoring rules, prediction, and estimation, 2007, section 4.3)."""
     half = len(ends) // 2
-    return (numpy.linalg.norm(ends - point, axis=1).mean()
-            - numpy.linalg.norm(ends[:half] - ends[half:2 * half], axis=1).mean() / 2)
+    score: float = (numpy.linalg.norm(ends - point, axis=1).mean()
+                    - numpy.linalg.norm(ends[:half] - ends[half:2 * half], axis=1).mean() / 2)
+    return score

@@ -1,30 +1,48 @@
 """The floor in arrays: where wheels that travel in Steps take a robot, and how sure that is.
 
-The same model as that of simulation/wheels.py and simulation/floor_noise.py, for many windows at once. Covariances are propagated
-to first order: each error turns or shifts the rest of the path.
+The same model as that of simulation/wheels.py and simulation/floor_noise.py, for many windows at once. Covariances
+are propagated to first order: each error turns or shifts the rest of the path.
 """
-from collections import namedtuple
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Mapping, NamedTuple
 
 import numpy
 
+from rbx1_nav.arrays import Array
+from rbx1_nav.fitting.travel import Steps
 from rbx1_nav.simulation.floor_noise import CELL_TRAVELLED, CELL_TURNED
+from rbx1_nav.simulation.surfaces import Surface
 
-Windows = namedtuple('Windows', 'first count ends')
-Windows.__doc__ = """Parts of a recording that have a measured end. first: (n,), the step that each begins with; count:
-their number of steps; ends: (n, 3), in the frame of the start of each: x, y (m), yaw (rad)."""
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 NOISES = ('heading_noise_turning', 'heading_noise_straight', 'distance_noise')
 SPREADS = ('slip_straight_spread', 'slip_turning_spread')
 
 
-def floor_travel(surface, straight, turn):
+class Windows(NamedTuple):
+    """Parts of a recording that have a measured end."""
+
+    first: NDArray[numpy.int_]      # (n,), the step that each begins with
+    length: int     # their number of steps
+    ends: Array     # (n, 3), in the frame of the start of each: x, y (m), yaw (rad)
+
+
+def with_values(surface: Surface, values: Mapping[str, float]) -> Surface:
+    """The same Surface, but for the values of some keys."""
+    # with the name, mypy knows that no value is for it
+    return surface._replace(name=surface.name, **values)
+
+
+def floor_travel(surface: Surface, straight: Array, turn: Array) -> tuple[Array, Array]:
     """(distance in m, angle in rad) of the robot, in arrays like those of the wheels' travel, without noise."""
     distance = straight * (1 - surface.slip_straight)
     distance = numpy.sign(distance) * numpy.maximum(0.0, abs(distance) - surface.turning_loss * abs(turn))
     return distance, turn * (1 - surface.slip_turning) + surface.curvature * straight
 
 
-def integrate(distance, angle):
+def integrate(distance: Array, angle: Array) -> tuple[Array, Array, Array]:
     """(x, y, yaw) after each step, along the last axis, of a robot that was at the origin before the first."""
     yaw = numpy.cumsum(angle, axis=-1)
     middle = yaw - angle / 2
@@ -32,45 +50,48 @@ def integrate(distance, angle):
     return numpy.cumsum(chord * numpy.cos(middle), axis=-1), numpy.cumsum(chord * numpy.sin(middle), axis=-1), yaw
 
 
-def cell_covariance(path, cell):
+def cell_covariance(path: Array, cell: float) -> Array:
     """(m, m): the covariance of the errors in each of m steps of a path, by noise of strength 1 with cells."""
     position = numpy.append(0.0, numpy.cumsum(path)) / cell
     apart = abs(position[:, None] - position)
     # the variance of the error in a part of the path: its cells lie anywhere
     variance = cell * numpy.where(apart < 1, apart ** 2 * (1 - apart / 3), apart - 1 / 3)
-    return (variance[:-1, 1:] + variance[1:, :-1] - variance[:-1, :-1] - variance[1:, 1:]) / 2
+    covariance: Array = (variance[:-1, 1:] + variance[1:, :-1] - variance[:-1, :-1] - variance[1:, 1:]) / 2
+    return covariance
 
 
 class Prediction:
     """What a Surface predicts for n windows of m steps."""
 
-    def __init__(self, surface, steps, windows):
-        """steps: of the whole recording; windows: Windows."""
-        part = windows.first[:, None] + numpy.arange(windows.count)
-        self.straight, self.turn = steps.straight[part], steps.turn[part]       # (n, m)
+    def __init__(self, surface: Surface, steps: Steps, windows: Windows) -> None:
+        """steps: of the whole recording."""
+        part = windows.first[:, None] + numpy.arange(windows.length)
+        self.straight: Array = steps.straight[part]     # (n, m)
+        self.turn: Array = steps.turn[part]     # (n, m)
         self.distance, self.angle = floor_travel(surface, self.straight, self.turn)
         self.path = integrate(self.distance, self.angle)
         self.means = numpy.stack([values[:, -1] for values in self.path], axis=1)   # (n, 3)
         self.errors = windows.ends - self.means
 
-    def sensitivities(self, by_cells=False):
+    def sensitivities(self, by_cells: bool = False) -> dict[str, Array]:
         """A dictionary: for each of NOISES the covariances of the ends for a strength of 1, (n, 3, 3); for each of
         SPREADS the derivatives of the ends by a slip that is constant in the run, (n, 3).
 
-        by_cells: whether noise is that of model.roughness.Noise with its cells, which makes a difference for windows of
+        by_cells: whether noise is that of simulation.floor_noise.Noise with its cells, which makes a difference for windows of
         few cells; otherwise it is white.
         """
         x, y, yaw = self.path
         middle = yaw - self.angle / 2
         by_heading = numpy.stack([y - y[:, -1:], x[:, -1:] - x, numpy.ones_like(x)], axis=1)    # (n, 3, m)
         by_distance = numpy.stack([numpy.cos(middle), numpy.sin(middle), numpy.zeros_like(x)], axis=1)
-        turned, travelled = abs(self.turn)[:, None], abs(self.straight)[:, None]
+        turned, travelled = numpy.abs(self.turn)[:, None], numpy.abs(self.straight)[:, None]
 
-        def along(derivatives, weights, cell):
+        def along(derivatives: Array, weights: Array, cell: float) -> Array:
             if by_cells:
                 return numpy.stack([one @ cell_covariance(path[0], cell) @ one.T
                                     for one, path in zip(derivatives, weights)])
             return derivatives * weights @ derivatives.transpose(0, 2, 1)
+
         return {'heading_noise_turning': along(by_heading, turned, CELL_TURNED),
                 'heading_noise_straight': along(by_heading, travelled, CELL_TRAVELLED),
                 'distance_noise': along(by_distance, travelled, CELL_TRAVELLED),
@@ -81,7 +102,7 @@ class Prediction:
 class Covariance:
     """The covariance of all ends of a run: independent noise in each window, and slips that are the same in all."""
 
-    def __init__(self, surface, sensitivities, floor):
+    def __init__(self, surface: Surface, sensitivities: Mapping[str, Array], floor: Array) -> None:
         """sensitivities: see Prediction; floor: 3x3, of a measured end."""
         blocks = floor + sum(getattr(surface, key) ** 2 * sensitivities[key] for key in NOISES)
         self.roots = numpy.linalg.cholesky(blocks)      # (n, 3, 3)
@@ -90,15 +111,18 @@ class Covariance:
         self.axes, sizes, _ = numpy.linalg.svd(common, full_matrices=False)
         self.variances = 1 + sizes ** 2
 
-    def _white(self, errors):
+    def _white(self, errors: Array) -> Array:
         return numpy.linalg.solve(self.roots, errors[..., None]).ravel()
 
-    def whitened(self, errors):
+    def whitened(self, errors: Array) -> Array:
         """Errors of the ends, (n, 3), as 3 n independent numbers of variance 1."""
         white = self._white(errors)
         along = self.axes.T @ white
-        return white + self.axes @ (along * (self.variances ** -0.5 - 1))
+        whitened: Array = white + self.axes @ (along * (self.variances ** -0.5 - 1))
+        return whitened
 
-    def half_log_determinant(self):
+    def half_log_determinant(self) -> float:
         """Half of the logarithm of the determinant."""
-        return (numpy.log(numpy.diagonal(self.roots, axis1=1, axis2=2)).sum() + numpy.log(self.variances).sum() / 2)
+        half: float = (numpy.log(numpy.diagonal(self.roots, axis1=1, axis2=2)).sum()
+                       + numpy.log(self.variances).sum() / 2)
+        return half

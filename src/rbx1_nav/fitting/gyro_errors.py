@@ -1,15 +1,25 @@
 """Fits the errors of a gyro: at rest its bias and noise, and by the true heading its scale."""
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Sequence
+
 import numpy
 from scipy.stats import chi2, norm
 
+from rbx1_nav.arrays import Array
+from rbx1_nav.fitting.recording import Rates, Recording, Track
+from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.simulation.gyro import NOISE_RATE
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 SETTLED = 1.5       # s after a stop command until a robot counts as standing
 INTERVAL = 1.0      # s: turns in intervals of this length are compared
 MIN_TURN = 3.0      # rad: no scale from less
 
 
-def rests_at(recording, times, delay=0.0):
+def rests_at(recording: Recording, times: Array, delay: float = 0.0) -> NDArray[numpy.bool_]:
     """Whether the robot stood still at each of `times` (s): no command to move since SETTLED and a delay (s)."""
     commands = recording.commands
     moving = (commands.linear != 0) | (commands.angular != 0)
@@ -18,13 +28,14 @@ def rests_at(recording, times, delay=0.0):
     ends = numpy.append(commands.time[1:], numpy.inf)
     last = numpy.maximum.accumulate(numpy.where(moving, ends, -numpy.inf))
     latest = numpy.where(before >= 0, last[before], -numpy.inf)
-    return (times > latest + SETTLED + delay)
+    rests: NDArray[numpy.bool_] = times > latest + SETTLED + delay
+    return rests
 
 
-def rest_of(recording, delay):
+def rest_of(recording: Recording, gyro: Rates, delay: float) -> tuple[float, float, int] | None:
     """(bias in rad/s, noise at NOISE_RATE in rad/s, number of readings) of the gyro while the robot stood; None if
     that was never long enough."""
-    time, rate = recording.gyro
+    time, rate = gyro
     at_rest = rests_at(recording, time, delay)
     period = numpy.median(numpy.diff(time)) if len(time) > 1 else 0.0
     if at_rest.sum() < 20 or not period > 0:
@@ -33,25 +44,25 @@ def rest_of(recording, delay):
     return readings.mean(), readings.std(ddof=1) * (period * NOISE_RATE) ** 0.5, len(readings)
 
 
-def gyro_turns(recording, bias, times):
+def gyro_turns(gyro: Rates, bias: float, times: Array) -> Array:
     """The angle (rad) that the gyro measured between `times` (s). A reading is the mean since the one before."""
-    time, rate = recording.gyro
+    time, rate = gyro
     angle = numpy.append(0.0, numpy.cumsum((rate[1:] - bias) * numpy.diff(time)))
     return numpy.diff(numpy.interp(times, time, angle))
 
 
-def scale_by_truth(recording, bias, noise):
+def scale_by_truth(gyro: Rates, truth: Track, bias: float, noise: float) -> tuple[float, float] | None:
     """(scale error, its standard error) by a continuous truth; None if that turns too little.
 
     bias, noise: of the gyro, rad/s.
     """
-    truth, time = recording.truth, recording.gyro.time
+    time = gyro.time
     first, last = max(truth.time[0], time[0]), min(truth.time[-1], time[-1])
     times = first + INTERVAL * numpy.arange(max(0, int((last - first) / INTERVAL)) + 1)
     if len(times) < 3:
         return None
     turned = numpy.diff(numpy.interp(times, truth.time, truth.yaw))
-    measured = gyro_turns(recording, bias, times)
+    measured = gyro_turns(gyro, bias, times)
     if abs(turned).sum() < MIN_TURN:
         return None
     scale = (turned @ measured) / (turned @ turned)
@@ -60,47 +71,55 @@ def scale_by_truth(recording, bias, noise):
     return scale - 1, (max(left, floor) / (turned @ turned)) ** 0.5
 
 
-def scale_by_end(recording, bias, noise, heading_error):
+def scale_by_end(gyro: Rates, end: Pose, bias: float, noise: float,
+                 heading_error: float) -> tuple[float, float] | None:
     """(scale error, its standard error) by an end measured by hand; None if the run turns too little.
 
     heading_error: of that, rad.
     """
-    time = recording.gyro.time
-    turned = gyro_turns(recording, bias, time[[0, -1]])[0]
+    time = gyro.time
+    turned = gyro_turns(gyro, bias, time[[0, -1]])[0]
     if abs(turned) < MIN_TURN:
         return None
-    true = turned + (recording.end.yaw - turned + numpy.pi) % (2 * numpy.pi) - numpy.pi
+    true = turned + (end.yaw - turned + numpy.pi) % (2 * numpy.pi) - numpy.pi
     error = numpy.hypot(heading_error, noise * ((time[-1] - time[0]) / NOISE_RATE) ** 0.5)
     return turned / true - 1, abs(error / turned)
 
 
-def root_mean_square(values, errors):
+def root_mean_square(values: Sequence[float], errors: Sequence[float]) -> tuple[float, float]:
     """(rms of what the values are in truth, its standard error), where each was measured with an error."""
-    values, errors = numpy.asarray(values), numpy.asarray(errors)
-    variance = (values ** 2).mean()
-    own = max(variance - (errors ** 2).mean(), 0.0)
+    variance = (numpy.asarray(values) ** 2).mean()
+    of_errors = (numpy.asarray(errors) ** 2).mean()
+    own = max(variance - of_errors, 0.0)
     # the true variance may be larger by this factor, with the probability of one standard error; it is rarely smaller
     largest = variance * len(values) / chi2.ppf(norm.cdf(-1), len(values))
-    return own ** 0.5, max(largest - (errors ** 2).mean(), 0.0) ** 0.5 - own ** 0.5
+    return own ** 0.5, max(largest - of_errors, 0.0) ** 0.5 - own ** 0.5
 
 
-def fit_gyro(recordings, delay=0.0, heading_error=0.0):
+def fit_gyro(recordings: Sequence[Recording], delay: float = 0.0,
+             heading_error: float = 0.0) -> dict[str, tuple[float, float]]:
     """{key: (value, standard error)} for those of gyro_noise, gyro_bias (rad/s) and gyro_scale_error that the
     Recordings tell; the standard error is infinite for one run only. delay: of the motors, s; heading_error: of ends
     measured by hand, rad."""
-    found, biases, noises, scales = {}, [], [], []
+    found: dict[str, tuple[float, float]] = {}
+    biases: list[tuple[float, float]] = []
+    scales: list[tuple[float, float]] = []
+    noises: list[tuple[float, int]] = []
     for recording in recordings:
-        rest = rest_of(recording, delay) if recording.gyro else None
-        if rest is None:
+        gyro, truth, end = recording.gyro, recording.truth, recording.end
+        rest = rest_of(recording, gyro, delay) if gyro else None
+        if gyro is None or rest is None:
             continue
         bias, noise, number = rest
         biases.append((bias, noise / number ** 0.5))
         noises.append((noise, number))
-        if recording.truth or recording.end:
-            scale = (scale_by_truth(recording, bias, noise) if recording.truth
-                     else scale_by_end(recording, bias, noise, heading_error))
-            if scale:
-                scales.append(scale)
+        scale = None
+        if truth:
+            scale = scale_by_truth(gyro, truth, bias, noise)
+        elif end:
+            scale = scale_by_end(gyro, end, bias, noise, heading_error)
+        if scale:
+            scales.append(scale)
     if noises:
         values, numbers = numpy.transpose(noises)
         value = ((values ** 2 * (numbers - 1)).sum() / (numbers - 1).sum()) ** 0.5
@@ -108,5 +127,5 @@ def fit_gyro(recordings, delay=0.0, heading_error=0.0):
     for key, some in (('gyro_bias', biases), ('gyro_scale_error', scales)):
         if some:
             value, error = root_mean_square(*zip(*some))
-            found[key] = value, error if len(some) > 1 else numpy.inf
+            found[key] = value, (error if len(some) > 1 else numpy.inf)
     return found

@@ -1,31 +1,46 @@
 """Fits delay, lag and drag: from commands to what odometry reports."""
-from collections import namedtuple
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple, Sequence
 
 import numpy
 from scipy.optimize import least_squares
 
+from rbx1_nav.arrays import Array
 from rbx1_nav.fitting.fit import BOUNDS
-from rbx1_nav.fitting.recording import Track
+from rbx1_nav.fitting.floor import with_values
+from rbx1_nav.fitting.recording import Recording, Track
 from rbx1_nav.fitting.travel import commanded_travel, reported_travel
+from rbx1_nav.simulation.surfaces import Surface
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 INTERVAL = 0.2      # s: the travel in intervals of about this length is compared
 KEYS = ('delay', 'lag', 'accel_limit', 'drag_straight', 'drag_turning')
 STEPS = dict(delay=1e-3, lag=1e-3, accel_limit=1e-2, drag_straight=1e-5, drag_turning=1e-5)     # of derivatives
-LIMITS = {**BOUNDS, 'accel_limit': (0.01, 100)}
+LIMITS: dict[str, tuple[float, float]] = {**BOUNDS, 'accel_limit': (0.01, 100)}
 FIRST_DELAYS = 0.0, 0.05, 0.1, 0.2, 0.4, 0.8    # s: the fit begins with the best, since it has no slope from afar
 
 SIGNIFICANT = 9.0   # by how much a limit must lower the sum of squares, in variances of a residual: 3 sigma
 
-MotorFit = namedtuple('MotorFit', 'values errors unused rms travel')
-MotorFit.__doc__ = """values, errors: dictionaries, one value and one standard error for each of KEYS; unused: those
-that made no difference; rms: of what is left, and of the travel itself, per INTERVAL (m)."""
+
+class MotorFit(NamedTuple):
+    """What was found for KEYS."""
+
+    values: dict[str, float]
+    errors: dict[str, float]    # standard errors
+    unused: list[str]   # the keys that made no difference
+    rms: float      # m per INTERVAL: of what is left
+    travel: float   # m per INTERVAL: rms of the travel itself
 
 
 class Intervals:
     """The reported travel of one Recording, between stamps of its odometry."""
 
-    def __init__(self, recording, base_width):
+    def __init__(self, recording: Recording, base_width: float) -> None:
         """base_width: m."""
+        assert recording.odometry
         self.commands = recording.commands
         self.half_width = base_width / 2
         stamps, index = numpy.unique(recording.odometry.time, return_index=True)
@@ -36,16 +51,17 @@ class Intervals:
         self.travel = self._sides(*(numpy.add.reduceat(values, chosen[:-1]) if len(chosen) > 1 else numpy.zeros(0)
                                     for values in (steps.straight[:chosen[-1]], steps.turn[:chosen[-1]])))
 
-    def _sides(self, straight, turn):
+    def _sides(self, straight: Array, turn: Array) -> Array:
         return numpy.concatenate([straight, turn * self.half_width])
 
-    def errors(self, surface):
+    def errors(self, surface: Surface) -> Array:
         """Reported less predicted travel of the wheels, m: straight, then turning."""
         steps = commanded_travel(surface, 2 * self.half_width, self.commands, self.times)
-        return self.travel - self._sides(steps.straight, steps.turn)
+        errors: Array = self.travel - self._sides(steps.straight, steps.turn)
+        return errors
 
 
-def standard_errors(slopes, left, borders):
+def standard_errors(slopes: Array, left: Array, borders: NDArray[numpy.int_]) -> Array:
     """Of values fitted by least squares: the largest of three. From the variance of the residuals `left`; from each of
     them by itself, because rounding to whole ticks leaves more of a start than of a rest; and from their sums in each
     run, because it is not independent in one interval and the next (the sandwich of Liang and Zeger, Longitudinal data
@@ -57,20 +73,27 @@ def standard_errors(slopes, left, borders):
     scores = slopes * left[:, None]
     for sums in (scores, numpy.stack([part.sum(axis=0) for part in numpy.split(scores, borders[:-1])])):
         variances.append(numpy.diag(bread @ (sums.T @ sums) @ bread) * len(sums) / max(1, len(sums) - 1))
-    return numpy.sqrt(numpy.max(variances, axis=0))
+    errors: Array = numpy.sqrt(numpy.max(variances, axis=0))
+    return errors
 
 
-def fit_motors(surface, base_width, recordings):
+def fit_motors(surface: Surface, base_width: float, recordings: Sequence[Recording]) -> MotorFit:
     """The MotorFit to Recordings with odometry, beginning with a Surface. base_width: m."""
     intervals = [each for each in (Intervals(one, base_width) for one in recordings) if len(each.times) > 1]
 
-    def with_values(values):
-        return surface._replace(**dict(zip(KEYS, numpy.clip(values, *zip(*(LIMITS[key] for key in KEYS))).tolist())))
+    def with_clipped(values: Array) -> Surface:
+        low, high = zip(*(LIMITS[key] for key in KEYS))
+        clipped = numpy.clip(values, low, high)
+        return with_values(surface, dict(zip(KEYS, clipped.tolist())))
 
-    def residuals(values):
-        return numpy.concatenate([each.errors(with_values(values)) for each in intervals])
+    def residuals(values: Array) -> Array:
+        return numpy.concatenate([each.errors(with_clipped(values)) for each in intervals])
 
-    def jacobian(values):
+    def squares(values: Array) -> float:
+        total: float = (residuals(values) ** 2).sum()
+        return total
+
+    def jacobian(values: Array) -> Array:
         base, columns = residuals(values), []
         for index, key in enumerate(KEYS):
             step = numpy.zeros(len(KEYS))
@@ -79,8 +102,8 @@ def fit_motors(surface, base_width, recordings):
             columns.append((residuals(values + step) - base) / step[index])
         return numpy.stack(columns, axis=1)
 
-    start = numpy.array([numpy.clip(getattr(surface, key), *LIMITS[key]) for key in KEYS])
-    start = min(([delay, *start[1:]] for delay in FIRST_DELAYS), key=lambda each: (residuals(each) ** 2).sum())
+    given = numpy.array([numpy.clip(getattr(surface, key), *LIMITS[key]) for key in KEYS])
+    start = min((numpy.array([delay, *given[1:]]) for delay in FIRST_DELAYS), key=squares)
     result = least_squares(residuals, start, jacobian, numpy.transpose([LIMITS[key] for key in KEYS]),
                            x_scale=[0.01, 0.01, 0.3, 0.001, 0.001], xtol=1e-6, ftol=1e-8, max_nfev=60)
     slopes = jacobian(result.x)

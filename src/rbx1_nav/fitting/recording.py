@@ -2,31 +2,58 @@
 
 Times are in s, on one clock; all arrays of a series have one value per time.
 """
-from collections import namedtuple
+from __future__ import annotations
+
+from typing import NamedTuple, Sequence
 
 import numpy
 
+from rbx1_nav.arrays import Array
 from rbx1_nav.config import ConfigError
+from rbx1_nav.robot.description import Robot
+from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.units import SECOND
 
 LARGEST = 1e10      # s, m, ...: no number of a run is larger
 MIN_TRAVEL, MIN_TURN = 0.02, 0.1    # m, rad: less is no motion
 
-Commands = namedtuple('Commands', 'time linear angular')
-Commands.__doc__ = 'Each is in force until the next: m/s forward, rad/s to the left.'
 
-Track = namedtuple('Track', 'time x y yaw')
-Track.__doc__ = 'Poses: x and y in m, yaw in rad, not wrapped.'
+class Commands(NamedTuple):
+    """Each is in force until the next."""
 
-Rates = namedtuple('Rates', 'time rate')
-Rates.__doc__ = 'A gyro: rad/s.'
-
-Recording = namedtuple('Recording', 'name commands odometry gyro truth end')
-Recording.__doc__ = """name: for messages; commands: Commands; odometry: Track by the wheels; gyro: Rates; truth: Track;
-end: Pose in the frame of the first pose, measured by hand. All but name and commands may be None."""
+    time: Array     # s
+    linear: Array   # m/s forward
+    angular: Array  # rad/s to the left
 
 
-def check_series(name, series):
+class Track(NamedTuple):
+    """Poses."""
+
+    time: Array     # s
+    x: Array        # m
+    y: Array        # m
+    yaw: Array      # rad, not wrapped
+
+
+class Rates(NamedTuple):
+    """A gyro."""
+
+    time: Array     # s
+    rate: Array     # rad/s
+
+
+class Recording(NamedTuple):
+    """A recorded run."""
+
+    name: str       # for messages
+    commands: Commands
+    odometry: Track | None      # by the wheels
+    gyro: Rates | None
+    truth: Track | None
+    end: Pose | None    # in the frame of the first pose, measured by hand
+
+
+def check_series(name: str, series: Commands | Track | Rates) -> None:
     """Raise ConfigError unless all values of a Commands, Track or Rates are finite, and its stamps never go back.
 
     name: what to call the series, with its file.
@@ -34,16 +61,16 @@ def check_series(name, series):
     for field, values in zip(series._fields, series):
         bad = numpy.flatnonzero(~(abs(values) < LARGEST))
         if bad.size:
-            raise ConfigError('%s: %s of message %d: %s: expected a finite number below 1e10'
-                              % (name, field, bad[0] + 1, values[bad[0]]))
+            raise ConfigError(f'{name}: {field} of message {bad[0] + 1}: {values[bad[0]]}: expected a finite number '
+                              'below 1e10')
     back = numpy.flatnonzero(numpy.diff(series.time) < 0)
     if back.size:
         before, after = series.time[back[0]:back[0] + 2]
-        raise ConfigError('%s: stamp of message %d: %.3f s before that of message %d: expected stamps that never go '
-                          'back' % (name, back[0] + 2, before - after, back[0] + 1))
+        raise ConfigError(f'{name}: stamp of message {back[0] + 2}: {before - after:.3f} s before that of message '
+                          f'{back[0] + 1}: expected stamps that never go back')
 
 
-def check_recording(recording):
+def check_recording(recording: Recording) -> Recording:
     """Raise ConfigError unless a Recording has commands, motion, and series without mistakes on one clock. Returns it.
     """
     name, commands = recording.name, recording.commands
@@ -61,15 +88,16 @@ def check_recording(recording):
             continue
         first, last = max(series.time[0], commands.time[0]), min(series.time[-1], commands.time[-1])
         if not last - first > 0.5 * (commands.time[-1] - commands.time[0]):
-            raise ConfigError('%s: %s from %.1f to %.1f s, but commands from %.1f to %.1f s: expected the same time, '
-                              'by one clock' % (name, field, series.time[0], series.time[-1], *commands.time[[0, -1]]))
+            raise ConfigError(f'{name}: {field} from {series.time[0]:.1f} to {series.time[-1]:.1f} s, but commands '
+                              f'from {commands.time[0]:.1f} to {commands.time[-1]:.1f} s: expected the same time, by '
+                              'one clock')
         if field != 'gyro' and not (max(numpy.ptp(series.x), numpy.ptp(series.y)) > MIN_TRAVEL
                                     or numpy.ptp(series.yaw) > MIN_TURN):
             raise ConfigError(f'{name}: {field}: no motion, although it was commanded: expected a robot that moves')
     return recording
 
 
-def in_force(commands, robot):
+def in_force(commands: Commands, robot: Robot) -> Commands:
     """The Commands that a base puts in force: within the limits of a Robot, and until they time out."""
     time, linear, angular = commands
     linear = numpy.clip(linear, -robot.limits.linear, robot.limits.linear)
@@ -77,12 +105,14 @@ def in_force(commands, robot):
     timeout = robot.timeout / SECOND
     if timeout:
         late = numpy.flatnonzero(numpy.diff(time, append=numpy.inf) > timeout)
-        time, linear, angular = (numpy.insert(values, late + 1, more) for values, more in (
-            (time, time[late] + timeout), (linear, 0.0), (angular, 0.0)))
+        time = numpy.insert(time, late + 1, time[late] + timeout)
+        linear = numpy.insert(linear, late + 1, 0.0)
+        angular = numpy.insert(angular, late + 1, 0.0)
     return Commands(time, linear, angular)
 
 
-def relative(pose, other):
+def relative(pose: Array | Sequence[float] | Sequence[Array],
+             other: Array | Sequence[float] | Sequence[Array]) -> Array:
     """The pose `other` (x, y in m, yaw in rad) in the frame of `pose`, as an array; each may be many poses."""
     x, y = other[0] - pose[0], other[1] - pose[1]
     c, s = numpy.cos(pose[2]), numpy.sin(pose[2])

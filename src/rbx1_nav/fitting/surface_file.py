@@ -1,10 +1,13 @@
 """The result of a fit as text: a surface file with comments, and a table to print."""
+from __future__ import annotations
+
 from math import degrees, radians
+from typing import Sequence
 
 import numpy
 
 from rbx1_nav.config import as_yaml_number, show_name
-from rbx1_nav.fitting.whole import limits_of
+from rbx1_nav.fitting.whole import FitResult, Value, limits_of
 from rbx1_nav.simulation.surfaces import KEYS, OPTIONAL_KEYS
 
 UNITS = {'lag': 's', 'accel_limit': 'm/s^2', 'drag_straight': 'm/s', 'drag_turning': 'm/s at the wheel',
@@ -16,7 +19,7 @@ UNITS = {'lag': 's', 'accel_limit': 'm/s^2', 'drag_straight': 'm/s', 'drag_turni
 PARTS = (
     ('Motors: delay and lag after a command, and the speed lost by drag.',
      ('delay', 'lag', 'accel_limit', 'drag_straight', 'drag_turning')),
-    ('Slip: the fraction of the wheels\' travel that the robot does not make, and its spread from run to run.',
+    ("Slip: the fraction of the wheels' travel that the robot does not make, and its spread from run to run.",
      ('slip_straight', 'slip_straight_spread', 'slip_turning', 'slip_turning_spread')),
     ('The same in every run: drift to the left, and distance lost in an arc.', ('curvature', 'turning_loss')),
     ('Errors that are drawn again and again on the way, 1 sigma after one unit of it.',
@@ -27,22 +30,22 @@ PARTS = (
 WIDTH = 117     # of a line
 
 
-def in_file_units(key, number):
+def in_file_units(key: str, number: float) -> float:
     """A value in SI units, in the unit of surface files."""
     return degrees(number) if {**KEYS, **OPTIONAL_KEYS}[key][1] is radians else number
 
 
-def shown(value):
+def shown(value: Value) -> tuple[str, str | None]:
     """(value, standard error or None) of a Value, as text in the unit of the file: with two digits of the error."""
     number = in_file_units(value.key, value.value)
     if value.error is None:
-        return '%.6g' % number, None
+        return f'{number:.6g}', None
     error = in_file_units(value.key, value.error)
     digits = int(numpy.clip(1 - numpy.floor(numpy.log10(error)), 0, 9)) if error > 0 else 6
-    return '%.*f' % (digits, number), '%.2g' % error
+    return f'{number:.{digits}f}', f'{error:.2g}'
 
 
-def yaml_number(value):
+def yaml_number(value: Value) -> str:
     """A Value as a number of YAML, inside the range of its key."""
     text = shown(value)[0]
     low, high = (in_file_units(value.key, limit) for limit in limits_of(value.key))
@@ -52,15 +55,15 @@ def yaml_number(value):
     return as_yaml_number(text) if 'e' in text else text
 
 
-def comment(value):
+def comment(value: Value) -> str:
     """What stands behind a Value."""
     unit = UNITS.get(value.key)
     error = shown(value)[1]
-    text = 'left as it was: %s' % value.reason if error is None else 'fitted, +- %s' % error
-    return '%s; %s' % (unit, text) if unit else text
+    text = f'left as it was: {value.reason}' if error is None else f'fitted, +- {error}'
+    return f'{unit}; {text}' if unit else text
 
 
-def wrapped(text):
+def wrapped(text: str) -> list[str]:
     """The lines of a comment."""
     lines, line = [], '#'
     for word in text.split():
@@ -71,33 +74,36 @@ def wrapped(text):
     return lines + [line]
 
 
-def surface_text(result, start_name, names):
-    """A surface file. result: Result of a fit; start_name: of the starting surface; names: of the recordings."""
-    lines = wrapped('Fitted by fit_surface.py to %d recording%s: %s.' % (
-        len(names), '' if len(names) == 1 else 's', ', '.join(show_name(name) for name in names)))
-    lines += wrapped('Fitted: %s. "+-" is one standard error. A value that was "left as it was" is that of %s.'
-                     % (result.description, show_name(start_name)))
+def surface_text(result: FitResult, start_name: str, names: Sequence[str]) -> str:
+    """A surface file. start_name: of the starting surface; names: of the recordings."""
+    lines = wrapped(f"Fitted by fit_surface.py to {len(names)} recording{'' if len(names) == 1 else 's'}: "
+                    f"{', '.join(show_name(name) for name in names)}.")
+    lines += wrapped(f'Fitted: {result.description}. "+-" is one standard error. A value that was "left as it was" is '
+                     f'that of {show_name(start_name)}.')
     for text in result.notes:
         lines += wrapped(text)
     for text in result.warnings:
-        lines += wrapped('Warning: %s.' % text)
+        lines += wrapped(f'Warning: {text}.')
     values = {value.key: value for value in result.values}
     for title, keys in PARTS:
         lines += ['', *wrapped(title)]
         for key in keys:
-            lines.append('%-36s # %s' % ('%s: %s' % (key, yaml_number(values[key])), comment(values[key])))
+            setting = f'{key}: {yaml_number(values[key])}'
+            lines.append(f'{setting:<36} # {comment(values[key])}')
     return '\n'.join(lines) + '\n'
 
 
-def table(result, start_name):
+def table(result: FitResult, start_name: str) -> list[str]:
     """The lines to print."""
     values = {value.key: value for value in result.values}
     ordered = [values[key] for _, keys in PARTS for key in keys]
-    lines = ['Fitted: %s' % result.description]
-    lines += [('  %-24s %10s +- %-8s %s' % (value.key, *shown(value), UNITS.get(value.key, ''))).rstrip()
-              for value in ordered if value.error is not None]
+    lines = [f'Fitted: {result.description}']
+    for value in ordered:
+        number, error = shown(value)
+        if error is not None:
+            lines.append(f"  {value.key:<24} {number:>10} +- {error:<8} {UNITS.get(value.key, '')}".rstrip())
     left = [value for value in ordered if value.error is None]
     if left:
-        lines.append('Left as on %s:' % show_name(start_name))
-        lines += ['  %-24s %10s    %s' % (value.key, shown(value)[0], value.reason) for value in left]
-    return lines + ['Note: %s' % text for text in result.notes] + ['Warning: %s' % text for text in result.warnings]
+        lines.append(f'Left as on {show_name(start_name)}:')
+        lines += [f'  {value.key:<24} {shown(value)[0]:>10}    {value.reason}' for value in left]
+    return lines + [f'Note: {text}' for text in result.notes] + [f'Warning: {text}' for text in result.warnings]

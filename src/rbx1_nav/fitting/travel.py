@@ -1,23 +1,32 @@
 """From commands, or from odometry, to the travel of the wheels in small steps."""
-from collections import namedtuple
+from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy
 
+from rbx1_nav.arrays import Array
+from rbx1_nav.fitting.recording import Commands, Track
+from rbx1_nav.simulation.surfaces import Surface
 from rbx1_nav.simulation.wheels import Motor
 
 STEP = 0.05     # s
 
-Steps = namedtuple('Steps', 'time straight turn')
-Steps.__doc__ = """The travel of the wheels by their encoders: `straight` (m) and `turn` (rad) of each step; `time` (s)
-has one value more, the start of the first."""
+
+class Steps(NamedTuple):
+    """The travel of the wheels by their encoders in each step."""
+
+    time: Array         # s; one value more than the others, the start of the first step
+    straight: Array     # m
+    turn: Array         # rad
 
 
-def grid(start, end):
+def grid(start: float, end: float) -> Array:
     """Times from `start` to `end` (s), STEP apart."""
     return start + STEP * numpy.arange(int((end - start) / STEP) + 1)
 
 
-def commanded_travel(surface, base_width, commands, times):
+def commanded_travel(surface: Surface, base_width: float, commands: Commands, times: Array) -> Steps:
     """The Steps between `times` (s) of motors on a Surface that stood before the first of the Commands.
 
     base_width: m.
@@ -31,15 +40,15 @@ def commanded_travel(surface, base_width, commands, times):
     in_force = numpy.searchsorted(starts, borders[:-1], side='right') - 1
     straight = Motor(surface.lag, surface.accel_limit, surface.drag_straight)
     turning = Motor(surface.lag, surface.accel_limit, surface.drag_turning)
-    travel = [(straight.travel(linear[index], duration), turning.travel(angular[index], duration)) if index >= 0
-              else (0.0, 0.0) for index, duration in zip(in_force.tolist(), numpy.diff(borders).tolist())]
+    travelled = [(straight.travel(linear[index], duration), turning.travel(angular[index], duration)) if index >= 0
+                 else (0.0, 0.0) for index, duration in zip(in_force.tolist(), numpy.diff(borders).tolist())]
     step = numpy.searchsorted(times, borders[:-1], side='right') - 1
-    travel = numpy.array(travel).reshape(-1, 2)[step >= 0].T
-    distance, side = (numpy.bincount(step[step >= 0], values, len(times) - 1) for values in travel)
+    travel = numpy.array(travelled).reshape(-1, 2)[step >= 0].T
+    distance, side = numpy.array([numpy.bincount(step[step >= 0], values, len(times) - 1) for values in travel])
     return Steps(times, distance, 2 * side / base_width)
 
 
-def reported_travel(odometry, times):
+def reported_travel(odometry: Track, times: Array) -> Steps:
     """The Steps between `times` (s) by odometry, a Track."""
     x, y, yaw = (numpy.interp(times, odometry.time, values) for values in odometry[1:])
     turn = numpy.diff(yaw)

@@ -1,18 +1,21 @@
 """From recordings to a surface, with a standard error for each value, and a word for each that they do not tell."""
-from collections import namedtuple
+from __future__ import annotations
+
 from math import degrees
+from typing import NamedTuple, Sequence
 
 import numpy
 
 from rbx1_nav.config import ConfigError
 from rbx1_nav.fitting import tape
 from rbx1_nav.fitting.fit import BOUNDS, MEANS, MIN_STRENGTH, Fitter, fit_floor
-from rbx1_nav.fitting.floor import NOISES, SPREADS, Covariance
+from rbx1_nav.fitting.floor import NOISES, SPREADS, Covariance, with_values
 from rbx1_nav.fitting.gyro_errors import fit_gyro, rests_at
 from rbx1_nav.fitting.motors import KEYS as MOTOR_KEYS, LIMITS, fit_motors
+from rbx1_nav.fitting.recording import Recording
 from rbx1_nav.fitting.run import PreparedRun
 from rbx1_nav.fitting.tape import TYPICAL
-from rbx1_nav.simulation.surfaces import KEYS, OPTIONAL_KEYS
+from rbx1_nav.simulation.surfaces import KEYS, OPTIONAL_KEYS, Surface
 
 FLOOR = ('slip_straight', 'slip_turning', 'curvature', 'turning_loss')
 RESOLUTION = 0.0003, 0.0003, 0.001  # m, m, rad: of encoders; no end is measured better
@@ -29,27 +32,42 @@ FAR_OFF = 30.0      # squared error of three normal values, of variance 1: excee
 POOR = 0.1          # what motors may leave unexplained of the travel, rms; and at least
 POOR_TRAVEL = 0.002     # m
 
-Value = namedtuple('Value', 'key value error reason')
-Value.__doc__ = """A value of a surface, in SI units; error: 1 sigma; for a value that was left as it was, error is
-None, and reason says why."""
 
-FitResult = namedtuple('FitResult', 'surface values warnings description notes')
-FitResult.__doc__ = """surface: Surface; values: Value of each key, in the order of a file; warnings, notes: texts;
-description: one line that says from what to what was fitted."""
+class Value(NamedTuple):
+    """A value of a surface, in SI units."""
+
+    key: str
+    value: float
+    error: float | None     # 1 sigma; None for a value that was left as it was
+    reason: str | None      # why it was
+
+
+class FitResult(NamedTuple):
+    """What was fitted."""
+
+    surface: Surface
+    values: list[Value]     # of each key, in the order of a file
+    warnings: list[str]
+    description: str        # one line that says from what to what was fitted
+    notes: list[str]
 
 
 class WholeFit:
     """Fits a surface, part by part."""
 
-    def __init__(self, recordings, base_width, start, end_errors=None):
-        """recordings: all alike, see check_alike(); base_width: m; start: Surface; end_errors: of ends measured by
-        hand: x, y (m), yaw (rad)."""
+    def __init__(self, recordings: Sequence[Recording], base_width: float, start: Surface,
+                 end_errors: tuple[float, float, float] | None = None) -> None:
+        """recordings: all alike, see check_alike(); base_width: m; end_errors: of ends measured by hand: x, y (m), yaw
+        (rad)."""
         check_alike(recordings)
         self.recordings = recordings
         self.base_width = base_width
         self.start = self.surface = start
         self.end_errors = end_errors
-        self.errors, self.reasons, self.warnings, self.notes = {}, {}, [], []
+        self.errors: dict[str, float] = {}
+        self.reasons: dict[str, str] = {}
+        self.warnings: list[str] = []
+        self.notes: list[str] = []
         self.description = 'motors and gyro'
         self.has_odometry = recordings[0].odometry is not None
         if self.has_odometry:
@@ -62,7 +80,7 @@ class WholeFit:
             raise ConfigError(f'{recordings[0].name}: neither odometry nor truth: expected at least one of them')
         self._fit_gyro()
 
-    def result(self):
+    def result(self) -> FitResult:
         """The FitResult."""
         values = []
         for key in [*KEYS, *OPTIONAL_KEYS]:
@@ -71,7 +89,7 @@ class WholeFit:
             values.append(Value(key, getattr(self.surface, key), error, reason))
         return FitResult(self.surface, values, self.warnings, self.description, self.notes)
 
-    def _set(self, key, value, error, bounds=None):
+    def _set(self, key: str, value: float, error: float, bounds: tuple[float, float] | None = None) -> bool:
         """Keep a fitted value, unless its standard error is too large."""
         low, high = bounds or limits_of(key)
         if not error <= LARGEST[key]:
@@ -79,16 +97,16 @@ class WholeFit:
             return False
         if bounds and (value <= low * 1.001 + 1e-9 or value >= high * 0.999) and low != 0:
             self.warnings.append(f'{key}: {value:.4g}: at the end of its range')
-        self.surface = self.surface._replace(**{key: float(numpy.clip(value, *limits_of(key)))})
+        self.surface = with_values(self.surface, {key: float(numpy.clip(value, *limits_of(key)))})
         self.errors[key] = float(error)
         self.reasons.pop(key, None)
         return True
 
-    def _stopping_time(self):
+    def _stopping_time(self) -> float:
         """How long after a command (s) the motors have nearly followed it."""
         return self.surface.delay + 5 * self.surface.lag
 
-    def _fit_motors(self):
+    def _fit_motors(self) -> None:
         fit = fit_motors(self.start, self.base_width, self.recordings)
         for key in MOTOR_KEYS:
             if key not in fit.unused:
@@ -100,20 +118,22 @@ class WholeFit:
             self.surface = self.surface._replace(accel_limit=limit)
             self.reasons['accel_limit'] = 'not reached in these runs: raised to about what they show at least'
         if fit.rms > max(POOR_TRAVEL, POOR * fit.travel):
-            self.warnings.append('odometry: %.1f mm rms in 0.2 s are not explained by commands and motors, of %.1f mm: '
-                                 'check that the commands are those of this robot' % (1e3 * fit.rms, 1e3 * fit.travel))
+            self.warnings.append(f'odometry: {1e3 * fit.rms:.1f} mm rms in 0.2 s are not explained by commands and '
+                                 f'motors, of {1e3 * fit.travel:.1f} mm: check that the commands are those of this '
+                                 'robot')
 
-    def _fit_to_truth(self):
+    def _fit_to_truth(self) -> None:
         runs = [PreparedRun(recording, self.base_width) for recording in self.recordings]
         total = sum(run.times[-1] - run.times[0] for run in runs)
         length = float(numpy.clip(total / WINDOWS, SHORTEST, LONGEST))
-        runs, windows = zip(*((run, run.windows(length)) for run in runs))
+        windows = [run.windows(length) for run in runs]
         number = sum(len(each.first) for each in windows)
         if not number:
             raise ConfigError(f'truth: no {length:.1f} s without a gap, in {len(runs)} recordings: expected some')
-        runs, windows = zip(*((run, each) for run, each in zip(runs, windows) if len(each.first)))
-        self.description = 'floor from %s to the truth, in %d windows of %.1f s' % (
-            'odometry' if self.has_odometry else 'commands', number, length)
+        runs = [run for run, each in zip(runs, windows) if len(each.first)]
+        windows = [each for each in windows if len(each.first)]
+        self.description = (f"floor from {'odometry' if self.has_odometry else 'commands'} to the truth, in {number} "
+                            f'windows of {length:.1f} s')
         means = FLOOR if self.has_odometry else ('delay', 'lag') + FLOOR
         if not self.has_odometry:
             for key in ('accel_limit', 'drag_straight', 'drag_turning'):
@@ -122,22 +142,24 @@ class WholeFit:
                               'starting surface.')
         noises = NOISES + (SPREADS if len(runs) >= MIN_RUNS else ())
         for key in SPREADS if len(runs) < MIN_RUNS else ():
-            self.reasons[key] = '%d of at least %d runs' % (len(runs), MIN_RUNS)
+            self.reasons[key] = f'{len(runs)} of at least {MIN_RUNS} runs'
         fitter = Fitter(runs, windows, truth_errors(self.recordings, self._stopping_time()),
                         by_cells=True, widest=WIDEST)
-        start = self.surface._replace(**{key: getattr(self.surface, key) or TYPICAL[key] for key in noises},
-                                      **({'delay': self.surface.delay or 0.1} if 'delay' in means else {}))
+        start = with_values(self.surface, {key: getattr(self.surface, key) or TYPICAL[key] for key in noises})
+        if 'delay' in means:
+            start = start._replace(delay=self.surface.delay or 0.1)
         surface, errors = self._fit_known(fitter, start, means, noises)
         for key, error in errors.items():
             self._set(key, getattr(surface, key), error, BOUNDS.get(key))
         if fitter.wider > CLEARLY_WIDER:
             x, y, yaw = numpy.sqrt(numpy.diag(fitter.floor))
-            self.notes.append('The ends of the windows have errors of %.1f mm and %.2f degrees besides, which do not '
-                              'grow with the path: of the truth, or of the times of the commands. They are not in the '
-                              'surface.' % (1e3 * max(x, y), degrees(yaw)))
+            self.notes.append(f'The ends of the windows have errors of {1e3 * max(x, y):.1f} mm and '
+                              f'{degrees(yaw):.2f} degrees besides, which do not grow with the path: of the truth, or '
+                              'of the times of the commands. They are not in the surface.')
         self._look_for_outliers(fitter, surface)
 
-    def _fit_known(self, fitter, start, means, noises):
+    def _fit_known(self, fitter: Fitter, start: Surface, means: Sequence[str],
+                   noises: Sequence[str]) -> tuple[Surface, dict[str, float]]:
         """(Surface, {key: standard error}) of what can be told; the others stay as on the surface so far."""
         prior = start
         while True:
@@ -148,37 +170,38 @@ class WholeFit:
             # the worst first: without it, the others may be known
             worst = max(unknown, key=lambda key: errors[key] / LARGEST[key])
             self.reasons[worst] = f'found {getattr(surface, worst):.3g} +- {errors[worst]:.2g}: too uncertain'
-            start = surface._replace(**{worst: getattr(self.surface, worst)})
+            start = with_values(surface, {worst: getattr(self.surface, worst)})
             means, noises = ([key for key in keys if key != worst] for keys in (means, noises))
             if not means and not noises:
                 return start, {}
         for key in noises:
             if getattr(surface, key) < 2 * MIN_STRENGTH:
-                surface = surface._replace(**{key: 0.0})
+                surface = with_values(surface, {key: 0.0})
         return surface, errors
 
-    def _look_for_outliers(self, fitter, surface):
+    def _look_for_outliers(self, fitter: Fitter, surface: Surface) -> None:
         for run, windows, prediction in zip(fitter.runs, fitter.windows, fitter.predictions(surface)):
             covariance = Covariance(surface, prediction.sensitivities(True), fitter.floor)
             squares = (covariance.whitened(prediction.errors).reshape(-1, 3) ** 2).sum(axis=1)
             far = numpy.flatnonzero(squares > FAR_OFF)
             if len(far) > 0.02 * len(squares):      # a floor's errors have fat tails
                 first = run.times[windows.first[far[0]]] - run.times[0]
-                self.warnings.append('%s: %d of %d windows end far from where this floor would have them, the first '
-                                     '%.0f s after the start' % (run.recording.name, len(far), len(squares), first))
+                self.warnings.append(f'{run.recording.name}: {len(far)} of {len(squares)} windows end far from where '
+                                     f'this floor would have them, the first {first:.0f} s after the start')
 
-    def _fit_to_ends(self):
+    def _fit_to_ends(self) -> None:
+        assert self.end_errors
         runs = [PreparedRun(recording, self.base_width) for recording in self.recordings]
-        self.description = 'floor from %s to %d ends measured by hand' % (
-            'odometry' if self.has_odometry else 'commands', len(runs))
+        self.description = (f"floor from {'odometry' if self.has_odometry else 'commands'} to {len(runs)} ends "
+                            'measured by hand')
         fit = tape.fit_ends(runs, self.surface, self.end_errors)
-        self.surface = self.surface._replace(**fit.values)
+        self.surface = with_values(self.surface, fit.values)
         self.errors.update(fit.errors)
         self.reasons.update(fit.reasons)
         self.notes += fit.notes
         self.warnings += fit.warnings
 
-    def _fit_gyro(self):
+    def _fit_gyro(self) -> None:
         found = fit_gyro(self.recordings, self._stopping_time(),
                          self.end_errors[2] if self.end_errors else 0.0)
         for key in ('gyro_noise', 'gyro_bias', 'gyro_scale_error', 'gyro_measurement_range'):
@@ -192,13 +215,13 @@ class WholeFit:
                 self._set(key, value, error)
 
 
-def limits_of(key):
+def limits_of(key: str) -> tuple[float, float]:
     """(lowest, highest) value of a key, in SI units."""
     limits, convert = {**KEYS, **OPTIONAL_KEYS}[key]
     return convert(limits['low']), convert(limits['high'])
 
 
-def check_alike(recordings):
+def check_alike(recordings: Sequence[Recording]) -> None:
     """Raise ConfigError unless all Recordings have the same series, gyros apart."""
     for field in ('odometry', 'truth', 'end'):
         having = [recording for recording in recordings if getattr(recording, field) is not None]
@@ -207,13 +230,14 @@ def check_alike(recordings):
             raise ConfigError(f'{without.name}: no {field}, but {having[0].name} has it: expected all runs alike')
 
 
-def truth_errors(recordings, delay):
+def truth_errors(recordings: Sequence[Recording], delay: float) -> tuple[float, ...]:
     """1 sigma of x, y (m) and yaw (rad) of the truth, from robots that stand still; and no less than RESOLUTION.
 
     delay: of the motors, s."""
     squares, number = numpy.zeros(3), 0
     for recording in recordings:
         truth = recording.truth
+        assert truth
         still = rests_at(recording, truth.time, delay)
         borders = numpy.flatnonzero(numpy.diff(still.astype(int))) + 1
         for part in numpy.split(numpy.arange(len(still)), borders):

@@ -1,11 +1,16 @@
 """A picture of a fit: recorded and simulated paths of the same commands, and where they end."""
-from math import atan2, degrees
+from __future__ import annotations
 
+from math import atan2, degrees
+from typing import Sequence
+
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse
 import numpy
 
-from rbx1_nav.fitting.comparison import shares
+from rbx1_nav.arrays import Array
+from rbx1_nav.fitting.comparison import Comparison, shares
 from rbx1_nav.fitting.ensemble import mahalanobis
 from rbx1_nav.plotting.runs import save
 
@@ -15,7 +20,7 @@ MARGIN = 0.08       # around all paths, as a part of their extent
 POINTS = 150        # simulated ends of each run that are shown
 
 
-def draw_fit(file, title, comparisons):
+def draw_fit(file: str, title: str, comparisons: Sequence[Comparison]) -> None:
     """Draw Comparisons side by side to a file. Raises OSError."""
     figure = Figure(figsize=(15.5, 5.9), constrained_layout=True)
     figure.suptitle(title)
@@ -37,7 +42,7 @@ def draw_fit(file, title, comparisons):
     count, inside_50, inside_90 = shares(comparisons)
     recorded.set_title('recorded', fontsize='medium')
     simulated.set_title('simulated on the fitted floor, same commands', fontsize='medium')
-    ends.set_title('of %d measured ends, %d are inside 50 %%, %d inside 90 %%' % (count, inside_50, inside_90)
+    ends.set_title(f'of {count} measured ends, {inside_50} are inside 50 %, {inside_90} inside 90 %'
                    if count else 'simulated ends', fontsize='medium')
     for axes in (recorded, simulated, ends):
         if axes is not ends:
@@ -49,12 +54,12 @@ def draw_fit(file, title, comparisons):
     save(figure, file)
 
 
-def alike(comparison, other):
+def alike(comparison: Comparison, other: Comparison) -> bool:
     """Whether two runs have the same region, as far as can be seen: they had the same commands."""
-    return mahalanobis(other.ends[:, :2], comparison.ends[:, :2].mean(axis=0)[None])[0] < 0.02
+    return bool(mahalanobis(other.ends[:, :2], comparison.ends[:, :2].mean(axis=0)[None])[0] < 0.02)
 
 
-def draw_regions(axes, points, label):
+def draw_regions(axes: Axes, points: Array, label: bool) -> None:
     """Simulated ends, (n, 2), and the regions that hold parts of them. label: whether they are for the legend."""
     axes.plot(*points[:POINTS].T, '.', color=SIMULATED, markersize=4, alpha=0.6, zorder=1, markeredgewidth=0,
               label='simulated' if label else None)
@@ -69,7 +74,7 @@ def draw_regions(axes, points, label):
                                label=f'{100 * part:.0f} %' if label else None))
 
 
-def set_extents(comparisons, *panels):
+def set_extents(comparisons: Sequence[Comparison], *panels: Axes) -> None:
     """The same part of the floor for paths, however long."""
     points = numpy.concatenate([path for each in comparisons for path in (each.recorded, each.simulated)
                                 if path is not None] + [numpy.zeros((2, 1))], axis=1)

@@ -1,21 +1,31 @@
 """Pictures of simulated runs, with matplotlib."""
+from __future__ import annotations
+
 import io
 from math import cos, sin
 import os
 import shutil
+from typing import Iterable, Mapping, Sequence, Tuple
 
+from matplotlib.axes import Axes
+from matplotlib.collections import PathCollection
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 import numpy
 
+from rbx1_nav.arrays import Array
 from rbx1_nav.config import ConfigError
+from rbx1_nav.robot.kinematics import ORIGIN, Pose
+from rbx1_nav.simulation.exercise import SimulationResult
 from rbx1_nav.units import rounded
 
 PATHS = 20      # paths in a picture; more would hide each other
 TITLES = {'timed': 'by time', 'odom': 'by odometry', 'ekf': 'by odometry and gyro'}
 
+Extent = Tuple[float, float, float, float]    # xmin, xmax, ymin, ymax, m
 
-def check_picture(path):
+
+def check_picture(path: str) -> None:
     """Try whether a picture can be written to this path. Raises ConfigError."""
     formats = sorted(set(Figure().canvas.get_supported_filetypes()) - {'pgf'})      # that one needs LaTeX
     if os.path.splitext(path)[1][1:].lower() not in formats:
@@ -23,7 +33,7 @@ def check_picture(path):
     check_writable(path)
 
 
-def check_writable(path):
+def check_writable(path: str) -> None:
     """Try whether a file can be written. Raises ConfigError."""
     if not os.path.isdir(os.path.dirname(os.path.abspath(path))):
         raise ConfigError('expected a folder that exists')
@@ -33,33 +43,33 @@ def check_writable(path):
         if new:
             os.remove(path)
     except OSError as error:
-        raise ConfigError(f'expected a file that can be written: {error.strerror}')
+        raise ConfigError(f'expected a file that can be written: {error.strerror}') from error
 
 
-def draw(file, surface, results, seeds):
+def draw(file: str, surface: str, results: Mapping[str, Sequence[SimulationResult]], seeds: range) -> None:
     """Draw a column for each method: above, true paths; below, the end poses of all runs, on one scale.
 
-    surface: its name; results: the Results of each method; seeds: a range.
+    surface: its name; results: of each method.
     """
     figure = Figure(figsize=(5.6 * len(results), 9.4), constrained_layout=True)
     panels = figure.subplots(2, len(results), squeeze=False)
-    runs = '1 run (seed %d)' % seeds[0] if len(seeds) == 1 else '%d runs (seeds %d to %d)' % (
-        len(seeds), seeds[0], seeds[-1])
+    runs = (f'1 run (seed {seeds[0]})' if len(seeds) == 1
+            else f'{len(seeds)} runs (seeds {seeds[0]} to {seeds[-1]})')
     figure.suptitle(f'Out and back on {surface}, {runs}')
     ends = {method: end_poses(each) for method, each in results.items()}
     extent, norm = common_extent(ends.values()), common_norm(ends.values())
     for (above, below), method in zip(panels.T, results):
         draw_paths(above, results[method])
         distances, errors = numpy.hypot(*ends[method].T[:2]), ends[method][:, 2]
-        above.set_title('%s: %.1f cm from the start, %.1f degrees off' % (
-            TITLES[method], 100 * distances.mean(), errors.mean()), fontsize='medium')
+        above.set_title(f'{TITLES[method]}: {100 * distances.mean():.1f} cm from the start, '
+                        f'{errors.mean():.1f} degrees off', fontsize='medium')
         points = draw_ends(below, ends[method], extent, norm)
     if norm:
         figure.colorbar(points, ax=list(panels[1]), label='heading error (degrees)').solids.set(alpha=1)
     save(figure, file)
 
 
-def save(figure, path):
+def save(figure: Figure, path: str) -> None:
     """Write a Figure to a file, in the format that its name says. Raises OSError."""
     # drawn in memory: a full disk is an OSError, and not one of all that the libraries below matplotlib may raise
     picture = io.BytesIO()
@@ -67,10 +77,10 @@ def save(figure, path):
     write_file(path, picture.getvalue())
 
 
-def write_file(path, content):
+def write_file(path: str, content: bytes) -> None:
     """Write a file as a whole or not at all: what was there before survives an error. Raises OSError."""
     path = os.path.realpath(path)       # not in the place of a link to it
-    new = os.path.join(os.path.dirname(path), '.rbx1_nav-%d.tmp' % os.getpid())
+    new = os.path.join(os.path.dirname(path), f'.rbx1_nav-{os.getpid()}.tmp')
     try:
         with open(new, 'wb') as file:
             file.write(content)
@@ -85,15 +95,15 @@ def write_file(path, content):
         raise
 
 
-def end_poses(results):
-    """An array with a row for each Result: true x and y (m), and the absolute heading error (degrees)."""
+def end_poses(results: Iterable[SimulationResult]) -> Array:
+    """An array with a row for each result: true x and y (m), and the absolute heading error (degrees)."""
     poses = numpy.array([result.end.truth for result in results])
     poses[:, 2] = abs(numpy.degrees(numpy.angle(numpy.exp(1j * poses[:, 2]))))
     return poses
 
 
-def common_extent(ends):
-    """The square (xmin, xmax, ymin, ymax) around the start and all end poses, m; at least 10 cm wide."""
+def common_extent(ends: Iterable[Array]) -> Extent:
+    """The square around the start and all end poses; at least 10 cm wide."""
     points = numpy.vstack([poses[:, :2] for poses in ends] + [numpy.zeros((1, 2))])
     low, high = points.min(axis=0), points.max(axis=0)
     half = max(0.05, 0.6 * (high - low).max())
@@ -101,19 +111,19 @@ def common_extent(ends):
     return x - half, x + half, y - half, y + half
 
 
-def common_norm(ends):
+def common_norm(ends: Iterable[Array]) -> Normalize | None:
     """The colour scale of heading errors, from 0 to the largest; None if they are too small to tell apart."""
     largest = max(poses[:, 2].max() for poses in ends)
     return Normalize(0, largest) if largest > 1 else None
 
 
-def draw_paths(axes, results):
+def draw_paths(axes: Axes, results: Sequence[SimulationResult]) -> None:
     """The true paths that were kept, on a floor with a grid of 0.5 m as in RViz; the first run's start and end."""
     for result in results:
         if result.path:
             x, y, _ = zip(*[snapshot.truth for snapshot in result.path])
             axes.plot(x, y, color='tab:blue', linewidth=0.8, alpha=0.5)
-    draw_robot(axes, (0.0, 0.0, 0.0), 'black', 'start')
+    draw_robot(axes, ORIGIN, 'black', 'start')
     draw_robot(axes, results[0].end.truth, 'firebrick', 'end of the first run')
     axes.set(xlabel='x (m)', ylabel='y (m)', aspect='equal', xlim=(-0.35, 1.25), ylim=(-0.45, 0.85),
              xticks=[0, 0.5, 1], yticks=[0, 0.5])
@@ -121,7 +131,7 @@ def draw_paths(axes, results):
     axes.legend(loc='lower right')
 
 
-def draw_robot(axes, pose, color, label):
+def draw_robot(axes: Axes, pose: Pose, color: str, label: str) -> None:
     """The robot at a pose: a dot, and an arrow of 0.2 m."""
     x, y, yaw = pose
     axes.plot(x, y, marker='o', linestyle='', color=color, zorder=4, label=label)
@@ -129,22 +139,22 @@ def draw_robot(axes, pose, color, label):
                 width=0.012, zorder=4)
 
 
-def draw_ends(axes, poses, extent, norm):
-    """End poses in an extent (m), with an inset if their cloud is small in it. Returns the points, for a colour bar."""
+def draw_ends(axes: Axes, poses: Array, extent: Extent, norm: Normalize | None) -> PathCollection:
+    """End poses in an extent, with an inset if their cloud is small in it. Returns the points, for a colour bar."""
     x, y, error = poses.T
     few = len(x) <= 500
     style = dict(s=12 if few else 3, alpha=0.8 if few else 0.4, linewidths=0)
-    style.update(dict(c=error, norm=norm) if norm else dict(color='tab:blue'))
-    points = axes.scatter(x, y, **style)
+    color = dict(c=error, norm=norm) if norm else dict(color='tab:blue')
+    points = axes.scatter(x, y, **style, **color)
     axes.plot(0, 0, marker='+', markersize=14, color='black')
     size = max(numpy.ptp(x), numpy.ptp(y))
-    axes.set(title='end poses (+ start)' if size > 1e-4 else 'all end at (%.1f mm, %.1f mm)' % (
-        1000 * rounded(x.mean(), 4), 1000 * rounded(y.mean(), 4)),
+    end = f'({1000 * rounded(x.mean(), 4):.1f} mm, {1000 * rounded(y.mean(), 4):.1f} mm)'
+    axes.set(title='end poses (+ start)' if size > 1e-4 else f'all end at {end}',
              xlabel='x (m)', ylabel='y (m)', aspect='equal', xlim=extent[:2], ylim=extent[2:])
     axes.grid(True, alpha=0.5)
     if 1e-4 < size < 0.1 * (extent[1] - extent[0]):
         inset = axes.inset_axes([0.55, 0.5, 0.42, 0.42])
-        inset.scatter(100 * x, 100 * y, **style)
+        inset.scatter(100 * x, 100 * y, **style, **color)
         half = 60 * size
         inset.set(aspect='equal', xlim=(50 * (x.min() + x.max()) - half, 50 * (x.min() + x.max()) + half),
                   ylim=(50 * (y.min() + y.max()) - half, 50 * (y.min() + y.max()) + half))

@@ -1,8 +1,11 @@
 """Calibration: the factor that corrects a sensor, from what the sensor reported and what was measured."""
+from __future__ import annotations
+
 from math import degrees, inf, isfinite
 import re
+from typing import Sequence
 
-from rbx1_nav.config import ConfigError, Section, show
+from rbx1_nav.config import ConfigError, Section, YamlValue, show
 
 MAX_ERROR = 2.0         # a distance or turn that is wrong by more than this factor is a mistake, and no calibration
 MAX_FACTOR = 10.0       # the same for a correction factor; create_node's highest is 6
@@ -11,7 +14,7 @@ REST = 1.0              # s at least, to know a gyro's bias
 UNITS = {'m': 'm', 'degrees': 'degrees?|deg|°'}   # how an answer may end
 
 
-def read_measured(key, value, expected, what, unit):
+def read_measured(key: str, value: YamlValue, expected: float, what: str, unit: str) -> float:
     """What somebody has measured: a number, or text as typed; at least half and at most twice of `expected`.
 
     unit: m or degrees; key, what: for the text of the error. Raises ConfigError.
@@ -27,19 +30,19 @@ def read_measured(key, value, expected, what, unit):
     return Section({key: value}).number(key, low, high, what=what, unit=unit)
 
 
-def corrected(key, factor, measured, reported):
+def corrected(key: str, factor: float, measured: float, reported: float) -> float:
     """The new value of the correction factor `key`, whose value was `factor` when the sensor reported this.
 
     measured, reported: of the same distance or turn, in the same unit. Raises ConfigError.
     """
     new = factor * measured / reported if reported else inf
     if not 1 / MAX_FACTOR <= new <= MAX_FACTOR:
-        raise ConfigError('%s: %.4g: expected a factor from %g to %g: measured %.3f, reported %.3f'
-                          % (key, new, 1 / MAX_FACTOR, MAX_FACTOR, measured, reported))
+        raise ConfigError(f'{key}: {new:.4g}: expected a factor from {1 / MAX_FACTOR:g} to {MAX_FACTOR:g}: '
+                          f'measured {measured:.3f}, reported {reported:.3f}')
     return new
 
 
-def turn_by_gyro(readings, start, end, expected):
+def turn_by_gyro(readings: Sequence[tuple[float, float]], start: float, end: float, expected: float) -> float:
     """The angle (rad) that a gyro has measured from `start`, when the robot began to turn, to `end`.
 
     readings: (time in s, angular velocity in rad/s), in their order. The mean of those up to `start`, at rest, is the

@@ -1,5 +1,8 @@
 """A position-controlled joint, as simple as the ArbotiX driver's simulation of its servos."""
+from __future__ import annotations
+
 from math import isfinite
+from typing import Sequence
 
 from rbx1_nav.units import SECOND, clamp
 
@@ -7,7 +10,7 @@ from rbx1_nav.units import SECOND, clamp
 class Joint:
     """Moves towards its goal at its maximum speed and stays within its limits. Radians and seconds."""
 
-    def __init__(self, name, lower, upper, max_speed):
+    def __init__(self, name: str, lower: float, upper: float, max_speed: float) -> None:
         """lower, upper: limits, rad; max_speed: rad/s."""
         self.name = name
         self.lower = lower
@@ -16,13 +19,13 @@ class Joint:
         self.position = self.goal = min(max(0.0, lower), upper)
         self.velocity = 0.0
 
-    def command(self, goal):
+    def command(self, goal: float) -> None:
         """Set the goal (rad), limited to the joint's range. Raises ValueError if it is not finite."""
         if not isfinite(goal):
             raise ValueError(f'{goal}: expected a finite angle in rad')
         self.goal = min(max(goal, self.lower), self.upper)
 
-    def advance(self, duration):
+    def advance(self, duration: float) -> None:
         """Move for `duration` seconds."""
         step = clamp(self.goal - self.position, self.max_speed * duration)
         self.velocity = step / duration if duration > 0 else 0.0
@@ -33,12 +36,11 @@ class Joint:
 class JointGroup:
     """Advances joints together, on a clock in ns."""
 
-    def __init__(self, joints):
-        """joints: Joint objects."""
+    def __init__(self, joints: Sequence[Joint]) -> None:
         self.joints = joints
-        self.now = None
+        self.now: int | None = None
 
-    def advance(self, now):
+    def advance(self, now: int) -> None:
         """Move up to `now`. A clock that jumped back moves nothing."""
         elapsed = max(0, now - self.now) if self.now is not None else 0
         self.now = now

@@ -2,22 +2,30 @@
 
 Metres, radians, seconds; x forward, y left, counter-clockwise positive (REP 103).
 """
-from collections import namedtuple
-from math import cos, sin
+from __future__ import annotations
 
-Pose = namedtuple('Pose', 'x y yaw')
-Pose.__doc__ = 'A pose in the odom frame: x and y in m, yaw in rad, not wrapped (a full turn left is 2 pi).'
+from math import cos, sin
+from typing import NamedTuple
+
+
+class Pose(NamedTuple):
+    """A pose in the odom frame."""
+
+    x: float    # m
+    y: float    # m
+    yaw: float  # rad, not wrapped (a full turn left is 2 pi)
+
 
 ORIGIN = Pose(0.0, 0.0, 0.0)
 
 
-def relative_frame(pose, other):
+def relative_frame(pose: Pose, other: Pose) -> Pose:
     """The Pose of the frame of `other` in the frame of `pose`, where both are the pose of the same robot."""
     yaw = pose.yaw - other.yaw
     return Pose(pose.x - other.x * cos(yaw) + other.y * sin(yaw), pose.y - other.x * sin(yaw) - other.y * cos(yaw), yaw)
 
 
-def arc(pose, distance, angle):
+def arc(pose: Pose, distance: float, angle: float) -> Pose:
     """The pose after a circular arc of length `distance` (m) through `angle` (rad).
 
     Exact for any pair: the chord of an arc is distance * sin(angle/2) / (angle/2), and it points half the angle
@@ -33,15 +41,15 @@ def arc(pose, distance, angle):
 class Odometry:
     """Integrates the travel of two wheels to a pose."""
 
-    def __init__(self, base_width):
+    def __init__(self, base_width: float) -> None:
         """base_width: distance between the wheels, m."""
         self.base_width = base_width
         self.pose = ORIGIN
 
-    def update(self, left, right):
+    def update(self, left: float, right: float) -> None:
         """Add the travel (m) of both wheels, each at a constant speed."""
         self.move((left + right) / 2, (right - left) / self.base_width)
 
-    def move(self, distance, angle):
+    def move(self, distance: float, angle: float) -> None:
         """Add an arc of length `distance` (m) through `angle` (rad)."""
         self.pose = arc(self.pose, distance, angle)

@@ -1,20 +1,46 @@
 """Odometry that knows how uncertain it is."""
-from collections import namedtuple
+from __future__ import annotations
+
 from math import cos, sin
+from typing import NamedTuple, Protocol
 
 import numpy
 
-from rbx1_nav.robot.kinematics import Odometry
+from rbx1_nav.arrays import Array
+from rbx1_nav.robot.kinematics import Odometry, Pose
 
 HELD = 0.3      # m: a robot that drives straight ahead leaves a rounded heading as it is for so long
 
 
-class OdometryErrors(namedtuple('OdometryErrors', 'linear angular heading')):
-    """Of the wheels' travel on the floor, 1 sigma: m after 1 m, rad after a turn of 1 rad, rad after 1 m. They grow
-    with the root of the travel."""
+class Travel(Protocol):
+    """What a robot has travelled by its sensors, and the variances of that."""
 
-    def variances(self, travel):
-        """Of the length (m^2) and the angle (rad^2) of a Travel."""
+    @property
+    def distance(self) -> float:
+        """m."""
+
+    @property
+    def angle(self) -> float:
+        """rad."""
+
+    @property
+    def distance_variance(self) -> float:
+        """m^2."""
+
+    @property
+    def angle_variance(self) -> float:
+        """rad^2."""
+
+
+class OdometryErrors(NamedTuple):
+    """Of the wheels' travel on the floor, 1 sigma. They grow with the root of the travel."""
+
+    linear: float   # m after 1 m
+    angular: float  # rad after a turn of 1 rad
+    heading: float  # rad after 1 m
+
+    def variances(self, travel: Travel) -> tuple[float, float]:
+        """Of the length (m^2) and the angle (rad^2)."""
         distance, angle = abs(travel.distance), abs(travel.angle)
         return self.linear ** 2 * distance, self.angular ** 2 * angle + self.heading ** 2 * distance
 
@@ -26,8 +52,8 @@ class UncertainOdometry:
     Nourbakhsh and Scaramuzza, Introduction to Autonomous Mobile Robots, 2nd ed., section 5.2.4.
     """
 
-    def __init__(self, width, errors, rounding):
-        """width: between the wheels, m; errors: OdometryErrors; rounding: see travel.py."""
+    def __init__(self, width: float, errors: OdometryErrors, rounding: tuple[float, float]) -> None:
+        """width: between the wheels, m; rounding: see travel.py."""
         self.odometry = Odometry(width)
         self.errors = errors
         self.rounding = rounding[0] ** 2, rounding[1] ** 2      # m^2, rad^2
@@ -35,20 +61,19 @@ class UncertainOdometry:
         self.xx = self.xy = self.yy = self.x_yaw = self.y_yaw = self.yaw_yaw = 0.0
 
     @property
-    def pose(self):
-        """The Pose."""
+    def pose(self) -> Pose:
         return self.odometry.pose
 
     @property
-    def covariance(self):
+    def covariance(self) -> Array:
         """Of x, y (m^2) and yaw (rad^2)."""
         position, yaw = self.rounding
         return numpy.array([[self.xx + position, self.xy, self.x_yaw],
                             [self.xy, self.yy + position, self.y_yaw],
                             [self.x_yaw, self.y_yaw, self.yaw_yaw + yaw]])
 
-    def _variances(self, travel):
-        """Variances of the length, the displacement to the side (m^2) and the angle (rad^2) of a Travel.
+    def _variances(self, travel: Travel) -> tuple[float, float, float]:
+        """Variances of the length, the displacement to the side (m^2) and the angle (rad^2).
 
         To the side: the heading is counted in whole units, and its rounding is the same until the next unit. So it adds
         up over the path to that unit, or else is the mean of two roundings.
@@ -60,7 +85,7 @@ class UncertainOdometry:
         return (travel.distance_variance + length, self.rounding[1] * distance * max(path, distance / 2),
                 travel.angle_variance + turn)
 
-    def move(self, travel):
+    def move(self, travel: Travel) -> None:
         """Add a Travel."""
         distance, angle = travel.distance, travel.angle
         along, aside, turn = self._variances(travel)
@@ -68,8 +93,8 @@ class UncertainOdometry:
             return
         middle = self.pose.yaw + angle / 2
         c, s = cos(middle), sin(middle)
-        # J C J' + K V K', with the Jacobians of the new pose by the old one, and by the travel: written out, since numpy
-        # needs six times as long for matrices this small, at each reading
+        # J C J' + K V K', with the Jacobians of the new pose by the old one, and by the travel: written out, since
+        # numpy needs six times as long for matrices this small, at each reading
         x, y = -distance * s, distance * c
         self.xx += (2 * self.x_yaw + x * self.yaw_yaw) * x + along * c * c + aside * s * s + turn * x * x / 4
         self.xy += (self.y_yaw * x + self.x_yaw * y + self.yaw_yaw * x * y

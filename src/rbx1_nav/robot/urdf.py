@@ -1,15 +1,28 @@
 """What a robot looks like: the visuals of a URDF file."""
-from collections import namedtuple
-import xml.etree.ElementTree as ElementTree
+from __future__ import annotations
 
-Visual = namedtuple('Visual', 'link xyz rpy shape size mesh color')
-Visual.__doc__ = """A visual of a link: position (m) and roll, pitch, yaw (rad) in the frame of the link; shape: one of
-SHAPES; size: extent along x, y and z (m; of a mesh: its scale); mesh: its URL, or ''; color: r, g, b, alpha, or None."""
+from typing import Mapping, NamedTuple, Tuple, TypeVar, cast
+import xml.etree.ElementTree as ElementTree
 
 SHAPES = ('box', 'cylinder', 'sphere', 'mesh')
 
+Numbers = Tuple[float, ...]
+T = TypeVar('T')
 
-def read_visuals(text):
+
+class Visual(NamedTuple):
+    """A visual of a link."""
+
+    link: str | None        # its name
+    xyz: Numbers            # position in the frame of the link, m
+    rpy: Numbers            # roll, pitch, yaw in the frame of the link, rad
+    shape: str              # one of SHAPES
+    size: Numbers           # extent along x, y and z, m; of a mesh: its scale
+    mesh: str               # its URL, or ''
+    color: Numbers | None   # r, g, b, alpha
+
+
+def read_visuals(text: str) -> list[Visual]:
     """The Visuals in the text of a URDF file. Raises ValueError if it is not one."""
     try:
         root = ElementTree.fromstring(text)
@@ -20,33 +33,39 @@ def read_visuals(text):
         return [_read_visual(link.get('name'), visual, colors)
                 for link in root.findall('link') for visual in link.findall('visual')]
     except (ElementTree.ParseError, AttributeError, IndexError, TypeError, ValueError) as error:
-        raise ValueError(f'not a URDF file: {error}')
+        raise ValueError(f'not a URDF file: {error}') from error
 
 
-def _numbers(text, count=3):
-    numbers = tuple(float(each) for each in text.split())
+def _required(value: T | None) -> T:
+    """What a URDF file has. If it does not, the use of None is an error that read_visuals() catches."""
+    return cast(T, value)   # a check of its own would change the text of that error
+
+
+def _numbers(text: str | None, count: int = 3) -> Numbers:
+    numbers = tuple(float(each) for each in _required(text).split())
     if len(numbers) != count:
-        raise ValueError('%r: expected %d numbers' % (text, count))
+        raise ValueError(f'{text!r}: expected {count} numbers')
     return numbers
 
 
-def _read_visual(link, visual, colors):
+def _read_visual(link: str | None, visual: ElementTree.Element,
+                 colors: Mapping[str | None, ElementTree.Element | None]) -> Visual:
     origin, material = visual.find('origin'), visual.find('material')
     values = {} if origin is None else origin.attrib
     color = None if material is None else material.find('color')
     if color is None and material is not None:
         color = colors.get(material.get('name'))
-    shape, = visual.find('geometry')
+    shape, = _required(visual.find('geometry'))
     if shape.tag not in SHAPES:
         raise ValueError(f"<{shape.tag}>: expected one of {', '.join(SHAPES)}")
     return Visual(link, _numbers(values.get('xyz', '0 0 0')), _numbers(values.get('rpy', '0 0 0')), shape.tag,
                   _size(shape), shape.get('filename', ''), None if color is None else _numbers(color.get('rgba'), 4))
 
 
-def _size(shape):
+def _size(shape: ElementTree.Element) -> Numbers:
     if shape.tag == 'box':
         return _numbers(shape.get('size'))
     if shape.tag == 'mesh':
         return _numbers(shape.get('scale', '1 1 1'))
-    diameter = 2 * float(shape.get('radius'))
+    diameter = 2 * float(_required(shape.get('radius')))
     return diameter, diameter, float(shape.get('length', diameter))

@@ -1,51 +1,59 @@
 """Conversion between the core's types and ROS messages."""
-from math import atan2, cos, isnan, nan, pi, sin, sqrt
+from __future__ import annotations
 
-from geometry_msgs.msg import PoseWithCovarianceStamped, Quaternion, TransformStamped
+from math import atan2, cos, isnan, nan, pi, sin, sqrt
+from typing import Sequence
+
+from geometry_msgs.msg import PoseWithCovarianceStamped, Quaternion, TransformStamped, Twist
 from nav_msgs.msg import Odometry
 import numpy
+import rospy
 from sensor_msgs.msg import Imu, JointState
 
+from rbx1_nav.arrays import Array
 from rbx1_nav.config import show
 from rbx1_nav.estimation.gyro_input import ImuData
 from rbx1_nav.estimation.inputs import Odom, check, check_number, check_variance
+from rbx1_nav.robot.description import Robot
+from rbx1_nav.robot.joints import Joint
 from rbx1_nav.robot.kinematics import Pose
-from rbx1_nav.robot.readings import MEASURED
+from rbx1_nav.robot.readings import MEASURED, Reading, Uncertainty
 from rbx1_nav.units import wrap_angle
 
 ROUNDING = 1e-6     # of a correlation that somebody has calculated
 UNKNOWN = 1e6       # variance of what is not measured, as in diff_drive_controller and robot_pose_ekf
 
 
-def diagonal(*variances):
+def diagonal(*variances: float) -> list[float]:
     """A 6x6 covariance, row by row, from the variances of x, y, z, roll, pitch and yaw."""
     matrix = [0.0] * 36
     matrix[::7] = variances
     return matrix
 
 
-def from_twist(twist):
+def from_twist(twist: Twist) -> tuple[float, float, tuple[float, float, float, float]]:
     """(linear, angular, others) of a Twist: m/s forward, rad/s to the left, and the four velocities that a differential
     drive cannot follow."""
     return (twist.linear.x, twist.angular.z,
             (twist.linear.y, twist.linear.z, twist.angular.x, twist.angular.y))
 
 
-def squared_norm(rotation):
+def squared_norm(rotation: Quaternion) -> float:
     """The squared length of a Quaternion; nan if it is not normalized."""
     # not `** 2`, which raises an OverflowError for huge numbers
     norm = sum(value * value for value in (rotation.x, rotation.y, rotation.z, rotation.w))
     return norm if 0.9 < norm < 1.1 else nan
 
 
-def unit_quaternion(rotation):
+def unit_quaternion(rotation: Quaternion) -> tuple[float, float, float, float] | None:
     """(x, y, z, w) of a Quaternion, of length 1; None if it is not normalized."""
     length = sqrt(squared_norm(rotation))
-    return None if isnan(length) else tuple(
-        value / length for value in (rotation.x, rotation.y, rotation.z, rotation.w))
+    if isnan(length):
+        return None
+    return rotation.x / length, rotation.y / length, rotation.z / length, rotation.w / length
 
 
-def yaw_of(rotation):
+def yaw_of(rotation: Quaternion) -> float:
     """The yaw (rad) of a Quaternion; nan if it is not normalized."""
     norm = squared_norm(rotation)
     if isnan(norm):
@@ -54,12 +62,12 @@ def yaw_of(rotation):
                  norm - 2 * (rotation.y ** 2 + rotation.z ** 2))
 
 
-def quaternion(yaw):
+def quaternion(yaw: float) -> Quaternion:
     """The rotation by yaw (rad) about z."""
     return Quaternion(0.0, 0.0, sin(yaw / 2), cos(yaw / 2))
 
 
-def planar(covariance):
+def planar(covariance: Array) -> list[float]:
     """A 6x6 covariance, row by row, from the 3x3 covariance of x, y (m) and yaw (rad)."""
     matrix = diagonal(0.0, 0.0, UNKNOWN, UNKNOWN, UNKNOWN, 0.0)
     for row, values in zip((0, 1, 5), covariance.tolist()):
@@ -68,7 +76,8 @@ def planar(covariance):
     return matrix
 
 
-def odometry(stamp, robot, pose, velocity, uncertainty, covariance=None):
+def odometry(stamp: rospy.Time, robot: Robot, pose: Pose, velocity: tuple[float, float], uncertainty: Uncertainty,
+             covariance: Array | None = None) -> Odometry:
     """An Odometry message: the Pose in the odom frame, the velocity (m/s, rad/s) in the base frame, an Uncertainty.
 
     covariance: 3x3, of the pose, in place of the Uncertainty's.
@@ -89,7 +98,7 @@ def odometry(stamp, robot, pose, velocity, uncertainty, covariance=None):
     return message
 
 
-def imu(stamp, frame_id, reading):
+def imu(stamp: rospy.Time, frame_id: str, reading: Reading) -> Imu:
     """An Imu message of a gyro's Reading, which measures the vertical axis only."""
     message = Imu()
     message.header.stamp = stamp
@@ -102,7 +111,7 @@ def imu(stamp, frame_id, reading):
     return message
 
 
-def transform(stamp, frame_id, child_frame_id, pose):
+def transform(stamp: rospy.Time, frame_id: str, child_frame_id: str, pose: Pose) -> TransformStamped:
     """A TransformStamped with the Pose of the child frame."""
     message = TransformStamped()
     message.header.stamp = stamp
@@ -114,7 +123,7 @@ def transform(stamp, frame_id, child_frame_id, pose):
     return message
 
 
-def joint_states(stamp, joints, wheels):
+def joint_states(stamp: rospy.Time, joints: Sequence[Joint], wheels: Sequence[tuple[str, float, float]]) -> JointState:
     """A JointState. joints: Joint objects; wheels: (name, angle in rad, speed in rad/s) of each wheel."""
     message = JointState()
     message.header.stamp = stamp
@@ -124,7 +133,7 @@ def joint_states(stamp, joints, wheels):
     return message
 
 
-def from_odometry(message):
+def from_odometry(message: Odometry) -> tuple[Odom, tuple[float, float, float]]:
     """(Odom, variances of the pose's x, y and yaw) of an Odometry message, for the filter."""
     pose = message.pose.pose
     covariance = message.pose.covariance
@@ -148,7 +157,7 @@ def frames_of(message, parameters):
     return frames
 
 
-def from_imu(message):
+def from_imu(message: Imu) -> ImuData:
     """The ImuData of an Imu message. By its definition, a first variance of -1 stands for what is not measured."""
     rate = message.angular_velocity
     has_rates, has_orientation = (covariance[0] != -1 for covariance in (
@@ -159,7 +168,7 @@ def from_imu(message):
                    message.orientation_covariance[8])
 
 
-def planar_pose(stamp, frame_id, pose, covariance):
+def planar_pose(stamp: rospy.Time, frame_id: str, pose: Pose, covariance: Array) -> PoseWithCovarianceStamped:
     """A PoseWithCovarianceStamped of a Pose and the 3x3 covariance of x, y (m) and yaw (rad)."""
     message = PoseWithCovarianceStamped()
     message.header.stamp = stamp
@@ -171,7 +180,7 @@ def planar_pose(stamp, frame_id, pose, covariance):
     return message
 
 
-def from_set_pose(message, output_frame):
+def from_set_pose(message: PoseWithCovarianceStamped, output_frame: str) -> tuple[Pose, Array]:
     """(Pose, 3x3 covariance of x, y and yaw) of the PoseWithCovarianceStamped of set_pose. Raises RejectedMessage.
 
     output_frame: the frame that the pose must be in; an empty frame_id stands for it.
@@ -187,7 +196,7 @@ def from_set_pose(message, output_frame):
         check_number(f'pose.pose.{field}', value)
     covariance = numpy.reshape(message.pose.covariance, (6, 6))[numpy.ix_((0, 1, 5), (0, 1, 5))]
     for index, value in zip((0, 7, 35), covariance.diagonal().tolist()):
-        check_variance('pose.covariance[%d]' % index, value)
+        check_variance(f'pose.covariance[{index}]', value)
     deviations = numpy.sqrt(covariance.diagonal())
     correlations = covariance / numpy.outer(deviations, deviations)
     # nan fails the first comparison
@@ -213,7 +222,8 @@ def odometry_of_estimate(pose, child_frame_id, twist):
     return message
 
 
-def odometry_of_pose(pose, before, frame_id, child_frame_id):
+def odometry_of_pose(pose: PoseWithCovarianceStamped, before: PoseWithCovarianceStamped | None, frame_id: str,
+                     child_frame_id: str) -> Odometry:
     """An Odometry message of a PoseWithCovarianceStamped. Its velocity is the mean since the pose `before` (may be
     None), with an unknown variance."""
     message = Odometry()
@@ -223,7 +233,7 @@ def odometry_of_pose(pose, before, frame_id, child_frame_id):
     message.pose = pose.pose
     message.twist.covariance = diagonal(UNKNOWN, UNKNOWN, UNKNOWN, UNKNOWN, UNKNOWN, UNKNOWN)
     elapsed = (pose.header.stamp - before.header.stamp).to_sec() if before else 0.0
-    if elapsed > 0:
+    if before and elapsed > 0:
         yaw = yaw_of(pose.pose.pose.orientation)
         turned = wrap_angle(yaw - yaw_of(before.pose.pose.orientation))
         x = pose.pose.pose.position.x - before.pose.pose.position.x

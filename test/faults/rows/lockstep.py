@@ -9,12 +9,12 @@ import time
 FOLDER = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 sys.path[:0] = [FOLDER, os.path.dirname(FOLDER)]    # as a station, this is a program of its own
 
-import rospy            # noqa: E402, pylint: disable=wrong-import-position
-from nav_msgs.msg import Odometry   # noqa: E402, pylint: disable=wrong-import-position
+import rospy
+from nav_msgs.msg import Odometry
 
-from ports import free_port     # noqa: E402, pylint: disable=wrong-import-position
-from row import Row     # noqa: E402, pylint: disable=wrong-import-position
-import support          # noqa: E402, pylint: disable=wrong-import-position
+from ports import free_port
+from row import Row
+import support
 
 FAULT = 'the exercise at real_time_factor 20, three masters side by side with a busy loop each; in a quarter of the runs, ' \
         'script or base is stopped for 10 to 500 ms'

@@ -8,8 +8,8 @@ import unittest
 import support
 
 sys.path.append(os.path.join(os.path.dirname(__file__), '..', '..', 'create'))
-from driven import DrivenRobot              # noqa: E402, pylint: disable=wrong-import-position
-from rbx1_nav.create.protocol import MODE_NAMES, PASSIVE    # noqa: E402, pylint: disable=wrong-import-position
+from driven import DrivenRobot
+from rbx1_nav.create.protocol import MODE_NAMES, PASSIVE
 
 FAULT = ('robots that report their mode plus one, or not, driven in each mode; two thirds of those in safe mode start with '
          'a wheel dropped, or on the dock')

@@ -7,7 +7,7 @@ import unittest
 import support
 
 sys.path.append(os.path.join(os.path.dirname(__file__), '..', '..', 'create'))
-from driven import CHI_SQUARE, STOP, DrivenRobot    # noqa: E402, pylint: disable=wrong-import-position
+from driven import CHI_SQUARE, STOP, DrivenRobot
 
 FAULT = "a Create's cable pulled at a random moment of a motion, and put back"
 PROMISE = 'a stop comes first; the odometry counts what moved meanwhile, and knows how uncertain that is'

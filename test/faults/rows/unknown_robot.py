@@ -10,9 +10,9 @@ import rospy
 import support
 
 sys.path.append(os.path.join(os.path.dirname(__file__), '..', '..', 'create'))
-from driven import STOP                     # noqa: E402, pylint: disable=wrong-import-position
-from emulated import EmulatedRobot          # noqa: E402, pylint: disable=wrong-import-position
-from rbx1_nav.create.protocol import command    # noqa: E402, pylint: disable=wrong-import-position
+from driven import STOP
+from emulated import EmulatedRobot
+from rbx1_nav.create.protocol import command
 
 FAULT = ('a base node for each robot_type meets each kind of robot at each rate; half of the nodes are killed by SIGKILL '
          'while they search')

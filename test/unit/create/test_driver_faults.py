@@ -209,7 +209,7 @@ def test_lost_replies_of_a_create_are_bridged(seed):
     for linear, angular in ((0.2, 0.0), (0.0, 1.0), (0.2, 0.3), (-0.1, -0.5)):
         driven.drive(linear, angular, 3)
     driven.run(1)
-    assert driven.driver.missed > 20
+    assert driven.driver.queries.missed > 20
     assert normalized_error(driven) < CHI_SQUARE
 
 

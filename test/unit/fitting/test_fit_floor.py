@@ -53,7 +53,7 @@ def test_two_values_of_which_only_the_sum_is_told_are_both_unknown():
     run = PreparedRun(record((REST, FORWARD, REST, FORWARD, REST))._replace(odometry=None), 0.26)
     # without turns, a curvature looks like nothing else; delay and lag are told apart only at starts and stops
     windows = run.windows(3.0)
-    _, covariance = Fitter([run], [Windows(windows.first[1:2], windows.count, windows.ends[1:2])], QUIET).fit_means(
+    _, covariance = Fitter([run], [Windows(windows.first[1:2], windows.length, windows.ends[1:2])], QUIET).fit_means(
         FLOOR, ['delay', 'lag', 'slip_straight'])
     assert numpy.isfinite(covariance).all()
     assert all(covariance[index, index] ** 0.5 > MEANS[key][1] for index, key in enumerate(('delay', 'lag')))

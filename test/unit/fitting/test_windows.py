@@ -27,7 +27,7 @@ def test_windows_follow_each_other_or_begin_a_stride_apart():
     run = make_run()
     assert starts(run, run.windows(10)) == pytest.approx([0, 10, 20, 30])
     assert starts(run, run.windows(10, 5)) == pytest.approx([0, 5, 10, 15, 20, 25, 30])
-    assert run.windows(10).count == 200
+    assert run.windows(10).length == 200
 
 
 def test_the_end_of_a_window_is_in_the_frame_of_its_start():
@@ -60,4 +60,4 @@ def test_the_window_of_a_whole_run_ends_after_the_predicted_number_of_turns():
     run = PreparedRun(recording, WIDTH)
     windows = run.whole(4 * numpy.pi - 0.2)
     assert windows.ends == pytest.approx(numpy.array([[1.0, 0.5, 4 * numpy.pi + 0.1]]))
-    assert (windows.first, windows.count) == (0, len(run.times) - 1)
+    assert (windows.first, windows.length) == (0, len(run.times) - 1)

@@ -1,13 +1,16 @@
 """The TurtleBot's gyro, which the Create reads with its analog input."""
+from __future__ import annotations
+
 from collections import deque
 from math import radians
+from typing import Callable
 
-from rbx1_nav.create.driver.gyro_check import GyroCheck
+from rbx1_nav.create.driver.gyro_check import GyroCheck, Step
 from rbx1_nav.robot.readings import MEASURED, Reading
 
 MAX_REST = 1000         # readings at rest that the offset is the mean of: half a minute, as in create_node
 MIN_REST = 10           # and at least so many: before, no angular velocity is reported
-JUMP, JUMP_TIME = 15, 1.0   # counts (4 degrees/s) and s at rest: an offset that is so far off has not drifted, but jumped
+JUMP, JUMP_TIME = 15, 1.0   # counts (4 degrees/s) and s at rest: an offset that is so far off has jumped, not drifted
 COUNT_VARIANCE = 1.0    # of a reading, counts^2: rounding and the noise of the analog input
 SCALE_ERROR = 0.01      # 1 sigma of the calibrated scale, a fraction
 
@@ -19,11 +22,12 @@ class AnalogGyro:
     broke, a new offset is measured.
     """
 
-    def __init__(self, measurement_range, correction, error, info):
-        """measurement_range: degrees/s, of the chip; correction: factor; error(text), info(text): log a line."""
+    def __init__(self, measurement_range: float, correction: float, error: Callable[[str], None],
+                 info: Callable[[str], None]) -> None:
+        """measurement_range: degrees/s, of the chip; correction: factor; error, info: log a line."""
         self.full_scale = radians(measurement_range) * correction
         self.check = GyroCheck(self.full_scale, error, info)
-        self.rest = deque(maxlen=MAX_REST)
+        self.rest: deque[int] = deque(maxlen=MAX_REST)
         self.total = 0          # of the readings in `rest`
         self.jumped = 0.0       # s of readings at rest in a row that are far from the offset
         self.rate = 0.0         # rad/s, the last one
@@ -32,11 +36,11 @@ class AnalogGyro:
         self.variance = MEASURED    # rad^2, of the yaw, except for the scale's
 
     @property
-    def offset(self):
+    def offset(self) -> float | None:
         """The reading at rest, counts; None before there is one."""
         return self.total / len(self.rest) if len(self.rest) >= MIN_REST else None
 
-    def update(self, count, step):
+    def update(self, count: int, step: Step) -> Reading | None:
         """The Reading of a count after a Step; None while there is no offset, or the count shows no angular velocity.
 
         The rate is always the present one. The heading is the wheels' where the gyro does not measure it.
@@ -53,7 +57,7 @@ class AnalogGyro:
             self.variance += self.check.variance
         return None if self.check.problem else reading
 
-    def _measure(self, count, offset, step):
+    def _measure(self, count: int, offset: float, step: Step) -> Reading:
         scale = self.full_scale / offset
         rate = (offset - count) * scale
         variance = COUNT_VARIANCE * scale ** 2
@@ -66,22 +70,22 @@ class AnalogGyro:
         self.rate = rate
         return Reading(rate, variance, self.yaw, self.variance + (SCALE_ERROR * self.turned) ** 2)
 
-    def _calibrate(self, count, step):
+    def _calibrate(self, count: int, step: Step) -> None:
         """Add a count to the offset if it is good, and forget an offset that has become wrong."""
         good = step.at_rest and self.check.accepts(count, True)
         offset = self.offset
         far = good and offset is not None and abs(count - offset) > JUMP
-        self.jumped = (self.jumped + step.elapsed) * far
-        if self.check.problem and self.check.rested is None or self.jumped > JUMP_TIME:
+        self.jumped = self.jumped + step.elapsed if far else 0.0
+        if (self.check.problem and self.check.rested is None) or self.jumped > JUMP_TIME:
             self.rest.clear()
-            self.total = self.jumped = 0
+            self.total, self.jumped = 0, 0.0
         elif good and not far:
             if len(self.rest) == MAX_REST:
                 self.total -= self.rest[0]
             self.rest.append(count)
             self.total += count
 
-    def _bridge(self, steady, turn, variance):
+    def _bridge(self, steady: float, turn: float, variance: float) -> None:
         """Add the turn of a gap: the weighted mean of the turn at a steady rate and the turn by the odometry, which has
         this variance. If the rate was not steady, the two differ: see estimation/filter.py."""
         difference = turn - steady

@@ -1,152 +1,200 @@
 """Finds the robot, starts it, notices when it falls silent, and gets it back. All times are in ns."""
+from __future__ import annotations
+
+from typing import Callable, Protocol
+
 from rbx1_nav.config import AUTO
 from rbx1_nav.create import protocol
 from rbx1_nav.create.driver import sequences
-from rbx1_nav.create.driver.search import RATES, Search
+from rbx1_nav.create.driver.parameters import Settings
+from rbx1_nav.create.driver.search import RATES, Found, Search
+from rbx1_nav.create.driver.sender import Sender
 from rbx1_nav.units import SECOND
 
 SILENCE = SECOND // 2           # without a reading: the robot does not answer
 FLUSH_WAIT = SECOND // 10       # without an answer to a stop, after which garbage may have swallowed it
 FIRST_WAIT = 3 * SECOND // 10   # that a robot that is on may need to answer, before it is started
 START_WAIT = SECOND             # that a robot may need to start, before it is searched for
-ROUNDS_BEFORE_WARNING = 2                    # rounds of the search before the first warning
+ROUNDS_BEFORE_WARNING = 2       # rounds of the search before the first warning
+
+
+class Line(Protocol):
+    """What leads to the robot. All methods may raise OSError."""
+
+    @property
+    def is_same(self) -> bool:
+        """Whether it is on the same adapter as the line before."""
+
+    def confirm(self, found: Found) -> None:
+        """A robot was found: from now on its guardian may stop it."""
+
+    def set_rate(self, baud: int) -> None:
+        """Set the rate, bits per second."""
+
+    def set_wake_lines(self, on: bool) -> None:
+        """Set RTS and DTR, or clear them. Raises NoWakeLines if the line has none."""
+
+    def write(self, data: bytes) -> None:
+        """Send bytes."""
+
+    def write_apart(self, data: bytes) -> None:
+        """Send bytes with a pause after each."""
+
+
+class Asker(Protocol):
+    """The driver, as Contact needs it."""
+
+    sender: Sender
+
+    @property
+    def polled(self) -> bool:
+        """Whether the robot sends a reading only if it is asked."""
+
+    def use(self, model: protocol.Model) -> None:
+        """Drive a robot of this Model."""
+
+    def ask(self, now: int, start: bool = False) -> None:
+        """Ask for a reading. start: of a robot that is started first."""
+
+    def lost_robot(self) -> None:
+        """The robot no longer answers."""
 
 
 class Contact:
-    """Whether the robot at the other end of the line answers, and what is tried to make it answer.
+    """Whether the robot at the other end of the line answers, and what is tried to make it answer."""
 
-    The line has the methods that Search needs, confirm(found): a robot was found, from now on its guardian may stop it, and
-    is_same: whether it is on the same adapter as the one before.
-    """
-
-    def __init__(self, settings, driver, warn):
-        """settings: Settings; driver: has use(model), ask(now, start), lost_robot() and a Sender; warn(text): logs a line."""
+    def __init__(self, settings: Settings, driver: Asker, warn: Callable[[str], None]) -> None:
+        """warn: logs a line."""
         self.settings = settings
         self.driver = driver
         self.warn = warn
-        self.line = None
-        self.found = None           # Found: the robot of this line, also while it does not answer
+        self.line: Line | None = None
+        self.found: Found | None = None         # the robot of this line, also while it does not answer
         self.answers = False        # whether readings arrive
         self.started = False        # whether the robot was started since it last answered
         self.dropouts = 0           # times that the robot fell silent
         self.search = Search((settings.baud,) if settings.baud else RATES, settings.wake)
         self.searching = False
         self._flushed = False
-        self._attempt = None        # when the robot was last asked to answer
-        self._refused = None        # a Found of the wrong type
+        self._baud = settings.model.baud        # of the robot that was found last, or is expected
+        self._attempt = 0           # when the robot was last asked to answer
+        self._refused: Found | None = None      # of the wrong type
         self._warned = False        # that no robot answers
 
-    def attach(self, now, line):
+    def attach(self, now: int, line: Line) -> None:
         """A line was opened. The first bytes on it are a stop if the robot is known, else those of the search."""
         self.line = line
         self.answers = False
         if not (self.found and line.is_same):
-            self._begin_search(now)
+            self._begin_search(now, line)
             return
         self.searching = False
         line.confirm(self.found)
-        self._begin_asking(now)
+        self._begin_asking(now, line)
 
-    def detach(self):
+    def detach(self) -> None:
         """The line is lost."""
         self.line = None
         self._lose()
 
-    def receive(self, now, data):
+    def receive(self, now: int, data: bytes) -> None:
         """Process bytes of a robot that is searched for."""
         self.search.receive(now, data)
 
-    def tick(self, now, reading_time):
+    def tick(self, now: int, reading_time: int | None) -> None:
         """Do what is due. reading_time: when the robot made the last reading."""
-        if not self.line:
+        line = self.line
+        if line is None:
             return
         if self.searching:
-            self._finish_search(now, self.search.tick(now))
+            found = self.search.tick(now)
+            if found:
+                self._finish_search(now, line, found)
             self._warn_of_silence()
         elif self.answers:
-            if now - reading_time > SILENCE:
-                self._fall_silent(now)
+            if reading_time is not None and now - reading_time > SILENCE:
+                self._fall_silent(now, line)
         elif self.started:
             if now - self._attempt > START_WAIT:
-                self._begin_search(now)
+                self._begin_search(now, line)
         elif now - self._attempt > FIRST_WAIT:
             self._start(now)
         elif now - self._attempt > FLUSH_WAIT and not self._flushed:
-            self._flush(now)
+            self._flush(now, line)
 
     @property
-    def may_ask(self):
+    def may_ask(self) -> bool:
         """Whether there is a line to a robot whose rate is known: then any command may be sent."""
         return self.line is not None and self.found is not None and not self.searching
 
-    def hear(self):
+    def hear(self) -> bool:
         """A reading has arrived. Returns whether the robot did not answer before."""
         before, self.answers, self.started = self.answers, True, False
         return not before
 
-    def _lose(self):
-        self.dropouts += self.answers
+    def _lose(self) -> None:
+        if self.answers:
+            self.dropouts += 1
         self.answers = False
 
-    def _begin_asking(self, now):
+    def _begin_asking(self, now: int, line: Line) -> None:
         self._attempt, self.started, self._flushed = now, False, False
-        self.line.set_rate(self.found.baud)     # another process may have changed it
+        line.set_rate(self._baud)       # another process may have changed it
         self.driver.sender.stop(now)
         if self.driver.polled:
             self.driver.ask(now)
         else:
-            self._flush(now)        # a robot that sends a stream need not hear anything
+            self._flush(now, line)      # a robot that sends a stream need not hear anything
 
-    def _flush(self, now):
+    def _flush(self, now: int, line: Line) -> None:
         self._flushed = True
-        self.line.write(sequences.FLUSH)
+        line.write(sequences.FLUSH)
         self.driver.sender.stop(now)
         self.driver.ask(now)
 
-    def _start(self, now):
+    def _start(self, now: int) -> None:
         self._attempt, self.started = now, True
         self.driver.sender.stop(now)
         self.driver.ask(now, start=True)
 
-    def _fall_silent(self, now):
+    def _fall_silent(self, now: int, line: Line) -> None:
         self._lose()
         self.driver.lost_robot()
-        self.warn('The robot has stopped responding. If it is still moving, stop it by hand: it keeps executing its last '
-                  'command')
-        self._begin_asking(now)
+        self.warn('The robot has stopped responding. If it is still moving, stop it by hand: it keeps executing its '
+                  'last command')
+        self._begin_asking(now, line)
 
     # the search
 
-    def _begin_search(self, now):
+    def _begin_search(self, now: int, line: Line) -> None:
         self.searching = True
-        self.search.begin(now, self.line, (self.found or self.settings.model).baud)
+        self.search.begin(now, line, self._baud)
 
-    def _finish_search(self, now, found):
-        if not found:
-            return
+    def _finish_search(self, now: int, line: Line, found: Found) -> None:
         before = self.found.model.name if self.found else self.settings.robot_type
         if before not in (AUTO, found.model.name):
             self._refuse(found, before)
             self.search.wait(now, START_WAIT)
             return
-        self.searching, self._refused, self.found = False, None, found
+        self.searching, self._refused, self.found, self._baud = False, None, found, found.baud
         self.driver.use(found.model)
-        self.line.confirm(found)
+        line.confirm(found)
         self._start(now)
 
-    def _refuse(self, found, before):
+    def _refuse(self, found: Found, before: str) -> None:
         if found == self._refused:
             return
         self._refused = found
         if self.found:
-            self.warn('A %s answers at %d baud, in place of a %s: restart this node to drive it'
-                      % (found.model.name, found.baud, before))
+            self.warn(f'A {found.model.name} answers at {found.baud} baud, in place of a {before}: restart this node '
+                      'to drive it')
         else:
-            self.warn('robot_type: %s: a %s answers at %d baud: expected robot_type:=%s, or auto'
-                      % (before, found.model.name, found.baud, found.model.name))
+            self.warn(f'robot_type: {before}: a {found.model.name} answers at {found.baud} baud: expected '
+                      f'robot_type:={found.model.name}, or auto')
 
-    def _warn_of_silence(self):
+    def _warn_of_silence(self) -> None:
         if self.search.rounds >= ROUNDS_BEFORE_WARNING and not self._warned and not self.found and not self._refused:
             self._warned = True
-            self.warn('No robot answers at %s baud: expected a Create, Create 2 or Roomba that is switched on and connected'
-                      % ', '.join(map(str, self.search.rates)))
+            rates = ', '.join(map(str, self.search.rates))
+            self.warn(f'No robot answers at {rates} baud: expected a Create, Create 2 or Roomba that is switched on '
+                      'and connected')

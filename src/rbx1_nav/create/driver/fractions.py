@@ -1,10 +1,13 @@
 """What a Create does with the fraction of a degree that it turns beyond a whole number when its angle is read.
 
 By its specification each reading counts from where the last one ended. But some robots begin at 0 and drop the fraction
-(libcreate, issue 22; create_robot, issue 28): at 30 readings a second and 1 rad/s, that is a third of the turn. The less
-often the angle is read, the less is lost.
+(libcreate, issue 22; create_robot, issue 28): at 30 readings a second and 1 rad/s, that is a third of the turn. The
+less often the angle is read, the less is lost.
 """
+from __future__ import annotations
+
 from math import copysign
+from typing import Callable
 
 from rbx1_nav.config import AUTO
 from rbx1_nav.units import clamp
@@ -26,20 +29,20 @@ GAP = 2.5               # intervals between two readings: in a longer one, readi
 MAX_CORRECTION = 2.0    # degrees, of one update: to a filter, a heading that jumps is another place
 
 
-def fraction(turn):
-    """What a robot is expected to lose of a turn (degrees): half a degree in the mean, since it measures at instants of its
-    own; all of a turn that is smaller than one."""
+def fraction(turn: float) -> float:
+    """What a robot is expected to lose of a turn (degrees): half a degree in the mean, since it measures at instants of
+    its own; all of a turn that is smaller than one."""
     return turn if turn < 1 else MEAN_LOSS
 
 
 class _Readings:
     """Readings in one steady turn, in degrees to the commanded side."""
 
-    def __init__(self):
-        self.commanded = []
+    def __init__(self) -> None:
+        self.commanded: list[float] = []
         self.total = self.read = self.fractions = 0.0   # commanded, read, and fractions of what was commanded
 
-    def add(self, commanded, read):
+    def add(self, commanded: float, read: float) -> None:
         self.commanded.append(commanded)
         self.total += commanded
         self.read += read
@@ -53,8 +56,8 @@ class Fractions:
     less often for a while. If fractions are lost, the robot then seems to turn faster.
     """
 
-    def __init__(self, kind=AUTO, warn=lambda text: None):
-        """kind: one of KINDS; warn(text): logs a line."""
+    def __init__(self, kind: str = AUTO, warn: Callable[[str], None] = lambda text: None) -> None:
+        """kind: one of KINDS; warn: logs a line."""
         self.kind = kind
         self._warn = warn
         self._count = 0                 # readings
@@ -64,13 +67,13 @@ class Fractions:
         self._rate = 0.0                # commanded, degrees/s
         self._begin(0, 0.0)
 
-    def add(self, commanded, angle, elapsed):
-        """The turn since the reading before, for one that is `angle` after `elapsed` s with `commanded` by the commands."""
+    def add(self, commanded: float, angle: float, elapsed: float) -> float:
+        """The turn since the reading before, for one that is `angle` after `elapsed` s, and `commanded` by commands."""
         self._count += 1
         if not self.coarse and elapsed > GAP * self._elapsed:
             self.disturb()
         self._elapsed = elapsed
-        side = (commanded > 0) - (commanded < 0)
+        side = int(commanded > 0) - int(commanded < 0)
         rate = commanded / elapsed if elapsed > 0 else 0.0
         if side != self._side or abs(rate - self._rate) > 0.2 * abs(rate):
             self._begin(side, rate)
@@ -79,29 +82,29 @@ class Fractions:
             self._owed = side * self._compare(side * commanded, side * angle)
         return angle + (copysign(MEAN_LOSS, angle) if self.kind == LOST and angle else 0.0)
 
-    def make_up(self):
+    def make_up(self) -> float:
         """A part of the turn that was lost before, to be added at each update."""
         part = clamp(self._owed, MAX_CORRECTION)
         self._owed -= part
         return part
 
-    def is_due(self, turn, time):
+    def is_due(self, turn: float, time: float) -> bool:
         """Whether to read the angle now. turn: by the commands since the last reading; time: s since then."""
         if not self.coarse:
             return True
         factor = 1 + VARIATION * (self._count * GOLDEN % 1)
         return abs(turn) >= factor * COARSE_ANGLE or time >= factor * COARSE_TIME
 
-    def disturb(self):
+    def disturb(self) -> None:
         """A reading was lost: what was compared so far is of no use."""
         self._begin(self._side, self._rate)
 
-    def _begin(self, side, rate):
+    def _begin(self, side: int, rate: float) -> None:
         self._side, self._rate, self._turning = side, rate, 0.0
         self._start, self._fine, self._coarse = _Readings(), _Readings(), _Readings()
         self.coarse = self.kind == LOST     # whether to read the angle less often
 
-    def _compare(self, commanded, read):
+    def _compare(self, commanded: float, read: float) -> float:
         """Look at a reading. Returns the turn that was lost before, once it is known that fractions are."""
         if self.coarse:
             self._coarse.add(commanded, read)
@@ -117,7 +120,7 @@ class Fractions:
                 self._fine = _Readings()
         return 0.0
 
-    def _decide(self):
+    def _decide(self) -> float:
         start, fine, coarse = self._start, self._fine, self._coarse
         if_kept = coarse.read / coarse.total * fine.total
         ratio = (coarse.read + MEAN_LOSS * len(coarse.commanded)) / coarse.total
@@ -126,8 +129,8 @@ class Fractions:
             self.kind, self.coarse = KEPT, False
             return 0.0
         self.kind = LOST
-        self._warn('The robot loses fractions of a degree: the odometry is corrected. angle_fractions:=lost corrects it '
-                   'from the start')
+        self._warn('The robot loses fractions of a degree: the odometry is corrected. angle_fractions:=lost corrects '
+                   'it from the start')
         # while the robot lagged behind its command, nothing but the number of readings says how much was lost
         begun = min(MEAN_LOSS * len(start.commanded), max(0.0, ratio * start.total - start.read))
         # the last of the coarse readings gets its half degree as each does from now on

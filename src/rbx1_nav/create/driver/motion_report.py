@@ -1,45 +1,59 @@
 """What the base reports of the robot's motion: pose, velocity, travel of the wheels, each with its uncertainty."""
-from collections import namedtuple
+from __future__ import annotations
 
+from typing import NamedTuple
+
+from rbx1_nav.arrays import Array
+from rbx1_nav.create.driver.parameters import Settings
 from rbx1_nav.create.driver.travel import NOWHERE, Travel
+from rbx1_nav.create.protocol import Model
+from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.robot.odometry import UncertainOdometry
-from rbx1_nav.robot.readings import MEASURED
+from rbx1_nav.robot.readings import MEASURED, Reading
 from rbx1_nav.units import SECOND
 
 STANDSTILL = SECOND // 2    # ns without travel and without a command to move: the robot stands
 
-State = namedtuple('State', 'time pose covariance velocity variances travel gyro')
-State.__doc__ = """time: ns, of the last reading; pose: Pose; covariance: 3x3; velocity: m/s and rad/s, the mean since
-the last State; variances: of these; travel: of both wheels, m; gyro: Reading or None."""
+
+class State(NamedTuple):
+    """What is reported at once."""
+
+    time: int                       # ns, of the last reading
+    pose: Pose
+    covariance: Array               # 3x3
+    velocity: tuple[float, float]   # m/s and rad/s, the mean since the last State
+    variances: tuple[float, float]  # of these
+    travel: tuple[float, float]     # of both wheels, m
+    gyro: Reading | None
 
 
 class MotionReport:
     """Adds up Travel. Times are in ns."""
 
-    def __init__(self, settings, model, rounding):
-        """settings: Settings; model: a protocol.Model; rounding: see travel.py."""
+    def __init__(self, settings: Settings, model: Model, rounding: tuple[float, float]) -> None:
+        """rounding: see travel.py."""
         self.width = model.wheel_separation
         self.corrections = settings.linear_correction, settings.angular_correction
         self.rounding = rounding
         self.moving_yaw_variance = settings.moving_yaw_variance
         self.odometry = UncertainOdometry(self.width, settings.errors, rounding)
         self.left = self.right = 0.0    # m, total travel of the wheels as the robot counts it
-        self.time = None            # of the last Travel
-        self.moved_time = None      # of the last travel that was not 0, or command to move
-        self.reported = None        # time of the last State
-        self.since = NOWHERE        # Travel since then
+        self.time: int | None = None        # of the last Travel
+        self.moved_time: int | None = None  # of the last travel that was not 0, or command to move
+        self.reported: int | None = None    # time of the last State
+        self.since = NOWHERE                # Travel since then
 
-    def command(self, now):
+    def command(self, now: int) -> None:
         """The wheels were commanded to move."""
         self.moved_time = now
 
-    def add(self, time, travel):
+    def add(self, time: int, travel: Travel) -> Travel:
         """Add a Travel, which has ended at `time`. Returns it with the corrections."""
         linear, angular = self.corrections
         corrected = Travel(travel.distance * linear, travel.angle * angular,
                            travel.distance_variance * linear ** 2, travel.angle_variance * angular ** 2)
         self.odometry.move(corrected)
-        self.since = Travel(*map(sum, zip(self.since, corrected)))
+        self.since = Travel(*(sum(parts) for parts in zip(self.since, corrected)))
         difference = travel.angle * self.width / 2
         self.left += travel.distance - difference
         self.right += travel.distance + difference
@@ -49,25 +63,27 @@ class MotionReport:
         return corrected
 
     @property
-    def stands(self):
+    def stands(self) -> bool:
         """Whether the robot was not commanded to move, and has not moved, for a while."""
-        return self.time is not None and self.time - self.moved_time >= STANDSTILL
+        return self.time is not None and self.moved_time is not None and self.time - self.moved_time >= STANDSTILL
 
     @property
-    def is_new(self):
+    def is_new(self) -> bool:
         """Whether there is a reading since the last State."""
         return self.time != self.reported
 
-    def state(self, gyro):
-        """The State, with the gyro's last Reading or None."""
+    def state(self, gyro: Reading | None) -> State:
+        """The State, with the gyro's last Reading or None. To be called after a Travel was added."""
+        assert self.time is not None
         elapsed = (self.time - self.reported) / SECOND if self.reported is not None else 0.0
         velocity, variances = (0.0, 0.0), (MEASURED, MEASURED)
         if elapsed > 0 and (any(self.since) or not self.stands):
             velocity = self.since.distance / elapsed, self.since.angle / elapsed
             # a difference of two roundings
             errors = self.odometry.errors.variances(self.since)
-            variances = tuple((variance + error + 2 * rounding ** 2) / elapsed ** 2 + MEASURED
-                              for variance, error, rounding in zip(self.since[2:], errors, self.rounding))
+            linear, angular = ((variance + error + 2 * rounding ** 2) / elapsed ** 2 + MEASURED
+                               for variance, error, rounding in zip(self.since[2:], errors, self.rounding))
+            variances = linear, angular
         covariance = self.odometry.covariance
         if self.moving_yaw_variance and any(velocity):
             covariance[2, 2] = self.moving_yaw_variance

@@ -1,8 +1,10 @@
 """The parameters of the base node, with the names and the meaning of create_node's."""
-from collections import namedtuple
-from math import inf
+from __future__ import annotations
 
-from rbx1_nav.config import AUTO, ConfigError, Section, show
+from math import inf
+from typing import NamedTuple
+
+from rbx1_nav.config import AUTO, ConfigError, Section, YamlValue, show
 from rbx1_nav.create import protocol
 from rbx1_nav.create.driver.fractions import KINDS
 from rbx1_nav.robot.description import Limits, Robot, read_wheel_joints
@@ -12,16 +14,31 @@ from rbx1_nav.units import SECOND
 GYRO_CORRECTION = 1.35  # create_node's default
 WHEEL_RADIUS = 0.033    # m, of the wheels that RViz shows
 
-Settings = namedtuple('Settings', 'robot_type model port baud wake update_rate mode mode_plus_one has_gyro gyro_range '
-                                  'gyro_correction linear_correction angular_correction angle_fractions errors '
-                                  'moving_yaw_variance stop_on_bump min_yaw_speed')
-Settings.__doc__ = """What the driver depends on. robot_type: a name of a Model, or AUTO; model: the Model that is expected;
-baud: bits per second, None to find out; wake: whether to wake a robot by RTS and DTR; update_rate in Hz; mode: that in which
-the robot is driven; mode_plus_one: whether it reports its mode plus one, None to find out; gyro_range in degrees/s;
-angle_fractions: see fractions.KINDS; errors: OdometryErrors; moving_yaw_variance in rad^2, 0 for none; min_yaw_speed in rad/s."""
+
+class Settings(NamedTuple):
+    """What the driver depends on."""
+
+    robot_type: str             # the name of a Model, or AUTO
+    model: protocol.Model       # that is expected
+    port: str
+    baud: int | None            # bits per second, None to find out
+    wake: bool                  # whether to wake a robot by RTS and DTR
+    update_rate: float          # Hz
+    mode: int                   # that in which the robot is driven
+    mode_plus_one: bool | None  # whether it reports its mode plus one, None to find out
+    has_gyro: bool
+    gyro_range: float           # degrees/s
+    gyro_correction: float
+    linear_correction: float
+    angular_correction: float
+    angle_fractions: str        # see fractions.KINDS
+    errors: OdometryErrors
+    moving_yaw_variance: float  # rad^2, 0 for none
+    stop_on_bump: bool
+    min_yaw_speed: float        # rad/s
 
 
-def read_settings(params):
+def read_settings(params: YamlValue) -> tuple[Settings, Robot]:
     """(Settings, Robot) from a dictionary of private parameters. Raises ConfigError."""
     section = Section(params)
     name = section.choice('robot_type', (AUTO, *protocol.MODELS), AUTO)
@@ -30,18 +47,21 @@ def read_settings(params):
     if not (isinstance(port, str) and port.startswith('/')):
         raise ConfigError(f'port: {show(port)}: expected the absolute path of a device')
     section.choice('drive_mode', ('twist',), 'twist')
-    baud = section.choice('baud', (AUTO, *protocol.BAUD_RATES), AUTO)
+    rates: tuple[int | str, ...] = (AUTO, *protocol.BAUD_RATES)
+    baud = section.choice('baud', rates, AUTO)
     mode = section.get('operation_mode', protocol.SAFE)
-    if mode not in (protocol.PASSIVE, protocol.SAFE, protocol.FULL) or isinstance(mode, bool):
+    if (not isinstance(mode, (int, float)) or isinstance(mode, bool)
+            or mode not in (protocol.PASSIVE, protocol.SAFE, protocol.FULL)):
         raise ConfigError(f'operation_mode: {show(mode)}: expected 1 (passive), 2 (safe) or 3 (full)')
-    mode_plus_one = section.choice('oi_mode_workaround', (AUTO, True, False), AUTO)
+    workarounds: tuple[bool | str, ...] = (AUTO, True, False)
+    mode_plus_one = section.choice('oi_mode_workaround', workarounds, AUTO)
     has_gyro = section.flag('has_gyro', model is protocol.CREATE)
     if has_gyro and model is not protocol.CREATE:
         raise ConfigError(f'has_gyro: True: expected false, a {name} has no analog input for a gyro')
     settings = Settings(
-        robot_type=name, model=model, port=port, baud=None if baud == AUTO else baud,
+        robot_type=name, model=model, port=port, baud=baud if isinstance(baud, int) else None,
         wake=section.flag('wake_robot', False), mode=int(mode),
-        mode_plus_one=None if mode_plus_one == AUTO else mode_plus_one, has_gyro=has_gyro,
+        mode_plus_one=mode_plus_one if isinstance(mode_plus_one, bool) else None, has_gyro=has_gyro,
         angle_fractions=section.choice('angle_fractions', KINDS, AUTO),
         update_rate=section.number('update_rate', 5, 60, 30.0, 'a rate', 'Hz'),
         gyro_range=section.number('gyro_measurement_range', 1, 1000, 150.0, 'a rate', 'degrees/s'),
@@ -57,8 +77,8 @@ def read_settings(params):
     # 0 is no limit, as in create_node
     max_yaw_speed = section.number('max_abs_yaw_vel', 0, 10, 0.0, 'a speed', 'rad/s') or inf
     if settings.min_yaw_speed > max_yaw_speed:
-        raise ConfigError('min_abs_yaw_vel: %r: expected at most max_abs_yaw_vel, %r'
-                          % (settings.min_yaw_speed, max_yaw_speed))
+        raise ConfigError(f'min_abs_yaw_vel: {settings.min_yaw_speed!r}: expected at most max_abs_yaw_vel, '
+                          f'{max_yaw_speed!r}')
     robot = Robot(
         name=name, odom_frame_id=section.frame('odom_frame', 'odom'),
         base_frame_id=section.frame('base_frame', 'base_footprint'), base_width=model.wheel_separation,

@@ -133,7 +133,7 @@ class CreateStatus:
         status.add('Corrupted readings', driver.reader.rejected)
         status.add('Bytes in no reading', driver.reader.skipped)
         status.add('Implausible readings', driver.implausible)
-        status.add('Lost replies', driver.missed)
+        status.add('Lost replies', driver.queries.missed)
         status.add('Dropouts', driver.contact.dropouts)
         return status
 

@@ -1,17 +1,22 @@
 """What every base publishes: odometry and its transform, the gyro, and joint states."""
+from __future__ import annotations
+
 import rospy
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import Imu, JointState
 from tf2_msgs.msg import TFMessage
 
+from rbx1_nav.arrays import Array
+from rbx1_nav.robot.description import Robot
+from rbx1_nav.robot.kinematics import Pose
+from rbx1_nav.robot.readings import Reading, Uncertainty
 from rbx1_nav.ros import messages
 
 
 class BasePublisher:
     """The publishers of a base. To make a message costs more than to send it: none is made without a subscriber."""
 
-    def __init__(self, robot):
-        """robot: a Robot."""
+    def __init__(self, robot: Robot) -> None:
         self.robot = robot
         # simulated time may make many messages at once
         self.odom = rospy.Publisher('odom', Odometry, queue_size=100, tcp_nodelay=True)
@@ -20,19 +25,20 @@ class BasePublisher:
         self.tf = rospy.Publisher('/tf', TFMessage, queue_size=100, tcp_nodelay=True)
         self.joint_states = rospy.Publisher('joint_states', JointState, queue_size=10)
 
-    def publish_odometry(self, stamp, pose, velocity, uncertainty, covariance=None):
+    def publish_odometry(self, stamp: rospy.Time, pose: Pose, velocity: tuple[float, float], uncertainty: Uncertainty,
+                         covariance: Array | None = None) -> None:
         """Publish odometry, and its pose as a transform; arguments as of messages.odometry()."""
         if self.odom.get_num_connections():
             self.odom.publish(messages.odometry(stamp, self.robot, pose, velocity, uncertainty, covariance))
         if self.robot.publish_tf and self.tf.get_num_connections():
             self.tf.publish([messages.transform(stamp, self.robot.odom_frame_id, self.robot.base_frame_id, pose)])
 
-    def publish_imu(self, stamp, reading):
+    def publish_imu(self, stamp: rospy.Time, reading: Reading) -> None:
         """Publish a gyro's Reading."""
         if self.imu.get_num_connections():
             self.imu.publish(messages.imu(stamp, self.robot.base_frame_id, reading))
 
-    def publish_joints(self, stamp, travel, velocity):
+    def publish_joints(self, stamp: rospy.Time, travel: tuple[float, float], velocity: tuple[float, float]) -> None:
         """Publish the joints, and the wheels' angles from their travel (left, right; m) and velocity (m/s, rad/s)."""
         linear, angular = velocity
         difference = angular * self.robot.base_width / 2

@@ -1,13 +1,17 @@
 """The clock of a simulated base: simulated time that it advances itself, in step with its drivers."""
+from __future__ import annotations
+
 import time
+from typing import Any, Callable
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticStatus
+from geometry_msgs.msg import Twist
 from rosgraph_msgs.msg import Clock as ClockMessage
 from rospy.impl import simtime
 
 from rbx1_nav.config import ConfigError, Section
-from rbx1_nav.ros.base.clocks import FollowedClock, RealTimeClock, wait_for_beat
+from rbx1_nav.ros.base.clocks import Clock, FollowedClock, RealTimeClock, wait_for_beat
 from rbx1_nav.ros.base.driving_nodes import DrivingNodes
 from rbx1_nav.ros.node import life
 from rbx1_nav.schedule import CLOCK_STEP
@@ -15,7 +19,7 @@ from rbx1_nav.simulation.lockstep import Lockstep
 from rbx1_nav.units import SECOND
 
 
-def read_clock(rate):
+def read_clock(rate: float) -> Clock:
     """The clock that the private parameters real_time_factor, clock_step and strict, and /use_sim_time ask for.
 
     rate: of the odometry, Hz. Raises ConfigError.
@@ -38,7 +42,7 @@ def read_clock(rate):
 class OwnClock(FollowedClock):
     """Simulated time that this node advances: at most `factor` times as fast as real time, in step with the drivers."""
 
-    def __init__(self, factor, rate, period, strict):
+    def __init__(self, factor: float, rate: float, period: int, strict: bool) -> None:
         """factor, rate: see read_clock(); period: of the clock, ns; strict: whether a driver that is not in step is an
         error."""
         super().__init__(rate)
@@ -47,17 +51,16 @@ class OwnClock(FollowedClock):
         self.strict = strict
         self.publisher = rospy.Publisher('/clock', ClockMessage, queue_size=10, tcp_nodelay=True)
         # rospy subscribes each node to /clock; this one knows the time, and to be sent it costs a sixth of a tick
-        simtime._clock_sub.unregister()     # pylint: disable=protected-access
-        self.lockstep = None
-        self.not_in_step = {}   # reasons, by the name of the node
+        simtime._clock_sub.unregister()
+        self.lockstep: Lockstep     # from set_driver() on
+        self.not_in_step: dict[str, str] = {}   # reasons, by the name of the node
 
-    def set_driver(self, apply, connections):
-        """See above."""
+    def set_driver(self, apply: Callable[[Any], None], connections: Callable[[], Any]) -> None:    # see Clock
         super().set_driver(apply, connections)
         nodes = DrivingNodes(rospy.resolve_name('cmd_vel'), connections, lambda: self.publisher.impl.connections)
         self.lockstep = Lockstep(apply, self.report, nodes, life.end_requested.is_set)
 
-    def report(self, name, reason):
+    def report(self, name: str, reason: str) -> None:
         """A node is not in step. Raises ROSException if that is an error."""
         if self.strict:
             raise rospy.ROSException(f'strict: {name} {reason}: expected nodes that are in step with /clock')
@@ -66,25 +69,23 @@ class OwnClock(FollowedClock):
                       'on the speed of the machine. Expected a node that sleeps on simulated time, as rospy.Rate does',
                       name, reason)
 
-    def command(self, twist, command):
-        """See above: at the tick at which it was sent."""
+    def command(self, twist: Twist, command: Any) -> None:
+        """At the tick at which it was sent."""
         header = twist._connection_header       # one object per connection
         self.lockstep.receive(header, header['callerid'], command)
 
-    def diagnose(self, status):
-        """See above."""
+    def diagnose(self, status: DiagnosticStatus) -> None:
         if self.not_in_step:
             status.mergeSummary(DiagnosticStatus.WARN, f"Not in step with /clock: {', '.join(self.not_in_step)}")
         status.add('Nodes not in step with /clock',
                    '; '.join('%s %s' % each for each in self.not_in_step.items()) or 'none')
 
-    def run(self, step):
-        """See above."""
+    def run(self, step: Callable[[], None]) -> None:
         beat = time.monotonic()
         while not life.end_requested.is_set():
             self.lockstep.begin_tick()
             self.time += self.period
-            rospy.rostime._set_rostime(self.stamp())    # pylint: disable=protected-access
+            rospy.rostime._set_rostime(self.stamp())
             self.publisher.publish(self.stamp())
             if self.schedule.due(self.time):
                 step()

@@ -1,8 +1,12 @@
 """The robot's pose by tf2, for a driving script that measures its way."""
+from __future__ import annotations
+
 from math import atan2
 import time
+from typing import Callable, Sequence
 
 import rospy
+from geometry_msgs.msg import TransformStamped
 from std_msgs.msg import Empty
 import tf2_ros
 import yaml
@@ -16,7 +20,7 @@ MAX_AGE = 0.5       # s: older transforms are not used
 BASE_FRAMES = ('base_footprint', 'base_link')   # usual names of a robot's base, REP 105 and REP 120
 
 
-def format_pose(pose):
+def format_pose(pose: Pose) -> str:
     """A Pose as text."""
     return f'({pose.x:.3f} m, {pose.y:.3f} m, {wrap_angle(pose.yaw):.3f} rad)'
 
@@ -28,25 +32,25 @@ class LostTransform(Exception):
 class PoseListener:
     """Looks up the pose of the robot's base in a frame."""
 
-    def __init__(self, odom_frame, base_frame, linear_speed, angular_speed):
+    def __init__(self, odom_frame: str, base_frame: str | None, linear_speed: float, angular_speed: float) -> None:
         """base_frame: a name; None for the first of BASE_FRAMES that exists; the robot's speeds: m/s, rad/s."""
         self.speeds = linear_speed, angular_speed
         self.odom_frame = odom_frame
-        self.base_frames = [base_frame] if base_frame else BASE_FRAMES
+        self.base_frames: Sequence[str] = [base_frame] if base_frame else BASE_FRAMES
         self.buffer = tf2_ros.Buffer()
         self.listener = tf2_ros.TransformListener(self.buffer)
         self.reset = False  # whether the base was reset
         self.reset_sub = rospy.Subscriber('reset_odometry', Empty, self._on_reset)
-        self.before = None  # (stamp in s, Pose) of the last transform, None until a pose was returned
-        self.last = None    # the same, None also after a rest
+        self.before: tuple[float, Pose] | None = None   # (stamp in s, Pose) of the last transform, None until a pose was returned
+        self.last: tuple[float, Pose] | None = None     # the same, None also after a rest
         self.velocity = Pose(0.0, 0.0, 0.0)     # between the last two transforms, m/s and rad/s
 
     @property
-    def base_frame(self):
+    def base_frame(self) -> str:
         """The robot's frame, or the frames that it may be."""
         return ' or '.join(self.base_frames)
 
-    def pose(self):
+    def pose(self) -> Pose:
         """The Pose now, extrapolated from the last two transforms; yaw not wrapped.
 
         Raises LostTransform, and ROSException if the base was reset since the first pose, or the pose has jumped.
@@ -57,19 +61,19 @@ class PoseListener:
         stamp = transform.header.stamp.to_sec()
         age = rospy.get_time() - stamp
         if not -MAX_AGE <= age <= MAX_AGE:
-            raise LostTransform('The last transform from %s to %s is %.2f s old'
-                                % (self.odom_frame, transform.child_frame_id, age))
+            raise LostTransform(f'The last transform from {self.odom_frame} to {transform.child_frame_id} '
+                                f'is {age:.2f} s old')
         position, rotation = transform.transform.translation, transform.transform.rotation
         pose = Pose(position.x, position.y, 2 * atan2(rotation.z, rotation.w))
         self._check_jump(stamp, pose)
         self._update(stamp, pose)
-        return Pose(*(value + rate * max(age, 0.0) for value, rate in zip(self.last[1], self.velocity)))
+        return Pose(*(value + rate * max(age, 0.0) for value, rate in zip(pose, self.velocity)))
 
-    def forget_velocity(self):
+    def forget_velocity(self) -> None:
         """To be called when the robot was stopped: it does not move on as it did before."""
         self.last = None
 
-    def wait(self, timeout, check=lambda: None):
+    def wait(self, timeout: float, check: Callable[[], None] = lambda: None) -> Pose:
         """pose() as soon as there is one. check(): called again and again, and may raise.
 
         Raises ROSException after `timeout` s of wall time, ROSInterruptException.
@@ -81,7 +85,8 @@ class PoseListener:
                 return self.pose()
             except LostTransform as error:
                 if time.monotonic() > deadline:
-                    raise rospy.ROSException(f"Timed out after {timeout:g} s waiting for the robot's pose: {error}")
+                    raise rospy.ROSException(f"Timed out after {timeout:g} s waiting for the robot's pose: "
+                                             f'{error}') from None
                 if time.monotonic() > log_time:
                     log_time += 5
                     rospy.loginfo("Waiting for the robot's pose: %s", error)
@@ -90,27 +95,26 @@ class PoseListener:
             if end_requested.is_set():
                 raise rospy.ROSInterruptException('shutdown requested')
 
-    def _on_reset(self, _):
+    def _on_reset(self, _: Empty) -> None:
         self.reset = self.before is not None
 
-    def _update(self, stamp, pose):
-        elapsed = stamp - self.last[0] if self.last else -1.0
-        if elapsed < 0:
+    def _update(self, stamp: float, pose: Pose) -> None:
+        if not self.last or stamp < self.last[0]:
             self.velocity = Pose(0.0, 0.0, 0.0)
-        elif elapsed > 0:
-            before = self.last[1]
+        elif stamp > self.last[0]:
+            elapsed, before = stamp - self.last[0], self.last[1]
             self.velocity = Pose((pose.x - before.x) / elapsed, (pose.y - before.y) / elapsed,
                                  wrap_angle(pose.yaw - before.yaw) / elapsed)
         self.last = stamp, pose
 
-    def _check_jump(self, stamp, pose):
+    def _check_jump(self, stamp: float, pose: Pose) -> None:
         """Raises ROSException if the robot cannot have got here since the last transform."""
         if self.before and not is_reachable(self.before[1], pose, stamp - self.before[0], *self.speeds):
-            raise rospy.ROSException('The pose of %s in %s jumped from %s to %s: was the base restarted?' % (
-                self.base_frame, self.odom_frame, format_pose(self.before[1]), format_pose(pose)))
+            raise rospy.ROSException(f'The pose of {self.base_frame} in {self.odom_frame} jumped from '
+                                     f'{format_pose(self.before[1])} to {format_pose(pose)}: was the base restarted?')
         self.before = stamp, pose
 
-    def _look_up(self):
+    def _look_up(self) -> TransformStamped:
         for frame in self.base_frames:
             try:
                 transform = self.buffer.lookup_transform(self.odom_frame, frame, rospy.Time(0))
@@ -120,7 +124,7 @@ class PoseListener:
             return transform
         raise LostTransform(f'There is no transform from {self.odom_frame} to {self.base_frame}{self._known_frames()}')
 
-    def _known_frames(self):
+    def _known_frames(self) -> str:
         """The end of a message that lists the frames that exist, if one of ours does not."""
         tree = yaml.safe_load(self.buffer.all_frames_as_yaml()) or {}
         frames = set(tree) | {frame['parent'] for frame in tree.values()} if tree else set()

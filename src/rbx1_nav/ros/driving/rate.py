@@ -3,10 +3,13 @@
 A driving script publishes from its main thread only. A request to end the node reaches it as an exception from its next
 sleep() or pause(), and the script itself stops the robot.
 """
+from __future__ import annotations
+
 import time
 
 import rospy
 
+from rbx1_nav.ros.driving.watching import Listeners
 from rbx1_nav.ros.node.life import end_requested, sleep
 from rbx1_nav.units import SECOND
 
@@ -14,12 +17,12 @@ MAX_DELAY = SECOND      # ns
 FREE_TICKS = 25     # at the start of a motion, the base's clock may run ahead until the base has seen that it begins
 
 
-def now():
+def now() -> int:
     """ns of simulated time, or of the monotonic clock."""
     return time.monotonic_ns() if rospy.rostime.is_wallclock() else rospy.get_rostime().to_nsec()
 
 
-def _wait_until(end, longest, listeners):
+def _wait_until(end: int, longest: int, listeners: Listeners) -> None:
     """Wait until now() is `end` (ns), but no longer than `longest` (ns) on a clock that jumped back.
 
     Raises ROSInterruptException as soon as the node is to end, and ROSException as Listeners.check(): a clock that
@@ -50,7 +53,7 @@ def _wait_until(end, longest, listeners):
             rospy.logwarn('/use_sim_time is true, but the time on /clock stands still')
 
 
-def pause(seconds, listeners):
+def pause(seconds: float, listeners: Listeners) -> None:
     """Wait for `seconds` of ROS time. listeners: see wait_for_subscribers().
 
     Raises ROSInterruptException as soon as the node is to end, and ROSException if a listener no longer takes commands.
@@ -66,7 +69,7 @@ class Rate:
     commands in one step. A delay of more than MAX_DELAY is an error: the base has stopped meanwhile.
     """
 
-    def __init__(self, hz, listeners):
+    def __init__(self, hz: float, listeners: Listeners) -> None:
         """hz: ticks per second of ROS time, the first one a period from now; listeners: see wait_for_subscribers().
 
         Raises ROSException if simulated time does not tick as often.
@@ -74,14 +77,18 @@ class Rate:
         if not rospy.rostime.is_wallclock():
             step = listeners.clock_step
             if hz * step > 1 + 1e-9:
-                raise rospy.ROSException('%s/rate: %g: expected at most %g Hz on simulated time: the clock ticks every %g s'
-                                         % (rospy.get_name(), hz, 1 / step, step))
+                raise rospy.ROSException(f'{rospy.get_name()}/rate: {hz:g}: expected at most {1 / step:g} Hz on simulated '
+                                         f'time: the clock ticks every {step:g} s')
         self.listeners = listeners
         self.period = round(SECOND / hz)
-        self.due = self.next = now() + self.period      # without delays, and with them
-        self.free_ticks = FREE_TICKS if listeners.clock else 0
+        self.restart()
 
-    def sleep(self):
+    def restart(self) -> None:
+        """Begin anew, after a pause: the next tick is a period from now."""
+        self.due = self.next = now() + self.period      # without delays, and with them
+        self.free_ticks = FREE_TICKS if self.listeners.clock else 0
+
+    def sleep(self) -> None:
         """Wait for the next tick. Raises as pause(), and ROSException for a delay that is too long."""
         _wait_until(self.next, self.period, self.listeners)
         time_now = now()
@@ -89,7 +96,7 @@ class Rate:
             self.free_ticks -= 1
             self.due = time_now
         if time_now - self.due > MAX_DELAY:
-            raise rospy.ROSException('A command is %.1f s late: expected at most %g s, after which a base stops'
-                                     % ((time_now - self.due) / SECOND, MAX_DELAY / SECOND))
+            raise rospy.ROSException(f'A command is {(time_now - self.due) / SECOND:.1f} s late: expected at most '
+                                     f'{MAX_DELAY / SECOND:g} s, after which a base stops')
         self.due = min(self.due, time_now) + self.period
         self.next = max(self.due, time_now + self.period * 6 // 10)

@@ -1,4 +1,6 @@
 """Waits for the subscribers of a topic: what is published before they are connected is lost."""
+from __future__ import annotations
+
 import threading
 import time
 
@@ -14,18 +16,18 @@ from rbx1_nav.ros.node.life import end_requested, sleep
 class _SubscriberMonitor(threading.Thread):
     """Keeps the list of live subscribers of a topic up to date, until it is stopped."""
 
-    def __init__(self, topic):
+    def __init__(self, topic: str) -> None:
         super().__init__(daemon=True)
         self.topic = topic
         # (address, commands that it has refused) of each live subscriber by its name; None until the master has answered
-        self.live = None
-        self.dead = set()       # addresses
-        self.publishers = {}    # names of the nodes that publish a topic
-        self.odometry = []      # topics
+        self.live: dict[str, tuple[str, int | None]] | None = None
+        self.dead: set[str | None] = set()      # addresses
+        self.publishers: dict[str, list[str]] = {}      # names of the nodes that publish a topic
+        self.odometry: list[str] = []   # topics
         self.rounds = 0         # how often all of that was asked for
         self.done = threading.Event()
 
-    def run(self):
+    def run(self) -> None:
         master = rosgraph.get_master_uri()
         while not self.done.is_set():
             try:
@@ -36,11 +38,11 @@ class _SubscriberMonitor(threading.Thread):
                 live = {name: self.find(master, name) for name in names}
                 self.live = {name: found for name, found in live.items() if found}
                 self.rounds += 1
-            except Exception as error:      # pylint: disable=broad-except
+            except Exception as error:
                 rospy.logwarn_throttle(5, f'The master at {master} does not answer: {error}')
             self.done.wait(0.1)
 
-    def find(self, master, name):
+    def find(self, master: str, name: str) -> tuple[str, int | None] | None:
         """(address, commands that it has refused) of a node that answers, else None; an address that did not answer is not
         called again."""
         address = None
@@ -49,25 +51,25 @@ class _SubscriberMonitor(threading.Thread):
             if address not in self.dead:
                 with Server(address) as server:
                     return address, refusals.ask(server)[0]
-        except Exception:       # pylint: disable=broad-except
+        except Exception:
             self.dead.add(address)
             rospy.logwarn('%s is registered as a subscriber of %s but does not answer: ignored '
                           '(`rosnode cleanup` removes it)', name, self.topic)
         return None
 
-    def peer(self, name):
+    def peer(self, name: str) -> Peer:
         """The Peer of this name."""
-        uri, refused = self.live.get(name, (None, None))
+        uri, refused = (self.live or {}).get(name, (None, None))
         return Peer(name, uri, any(name in self.publishers.get(topic, ()) for topic in self.odometry),
                     name in self.publishers.get('/clock', ()), refused)
 
 
-def connected_nodes(publisher):
+def connected_nodes(publisher: rospy.Publisher) -> set[str]:
     """Names of the nodes that are connected to a publisher now."""
     return {connection.endpoint_id for connection in publisher.impl.connections}
 
 
-def wait_for_subscribers(publisher, timeout):
+def wait_for_subscribers(publisher: rospy.Publisher, timeout: float) -> Listeners:
     """Wait until all live subscribers of a publisher's topic are connected to it, and simulated time has begun.
 
     All of them and not just the first: a recorder is not a base. Returns them as Listeners.
@@ -80,15 +82,17 @@ def wait_for_subscribers(publisher, timeout):
     monitor.start()
     deadline = time.monotonic() + timeout
     log_time = time.monotonic() + 0.5
-    before, known = set(), 0
+    before: set[str] = set()
+    known = 0
     try:
         while True:
             connected = connected_nodes(publisher)
             if connected != before:     # a round that is under way may have begun before
                 before, known = connected, monitor.rounds + 2
-            if connected and monitor.rounds >= known and monitor.live.keys() <= connected and rospy.get_rostime():
+            live = monitor.live or {}
+            if connected and monitor.rounds >= known and live.keys() <= connected and rospy.get_rostime():
                 return Listeners(publisher, [monitor.peer(name) for name in connected])
-            missing = ', '.join(sorted((monitor.live or {}).keys() - connected))
+            missing = ', '.join(sorted(live.keys() - connected))
             what = (f'the master to list the subscribers of {topic}'
                     if monitor.live is None or connected and monitor.rounds < known
                     else f'{missing} to connect to {topic}' if missing

@@ -1,23 +1,33 @@
 """The robot's velocity from two consecutive estimates."""
-from collections import namedtuple
-from math import cos, sin
+from __future__ import annotations
 
-from rbx1_nav.estimation.combined_odometry import DROPOUT_SPEED
+from math import cos, sin
+from typing import NamedTuple
+
+from rbx1_nav.estimation.combined_odometry import DROPOUT_SPEED, CombinedOdometry, Estimate
 from rbx1_nav.estimation.filter import BIAS, SCALE, STRAIGHT, TURNING
 from rbx1_nav.robot.readings import MEASURED
 from rbx1_nav.simulation.floor_noise import CELL_TRAVELLED, CELL_TURNED
 from rbx1_nav.units import SECOND, wrap_angle
 
-Twist = namedtuple('Twist', 'forward left turn forward_variance left_variance turn_variance')
-Twist.__doc__ = "Mean velocities in the robot's frame (m/s, m/s, rad/s) and their variances."
+
+class Twist(NamedTuple):
+    """Mean velocities in the robot's frame and their variances."""
+
+    forward: float              # m/s
+    left: float                 # m/s
+    turn: float                 # rad/s
+    forward_variance: float     # m^2/s^2
+    left_variance: float        # m^2/s^2
+    turn_variance: float        # rad^2/s^2
 
 
-def _of_floor(noise, speed, elapsed, cell):
+def _of_floor(noise: float, speed: float, elapsed: float, cell: float) -> float:
     """The variance of a speed by a floor's noise: it is constant within a cell, and averages out over several cells."""
     return noise ** 2 * speed ** 2 / max(cell, speed * elapsed)
 
 
-def estimate_twist(combined, before):
+def estimate_twist(combined: CombinedOdometry, before: Estimate) -> Twist | None:
     """The Twist from the Estimate `before` to the latest one of a CombinedOdometry; None if their stamps are equal.
 
     The displacement is the odometry's, reduced by the estimated slip, and the turn is the filter's. An odometry dropout
@@ -25,10 +35,15 @@ def estimate_twist(combined, before):
     robot that is carried, because its wheels do not measure its motion.
     """
     last, ekf = combined.estimate, combined.filter
+    assert last is not None and ekf is not None     # as there is a `before`
     elapsed = (last.stamp - before.stamp) / SECOND
     if elapsed <= 0:
         return None
-    state, variance = ekf.state, lambda index: float(ekf.root[index] @ ekf.root[index])
+    state, root = ekf.state, ekf.root
+
+    def variance(index: int) -> float:
+        return float(root[index] @ root[index])
+
     turn = wrap_angle(last.pose.yaw - before.pose.yaw) / elapsed
     travel_time = (last.odom.stamp - before.odom.stamp) / SECOND
     forward = left = by_wheels = 0.0

@@ -1,9 +1,15 @@
 """The tree of frames as other nodes publish it: who is the parent of a frame, and how one is turned against another."""
+from __future__ import annotations
+
+from typing import Tuple
+
 import rospy
 from tf2_msgs.msg import TFMessage
 
 from rbx1_nav.estimation.gyro_input import inverse, multiply
 from rbx1_nav.ros.messages import unit_quaternion
+
+Rotation = Tuple[float, float, float, float]    # quaternion (x, y, z, w)
 
 
 class FrameTree:
@@ -12,11 +18,12 @@ class FrameTree:
     Keeps rotations only, the latest of each frame, and needs no tf2_ros, which would take 5 MB.
     """
 
-    def __init__(self):
-        self.frames = {}        # by child: (parent, node that publishes it, rotation of the child in the parent)
-        self.subscribers = []
+    def __init__(self) -> None:
+        # by child: (parent, node that publishes it, rotation of the child in the parent)
+        self.frames: dict[str, tuple[str, str, Rotation]] = {}
+        self.subscribers: list[rospy.Subscriber] = []
 
-    def listen(self, wanted):
+    def listen(self, wanted: bool) -> None:
         """Start or stop listening."""
         if wanted and not self.subscribers:
             self.subscribers = [rospy.Subscriber(topic, TFMessage, self._on_transforms, tcp_nodelay=True)
@@ -24,23 +31,24 @@ class FrameTree:
         while self.subscribers and not wanted:
             self.subscribers.pop().unregister()
 
-    def publisher(self, child):
+    def publisher(self, child: str) -> tuple[str, str] | None:
         """(parent, node) of the transform that leads to a frame, or None."""
         return self.frames[child][:2] if child in self.frames else None
 
-    def forget(self, child):
+    def forget(self, child: str) -> None:
         """Forget the transform that leads to a frame."""
         self.frames.pop(child, None)
 
-    def rotation(self, frame, other):
+    def rotation(self, frame: str, other: str) -> Rotation | None:
         """The rotation of `other` in `frame`, a quaternion (x, y, z, w); None if they are not connected yet."""
         path = self._path(frame)
         return next((multiply(inverse(path[ancestor]), rotation)
                      for ancestor, rotation in self._path(other).items() if ancestor in path), None)
 
-    def _path(self, frame):
+    def _path(self, frame: str) -> dict[str, Rotation]:
         """Rotations of a frame in itself and in all its ancestors."""
-        rotation, path = (0.0, 0.0, 0.0, 1.0), {}
+        rotation: Rotation = (0.0, 0.0, 0.0, 1.0)
+        path: dict[str, Rotation] = {}
         while frame not in path:    # a circle is an error of others
             path[frame] = rotation
             if frame in self.frames:
@@ -48,7 +56,7 @@ class FrameTree:
                 rotation = multiply(turn, rotation)
         return path
 
-    def _on_transforms(self, message):
+    def _on_transforms(self, message: TFMessage) -> None:
         node = message._connection_header['callerid']
         for transform in message.transforms if node != rospy.get_name() else ():
             rotation = unit_quaternion(transform.transform.rotation)

@@ -4,11 +4,14 @@ On one machine, a message wakes its receiver before the sender goes on (loopback
 and so do a notified condition and a released lock. So while anything is under way between processes, at least one of
 their threads runs or is about to. Sources: proc(5) and, for the clocks of other processes, clock_getcpuclockid(3).
 """
+from __future__ import annotations
+
 import os
 import socket
 import sys
 import threading
 import time
+from typing import Callable, Iterable
 
 POLL = 0.005    # s: a thread that sleeps for less than this polls; ros::Rate does so every millisecond on simulated time
 ENDED = b'X', b'Z'      # states of a thread that has ended
@@ -16,7 +19,7 @@ LISTEN = '0A'           # state of a socket in /proc/net/tcp
 TIMED = b'sleep', b'poll', b'select'    # in the names of the kernel's functions that wait for a time
 
 
-def _cpu_clock(number, of_thread):
+def _cpu_clock(number: int, of_thread: bool) -> int:
     """The clock of the CPU time of a process or thread, for clock_gettime(2): its number is part of it."""
     return ~number << 3 | (6 if of_thread else 2)
 
@@ -24,62 +27,62 @@ def _cpu_clock(number, of_thread):
 class _Thread:
     """One thread of a process."""
 
-    def __init__(self, folder, number):
+    def __init__(self, folder: str, number: int) -> None:
         """folder: of the thread, below /proc. Raises OSError if it has ended or must not be looked at."""
         self.clock = _cpu_clock(number, True)
-        self.files = []
+        self.files: list[int] = []
         try:
             for name in ('stat', 'wchan', 'schedstat'):
                 self.files.append(os.open(folder + name, os.O_RDONLY))
         except OSError:
             self.close()
             raise
-        self.ran = None         # how long and how often it has run
+        self.ran: bytes | None = None       # how long and how often it has run
         self.changed = 0.0      # s of the monotonic clock: when `ran` was last seen to change
-        self.marked = None      # `ran` when mark() was called; None if it may have woken by itself before
+        self.marked: bytes | None = None    # `ran` when mark() was called; None if it may have woken by itself before
         self.timed = False      # needs_no_message() then
         self.look()
 
-    def close(self):
+    def close(self) -> None:
         """Close its files."""
         for file in self.files:
             os.close(file)
         self.files = []
 
-    def look(self):
+    def look(self) -> bytes:
         """Update `ran`, and return it."""
         ran = os.pread(self.files[2], 64, 0)
         if ran != self.ran:
             self.ran, self.changed = ran, time.monotonic()
         return ran
 
-    def waits_in(self):
+    def waits_in(self) -> bytes:
         """The name of the kernel's function in which it waits; 0 if it runs, or is about to."""
         return os.pread(self.files[1], 64, 0)
 
-    def sleeps(self):
+    def sleeps(self) -> bool:
         """Whether it waits, or has ended."""
         # a state of S alone may belong to a thread that is about to wait, and may still find out that it need not;
         # the name in parentheses may hold anything
         state = os.pread(self.files[0], 512, 0).rpartition(b') ')[2][:1]
         return self.waits_in() != b'0' if state == b'S' else state in ENDED
 
-    def needs_no_message(self):
+    def needs_no_message(self) -> bool:
         """Whether it runs, is about to, or will wake by itself."""
         name = self.waits_in()
         return name == b'0' or any(part in name for part in TIMED)
 
-    def mark(self):
+    def mark(self) -> None:
         """See Process.mark()."""
         before, now = self.ran, self.look()
         self.marked = now if now == before else None
         self.timed = self.needs_no_message()
 
-    def woke_by_itself(self):
+    def woke_by_itself(self) -> bool:
         """See Process.woke_by_itself()."""
-        return self.marked is None or self.timed and self.look() != self.marked
+        return self.marked is None or (self.timed and self.look() != self.marked)
 
-    def polls(self):
+    def polls(self) -> bool:
         """Whether it sleeps for a moment only, as far as can be known, or runs."""
         self.look()
         return time.monotonic() - self.changed < POLL and self.needs_no_message()
@@ -88,55 +91,55 @@ class _Thread:
 class Process:
     """A process of this machine."""
 
-    def __init__(self, pid, without=None):
+    def __init__(self, pid: int, without: int | None = None) -> None:
         """pid: its number; without: the number of a thread of this process that does not count. Raises OSError if it has
         ended or must not be looked at."""
-        self.folder = '/proc/%d/task/' % pid
+        self.folder = f'/proc/{pid}/task/'
         self.clock = _cpu_clock(pid, False)
         self.without = without
-        self.socket = None      # by which it was found
-        self.threads = {}       # by number
+        self.socket: socket.socket | None = None    # by which it was found
+        self.threads: dict[int, _Thread] = {}       # by number
         self._update()
         if not self.threads:
-            raise ProcessLookupError('no process %d' % pid)
+            raise ProcessLookupError(f'no process {pid}')
 
-    def close(self):
+    def close(self) -> None:
         """Close all files."""
         for thread in self.threads.values():
             thread.close()
         self.threads = {}
 
-    def cpu_time(self):
+    def cpu_time(self) -> int:
         """What the threads have run so far, ns; up to date only for those that wait."""
         if self.without is None:
             return time.clock_gettime_ns(self.clock)
         return sum(time.clock_gettime_ns(thread.clock) for thread in self.threads.values())
 
-    def sleeps(self):
+    def sleeps(self) -> bool:
         """Whether all threads sleep."""
         if os.stat(self.folder).st_nlink != len(self.threads) + 2 + (self.without is not None):
             self._update()
             return False
         return all(thread.sleeps() for thread in self.threads.values())
 
-    def mark(self):
+    def mark(self) -> None:
         """Remember what the threads do now, and have done since they were last looked at."""
         self._each(_Thread.mark)
 
-    def polling(self):
+    def polling(self) -> list[tuple[_Thread, bytes | None]]:
         """The threads that sleep for a moment only, each with what it has run so far."""
         return [(thread, thread.ran) for thread in self._each(_Thread.polls)]
 
-    def woke_by_itself(self):
+    def woke_by_itself(self) -> bool:
         """Whether a thread has run since mark() that slept for a time then, or had just run."""
         return bool(self._each(_Thread.woke_by_itself))
 
-    def ended(self):
+    def ended(self) -> bool:
         """A thread has ended, or all of them: look again which there are."""
         self._update()
         return not self.threads
 
-    def _each(self, function):
+    def _each(self, function: Callable[[_Thread], bool | None]) -> list[_Thread]:
         """Call a function with each thread; returns those for which it is true."""
         found = []
         for thread in self.threads.values():
@@ -147,7 +150,7 @@ class Process:
                 pass
         return found
 
-    def _update(self):
+    def _update(self) -> None:
         try:
             numbers = set(map(int, os.listdir(self.folder))) - {self.without}
         except FileNotFoundError:
@@ -156,7 +159,7 @@ class Process:
             self.threads.pop(number).close()
         for number in numbers - self.threads.keys():
             try:
-                self.threads[number] = _Thread('%s%d/' % (self.folder, number), number)
+                self.threads[number] = _Thread(f'{self.folder}{number}/', number)
             except (FileNotFoundError, ProcessLookupError):
                 pass
 
@@ -164,8 +167,8 @@ class Process:
 class Network:
     """The kernel's own threads that deliver messages on a busy machine, in place of the sender."""
 
-    def __init__(self):
-        self.files = []         # those of a container are not to be seen
+    def __init__(self) -> None:
+        self.files: list[int] = []      # those of a container are not to be seen
         for pid in filter(str.isdigit, os.listdir('/proc')):
             try:
                 with open(f'/proc/{pid}/comm', encoding='ascii') as file:
@@ -174,12 +177,12 @@ class Network:
             except (OSError, UnicodeDecodeError):
                 pass
 
-    def busy(self):
+    def busy(self) -> bool:
         """Whether messages may be under way."""
         return any(b') R' in os.pread(file, 512, 0) for file in self.files)
 
 
-def awake(processes):
+def awake(processes: Iterable[Process]) -> Process | None:
     """The first of some Process objects that does not sleep; None if all of them slept at one and the same moment."""
     processes = list(processes)
     # of all before the first look: one that has been looked at may be woken by one that sleeps before it is looked at
@@ -197,7 +200,7 @@ def awake(processes):
     return None
 
 
-def _cpu_time(process):
+def _cpu_time(process: Process) -> int | None:
     """As Process.cpu_time(); None if it has ended."""
     try:
         return process.cpu_time()
@@ -205,7 +208,7 @@ def _cpu_time(process):
         return None
 
 
-def still_polling(threads):
+def still_polling(threads: Iterable[tuple[_Thread, bytes | None]]) -> bool:
     """Whether one of these threads, as of Process.polling(), still sleeps as it did then."""
     try:
         return any(thread.polls() and thread.ran == ran for thread, ran in threads)
@@ -213,7 +216,7 @@ def still_polling(threads):
         return False
 
 
-def own_process():
+def own_process() -> Process | None:
     """The Process of the caller, without the thread that calls; None if the kernel does not tell what its threads do."""
     try:
         process = Process(os.getpid(), threading.get_native_id())
@@ -223,7 +226,7 @@ def own_process():
         return None
 
 
-def peer_process(sock):
+def peer_process(sock: socket.socket) -> Process | None:
     """The Process at the other end of a TCP connection; None if it is not to be seen from here: on another machine, in
     another container, or of another user."""
     try:
@@ -234,12 +237,12 @@ def peer_process(sock):
     return _process_with(lambda fields: fields[1:3] == addresses)
 
 
-def listening_process(port):
+def listening_process(port: int) -> Process | None:
     """The Process that listens on a TCP port of this machine; None if it is not to be seen from here."""
     return _process_with(lambda fields: fields[3] == LISTEN and fields[1].endswith(f':{port:04X}'))
 
 
-def _process_with(matches):
+def _process_with(matches: Callable[[list[str]], bool]) -> Process | None:
     """The Process that has a socket; matches(fields): whether a line of /proc/net/tcp is that of the socket."""
     link = f'socket:[{_inode(matches)}]'
     for pid in filter(str.isdigit, os.listdir('/proc')):
@@ -252,7 +255,7 @@ def _process_with(matches):
     return None
 
 
-def _inode(matches):
+def _inode(matches: Callable[[list[str]], bool]) -> str | None:
     """The inode of the first socket that matches, as a text; None if there is none."""
     for table in ('/proc/net/tcp', '/proc/net/tcp6'):
         try:
@@ -265,14 +268,14 @@ def _inode(matches):
     return None
 
 
-def _address(family, address):
+def _address(family: int, address: tuple[str, int]) -> str:
     """An address as /proc/net/tcp has it: words of 32 bits in the machine's own order, and the port."""
     host = socket.inet_pton(family, address[0])
     words = (int.from_bytes(host[i:i + 4], sys.byteorder) for i in range(0, len(host), 4))
     return '%s:%04X' % (''.join('%08X' % word for word in words), address[1])
 
 
-def _read_link(path):
+def _read_link(path: str) -> str | None:
     try:
         return os.readlink(path)
     except OSError:     # closed meanwhile

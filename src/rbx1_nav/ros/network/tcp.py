@@ -1,10 +1,12 @@
 """What the kernel knows of a TCP connection: whether the peer still acknowledges what it is sent."""
-from collections import namedtuple
+from __future__ import annotations
+
 import fcntl
 import socket
 import struct
 import sys
 import termios
+from typing import NamedTuple
 
 ESTABLISHED = 1     # include/net/tcp_states.h
 CLOSED_WINDOW = 512     # bytes: a peer with less room than this does not read; a Twist takes 52
@@ -12,12 +14,17 @@ CLOSED_WINDOW = 512     # bytes: a peer with less room than this does not read; 
 # struct tcp_info of linux/tcp.h: tcpi_state at 0, tcpi_bytes_acked at 120, tcpi_snd_wnd at 228 (since Linux 5.4)
 _INFO = struct.Struct('=B119xQ100xI')
 
-Connection = namedtuple('Connection', 'established unacknowledged acknowledged window')
-Connection.__doc__ = """A TCP connection: whether it is established at both ends; bytes that were sent, or wait to be
-sent, and are not acknowledged; bytes acknowledged so far; bytes that the peer has room for."""
+
+class Connection(NamedTuple):
+    """A TCP connection."""
+
+    established: bool       # at both ends
+    unacknowledged: int     # bytes that were sent, or wait to be sent, and are not acknowledged
+    acknowledged: int       # bytes, so far
+    window: int             # bytes that the peer has room for
 
 
-def read_connection(sock):
+def read_connection(sock: socket.socket) -> Connection:
     """The Connection of a socket. Raises OSError if it is closed."""
     info = sock.getsockopt(socket.IPPROTO_TCP, socket.TCP_INFO, _INFO.size)
     # an older kernel does not tell the window: assume that it is open
@@ -25,15 +32,17 @@ def read_connection(sock):
     return Connection(state == ESTABLISHED, _read_number(sock, termios.TIOCOUTQ), acknowledged, window)
 
 
-def unread_bytes(sock):
+def unread_bytes(sock: socket.socket | None) -> int:
     """How many bytes have arrived at a socket that were not read yet; 0 if it is closed."""
+    if sock is None:
+        return 0
     try:
         return _read_number(sock, termios.FIONREAD)
-    except (OSError, TypeError, ValueError):     # closed, or None
+    except (OSError, ValueError):     # closed
         return 0
 
 
-def _read_number(sock, request):
+def _read_number(sock: socket.socket, request: int) -> int:
     """What the kernel answers to a request of tcp(7): SIOCOUTQ and SIOCINQ are TIOCOUTQ and FIONREAD."""
     number = bytearray(4)
     fcntl.ioctl(sock, request, number)
@@ -43,12 +52,12 @@ def _read_number(sock, request):
 class AcknowledgementTimer:
     """How long a peer has acknowledged nothing, although there was something to acknowledge."""
 
-    def __init__(self):
-        self.since = None       # s: when the present silence began; None if there is none
+    def __init__(self) -> None:
+        self.since: float | None = None     # s: when the present silence began; None if there is none
         self.acknowledged = 0
 
-    def silence(self, now, connection):
-        """The duration of the silence, s. now: s; connection: a Connection."""
+    def silence(self, now: float, connection: Connection) -> float:
+        """The duration of the silence, s. now: s."""
         if not connection.unacknowledged or connection.acknowledged != self.acknowledged:
             self.since = None
         elif self.since is None:

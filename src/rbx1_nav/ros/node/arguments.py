@@ -3,10 +3,13 @@
 A usage text lists the node's parameters, each on a line of its own that begins with `~` and the name; more names may
 follow after commas.
 """
+from __future__ import annotations
+
 import difflib
 import os
 import re
 import sys
+from typing import Sequence
 import xmlrpc.client
 
 from rosgraph.names import is_legal_name
@@ -18,13 +21,13 @@ from rbx1_nav.config import show_name, suggestion
 EXPECTED = 'expected _parameter:=value or topic:=new_topic'
 
 
-def parameter_names(usage):
+def parameter_names(usage: str) -> list[str]:
     """The names of the parameters that a usage text lists."""
     lines = [line for line in usage.splitlines() if line.lstrip().startswith('~')]
     return [name for line in lines for name in re.findall(r'~(\w+)', line)]
 
 
-def check_command_line(usage):
+def check_command_line(usage: str) -> None:
     """Print the usage and exit if the command line asks for it, or has arguments that this node does not know."""
     arguments = sys.argv[1:]
     if '-h' in arguments or '--help' in arguments:
@@ -39,7 +42,7 @@ def check_command_line(usage):
             sys.exit(2)
 
 
-def find_problem(argument, names):
+def find_problem(argument: str, names: Sequence[str]) -> str | None:
     """What is wrong with a command-line argument, or None. names: of the node's parameters."""
     left, assigned, right = argument.partition(':=')
     if not assigned:
@@ -58,21 +61,21 @@ def find_problem(argument, names):
     return None if right and is_legal_name(right) else EXPECTED
 
 
-def _suggestion(left, value, names, cutoff):
+def _suggestion(left: str, value: str, names: Sequence[str], cutoff: float) -> str:
     close = difflib.get_close_matches(left.lstrip('-_~/').replace('-', '_'), names, 1, cutoff)
     return f": did you mean _{close[0]}:={show_name(value or 'VALUE')}?" if close else ''
 
 
-def _is_value(text):
+def _is_value(text: str) -> bool:
     """Whether rospy can read a text as YAML, and send its value to the master."""
     try:
         xmlrpc.client.dumps((yaml.safe_load(text),))
-    except Exception:   # pylint: disable=broad-except
+    except Exception:
         return False    # yaml raises many kinds of errors, see config.load_yaml(); integers may have 32 bits
     return bool(text) and ':=' not in text
 
 
-def report_parameters(usage):
+def report_parameters(usage: str) -> None:
     """Log the private parameters that have no effect, and those that an earlier command left on the master."""
     name, names = rospy.get_name(), parameter_names(usage)
     stored = rospy.get_param(name, {})

@@ -3,16 +3,20 @@
 Signals never interrupt the main thread. A thread waits for them and sets `end_requested`, as does every other way to
 end a node. The main thread checks it, does its last duty, and calls leave(). docs/design.md explains why.
 """
+from __future__ import annotations
+
 import os
 import signal
 import sys
 import threading
 import time
+from typing import Any, Callable, NoReturn, TextIO, cast
 
 import rosgraph
 import rospy
 from rospy.impl.paramserver import get_param_server_cache
 
+from rbx1_nav.config import YamlValue
 from rbx1_nav.ros.network.master import require_master, wait_for_master
 from rbx1_nav.ros.node.arguments import check_command_line, report_parameters
 from rbx1_nav.ros.node.params import check_before_start, future_name, read_wait_timeout
@@ -23,7 +27,7 @@ MAX_SLEEP = 0.05            # s
 
 # rospy of Debian 11 calls Thread.isAlive() on shutdown, a name that Python 3.9 has removed
 if not hasattr(threading.Thread, 'isAlive'):
-    threading.Thread.isAlive = threading.Thread.is_alive
+    setattr(threading.Thread, 'isAlive', threading.Thread.is_alive)
 
 end_requested = threading.Event()
 _leaving = threading.Event()
@@ -32,29 +36,31 @@ _leaving = threading.Event()
 class _Terminal:
     """An output stream that survives a closed terminal or a broken pipe."""
 
-    def __init__(self, stream):
+    def __init__(self, stream: TextIO) -> None:
         self._stream = stream
 
-    def __getattr__(self, name):
+    # Any: attributes of the stream
+    def __getattr__(self, name: str) -> Any:
         return getattr(self._stream, name)
 
-    def write(self, text):
+    def write(self, text: str) -> int:
         """Write, or drop the text."""
         self._try(self._stream.write, text)
         return len(text)
 
-    def flush(self):
+    def flush(self) -> None:
         """Flush, if possible."""
         self._try(self._stream.flush)
 
-    def _try(self, function, *args):
+    def _try(self, function: Callable[..., object], *args: str) -> None:
         try:
             function(*args)
         except OSError:
             os.dup2(os.open(os.devnull, os.O_WRONLY), self._stream.fileno())
 
 
-def init_node(name, usage, requires_master=False, check=None):
+def init_node(name: str, usage: str, requires_master: bool = False,
+              check: Callable[[dict[str, YamlValue]], object] | None = None) -> None:
     """Start the node `name`. From here on, Ctrl-C, kill, a closed terminal and `rosnode kill` set end_requested.
 
     usage: printed for --help, and for a command line that does not fit the parameters it lists; both end the process.
@@ -64,7 +70,8 @@ def init_node(name, usage, requires_master=False, check=None):
     Raises ROSInterruptException if the node is to end before it is registered, ROSException if the master does not
     answer, or for a parameter that makes no sense.
     """
-    sys.stdout, sys.stderr = _Terminal(sys.stdout), _Terminal(sys.stderr)
+    # not a TextIO by its class: the stream has the other methods
+    sys.stdout, sys.stderr = cast(TextIO, _Terminal(sys.stdout)), cast(TextIO, _Terminal(sys.stderr))
     check_command_line(usage)
     if requires_master:
         require_master()
@@ -85,8 +92,8 @@ def init_node(name, usage, requires_master=False, check=None):
         rospy.init_node(name, disable_signals=True)
     except (OSError, rospy.ROSInitException) as error:
         if not end_requested.is_set():
-            raise rospy.ROSException('The master at %s does not answer (%s): expected a running roscore'
-                                     % (rosgraph.get_master_uri(), error))
+            raise rospy.ROSException(f'The master at {rosgraph.get_master_uri()} does not answer ({error}): '
+                                     'expected a running roscore') from error
     if end_requested.is_set():
         raise rospy.ROSInterruptException('shutdown requested')
     # For each line that is logged, rospy asks the master for this parameter. A frozen master would block the node, and
@@ -95,25 +102,25 @@ def init_node(name, usage, requires_master=False, check=None):
     report_parameters(usage)
 
 
-def _wait_for_signal(pipe):
+def _wait_for_signal(pipe: int) -> None:
     os.read(pipe, 1)
     _set_end_requested()
 
 
-def _set_end_requested():
+def _set_end_requested() -> None:
     end_requested.set()
     last_resort = threading.Timer(EXIT_DEADLINE, os._exit, [1])
     last_resort.daemon = True
     last_resort.start()
 
 
-def _request_end():
+def _request_end() -> None:
     """Called by rospy on shutdown, in a thread of its own; publishers stay open until it returns."""
     _set_end_requested()
     _leaving.wait(EXIT_DEADLINE)
 
 
-def sleep(seconds):
+def sleep(seconds: float) -> None:
     """Sleep for `seconds` of wall time, at most MAX_SLEEP. To be called in a loop that checks end_requested.
 
     end_requested.wait() would not do: before Python 3.11 it follows a system clock that is stepped.
@@ -121,7 +128,7 @@ def sleep(seconds):
     time.sleep(max(0, min(seconds, MAX_SLEEP)))
 
 
-def leave(status):
+def leave(status: int) -> NoReturn:
     """End the process with an exit status. Unregisters the node, but does not wait for a master that hangs."""
     time.sleep(0.02)    # for the last line to reach /rosout
     _leaving.set()
@@ -134,7 +141,7 @@ def leave(status):
     os._exit(status)
 
 
-def run(main):
+def run(main: Callable[[], int]) -> NoReturn:
     """Run main(), which starts a node and returns an exit status, and end the process with it."""
     try:
         status = main()

@@ -1,6 +1,9 @@
 """A log of at most two lines a second, whatever happens how often."""
+from __future__ import annotations
+
 import re
 from threading import Lock
+from typing import Callable
 
 INTERVAL = 0.5      # s between two lines
 KIND_INTERVAL = 1.0     # s between two lines of a kind
@@ -14,20 +17,21 @@ class LimitedLog:
     Lines that differ only in numbers are of a kind.
     """
 
-    def __init__(self):
-        self.pending = {}       # by kind, the oldest first: (log, text, number of lines)
-        self.logged = {}        # by kind: s, when the last line was logged
+    def __init__(self) -> None:
+        # by kind, the oldest first: (log, text, number of lines)
+        self.pending: dict[str, tuple[Callable[..., None], str, int]] = {}
+        self.logged: dict[str, float] = {}      # by kind: s, when the last line was logged
         self.next = 0.0         # s
         self.lock = Lock()
 
-    def add(self, log, text):
+    def add(self, log: Callable[..., None], text: str) -> None:
         """Take a line, in any thread. log: rospy.logwarn or the like."""
         kind = NUMBER.sub('', text)
         with self.lock:
             if kind in self.pending or len(self.pending) < MAX_KINDS:
-                self.pending[kind] = log, text, self.pending.get(kind, (None, None, 0))[2] + 1
+                self.pending[kind] = log, text, self.pending.get(kind, (log, text, 0))[2] + 1
 
-    def flush(self, now):
+    def flush(self, now: float) -> None:
         """Log at most one line. To be called often; now: s of a clock that nobody sets."""
         with self.lock:
             self.logged = {kind: time for kind, time in self.logged.items() if now - time < KIND_INTERVAL}
@@ -36,4 +40,4 @@ class LimitedLog:
                 return
             log, text, count = self.pending.pop(kind)
             self.logged[kind], self.next = now, now + INTERVAL
-        log('%s', text if count == 1 else '%s (and %d more of this kind)' % (text, count - 1))
+        log('%s', text if count == 1 else f'{text} (and {count - 1} more of this kind)')

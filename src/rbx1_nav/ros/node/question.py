@@ -1,15 +1,20 @@
 """Asks the user for something that no sensor measures."""
+from __future__ import annotations
+
 import os
 import select
 import sys
+from typing import Callable, TypeVar
 
 import rospy
 
 from rbx1_nav.config import ConfigError
 from rbx1_nav.ros.node.life import end_requested
 
+Answer = TypeVar('Answer')
 
-def ask(question, check):
+
+def ask(question: str, check: Callable[[str], Answer]) -> Answer | None:
     """Ask on the terminal until check(text) accepts the answer; returns what it returns.
 
     check raises ConfigError for an answer that makes no sense. Returns None if there is nobody to answer: no terminal,

@@ -1,4 +1,6 @@
 """Where the package's own files are, in a source tree as in an install space."""
+from __future__ import annotations
+
 import os
 
 import rospkg
@@ -6,14 +8,15 @@ import rospkg
 from rbx1_nav.config import ConfigError
 
 
-def path(*parts):
+def path(*parts: str) -> str:
     """The path of a file or folder of this package. Raises ConfigError."""
     try:
         return os.path.join(rospkg.RosPack().get_path('rbx1_nav'), *parts)
     except rospkg.ResourceNotFound:
-        raise ConfigError("rbx1_nav: not found: expected a terminal in which the workspace's setup.bash was sourced")
+        raise ConfigError("rbx1_nav: not found: expected a terminal in which the workspace's setup.bash "
+                          'was sourced') from None
 
 
-def surfaces():
+def surfaces() -> str:
     """The folder of the surfaces that come with the package."""
     return path('config', 'surfaces')

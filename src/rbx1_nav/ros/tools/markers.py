@@ -1,24 +1,33 @@
 """Markers in the shape of a robot, for RViz."""
+from __future__ import annotations
+
+from typing import Mapping, Sequence
+
+from geometry_msgs.msg import Point, Pose, Quaternion, Transform, Vector3
+from nav_msgs.msg import Odometry
 import rospy
-from geometry_msgs.msg import Point, Pose, Quaternion, Vector3
 from std_msgs.msg import ColorRGBA, Header
 from tf.transformations import (concatenate_matrices, euler_matrix, quaternion_from_matrix, quaternion_matrix,
                                 translation_from_matrix, translation_matrix)
 from visualization_msgs.msg import Marker, MarkerArray
+
+from rbx1_nav.arrays import Array
+from rbx1_nav.robot.urdf import Visual
 
 SHAPES = {'box': Marker.CUBE, 'cylinder': Marker.CYLINDER, 'sphere': Marker.SPHERE, 'mesh': Marker.MESH_RESOURCE}
 GREY = (0.5, 0.5, 0.5, 1.0)
 LIFETIME = 10       # s: a robot that is not updated any more disappears
 
 
-def matrix(position, rotation):
-    """The 4x4 matrix of a position (with x, y, z in m) and a Quaternion."""
+def matrix(position: Point | Vector3, rotation: Quaternion) -> Array:
+    """The 4x4 matrix of a position (m) and a rotation."""
     return concatenate_matrices(translation_matrix((position.x, position.y, position.z)),
                                 quaternion_matrix((rotation.x, rotation.y, rotation.z, rotation.w)))
 
 
-def robot_markers(odometry, visuals, links):
-    """A MarkerArray of Visuals at the pose of an Odometry. links: the Transform of each link in the robot's frame."""
+def robot_markers(odometry: Odometry, visuals: Sequence[Visual],
+                  links: Mapping[str | None, Transform]) -> MarkerArray:
+    """Visuals at the pose of an Odometry. links: each in the robot's frame."""
     pose = odometry.pose.pose
     base = matrix(pose.position, pose.orientation)
     # stamp 0: the frame's latest transform
@@ -33,7 +42,7 @@ def robot_markers(odometry, visuals, links):
     return array
 
 
-def visual_marker(header, number, visual, transform):
+def visual_marker(header: Header, number: int, visual: Visual, transform: Array) -> Marker:
     """A Marker of a Visual with a transform (4x4 matrix). number: its id."""
     # RViz shows a mesh in its own colours if the marker has none
     color = visual.color or ((0, 0, 0, 0) if visual.mesh else GREY)

@@ -49,7 +49,7 @@ def test_nobody_answers(terminal):
     assert question.ask('What?', check) is None
 
 
-def test_the_node_ends_meanwhile(terminal):     # pylint: disable=unused-argument
+def test_the_node_ends_meanwhile(terminal):
     threading.Timer(0.2, question.end_requested.set).start()
     with pytest.raises(rospy.ROSInterruptException):
         question.ask('What?', check)

@@ -26,8 +26,9 @@ def usage(node):
 
 @pytest.mark.parametrize('script', SCRIPTS)
 def test_the_driving_scripts(script):
+    assert 'Drive(' in read('nodes', script)
     read_here = re.findall(r"(?:positive|frame|node)_param\('(\w+)', ('?[\w.]+'?)(?:, [\d., ]+)?\)",
-                           read('nodes', script))
+                           read('nodes', script) + read('src', 'rbx1_nav', 'ros', 'driving', 'drive.py'))
     others = ['measured'] if 'take_measured()' in read('nodes', script) else []
     assert usage(script) == sorted([name for name, _ in read_here] + others)
     for name, default in read_here:

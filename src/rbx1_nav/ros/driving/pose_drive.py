@@ -1,0 +1,112 @@
+"""Drives by the robot's pose, for scripts that measure their way."""
+from __future__ import annotations
+
+from math import degrees, hypot
+import time
+from typing import Callable, Iterator, Optional
+
+import rospy
+from geometry_msgs.msg import Twist
+from tqdm import tqdm
+
+from rbx1_nav.control.legs import Leg
+from rbx1_nav.robot.kinematics import Pose
+from rbx1_nav.ros.driving.drive import Drive
+from rbx1_nav.ros.driving.pose_listener import LostTransform, PoseListener
+from rbx1_nav.units import wrap_angle
+
+TRIAL_REST = 0.5    # s: the robot rolls out before a leg goes on
+
+
+class PoseDrive(Drive):
+    """Drives until the pose says that the robot has arrived."""
+
+    start: Pose
+
+    def __init__(self, cmd_vel: rospy.Publisher, rate: float, stop: Callable[[], None], poses: PoseListener,
+                 transform_timeout: Optional[float] = None) -> None:
+        """transform_timeout: how long the robot stands and waits if its pose is lost, s; None: that is an error."""
+        super().__init__(cmd_vel, rate, stop)
+        self.poses = poses
+        self.transform_timeout = transform_timeout
+
+    def begin(self) -> None:
+        super().begin()
+        self.start = self.poses.wait(self.wait_timeout)
+
+    def speeds(self, leg: Leg) -> Iterator[float]:
+        """The speed for each tick, m/s or rad/s, until the robot has arrived; shows the progress.
+
+        A leg stops twice: just before its goal, to see how far the robot rolls on, and at its goal. Raises StuckError.
+        """
+        rospy.loginfo('%s: %.2f %s', leg.name, leg.goal, leg.unit)
+        with tqdm(total=leg.goal, desc=leg.name, unit=leg.unit, disable=None,
+                  bar_format='{desc:9}: |{bar}| {n:.2f} of {total:.2f} {unit}') as bar:
+            yield from self._speeds(leg, bar)
+            self.cmd_vel.publish(Twist())
+            self.rest(TRIAL_REST)
+            if self.current_rate:
+                self.current_rate.restart()
+            yield from self._speeds(leg, bar)
+
+    def drive(self, leg: Leg) -> None:
+        """Drive a leg to its end, and come to rest there: leg.done() and leg.last are then where the robot stands."""
+        command, rate = Twist(), self.Rate()
+        for speed in self.speeds(leg):
+            command.linear.x, command.angular.z = leg.velocity(speed)
+            self.cmd_vel.publish(command)
+            rate.sleep()
+        self.cmd_vel.publish(Twist())
+        self.rest(1)
+        leg.next_speed(self._pose())
+
+    def rest(self, seconds: float) -> None:
+        super().rest(seconds)
+        self.poses.forget_velocity()
+
+    def _speeds(self, leg: Leg, bar: tqdm) -> Iterator[float]:
+        speed = leg.next_speed(self._pose())
+        while speed:
+            yield speed
+            speed = leg.next_speed(self._pose())
+            bar.update(max(0, min(leg.done(), leg.goal) - bar.n))
+
+    def _pose(self) -> Pose:
+        """The robot's pose. If it is lost, the robot stands and waits for it."""
+        try:
+            return self.poses.pose()
+        except LostTransform as error:
+            if self.transform_timeout is None:
+                raise rospy.ROSException(f'The base no longer reports odometry ({error}): expected a base that is '
+                                         'connected to its robot; see /diagnostics') from None
+            self.cmd_vel.publish(Twist())
+            rospy.logwarn('%s: the robot waits for a new one', error)
+            return self.poses.wait(self.transform_timeout, self.listeners.check)
+
+
+class ReportingDrive(PoseDrive):
+    """The same, and reports how far from its start the robot ends."""
+
+    def begin(self) -> None:
+        super().begin()
+        rospy.loginfo('Measuring the pose of %s in the frame %s', self.poses.base_frame, self.poses.odom_frame)
+
+    def finish(self) -> None:
+        self.listeners.check_delivery()
+        start, end = self.start, self.poses.wait(self.transform_timeout or self.wait_timeout)
+        rospy.loginfo('Done: measured in %s, the robot is %.3f m from its start and %.1f degrees off its first heading',
+                      self.poses.odom_frame, hypot(end.x - start.x, end.y - start.y),
+                      degrees(abs(wrap_angle(end.yaw - start.yaw))))
+
+
+class CalibrationDrive(PoseDrive):
+    """The same, for a script that has nothing else to do with the robot's base."""
+
+    def __init__(self, rate: float, poses: PoseListener) -> None:
+        super().__init__(rospy.Publisher('/cmd_vel', Twist, queue_size=5), rate, self.shutdown, poses)
+
+    def shutdown(self) -> None:
+        """Stop the robot, and give it the time to do so."""
+        self.cmd_vel.publish(Twist())
+        rospy.loginfo('Stopping the robot...')
+        time.sleep(1)   # of wall time: a simulated clock may have stopped
