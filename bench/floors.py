@@ -128,7 +128,8 @@ def aligned(lines, texts):
 
 
 def report(rows, lines, path):
-    """Print the lines of a table and how many of its rows have no `misses`; write the rows to `path` (JSON) if given."""
+    """Print the lines of a table and how many of its rows have no `misses`; write the rows to `path` (JSON) if
+    given."""
     print('\n'.join(lines))
     print('%d of %d rows within all limits' % (sum(not row['misses'] for row in rows), len(rows)))
     if path:

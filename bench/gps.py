@@ -69,8 +69,8 @@ def local(fixes):
 
 
 def rms_to_gps(stamps, path, gps):
-    """The rms distance (m) of a path (n x 2) from the result of local(), after the best rotation and translation (Kabsch
-    1976)."""
+    """The rms distance (m) of a path (n x 2) from the result of local(), after the best rotation and translation
+    (Kabsch 1976)."""
     gps_stamps, places = gps
     inside = (gps_stamps >= stamps[0]) & (gps_stamps <= stamps[-1])
     path = numpy.stack([numpy.interp(gps_stamps[inside], stamps, each) for each in numpy.transpose(path)], 1)

@@ -74,7 +74,8 @@ def test_the_restart_is_found(recording):
 
 
 def test_odometry_that_was_not_recorded_is_noticed(recording):
-    # while the robot turns: odometry of 5 ticks carries the wheels' part of the heading, which is small once the bias is
+    # while the robot turns: odometry of 5 ticks carries the wheels' part of the heading, which is small once the bias
+    # is
     # known, and shows when the robot drives on
     row = live_figures(without_odometry(recording, 600, 5))
     assert not row['same'] and row['missing'] == {'/odom': 5}

@@ -94,7 +94,8 @@ def calibrate():
         run = load_run('angular', 'reported', 'loses_fractions', ODOM_KEY, GYRO_KEY)
     print(f"The odometry reports {run['reported']:.1f} degrees.")
     if run['loses_fractions']:
-        print('The robot loses fractions of a degree. The base noticed it in a turn, and now corrects its odometry. With '
+        print('The robot loses fractions of a degree. The base noticed it in a turn, and now corrects its odometry. '
+              'With '
               'the line angle_fractions in your file, it does so from the start.')
     if 'gyro' in run:
         print(f"The gyro reports {run['gyro']:.1f} degrees.")

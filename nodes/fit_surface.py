@@ -74,7 +74,8 @@ def read_arguments():
     if os.path.splitext(arguments.start)[1]:        # a name has none
         arguments.start = os.path.abspath(arguments.start)
     if text_files and (arguments.truth or arguments.ends or len(text_files) < len(arguments.runs)):
-        parser.error(f'{show_name(text_files[0])}: a text file has its truth beside it: expected neither bags nor --truth '
+        parser.error(f'{show_name(text_files[0])}: a text file has its truth beside it: expected neither bags nor '
+                     '--truth '
                      'nor --ends')
     return arguments
 
@@ -122,7 +123,8 @@ def main():
         comparisons = compare(result.surface, recordings, robot.base_width)
         count, inside_50, inside_90 = shares(comparisons)
         if count:
-            print(f'Of {count} ends, {inside_50} are in the region of 50 % of the simulated ones, {inside_90} in that of '
+            print(f'Of {count} ends, {inside_50} are in the region of 50 % of the simulated ones, {inside_90} in '
+                  'that of '
                   '90 %')
         text = surface_text(result, os.path.basename(arguments.start), [each.name for each in recordings])
         write_file(arguments.output, text.encode())

@@ -40,13 +40,13 @@ class OutAndBack:
         # The name of the node.
         init_node('out_and_back', __doc__)
 
-        # A robot's base listens on this topic. Up to five commands wait for a slow listener; the others get theirs at once.
+        # A robot's base listens on this topic. Commands for a slow listener wait; the others get theirs at once.
         self.cmd_vel = rospy.Publisher('/cmd_vel', Twist, queue_size=5)
 
         # How often to look at the pose and to send a command, Hz.
         rate = positive_param('rate', 50, 2, 1000)
 
-        # The way out: how fast (m/s) and how far (m). Near the goal the robot slows down, to the lowest speed that moves it.
+        # The way out: how fast (m/s) and how far (m), and how fast at least near the goal, where the robot slows down.
         linear_speed = positive_param('linear_speed', 0.2)
         goal_distance = positive_param('goal_distance', 1.0)
         min_linear_speed = positive_param('min_linear_speed', 0.05)
@@ -62,7 +62,8 @@ class OutAndBack:
 
         # Where the robot is: the pose of its base in the frame of its odometry.
         transform_timeout = positive_param('transform_timeout', 5)
-        poses = PoseListener(frame_param('odom_frame', 'odom'), frame_param('base_frame', None), linear_speed, angular_speed)
+        odom_frame, base_frame = frame_param('odom_frame', 'odom'), frame_param('base_frame', None)
+        poses = PoseListener(odom_frame, base_frame, linear_speed, angular_speed)
 
         # Wait until a base listens, and watch it from then on. However this block ends, it ends with shutdown().
         with ReportingDrive(self.cmd_vel, rate, self.shutdown, poses, transform_timeout) as drive:

@@ -33,7 +33,8 @@ def read_arguments():
     """The command line."""
     parser = argparse.ArgumentParser(description=__doc__.split('\n')[0])
     parser.add_argument('--surface', default='ideal', metavar='NAME',
-                        help=f"one of {', '.join(known_surfaces(resources.surfaces()))}, or a YAML file; default: ideal")
+                        help=f"one of {', '.join(known_surfaces(resources.surfaces()))}, or a YAML file; default: "
+                             "ideal")
     parser.add_argument('--method', choices=METHODS, action='append',
                         help='timed: by time alone; odom: by odometry; ekf: by odometry and gyro. Can be given more '
                              'than once; default: all three')

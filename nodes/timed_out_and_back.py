@@ -30,7 +30,7 @@ class OutAndBack:
         # The name of the node.
         init_node('out_and_back', __doc__)
 
-        # A robot's base listens on this topic. Up to five commands wait for a slow listener; the others get theirs at once.
+        # A robot's base listens on this topic. Commands for a slow listener wait; the others get theirs at once.
         self.cmd_vel = rospy.Publisher('/cmd_vel', Twist, queue_size=5)
 
         # How often to send a command, Hz. Many robots stop when they hear nothing for a while.

@@ -10,7 +10,8 @@ Parameters, with the names of create_node's:
     ~update_rate                    of sensors and odometry, Hz (default: 30)
     ~operation_mode                 2: safe; 3: full, without the robot's cliff and wheel-drop stop; 1: passive, the
                                     robot is not driven (default: 2)
-    ~oi_mode_workaround             whether the robot reports its mode plus one, as some Roombas do: true, false, or auto
+    ~oi_mode_workaround             whether the robot reports its mode plus one, as some Roombas do: true, false, or
+    auto
                                     (default: auto)
     ~wake_robot                     whether to wake a robot that does not answer by RTS and DTR (default: false)
     ~cmd_vel_timeout                a command of this age stops the robot, s (default: 0.6)
@@ -26,7 +27,8 @@ Parameters, with the names of create_node's:
     ~odom_linear_error              error of the distance, 1 sigma, m after 1 m (default: 0.05)
     ~odom_angular_error             error of the angle, 1 sigma, rad after 1 rad (default: 0.09)
     ~odom_heading_error             error of the heading, 1 sigma, rad after 1 m (default: 0.07)
-    ~moving_yaw_variance            variance of the heading while the robot moves, rad^2, in place of the calculated one, as
+    ~moving_yaw_variance            variance of the heading while the robot moves, rad^2, in place of the calculated
+    one, as
                                     create_node has it: 1000; 0: none (default: 0)
     ~odom_frame, ~base_frame        frames (default: odom, base_footprint)
     ~left_wheel, ~right_wheel       names of the wheels' joints (default: base_l_wheel_joint, base_r_wheel_joint)

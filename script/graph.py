@@ -28,7 +28,8 @@ def identifier(kind, name):
 def node_graph(publishers, subscribers, hidden):
     """The graph as Mermaid text.
 
-    publishers, subscribers: as of the master's getSystemState, lists of [topic, names of nodes]; hidden: names of nodes.
+    publishers, subscribers: as of the master's getSystemState, lists of [topic, names of nodes]; hidden: names of
+    nodes.
     """
     shapes, arrows = set(), set()
     for pairs, arrow in ((publishers, '{0} --> {1}'), (subscribers, '{1} --> {0}')):

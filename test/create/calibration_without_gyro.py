@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Calibration with a gyro that is stuck, with fractions of a degree that are lost, and with factors that are not set."""
+"""Calibration with a gyro that is stuck, with fractions of a degree that are lost, and with factors that are not
+set."""
 import math
 import re
 import unittest
@@ -27,7 +28,8 @@ class TestCalibrationWithoutGyro(unittest.TestCase):
 
     def check(self, count, reason):
         """Calibrate the turn with a gyro that is stuck."""
-        robot = DrivenRobot(self, 'create', {'wheel_base': 1.1, 'gyro_stuck': count}, obstacle='bump')   # it is never calibrated
+        robot = DrivenRobot(self, 'create', {'wheel_base': 1.1, 'gyro_stuck': count},
+                            obstacle='bump')   # it is never calibrated
         robot.switch('bump', False)
         robot.wait_for_status('Standing')
         self.assertFalse(rospy.has_param('/turtlebot_node/odom_angular_scale_correction'))

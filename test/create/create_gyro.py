@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""A gyro that breaks in motion: imu/data pauses at once, with an error in log and /diagnostics, until it works again."""
+"""A gyro that breaks in motion: imu/data pauses at once, with an error in log and /diagnostics, until it works
+again."""
 import unittest
 
 from diagnostic_msgs.msg import DiagnosticStatus

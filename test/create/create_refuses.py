@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""A wheel drops, or the cable is out, while a script drives: it exits with 1 and says why, and the robot stays where it is."""
+"""A wheel drops, or the cable is out, while a script drives: it exits with 1 and says why, and the robot stays where
+it is."""
 import unittest
 
 from driven import DrivenRobot

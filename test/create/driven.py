@@ -32,8 +32,8 @@ class DrivenRobot(EmulatedRobot):
     """turtlebot_node.py on the port of an emulated robot."""
 
     def __init__(self, case, robot_type, emulated=(), obstacle='', **params):
-        """case: the TestCase, at whose end both end; emulated: parameters of the robot; obstacle: the service of the robot
-        that keeps the node from driving it at first, or ''; params: of the node."""
+        """case: the TestCase, at whose end both end; emulated: parameters of the robot; obstacle: the service of the
+        robot that keeps the node from driving it at first, or ''; params: of the node."""
         super().__init__(case, robot_type, **dict(emulated))
         self.case = case
         if obstacle:

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""The emulated robot loses its cable, or its line falls silent: it goes on with its last Drive, and can be reached again."""
+"""The emulated robot loses its cable, or its line falls silent: it goes on with its last Drive, and can be reached
+again."""
 import os
 import unittest
 

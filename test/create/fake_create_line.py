@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""/line shows each command that the emulated robot receives, also one that it ignores, with the time of its last byte."""
+"""/line shows each command that the emulated robot receives, also one that it ignores, with the time of its last
+byte."""
 import time
 import unittest
 

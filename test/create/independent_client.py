@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 """pycreate2, a driver from elsewhere, drives the emulated Create 2 and reads sensors that agree with the simulation.
 
-It is installed from the Python package index into a folder of this test. Where that is not reached, the test is skipped.
+It is installed from the Python package index into a folder of this test. Where that is not reached, the test is
+skipped.
 """
 from math import pi
 import subprocess

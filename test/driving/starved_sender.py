@@ -8,7 +8,8 @@ from geometry_msgs.msg import Twist
 
 import support
 
-# The script itself; what it sends to the node `peer` is delayed, by a number of seconds for each command. On a busy machine a
+# The script itself; what it sends to the node `peer` is delayed, by a number of seconds for each command. On a busy
+# machine a
 # thread does not sleep meanwhile, it waits for its turn; a recorder that reads slowly lets it sleep.
 STARVED = """
 import runpy, sys, time

@@ -79,8 +79,8 @@ def run_row(name, module, times, seed):
 
 
 def end_row(process, folder):
-    """End a row, and what it has left behind: roslaunch starts its nodes in sessions of their own, but all have the same
-    ROS_HOME."""
+    """End a row, and what it has left behind: roslaunch starts its nodes in sessions of their own, but all have the
+    same ROS_HOME."""
     if process.poll() is None:
         process.terminate()
         try:
@@ -180,7 +180,8 @@ def spread(values):
 def write_table(path, modules, results, seed):
     """Write the rows as a Markdown table."""
     with open(path, 'w', encoding='utf-8') as file:
-        file.write('Seed %d.\n\n| row | what was done | times | what is promised | what happened |\n|---|---|---|---|---|\n'
+        file.write('Seed %d.\n\n| row | what was done | times | what is promised | what happened '
+                   '|\n|---|---|---|---|---|\n'
                    % seed)
         for result in results:
             module = modules[result['name']]

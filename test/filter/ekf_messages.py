@@ -40,7 +40,8 @@ class TestEkfMessages(unittest.TestCase):
         before = self.poses.next().pose.pose.position.x
         for sender, change, words in [
                 (self.odom, lambda m: setattr(m.pose.pose.position, 'x', nan), ('/odom: pose.pose.position.x: nan',)),
-                (self.odom, lambda m: setattr(m.pose.pose.orientation, 'z', 1e308), ('/odom: pose.pose.orientation: nan',)),
+                (self.odom, lambda m: setattr(m.pose.pose.orientation, 'z', 1e308), ('/odom: pose.pose.orientation: '
+                                                                                     'nan',)),
                 (self.odom, lambda m: setattr(m.pose.pose.orientation, 'w', 0.0), ('/odom: pose.pose.orientation',)),
                 (self.odom, lambda m: setattr(m.pose, 'covariance', [0.0] * 36), ('/odom: pose.covariance[0]: 0.0',)),
                 (self.odom, lambda m: setattr(m.header, 'stamp', m.header.stamp - rospy.Duration(5)),

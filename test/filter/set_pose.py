@@ -33,7 +33,8 @@ class TestSetPose(unittest.TestCase):
         support.wait_for(publisher.get_num_connections, 'the filter to subscribe to /set_pose')
 
         def wait_for_log(text):
-            support.wait_for(lambda: any(m.name == '/robot_pose_ekf' and text in m.msg for m in list(log.messages)), text)
+            support.wait_for(lambda: any(
+                m.name == '/robot_pose_ekf' and text in m.msg for m in list(log.messages)), text)
 
         def is_at(x, y, yaw):
             at = support.pose(poses.last)

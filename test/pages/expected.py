@@ -29,7 +29,8 @@ def same(expected, line, tolerance=None):
     match = regex.fullmatch(line)
     return bool(match) and (tolerance is None or all(
         # 1e-9 for what decimals lose in binary
-        abs(float(shown) - number) <= tolerance * unit + 1e-9 for shown, (number, unit) in zip(match.groups(), numbers)))
+        abs(float(shown) - number) <= tolerance * unit + 1e-9
+        for shown, (number, unit) in zip(match.groups(), numbers)))
 
 
 def find(expected, lines, tolerance=None):

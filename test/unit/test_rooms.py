@@ -36,8 +36,8 @@ ALLOWED = {
                  'units'},
     'ros.base.simulated_clock': {'config', 'ros.base', 'ros.node', 'schedule', 'simulation', 'units'},
     'ros.base.robot_faults': {'config', 'create.emulator', 'ros', 'ros.node'},
-    'ros.filter': {'arrays', 'config', 'estimation', 'robot', 'ros', 'ros.network', 'ros.node', 'schedule', 'simulation',
-                   'units'},
+    'ros.filter': {'arrays', 'config', 'estimation', 'robot', 'ros', 'ros.network', 'ros.node', 'schedule',
+                   'simulation', 'units'},
     'ros.tools': {'arrays', 'config', 'estimation', 'fitting', 'robot', 'ros'},
 }
 ALLOWED['nodes'] = set(ALLOWED) - {'__init__'}

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""nav_ekf.rviz on carpet: odometry, estimate and ground truth in their colours, the true robot solid, the other a ghost.
+"""nav_ekf.rviz on carpet: odometry, estimate and ground truth in their colours, the true robot solid, the other a
+ghost.
 
 Keeps its pictures in the directory that the environment variable RBX1_PICTURE_DIR names, if it is set.
 """

@@ -25,7 +25,8 @@ class RvizOneRobot(RvizTest):
         # where all poses are the same, the arrows of one may cover those of another
         after = self.wait_for(f'{NAME}_after', lambda picture: picture.ready and sum(
             arrow_pixels(picture, name, star) for name in ARROWS) > 5 * ARROW)
-        # all of its marks are where it is ready: another robot would double them; the edges of arrows count as marks too
+        # all of its marks are where it is ready: another robot would double them; the edges of arrows count as marks
+        # too
         self.assertLess(after.marks.sum(), 1.75 * after.robot())
         self.assertFalse(after.errors, after.status)
         self.assertEqual(self.console_errors(), [])

@@ -74,7 +74,8 @@ class CombinedOdometry:
         self.restart()
 
     def reset(self, now):
-        """The base was reset at `now` (ns): restart. Odometry from before it, which may arrive later, does not count."""
+        """The base was reset at `now` (ns): restart. Odometry from before it, which may arrive later, does not
+        count."""
         self.restart()
         self.start = max([now] + [stamp for stamp in self.last_stamp.values() if stamp])
 
@@ -117,8 +118,8 @@ class CombinedOdometry:
     # input
 
     def set_pose(self, now, pose, covariance):
-        """The robot is at a Pose at `now` (ns), with this covariance (3x3) of x, y (m) and yaw (rad). What the filter has
-        learned of the sensors is kept. It counts from the first step after `now`."""
+        """The robot is at a Pose at `now` (ns), with this covariance (3x3) of x, y (m) and yaw (rad). What the filter
+        has learned of the sensors is kept. It counts from the first step after `now`."""
         self.placed = now, pose, covariance
         if self.filter and self.time >= now:
             self._place()
@@ -313,7 +314,8 @@ class CombinedOdometry:
             self.contradicted = self.time
         elif not self.another_floor and ekf.doubt_floor():
             self.another_floor = True
-            self.warn('%s: this is another floor than the one that the filter started with; the distance is less certain'
+            self.warn('%s: this is another floor than the one that the filter started with; the distance is less '
+                      'certain'
                       % measured)
 
     def _step_by_gyro(self, end):

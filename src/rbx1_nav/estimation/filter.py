@@ -15,13 +15,13 @@ Probabilistic Robotics, section 3.3.
 
 Which of the errors are learned depends on the case:
 
-- standstill (standstill.py): the gyro's rate is its bias. How much the bias has changed between two standstills shows how
-  fast it drifts, and so how uncertain the heading becomes between them.
+- standstill (standstill.py): the gyro's rate is its bias. How much the bias has changed between two standstills shows
+  how fast it drifts, and so how uncertain the heading becomes between them.
 - agreement: wheels and gyro differ no more than they may on a floor. The difference is a measurement of the slip. It is
   one of bias and scale error only until the bias has been learned at rest, because wheels that slip in a way that the
   model does not know would corrupt them. The noise of the wheels is as small as the differences show (noise.py).
-- contradiction: they differ more than on any floor (agreement.py). The heading becomes as uncertain as they differ; only
-  the slip is still learned. When they agree again, the doubt shrinks to what this slip does not explain.
+- contradiction: they differ more than on any floor (agreement.py). The heading becomes as uncertain as they differ;
+  only the slip is still learned. When they agree again, the doubt shrinks to what this slip does not explain.
 - carried (standstill.py): the heading turns with the gyro, and becomes as uncertain as the turn is large; so does the
   position by the distance that the robot may have been carried.
 
@@ -78,7 +78,8 @@ def priors(surface):
 
 
 HeadingChange = namedtuple('HeadingChange', 'angle variance by_bias by_scale by_slip')
-HeadingChange.__doc__ = "A turn (rad), its variance (rad^2), its derivatives by the gyro's bias and scale error and the slip."
+HeadingChange.__doc__ = "A turn (rad), its variance (rad^2), its derivatives by the gyro's bias and scale error and " \
+                        "the slip."
 
 DOUBT, DRIFT, APART = 0, 1, 2   # columns of `columns`, see Filter; the number of them
 SPARE = 32      # columns of the root for noise, before it is made square again

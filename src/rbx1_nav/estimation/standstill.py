@@ -3,7 +3,8 @@
 The wheels are at rest if the pose of the odometry has not changed for REST. Its variances are not used: many drivers
 publish constants. The gyro's turns are then added up in parts of PART. There are two cases:
 
-- standstill: the rate of a part is the bias that is known, or the robot has just been switched on and the rate is steady
+- standstill: the rate of a part is the bias that is known, or the robot has just been switched on and the rate is
+steady
   and within the limit. It is the bias.
 - carried: any other rate. Someone turns the robot by hand: it turns as the gyro measures, and its pose is uncertain.
   A rate that is steady for longer than a hand can be is a bias that has changed. If it was steady for a shorter time
@@ -72,8 +73,8 @@ class Standstill:
         return stamp - self.since >= REST
 
     def leave(self, ekf):
-        """The wheels are not at rest. Returns the Part in which the robot may have begun to move: the Filter has not used
-        it."""
+        """The wheels are not at rest. Returns the Part in which the robot may have begun to move: the Filter has not
+        used it."""
         unused = self.part.plus(self.complete or Part())
         if ekf.bias_known and self.undecided.time > STEADY_DOUBT - ROUNDING:
             ekf.doubt_bias(self.undecided.angle / self.undecided.time)

@@ -10,7 +10,8 @@ from rbx1_nav.simulation.surfaces import Surface
 
 
 def cell_noise(generator: numpy.random.Generator, count: int, path: Array, cell: float) -> Array:
-    """The errors (count, m) in each of m steps of `path`, by noise of strength 1: simulation.floor_noise.Noise in arrays."""
+    """The errors (count, m) in each of m steps of `path`, by noise of strength 1: simulation.floor_noise.Noise in
+    arrays."""
     borders = numpy.concatenate([[0.0], numpy.cumsum(path)]) / cell + generator.random((count, 1))
     number = borders.astype(int)
     sums = numpy.cumsum(generator.laplace(0.0, (cell / 2) ** 0.5, (count, number[:, -1].max() + 1)), axis=1)

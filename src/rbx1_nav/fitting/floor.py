@@ -77,8 +77,8 @@ class Prediction:
         """A dictionary: for each of NOISES the covariances of the ends for a strength of 1, (n, 3, 3); for each of
         SPREADS the derivatives of the ends by a slip that is constant in the run, (n, 3).
 
-        by_cells: whether noise is that of simulation.floor_noise.Noise with its cells, which makes a difference for windows of
-        few cells; otherwise it is white.
+        by_cells: whether noise is that of simulation.floor_noise.Noise with its cells, which makes a difference for
+        windows of few cells; otherwise it is white.
         """
         x, y, yaw = self.path
         middle = yaw - self.angle / 2

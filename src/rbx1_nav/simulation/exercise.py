@@ -33,8 +33,8 @@ Snapshot = namedtuple('Snapshot', 'time truth odometry estimate')
 Snapshot.__doc__ = 'Time since the start (s) and three Poses; estimate: of the filter, None if there is none.'
 
 SimulationResult = namedtuple('SimulationResult', 'end first_leg covariance path')
-SimulationResult.__doc__ = """A run: Snapshot of its end, true distance at the end of the first motion (m), the 3x3 covariance of
-the filter's pose (m and rad; None without a filter), and the Snapshots of all ticks (None if not kept)."""
+SimulationResult.__doc__ = """A run: Snapshot of its end, true distance at the end of the first motion (m), the 3x3
+covariance of the filter's pose (m and rad; None without a filter), and all Snapshots (None if not kept)."""
 
 Messages = namedtuple('Messages', 'imu orientation odom pose_variances')
 Messages.__doc__ = """What the base publishes at a tick: Imu, (yaw, variance) of its orientation (rad, rad^2), Odom, and

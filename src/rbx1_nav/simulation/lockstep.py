@@ -38,7 +38,8 @@ class CommandSource:
 
 
 class Lockstep:
-    """Applies commands, tuples that begin with linear (m/s) and angular (rad/s), at the tick at which they were sent."""
+    """Applies commands, tuples that begin with linear (m/s) and angular (rad/s), at the tick at which they were
+    sent."""
 
     def __init__(self, apply, report, nodes, ended):
         """apply(command): puts a command in force; report(name, reason): a node is not in step; nodes: see
@@ -47,7 +48,7 @@ class Lockstep:
         self.report = report
         self.nodes = nodes
         self.ended = ended
-        self.drivers = {}       # by the id of the connection, which the CommandSource keeps alive: so the id stays unique
+        self.drivers = {}       # by the id of the connection, which the CommandSource keeps alive: so it stays unique
         self.arrived = []       # (driver, command, whether a tick may have prompted it), not in force yet
         self.delayed = []       # commands for the next tick
         self.tick = 0           # number of the present tick

@@ -8,9 +8,9 @@ class Stream:
     """The commands of one driver from its first motion to its next stop.
 
     A driver that wakes by itself, in place of by a tick, may begin just while the next tick is on its way to it. Then
-    its rate counts from the tick before, but its first command arrives at this one: the motion would be short by a tick.
-    The ticks of the following commands tell, at the usual rates. Then all that changes the motion later takes effect one
-    tick later.
+    its rate counts from the tick before, but its first command arrives at this one: the motion would be short by a
+    tick. The ticks of the following commands tell, at the usual rates. Then all that changes the motion later takes
+    effect one tick later.
     """
 
     def __init__(self, tick, command, uncertain):
@@ -48,8 +48,8 @@ def is_late(ticks):
 
 
 def possible_periods(ticks):
-    """For how large a range of periods, in ticks, a rate sends at just these ticks: at the first one not before each of its
-    times, which lie a period apart. Negative if no rate does.
+    """For how large a range of periods, in ticks, a rate sends at just these ticks: at the first one not before each
+    of its times, which lie a period apart. Negative if no rate does.
 
     Command k at tick n[k] means that n[k] - 1 < begin + k * period <= n[k]; two commands i before k then give
     (n[k] - n[i] - 1) / (k - i) < period < (n[k] - n[i] + 1) / (k - i).

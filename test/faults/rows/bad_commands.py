@@ -38,7 +38,7 @@ def run(row):
                         ('%d a second for %g s' % (FLOOD, seconds), flood), ('two publishers', two_publishers)):
         with row.fault(text):
             commander = support.Commander()
-            for _ in range(150):    # more than a second without a pause: from now on, commands take effect as they arrive
+            for _ in range(150):    # more than a second without a pause: now commands take effect as they arrive
                 commander.send(LAST)
                 time.sleep(0.01)
             odom.wait_for_twist(LAST)

@@ -13,7 +13,8 @@ import support
 from sensors import Sensors, turn
 
 FAULT = 'the filter gets NaN, bad covariances and stamps, gaps, jumps, resets, two senders, a robot that is held'
-PROMISE = 'never a number that is not finite; at most 2 lines of log a second, and 4 when sensors time out and recover; ' \
+PROMISE = 'never a number that is not finite; at most 2 lines of log a second, and 4 when sensors time out and ' \
+          'recover; ' \
           'a pose again afterwards'
 FULL, SHORT = 130, 7
 ROOT = ALONE = False

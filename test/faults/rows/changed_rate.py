@@ -11,8 +11,10 @@ import support
 sys.path.append(os.path.join(os.path.dirname(__file__), '..', '..', 'create'))
 from driven import CHI_SQUARE, DrivenRobot
 
-FAULT = "`stty` sets a Create's port to another rate at a random moment of a motion; half of the nodes get SIGTERM at once"
-PROMISE = ('the rate is set back and the change is named; the robot stops with the node, which exits with 0; the odometry '
+FAULT = "`stty` sets a Create's port to another rate at a random moment of a motion; half of the nodes get SIGTERM " \
+        "at once"
+PROMISE = ('the rate is set back and the change is named; the robot stops with the node, which exits with 0; the '
+           'odometry '
            'counts what moved meanwhile')
 FULL, SHORT = 20, 2
 ROOT = ALONE = False

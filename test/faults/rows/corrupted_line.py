@@ -9,7 +9,8 @@ sys.path.append(os.path.join(os.path.dirname(__file__), '..', '..', 'create'))
 from driven import CHI_SQUARE, DrivenRobot
 
 FAULT = '1 % of the bytes from a Create 2, or from a Create, flipped, lost or doubled during the exercise'
-PROMISE = ('Create 2: corrupted frames are counted and dropped, and the odometry ends within 5 cm of the truth. Create, '
+PROMISE = ('Create 2: corrupted frames are counted and dropped, and the odometry ends within 5 cm of the truth. '
+           'Create, '
            'which has no checksum: the covariance holds the error')
 FULL, SHORT = 10, 0
 ROOT = ALONE = False

@@ -12,7 +12,8 @@ import support
 sys.path.append(os.path.join(os.path.dirname(__file__), '..', '..', 'create'))
 from driven import STOP, DrivenRobot, guardian_of
 
-FAULT = ("SIGKILL to a Create's base node, or to its process group, at a random moment of a motion; in a third of them to "
+FAULT = ("SIGKILL to a Create's base node, or to its process group, at a random moment of a motion; in a third of "
+         "them to "
          'its guardian 2 to 60 ms before')
 PROMISE = 'a stop is on the line within 0.2 s'
 FULL, SHORT = 30, 3

@@ -16,7 +16,8 @@ from ports import free_port
 from row import Row
 import support
 
-FAULT = 'the exercise at real_time_factor 20, three masters side by side with a busy loop each; in a quarter of the runs, ' \
+FAULT = 'the exercise at real_time_factor 20, three masters side by side with a busy loop each; in a quarter of the ' \
+        'runs, ' \
         'script or base is stopped for 10 to 500 ms'
 PROMISE = 'the exact end, to a micrometre'
 FULL, SHORT = 200, 3
@@ -58,7 +59,8 @@ def station(seed, count):
         driver = row.node('timed_out_and_back.py')
         text = 'run %d of the station with seed %d' % (number, seed)
         if number % 4 == 0:
-            who, delay, length = (generator.choice(('script', 'base')), generator.uniform(0, 3), generator.uniform(0.01, 0.5))
+            who, delay, length = (generator.choice(('script', 'base')),
+                                  generator.uniform(0, 3), generator.uniform(0.01, 0.5))
             text += f', {who} stopped after {delay:.2f} s for {1000 * length:.0f} ms'
             time.sleep(delay)
             suspend(driver.process.pid if who == 'script' else base, length)

@@ -11,7 +11,8 @@ sys.path.append(os.path.join(os.path.dirname(__file__), '..', '..', 'create'))
 from driven import DrivenRobot
 from rbx1_nav.create.protocol import MODE_NAMES, PASSIVE
 
-FAULT = ('robots that report their mode plus one, or not, driven in each mode; two thirds of those in safe mode start with '
+FAULT = ('robots that report their mode plus one, or not, driven in each mode; two thirds of those in safe mode '
+         'start with '
          'a wheel dropped, or on the dock')
 PROMISE = 'a robot in safe or full mode obeys, and one in passive mode is never said to be in another'
 FULL, SHORT = 36, 4

@@ -7,7 +7,8 @@ import time
 import support
 
 FAULT = 'script on one host, base and roscore on another; the link goes down in mid-leg for 0.3 s, for 3 s, or for good'
-PROMISE = '0.3 s: exit status 0; longer: named within 2 s, exit status 1, and the robot goes on for at most its timeout of 1 s'
+PROMISE = '0.3 s: exit status 0; longer: named within 2 s, exit status 1, and the robot goes on for at most its ' \
+          'timeout of 1 s'
 FULL, SHORT = 24, 2
 ROOT, ALONE = True, True
 
@@ -58,8 +59,9 @@ def run(row):
         for number in range(row.times):
             outage, delay = OUTAGES[number % 3], row.random.uniform(0.5, 3)
             with row.fault('no link %s after %.2f s' % ('for good' if outage is None else 'for %g s' % outage, delay)):
-                try_one(row, lambda: start(1, 'rosrun', 'rbx1_nav', 'timed_out_and_back.py', f'_linear_speed:={SPEED:g}',
-                                           '_angular_speed:=3', '_goal_distance:=0.8'), poses, names, cables, outage, delay)
+                try_one(row, lambda: start(
+                    1, 'rosrun', 'rbx1_nav', 'timed_out_and_back.py', f'_linear_speed:={SPEED:g}', '_angular_speed:=3',
+                    '_goal_distance:=0.8'), poses, names, cables, outage, delay)
             ip('-n', names[0], 'link', 'set', cables[0], 'up')
             # for some seconds the other host may still take this one for unreachable
             support.wait_for(lambda: start(1, 'rosnode', 'list').wait() == 0, 'the link')

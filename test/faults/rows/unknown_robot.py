@@ -14,7 +14,8 @@ from driven import STOP
 from emulated import EmulatedRobot
 from rbx1_nav.create.protocol import command
 
-FAULT = ('a base node for each robot_type meets each kind of robot at each rate; half of the nodes are killed by SIGKILL '
+FAULT = ('a base node for each robot_type meets each kind of robot at each rate; half of the nodes are killed by '
+         'SIGKILL '
          'while they search')
 PROMISE = 'the robot gets nothing but starts and queries until it is known: no motion, and no program of its own'
 FULL, SHORT = 36, 6

@@ -20,8 +20,8 @@ class DrivenCreate:
     is_same = True      # whether the line is on the same adapter as the one before
 
     def __init__(self, robot_type, surface=None, seed=0, robot=None, quirks=Quirks(), **params):
-        """robot_type: auto, create or create2; surface, seed, quirks: of the Body; robot: its true type, if that is another
-        one; params: of the node."""
+        """robot_type: auto, create or create2; surface, seed, quirks: of the Body; robot: its true type, if that is
+        another one; params: of the node."""
         self.settings, base = read_settings(dict(params, robot_type=robot_type))
         self.gate = CommandGate(base.limits, base.timeout)
         self.log = []

@@ -26,8 +26,8 @@ def lines(driven):
 
 
 def read(driven, seconds, count):
-    """Let the analog input read a count for a while. Returns the rates that were reported, degrees/s, and the times at which
-    a problem was first seen and last seen, s, None for never."""
+    """Let the analog input read a count for a while. Returns the rates that were reported, degrees/s, and the times at
+    which a problem was first seen and last seen, s, None for never."""
     driven.body.gyro_stuck = count
     first, start = len(driven.states), driven.now
     seen = []
@@ -59,7 +59,8 @@ def test_a_gyro_without_power_is_noticed_at_once_moving_or_not(velocity, count):
     rates, first, _ = read(driven, 1, count)
     assert rates == [] and first < PROOF
     assert lines(driven) == driven.errors == [
-        'Gyro: %d counts: expected at least 100: does it have power?; the heading is measured by the wheels alone' % count]
+        f'Gyro: {count} counts: expected at least 100: does it have power?; the heading is measured by the wheels '
+        'alone']
     assert driven.driver.gyro.yaw == pytest.approx(driven.truth.yaw, abs=0.05)
 
 
@@ -104,7 +105,8 @@ def test_a_gyro_that_never_has_power(mode):
     driven.body.gyro_stuck = 12
     driven.connect()
     driven.run(3)
-    assert len(driven.errors) == 1 and '12 counts' in driven.errors[0] and not any(state.gyro for state in driven.states)
+    assert len(driven.errors) == 1 and '12 counts' in driven.errors[0] and not any(
+        state.gyro for state in driven.states)
 
 
 # at rest
@@ -183,7 +185,8 @@ def test_a_steady_turn_that_the_wheels_do_not_make(speed, count, seconds):
     driven.run(1)
     _, first, _ = read(driven, 4, count)
     assert first < seconds and lines(driven) == driven.errors == [
-        'Gyro: stuck at %d counts: it shows a turn that the wheels do not make; the heading is measured by the wheels alone'
+        'Gyro: stuck at %d counts: it shows a turn that the wheels do not make; the heading is measured by the '
+        'wheels alone'
         % count]
     # what it showed before the problem was found does not count
     assert driven.driver.gyro.yaw == pytest.approx(driven.truth.yaw, abs=0.02)
@@ -225,7 +228,8 @@ def test_a_turn_of_a_robot_that_is_held_or_lifted_is_not_judged(event):
 def test_a_gyro_that_works_is_never_taken_for_broken(surface, sensitivity, drops):
     driven = started('create', 4, surface=load_surface(surface, SURFACES), quirks=Quirks(drops_fractions=drops))
     driven.body.errors = BodyErrors(gyro_sensitivity=sensitivity)
-    for linear, angular, seconds in [(0.5, 0, 6), (0.1, 0.2, 20), (0, 0.05, 20), (0, 0.3, 10), (0.3, -1, 10), (0, 2, 5)]:
+    for linear, angular, seconds in [(0.5, 0, 6), (0.1, 0.2, 20), (0, 0.05, 20),
+                                     (0, 0.3, 10), (0.3, -1, 10), (0, 2, 5)]:
         driven.drive(linear, angular, seconds)
         driven.command_zero()
         driven.run(1)

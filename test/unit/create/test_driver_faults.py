@@ -71,7 +71,8 @@ def test_a_robot_that_never_answers_is_reported_once():
     driven.line.silent = True
     driven.connect()
     driven.run(10)
-    assert driven.log == ['No robot answers at 57600, 115200, 19200 baud: expected a Create, Create 2 or Roomba that is '
+    assert driven.log == ['No robot answers at 57600, 115200, 19200 baud: expected a Create, Create 2 or Roomba that '
+                          'is '
                           'switched on and connected']
 
 

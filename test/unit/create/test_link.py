@@ -115,7 +115,8 @@ def test_a_line_without_rts_and_dtr_is_searched_without_waking(line):
         search.tick(now)        # raises no LineLost
         count += len(os.read(robot, 4096)) if select.select([robot], [], [], 0)[0] else 0
     assert search.rounds > 5 and count > 200
-    assert log == ['wake_robot:=true: %s has no RTS and DTR: expected an adapter that has these lines; searching without '
+    assert log == ['wake_robot:=true: %s has no RTS and DTR: expected an adapter that has these lines; searching '
+                   'without '
                    'waking the robot' % link.path]
 
 

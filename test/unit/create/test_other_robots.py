@@ -16,7 +16,8 @@ from driven_create import SURFACES, DrivenCreate, started
 BOTH = pytest.mark.parametrize('robot_type', ['create', 'create2'])
 MODES = pytest.mark.parametrize('mode', [protocol.PASSIVE, protocol.SAFE, protocol.FULL])
 PLUS_ONE = Quirks(mode_plus_one=True)
-REPORTED = 'The robot reports its mode plus one: expected a mode from 0 to 3; corrected, as with oi_mode_workaround:=true'
+REPORTED = 'The robot reports its mode plus one: expected a mode from 0 to 3; corrected, as with ' \
+           'oi_mode_workaround:=true'
 
 
 # robots that report their mode plus one
@@ -308,7 +309,8 @@ def test_a_command_is_refused_if_the_wheels_do_not_turn(robot_type):
     driven.drive(0.2, 0, 0.4)
     assert not driven.refusals
     driven.drive(0.2, 0, 0.4)
-    assert driven.refusals[0].startswith('its wheels do not turn: expected wheels that are free, and oi_mode_workaround: auto')
+    assert driven.refusals[0].startswith(
+        'its wheels do not turn: expected wheels that are free, and oi_mode_workaround: auto')
 
 
 @BOTH

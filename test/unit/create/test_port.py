@@ -38,7 +38,8 @@ def test_not_a_serial_port(tmp_path):
     path = tmp_path / 'file'
     path.write_text('')
     assert refusal(path) == f'{path}: not a serial port: expected the device of an adapter, such as /dev/ttyUSB0'
-    assert refusal(tmp_path) == f'{tmp_path}: not a serial port: expected the device of an adapter, such as /dev/ttyUSB0'
+    assert refusal(
+        tmp_path) == f'{tmp_path}: not a serial port: expected the device of an adapter, such as /dev/ttyUSB0'
 
 
 def test_not_permitted(terminal):

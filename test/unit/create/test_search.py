@@ -1,4 +1,5 @@
-"""The search for a robot: it finds any, at any rate, and never moves one or starts a program, whatever it takes us for."""
+"""The search for a robot: it finds any, at any rate, and never moves one or starts a program, whatever it takes us
+for."""
 from itertools import permutations
 
 import pytest
@@ -97,7 +98,8 @@ def test_a_robot_that_waits_for_the_rest_of_garbage_is_found(robot, garbage):
     assert driven.found and driven.speeds == (0, 0)
 
 
-# the line model of the emulated robot, and one of another kind: bits are sampled at any ratio of the clocks, and after a
+# the line model of the emulated robot, and one of another kind: bits are sampled at any ratio of the clocks, and after
+# a
 # byte whose stop bit is missing, a receiver either goes on at once or waits for the line to rest
 
 def levels(data):

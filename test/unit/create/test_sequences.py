@@ -31,7 +31,8 @@ def test_the_robot_stands_after_any_beginning_of_a_command(robot_type, stop):
 def test_nothing_that_is_sent_to_a_robot_that_is_off_resets_it(model):
     # such a robot takes each byte for a command
     reset = protocol.OPCODES['reset']
-    for data in (sequences.STOP, sequences.FLUSH, sequences.start(model, True), sequences.start(model, False), sequences.leave(model),
+    for data in (sequences.STOP, sequences.FLUSH, sequences.start(model, True),
+                 sequences.start(model, False), sequences.leave(model),
                  sequences.guardian_stop(model), sequences.ASK_BATTERY, sequences.ASK_ENCODER, sequences.ASK_WALL,
                  sequences.query(sequences.QUERIED), sequences.query(sequences.QUERIED_WITHOUT_ANGLE)):
         assert reset not in data

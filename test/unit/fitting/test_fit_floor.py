@@ -63,7 +63,8 @@ def test_windows_skip_gaps_of_the_truth():
     recording = record(DRIVE)
     keep = (recording.truth.time < 5.0) | (recording.truth.time > 6.0)
     whole = PreparedRun(recording, 0.26)
-    cut = PreparedRun(recording._replace(truth=type(recording.truth)(*(values[keep] for values in recording.truth))), 0.26)
+    cut = PreparedRun(recording._replace(truth=type(recording.truth)(
+        *(values[keep] for values in recording.truth))), 0.26)
     starts = [run.times[run.windows(2.0).first] for run in (whole, cut)]
     lost = set(numpy.round(starts[0], 6)) - set(numpy.round(starts[1], 6))
     assert lost and all(3.0 - 1e-6 <= start <= 6.0 for start in lost)

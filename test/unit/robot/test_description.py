@@ -60,7 +60,8 @@ def test_unknown_keys_are_reported():
     ('wheel_radius', [], 'radius'), ('wheel_radius', 1e-320, 'from 0.001'),
     ('base_frame_id', '', 'frame'), ('base_frame_id', 7, 'frame'),
     ('base_frame_id', 'odom', 'other than odom_frame_id'),
-    ('left_wheel', '', 'the name of a joint'), ('left_wheel', None, 'the name of a joint'), ('right_wheel', 7, 'a joint'),
+    ('left_wheel', '', 'the name of a joint'), ('left_wheel', None, 'the name of a joint'), ('right_wheel', 7, 'a '
+                                                                                                               'joint'),
     ('right_wheel', ['front', 'rear'], 'the name of a joint'), ('left_wheel', 'left wheel', 'the name of a joint'),
     ('left_wheel', 'r\u00e4d', 'letters, digits'), ('right_wheel', 'two\nlines', 'the name of a joint'),
     ('right_wheel', 'base_l_wheel_joint', 'other than left_wheel'),

@@ -41,12 +41,14 @@ def test_pose_and_covariance(frame_id):
     (make(c0=0.0), r'pose.covariance\[0\]: 0.0: expected a variance above 0'),
     (make(c7=nan), r'pose.covariance\[7\]: nan: expected a variance above 0'),
     (make(c35=-0.1), r'pose.covariance\[35\]: -0.1: expected a variance above 0'),
-    (make(c1=0.07, c6=0.07), r'pose.covariance: \[\[0.04, 0.07, .*: expected a covariance: symmetric, no correlation above'),
+    (make(c1=0.07, c6=0.07),
+     r'pose.covariance: \[\[0.04, 0.07, .*: expected a covariance: symmetric, no correlation above'),
     (make(c1=0.03), r'pose.covariance: \[\[0.04, 0.03, .*: expected a covariance: symmetric'),
     (make(c5=nan, c30=nan), 'pose.covariance: .*nan.*: expected a covariance'),
     (make(c5=inf, c30=inf), 'pose.covariance: .*inf.*: expected a covariance'),
     # each pair may be correlated like this, but not all three
-    (make(c1=-0.054, c6=-0.054, c5=-0.018, c30=-0.018, c11=-0.027, c31=-0.027), 'pose.covariance: .*expected a covariance')])
+    (make(c1=-0.054, c6=-0.054, c5=-0.018, c30=-0.018, c11=-0.027, c31=-0.027), 'pose.covariance: .*expected a '
+                                                                                'covariance')])
 @pytest.mark.filterwarnings('error')
 def test_a_rejected_message_is_named_by_its_field(message, text):
     with pytest.raises(RejectedMessage, match=text):

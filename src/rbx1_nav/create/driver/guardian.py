@@ -1,8 +1,8 @@
 """A process of its own that stops the robot when the node cannot: after kill -9, or while it hangs.
 
-The robot has no watchdog: it keeps executing its last command. The guardian holds the line open, and waits at a pipe from
-the node. When the pipe closes, the node has died, however that happened. When no line comes for a while, the node hangs. It
-runs in a session of its own, so that a signal to the node's process group does not reach it.
+The robot has no watchdog: it keeps executing its last command. The guardian holds the line open, and waits at a pipe
+from the node. When the pipe closes, the node has died, however that happened. When no line comes for a while, the node
+hangs. It runs in a session of its own, so that a signal to the node's process group does not reach it.
 
 This file is the program too. It imports nothing of the package, so that it starts fast and whatever is installed.
 """
@@ -23,8 +23,8 @@ class Guardian:
     """The node's end."""
 
     def __init__(self, line, stop):
-        """line: file descriptor of the port; stop: the bytes to send, until confirm() names others. Raises OSError if the
-        process does not start."""
+        """line: file descriptor of the port; stop: the bytes to send, until confirm() names others. Raises OSError if
+        the process does not start."""
         self.process = subprocess.Popen(
             [sys.executable, '-E', '-S', os.path.abspath(__file__), str(line), stop.hex()],
             stdin=subprocess.PIPE, stdout=subprocess.PIPE, pass_fds=(line,), start_new_session=True, cwd='/')

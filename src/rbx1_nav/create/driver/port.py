@@ -19,9 +19,9 @@ class PortError(OSError):
 def open_port(path, baud):
     """An open serial.Serial, whose file descriptor does not block. Raises PortError.
 
-    flock(2) keeps other drivers away. It also holds for a process that inherits the file descriptor. TIOCEXCL keeps away
-    whatever does not look for a lock, such as stty, except for root. A pseudo-terminal would keep that setting after the
-    death of all processes that have it open, so it does not get it.
+    flock(2) keeps other drivers away. It also holds for a process that inherits the file descriptor. TIOCEXCL keeps
+    away whatever does not look for a lock, such as stty, except for root. A pseudo-terminal would keep that setting
+    after the death of all processes that have it open, so it does not get it.
     """
     try:
         port = serial.Serial(path, baud, timeout=0, exclusive=True)
@@ -49,8 +49,8 @@ def reason(path, number, error):
 
 
 def describe_adapter(path):
-    """What identifies the adapter of a port: maker, product and serial number of a USB device, else the device's name. A
-    pseudo-terminal has another one after each time that its other end was closed, so all count as the same."""
+    """What identifies the adapter of a port: maker, product and serial number of a USB device, else the device's name.
+    A pseudo-terminal has another one after each time that its other end was closed, so all count as the same."""
     name = os.path.realpath(path)
     if name.startswith('/dev/pts/'):
         return 'a pseudo-terminal'

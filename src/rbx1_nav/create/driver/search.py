@@ -1,8 +1,8 @@
 """Finds the robot on a line: which one answers, at which rate.
 
 Until a robot has answered, its rate is not known, and at a wrong rate almost any command may be read as another one: a
-stop at 57600 baud is read at 115200 as 0x86, which starts spot cleaning. So the search sends only bytes that no receiver
-takes for a command: Start, and a query of the battery. At the right rate, Start ends every motion.
+stop at 57600 baud is read at 115200 as 0x86, which starts spot cleaning. So the search sends only bytes that no
+receiver takes for a command: Start, and a query of the battery. At the right rate, Start ends every motion.
 """
 from collections import namedtuple
 
@@ -57,8 +57,8 @@ class Search:
     """Asks at one rate after the other. All times are in ns.
 
     The line has set_rate(baud), write(data), write_apart(data), which pauses after each byte, and
-    set_wake_lines(on), which sets RTS and DTR, or clears them, and raises NoWakeLines if the line has none. All may raise
-    OSError.
+    set_wake_lines(on), which sets RTS and DTR, or clears them, and raises NoWakeLines if the line has none. All may
+    raise OSError.
     """
 
     def __init__(self, rates, wake=False):

@@ -40,8 +40,8 @@ class Offset:
         self._attempts += 1
 
     def judge(self, reported, obstructed):
-        """Find out from the mode that is reported after it was asked for. obstructed: whether the robot has had a reason
-        not to leave passive mode."""
+        """Find out from the mode that is reported after it was asked for. obstructed: whether the robot has had a
+        reason not to leave passive mode."""
         self._reported.add(reported)
         if reported == self.wanted + 1:
             self.value = 1

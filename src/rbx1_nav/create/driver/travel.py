@@ -195,8 +195,8 @@ class CounterTravel:
     def _doubt(self, wheels, expected, elapsed):
         """The Travel by which a reading is to be corrected. wheels: what was read.
 
-        A reply has no checksum. Where others are corrupted, some are without a sign of it: those that differ from what is
-        expected are met halfway.
+        A reply has no checksum. Where others are corrupted, some are without a sign of it: those that differ from what
+        is expected are met halfway.
         """
         self.bad *= 1 - MEMORY
         if self.bad < BAD_LINE or elapsed > LONG:
@@ -218,8 +218,8 @@ class CounterTravel:
         return Travel(0.0, 0.0, variance / 4, variance / self.width ** 2)
 
     def _read_angle(self, reading, time, turn):
-        """The turn since the last update (rad), and its variance beyond rounding. time: s since the angle was read before;
-        turn: by the commands since the last update."""
+        """The turn since the last update (rad), and its variance beyond rounding. time: s since the angle was read
+        before; turn: by the commands since the last update."""
         self.commanded_turn += turn
         if self.asks_angle:
             whole = self.fractions.add(degrees(self.commanded_turn), reading['angle'], time)

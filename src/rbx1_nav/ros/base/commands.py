@@ -14,11 +14,12 @@ RECENT = SECOND * 3 // 2    # ns: a node whose last command is older than that d
 
 
 class VelocityCommands:
-    """The subscription to cmd_vel: logs what the gate does to a command, and tells a sender that the base refuses it."""
+    """The subscription to cmd_vel: logs what the gate does to a command, and tells a sender that the base refuses
+    it."""
 
     def __init__(self, base, gate, clock, lock):
-        """base: has command(now, linear, angular, others, sender); gate: its CommandGate; clock: see clocks.py; lock: of
-        the base."""
+        """base: has command(now, linear, angular, others, sender); gate: its CommandGate; clock: see clocks.py; lock:
+        of the base."""
         self.base = base
         self.gate = gate
         self.clock = clock
@@ -50,8 +51,8 @@ class VelocityCommands:
         self.clock.command(twist, command + (header['callerid'],))
 
     def apply(self, command):
-        """Put a command in force: (linear in m/s, angular in rad/s, the velocities that the base cannot follow, the name
-        of its sender)."""
+        """Put a command in force: (linear in m/s, angular in rad/s, the velocities that the base cannot follow, the
+        name of its sender)."""
         sender = command[3]
         try:
             with self.lock:

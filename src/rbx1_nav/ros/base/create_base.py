@@ -82,7 +82,8 @@ class CreateBase:
             self.commands.subscribe()
 
     def exchange(self):
-        """Receive, and do what is due. Returns whether the command has timed out, and a State or None. Raises OSError."""
+        """Receive, and do what is due. Returns whether the command has timed out, and a State or None. Raises
+        OSError."""
         data = self.link.read(self.driver.until_tick(self.clock.now()), self.driver.awaited)
         with self.lock:
             now = self.clock.now()

@@ -18,13 +18,14 @@ UPSTREAM_PERIOD = 1.0   # s of wall time between two looks at who publishes what
 class DrivingNodes:
     """Watches the processes of the nodes that publish commands, and of those that they may wait for.
 
-    These are the publishers of what they subscribe to (a multiplexer passes on commands of others), their publishers, and
-    so on; the master, for parameters; and this node itself, where messages are sent and received. The methods belong to
-    the thread that runs the clock.
+    These are the publishers of what they subscribe to (a multiplexer passes on commands of others), their publishers,
+    and so on; the master, for parameters; and this node itself, where messages are sent and received. The methods
+    belong to the thread that runs the clock.
     """
 
     def __init__(self, topic, connections, clock_connections):
-        """topic: the name of cmd_vel; connections(): to its publishers; clock_connections(): to subscribers of /clock."""
+        """topic: the name of cmd_vel; connections(): to its publishers; clock_connections(): to subscribers of
+        /clock."""
         self.topic = topic
         self.connections = connections
         self.clock_connections = clock_connections
@@ -123,7 +124,8 @@ class DrivingNodes:
         return process and next(name for name in names if self.processes[name] is process)
 
     def polling(self):
-        """The threads that look at the time every moment, rather than wait for a tick: an object for still_polling()."""
+        """The threads that look at the time every moment, rather than wait for a tick: an object for
+        still_polling()."""
         return [each for name in self.drivers & self.processes.keys() for each in self.processes[name].polling()]
 
     @staticmethod

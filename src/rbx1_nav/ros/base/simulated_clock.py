@@ -65,7 +65,8 @@ class OwnClock(FollowedClock):
         if self.strict:
             raise rospy.ROSException(f'strict: {name} {reason}: expected nodes that are in step with /clock')
         self.not_in_step[name] = reason
-        rospy.logwarn('%s %s: not in step with /clock. The clock no longer waits for it, and where the robot ends depends '
+        rospy.logwarn('%s %s: not in step with /clock. The clock no longer waits for it, and where the robot ends '
+                      'depends '
                       'on the speed of the machine. Expected a node that sleeps on simulated time, as rospy.Rate does',
                       name, reason)
 

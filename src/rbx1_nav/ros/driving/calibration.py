@@ -47,7 +47,8 @@ def factor_in_force(base_node: str, key: str, default: float | None = 1.0) -> fl
     name = rospy.resolve_name(base_node)
     values = rospy.get_param(name, None)
     if not isinstance(values, dict):
-        rospy.logwarn('%s has no parameters: the default is assumed for %s. _base_node:=NAME names the node of another base',
+        rospy.logwarn('%s has no parameters: the default is assumed for %s. _base_node:=NAME names the node of '
+                      'another base',
                       name, key)
         return default
     if key not in values:
@@ -73,7 +74,8 @@ def load_run(name: str, *keys: str) -> dict[str, float]:
     """What the last run reported: a mapping with at least these keys. Raises ROSException if there is none."""
     run = rospy.get_param(_stored(name), None)
     if not isinstance(run, dict):
-        raise rospy.ROSException(f'{rospy.resolve_name(_stored(name))}: missing: expected a run before this one, without '
+        raise rospy.ROSException(f'{rospy.resolve_name(_stored(name))}: missing: expected a run before this one, '
+                                 'without '
                                  '_measured:=, that was not interrupted')
     section = Section(run, rospy.resolve_name(_stored(name)))
     return {key: _number(section, key, -1e6, 1e6) for key in {*keys, *run}}

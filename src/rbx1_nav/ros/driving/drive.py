@@ -1,4 +1,5 @@
-"""What a driving script leaves to others: it waits for the base, watches it, shows the progress, and stops the robot."""
+"""What a driving script leaves to others: it waits for the base, watches it, shows the progress, and stops the
+robot."""
 from __future__ import annotations
 
 from types import TracebackType

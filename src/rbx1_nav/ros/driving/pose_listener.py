@@ -41,7 +41,8 @@ class PoseListener:
         self.listener = tf2_ros.TransformListener(self.buffer)
         self.reset = False  # whether the base was reset
         self.reset_sub = rospy.Subscriber('reset_odometry', Empty, self._on_reset)
-        self.before: tuple[float, Pose] | None = None   # (stamp in s, Pose) of the last transform, None until a pose was returned
+        # (stamp in s, Pose) of the last transform, None until a pose was returned
+        self.before: tuple[float, Pose] | None = None
         self.last: tuple[float, Pose] | None = None     # the same, None also after a rest
         self.velocity = Pose(0.0, 0.0, 0.0)     # between the last two transforms, m/s and rad/s
 

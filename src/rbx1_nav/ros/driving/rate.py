@@ -77,7 +77,8 @@ class Rate:
         if not rospy.rostime.is_wallclock():
             step = listeners.clock_step
             if hz * step > 1 + 1e-9:
-                raise rospy.ROSException(f'{rospy.get_name()}/rate: {hz:g}: expected at most {1 / step:g} Hz on simulated '
+                raise rospy.ROSException(f'{rospy.get_name()}/rate: {hz:g}: expected at most {1 / step:g} Hz on '
+                                         'simulated '
                                          f'time: the clock ticks every {step:g} s')
         self.listeners = listeners
         self.period = round(SECOND / hz)

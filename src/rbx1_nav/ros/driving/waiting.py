@@ -19,7 +19,8 @@ class _SubscriberMonitor(threading.Thread):
     def __init__(self, topic: str) -> None:
         super().__init__(daemon=True)
         self.topic = topic
-        # (address, commands that it has refused) of each live subscriber by its name; None until the master has answered
+        # (address, commands that it has refused) of each live subscriber by its name; None until the master has
+        # answered
         self.live: dict[str, tuple[str, int | None]] | None = None
         self.dead: set[str | None] = set()      # addresses
         self.publishers: dict[str, list[str]] = {}      # names of the nodes that publish a topic
@@ -43,8 +44,8 @@ class _SubscriberMonitor(threading.Thread):
             self.done.wait(0.1)
 
     def find(self, master: str, name: str) -> tuple[str, int | None] | None:
-        """(address, commands that it has refused) of a node that answers, else None; an address that did not answer is not
-        called again."""
+        """(address, commands that it has refused) of a node that answers, else None; an address that did not answer is
+        not called again."""
         address = None
         try:
             address = call(master, 'lookupNode', name)

@@ -1,9 +1,9 @@
 """Whether the nodes that a driving script began with still receive its commands.
 
-A script that drives by time cannot know where the robot is. But it can know that a command was lost or refused, or that a
-node no longer takes its commands. It watches three things of each node: its connection, the bytes that its machine has not
-acknowledged, and its answer to a call. rospy notices none of them for minutes, because the kernel takes tens of thousands of
-commands for a node that is silent.
+A script that drives by time cannot know where the robot is. But it can know that a command was lost or refused, or
+that a node no longer takes its commands. It watches three things of each node: its connection, the bytes that its
+machine has not acknowledged, and its answer to a call. rospy notices none of them for minutes, because the kernel
+takes tens of thousands of commands for a node that is silent.
 """
 from __future__ import annotations
 
@@ -119,7 +119,8 @@ class Listener:
             time.sleep(ASK_PERIOD)
 
     def find_out_why_it_closed(self) -> None:
-        """Set the problem with a connection that has closed, unless the node has ended properly and is not essential."""
+        """Set the problem with a connection that has closed, unless the node has ended properly and is not
+        essential."""
         deadline = time.monotonic() + UNREGISTER_TIME
         while self.is_registered():
             if time.monotonic() > deadline:
@@ -199,7 +200,8 @@ class Listeners:
             if listener.refusal:
                 raise rospy.ROSException(f'{self.topic}: {listener.refusal}')
             if listener.problem:
-                raise rospy.ROSException(f'{self.topic}: {listener.problem}: expected it to listen until the end of the run')
+                raise rospy.ROSException(
+                    f'{self.topic}: {listener.problem}: expected it to listen until the end of the run')
 
     def look(self, now: float) -> None:
         """Look at all connections. now: s of the monotonic clock."""
@@ -221,7 +223,8 @@ class Listeners:
                     raise rospy.ROSInterruptException('shutdown requested')
                 self.check()
                 if time.monotonic() > deadline:
-                    raise rospy.ROSException(f'{self.topic}: {listener.peer.name} took no command for {ROOM_TIMEOUT:g} s')
+                    raise rospy.ROSException(
+                        f'{self.topic}: {listener.peer.name} took no command for {ROOM_TIMEOUT:g} s')
                 time.sleep(0.001)
 
     def check_delivery(self) -> None:

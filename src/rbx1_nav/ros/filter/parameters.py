@@ -101,8 +101,8 @@ def _resolve(prefix, frame, given):
 
 
 def find_prior(name, base, log):
-    """The Priors of the surface of this name, UNKNOWN_FLOOR for ANY; for AUTO, those of the surface of the node `base`, which
-    has a parameter `surface` if it is simulated, or else UNKNOWN_FLOOR. log(function, text): logs a line.
+    """The Priors of the surface of this name, UNKNOWN_FLOOR for ANY; for AUTO, those of the surface of the node
+    `base`, which has a parameter `surface` if it is simulated, or else UNKNOWN_FLOOR. log(function, text): logs a line.
     """
     try:
         if name == AUTO:

@@ -13,7 +13,7 @@ import threading
 import time
 from typing import Callable, Iterable
 
-POLL = 0.005    # s: a thread that sleeps for less than this polls; ros::Rate does so every millisecond on simulated time
+POLL = 0.005    # s: a thread that sleeps for less than this polls, as ros::Rate does on simulated time
 ENDED = b'X', b'Z'      # states of a thread that has ended
 LISTEN = '0A'           # state of a socket in /proc/net/tcp
 TIMED = b'sleep', b'poll', b'select'    # in the names of the kernel's functions that wait for a time
@@ -92,8 +92,8 @@ class Process:
     """A process of this machine."""
 
     def __init__(self, pid: int, without: int | None = None) -> None:
-        """pid: its number; without: the number of a thread of this process that does not count. Raises OSError if it has
-        ended or must not be looked at."""
+        """pid: its number; without: the number of a thread of this process that does not count. Raises OSError if it
+        has ended or must not be looked at."""
         self.folder = f'/proc/{pid}/task/'
         self.clock = _cpu_clock(pid, False)
         self.without = without
@@ -217,7 +217,8 @@ def still_polling(threads: Iterable[tuple[_Thread, bytes | None]]) -> bool:
 
 
 def own_process() -> Process | None:
-    """The Process of the caller, without the thread that calls; None if the kernel does not tell what its threads do."""
+    """The Process of the caller, without the thread that calls; None if the kernel does not tell what its threads
+    do."""
     try:
         process = Process(os.getpid(), threading.get_native_id())
         # the others wait for messages

@@ -1,7 +1,8 @@
 """Tells a sender of commands that its base has refused some, when it looks whether the base still answers.
 
-That takes no topic and no connection of its own: a driving script publishes, and nothing else. A base extends the slave API
-of its node by one method, which returns how many commands of the caller were refused, and why the last one was.
+That takes no topic and no connection of its own: a driving script publishes, and nothing else. A base extends the
+slave API of its node by one method, which returns how many commands of the caller were refused, and why the last one
+was.
 """
 from __future__ import annotations
 

@@ -1,4 +1,5 @@
-"""The velocity that is published with the estimate: by odometry and gyro, and uncertain where they do not measure it."""
+"""The velocity that is published with the estimate: by odometry and gyro, and uncertain where they do not measure
+it."""
 from math import pi
 
 import pytest
