@@ -17,6 +17,8 @@ POLL = 0.005    # s: a thread that sleeps for less than this polls, as ros::Rate
 ENDED = b'X', b'Z'      # states of a thread that has ended
 LISTEN = '0A'           # state of a socket in /proc/net/tcp
 TIMED = b'sleep', b'poll', b'select'    # in the names of the kernel's functions that wait for a time
+# how the names of those begin that most threads wait in, and that always wait in state S
+INTERRUPTIBLE = b'futex_', b'poll_schedule_timeout', b'wait_woken', b'inet_csk_accept', b'hrtimer_nanosleep'
 
 
 def _cpu_clock(number: int, of_thread: bool) -> int:
@@ -62,6 +64,8 @@ class _Thread:
 
     def sleeps(self) -> bool:
         """Whether it waits, or has ended."""
+        if self.waits_in().startswith(INTERRUPTIBLE):
+            return True
         # a state of S alone may belong to a thread that is about to wait, and may still find out that it need not;
         # the name in parentheses may hold anything
         state = os.pread(self.files[0], 512, 0).rpartition(b') ')[2][:1]
