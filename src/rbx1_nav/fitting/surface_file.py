@@ -32,7 +32,7 @@ WIDTH = 117     # of a line
 
 def in_file_units(key: str, number: float) -> float:
     """A value in SI units, in the unit of surface files."""
-    return degrees(number) if {**KEYS, **OPTIONAL_KEYS}[key][1] is radians else number
+    return degrees(number) if {**KEYS, **OPTIONAL_KEYS}[key].convert is radians else number
 
 
 def shown(value: Value) -> tuple[str, str | None]:

@@ -217,8 +217,8 @@ class WholeFit:
 
 def limits_of(key: str) -> tuple[float, float]:
     """(lowest, highest) value of a key, in SI units."""
-    limits, convert = {**KEYS, **OPTIONAL_KEYS}[key]
-    return convert(limits['low']), convert(limits['high'])
+    found = {**KEYS, **OPTIONAL_KEYS}[key]
+    return found.convert(found.low), found.convert(found.high)
 
 
 def check_alike(recordings: Sequence[Recording]) -> None:

@@ -8,7 +8,7 @@ import yaml
 
 from rbx1_nav.config import ConfigError
 from rbx1_nav.simulation.surfaces import (
-    KEYS, OPTIONAL_KEYS, draw_run, known_surfaces, load_surface, read_seed, read_surface)
+    KEYS, OPTIONAL_KEYS, Surface, draw_run, known_surfaces, load_surface, read_seed, read_surface)
 
 FOLDER = os.path.join(os.path.dirname(__file__), '..', '..', '..', 'config', 'surfaces')
 
@@ -23,6 +23,11 @@ def test_all_surfaces_of_the_package_can_be_read():
     assert load_surface('ideal', FOLDER) is None
     for name in ('create_lab_floor', 'hard_floor', 'low_ply_carpet'):
         assert load_surface(name, FOLDER).name == name
+
+
+def test_the_keys_are_the_fields():
+    assert Surface._fields == ('name', *KEYS, *OPTIONAL_KEYS)
+    assert Surface._field_defaults == dict.fromkeys(OPTIONAL_KEYS, 0.0)
 
 
 def test_the_values_of_carpet():
