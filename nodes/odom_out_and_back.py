@@ -29,7 +29,7 @@ import rospy
 from geometry_msgs.msg import Twist
 
 from rbx1_nav.control.legs import Straight, Turn
-from rbx1_nav.ros.driving.pose_drive import ReportingDrive
+from rbx1_nav.ros.driving.pose_drive import OdomDrive
 from rbx1_nav.ros.driving.pose_listener import PoseListener
 
 
@@ -37,26 +37,26 @@ class OutAndBack:
     """Drives the robot once out and back; creating one runs it."""
 
     def __init__(self):
-        # The name of the node.
+        # Start the node under this name.
         init_node('out_and_back', __doc__)
 
-        # A robot's base listens on this topic. Commands for a slow listener wait; the others get theirs at once.
+        # The base subscribes to this topic. With a queue, a slow subscriber does not hold up the others.
         self.cmd_vel = rospy.Publisher('/cmd_vel', Twist, queue_size=5)
 
-        # How often to look at the pose and to send a command, Hz.
+        # Check the pose and publish a command at this rate (Hz).
         rate = positive_param('rate', 50, 2, 1000)
 
-        # The way out: how fast (m/s) and how far (m), and how fast at least near the goal, where the robot slows down.
+        # Forward: speed (m/s), distance (m), and the lowest speed, because the robot slows down near its goal.
         linear_speed = positive_param('linear_speed', 0.2)
         goal_distance = positive_param('goal_distance', 1.0)
         min_linear_speed = positive_param('min_linear_speed', 0.05)
 
-        # The turn to the left: the same in rad/s and rad.
+        # Turn left: the same, in rad/s and rad.
         angular_speed = positive_param('angular_speed', 1.0)
         goal_angle = positive_param('goal_angle', pi)
         min_angular_speed = positive_param('min_angular_speed', 0.2)
 
-        # Two legs: out, and back. Each motion knows how far it is to its goal, and how fast to go there.
+        # Two legs: out and back. Each motion calculates the distance to its goal, and the speed to get there.
         legs = [(Straight('forward', goal_distance, linear_speed, min_linear_speed, rate),
                  Turn('turn left', goal_angle, angular_speed, min_angular_speed, rate)) for _ in range(2)]
 
@@ -65,17 +65,17 @@ class OutAndBack:
         odom_frame, base_frame = frame_param('odom_frame', 'odom'), frame_param('base_frame', None)
         poses = PoseListener(odom_frame, base_frame, linear_speed, angular_speed)
 
-        # Wait until a base listens, and watch it from then on. However this block ends, it ends with shutdown().
-        with ReportingDrive(self.cmd_vel, rate, self.shutdown, poses, transform_timeout) as drive:
+        # Wait for the base, and monitor it from here on. However this block exits, it calls shutdown().
+        with OdomDrive(self.cmd_vel, rate, self.shutdown, poses, transform_timeout) as drive:
             for forward, turn_left in legs:
-                # Drive forward: on each tick, look at the pose, publish the command, and sleep until the next tick.
+                # Drive forward: on every tick, look at the pose, publish the command, then sleep until the next tick.
                 move_cmd = Twist()
                 r = drive.Rate()
                 for speed in drive.speeds(forward):
                     move_cmd.linear.x = speed
                     self.cmd_vel.publish(move_cmd)
                     r.sleep()
-                # Stop before the turn, and come to rest.
+                # Stop the robot, and let it come to rest before the turn.
                 self.cmd_vel.publish(Twist())
                 drive.rest(1)
                 # Turn left in the same way.
@@ -85,17 +85,17 @@ class OutAndBack:
                     move_cmd.angular.z = speed
                     self.cmd_vel.publish(move_cmd)
                     r.sleep()
-                # Stop before the next leg, and come to rest.
+                # Stop and rest again before the next leg.
                 self.cmd_vel.publish(Twist())
                 drive.rest(1)
             # Stop the robot for good.
             self.cmd_vel.publish(Twist())
 
     def shutdown(self):
-        """Stop the robot, whatever ended the run: nothing that a mobile robot does is more important."""
+        """Stop the robot: the most important thing to do, whatever the reason for the shutdown."""
         self.cmd_vel.publish(Twist())
         rospy.loginfo('Stopping the robot...')
-        time.sleep(1)   # of wall time: a simulated clock may have stopped
+        time.sleep(1)   # wall time, since a simulated clock may have stopped
 
 
 if __name__ == '__main__':

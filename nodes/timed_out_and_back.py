@@ -27,39 +27,39 @@ class OutAndBack:
     """Drives the robot once out and back; creating one runs it."""
 
     def __init__(self):
-        # The name of the node.
+        # Start the node under this name.
         init_node('out_and_back', __doc__)
 
-        # A robot's base listens on this topic. Commands for a slow listener wait; the others get theirs at once.
+        # The base subscribes to this topic. With a queue, a slow subscriber does not hold up the others.
         self.cmd_vel = rospy.Publisher('/cmd_vel', Twist, queue_size=5)
 
-        # How often to send a command, Hz. Many robots stop when they hear nothing for a while.
+        # Publish commands at this rate (Hz). Many robots stop unless they receive a steady stream of them.
         rate = positive_param('rate', 50, 2, 1000)
 
-        # The way out: how fast (m/s), how far (m), and so for how long (s), and with how many commands.
+        # Forward: speed (m/s) and distance (m) give the duration (s), and with the rate the number of ticks.
         linear_speed = positive_param('linear_speed', 0.2)
         goal_distance = positive_param('goal_distance', 1.0)
         linear_duration = goal_distance / linear_speed
         linear_ticks = whole_ticks(linear_duration * rate, 'goal_distance / linear_speed * rate')
 
-        # The turn to the left: the same in rad/s and rad.
+        # Turn left: the same, in rad/s and rad.
         angular_speed = positive_param('angular_speed', 1.0)
         goal_angle = positive_param('goal_angle', pi)
         angular_duration = goal_angle / angular_speed
         angular_ticks = whole_ticks(angular_duration * rate, 'goal_angle / angular_speed * rate')
 
-        # Wait until a base listens, and watch it from then on. However this block ends, it ends with shutdown().
+        # Wait for the base, and monitor it from here on. However this block exits, it calls shutdown().
         with TimedDrive(self.cmd_vel, rate, self.shutdown) as drive:
-            # Two legs: out, and back.
+            # Two legs: out and back.
             for _ in range(2):
-                # Drive forward: on each tick, publish the command and sleep until the next tick.
+                # Drive forward: on every tick, publish the command, then sleep until the next tick.
                 move_cmd = Twist()
                 move_cmd.linear.x = linear_speed
                 r = drive.Rate()
                 for _ in drive.progress('forward', linear_ticks, move_cmd):
                     self.cmd_vel.publish(move_cmd)
                     r.sleep()
-                # Stop before the turn, and come to rest.
+                # Stop the robot, and let it come to rest before the turn.
                 self.cmd_vel.publish(Twist())
                 drive.rest(1)
                 # Turn left in the same way.
@@ -69,17 +69,17 @@ class OutAndBack:
                 for _ in drive.progress('turn left', angular_ticks, move_cmd):
                     self.cmd_vel.publish(move_cmd)
                     r.sleep()
-                # Stop before the next leg, and come to rest.
+                # Stop and rest again before the next leg.
                 self.cmd_vel.publish(Twist())
                 drive.rest(1)
             # Stop the robot for good.
             self.cmd_vel.publish(Twist())
 
     def shutdown(self):
-        """Stop the robot, whatever ended the run: nothing that a mobile robot does is more important."""
+        """Stop the robot: the most important thing to do, whatever the reason for the shutdown."""
         self.cmd_vel.publish(Twist())
         rospy.loginfo('Stopping the robot...')
-        time.sleep(1)   # of wall time: a simulated clock may have stopped
+        time.sleep(1)   # wall time, since a simulated clock may have stopped
 
 
 if __name__ == '__main__':

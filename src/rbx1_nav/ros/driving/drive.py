@@ -60,8 +60,13 @@ class Drive:
         self.current_rate = Rate(self.rate, self.listeners)
         return self.current_rate
 
+    def restart_rate(self) -> None:
+        """The motion begins now, however long its log line and its progress bar took."""
+        if self.current_rate:
+            self.current_rate.restart()
+
     def rest(self, seconds: float) -> None:
-        """Wait while the robot stands, s of ROS time."""
+        """Wait for `seconds` of ROS time, while the robot is stationary."""
         pause(seconds, self.listeners)
 
 
@@ -75,7 +80,9 @@ class TimedDrive(Drive):
         speed, unit = (command.linear.x, 'm') if command.linear.x else (command.angular.z, 'rad')
         rospy.loginfo('%s: %.2f %s at %g %s/s', name, ticks * speed / self.rate, unit, speed, unit)
         # with disable=None, tqdm shows its progress bar only in a terminal
-        yield from tqdm(range(ticks), desc=name, disable=None, bar_format='{desc:9}: |{bar}| {n} of {total} commands')
+        bar = tqdm(range(ticks), desc=name, disable=None, bar_format='{desc:9}: |{bar}| {n} of {total} commands')
+        self.restart_rate()
+        yield from bar
         self.distance += ticks * command.linear.x / self.rate
         self.angle += ticks * command.angular.z / self.rate
 

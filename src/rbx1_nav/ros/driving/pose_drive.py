@@ -45,8 +45,6 @@ class PoseDrive(Drive):
             yield from self._speeds(leg, bar)
             self.cmd_vel.publish(Twist())
             self.rest(TRIAL_REST)
-            if self.current_rate:
-                self.current_rate.restart()
             yield from self._speeds(leg, bar)
 
     def drive(self, leg: Leg) -> None:
@@ -65,6 +63,7 @@ class PoseDrive(Drive):
         self.poses.forget_velocity()
 
     def _speeds(self, leg: Leg, bar: tqdm) -> Iterator[float]:
+        self.restart_rate()
         speed = leg.next_speed(self._pose())
         while speed:
             yield speed
@@ -84,7 +83,7 @@ class PoseDrive(Drive):
             return self.poses.wait(self.transform_timeout, self.listeners.check)
 
 
-class ReportingDrive(PoseDrive):
+class OdomDrive(PoseDrive):
     """The same, and reports how far from its start the robot ends."""
 
     def begin(self) -> None:
