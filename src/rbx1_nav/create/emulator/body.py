@@ -1,19 +1,31 @@
 """The body of an emulated Create: wheels, gyro, switches and battery, and what the robot's sensors say of them."""
-from collections import namedtuple
-from math import degrees, floor, trunc
+from __future__ import annotations
 
-from rbx1_nav.create.protocol import BUMP_LEFT, BUMP_RIGHT, CREATE, UPDATE_PERIOD, WHEEL_DROP_LEFT
+from math import degrees, floor, trunc
+from typing import NamedTuple
+
+from rbx1_nav.create.protocol import BUMP_LEFT, BUMP_RIGHT, CREATE, UPDATE_PERIOD, WHEEL_DROP_LEFT, Model
 from rbx1_nav.simulation.base import make_wheels_and_gyro
+from rbx1_nav.simulation.surfaces import Surface
 from rbx1_nav.units import SECOND
 
-BodyErrors = namedtuple('BodyErrors', 'gyro_sensitivity wheel_travel wheel_base', defaults=(1.0, 1.0, 1.0))
-BodyErrors.__doc__ = """True errors of a robot, as factors: what the gyro's signal shows, of its nominal value; what the
-encoders count, of the wheels' true travel; the true distance of the wheels, of its nominal value."""
 
-Quirks = namedtuple('Quirks', 'mode_plus_one drops_fractions', defaults=(False, False))
-Quirks.__doc__ = """How some robots differ from the documents. mode_plus_one: packet 35 is the mode plus one, as on a
-Roomba 642 (create_robot issue 64); drops_fractions: each reading of the angle starts at 0 and loses the fraction of a
-degree, as on a Create (libcreate issue 22, create_robot issue 28)."""
+class BodyErrors(NamedTuple):
+    """True errors of a robot, as factors."""
+
+    gyro_sensitivity: float = 1.0   # what the gyro's signal shows, of its nominal value
+    wheel_travel: float = 1.0       # what the encoders count, of the wheels' true travel
+    wheel_base: float = 1.0         # the true distance of the wheels, of its nominal value
+
+
+class Quirks(NamedTuple):
+    """How some robots differ from the documents."""
+
+    mode_plus_one: bool = False     # packet 35 is the mode plus one, as on a Roomba 642 (create_robot issue 64)
+    # each reading of the angle starts at 0 and loses the fraction of a degree, as on a Create (libcreate issue 22,
+    # create_robot issue 28)
+    drops_fractions: bool = False
+
 
 FINE = 1e6              # ticks per metre: the wheels travel without steps, and the encoders here count
 ADC_ZERO = 512          # the gyro's signal at rest, of 0 to 1023
@@ -31,16 +43,16 @@ CONSTANT_1 = {'infrared': 255, 'digital_inputs': 15}
 class Tally:
     """A sum that is read in whole units. What is left over counts for the next reading."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         self.total = 0.0
-        self._read = 0
+        self._read = 0.0
 
     @property
-    def pending(self):
+    def pending(self) -> int:
         """What take() will return."""
-        return max(-32768, min(32767, floor(self.total + 0.5) - self._read))
+        return max(-32768, min(32767, floor(self.total + 0.5) - round(self._read)))
 
-    def take(self):
+    def take(self) -> int:
         """The whole units since the last call, at most what 16 bits hold."""
         value, self._read = self.pending, floor(self.total + 0.5)
         return value
@@ -50,10 +62,10 @@ class DroppingTally(Tally):
     """A sum whose readings each start at 0: what is left over is lost."""
 
     @property
-    def pending(self):
+    def pending(self) -> int:
         return max(-32768, min(32767, trunc(self.total - self._read)))
 
-    def take(self):
+    def take(self) -> int:
         value, self._read = self.pending, self.total
         return value
 
@@ -61,45 +73,46 @@ class DroppingTally(Tally):
 class Body:
     """The robot without its electronics. All times are in ns."""
 
-    def __init__(self, model, surface=None, seed=0, errors=BodyErrors(), gyro_range=150.0, quirks=Quirks()):
-        """model: a protocol.Model; surface, seed: see simulated_base.make_base(); gyro_range: degrees/s."""
+    def __init__(self, model: Model, surface: Surface | None = None, seed: int = 0, errors: BodyErrors = BodyErrors(),
+                 gyro_range: float = 150.0, quirks: Quirks = Quirks()) -> None:
+        """model: a protocol.Model; surface, seed: see simulation/base.py, make_base(); gyro_range: degrees/s."""
         self.model = model
         self.errors = errors
         self.gyro_range = gyro_range
         self.quirks = quirks
         self.gyro_stuck = -1                # 0 to 1023: the analog input has this value whatever the gyro measures
         self.wheels, self.gyro = make_wheels_and_gyro(
-            model.wheel_separation * errors.wheel_base, surface and surface._replace(ticks_meter=FINE), seed,
+            model.wheel_separation * errors.wheel_base, surface._replace(ticks_meter=FINE) if surface else None, seed,
             UPDATE_PERIOD)
-        self.left = self.right = 0          # mm/s, as commanded
+        self.left = self.right = 0.0        # mm/s, as commanded
         self.bumped = self.wheel_dropped = self.cliff = self.docked = False
-        self.charge = CAPACITY              # mAh
-        self.now = None
+        self.charge: float = CAPACITY       # mAh
+        self.now: int | None = None
         self.reset_counters()
 
-    def reset_counters(self):
+    def reset_counters(self) -> None:
         """Everything that the robot counts starts at 0."""
         self._counted_left = self._counted_right = 0.0  # m
         self.distance = Tally()     # mm
         self.angle = DroppingTally() if self.quirks.drops_fractions else Tally()    # degrees
-        self.values = dict.fromkeys((packet.name for packet in self.model.packets.values()), 0)
+        self.values: dict[str, int] = dict.fromkeys((packet.name for packet in self.model.packets.values()), 0)
 
-    def drive(self, left, right):
+    def drive(self, left: float, right: float) -> None:
         """Set the speeds of the wheels, mm/s by their encoders."""
         self.left, self.right = left, right
 
     @property
-    def moving(self):
+    def moving(self) -> bool:
         """Whether a wheel is commanded to turn."""
         return bool(self.left or self.right)
 
     @property
-    def velocity(self):
+    def velocity(self) -> tuple[float, float]:
         """The commanded speeds as those of the true robot without slip, m/s and rad/s."""
         left, right = (speed / 1000 / self.errors.wheel_travel for speed in (self.left, self.right))
         return (left + right) / 2, (right - left) / self.wheels.base_width
 
-    def advance(self, now):
+    def advance(self, now: int) -> None:
         """Move up to `now`."""
         duration, self.now = now - (now if self.now is None else self.now), now
         if duration <= 0:
@@ -108,7 +121,7 @@ class Body:
         self._counted_left += left * self.errors.wheel_travel
         self._counted_right += right * self.errors.wheel_travel
 
-    def sample(self, duration, charging):
+    def sample(self, duration: float, charging: bool) -> None:
         """Sense, `duration` (s) after the last time: afterwards `values` has what the packets say, by their names.
 
         Distance and angle are not among them, since they change as they are read. charging: whether a charger would
@@ -124,10 +137,11 @@ class Body:
         rate = degrees(self.gyro.read(self.wheels.truth.pose.yaw, duration, False).rate) * self.errors.gyro_sensitivity
         self.values.update(
             CONSTANT,
-            bumps_and_wheel_drops=(BUMP_LEFT | BUMP_RIGHT) * self.bumped + WHEEL_DROP_LEFT * self.wheel_dropped,
+            bumps_and_wheel_drops=(BUMP_LEFT | BUMP_RIGHT if self.bumped else 0) | (
+                WHEEL_DROP_LEFT if self.wheel_dropped else 0),
             cliff_front_left=int(self.cliff), cliff_front_right=int(self.cliff),
             charging_state=(3 if charge == CAPACITY else 2) if charging else 0,     # trickle, full charging, none
-            charging_sources=2 * self.docked,
+            charging_sources=2 if self.docked else 0,
             voltage=round(1000 * (EMPTY + (FULL - EMPTY) * charge / CAPACITY)), current=current, charge=charge)
         if self.cliff:
             self.values.update(cliff_front_left_signal=NO_FLOOR, cliff_front_right_signal=NO_FLOOR)
@@ -138,17 +152,17 @@ class Body:
         else:
             self.values.update(
                 left_encoder=self._encoder(left), right_encoder=self._encoder(right),
-                left_motor_current=150 * bool(self.left), right_motor_current=150 * bool(self.right),
+                left_motor_current=150 if self.left else 0, right_motor_current=150 if self.right else 0,
                 stasis=int(linear > abs(angular * self.wheels.base_width / 2)))
 
-    def _encoder(self, travel):
-        return floor(travel * self.model.counts_per_metre + 0.5) & 0xffff
+    def _encoder(self, travel: float) -> int:
+        return floor(travel * (self.model.counts_per_metre or 0) + 0.5) & 0xffff
 
-    def _use_battery(self, duration, charging):
+    def _use_battery(self, duration: float, charging: bool) -> int:
         """Charge or discharge the battery for `duration` (s); returns the current in mA."""
         if charging:
             current = 1500 if self.charge < CAPACITY else 0
         else:
-            current = -300 - 700 * self.moving
+            current = -1000 if self.moving else -300
         self.charge = max(0.0, min(CAPACITY, self.charge + current * duration / 3600))
         return current

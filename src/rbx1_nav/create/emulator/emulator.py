@@ -1,12 +1,17 @@
 """An emulated Create: what the robot's electronics do with the bytes on its serial line. All times are in ns."""
+from __future__ import annotations
+
 from math import inf
 from struct import Struct
+from typing import Callable, Sequence
 
-from rbx1_nav.create.protocol import (
-    BAUD_RATES, COUNTED, CREATE, IN_PLACE_LEFT, IN_PLACE_RIGHT, MAX_SPEED, NOTES, OFF, PASSIVE, SAFE,
-    STRAIGHT, UPDATE_PERIOD, encode_frame, frame_format, packets_format, single_packets)
+from rbx1_nav.create.emulator.body import Body
 from rbx1_nav.create.emulator.programs import Programs
 from rbx1_nav.create.emulator.scripts import MAX_SCRIPT, Scripts
+from rbx1_nav.create.emulator.serial_line import SerialLine
+from rbx1_nav.create.protocol import (
+    BAUD_RATES, COUNTED, CREATE, IN_PLACE_LEFT, IN_PLACE_RIGHT, MAX_SPEED, OFF, PASSIVE, SAFE, STRAIGHT,
+    UPDATE_PERIOD, Command, Model, encode_frame, frame_format, packets_format, single_packets)
 from rbx1_nav.units import SECOND, clamp
 
 TICK = round(UPDATE_PERIOD * SECOND)
@@ -23,21 +28,22 @@ BUTTON_TIME = SECOND // 6
 PAIR = Struct('>hh')
 
 
-def command_size(model, data):
+def command_size(model: Model, data: bytes | bytearray) -> int | None:
     """How many bytes the command has with which data begins; None as long as there are too few to know."""
     size = model.commands[data[0]].size
+    if isinstance(size, int):
+        return 1 + size
     if size == COUNTED:
         return 2 + data[1] if len(data) > 1 else None
-    if size == NOTES:
-        return 3 + 2 * data[2] if len(data) > 2 else None
-    return 1 + size
+    return 3 + 2 * data[2] if len(data) > 2 else None
 
 
 class EmulatedCreate:
     """The robot at the end of a SerialLine."""
 
-    def __init__(self, model, body, line, now, on_command=None):
-        """model: a protocol.Model; body: a Body; line: a SerialLine at the baud rate that the robot starts with.
+    def __init__(self, model: Model, body: Body, line: SerialLine, now: int,
+                 on_command: Callable[[int, bytes], None] | None = None) -> None:
+        """line: at the baud rate that the robot starts with.
 
         on_command(time, data): called with the bytes of each command that arrives, also of those that are ignored.
         """
@@ -45,20 +51,21 @@ class EmulatedCreate:
         self.body = body
         self.line = line
         self.on_command = on_command or (lambda time, data: None)
-        self.outputs = {}           # data bytes of the latest command to LEDs, drivers and the like, by its name
+        # data bytes of the latest command to LEDs, drivers and the like, by its name
+        self.outputs: dict[str, bytes] = {}
         self.programs = Programs(body)
         self._baud = line.baud
-        self._deaf_until = now
+        self._deaf_until: float = now
         self._start(now)
 
-    def switch_on(self, now):
+    def switch_on(self, now: int) -> None:
         """Start again, as after the battery was put in."""
         self._start(now)
         self._deaf_until = now + BOOT_TIME
         if self.model is not CREATE:
             self.line.from_robot(BOOT_TEXT, now)
 
-    def _start(self, now):
+    def _start(self, now: int) -> None:
         self.mode = OFF
         self.now = now
         self.line.baud = self._baud
@@ -70,30 +77,32 @@ class EmulatedCreate:
         self._next_update = now + TICK
         self._requested = dict.fromkeys(('requested_velocity', 'requested_radius', 'requested_right_velocity',
                                          'requested_left_velocity'), 0)
-        self._stream, self._streaming = [], False
-        self._songs, self._song, self._song_end = {}, 0, now
+        self._stream: list[int] = []
+        self._streaming = False
+        self._songs: dict[int, int] = {}        # lengths in ns, by number
+        self._song, self._song_end = 0, now
         self._buttons, self._buttons_end = 0, now
         self._scripts = Scripts(self.body, lambda: dict(self._values(()), mode=self.mode))
 
     # time
 
-    def receive(self, data, now):
+    def receive(self, data: bytes, now: int) -> None:
         """The host sends bytes."""
         self._run(now)
         self.line.from_host(data, now)
 
-    def advance(self, now):
+    def advance(self, now: int) -> bytes:
         """Go on to `now`. Returns the bytes that have arrived at the host."""
         self._run(now)
         return self.line.received(now)
 
     @property
-    def next_time(self):
+    def next_time(self) -> int:
         """When advance() has something to do next."""
         times = (self._next_update, self.line.next_to_robot, self.line.next_to_host)
         return min(time for time in times if time is not None)
 
-    def _run(self, now):
+    def _run(self, now: int) -> None:
         while True:
             arrival = self.line.next_to_robot
             if arrival is not None and arrival <= min(now, self._next_update):
@@ -107,13 +116,13 @@ class EmulatedCreate:
                 break
         self._go_to(now)
 
-    def _go_to(self, time):
+    def _go_to(self, time: int) -> None:
         self.now = max(time, self.now)
         self.body.advance(self.now)
 
     # what happens every 15 ms
 
-    def _update(self):
+    def _update(self) -> None:
         # in the other modes it does not charge (Create 2 p. 7)
         self.body.sample(UPDATE_PERIOD, self.mode in (OFF, PASSIVE))
         if not self.body.charge:
@@ -129,14 +138,14 @@ class EmulatedCreate:
         if self._streaming:
             self.line.from_robot(encode_frame(self.model, self._stream, self._values(self._stream)), self.now)
 
-    def _unsafe(self):
+    def _unsafe(self) -> bool:
         """Whether something has happened that ends safe mode (Create p. 6, Create 2 p. 7)."""
         body = self.body
         linear, angular = body.velocity
         small_radius = abs(linear) < abs(angular) * ROBOT_RADIUS
-        return body.wheel_dropped or body.docked or body.cliff and (linear > 0 or small_radius)
+        return body.wheel_dropped or body.docked or (body.cliff and (linear > 0 or small_radius))
 
-    def _enter(self, mode):
+    def _enter(self, mode: int) -> None:
         if mode in (OFF, PASSIVE):
             self._drive(0, 0)
             self._requested = dict.fromkeys(self._requested, 0)
@@ -146,17 +155,17 @@ class EmulatedCreate:
 
     # bytes and commands
 
-    def _on_byte(self, byte):
+    def _on_byte(self, byte: int) -> None:
         if self.now < self._deaf_until or not self.body.charge or len(self._input) >= INPUT_SIZE:
             return
         self._input.append(byte)
         self._execute()
 
-    def _execute(self):
+    def _execute(self) -> None:
         """Execute the commands that are complete, up to one that waits."""
         while self._input and not self._scripts.waiting:
             command = self.model.commands.get(self._input[0])
-            if command is None or self.mode == OFF and OFF not in command.modes:
+            if command is None or (self.mode == OFF and OFF not in command.modes):
                 del self._input[0]      # an interface that is off does not count data bytes
                 continue
             size = command_size(self.model, self._input)
@@ -168,7 +177,7 @@ class EmulatedCreate:
             if self.mode in command.modes:
                 self._do(command, data[1:])
 
-    def _do(self, command, data):
+    def _do(self, command: Command, data: bytes) -> None:
         of_programs = getattr(self.programs, f'do_{command.name}', None)
         handler = of_programs or getattr(self, f'_do_{command.name}', None) or getattr(
             self._scripts, f'do_{command.name}', None)
@@ -181,34 +190,34 @@ class EmulatedCreate:
             if not of_programs:
                 self.programs.stop()
 
-    def _do_reset(self, _):
+    def _do_reset(self, _: bytes) -> None:
         self.switch_on(self.now)
         if self.model is CREATE:
             self._deaf_until = self.now + CREATE_RESET_TIME
 
-    def _do_power(self, _):
+    def _do_power(self, _: bytes) -> None:
         self._start(self.now)
         self._deaf_until = inf      # until it is switched on
 
-    def _do_stop(self, _):
+    def _do_stop(self, _: bytes) -> None:
         self._streaming = False
 
-    def _do_baud(self, data):
+    def _do_baud(self, data: bytes) -> None:
         if data[0] < len(BAUD_RATES):
             self.line.baud = BAUD_RATES[data[0]]
 
     # wheels
 
-    def _drive(self, left, right):
+    def _drive(self, left: float, right: float) -> None:
         self.body.drive(clamp(left, MAX_SPEED), clamp(right, MAX_SPEED))
 
-    def _do_drive(self, data):
+    def _do_drive(self, data: bytes) -> None:
         velocity, radius = PAIR.unpack(data)
         velocity = int(clamp(velocity, MAX_SPEED))
         self._requested.update(requested_velocity=velocity, requested_radius=radius)
         self._drive_curve(velocity, radius)
 
-    def _drive_curve(self, velocity, radius):
+    def _drive_curve(self, velocity: float, radius: float) -> None:
         """velocity: mm/s; radius: mm, with the special values of the command Drive."""
         if radius in STRAIGHT:
             self._drive(velocity, velocity)
@@ -219,18 +228,18 @@ class EmulatedCreate:
             half = 500 * self.model.wheel_separation / radius if radius else 0
             self._drive(velocity * (1 - half), velocity * (1 + half))
 
-    def _do_drive_direct(self, data):
+    def _do_drive_direct(self, data: bytes) -> None:
         right, left = (int(clamp(speed, MAX_SPEED)) for speed in PAIR.unpack(data))
         self._requested.update(requested_right_velocity=right, requested_left_velocity=left)
         self._drive(left, right)
 
-    def _do_drive_pwm(self, data):
+    def _do_drive_pwm(self, data: bytes) -> None:
         right, left = (clamp(pwm, MAX_PWM) * MAX_SPEED / MAX_PWM for pwm in PAIR.unpack(data))
         self._drive(left, right)
 
     # sensors
 
-    def _values(self, numbers):
+    def _values(self, numbers: Sequence[int]) -> dict[str, int]:
         """The values of all packets, by name. Those that are requested are read, which starts a new distance and angle.
 
         numbers: of packets and groups.
@@ -238,45 +247,45 @@ class EmulatedCreate:
         body = self.body
         names = {packet.name for packet in single_packets(self.model, numbers)}
         return dict(
-            body.values, **self._requested, mode=self.mode + self.body.quirks.mode_plus_one, song_number=self._song,
-            song_playing=int(self.now < self._song_end), stream_packets=len(self._stream),
+            body.values, **self._requested, mode=self.mode + int(self.body.quirks.mode_plus_one),
+            song_number=self._song, song_playing=int(self.now < self._song_end), stream_packets=len(self._stream),
             buttons=self._buttons if self.now < self._buttons_end else 0,
             distance=body.distance.take() if 'distance' in names else 0,
             angle=body.angle.take() if 'angle' in names else 0)
 
-    def _known(self, numbers):
+    def _known(self, numbers: Sequence[int]) -> bool:
         return all(number in self.model.packets or number in self.model.groups for number in numbers)
 
-    def _do_sensors(self, data):
+    def _do_sensors(self, data: bytes) -> None:
         self._do_query_list(bytes((1,)) + data)
 
-    def _do_query_list(self, data):
+    def _do_query_list(self, data: bytes) -> None:
         numbers = data[1:]
         if self._known(numbers):
             packets, values = single_packets(self.model, numbers), self._values(numbers)
             self.line.from_robot(packets_format(packets).pack(*(values[packet.name] for packet in packets)), self.now)
 
-    def _do_stream(self, data):
+    def _do_stream(self, data: bytes) -> None:
         numbers = list(data[1:])
         if self._known(numbers) and frame_format(self.model, numbers).size - 3 <= MAX_FRAME:
             self._stream, self._streaming = numbers, bool(numbers)
 
-    def _do_pause_resume_stream(self, data):
+    def _do_pause_resume_stream(self, data: bytes) -> None:
         self._streaming = bool(data[0] and self._stream)
 
     # songs, buttons, scripts
 
-    def _do_song(self, data):
+    def _do_song(self, data: bytes) -> None:
         if data[0] < self.model.songs and 0 < data[1] <= MAX_NOTES:
             self._songs[data[0]] = sum(data[3::2]) * SECOND // 64
 
-    def _do_play_song(self, data):
+    def _do_play_song(self, data: bytes) -> None:
         if data[0] in self._songs and self.now >= self._song_end:
             self._song, self._song_end = data[0], self.now + self._songs[data[0]]
 
-    def _do_push_buttons(self, data):
+    def _do_push_buttons(self, data: bytes) -> None:
         self._buttons, self._buttons_end = data[0], self.now + BUTTON_TIME
 
-    def _do_show_script(self, _):
+    def _do_show_script(self, _: bytes) -> None:
         self._streaming = False
         self.line.from_robot(bytes((len(self._scripts.stored),)) + self._scripts.stored, self.now)

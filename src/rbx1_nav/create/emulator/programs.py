@@ -3,8 +3,12 @@
 A motion is a function of the time in s since the program started. It returns a velocity in mm/s and a radius in mm, as
 in the command Drive, or None when the program has finished.
 """
-from math import pi, sqrt
+from __future__ import annotations
 
+from math import pi, sqrt
+from typing import Callable, Optional, Tuple
+
+from rbx1_nav.create.emulator.body import Body
 from rbx1_nav.create.protocol import IN_PLACE_LEFT, STRAIGHT
 from rbx1_nav.units import SECOND
 
@@ -17,115 +21,117 @@ CIRCLE_TIME = 2 * pi * EIGHT_RADIUS / SPEED     # s
 LEG_TIME, TURN_TIME = 4.5, 1.5      # s; a turn of more than 90 degrees
 ABORT = 255             # -1, the number of a demo that stops the one that is running (Create p. 8)
 
+Curve = Tuple[float, float]     # mm/s, mm
+Motion = Callable[[float], Optional[Curve]]
+
 FORWARD, TURN, STILL = (SPEED, STRAIGHT[0]), (SPEED, IN_PLACE_LEFT), (0, STRAIGHT[0])
 
 
-def spiral(time):
+def spiral(time: float) -> Curve:
     """Outward; the distance between two turns is constant."""
     return SPEED, sqrt(INNER_RADIUS ** 2 + PITCH * SPEED * time / pi)
 
 
-def spot(time):
+def spot(time: float) -> Curve | None:
     """A spiral outward, then inward (Create p. 8)."""
     return spiral(min(time, 2 * SPIRAL_TIME - time)) if time < 2 * SPIRAL_TIME else None
 
 
-def search(time):
+def search(time: float) -> Curve:
     """Straight legs, with a turn after each."""
     return FORWARD if time % (LEG_TIME + TURN_TIME) < LEG_TIME else TURN
 
 
-def cover(time):
+def cover(time: float) -> Curve:
     """A spiral, then straight legs."""
     return spiral(time) if time < SPIRAL_TIME else search(time - SPIRAL_TIME)
 
 
-def figure_eight(time):
+def figure_eight(time: float) -> Curve:
     """A circle to the left, then one to the right."""
     return SPEED, EIGHT_RADIUS if time % (2 * CIRCLE_TIME) < CIRCLE_TIME else -EIGHT_RADIUS
 
 
-def forward(_):
+def forward(_: float) -> Curve:
     """In search of a wall, which is not there."""
     return FORWARD
 
 
-def spin(_):
+def spin(_: float) -> Curve:
     """In search of a virtual wall, which is not there."""
     return TURN
 
 
-def still(_):
+def still(_: float) -> Curve:
     """Waiting for somebody to push the robot, or to touch its sensors."""
     return STILL
 
 
 # by number: cover, cover and dock, spot cover, mouse, figure eight, wimp, home, tag, Pachelbel, banjo (Create p. 8)
-DEMOS = (cover, search, spot, forward, figure_eight, still, spin, spin, still, still)
+DEMOS: Tuple[Motion, ...] = (cover, search, spot, forward, figure_eight, still, spin, spin, still, still)
 
 
 class Programs:
     """The program that is running, if any. do_...() are commands, and get their data bytes."""
 
-    def __init__(self, body):
-        """body: a Body."""
+    def __init__(self, body: Body) -> None:
         self.body = body
         self.started = 0        # programs since the robot was made
-        self._motion = None
-        self._start = None      # ns, the first update of the program
+        self._motion: Motion | None = None
+        self._start: int | None = None      # ns, the first update of the program
 
     @property
-    def running(self):
+    def running(self) -> bool:
         """Whether a program is running."""
         return self._motion is not None
 
-    def stop(self):
+    def stop(self) -> None:
         """Stop the program that is running, and with it the robot."""
         if self.running:
             self._motion = None
             self.body.drive(0, 0)
 
-    def update(self, now):
+    def update(self, now: int) -> Curve:
         """To be called every 15 ms while a program is running: the velocity and the radius to drive with now."""
         if self._start is None:
             self._start = now
-        motion = self._motion((now - self._start) / SECOND)
+        motion = self._motion((now - self._start) / SECOND) if self._motion else None
         body = self.body
         if motion is None or body.wheel_dropped or body.cliff or body.docked:
             self.stop()
             return STILL
         return TURN if body.bumped and motion != STILL else motion
 
-    def do_spot(self, _):
+    def do_spot(self, _: bytes) -> None:
         """Clean a spot."""
         self._start_or_pause(spot)
 
-    def do_cover(self, _):
+    def do_cover(self, _: bytes) -> None:
         """Clean a room."""
         self._start_or_pause(cover)
 
-    def do_max(self, _):
+    def do_max(self, _: bytes) -> None:
         """Clean a room until the battery is empty."""
         self._start_or_pause(cover)
 
-    def do_dock(self, _):
+    def do_dock(self, _: bytes) -> None:
         """Search for the dock."""
         self._start_or_pause(search)
 
-    def do_demo(self, data):
+    def do_demo(self, data: bytes) -> None:
         """Start a demo in place of the program that is running, or stop that program."""
         if data[0] == ABORT:
             self.stop()
         elif data[0] < len(DEMOS):
             self._begin(DEMOS[data[0]])
 
-    def _start_or_pause(self, motion):
+    def _start_or_pause(self, motion: Motion) -> None:
         """As with the robot's buttons: while a program is running, each of them pauses it (Create 2 p. 11-12)."""
         if self.running:
             self.stop()
         else:
             self._begin(motion)
 
-    def _begin(self, motion):
+    def _begin(self, motion: Motion) -> None:
         self.started += 1
         self._motion, self._start = motion, None

@@ -1,4 +1,6 @@
 """A pseudo-terminal in the place of a serial port: the robot's end of the cable."""
+from __future__ import annotations
+
 import os
 import select
 import time
@@ -13,14 +15,14 @@ MIN_SLEEP = 0.001   # s: while nobody listens, each byte that is lost is not wor
 class PseudoTerminal:
     """A serial port that a client can open by name, at the end of a cable that can be pulled."""
 
-    def __init__(self, link=None):
+    def __init__(self, link: str | None = None) -> None:
         """link: the path of a symbolic link to the device, or None. Raises ConfigError if it cannot be made."""
         self.link = link
-        self.device = None
-        self._master = None
+        self.device: str | None = None
+        self._master: int | None = None
         self.plug()
 
-    def plug(self):
+    def plug(self) -> None:
         """Put the cable in: a new device appears. Raises ConfigError if the link cannot be made."""
         if self._master is not None:
             return
@@ -31,51 +33,52 @@ class PseudoTerminal:
         os.set_blocking(self._master, False)
         if self.link:
             try:
-                self._make_link()
+                self._make_link(self.link, self.device)
             except ConfigError:
                 self.unplug()
                 raise
 
-    def unplug(self):
+    def unplug(self) -> None:
         """Pull the cable: the client gets an error, and the device is gone."""
         if self._master is None:
             return
         if self.link and os.path.islink(self.link) and os.readlink(self.link) == self.device:
             os.unlink(self.link)
         os.close(self._master)
-        self._master = self.device = None
+        self._master = None
+        self.device = None
 
     @property
-    def baud(self):
+    def baud(self) -> int | None:
         """The baud rate that the client has set, bits per second; None while the cable is out."""
         return None if self._master is None else read_rate(self._master)
 
-    def read(self):
+    def read(self) -> bytes:
         """The bytes that the client has sent since the last call."""
         try:
             return os.read(self._master, 4096) if self._master is not None else b''
         except OSError:     # nothing there, or no client
             return b''
 
-    def write(self, data):
+    def write(self, data: bytes) -> None:
         """Send bytes to the client. They are lost without one, and if it does not read."""
-        if data and self._client(0) is not None:
+        if data and self._master is not None and self._client(0) is not None:
             try:
                 os.write(self._master, data)
             except OSError:     # it does not read, or has just gone
                 pass
 
     @property
-    def has_client(self):
+    def has_client(self) -> bool:
         """Whether somebody has opened the device."""
         return self._client(0) is not None
 
-    def wait(self, duration):
+    def wait(self, duration: float) -> None:
         """Wait until the client sends something, at most `duration` (s)."""
         if self._client(duration) is None:
             time.sleep(max(duration, MIN_SLEEP))
 
-    def _client(self, duration):
+    def _client(self, duration: float) -> bool | None:
         """Whether the client has sent something within a time (s); None if there is none."""
         if self._master is None:
             return None
@@ -86,15 +89,16 @@ class PseudoTerminal:
             return None
         return bool(events)
 
-    def _make_link(self):
-        if os.path.lexists(self.link) and not os.path.islink(self.link):
-            raise self._error('exists, and is not a link')
-        temporary = '%s.%d' % (self.link, os.getpid())
+    def _make_link(self, link: str, device: str) -> None:
+        if os.path.lexists(link) and not os.path.islink(link):
+            raise _error(link, 'exists, and is not a link')
+        temporary = f'{link}.{os.getpid()}'
         try:
-            os.symlink(self.device, temporary)
-            os.replace(temporary, self.link)
+            os.symlink(device, temporary)
+            os.replace(temporary, link)
         except OSError as error:
-            raise self._error(error.strerror)
+            raise _error(link, error.strerror) from None
 
-    def _error(self, text):
-        return ConfigError(f'link: {show_name(self.link)}: {text}: expected a path where a symbolic link may be made')
+
+def _error(link: str, text: str) -> ConfigError:
+    return ConfigError(f'link: {show_name(link)}: {text}: expected a path where a symbolic link may be made')

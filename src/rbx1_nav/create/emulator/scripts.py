@@ -1,6 +1,10 @@
 """Scripts of the Create: one that is stored, when it is played, and what it waits for."""
-from struct import Struct
+from __future__ import annotations
 
+from struct import Struct
+from typing import Callable, Mapping
+
+from rbx1_nav.create.emulator.body import Body, Tally
 from rbx1_nav.create.protocol import PASSIVE
 from rbx1_nav.units import SECOND
 
@@ -8,8 +12,10 @@ MAX_SCRIPT = 100        # bytes (Create p. 15)
 WORD = Struct('>h')
 BUMPS = 'bumps_and_wheel_drops'
 
+Condition = Callable[[Mapping[str, int]], bool]     # of the packets' values by name
 
-def _bits(mask, *names):
+
+def _bits(mask: int, *names: str) -> Condition:
     """Whether a bit is set in a packet."""
     return lambda values: any(values[name] & mask for name in names)
 
@@ -27,8 +33,8 @@ EVENTS = (
     lambda values: values['mode'] == PASSIVE)
 
 
-def event(byte):
-    """The condition that a data byte of Wait Event stands for: a function of the packets' values by name.
+def event(byte: int) -> Condition | None:
+    """The condition that a data byte of Wait Event stands for.
 
     A negative number is the inverse of an event. None for a number without a meaning.
     """
@@ -42,21 +48,21 @@ def event(byte):
 class Scripts:
     """The script of a robot. do_...() are commands, and get their data bytes."""
 
-    def __init__(self, body, values):
-        """body: a Body; values(): those of all packets, by name."""
+    def __init__(self, body: Body, values: Callable[[], Mapping[str, int]]) -> None:
+        """values(): those of all packets, by name."""
         self.body = body
         self.values = values
         self.stored = b''
         self._now = 0
         self._due = False
-        self._wait = None       # whether a wait is over, at a time in ns
+        self._wait: Callable[[int], bool] | None = None     # whether a wait is over, at a time in ns
 
     @property
-    def waiting(self):
+    def waiting(self) -> bool:
         """Whether a command keeps the next ones waiting."""
         return self._wait is not None
 
-    def update(self, now):
+    def update(self, now: int) -> bytes:
         """To be called every 15 ms: returns the commands that are now to be executed next."""
         self._now = now
         if self._wait and self._wait(now):
@@ -66,34 +72,35 @@ class Scripts:
         self._due = False
         return self.stored
 
-    def do_script(self, data):
+    def do_script(self, data: bytes) -> None:
         """Store a script."""
         if data[0] <= MAX_SCRIPT:
             self.stored = data[1:]
 
-    def do_play_script(self, _):
+    def do_play_script(self, _: bytes) -> None:
         """Play it at the next update, so that one that plays itself leaves time for other commands."""
         self._due = True
 
-    def do_wait_time(self, data):
+    def do_wait_time(self, data: bytes) -> None:
         """Wait for tenths of a second."""
         end = self._now + data[0] * SECOND // 10
         self._wait = lambda now: now >= end
 
-    def do_wait_distance(self, data):
+    def do_wait_distance(self, data: bytes) -> None:
         """Wait for mm."""
         self._wait_for(self.body.distance, *WORD.unpack(data))
 
-    def do_wait_angle(self, data):
+    def do_wait_angle(self, data: bytes) -> None:
         """Wait for degrees."""
         self._wait_for(self.body.angle, *WORD.unpack(data))
 
-    def do_wait_event(self, data):
+    def do_wait_event(self, data: bytes) -> None:
         """Wait for an event."""
         happens = event(data[0])
         if happens:
-            self._wait = lambda _: happens(self.values())
+            condition = happens
+            self._wait = lambda _: condition(self.values())
 
-    def _wait_for(self, tally, goal):
+    def _wait_for(self, tally: Tally, goal: int) -> None:
         tally.take()        # the packets start anew too
         self._wait = lambda _: tally.pending >= goal if goal > 0 else tally.pending <= goal

@@ -2,8 +2,11 @@
 
 All times are in ns.
 """
+from __future__ import annotations
+
 from collections import deque
 import random
+from typing import Deque, Tuple
 
 from rbx1_nav.units import SECOND
 
@@ -11,7 +14,7 @@ BITS = 10           # of a byte on the line: start bit, 8 data bits, stop bit
 BUFFER_SIZE = 1024  # bytes that wait to be sent; those beyond are lost, which corrupts a stream that is too long
 
 
-def misread(data, sent_at, read_at):
+def misread(data: bytes, sent_at: int, read_at: int) -> bytes:
     """The bytes that a receiver at the baud rate `read_at` reads of data that was sent at `sent_at`.
 
     It waits for a start bit, and then looks at the line in the middle of what it takes for each bit.
@@ -32,22 +35,26 @@ def misread(data, sent_at, read_at):
     return bytes(received)
 
 
+TimedBytes = Deque[Tuple[int, int]]     # (time, byte)
+
+
 class SerialLine:
     """Both directions of a serial line between a host and the robot."""
 
-    def __init__(self, baud, seed=0):
+    def __init__(self, baud: int, seed: int = 0) -> None:
         """baud: of the robot, bits per second; seed: of the corruption."""
         self.baud = baud
         self.host_baud = baud
         self.corruption = 0.0   # fraction of the bytes to the host that are flipped, lost or doubled
         self.silent = False     # whether nothing comes through, either way
-        self._random = random.Random('line %d' % seed)
-        self._to_robot, self._to_host = deque(), deque()    # (when it has arrived, byte)
+        self._random = random.Random(f'line {seed}')
+        self._to_robot: TimedBytes = deque()    # with the time at which each has arrived
+        self._to_host: TimedBytes = deque()
         self._last_to_robot = self._last_to_host = 0
-        self._waiting = deque()     # (when it leaves the host, byte)
+        self._waiting: TimedBytes = deque()     # with the time at which each leaves the host
         self._rate = baud           # at which they would leave
 
-    def from_host(self, data, now):
+    def from_host(self, data: bytes, now: int) -> None:
         """The host sends bytes."""
         if self.silent:
             return
@@ -60,7 +67,7 @@ class SerialLine:
         self._to_robot += [(start + index * len(data) * period // len(received), byte)
                            for index, byte in enumerate(received, 1)]
 
-    def _recall(self, now):
+    def _recall(self, now: int) -> bytes:
         """The bytes that still wait at the host, if its rate has changed: they leave at the new one."""
         while self._waiting and self._waiting[0][0] <= now:
             self._waiting.popleft()
@@ -75,7 +82,7 @@ class SerialLine:
                 self._to_robot.pop()
         return data
 
-    def from_robot(self, data, now):
+    def from_robot(self, data: bytes, now: int) -> None:
         """The robot sends bytes."""
         period = BITS * SECOND // self.baud
         time = max(now, self._last_to_host)
@@ -85,27 +92,27 @@ class SerialLine:
         self._last_to_host = time
 
     @property
-    def next_to_robot(self):
+    def next_to_robot(self) -> int | None:
         """When the next byte has arrived at the robot, or None."""
         return self._to_robot[0][0] if self._to_robot else None
 
     @property
-    def next_to_host(self):
+    def next_to_host(self) -> int | None:
         """When the next byte has arrived at the host, or None."""
         return self._to_host[0][0] if self._to_host else None
 
-    def receive_byte(self):
+    def receive_byte(self) -> int:
         """The next byte that arrives at the robot."""
         return self._to_robot.popleft()[1]
 
-    def received(self, now):
+    def received(self, now: int) -> bytes:
         """The bytes that have arrived at the host since the last call."""
         data = bytearray()
         while self._to_host and self._to_host[0][0] <= now:
             data.append(self._to_host.popleft()[1])
-        return b'' if self.silent else self._corrupt(misread(data, self.baud, self.host_baud))
+        return b'' if self.silent else self._corrupt(misread(bytes(data), self.baud, self.host_baud))
 
-    def _corrupt(self, data):
+    def _corrupt(self, data: bytes) -> bytes:
         if not self.corruption:
             return data
         result = bytearray()
