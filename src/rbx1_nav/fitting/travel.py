@@ -8,7 +8,7 @@ import numpy
 from rbx1_nav.arrays import Array
 from rbx1_nav.fitting.recording import Commands, Track
 from rbx1_nav.simulation.surfaces import Surface
-from rbx1_nav.simulation.wheels import Motor
+from rbx1_nav.simulation.motors import Motor
 
 STEP = 0.05     # s
 

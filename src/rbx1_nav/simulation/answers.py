@@ -4,9 +4,14 @@ It has to answer each tick with one command. While the robot rests, the clock ru
 begins, the clock may be some ticks ahead of the driver, which then answers all of them at once. They wait in a queue,
 and each tick takes one. A publisher that does not drive by this clock never gives such answers. Three rules detect it.
 """
+from __future__ import annotations
+
 from collections import deque
+from functools import partial
 from math import inf
+from threading import Condition
 from time import monotonic
+from typing import Callable, Deque, Tuple
 
 COMMAND_TIMEOUT = 1.0   # s of wall time that a tick waits for its command
 PROOF = 25              # ticks: a driver that has answered so many drives by this clock
@@ -18,6 +23,9 @@ BURST_TIME = 1.0        # s of wall time: a burst answers at most the ticks of t
 MAX_BACKLOG = 25        # commands: more of them in the queue than at the start mean more than one per tick
 
 
+SentCommand = Tuple[float, ...]     # linear (m/s), angular (rad/s), and what else is in it
+
+
 class NotInStep(Exception):
     """The driver does not answer the ticks. The text says how it shows."""
 
@@ -25,7 +33,8 @@ class NotInStep(Exception):
 class Answers:
     """The commands of one driver, one for each tick."""
 
-    def __init__(self, ticks, changed, connected, unread, ended):
+    def __init__(self, ticks: Deque[float], changed: Condition, connected: Callable[[], bool],
+                 unread: Callable[[], bool], ended: Callable[[], bool]) -> None:
         """ticks: s of the monotonic clock, those of the last BURST_TIME; changed: a Condition that is notified when a
         command arrives; connected(): whether the driver is still there; unread(): whether commands have come that are
         not received yet; ended(): whether not to wait any more."""
@@ -34,7 +43,8 @@ class Answers:
         self.connected = connected
         self.unread = unread
         self.ended = ended
-        self.queue = deque()        # one per tick; longer where the clock ran ahead of the driver at first
+        # one per tick; longer where the clock ran ahead of the driver at first
+        self.queue: Deque[SentCommand] = deque()
         self.received = 0
         self.quiet = FIRST_QUIET
         self.lag = 0                # length of the queue when the stream began
@@ -42,16 +52,16 @@ class Answers:
         self.answered = 0           # ticks, each with one command
 
     @property
-    def proven(self):
+    def proven(self) -> bool:
         """Whether it drives by this clock: what looks otherwise is a busy machine."""
         return self.answered >= PROOF
 
-    def receive(self, command):
+    def receive(self, command: SentCommand) -> None:
         """Accept a command that just arrived."""
         self.received += 1
         self.queue.append(command)
 
-    def next(self):
+    def next(self) -> SentCommand | None:
         """Wait for this tick's command, and return it; None if there is none. Raises NotInStep.
 
         To be called for each tick, holding `changed`.
@@ -65,12 +75,13 @@ class Answers:
             command = self.queue.popleft()
             linear, angular, *_ = command
             self.streaming = 0 < abs(linear) < inf or 0 < abs(angular) < inf    # neither is true of nan
-            self.answered += self.streaming and len(self.queue) <= self.lag
+            if self.streaming and len(self.queue) <= self.lag:
+                self.answered += 1
         if len(self.queue) > self.lag + MAX_BACKLOG and not self.proven:
             raise NotInStep('sends more than one command per tick')
         return command
 
-    def _begin_stream(self):
+    def _begin_stream(self) -> None:
         """The clock ran freely until now: let the driver answer all ticks that it has seen."""
         self._wait_until_quiet(self.quiet)
         self.quiet = QUIET
@@ -78,10 +89,10 @@ class Answers:
         if self.lag > len(self.ticks) + MAX_BACKLOG:
             raise NotInStep('sends more than one command per tick')
 
-    def _wait_for_answer(self):
+    def _wait_for_answer(self) -> None:
         start = monotonic()
         patience = PROVEN_TIMEOUT if self.proven else COMMAND_TIMEOUT
-        if not self._wait_for(lambda: self.queue, patience):
+        if not self._wait_for(lambda: bool(self.queue), patience):
             self.streaming = False
             if self.connected() and not self.ended():
                 raise NotInStep(f'sent no command for a tick within {patience:g} s')
@@ -91,19 +102,22 @@ class Answers:
             # a slow answer to this tick, or a stream that ignores the clock?
             self._wait_until_quiet(2 * waited)
 
-    def _wait_until_quiet(self, quiet):
+    def _wait_until_quiet(self, quiet: float) -> None:
         """Hold the clock until the driver has sent nothing for `quiet` seconds of wall time."""
         deadline = monotonic() + (PROVEN_TIMEOUT if self.proven else max(COMMAND_TIMEOUT, 3 * quiet))
         while monotonic() < deadline and not self.ended():
             received = self.received
-            heard = self._wait_for(lambda: self.received > received, quiet)     # pylint: disable=cell-var-from-loop
+            heard = self._wait_for(partial(self._has_received_more_than, received), quiet)
             # unread: the thread that receives may not have had its turn
             if not heard and not self.unread():
                 return
         if not (self.proven or self.ended()):
             raise NotInStep('sends commands while the clock is held')
 
-    def _wait_for(self, condition, timeout):
+    def _has_received_more_than(self, number: int) -> bool:
+        return self.received > number
+
+    def _wait_for(self, condition: Callable[[], bool], timeout: float) -> bool:
         """Wait until condition(), for at most `timeout` s of wall time, or until the driver has gone or all is to end.
         Returns condition()."""
         deadline = monotonic() + timeout

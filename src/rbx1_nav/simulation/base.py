@@ -1,23 +1,30 @@
 """A simulated differential-drive base: the gate for commands, the wheels that follow them, odometry, and a gyro."""
+from __future__ import annotations
+
+from typing import Iterable
+
 from rbx1_nav.control.gate import CommandGate
+from rbx1_nav.robot.description import Robot
 from rbx1_nav.robot.kinematics import ORIGIN, Odometry
+from rbx1_nav.robot.readings import Reading
 from rbx1_nav.simulation.floor_noise import make_roughness
-from rbx1_nav.simulation.gyro import Gyro, IdealGyro
-from rbx1_nav.simulation.surfaces import draw_run
-from rbx1_nav.simulation.wheels import IdealWheels, Wheels
+from rbx1_nav.simulation.gyro import AnyGyro, Gyro, IdealGyro
+from rbx1_nav.simulation.surfaces import Surface, draw_run
+from rbx1_nav.simulation.wheels import AnyWheels, IdealWheels, Wheels
 from rbx1_nav.units import SECOND
 
 MAX_SPEED_WINDOW = 0.1  # s: the longest time over which encoder counts are averaged to report a speed
 
 
-def make_base(robot, surface, seed):
+def make_base(robot: Robot, surface: Surface | None, seed: int) -> SimulatedBase:
     """The SimulatedBase of a Robot on a Surface (None: ideal). seed: an integer that the run's random errors depend
     on."""
     wheels, gyro = make_wheels_and_gyro(robot.base_width, surface, seed, min(1 / robot.rate, MAX_SPEED_WINDOW))
     return SimulatedBase(wheels, CommandGate(robot.limits, robot.timeout), gyro)
 
 
-def make_wheels_and_gyro(base_width, surface, seed, window):
+def make_wheels_and_gyro(base_width: float, surface: Surface | None, seed: int,
+                         window: float) -> tuple[AnyWheels, AnyGyro]:
     """The wheels and the gyro of a robot. base_width: m; surface, seed: see make_base(); window: see Wheels."""
     if surface is None:
         return IdealWheels(base_width), IdealGyro()
@@ -32,8 +39,7 @@ class SimulatedBase:
     integral over those intervals, whenever it is asked for.
     """
 
-    def __init__(self, wheels, gate, gyro):
-        """wheels: see simulation/wheels.py; gate: a CommandGate; gyro: see simulation/gyro.py."""
+    def __init__(self, wheels: AnyWheels, gate: CommandGate, gyro: AnyGyro) -> None:
         self.wheels = wheels
         self.gate = gate
         self.gyro = gyro
@@ -41,29 +47,29 @@ class SimulatedBase:
         self.left = 0.0         # m, total travel that the left wheel's encoder counted
         self.right = 0.0        # m
         self.now = 0            # ns, up to where the motion is integrated
-        self._gyro_time = None  # ns, of the last reading
+        self._gyro_time: int | None = None      # ns, of the last reading
 
     @property
-    def velocity(self):
+    def velocity(self) -> tuple[float, float]:
         """The speeds that the encoders report, m/s and rad/s."""
         return self.wheels.velocity(self.gate.linear, self.gate.angular)
 
     @property
-    def true_velocity(self):
+    def true_velocity(self) -> tuple[float, float]:
         """The speeds of the robot itself, m/s and rad/s."""
         return self.wheels.true_velocity(self.gate.linear, self.gate.angular)
 
     @property
-    def at_rest(self):
+    def at_rest(self) -> bool:
         """Whether the robot is at a standstill and no command will change that."""
         return not self.gate.moving and self.wheels.at_rest
 
-    def command(self, now, linear, angular, others=(), _sender=''):
+    def command(self, now: int, linear: float, angular: float, others: Iterable[float] = (), _sender: str = '') -> bool:
         """Put a command in force from `now` on; arguments, result and errors as of CommandGate.command()."""
         self.advance(now)
         return self.gate.command(now, linear, angular, others)
 
-    def advance(self, now):
+    def advance(self, now: int) -> bool:
         """Integrate the motion up to `now`. Returns whether the command in force timed out on the way.
 
         If the clock jumped back, the command in force is dropped: its age is no longer known.
@@ -84,25 +90,25 @@ class SimulatedBase:
         self.now = now
         return timed_out
 
-    def read_gyro(self):
+    def read_gyro(self) -> Reading | None:
         """The gyro's Reading since the last call; None if no time has passed, or at the first call."""
         last, self._gyro_time = self._gyro_time, self.now
         if last is None or self.now <= last:
             return None
         return self.gyro.read(self.wheels.truth.pose.yaw, (self.now - last) / SECOND, self.at_rest)
 
-    def reset(self):
+    def reset(self) -> None:
         """Stand still at the origin."""
         self.gate.halt()
         self.wheels.reset()
         self.gyro.reset()
         self.odometry.pose = ORIGIN
 
-    def _roll_out(self, duration):
+    def _roll_out(self, duration: float) -> None:
         if not self.wheels.at_rest:
             self._move(duration)
 
-    def _move(self, duration):
+    def _move(self, duration: float) -> None:
         left, right = self.wheels.travel(self.gate.linear, self.gate.angular, duration / SECOND)
         self.left += left
         self.right += right

@@ -2,21 +2,28 @@
 
 Metres, radians, seconds.
 """
-from collections import deque, namedtuple
-from concurrent.futures import ProcessPoolExecutor
+from __future__ import annotations
+
+from collections import deque
+from concurrent.futures import Future, ProcessPoolExecutor
 from functools import partial
 from math import pi
 import multiprocessing
 import os
 import signal
 import threading
+from typing import Callable, Deque, Iterator, NamedTuple, Sequence
 
-from rbx1_nav.control.legs import out_and_back_by_odometry
-from rbx1_nav.control.motions import out_and_back
+from rbx1_nav.arrays import Array
+from rbx1_nav.control.legs import Leg, out_and_back_by_odometry
+from rbx1_nav.control.motions import Motion, out_and_back
 from rbx1_nav.estimation.combined_odometry import CombinedOdometry
-from rbx1_nav.estimation.filter import priors
+from rbx1_nav.estimation.filter import Priors, priors
 from rbx1_nav.estimation.inputs import Imu, Odom
+from rbx1_nav.robot.description import Robot
+from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.simulation.base import make_base
+from rbx1_nav.simulation.surfaces import Surface
 from rbx1_nav.units import SECOND
 
 METHODS = ('timed', 'odom', 'ekf')
@@ -24,34 +31,54 @@ METHODS = ('timed', 'odom', 'ekf')
 # the tutorial's numbers, the nodes' defaults: m/s, m, rad/s, rad, Hz
 EXERCISE = dict(linear_speed=0.2, goal_distance=1.0, angular_speed=1.0, goal_angle=pi, rate=50)
 MIN_SPEEDS = dict(min_linear_speed=0.05, min_angular_speed=0.2)
-TICK = SECOND // EXERCISE['rate']   # ns
+TICK = round(SECOND / EXERCISE['rate'])     # ns
 REST = 50       # ticks between two motions
 TRIAL_REST = 25     # ticks at the trial stop of a leg
 CALIBRATION = 100   # ticks at rest before the first motion, in which the filter estimates the gyro's bias
 
-Snapshot = namedtuple('Snapshot', 'time truth odometry estimate')
-Snapshot.__doc__ = 'Time since the start (s) and three Poses; estimate: of the filter, None if there is none.'
 
-SimulationResult = namedtuple('SimulationResult', 'end first_leg covariance path')
-SimulationResult.__doc__ = """A run: Snapshot of its end, true distance at the end of the first motion (m), the 3x3
-covariance of the filter's pose (m and rad; None without a filter), and all Snapshots (None if not kept)."""
+class Snapshot(NamedTuple):
+    """Where the robot is at a moment."""
 
-Messages = namedtuple('Messages', 'imu orientation odom pose_variances')
-Messages.__doc__ = """What the base publishes at a tick: Imu, (yaw, variance) of its orientation (rad, rad^2), Odom, and
-variances of its pose's x, y (m^2) and yaw (rad^2)."""
+    time: float             # s since the start
+    truth: Pose
+    odometry: Pose
+    estimate: Pose | None   # of the filter; None if there is none
 
 
-def feed(combined, messages):
+class SimulationResult(NamedTuple):
+    """A run."""
+
+    end: Snapshot
+    first_leg: float            # m, the true distance at the end of the first motion
+    covariance: Array | None    # 3x3, of the filter's pose (m and rad); None without a filter
+    path: list[Snapshot] | None     # of all ticks; None if not kept
+
+
+class Messages(NamedTuple):
+    """What the base publishes at a tick."""
+
+    imu: Imu
+    orientation: tuple[float, float]        # yaw (rad) and its variance (rad^2)
+    odom: Odom
+    pose_variances: tuple[float, float, float]      # of the pose's x, y (m^2) and yaw (rad^2)
+
+
+def feed(combined: CombinedOdometry, messages: Messages) -> None:
     """Give a CombinedOdometry the Messages of a tick."""
     now = messages.odom.stamp
     combined.add_imu(now, messages.imu)
     combined.add_odom(now, messages.odom, messages.pose_variances)
 
 
+Listen = Callable[[Snapshot, Messages], None]
+
+
 class Simulation:
     """A robot, and a filter that receives its odometry and gyro readings."""
 
-    def __init__(self, robot, surface, seed, filtered, keep, prior=None, listen=None):
+    def __init__(self, robot: Robot, surface: Surface | None, seed: int, filtered: bool, keep: bool,
+                 prior: Priors | None = None, listen: Listen | None = None) -> None:
         """filtered: whether there is a filter; keep: whether to keep a Snapshot of each tick in `path`; prior, listen:
         see simulate()."""
         self.base = make_base(robot, surface, seed)
@@ -59,51 +86,53 @@ class Simulation:
         self.listen = listen
         if filtered or listen:
             self.base.read_gyro()       # readings begin now
-        self.path = [] if keep else None
+        self.path: list[Snapshot] | None = [] if keep else None
         self.now = 0
 
-    def tick(self):
+    def tick(self) -> None:
         """Advance by one tick."""
         self.now += TICK
         self.base.advance(self.now)
         messages = self._messages() if self.filter or self.listen else None
-        if self.filter:
+        if self.filter and messages:
             feed(self.filter, messages)
         if self.path is not None:
             self.path.append(self.snapshot())
-        if self.listen:
+        if self.listen and messages:
             self.listen(self.snapshot(), messages)
 
-    def _messages(self):
+    def _messages(self) -> Messages:
         reading, uncertainty = self.base.read_gyro(), self.base.wheels.uncertainty
+        assert reading      # the clock has advanced
         return Messages(Imu(self.now, reading.rate, reading.rate_variance), (reading.yaw, reading.yaw_variance),
                         Odom(self.now, self.base.odometry.pose, uncertainty.linear, uncertainty.angular),
                         (uncertainty.position, uncertainty.position, uncertainty.yaw))
 
-    def rest(self, ticks):
+    def rest(self, ticks: int) -> None:
         """Stand still for a number of ticks."""
         self.base.command(self.now, 0.0, 0.0)
         for _ in range(ticks):
             self.tick()
 
-    def snapshot(self):
+    def snapshot(self) -> Snapshot:
         """The present Snapshot."""
+        estimate = self.filter.estimate if self.filter else None
         return Snapshot(self.now / SECOND, self.base.wheels.truth.pose, self.base.odometry.pose,
-                        self.filter.estimate.pose if self.filter else None)
+                        estimate.pose if estimate else None)
 
-    def drive_by_time(self, motion):
+    def drive_by_time(self, motion: Motion) -> None:
         """One motion of timed_out_and_back.py."""
         for _ in range(motion.ticks):
             self.base.command(self.now, motion.linear, motion.angular)
             self.tick()
 
-    def drive_by_pose(self, leg, get_pose):
+    def drive_by_pose(self, leg: Leg, get_pose: Callable[[], Pose]) -> None:
         """One leg of odom_out_and_back.py; get_pose(): the Pose that it is controlled by."""
         self._drive_to_stop(leg, get_pose)
         self.rest(TRIAL_REST)
         self._drive_to_stop(leg, get_pose)
 
-    def _drive_to_stop(self, leg, get_pose):
+    def _drive_to_stop(self, leg: Leg, get_pose: Callable[[], Pose]) -> None:
         while True:
             speed = leg.next_speed(get_pose())
             if not speed:
@@ -112,7 +141,8 @@ class Simulation:
             self.tick()
 
 
-def simulate(method, robot, surface, seed, filtered=False, keep=False, prior=None, listen=None):
+def simulate(method: str, robot: Robot, surface: Surface | None, seed: int, filtered: bool = False, keep: bool = False,
+             prior: Priors | None = None, listen: Listen | None = None) -> SimulationResult:
     """The exercise by one of METHODS; returns a SimulationResult. Raises StuckError.
 
     robot: a Robot; surface: a Surface, or None; seed: of the run's random errors; filtered: whether to run the filter,
@@ -121,25 +151,31 @@ def simulate(method, robot, surface, seed, filtered=False, keep=False, prior=Non
     """
     simulation = Simulation(robot, surface, seed, filtered or method == 'ekf', keep, prior, listen)
     simulation.rest(CALIBRATION)
-    if method == 'timed':
-        motions, drive = out_and_back(**EXERCISE), simulation.drive_by_time
-    else:
-        motions = out_and_back_by_odometry(**EXERCISE, **MIN_SPEEDS)
-
-        def drive(leg):
-            simulation.drive_by_pose(leg, lambda: (simulation.filter.estimate if method == 'ekf'
-                                                   else simulation.base.odometry).pose)
-    first_leg = None
-    for motion in motions:
-        drive(motion)
+    distances = []
+    for drive in _drives(simulation, method):
+        drive()
         simulation.rest(REST)
-        if first_leg is None:
-            first_leg = simulation.base.wheels.truth.pose.x
-    covariance = simulation.filter.estimate.covariance if simulation.filter else None
-    return SimulationResult(simulation.snapshot(), first_leg, covariance, simulation.path)
+        distances.append(simulation.base.wheels.truth.pose.x)
+    estimate = simulation.filter.estimate if simulation.filter else None
+    return SimulationResult(simulation.snapshot(), distances[0], estimate.covariance if estimate else None,
+                            simulation.path)
 
 
-def simulate_many(method, robot, surface, seeds, keep=0, jobs=1):
+def _drives(simulation: Simulation, method: str) -> list[Callable[[], None]]:
+    """Four functions, each of which drives one motion of the exercise."""
+    if method == 'timed':
+        return [partial(simulation.drive_by_time, motion) for motion in out_and_back(**EXERCISE)]
+    combined = simulation.filter if method == 'ekf' else None
+
+    def get_pose() -> Pose:
+        estimate = combined.estimate if combined else None
+        return estimate.pose if estimate else simulation.base.odometry.pose
+    return [partial(simulation.drive_by_pose, leg, get_pose)
+            for leg in out_and_back_by_odometry(**EXERCISE, **MIN_SPEEDS)]
+
+
+def simulate_many(method: str, robot: Robot, surface: Surface | None, seeds: Sequence[int], keep: int = 0,
+                  jobs: int = 1) -> Iterator[SimulationResult]:
     """Yields the Results of all seeds in their order; keep: the number of paths to keep; jobs: number of processes.
 
     Closing it ends the processes. Raises BrokenProcessPool if one of them is killed.
@@ -154,7 +190,7 @@ def simulate_many(method, robot, surface, seeds, keep=0, jobs=1):
     chunks = [tasks[start:start + size] for start in range(0, len(tasks), size)]
     jobs = min(jobs, len(chunks))
     with ProcessPoolExecutor(max(1, jobs), initializer=_follow_the_parent) as pool:
-        results = deque()
+        results: Deque[Future[list[SimulationResult]]] = deque()
         try:
             for chunk in chunks:
                 results.append(pool.submit(work, chunk))
@@ -168,18 +204,21 @@ def simulate_many(method, robot, surface, seeds, keep=0, jobs=1):
             raise
 
 
-def _follow_the_parent():
+def _follow_the_parent() -> None:
     """In a new process: leave Ctrl-C to the parent, and end when it ends, even if it was killed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     threading.Thread(target=_end_with_the_parent, daemon=True).start()
 
 
-def _end_with_the_parent():
-    multiprocessing.parent_process().join()
+def _end_with_the_parent() -> None:
+    parent = multiprocessing.parent_process()
+    if parent:
+        parent.join()
     os._exit(1)
 
 
-def _simulate_some(method, robot, surface, tasks):
+def _simulate_some(method: str, robot: Robot, surface: Surface | None,
+                   tasks: Sequence[tuple[int, bool]]) -> list[SimulationResult]:
     """The Results of some tasks: pairs of a seed and whether to keep the path."""
     return [simulate(method, robot, surface, seed, keep=keep) for seed, keep in tasks]

@@ -2,28 +2,44 @@
 
 Radians and seconds; counter-clockwise positive.
 """
+from __future__ import annotations
+
 import random
+from typing import Protocol
 
 from rbx1_nav.robot.readings import MEASURED, MIN_VARIANCE, Reading
+from rbx1_nav.simulation.surfaces import RandomErrors, Surface
 from rbx1_nav.units import clamp
 
 NOISE_RATE = 50.0   # Hz, the rate that gyro_noise refers to: white noise grows with the root of the rate
 
 
+class AnyGyro(Protocol):
+    """What all gyros have."""
+
+    def read(self, yaw: float, duration: float, at_rest: bool) -> Reading:
+        """A Reading, `duration` (s, above 0) after the previous one; the robot's true heading is now `yaw` (rad).
+
+        The rate is the mean over that time, as of a gyro that samples faster than it is read. at_rest: whether the
+        wheels stood still meanwhile.
+        """
+
+    def reset(self) -> None:
+        """Start again with a robot at the origin."""
+
+
 class IdealGyro:
     """A gyro without errors."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         self.yaw = 0.0
 
-    def read(self, yaw, duration, at_rest):        # pylint: disable=unused-argument
-        """See Gyro.read."""
+    def read(self, yaw: float, duration: float, _at_rest: bool) -> Reading:
         rate = (yaw - self.yaw) / duration
         self.yaw = yaw
         return Reading(rate, MEASURED, yaw, MEASURED)
 
-    def reset(self):
-        """Start again with a robot at the origin."""
+    def reset(self) -> None:
         self.yaw = 0.0
 
 
@@ -35,19 +51,22 @@ class Gyro:
     uncalibrated.
     """
 
-    def __init__(self, surface, run, seed):
-        """surface: a Surface; run: the Run drawn from it; seed: of the noise, an integer."""
+    _true_yaw: float
+    _yaw: float
+    _turned: float          # rad, both directions counted positive
+    _time: float            # s since the calibration
+    _rest: float            # s, of the calibration
+    _rest_angle: float      # rad, of the readings in this time
+    _calibrating: bool
+
+    def __init__(self, surface: Surface, run: RandomErrors, seed: int) -> None:
+        """run: the errors drawn from the surface; seed: of the noise."""
         self.surface = surface
         self.run = run
-        self.noise = random.Random('gyro %d' % seed).gauss
+        self.noise = random.Random(f'gyro {seed}').gauss
         self.reset()
 
-    def read(self, yaw, duration, at_rest):
-        """A Reading, `duration` (s, above 0) after the previous one; the robot's true heading is now `yaw` (rad).
-
-        The rate is the mean over that time, as of a gyro that samples faster than it is read. at_rest: whether the
-        wheels stood still meanwhile.
-        """
+    def read(self, yaw: float, duration: float, at_rest: bool) -> Reading:
         surface = self.surface
         noise = surface.gyro_noise / (NOISE_RATE * duration) ** 0.5
         rate = (yaw - self._true_yaw) / duration * (1 + self.run.gyro_scale_error) + self.run.gyro_bias
@@ -68,7 +87,7 @@ class Gyro:
                     + (surface.gyro_scale_error * self._turned) ** 2)
         return Reading(rate, max(noise ** 2, MIN_VARIANCE), self._yaw, variance)
 
-    def reset(self):
+    def reset(self) -> None:
         """Start again with a robot at the origin. Bias and scale error stay as they are."""
         self._true_yaw = self._yaw = self._turned = self._time = 0.0
         self._rest = self._rest_angle = 0.0     # duration (s) and summed readings (rad) of the calibration

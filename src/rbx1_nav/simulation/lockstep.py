@@ -5,12 +5,15 @@ arrived. Only then does the next tick begin. So a run has the same result on eve
 the rates of the drivers are. That takes an eye on their processes, the `nodes`. Where it is not possible, answers.py
 counts commands instead.
 """
+from __future__ import annotations
+
 from collections import deque
 from functools import partial
 from threading import Condition
 from time import monotonic, sleep
+from typing import Any, Callable, Deque, Protocol
 
-from rbx1_nav.simulation.answers import BURST_TIME, Answers, NotInStep
+from rbx1_nav.simulation.answers import BURST_TIME, Answers, NotInStep, SentCommand
 from rbx1_nav.simulation.stream import Stream
 
 NODE_TIMEOUT = 5.0      # s of wall time that a tick waits for a node
@@ -21,18 +24,39 @@ STEADY = 25         # ticks: a driver that has sent one command at each of them 
 ANSWER_TIME = 0.005     # s of wall time that such a command is waited for before a look
 
 
+class Nodes(Protocol):
+    """An eye on the processes of nodes: ros/base/driving_nodes.py."""
+
+    drivers: set[str]
+
+    def update(self) -> None: ...
+    def sees(self, name: str) -> bool: ...
+    def on_clock(self, name: str) -> bool: ...
+    def mark(self, names: set[str]) -> None: ...
+    def woke_by_itself(self, name: str) -> bool: ...
+    def connecting(self) -> bool: ...
+    def awake(self) -> str | None: ...
+    def awake_drivers(self) -> str | None: ...
+    def polling(self) -> list[Any]: ...
+    def still_polling(self, threads: list[Any]) -> bool: ...
+    def forget(self, name: str) -> None: ...
+    def update_upstream(self) -> bool: ...
+    def connected(self, header: object) -> bool: ...
+    def unread(self, header: object) -> bool: ...
+
+
 class CommandSource:
     """One connection that brings commands."""
 
-    def __init__(self, connection, name):
+    def __init__(self, connection: object, name: str) -> None:
         self.connection = connection
         self.name = name
-        self.seen = None            # whether its process can be seen; None: not known yet
-        self.answers = None         # an Answers if not
-        self.stream = None          # a Stream, from its first motion to its next stop
+        self.seen: bool | None = None           # whether its process can be seen; None: not known yet
+        self.answers: Answers | None = None     # an Answers if not
+        self.stream: Stream | None = None       # a Stream, from its first motion to its next stop
         self.released = False       # is not in step: its commands take effect as they arrive
 
-    def steady(self, tick):
+    def steady(self, tick: int) -> bool:
         """Whether it has sent one command at each of the last ticks before this one, and so will send one at this."""
         return self.stream is not None and self.stream.in_a_row >= STEADY and self.stream.last == tick - 1
 
@@ -41,29 +65,32 @@ class Lockstep:
     """Applies commands, tuples that begin with linear (m/s) and angular (rad/s), at the tick at which they were
     sent."""
 
-    def __init__(self, apply, report, nodes, ended):
-        """apply(command): puts a command in force; report(name, reason): a node is not in step; nodes: see
-        ros/base/driving_nodes.py; ended(): whether not to wait any more."""
+    def __init__(self, apply: Callable[[SentCommand], None], report: Callable[[str, str], None], nodes: Nodes,
+                 ended: Callable[[], bool]) -> None:
+        """apply(command): puts a command in force; report(name, reason): a node is not in step; ended(): whether not
+        to wait any more."""
         self.apply = apply
         self.report = report
         self.nodes = nodes
         self.ended = ended
-        self.drivers = {}       # by the id of the connection, which the CommandSource keeps alive: so it stays unique
-        self.arrived = []       # (driver, command, whether a tick may have prompted it), not in force yet
-        self.delayed = []       # commands for the next tick
+        # by the id of the connection, which the CommandSource keeps alive: so it stays unique
+        self.drivers: dict[int, CommandSource] = {}
+        # (driver, command, whether a tick may have prompted it), not in force yet
+        self.arrived: list[tuple[CommandSource, SentCommand, bool]] = []
+        self.delayed: list[SentCommand] = []    # commands for the next tick
         self.tick = 0           # number of the present tick
-        self.ticks = deque()    # s of the monotonic clock: those of the last BURST_TIME
+        self.ticks: Deque[float] = deque()      # s of the monotonic clock: those of the last BURST_TIME
         self.over = True        # whether it is over
         self.over_since = 0.0   # s of the monotonic clock
         self.changed = Condition()
 
-    def receive(self, connection, name, command):
+    def receive(self, connection: object, name: str, command: SentCommand) -> None:
         """Accept a command that just arrived, in any thread. connection: any object; name: of the node that sent it."""
         with self.changed:
             driver = self.drivers.get(id(connection))
             if not driver:
                 self.drivers = {key: each for key, each in self.drivers.items()
-                                if each.answers and each.answers.queue or self.nodes.connected(each.connection)}
+                                if (each.answers and each.answers.queue) or self.nodes.connected(each.connection)}
                 driver = self.drivers[id(connection)] = CommandSource(connection, name)
             if driver.released:
                 self.apply(command)
@@ -73,10 +100,10 @@ class Lockstep:
                 self.arrived.append((driver, command, not self.over))
             self.changed.notify()
 
-    def begin_tick(self):
+    def begin_tick(self) -> None:
         """Call before each tick. A node that has woken by itself is still at the tick before."""
         waiting = self.nodes.drivers - {driver.name for driver in self._seen_drivers() if driver.stream}
-        if self.nodes.connecting() or waiting and monotonic() - self.over_since > FRESH:
+        if self.nodes.connecting() or (waiting and monotonic() - self.over_since > FRESH):
             self._wait_until_asleep()
         self.nodes.mark(waiting)
         while not self._begin():
@@ -84,7 +111,7 @@ class Lockstep:
             self._apply_arrived()
             self.nodes.mark(waiting)
 
-    def end_tick(self):
+    def end_tick(self) -> None:
         """Call after each tick: waits for the commands that are still to come, and puts them in force."""
         delayed, self.delayed = self.delayed, []
         for command in delayed:
@@ -97,9 +124,9 @@ class Lockstep:
         self.over_since = monotonic()
         for driver in list(self.drivers.values()):
             if driver.answers:
-                self._collect(driver)
+                self._collect(driver, driver.answers)
 
-    def _begin(self):
+    def _begin(self) -> bool:
         """Begin the next tick, unless there are commands of the present one."""
         with self.changed:
             if self.arrived:
@@ -112,12 +139,12 @@ class Lockstep:
                 self.ticks.popleft()
             return True
 
-    def _seen_drivers(self):
+    def _seen_drivers(self) -> list[CommandSource]:
         """The drivers that are in step and whose process is looked at."""
         return [driver for driver in list(self.drivers.values())
                 if driver.seen and not driver.released and driver.name in self.nodes.drivers]
 
-    def _wait_until_asleep(self):
+    def _wait_until_asleep(self) -> None:
         """Wait until all that a tick or anything else has woken sleeps again."""
         self._wait_while_awake(self.nodes.awake)
         polling = self.nodes.polling()      # these may not have seen the tick yet
@@ -126,7 +153,7 @@ class Lockstep:
                 sleep(LOOK)
             self._wait_while_awake(self.nodes.awake)
 
-    def _wait_while_awake(self, look):
+    def _wait_while_awake(self, look: Callable[[], str | None]) -> None:
         """look(): the name of a node that is awake, or None."""
         deadline = monotonic() + NODE_TIMEOUT
         while not self.ended():
@@ -138,7 +165,7 @@ class Lockstep:
                 deadline += NODE_TIMEOUT
             sleep(LOOK)
 
-    def _all_have_answered(self):
+    def _all_have_answered(self) -> bool:
         """Whether all nodes that may drive are steady, and each has sent its command: nobody else need be looked at."""
         self.nodes.update()     # a node that has connected since must be looked at
         drivers = self._seen_drivers()
@@ -150,18 +177,18 @@ class Lockstep:
             return self.changed.wait_for(
                 lambda: self.ended() or {id(each[0]) for each in self.arrived} >= set(map(id, drivers)), ANSWER_TIME)
 
-    def _give_up(self, name):
+    def _give_up(self, name: str) -> None:
         """No longer wait for a node, which need not be a driver."""
         for driver in self._seen_drivers():
             driver.released = driver.released or driver.name == name
         self.nodes.forget(name)
         self.report(name, f'did not come to rest within {NODE_TIMEOUT:g} s')
 
-    def _new_drivers(self):
+    def _new_drivers(self) -> list[CommandSource]:
         with self.changed:
             return [driver for driver, _, _ in self.arrived if driver.seen is None]
 
-    def _apply_arrived(self):
+    def _apply_arrived(self) -> None:
         new = self._new_drivers()
         while new:
             for driver in new:      # not while a command may wait to be received
@@ -181,12 +208,13 @@ class Lockstep:
                 else:
                     self._apply(driver, command, prompted)
 
-    def _apply(self, driver, command, prompted):
+    def _apply(self, driver: CommandSource, command: SentCommand, prompted: bool) -> None:
         """Put a command in force, now or at the next tick."""
-        velocity, lag = command[:2], 0
+        linear, angular, *_ = command
+        velocity, lag = (linear, angular), 0
         if driver.stream:
             if not driver.released:
-                self._check_prompt(driver, prompted)
+                self._check_prompt(driver, driver.stream, prompted)
             lag = driver.stream.lag_of(self.tick, velocity)
         elif any(velocity):
             driver.stream = Stream(self.tick, velocity, prompted and self.nodes.woke_by_itself(driver.name))
@@ -197,27 +225,27 @@ class Lockstep:
         else:
             self.apply(command)
 
-    def _check_prompt(self, driver, prompted):
+    def _check_prompt(self, driver: CommandSource, stream: Stream, prompted: bool) -> None:
         """Release a driver that does not send its commands because of a tick."""
         if not self.nodes.on_clock(driver.name):
             self._release(driver, 'does not subscribe to /clock')
         elif not prompted:
-            driver.stream.unprompted += 1
-            if driver.stream.unprompted >= PROOF and not self.nodes.update_upstream():
+            stream.unprompted += 1
+            if stream.unprompted >= PROOF and not self.nodes.update_upstream():
                 self._release(driver, 'sends commands that no tick of /clock has prompted')
 
-    def _release(self, driver, reason):
+    def _release(self, driver: CommandSource, reason: str) -> None:
         driver.released = True
         self.nodes.forget(driver.name)
         self.report(driver.name, reason)
 
-    def _collect(self, driver):
+    def _collect(self, driver: CommandSource, answers: Answers) -> None:
         with self.changed:
             try:
-                command = driver.answers.next()
+                command = answers.next()
             except NotInStep as error:
                 self._release(driver, str(error))
-                command = driver.answers.queue[-1] if driver.answers.queue else None
+                command = answers.queue[-1] if answers.queue else None
                 driver.answers = None
             if command:
                 self.apply(command)

@@ -1,4 +1,5 @@
 """The ticks at which a driver sends, and whether its first command was sent one tick before it arrived."""
+from __future__ import annotations
 
 LENGTH = 16     # commands that are looked at
 ENOUGH = 10     # commands that tell any rate
@@ -13,7 +14,7 @@ class Stream:
     effect one tick later.
     """
 
-    def __init__(self, tick, command, uncertain):
+    def __init__(self, tick: int, command: tuple[float, float], uncertain: bool) -> None:
         """tick: number of the tick at which the first command, `command`, arrived; uncertain: whether it may have been
         sent before."""
         self.command = command
@@ -24,7 +25,7 @@ class Stream:
         self.last = tick
         self.in_a_row = 1       # ticks up to the last one, each with one command
 
-    def lag_of(self, tick, command):
+    def lag_of(self, tick: int, command: tuple[float, float]) -> int:
         """How many ticks later a further command of this tick takes effect."""
         self.in_a_row = self.in_a_row + 1 if tick == self.last + 1 else 0
         self.last = tick
@@ -38,7 +39,7 @@ class Stream:
         return self.lag
 
 
-def is_late(ticks):
+def is_late(ticks: list[int]) -> bool:
     """Whether the first command was sent one tick earlier than `ticks` says, the others as it says."""
     if len(ticks) < ENOUGH:
         # a rate that begins with the first command waits for a whole period, rounded up: no later gap is longer
@@ -47,7 +48,7 @@ def is_late(ticks):
     return possible_periods([ticks[0] - 1] + ticks[1:]) > max(0, possible_periods(ticks))
 
 
-def possible_periods(ticks):
+def possible_periods(ticks: list[int]) -> float:
     """For how large a range of periods, in ticks, a rate sends at just these ticks: at the first one not before each
     of its times, which lie a period apart. Negative if no rate does.
 

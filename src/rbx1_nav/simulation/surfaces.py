@@ -11,7 +11,7 @@ import random
 import re
 from typing import Callable, NamedTuple
 
-from rbx1_nav.config import ConfigError, Section, load_yaml, show, show_name
+from rbx1_nav.config import ConfigError, Section, YamlValue, load_yaml, show, show_name
 
 RANDOM = 'random'   # the word for a seed that is drawn anew
 MAX_SEED = 2 ** 31 - 1
@@ -113,7 +113,7 @@ def load_surface(name: str, folder: str) -> Surface | None:
     return read_surface(values, os.path.basename(path)[:-len('.yaml')] if path.endswith('.yaml') else name)
 
 
-def read_surface(values: object, name: str) -> Surface | None:
+def read_surface(values: YamlValue, name: str) -> Surface | None:
     """The Surface of a mapping with all KEYS, and some OPTIONAL_KEYS; None, the ideal surface, for an empty mapping.
     Raises ConfigError."""
     section = Section(values, f'surface {show_name(name)}')
@@ -128,7 +128,7 @@ def read_surface(values: object, name: str) -> Surface | None:
     return surface
 
 
-def read_seed(value: object) -> int:
+def read_seed(value: YamlValue) -> int:
     """A seed: an integer from 0 to 2147483647, its digits as text, or `random` for a new one. Raises ConfigError."""
     if value == RANDOM:
         return random.randrange(10 ** 6)

@@ -1,20 +1,43 @@
-"""Wheels: how they follow a command, what their encoders count, and where they take the robot.
+"""Wheels: how they follow a command, what their encoders count, and where they take the robot."""
+from __future__ import annotations
 
-All wheels have
-
-    travel(linear, angular, duration)   the travel (left, right) that the encoders count, m, while a command is in force
-    velocity(linear, angular)           the speeds that the encoders report meanwhile, m/s and rad/s
-    true_velocity(linear, angular)      the speeds of the robot itself
-    at_rest         whether they stand still, and will until there is a command to move
-    truth           Odometry of the robot itself, which no encoder knows
-    uncertainty     Uncertainty of the odometry
-    reset()         puts the robot back at the origin, at rest
-"""
-from collections import deque
-from math import copysign, exp, floor, hypot, log
+from math import copysign, hypot
+from typing import Protocol
 
 from rbx1_nav.robot.kinematics import ORIGIN, Odometry
 from rbx1_nav.robot.readings import MEASURED, Uncertainty
+from rbx1_nav.simulation.encoders import Encoder
+from rbx1_nav.simulation.floor_noise import Roughness
+from rbx1_nav.simulation.motors import Delay, Motor
+from rbx1_nav.simulation.surfaces import RandomErrors, Surface
+
+
+class AnyWheels(Protocol):
+    """What all wheels have."""
+
+    base_width: float       # distance between the wheels, m
+    truth: Odometry         # of the robot itself, which no encoder knows
+
+    @property
+    def at_rest(self) -> bool:
+        """Whether they stand still, and will until there is a command to move."""
+
+    @property
+    def uncertainty(self) -> Uncertainty:
+        """The Uncertainty of the odometry."""
+
+    def travel(self, linear: float, angular: float, duration: float) -> tuple[float, float]:
+        """(left, right) travel in m that the encoders count while `linear` (m/s) and `angular` (rad/s) are in force for
+        `duration` (s)."""
+
+    def velocity(self, linear: float, angular: float) -> tuple[float, float]:
+        """The speeds that the encoders report meanwhile, m/s and rad/s."""
+
+    def true_velocity(self, linear: float, angular: float) -> tuple[float, float]:
+        """The speeds of the robot itself, m/s and rad/s."""
+
+    def reset(self) -> None:
+        """Put the robot back at the origin, at rest."""
 
 
 class IdealWheels:
@@ -23,128 +46,24 @@ class IdealWheels:
     at_rest = True
     uncertainty = Uncertainty(MEASURED, MEASURED, MEASURED, MEASURED)
 
-    def __init__(self, base_width):
-        """base_width: distance between the wheels, m."""
+    def __init__(self, base_width: float) -> None:
         self.base_width = base_width
         self.truth = Odometry(base_width)
 
-    @staticmethod
-    def velocity(linear, angular):
+    def velocity(self, linear: float, angular: float) -> tuple[float, float]:
         """The commanded speeds."""
         return linear, angular
 
     true_velocity = velocity
 
-    def travel(self, linear, angular, duration):
-        """(left, right) travel in m while `linear` (m/s) and `angular` (rad/s) are in force for `duration` (s)."""
+    def travel(self, linear: float, angular: float, duration: float) -> tuple[float, float]:
         difference = angular * self.base_width / 2
         left, right = (linear - difference) * duration, (linear + difference) * duration
         self.truth.update(left, right)
         return left, right
 
-    def reset(self):
-        """Put the robot back at the origin."""
+    def reset(self) -> None:
         self.truth.pose = ORIGIN
-
-
-class Motor:
-    """A speed that follows a command with a lag and a limited acceleration, and stays below it because of drag.
-
-    The acceleration is (command - speed -+ drag) / lag, limited to accel_limit. Drag always acts against the motion: it
-    slows the start, shortens the stop, and holds a standing wheel while the command does not exceed it. Solved in
-    closed form, so the result does not depend on the number of steps.
-    """
-
-    def __init__(self, lag, accel_limit, drag):
-        """lag: s, accel_limit: m/s^2, drag: m/s; all above 0."""
-        self.lag = lag
-        self.accel_limit = accel_limit
-        self.drag = drag
-        self.speed = 0.0        # m/s
-
-    def travel(self, command, duration):
-        """The travel (m) while a speed (m/s) is commanded for `duration` (s)."""
-        travel = 0.0
-        while duration > 0:
-            target = command - copysign(self.drag, self.speed or command)
-            if not self.speed and target * command <= 0:
-                break       # drag holds it
-            gap = target - self.speed
-            limited = self.accel_limit * self.lag   # m/s: above this gap the acceleration is limited
-            if abs(gap) > limited + 1e-12 * (abs(self.speed) + abs(target)):    # by more than rounding
-                acceleration = copysign(self.accel_limit, gap)
-                time = (abs(gap) - limited) / self.accel_limit
-                if self.speed and (self.speed > 0) != (gap > 0):
-                    stop = -self.speed / acceleration
-                    if stop <= min(time, duration):
-                        travel += self.speed * stop / 2
-                        self.speed = 0.0
-                        duration -= stop
-                        continue
-                time = min(time, duration)
-                travel += (self.speed + acceleration * time / 2) * time
-                self.speed += acceleration * time
-            else:
-                time = duration
-                if self.speed and target and (self.speed > 0) != (target > 0):
-                    time = min(time, self.lag * log(1 - self.speed / target))
-                closed = gap * (1 - exp(-time / self.lag))
-                travel += target * time - closed * self.lag
-                # a wheel that stops before the end of the duration stops exactly
-                self.speed = self.speed + closed if time == duration else 0.0
-            duration -= time
-        return travel
-
-
-class Encoder:
-    """Counts whole ticks, rounded to the nearest."""
-
-    def __init__(self, ticks_meter):
-        """ticks_meter: ticks per metre."""
-        self.ticks_meter = ticks_meter
-        self.total = 0.0    # m, of the wheel
-        self.ticks = 0
-
-    def count(self, travel):
-        """The counted travel (m) while the wheel travels `travel` (m)."""
-        self.total += travel
-        before, self.ticks = self.ticks, floor(self.total * self.ticks_meter + 0.5)
-        return (self.ticks - before) / self.ticks_meter
-
-
-class Delay:
-    """Commands, each of them passed on after the same time."""
-
-    def __init__(self, delay):
-        """delay: s, above 0."""
-        self.delay = delay
-        self.clear()
-
-    def clear(self):
-        """Forget the commands that are under way."""
-        self.parts = deque([[0.0, 0.0, self.delay]])     # m/s, rad/s, and for how long: s
-
-    @property
-    def is_empty(self):
-        """Whether no command to move is under way."""
-        return not any(linear or angular for linear, angular, _ in self.parts)
-
-    def over(self, linear, angular, duration):
-        """Yields (linear, angular, duration) of what is passed on while a command is in force for `duration` (s)."""
-        parts = self.parts
-        if parts[-1][:2] == [linear, angular]:
-            parts[-1][2] += duration
-        else:
-            parts.append([linear, angular, duration])
-        while duration > 0:
-            linear, angular, left = parts[0]
-            if left > duration or len(parts) == 1:
-                parts[0][2] -= duration
-                yield linear, angular, duration
-                return
-            parts.popleft()
-            yield linear, angular, left
-            duration -= left
 
 
 class Wheels:
@@ -154,9 +73,18 @@ class Wheels:
     has its own drag and slip.
     """
 
-    def __init__(self, base_width, surface, run, window, roughness=None):
-        """base_width: m; surface: a Surface; run: the Run drawn from it; window: s, the time over which encoder counts
-        are averaged to report a speed; roughness: a Roughness, or None."""
+    _rolling: bool                      # whether anything moved in the last step
+    _velocity: tuple[float, float]      # m/s, rad/s
+    _time: float        # s, m and rad since the last velocity
+    _distance: float
+    _angle: float
+    _path: float        # m and rad, both directions counted positive
+    _turned: float
+
+    def __init__(self, base_width: float, surface: Surface, run: RandomErrors, window: float,
+                 roughness: Roughness | None = None) -> None:
+        """run: the errors drawn from the surface; window: s, the time over which encoder counts are averaged to report
+        a speed."""
         self.window = window
         self.base_width = base_width
         self.surface = surface
@@ -170,8 +98,7 @@ class Wheels:
         self.truth = Odometry(base_width)
         self.reset()
 
-    def travel(self, linear, angular, duration):
-        """(left, right) travel in m that the encoders count while `linear` (m/s) and `angular` (rad/s) are in force."""
+    def travel(self, linear: float, angular: float, duration: float) -> tuple[float, float]:
         if self.delay:
             straight = turning = 0.0
             for speed, rate, part in self.delay.over(linear, angular, duration):
@@ -191,15 +118,15 @@ class Wheels:
         self._update_velocity(left, right, duration)
         return left, right
 
-    def velocity(self, *_):
+    def velocity(self, *_: float) -> tuple[float, float]:
         """The speeds by the encoders' latest counts, whatever is commanded."""
         return self._velocity
 
-    def true_velocity(self, *_):
+    def true_velocity(self, *_: float) -> tuple[float, float]:
         """The motors' speeds less slip, whatever is commanded."""
         return self._on_the_floor(self.straight.speed, 2 * self.turning.speed / self.base_width)
 
-    def _on_the_floor(self, straight, turn):
+    def _on_the_floor(self, straight: float, turn: float) -> tuple[float, float]:
         """What the robot makes of its wheels' travel, or speeds, without noise."""
         surface, run = self.surface, self.run
         distance = straight * (1 - run.slip_straight)
@@ -208,11 +135,11 @@ class Wheels:
         return distance, turn * (1 - run.slip_turning) + surface.curvature * straight
 
     @property
-    def at_rest(self):
+    def at_rest(self) -> bool:
         """Whether nothing moved in the last step, and the reported speeds are 0."""
-        return not (self._rolling or any(self._velocity) or self.delay and not self.delay.is_empty)
+        return not (self._rolling or any(self._velocity) or (self.delay and not self.delay.is_empty))
 
-    def _update_velocity(self, left, right, duration):
+    def _update_velocity(self, left: float, right: float, duration: float) -> None:
         self._distance += (left + right) / 2
         self._angle += (right - left) / self.base_width
         self._time += duration
@@ -223,7 +150,7 @@ class Wheels:
             self._time = self._distance = self._angle = 0.0
 
     @property
-    def uncertainty(self):
+    def uncertainty(self) -> Uncertainty:
         """Uncertainty of the odometry.
 
         Of the pose: the sum of all slip, an upper bound, since the way back may undo it. Of the speeds: rounding to
@@ -240,23 +167,23 @@ class Wheels:
         if self.at_rest:
             return Uncertainty(position, yaw, MEASURED, MEASURED)
         wheel = tick ** 2 / 6 / self.window ** 2
-        length, heading = self._noise(*map(abs, self._velocity))
+        linear, angular = self._velocity
+        length, heading = self._noise(abs(linear), abs(angular))
         return Uncertainty(position, yaw, MEASURED + wheel / 2 + length / self.window,
                            MEASURED + 2 * wheel / self.base_width ** 2 + heading / self.window)
 
-    def _noise(self, path, turned):
+    def _noise(self, path: float, turned: float) -> tuple[float, float]:
         """Variances of the length (m^2) and the heading (rad^2) after a path (m) and turns (rad), by the noise."""
         surface = self.surface
         return (surface.distance_noise ** 2 * path,
                 surface.heading_noise_turning ** 2 * turned + surface.heading_noise_straight ** 2 * path)
 
-    def reset(self):
-        """Put the robot back at the origin, at rest."""
+    def reset(self) -> None:
         self.straight.speed = self.turning.speed = 0.0
         if self.delay:
             self.delay.clear()
         self._rolling = False
         self._velocity = 0.0, 0.0
-        self._time = self._distance = self._angle = 0.0     # s, m and rad since the last velocity
-        self._path = self._turned = 0.0     # m and rad, both directions counted positive
+        self._time = self._distance = self._angle = 0.0
+        self._path = self._turned = 0.0
         self.truth.pose = ORIGIN

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from rbx1_nav.control.legs import StuckError, is_reachable, out_and_back_by_odometry
 from rbx1_nav.robot.kinematics import ORIGIN, Pose, arc
-from rbx1_nav.simulation.wheels import Motor
+from rbx1_nav.simulation.motors import Motor
 
 LEGS = dict(linear_speed=0.2, goal_distance=1.0, angular_speed=1.0, goal_angle=pi, rate=50, min_linear_speed=0.05,
             min_angular_speed=0.2)

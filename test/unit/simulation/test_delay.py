@@ -5,7 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rbx1_nav.simulation.wheels import Delay, Wheels
+from rbx1_nav.simulation.motors import Delay
+from rbx1_nav.simulation.wheels import Wheels
 from sample_surface import RUN, SURFACE
 
 WIDTH = 0.26
