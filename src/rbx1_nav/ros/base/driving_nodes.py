@@ -42,7 +42,7 @@ class DrivingNodes:
 
     def update(self):
         """Look who is connected. To be called often."""
-        connections = [each for each in self.connections() if each.header]
+        connections = [each for each in self.connections() if is_complete(each)]
         listeners = list(self.clock_connections())
         if (connections, listeners, self.upstream) == self.known:
             return
@@ -99,7 +99,7 @@ class DrivingNodes:
     def connecting(self):
         """Whether a publisher of commands is being connected. It may take itself for connected a little earlier."""
         now = monotonic()
-        connections = [each for each in self.connections() if not each.header]
+        connections = [each for each in self.connections() if not is_complete(each)]
         self.new = {each: self.new.get(each, now) for each in connections}
         return any(now - begin < CONNECT_TIME for begin in self.new.values())
 
@@ -167,6 +167,11 @@ class DrivingNodes:
             self.upstream_changed.wait(UPSTREAM_PERIOD if self.drivers else None)
             self.upstream_changed.clear()
             self.update_upstream()
+
+
+def is_complete(connection):
+    """Whether a publisher has accepted a connection. The header of one that it refuses has an error only."""
+    return bool(connection.header) and 'callerid' in connection.header
 
 
 def upstream_of(topic, publishers, subscribers):

@@ -97,6 +97,14 @@ def test_a_driver_is_watched_while_it_is_connected(world):
         connection.socket.close()
 
 
+def test_a_connection_that_its_publisher_refuses_is_no_driver(world):
+    refused = world.connect('/driver')
+    refused.header = {'error': 'is not a publisher'}    # all that rospy keeps until it closes the connection
+    world.drivers = [refused]
+    assert not world.nodes.sees('/driver') and not world.nodes.drivers
+    assert world.nodes.connecting()     # it may try again
+
+
 def test_an_unseen_driver_is_not_watched(world, monkeypatch):
     monkeypatch.setattr(driving_nodes, 'peer_process', lambda _: None)
     world.drivers = [world.connect('/driver')]
