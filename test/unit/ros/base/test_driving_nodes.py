@@ -98,8 +98,8 @@ def test_a_driver_is_watched_while_it_is_connected(world):
 
 
 def test_a_connection_that_its_publisher_refuses_is_no_driver(world):
-    refused = world.connect('/driver')
-    refused.header = {'error': 'is not a publisher'}    # all that rospy keeps until it closes the connection
+    # the error is all that rospy keeps until it closes the connection
+    refused = type('Connection', (), dict(vars(world.connect('/driver')), header={'error': 'is not a publisher'}))()
     world.drivers = [refused]
     assert not world.nodes.sees('/driver') and not world.nodes.drivers
     assert world.nodes.connecting()     # it may try again
