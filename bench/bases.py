@@ -16,7 +16,7 @@ from base_cases import CASES
 from floors import aligned, consistency, digits, markdown_value, misses, report, squared_errors
 from replay import replay
 from robot_pose_ekf import RobotPoseEkf
-from rbx1_nav.estimation.filter import UNKNOWN_FLOOR
+from rbx1_nav.estimation.priors import UNKNOWN_FLOOR
 from rbx1_nav.estimation.inputs import Imu, Odom
 from rbx1_nav.robot.description import read_robot
 from rbx1_nav.ros.node import resources

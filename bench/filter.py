@@ -10,7 +10,7 @@ from floors import UNKNOWN_FLOOR, Follower, KnownHeading, figures, limits, misse
 from robot_pose_ekf import RobotPoseEkf
 from rbx1_nav.control.legs import StuckError
 from rbx1_nav.estimation.combined_odometry import CombinedOdometry
-from rbx1_nav.estimation.filter import UNKNOWN_FLOOR as any_floor, priors
+from rbx1_nav.estimation.priors import UNKNOWN_FLOOR as any_floor, priors
 from rbx1_nav.robot.description import read_robot
 from rbx1_nav.ros.node import resources
 from rbx1_nav.simulation.exercise import EXERCISE, METHODS, feed, simulate

@@ -10,7 +10,7 @@ import numpy
 import rosbag
 
 from replay import replay
-from rbx1_nav.estimation.filter import UNKNOWN_FLOOR
+from rbx1_nav.estimation.priors import UNKNOWN_FLOOR
 from rbx1_nav.estimation.gyro_input import GyroInput
 from rbx1_nav.ros import messages
 from rbx1_nav.units import SECOND

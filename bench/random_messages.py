@@ -13,7 +13,7 @@ import sys
 import numpy
 
 from rbx1_nav.estimation.combined_odometry import CombinedOdometry
-from rbx1_nav.estimation.filter import UNKNOWN_FLOOR, priors
+from rbx1_nav.estimation.priors import UNKNOWN_FLOOR, priors
 from rbx1_nav.estimation.inputs import MAX_VARIANCE, Imu, Odom, RejectedMessage
 from rbx1_nav.robot.kinematics import Pose, arc
 from rbx1_nav.robot.readings import MIN_VARIANCE

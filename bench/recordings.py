@@ -131,7 +131,7 @@ def read(path):
 def evaluate(path, surface):
     """The figures of a bag, and the lines of the filter. Raises Failure."""
     import rosbag
-    from rbx1_nav.estimation.filter import priors
+    from rbx1_nav.estimation.priors import priors
     from rbx1_nav.simulation.surfaces import load_surface
     from rbx1_nav.ros.node import resources
     try:

@@ -7,7 +7,7 @@ import pytest
 
 import random_messages
 from rbx1_nav.estimation import combined_odometry
-from rbx1_nav.estimation.filter import UNKNOWN_FLOOR, priors
+from rbx1_nav.estimation.priors import UNKNOWN_FLOOR, priors
 from rbx1_nav.estimation.inputs import MAX_VARIANCE, Imu
 from rbx1_nav.robot.readings import MIN_VARIANCE
 from rbx1_nav.units import SECOND

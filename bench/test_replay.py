@@ -8,7 +8,7 @@ import yaml
 import replay
 from rbx1_nav.control.motions import out_and_back
 from rbx1_nav.estimation.combined_odometry import CombinedOdometry
-from rbx1_nav.estimation.filter import priors
+from rbx1_nav.estimation.priors import priors
 from rbx1_nav.robot.description import read_robot
 from rbx1_nav.simulation.exercise import EXERCISE, TICK, Simulation, feed
 from rbx1_nav.simulation.surfaces import load_surface

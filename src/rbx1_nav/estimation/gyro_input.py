@@ -2,8 +2,10 @@
 
 The robot is on a floor: it turns about its vertical axis only.
 """
-from collections import namedtuple
+from __future__ import annotations
+
 from math import atan2, sqrt
+from typing import Callable, NamedTuple, Sequence, Tuple
 
 from rbx1_nav.estimation.inputs import Imu, check, check_number, check_variance
 from rbx1_nav.units import SECOND
@@ -12,32 +14,41 @@ UPRIGHT = (0.0, 0.0, 1.0)
 DEFAULT_VARIANCE = 0.00017 ** 2     # of an IMU that gives none: robot_pose_ekf, OdomEstimationNode::imuCallback
 MIN_SHARE = 1e-3    # of a rate that an axis must measure to be used: 3.14 in a URDF file is not pi
 
-ImuData = namedtuple('ImuData', 'stamp rates rate_variances orientation yaw_variance')
-ImuData.__doc__ = """An Imu message: stamp in ns; angular velocity (rad/s, None if it has none) with its variances by
-axis; orientation (quaternion x, y, z, w, None if it has none) with the variance of its yaw (rad^2)."""
+Vector = Tuple[float, float, float]
+Quaternion = Tuple[float, float, float, float]  # x, y, z, w, of length 1
 
 
-def multiply(one, other):
-    """The product of two quaternions (x, y, z, w)."""
+class ImuData(NamedTuple):
+    """An Imu message."""
+
+    stamp: int                          # ns
+    rates: Sequence[float] | None       # angular velocity by axis, rad/s; None if it has none
+    rate_variances: Sequence[float]     # by axis, rad^2/s^2
+    orientation: Quaternion | None      # None if it has none
+    yaw_variance: float                 # of the orientation, rad^2
+
+
+def multiply(one: Quaternion, other: Quaternion) -> Quaternion:
+    """The product of two quaternions."""
     ax, ay, az, aw = one
     bx, by, bz, bw = other
     return (aw * bx + ax * bw + ay * bz - az * by, aw * by - ax * bz + ay * bw + az * bx,
             aw * bz + ax * by - ay * bx + az * bw, aw * bw - ax * bx - ay * by - az * bz)
 
 
-def inverse(rotation):
-    """The inverse of a quaternion (x, y, z, w) of length 1."""
+def inverse(rotation: Quaternion) -> Quaternion:
+    """The inverse of a quaternion."""
     x, y, z, w = rotation
     return -x, -y, -z, w
 
 
-def vertical_axis(mounting):
+def vertical_axis(mounting: Quaternion) -> Vector:
     """The vertical axis of the robot in the frame of an IMU. mounting: rotation of the IMU in the robot's frame."""
     x, y, z, w = mounting
     return 2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)     # last row of the rotation matrix
 
 
-def turn_about(axis, before, after):
+def turn_about(axis: Vector, before: Quaternion, after: Quaternion) -> float:
     """The part of the turn from one orientation to another that is about an axis of the turned frame, rad."""
     x, y, z, w = multiply(inverse(before), after)
     sine = sqrt(x * x + y * y + z * z)
@@ -48,36 +59,38 @@ def turn_about(axis, before, after):
 class GyroInput:
     """Makes Imus from the ImuData of one IMU."""
 
-    def __init__(self, note=lambda text: None):
+    def __init__(self, note: Callable[[str], None] = lambda text: None) -> None:
         """note(text): called once for each thing that a user may want to know."""
         self.note = note
-        self.noted = set()
-        self.last = None            # ImuData that was accepted
+        self.noted: set[str] = set()
+        self.last: ImuData | None = None    # that was accepted
         self.has_rates = False      # whether it has ever measured an angular velocity
 
-    def read(self, data, vertical=UPRIGHT):
+    def read(self, data: ImuData, vertical: Vector = UPRIGHT) -> Imu:
         """The Imu of an ImuData. vertical: as of vertical_axis(). Raises RejectedMessage.
 
         Without an angular velocity (or if it and its variances are all 0), the rate is the change of the orientation
         since the last accepted ImuData, with the variance of the orientation per square second, as in robot_pose_ekf.
         """
-        check('angular_velocity_covariance[0]', -1, data.rates or data.orientation,
-              'an angular velocity or an orientation')
-        check('angular_velocity_covariance[0]', -1, data.rates or not self.has_rates, 'an angular velocity, as before')
-        absent = data.rates is None or not (self.has_rates or any(data.rates) or any(data.rate_variances))
-        return (self._from_orientation if absent and data.orientation else self._from_rates)(data, vertical)
+        rates, orientation = data.rates, data.orientation
+        check('angular_velocity_covariance[0]', -1, rates or orientation, 'an angular velocity or an orientation')
+        check('angular_velocity_covariance[0]', -1, rates or not self.has_rates, 'an angular velocity, as before')
+        if orientation and (rates is None or not (self.has_rates or any(rates) or any(data.rate_variances))):
+            return self._from_orientation(data, orientation, vertical)
+        assert rates is not None    # or there would be an orientation
+        return self._from_rates(data, rates, vertical)
 
-    def accepted(self, data):
+    def accepted(self, data: ImuData) -> None:
         """To be called with the ImuData of each Imu that the filter has accepted."""
         self.last = data
         self.has_rates = self.has_rates or bool(data.rates and any(data.rates))
 
-    def _from_rates(self, data, vertical):
+    def _from_rates(self, data: ImuData, rates: Sequence[float], vertical: Vector) -> Imu:
         axes = [axis for axis in range(3) if abs(vertical[axis]) >= MIN_SHARE]
         for axis in axes:
-            check_number(f"angular_velocity.{'xyz'[axis]}", data.rates[axis])
+            check_number(f"angular_velocity.{'xyz'[axis]}", rates[axis])
             if data.rate_variances[axis] != 0:
-                check_variance('angular_velocity_covariance[%d]' % (4 * axis), data.rate_variances[axis])
+                check_variance(f'angular_velocity_covariance[{4 * axis}]', data.rate_variances[axis])
         # an axis without a variance is used only if no other one has a variance
         variances = {axis: data.rate_variances[axis] for axis in axes if data.rate_variances[axis]}
         if not variances:
@@ -86,10 +99,10 @@ class GyroInput:
         # each axis measures its share of the rate: their mean, weighted by the inverse variances
         least = min(variances.values())
         total = sum(vertical[axis] ** 2 * least / variance for axis, variance in variances.items())
-        rate = sum(vertical[axis] * least / variance * data.rates[axis] for axis, variance in variances.items()) / total
+        rate = sum(vertical[axis] * least / variance * rates[axis] for axis, variance in variances.items()) / total
         return Imu(data.stamp, rate, least / total)
 
-    def _from_orientation(self, data, vertical):
+    def _from_orientation(self, data: ImuData, orientation: Quaternion, vertical: Vector) -> Imu:
         variance = data.yaw_variance
         if variance == 0:
             self._note('no covariance of the orientation: 0.00017 rad assumed')
@@ -97,12 +110,12 @@ class GyroInput:
         check_variance('orientation_covariance[8]', variance)
         last, rate = self.last, 0.0     # the filter does not use the first reading
         if last and last.orientation and data.stamp > last.stamp:
-            rate = turn_about(vertical, last.orientation, data.orientation) / ((data.stamp - last.stamp) / SECOND)
+            rate = turn_about(vertical, last.orientation, orientation) / ((data.stamp - last.stamp) / SECOND)
         if rate:
             self._note('no angular velocity: the change of its orientation is used')
         return Imu(data.stamp, rate, variance, is_mean=True)
 
-    def _note(self, text):
+    def _note(self, text: str) -> None:
         if text not in self.noted:
             self.noted.add(text)
             self.note(text)

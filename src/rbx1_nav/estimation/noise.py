@@ -1,4 +1,6 @@
 """How large noise and drift of the sensors are, learned from what is measured."""
+from __future__ import annotations
+
 from math import sqrt
 
 FIRST_COUNT = 5.0   # differences that seem to have been as large as expected, before the first one
@@ -12,11 +14,11 @@ class NoiseFactor:
     matching: Mehra, Approaches to Adaptive Filtering, IEEE Transactions on Automatic Control 17, 1972).
     """
 
-    def __init__(self):
+    def __init__(self) -> None:
         self.mean, self.count = 1.0, FIRST_COUNT
         self.value = 1.0
 
-    def add(self, square, share):
+    def add(self, square: float, share: float) -> None:
         """square: of a difference, divided by its variance; share: the fraction of this variance that is noise of the
         wheels."""
         self.count += share ** 2
@@ -30,10 +32,10 @@ class Drift:
     """Variance (rad^2/s^4) of the rate at which the gyro's bias changes between two standstills, by least squares.
     Only what exceeds the noise by 1 sigma counts."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         self.num = self.den = self.noise = self.value = 0.0
 
-    def add(self, time, square, noise):
+    def add(self, time: float, square: float, noise: float) -> None:
         """time: s since the bias was last known; square: of its change, rad^2/s^2; noise: the expected square without a
         drift."""
         weight = time ** 2

@@ -4,15 +4,18 @@ The wheels are at rest if the pose of the odometry has not changed for REST. Its
 publish constants. The gyro's turns are then added up in parts of PART. There are two cases:
 
 - standstill: the rate of a part is the bias that is known, or the robot has just been switched on and the rate is
-steady
-  and within the limit. It is the bias.
+  steady and within the limit. It is the bias.
 - carried: any other rate. Someone turns the robot by hand: it turns as the gyro measures, and its pose is uncertain.
   A rate that is steady for longer than a hand can be is a bias that has changed. If it was steady for a shorter time
   when the robot drives off, the bias is uncertain.
 """
+from __future__ import annotations
+
 from math import inf, radians, sqrt
 from typing import NamedTuple
 
+from rbx1_nav.estimation.filter import Filter
+from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.units import SECOND, wrap_angle
 
 STANDSTILL, CARRIED = 'standstill', 'carried'
@@ -34,11 +37,12 @@ MIN_DENSITY = radians(0.005) ** 2   # rad^2/s: square of the noise density of a 
 
 class Part(NamedTuple):
     """What the gyro has measured in some time: s, rad, rad^2."""
+
     time: float = 0.0
     angle: float = 0.0
     variance: float = 0.0
 
-    def plus(self, other):
+    def plus(self, other: Part) -> Part:
         """The sum of both."""
         return Part(self.time + other.time, self.angle + other.angle, self.variance + other.variance)
 
@@ -46,25 +50,25 @@ class Part(NamedTuple):
 class Standstill:
     """Watches the odometry and the gyro, and tells the filter what they mean while the wheels are at rest."""
 
-    def __init__(self, max_bias):
+    def __init__(self, max_bias: float) -> None:
         """max_bias: rad/s, the largest bias of a gyro."""
         self.max_bias = max_bias
-        self.pose = None            # the pose that does not change
-        self.since = None           # ns, stamp of the first message with it
-        self.case = None            # STANDSTILL or CARRIED while the wheels are at rest
+        self.pose: Pose | None = None       # the pose that does not change
+        self.since = 0              # ns, stamp of the first message with it
+        self.case: str | None = None        # STANDSTILL or CARRIED while the wheels are at rest
         self.density = 0.0          # rad^2/s, measured noise of the gyro
         self.samples = 0            # that it is measured from
         self.max_density = inf      # rad^2/s: a reading that claims more noise than that is not believed
         self._clear()
 
-    def _clear(self):
+    def _clear(self) -> None:
         self.case = None
         self.part = Part()          # the present one
-        self.complete = None        # the one before, used once the wheels are at rest after it, too
+        self.complete: Part | None = None   # the one before, used once the wheels are at rest after it, too
         self.undecided = Part()     # parts with a steady rate that is not known to be the bias
-        self.last = None            # the last Part that was used
+        self.last: Part | None = None       # the last Part that was used
 
-    def rests(self, stamp, pose):
+    def rests(self, stamp: int, pose: Pose) -> bool:
         """Whether the wheels are at rest at the Pose with this stamp (ns)."""
         last = self.pose
         if (last is None or abs(pose.x - last.x) > SAME or abs(pose.y - last.y) > SAME
@@ -72,7 +76,7 @@ class Standstill:
             self.pose, self.since = pose, stamp
         return stamp - self.since >= REST
 
-    def leave(self, ekf):
+    def leave(self, ekf: Filter) -> Part:
         """The wheels are not at rest. Returns the Part in which the robot may have begun to move: the Filter has not
         used it."""
         unused = self.part.plus(self.complete or Part())
@@ -81,7 +85,7 @@ class Standstill:
         self._clear()
         return unused
 
-    def add(self, step, ekf):
+    def add(self, step: Part, ekf: Filter) -> None:
         """Add a step (Part) at rest, and tell the Filter what the parts before it mean."""
         self.case = self.case or STANDSTILL
         if self.complete:
@@ -91,7 +95,7 @@ class Standstill:
         if self.part.time > PART - ROUNDING:
             self.complete, self.part = self.part, Part()
 
-    def _use(self, part, ekf):
+    def _use(self, part: Part, ekf: Filter) -> None:
         """Tell the Filter what a Part means."""
         rate = part.angle / part.time
         margin = STEADY + DEVIATIONS * sqrt(part.variance) / part.time
@@ -113,7 +117,7 @@ class Standstill:
         elif self.undecided.time >= (STEADY_AGAIN if ekf.bias_known else FIRST_STEADY) - ROUNDING:
             self._learn(self.undecided, ekf)
 
-    def _measure_noise(self, part, rate):
+    def _measure_noise(self, part: Part, rate: float) -> None:
         """The noise by the differences of successive rates: the variance of each is that of the angle / time^2."""
         if self.last:
             sample = (rate - self.last.angle / self.last.time) ** 2 / (1 / part.time + 1 / self.last.time)
@@ -123,11 +127,11 @@ class Standstill:
                 self.max_density = NOISE_FACTOR * max(self.density, MIN_DENSITY)
         self.last = part
 
-    def _learn(self, part, ekf):
+    def _learn(self, part: Part, ekf: Filter) -> None:
         ekf.learn_bias(part.angle / part.time, part.variance / part.time ** 2)
         self.undecided = Part()
         self.case = STANDSTILL
 
-    def _carry(self, part, ekf):
+    def _carry(self, part: Part, ekf: Filter) -> None:
         ekf.carry(part.angle - ekf.bias * part.time, part.time)
         self.case = CARRIED

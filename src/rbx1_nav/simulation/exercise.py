@@ -18,7 +18,7 @@ from rbx1_nav.arrays import Array
 from rbx1_nav.control.legs import Leg, out_and_back_by_odometry
 from rbx1_nav.control.motions import Motion, out_and_back
 from rbx1_nav.estimation.combined_odometry import CombinedOdometry
-from rbx1_nav.estimation.filter import Priors, priors
+from rbx1_nav.estimation.priors import Priors, priors
 from rbx1_nav.estimation.inputs import Imu, Odom
 from rbx1_nav.robot.description import Robot
 from rbx1_nav.robot.kinematics import Pose

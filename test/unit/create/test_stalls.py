@@ -6,7 +6,7 @@ import pytest
 
 from driven_create import SURFACES, DrivenCreate
 from rbx1_nav.estimation.combined_odometry import CombinedOdometry
-from rbx1_nav.estimation.filter import UNKNOWN_FLOOR
+from rbx1_nav.estimation.priors import UNKNOWN_FLOOR
 from rbx1_nav.estimation.inputs import Imu, Odom
 from rbx1_nav.simulation.surfaces import load_surface
 from rbx1_nav.units import SECOND, wrap_angle

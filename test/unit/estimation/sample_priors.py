@@ -1,7 +1,7 @@
 """The priors that the filter's tests begin with."""
 import os
 
-from rbx1_nav.estimation.filter import priors
+from rbx1_nav.estimation.priors import priors
 from rbx1_nav.simulation.surfaces import load_surface
 
 SURFACES = os.path.join(os.path.dirname(__file__), '..', '..', '..', 'config', 'surfaces')

@@ -8,7 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rbx1_nav.estimation.combined_odometry import CombinedOdometry
-from rbx1_nav.estimation.filter import BIAS, UNKNOWN_FLOOR, X, Y, YAW
+from rbx1_nav.estimation.model import BIAS, X, Y, YAW
+from rbx1_nav.estimation.priors import UNKNOWN_FLOOR
 from rbx1_nav.estimation.inputs import Imu, Odom, RejectedMessage
 from rbx1_nav.estimation.limits import Limits
 from rbx1_nav.robot.kinematics import ORIGIN, Pose, arc
@@ -114,7 +115,7 @@ def test_a_slip_that_the_floor_does_not_have_is_reported_as_another_floor():
     robot = Robot(IDEAL)
     robot.send(100)
     turn_with_wheels(robot, 500, 1.08)
-    assert robot.combined.another_floor and not robot.combined.contradicts and len(robot.warnings) == 1
+    assert robot.combined.doubts.another_floor and not robot.combined.contradicts and len(robot.warnings) == 1
 
 
 @pytest.mark.parametrize('motion', [
@@ -333,7 +334,7 @@ def test_odometry_that_recovers_in_a_turn_does_not_count_it_again(odom_first):
 def test_readings_without_any_odometry_are_not_stored():
     robot = Robot()
     robot.send(1000, odom=False)
-    assert not robot.combined.readings
+    assert not robot.combined.readings.waiting
 
 
 def test_readings_at_the_limit_of_the_measurement_range_are_not_used():
@@ -537,7 +538,7 @@ def test_messages_from_before_a_reset_do_not_count():
     robot = Robot()
     robot.send(100, 0.2)
     late = [(robot.now - STEP, robot.odom()), (robot.now, robot.odom())]
-    robot.combined.last_stamp['odom'] -= 2 * STEP       # as if they were still on their way
+    robot.combined.arrivals.last_stamp['odom'] -= 2 * STEP       # as if they were still on their way
     robot.combined.reset(robot.now - 10 * STEP)
     for stamp, odom in late:
         robot.combined.add_odom(robot.now, odom._replace(stamp=stamp - 1), VARIANCES)

@@ -7,7 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rbx1_nav.estimation.filter import BIAS, SCALE, SLIP_WALK, STRAIGHT, TURNING, UNKNOWN_FLOOR, X, YAW, Filter
+from rbx1_nav.estimation.filter import SLIP_WALK, Filter
+from rbx1_nav.estimation.model import BIAS, SCALE, STRAIGHT, TURNING, X, YAW
+from rbx1_nav.estimation.priors import UNKNOWN_FLOOR
 from rbx1_nav.robot.kinematics import ORIGIN, Pose
 from sample_priors import IDEAL, PRIORS
 
@@ -23,20 +25,20 @@ def with_state(state, prior=PRIORS):
     """A filter with this state, and 1 mm, mrad ... of uncertainty."""
     ekf = Filter(prior, ORIGIN)
     ekf.state = list(state)
-    ekf.root[:, :7] = 1e-3 * numpy.eye(7)
+    ekf.P.root[:, :7] = 1e-3 * numpy.eye(7)
     return ekf
 
 
 def whole_covariance(ekf):
     """Of the whole state."""
-    return ekf.root @ ekf.root.T
+    return ekf.P.root @ ekf.P.root.T
 
 
 def after_step(state, wheels, gyro, forward, left, variance):
     """A filter, one step of 0.02 s after it had this state."""
     ekf = with_state(state, IDEAL)
-    turn = ekf.turn(0.02, wheels, gyro)
-    ekf.move(0.02, turn, 0.1, forward, left, variance)
+    turn = ekf.update(0.02, wheels, gyro)
+    ekf.predict(0.02, turn, 0.1, forward, left, variance)
     return ekf
 
 
@@ -71,7 +73,7 @@ def test_a_comparison_changes_state_and_covariance_as_in_the_textbook(state, tur
     ekf = with_state(state, IDEAL)
     grip, scale = 1 - state[TURNING], 1 + state[SCALE]
     gyro = (turned * grip + 1e-4) * scale + state[BIAS] * LONG     # differs by 1e-4 rad
-    ekf.turn(LONG, (turned, wheel_noise), (gyro, gyro_noise))
+    ekf.update(LONG, (turned, wheel_noise), (gyro, gyro_noise))
     row = numpy.zeros(7)
     row[BIAS] = LONG / scale
     if turned:      # wheels that stand tell nothing of slip and scale
@@ -88,8 +90,8 @@ def test_a_step_with_both_sensors_is_as_certain_as_the_least_squares_of_both(tur
     grip, scale = 1 - slip, 1 + scale_error
     duration = 1.01         # long enough to be compared at once
     ekf = with_state([0.0, 0.0, 0.0, bias, scale_error, slip, 0.0], IDEAL)
-    turn = ekf.turn(duration, (turned / grip, wheel_noise), (turned * scale + bias * duration, gyro_noise))
-    ekf.move(duration, turn)
+    turn = ekf.update(duration, (turned / grip, wheel_noise), (turned * scale + bias * duration, gyro_noise))
+    ekf.predict(duration, turn)
     assert ekf.state[YAW] == pytest.approx(turned, abs=1e-9)
     # derivatives of both measurements by the turn, the bias, the scale error and the slip. Least squares adds up the
     # information, the inverse of the covariance; there is none about the turn before
@@ -107,10 +109,10 @@ def test_a_step_with_both_sensors_is_as_certain_as_the_least_squares_of_both(tur
 @pytest.mark.parametrize('count', [2, 5, 20])
 def test_short_steps_are_compared_by_their_sum(count):
     whole, parts = with_state([0.0] * 7), with_state([0.0] * 7)
-    whole.turn(1.01, (0.19, 1e-3), (0.18, 1e-6))
+    whole.update(1.01, (0.19, 1e-3), (0.18, 1e-6))
     for _ in range(count):
         assert parts.state == [0.0] * 7
-        parts.turn(1.01 / count, (0.19 / count, 1e-3 / count), (0.18 / count, 1e-6 / count))
+        parts.update(1.01 / count, (0.19 / count, 1e-3 / count), (0.18 / count, 1e-6 / count))
     numpy.testing.assert_allclose(parts.state, whole.state, atol=1e-12)
     numpy.testing.assert_allclose(whole_covariance(parts), whole_covariance(whole), atol=1e-15)
 
@@ -123,34 +125,34 @@ def test_a_rounded_turn_of_the_wheels_is_no_slip(rate):
     for before, after in zip(counted, counted[1:]):
         wheels = (after - before) * degree
         # a Create's: two roundings, and the floor's noise in what was counted
-        ekf.turn(1 / 30, (wheels, degree ** 2 / 6 + 0.09 ** 2 * wheels), (rate / 30, 5e-8))
+        ekf.update(1 / 30, (wheels, degree ** 2 / 6 + 0.09 ** 2 * wheels), (rate / 30, 5e-8))
     # of the 0.05 that it was uncertain by
     assert abs(ekf.state[TURNING]) < 0.01
 
 
 def test_a_gap_in_which_the_rate_was_steady_is_measured_by_wheels_and_gyro():
     ekf = with_state([0.0] * 7)
-    turn = ekf.turn(0.4, (0.4, 0.002), (0.4, 1e-6), missing=0.1)
+    turn = ekf.update(0.4, (0.4, 0.002), (0.4, 1e-6), missing=0.1)
     assert turn.angle == pytest.approx(0.4) and 0.0005 < turn.variance < 0.001
 
 
 def test_a_gap_in_which_the_rate_changed_is_measured_by_the_wheels():
     ekf = with_state([0.0] * 7)
-    turn = ekf.turn(0.4, (0.1, 0.002), (0.4, 1e-6), missing=0.1)
+    turn = ekf.update(0.4, (0.1, 0.002), (0.4, 1e-6), missing=0.1)
     # the weight of the gyro is at most that of a turn which is wrong by the difference
     assert turn.angle - 0.1 < 0.3 * 0.002 / 0.3 ** 2 and 0.0015 < turn.variance < 0.002
 
 
 def test_without_wheels_a_gap_is_uncertain():
     ekf = with_state([0.0] * 7)
-    turn = ekf.turn(0.4, None, (0.4, 1e-6), missing=0.1)
+    turn = ekf.update(0.4, None, (0.4, 1e-6), missing=0.1)
     assert turn.angle == pytest.approx(0.4) and turn.variance == pytest.approx(0.1 + 1e-6)
 
 
 def test_slip_and_bias_walk():
     ekf = with_state([0.0] * 7)
     for _ in range(1000):
-        ekf.move(0.02, ekf.turn(0.02, (0.01, 1e-6)), 0.0, 0.004, 0.0, 1e-8)
+        ekf.predict(0.02, ekf.update(0.02, (0.01, 1e-6)), 0.0, 0.004, 0.0, 1e-8)
     grown = numpy.diagonal(whole_covariance(ekf)) - 1e-6
     # of 4 m and 10 rad, all but the last steps
     assert grown[STRAIGHT] == pytest.approx(4 * SLIP_WALK ** 2, rel=0.05)
@@ -161,16 +163,16 @@ def test_slip_and_bias_walk():
 @given(st.floats(0.01, 3), st.floats(0.01, 3), st.integers(1, 50))
 def test_the_noise_of_a_floor_does_not_depend_on_the_step(turned, travelled, count):
     ekf = Filter(UNKNOWN_FLOOR, ORIGIN)
-    ekf.root[TURNING] = 0.0
+    ekf.P.root[TURNING] = 0.0
     with patch('rbx1_nav.estimation.filter.SLIP_WALK', 0.0):
         for _ in range(count):
-            ekf.move(0.0, ekf.turn(0.0, (turned / count, 1e-12), travelled=travelled / count))
+            ekf.predict(0.0, ekf.update(0.0, (turned / count, 1e-12), travelled=travelled / count))
     assert ekf.covariance[YAW, YAW] == pytest.approx(0.084 ** 2 * turned + 0.066 ** 2 * travelled + 1e-9)
     straight = Filter(UNKNOWN_FLOOR, ORIGIN)
-    straight.root[STRAIGHT] = 0.0
+    straight.P.root[STRAIGHT] = 0.0
     with patch('rbx1_nav.estimation.filter.SLIP_WALK', 0.0):
         for _ in range(count):
-            straight.move(0.0, straight.turn(0.0), 0.0, travelled / count, 0.0, 1e-12)
+            straight.predict(0.0, straight.update(0.0), 0.0, travelled / count, 0.0, 1e-12)
     assert straight.covariance[X, X] == pytest.approx(0.044 ** 2 * travelled + 1e-9)
 
 
@@ -181,7 +183,7 @@ def test_the_covariance_stays_symmetric_and_positive(steps):
     for turned, forward, duration, wheel_variance, gyro_variance, sensors in steps:
         wheels = (turned, wheel_variance * duration ** 2) if sensors < 2 else None
         gyro = (turned * 0.9, gyro_variance * duration ** 2) if sensors > 0 else None
-        ekf.move(duration, ekf.turn(duration, wheels, gyro, abs(forward)), 0.0, forward, 0.0,
+        ekf.predict(duration, ekf.update(duration, wheels, gyro, abs(forward)), 0.0, forward, 0.0,
                  wheel_variance * duration ** 2)
         for covariance in whole_covariance(ekf), ekf.covariance:
             numpy.testing.assert_array_equal(covariance, covariance.T)
@@ -193,8 +195,8 @@ def test_the_covariance_stays_symmetric_and_positive(steps):
 @given(angles, angles, variances, variances)
 def test_the_turn_is_the_mean_of_wheels_and_gyro_by_their_variances(by_wheels, by_gyro, wheel_noise, gyro_noise):
     ekf = Filter(IDEAL, ORIGIN)
-    ekf.root[BIAS:] = 0.0       # no errors but the noise
-    angle, noise, *_ = ekf.turn(0.02, (by_wheels, wheel_noise), (by_gyro, gyro_noise))
+    ekf.P.root[BIAS:] = 0.0       # no errors but the noise
+    angle, noise, *_ = ekf.update(0.02, (by_wheels, wheel_noise), (by_gyro, gyro_noise))
     if (by_wheels - by_gyro) ** 2 > 25 * (wheel_noise + gyro_noise):
         assert (angle, noise) == (by_gyro, gyro_noise)
     else:
@@ -208,10 +210,10 @@ def drive(prior, slip, gyro_factor=1.0, turned=6.0):
     turn; whether it has noticed another floor, and the sum of contradictions (rad)."""
     ekf, floor, contradiction = Filter(prior, ORIGIN), False, 0.0
     for _ in range(100):
-        ekf.move(0.02, ekf.turn(0.02, (0.0, 1e-9), (0.0, 1e-9)))
+        ekf.predict(0.02, ekf.update(0.02, (0.0, 1e-9), (0.0, 1e-9)))
     for _ in range(round(turned / 0.02)):
         wheels, gyro = 0.02 / (1 - slip), 0.02 * gyro_factor
-        ekf.move(0.02, ekf.turn(0.02, (wheels, 1e-8), (gyro, 1e-9)))
+        ekf.predict(0.02, ekf.update(0.02, (wheels, 1e-8), (gyro, 1e-9)))
         if ekf.agreement.add(wheels, gyro, 1e-9, 0.0, 0.02):
             contradiction += abs(ekf.doubt_heading())
             floor = floor or ekf.doubt_floor()
@@ -225,7 +227,7 @@ def test_another_floor_is_noticed():
     other, noticed, contradiction = drive(floor, 0.08)
     assert noticed and not contradiction
     # its straight slip is less certain then, and its turn still the gyro's
-    assert (other.root[STRAIGHT] @ other.root[STRAIGHT]) > 2 * (same.root[STRAIGHT] @ same.root[STRAIGHT])
+    assert other.P.variance(STRAIGHT) > 2 * same.P.variance(STRAIGHT)
     assert other.state[YAW] == pytest.approx(6.0, abs=0.02)
 
 
@@ -254,7 +256,7 @@ def test_a_contradiction_changes_neither_the_bias_nor_the_scale():
     ekf, _, contradiction = drive(UNKNOWN_FLOOR, 0.5, turned=1.0)
     before = ekf.state[BIAS], ekf.state[SCALE]
     for _ in range(300):
-        ekf.move(0.02, ekf.turn(0.02, (0.04, 1e-8), (0.02, 1e-9)))
+        ekf.predict(0.02, ekf.update(0.02, (0.04, 1e-8), (0.02, 1e-9)))
     assert contradiction and (ekf.state[BIAS], ekf.state[SCALE]) == before
 
 
@@ -264,17 +266,17 @@ def test_wheels_that_agree_with_the_gyro_leave_little_scale_error_and_little_noi
     assert sqrt(agree.covariance[YAW, YAW]) < 0.06
     agree.place(ORIGIN, 1e-9 * numpy.eye(3))
     for _ in range(100):
-        agree.move(0.02, agree.turn(0.02, (0.0, 1e-8), (0.0, 1e-9), 0.01), 0.0, 0.01)
+        agree.predict(0.02, agree.update(0.02, (0.0, 1e-8), (0.0, 1e-9), 0.01), 0.0, 0.01)
     # after 1 m, by the noise of an unknown floor alone: 0.044 m; by a slip of 5 %: 0.05 m
-    noise = agree.covariance[X, X] - float(agree.root[STRAIGHT] @ agree.root[STRAIGHT])
+    noise = agree.covariance[X, X] - agree.P.variance(STRAIGHT)
     assert noise < 0.03 ** 2
 
 
 def test_the_straight_slip_stays_possible_however_far_the_robot_drives():
     ekf = Filter(UNKNOWN_FLOOR, ORIGIN)
     for _ in range(2000):
-        ekf.move(1.0, ekf.turn(1.0, (0.0, 1e-8), (0.0, 1e-9), 1.0), 0.0, 1.0)
-    assert 0.05 < sqrt(ekf.root[STRAIGHT] @ ekf.root[STRAIGHT]) < 0.11
+        ekf.predict(1.0, ekf.update(1.0, (0.0, 1e-8), (0.0, 1e-9), 1.0), 0.0, 1.0)
+    assert 0.05 < sqrt(ekf.P.variance(STRAIGHT)) < 0.11
 
 
 def test_place_leaves_no_doubt():

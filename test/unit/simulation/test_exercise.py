@@ -8,7 +8,7 @@ import pytest
 import yaml
 
 from rbx1_nav.estimation.combined_odometry import CombinedOdometry
-from rbx1_nav.estimation.filter import priors
+from rbx1_nav.estimation.priors import priors
 from rbx1_nav.robot.description import read_robot
 from rbx1_nav.simulation.exercise import METHODS, feed, simulate, simulate_many
 from rbx1_nav.simulation.surfaces import load_surface

@@ -4,8 +4,9 @@ from __future__ import annotations
 from math import cos, sin
 from typing import NamedTuple
 
+from rbx1_nav.estimation.arrivals import IMU
 from rbx1_nav.estimation.combined_odometry import DROPOUT_SPEED, CombinedOdometry, Estimate
-from rbx1_nav.estimation.filter import BIAS, SCALE, STRAIGHT, TURNING
+from rbx1_nav.estimation.model import BIAS, SCALE, STRAIGHT, TURNING
 from rbx1_nav.robot.readings import MEASURED
 from rbx1_nav.simulation.floor_noise import CELL_TRAVELLED, CELL_TURNED
 from rbx1_nav.units import SECOND, wrap_angle
@@ -39,11 +40,7 @@ def estimate_twist(combined: CombinedOdometry, before: Estimate) -> Twist | None
     elapsed = (last.stamp - before.stamp) / SECOND
     if elapsed <= 0:
         return None
-    state, root = ekf.state, ekf.root
-
-    def variance(index: int) -> float:
-        return float(root[index] @ root[index])
-
+    state, variance = ekf.state, ekf.P.variance
     turn = wrap_angle(last.pose.yaw - before.pose.yaw) / elapsed
     travel_time = (last.odom.stamp - before.odom.stamp) / SECOND
     forward = left = by_wheels = 0.0
@@ -62,10 +59,11 @@ def estimate_twist(combined: CombinedOdometry, before: Estimate) -> Twist | None
             forward_variance = MEASURED + max(last.odom.linear_variance, floor) + slip * forward ** 2
             left_variance = MEASURED + slip * left ** 2      # wheels do not roll sideways
 
-    imu = combined.last_imu if combined.gyro_used and not combined.timed_out['imu_data'] else None
+    imu = combined.readings.last if combined.gyro_used and not combined.timed_out[IMU] else None
     if imu:
         step = last.stamp - before.stamp
-        averaged = imu.variance * min(1.0, (combined.period or step) / step)     # over the readings of the step
+        # over the readings of the step
+        averaged = imu.variance * min(1.0, (combined.readings.period or step) / step)
         turn_variance = averaged + variance(BIAS) + variance(SCALE) * turn ** 2
         if combined.case == 'contradiction':    # one of them is wrong
             turn_variance += (by_wheels * (1 - state[TURNING]) - turn) ** 2

@@ -7,8 +7,9 @@ import rosgraph
 import rospy
 
 from rbx1_nav.config import ConfigError, Section, show
-from rbx1_nav.estimation.combined_odometry import MAX_AGE, MAX_LEAD, CombinedOdometry
-from rbx1_nav.estimation.filter import UNKNOWN_FLOOR, priors
+from rbx1_nav.estimation.arrivals import MAX_AGE, MAX_LEAD
+from rbx1_nav.estimation.combined_odometry import CombinedOdometry
+from rbx1_nav.estimation.priors import UNKNOWN_FLOOR, priors
 from rbx1_nav.estimation.limits import Limits
 from rbx1_nav.ros.network.master import call
 from rbx1_nav.ros.node import resources

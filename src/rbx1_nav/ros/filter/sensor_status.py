@@ -5,7 +5,7 @@ import rospy
 from diagnostic_msgs.msg import DiagnosticStatus
 from diagnostic_updater import Updater
 
-from rbx1_nav.estimation.filter import BIAS, STRAIGHT, TURNING
+from rbx1_nav.estimation.model import BIAS, STRAIGHT, TURNING
 
 OK, WARN = DiagnosticStatus.OK, DiagnosticStatus.WARN
 CONTRADICTION = WARN, 'Wheels and gyro contradict each other'
@@ -68,7 +68,7 @@ class Diagnostics:
             status.add('Case', case or 'none')
             for key, index, unit in (('Gyro bias (degrees/s)', BIAS, radians(1)), ('Slip in turns', TURNING, 1),
                                      ('Slip in straight motion', STRAIGHT, 1)):
-                sigma = sqrt(ekf.root[index] @ ekf.root[index]) if ekf else None
+                sigma = sqrt(ekf.P.variance(index)) if ekf else None
                 status.add(key, f'{ekf.state[index] / unit:.4f} +- {sigma / unit:.4f}' if ekf else 'unknown')
             sigma = sqrt(combined.estimate.covariance[2, 2]) / radians(1) if ekf else None
             status.add('Standard deviation of the heading (degrees)', f'{sigma:.2f}' if ekf else 'unknown')

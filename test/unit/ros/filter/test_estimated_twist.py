@@ -5,7 +5,7 @@ from math import pi
 import pytest
 
 from rbx1_nav.estimation.combined_odometry import DROPOUT_SPEED, CombinedOdometry
-from rbx1_nav.estimation.filter import UNKNOWN_FLOOR, priors
+from rbx1_nav.estimation.priors import UNKNOWN_FLOOR, priors
 from rbx1_nav.estimation.inputs import Imu, Odom
 from rbx1_nav.robot.kinematics import ORIGIN, arc
 from rbx1_nav.ros.filter.estimated_twist import estimate_twist
