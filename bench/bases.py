@@ -189,7 +189,7 @@ def table(rows):
 
 def markdown(rows):
     """The same in Markdown. What is beyond its limit is bold."""
-    yield f"| case | {' | '.join((title for _, title, _ in COLUMNS))} |"
+    yield f"| case | {' | '.join(title for _, title, _ in COLUMNS)} |"
     yield f"{'|---' * (len(COLUMNS) + 1)}|"
     for row in rows:
         yield '| %s |' % ' | '.join([row['case'], *(markdown_value(row, name, 1, places) if name in row else '-'

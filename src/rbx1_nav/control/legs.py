@@ -42,15 +42,15 @@ class State(Enum):
     NEW = 'it has no pose yet'
     APPROACH = 'it drives, slower and slower'
     TRIAL_STOP = 'it has stopped just before its goal, and is called again when the robot is at a standstill'
-    LAST_PART = 'it goes on, and knows how far the robot rolls on'
+    LAST_PART = 'it drives on, and knows the stopping distance'
     FINISHED = 'it has stopped at its goal'
 
 
 class Leg(ABC):
     """One motion, slower and slower towards its goal, with a trial stop just before it.
 
-    A robot rolls on after a stop. How far depends on the robot, the floor, and all delays in between. The trial stop
-    measures it. Then the robot goes on at its lowest speed, and stops that far before the goal. So a leg is driven in
+    A robot does not stop at once. Its stopping distance depends on the robot, the floor, and all delays in between. The
+    trial stop measures it. Then the robot goes on at its lowest speed, and stops that far before the goal. So a leg is driven in
     two parts, with a rest between them.
     """
 
@@ -130,7 +130,7 @@ class Leg(ABC):
         self.last = pose
 
     def _begin_trial(self, to_go: float, travel: float) -> None:
-        """Stop, to see how far the robot rolls on. travel: per tick, m or rad."""
+        """Stop, to measure the stopping distance. travel: per tick, m or rad."""
         self.trial_to_go = to_go
         self.trial_travel = max(travel, 1e-9)   # never divide by 0
         self.state = State.TRIAL_STOP

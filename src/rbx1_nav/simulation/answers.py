@@ -22,8 +22,7 @@ SLOW_ANSWER = 0.05      # s of wall time: a later command may not be an answer t
 BURST_TIME = 1.0        # s of wall time: a burst answers at most the ticks of this time
 MAX_BACKLOG = 25        # commands: more of them in the queue than at the start mean more than one per tick
 
-
-SentCommand = Tuple[float, ...]     # linear (m/s), angular (rad/s), and what else is in it
+ReceivedCommand = Tuple[float, ...]     # linear (m/s), angular (rad/s), and what else is in it
 
 
 class NotInStep(Exception):
@@ -44,7 +43,7 @@ class Answers:
         self.unread = unread
         self.ended = ended
         # one per tick; longer where the clock ran ahead of the driver at first
-        self.queue: Deque[SentCommand] = deque()
+        self.queue: Deque[ReceivedCommand] = deque()
         self.received = 0
         self.quiet = FIRST_QUIET
         self.lag = 0                # length of the queue when the stream began
@@ -56,12 +55,12 @@ class Answers:
         """Whether it drives by this clock: what looks otherwise is a busy machine."""
         return self.answered >= PROOF
 
-    def receive(self, command: SentCommand) -> None:
+    def receive(self, command: ReceivedCommand) -> None:
         """Accept a command that just arrived."""
         self.received += 1
         self.queue.append(command)
 
-    def next(self) -> SentCommand | None:
+    def next(self) -> ReceivedCommand | None:
         """Wait for this tick's command, and return it; None if there is none. Raises NotInStep.
 
         To be called for each tick, holding `changed`.

@@ -13,7 +13,7 @@ from threading import Condition
 from time import monotonic, sleep
 from typing import Any, Callable, Deque, Protocol
 
-from rbx1_nav.simulation.answers import BURST_TIME, Answers, NotInStep, SentCommand
+from rbx1_nav.simulation.answers import BURST_TIME, Answers, NotInStep, ReceivedCommand
 from rbx1_nav.simulation.stream import Stream
 
 NODE_TIMEOUT = 5.0      # s of wall time that a tick waits for a node
@@ -65,7 +65,7 @@ class Lockstep:
     """Applies commands, tuples that begin with linear (m/s) and angular (rad/s), at the tick at which they were
     sent."""
 
-    def __init__(self, apply: Callable[[SentCommand], None], report: Callable[[str, str], None], nodes: Nodes,
+    def __init__(self, apply: Callable[[ReceivedCommand], None], report: Callable[[str, str], None], nodes: Nodes,
                  ended: Callable[[], bool]) -> None:
         """apply(command): puts a command in force; report(name, reason): a node is not in step; ended(): whether not
         to wait any more."""
@@ -76,15 +76,15 @@ class Lockstep:
         # by the id of the connection, which the CommandSource keeps alive: so it stays unique
         self.drivers: dict[int, CommandSource] = {}
         # (driver, command, whether a tick may have prompted it), not in force yet
-        self.arrived: list[tuple[CommandSource, SentCommand, bool]] = []
-        self.delayed: list[SentCommand] = []    # commands for the next tick
+        self.arrived: list[tuple[CommandSource, ReceivedCommand, bool]] = []
+        self.delayed: list[ReceivedCommand] = []    # commands for the next tick
         self.tick = 0           # number of the present tick
         self.ticks: Deque[float] = deque()      # s of the monotonic clock: those of the last BURST_TIME
         self.over = True        # whether it is over
         self.over_since = 0.0   # s of the monotonic clock
         self.changed = Condition()
 
-    def receive(self, connection: object, name: str, command: SentCommand) -> None:
+    def receive(self, connection: object, name: str, command: ReceivedCommand) -> None:
         """Accept a command that just arrived, in any thread. connection: any object; name: of the node that sent it."""
         with self.changed:
             driver = self.drivers.get(id(connection))
@@ -208,7 +208,7 @@ class Lockstep:
                 else:
                     self._apply(driver, command, prompted)
 
-    def _apply(self, driver: CommandSource, command: SentCommand, prompted: bool) -> None:
+    def _apply(self, driver: CommandSource, command: ReceivedCommand, prompted: bool) -> None:
         """Put a command in force, now or at the next tick."""
         linear, angular, *_ = command
         velocity, lag = (linear, angular), 0

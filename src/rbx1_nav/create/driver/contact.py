@@ -82,7 +82,7 @@ class Contact:
         self._warned = False        # that no robot answers
 
     def attach(self, now: int, line: Line) -> None:
-        """A line was opened. The first bytes on it are a stop if the robot is known, else those of the search."""
+        """A line was opened. The first bytes on it are a stop if the robot is known, and the first ones of the search if not."""
         self.line = line
         self.answers = False
         if not (self.found and line.is_same):

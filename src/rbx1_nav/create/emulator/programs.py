@@ -22,7 +22,7 @@ LEG_TIME, TURN_TIME = 4.5, 1.5      # s; a turn of more than 90 degrees
 ABORT = 255             # -1, the number of a demo that stops the one that is running (Create p. 8)
 
 Curve = Tuple[float, float]     # mm/s, mm
-Motion = Callable[[float], Optional[Curve]]
+Course = Callable[[float], Optional[Curve]]
 
 FORWARD, TURN, STILL = (SPEED, STRAIGHT[0]), (SPEED, IN_PLACE_LEFT), (0, STRAIGHT[0])
 
@@ -68,7 +68,7 @@ def still(_: float) -> Curve:
 
 
 # by number: cover, cover and dock, spot cover, mouse, figure eight, wimp, home, tag, Pachelbel, banjo (Create p. 8)
-DEMOS: Tuple[Motion, ...] = (cover, search, spot, forward, figure_eight, still, spin, spin, still, still)
+DEMOS: Tuple[Course, ...] = (cover, search, spot, forward, figure_eight, still, spin, spin, still, still)
 
 
 class Programs:
@@ -77,7 +77,7 @@ class Programs:
     def __init__(self, body: Body) -> None:
         self.body = body
         self.started = 0        # programs since the robot was made
-        self._motion: Motion | None = None
+        self._motion: Course | None = None
         self._start: int | None = None      # ns, the first update of the program
 
     @property
@@ -125,13 +125,13 @@ class Programs:
         elif data[0] < len(DEMOS):
             self._begin(DEMOS[data[0]])
 
-    def _start_or_pause(self, motion: Motion) -> None:
+    def _start_or_pause(self, motion: Course) -> None:
         """As with the robot's buttons: while a program is running, each of them pauses it (Create 2 p. 11-12)."""
         if self.running:
             self.stop()
         else:
             self._begin(motion)
 
-    def _begin(self, motion: Motion) -> None:
+    def _begin(self, motion: Course) -> None:
         self.started += 1
         self._motion, self._start = motion, None

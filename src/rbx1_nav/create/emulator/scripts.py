@@ -1,6 +1,7 @@
 """Scripts of the Create: one that is stored, when it is played, and what it waits for."""
 from __future__ import annotations
 
+from functools import partial
 from struct import Struct
 from typing import Callable, Mapping
 
@@ -49,7 +50,7 @@ class Scripts:
     """The script of a robot. do_...() are commands, and get their data bytes."""
 
     def __init__(self, body: Body, values: Callable[[], Mapping[str, int]]) -> None:
-        """values(): those of all packets, by name."""
+        """values(): the values of all packets, by name."""
         self.body = body
         self.values = values
         self.stored = b''
@@ -96,10 +97,12 @@ class Scripts:
 
     def do_wait_event(self, data: bytes) -> None:
         """Wait for an event."""
-        happens = event(data[0])
-        if happens:
-            condition = happens
-            self._wait = lambda _: condition(self.values())
+        condition = event(data[0])
+        if condition:
+            self._wait = partial(self._has_happened, condition)
+
+    def _has_happened(self, condition: Condition, _: int) -> bool:
+        return condition(self.values())
 
     def _wait_for(self, tally: Tally, goal: int) -> None:
         tally.take()        # the packets start anew too

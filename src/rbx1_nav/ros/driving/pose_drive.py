@@ -37,7 +37,7 @@ class PoseDrive(Drive):
     def speeds(self, leg: Leg) -> Iterator[float]:
         """The speed for each tick, m/s or rad/s, until the robot has arrived; shows the progress.
 
-        A leg stops twice: just before its goal, to see how far the robot rolls on, and at its goal. Raises StuckError.
+        A leg stops twice: just before its goal, to measure the stopping distance, and at its goal. Raises StuckError.
         """
         rospy.loginfo('%s: %.2f %s', leg.name, leg.goal, leg.unit)
         with tqdm(total=leg.goal, desc=leg.name, unit=leg.unit, disable=None,
