@@ -64,6 +64,8 @@ def read_arguments():
                 check(path)
         except ConfigError as error:
             parser.error(f'--{name}: {show_name(path)}: {error}')
+    if not arguments.cmd_vel:
+        parser.error("--cmd-vel: '': expected a topic")
     topics = [each.lstrip('/') for each in (arguments.cmd_vel, arguments.odom, arguments.imu, arguments.truth) if each]
     for topic in topics:
         if topics.count(topic) > 1:
@@ -75,8 +77,7 @@ def read_arguments():
         arguments.start = os.path.abspath(arguments.start)
     if text_files and (arguments.truth or arguments.ends or len(text_files) < len(arguments.runs)):
         parser.error(f'{show_name(text_files[0])}: a text file has its truth beside it: expected neither bags nor '
-                     '--truth '
-                     'nor --ends')
+                     '--truth nor --ends')
     return arguments
 
 
@@ -102,7 +103,7 @@ def load_files(arguments):
     try:
         robot = read_robot(load_yaml(arguments.config))
     except ConfigError as error:
-        raise ConfigError(f'{show_name(arguments.config)}: {error}')
+        raise ConfigError(f'{show_name(arguments.config)}: {error}') from None
     start = load_surface(arguments.start, resources.surfaces())
     if start is None:
         raise ConfigError(f'--start: {show_name(arguments.start)}: the ideal surface: expected one with values')

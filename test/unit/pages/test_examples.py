@@ -5,26 +5,35 @@ import pytest
 from pages import markdown
 
 ROOT = os.path.realpath(os.path.join(os.path.dirname(__file__), '..', '..', '..'))
-EXAMPLE = os.path.join(ROOT, 'examples', 'my_robot')
 LANGUAGES = ('xml', 'python', 'yaml', 'cmake')
+EXAMPLES = {'docs/test_bench.md': 'my_robot', 'docs/answers.md': 'answers'}     # the folder of each page
 
 
 def shown():
-    """(line number, text) of the blocks of code in the page."""
-    return [(number, '\n'.join(lines) + '\n') for number, language, lines
-            in markdown.split(markdown.read(ROOT, 'docs/test_bench.md')) if language in LANGUAGES]
+    """(page, line number, text) of the blocks of code in the pages."""
+    return [(page, number, '\n'.join(lines) + '\n') for page in EXAMPLES for number, language, lines
+            in markdown.split(markdown.read(ROOT, page)) if language in LANGUAGES]
 
 
-def texts():
-    """The texts of all files of the example."""
+def texts(folder):
+    """The texts of all files of an example."""
     names = ('.py', '.test', '.yaml', '.xml', '.txt')
-    return ['\n' + markdown.read(EXAMPLE, path) for path in markdown.files(EXAMPLE, names)]
+    folder = os.path.join(ROOT, 'examples', folder)
+    return ['\n' + markdown.read(folder, path) for path in markdown.files(folder, names)]
 
 
 def test_blocks_are_found():
-    assert len(shown()) >= len(LANGUAGES)
+    assert {page for page, _, _ in shown()} == set(EXAMPLES) and len(shown()) >= len(LANGUAGES)
 
 
-@pytest.mark.parametrize('number, block', [pytest.param(*each, id='line%d' % each[0]) for each in shown()])
-def test_a_block_is_a_part_of_a_file(number, block):
-    assert any('\n' + block in text for text in texts()), 'docs/test_bench.md:%d differs from each file' % number
+@pytest.mark.parametrize('page, number, block', [
+    pytest.param(*each, id='%s-line%d' % (os.path.basename(each[0]), each[1])) for each in shown()])
+def test_a_block_is_a_part_of_a_file(page, number, block):
+    assert any('\n' + block in text for text in texts(EXAMPLES[page])), f'{page}:{number} differs from each file'
+
+
+def test_the_answer_is_the_exercise_filled_in():
+    exercise, answer = ([line for line in markdown.read(ROOT, path).splitlines() if line]
+                        for path in ('examples/square.py', 'examples/answers/square.py'))
+    kept = [line for line in exercise if 'Your turn' not in line and line.strip() != 'pass']
+    assert kept == [line for line in answer if line in exercise]

@@ -81,6 +81,7 @@ def test_text_files_begin_with_the_floor_of_creates(tmp_path):
     (['run1.bag', '--config', '/nowhere.yaml'], 1, '/nowhere.yaml: expected a YAML file'),
     (['D1R1_Odometry.dat'], 1, 'D1R1_Odometry.dat: expected a text file of numbers: '),
     (['run1.bag', '--truth', 'odom'], 2, '/odom: given twice: expected a topic of its own'),
+    (['run1.bag', '--cmd-vel', ''], 2, "--cmd-vel: '': expected a topic"),
     (['run1.bag', '--truth', '/a', '--ends', 'ends.yaml'], 2, 'not allowed with argument'),
     (['run1.bag', 'D1R1_Odometry.dat'], 2, 'D1R1_Odometry.dat: a text file has its truth beside it'),
     (['run1.bag', '--output', 'floor.txt'], 2, '--output: floor.txt: expected a name that ends in .yaml'),

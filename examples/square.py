@@ -1,0 +1,25 @@
+#!/usr/bin/python3
+"""Drive a square by time: four sides of 1 m, and after each a quarter turn to the left.
+
+usage: square.py
+"""
+from rbx1_nav.ros.driving.script import TimedDrive, exit_status, init_node
+
+import time
+
+import rospy
+from geometry_msgs.msg import Twist
+
+
+def shutdown():
+    cmd_vel.publish(Twist())
+    time.sleep(1)
+
+
+with exit_status():
+    init_node('square', __doc__)
+    cmd_vel = rospy.Publisher('/cmd_vel', Twist, queue_size=5)
+    with TimedDrive(cmd_vel, 50, shutdown) as drive:    # 50 commands per second
+        for side in range(4):
+            # Your turn: drive forward, stop and rest; turn left, stop and rest.
+            pass
