@@ -36,7 +36,7 @@ from rbx1_nav.ros import messages
 from rbx1_nav.ros.filter.estimate_publisher import EstimatePublisher
 from rbx1_nav.ros.filter.frame_tree import FrameTree
 from rbx1_nav.ros.filter.imu_input import ImuInput
-from rbx1_nav.ros.filter.parameters import load_parameters, make_filter, read_parameters
+from rbx1_nav.ros.filter.parameters import frames_of, load_parameters, make_filter, read_parameters
 from rbx1_nav.ros.filter.sensor_status import Diagnostics
 from rbx1_nav.ros.filter.single_publisher import OneSender
 from rbx1_nav.ros.node import life
@@ -53,17 +53,17 @@ class Ekf:
         self.combined = None        # CombinedOdometry of the present publisher of odometry
         self.log = LimitedLog()
         self.warn = partial(self.log.add, rospy.logwarn)
-        self.sender = OneSender('odom', parameters['sensor_timeout'], self.warn, self.restart)
+        self.sender = OneSender('odom', parameters.sensor_timeout, self.warn, self.restart)
         self.frames = None          # of its odometry, and of the robot
         self.tree = FrameTree()
         self.publisher = EstimatePublisher(parameters, self.tree, partial(self.log.add, rospy.loginfo))
         self.imu = ImuInput('imu_data', self.tree, partial(self.log.add, rospy.loginfo))
-        self.diagnostics = Diagnostics(('odom', 'imu_data')[:1 + parameters['imu_used']], parameters['sensor_timeout'],
+        self.diagnostics = Diagnostics(('odom', 'imu_data')[:1 + parameters.imu_used], parameters.sensor_timeout,
                                        self.lock, lambda: (self.combined, self.publisher.published))
         self.tree.listen(True)
         self.odom_sub = None    # a message may arrive before the next line is done
         self.odom_sub = rospy.Subscriber('odom', Odometry, self.on_odom, queue_size=None, tcp_nodelay=True)
-        if parameters['imu_used']:
+        if parameters.imu_used:
             rospy.Subscriber('imu_data', Imu, self.on_imu, queue_size=None, tcp_nodelay=True)
         rospy.Subscriber('reset_odometry', Empty, self.on_reset)
         rospy.Subscriber('set_pose', PoseWithCovarianceStamped, self.on_set_pose)
@@ -97,12 +97,12 @@ class Ekf:
     def place(self, now, message):
         """Pass a pose to the filter, with the time of the last odometry: its clock may be another one."""
         check('odom', None, self.combined, 'a message before this one')
-        self.combined.set_pose(self.combined.last_stamp['odom'] or now,
-                               *messages.from_set_pose(message, self.parameters['output_frame']))
+        self.combined.set_pose(self.combined.arrivals.last_stamp['odom'] or now,
+                               *messages.from_set_pose(message, self.parameters.output_frame))
 
     def add_odom(self, now, message):
         """Pass an Odometry to the filter."""
-        frames = messages.frames_of(message, self.parameters)
+        frames = frames_of(message, self.parameters)
         self.combined.add_odom(now, *messages.from_odometry(message))
         self.frames = frames
 
@@ -130,7 +130,7 @@ class Ekf:
 
     def run(self):
         """Until the node is to end."""
-        schedule = Schedule(1 / self.parameters['diagnostic_period'])
+        schedule = Schedule(1 / self.parameters.diagnostic_period)
         while not life.end_requested.is_set():
             if schedule.due(time.monotonic_ns()):   # wall time: a clock that stands still is worth a diagnosis too
                 self.diagnostics.publish()

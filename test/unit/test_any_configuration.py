@@ -96,9 +96,9 @@ def test_parameters_of_the_filter(params):
     except ConfigError as error:
         assert one_line(str(error))
         return
-    assert all(isfinite(values[key]) for key in ('freq', 'sensor_timeout', 'diagnostic_period'))
-    assert all(map(isfinite, values['limits']))
-    assert Schedule(values['freq']).period >= 10 ** 6
+    assert all(map(isfinite, (values.freq, values.sensor_timeout, values.diagnostic_period)))
+    assert all(map(isfinite, values.limits))
+    assert Schedule(values.freq).period >= 10 ** 6
 
 
 @given(ANY)

@@ -50,8 +50,8 @@ class Leg(ABC):
     """One motion, slower and slower towards its goal, with a trial stop just before it.
 
     A robot does not stop at once. Its stopping distance depends on the robot, the floor, and all delays in between. The
-    trial stop measures it. Then the robot goes on at its lowest speed, and stops that far before the goal. So a leg is driven in
-    two parts, with a rest between them.
+    trial stop measures it. Then the robot goes on at its lowest speed, and stops that far before the goal. So a leg is
+    driven in two parts, with a rest between them.
     """
 
     unit: str

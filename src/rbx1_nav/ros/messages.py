@@ -143,20 +143,6 @@ def from_odometry(message: Odometry) -> tuple[Odom, tuple[float, float, float]]:
             (covariance[0], covariance[7], covariance[35]))
 
 
-def frames_of(message, parameters):
-    """The frames of an Odometry message and of the robot, without leading slashes. Raises RejectedMessage.
-
-    parameters: those of the filter. Its output_frame cannot be the robot's own.
-    """
-    base_frame = parameters['base_footprint_frame'] or message.child_frame_id.lstrip('/') or (
-        parameters['default_base_frame'])
-    frames = message.header.frame_id.lstrip('/'), base_frame
-    for field, frame in zip(('header.frame_id', 'child_frame_id'), frames):
-        check(field, show(frame), frame, 'the name of a frame')
-    check('child_frame_id', show(frames[1]), frames[1] != parameters['output_frame'], 'a frame other than output_frame')
-    return frames
-
-
 def from_imu(message: Imu) -> ImuData:
     """The ImuData of an Imu message. By its definition, a first variance of -1 stands for what is not measured."""
     rate = message.angular_velocity
@@ -204,22 +190,6 @@ def from_set_pose(message: PoseWithCovarianceStamped, output_frame: str) -> tupl
             and numpy.linalg.eigvalsh(correlations).min() > -ROUNDING)
     check('pose.covariance', show(covariance.tolist()), good, 'a covariance: symmetric, no correlation above 1')
     return pose, (covariance + covariance.T) / 2
-
-
-def odometry_of_estimate(pose, child_frame_id, twist):
-    """An Odometry message of a PoseWithCovarianceStamped and a Twist in the frame of the robot; None: not known."""
-    message = Odometry()
-    message.header = pose.header
-    message.child_frame_id = child_frame_id
-    message.pose = pose.pose
-    if twist is None:
-        message.twist.covariance = diagonal(*[UNKNOWN] * 6)
-        return message
-    message.twist.twist.linear.x, message.twist.twist.linear.y = twist.forward, twist.left
-    message.twist.twist.angular.z = twist.turn
-    message.twist.covariance = diagonal(twist.forward_variance, twist.left_variance, UNKNOWN, UNKNOWN, UNKNOWN,
-                                        twist.turn_variance)
-    return message
 
 
 def odometry_of_pose(pose: PoseWithCovarianceStamped, before: PoseWithCovarianceStamped | None, frame_id: str,

@@ -20,7 +20,7 @@ class Noise:
 
     def __init__(self, strength: float, cell: float, generator: random.Random) -> None:
         """strength: 1 sigma after one unit of the path; cell: in units of the path."""
-        self.scale = strength / (2 * cell) ** 0.5       # a Laplace distribution of scale 1 has a variance of 2
+        self.scale: float = strength / (2 * cell) ** 0.5       # a Laplace distribution of scale 1 has a variance of 2
         self.cell = cell
         self.random = generator.random
         self._draw(cell * self.random())

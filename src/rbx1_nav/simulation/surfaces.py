@@ -93,24 +93,28 @@ def known_surfaces(folder: str) -> list[str]:
     return sorted(name[:-len('.yaml')] for name in os.listdir(folder) if name.endswith('.yaml'))
 
 
-def load_surface(name: str, folder: str) -> Surface | None:
+def load_surface(name: YamlValue, folder: str) -> Surface | None:
     """The Surface of this name in a folder, or of the file with this absolute path; None for the ideal surface.
 
     Raises ConfigError.
     """
-    is_path = isinstance(name, str) and os.path.isabs(name)
-    if is_path and not os.path.isfile(name):
-        raise ConfigError(f'surface: {show(name)}: no such file: expected the absolute path of a surface file, or one '
-                          f"of {', '.join(known_surfaces(folder))}")
-    if not is_path and name not in known_surfaces(folder):
+    path = None
+    if isinstance(name, str):
+        if os.path.isabs(name):
+            path = name
+            if not os.path.isfile(path):
+                raise ConfigError(f'surface: {show(name)}: no such file: expected the absolute path of a surface file, '
+                                  f"or one of {', '.join(known_surfaces(folder))}")
+        elif name in known_surfaces(folder):
+            path = os.path.join(folder, f'{name}.yaml')
+    if path is None:
         raise ConfigError(f"surface: {show(name)}: expected one of {', '.join(known_surfaces(folder))}, or the "
                           'absolute path of a surface file')
-    path = name if is_path else os.path.join(folder, f'{name}.yaml')
     try:
         values = load_yaml(path)
     except ConfigError as error:
         raise ConfigError(f'surface: {show_name(path)}: {error}') from None
-    return read_surface(values, os.path.basename(path)[:-len('.yaml')] if path.endswith('.yaml') else name)
+    return read_surface(values, os.path.basename(path)[:-len('.yaml')] if path.endswith('.yaml') else path)
 
 
 def read_surface(values: YamlValue, name: str) -> Surface | None:

@@ -68,7 +68,7 @@ def use_text(text):
 def use_filter(values):
     """The filter's numbers, and its period."""
     parameters = read_parameters(values)
-    return [parameters['sensor_timeout'], *parameters['limits']], 1 / parameters['freq']
+    return [parameters.sensor_timeout, *parameters.limits], 1 / parameters.freq
 
 
 def use_script(values):

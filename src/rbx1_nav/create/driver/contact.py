@@ -7,7 +7,7 @@ from rbx1_nav.config import AUTO
 from rbx1_nav.create import protocol
 from rbx1_nav.create.driver import sequences
 from rbx1_nav.create.driver.parameters import Settings
-from rbx1_nav.create.driver.search import RATES, Found, Search
+from rbx1_nav.create.driver.search import RATES, Found, Search, SearchedLine
 from rbx1_nav.create.driver.sender import Sender
 from rbx1_nav.units import SECOND
 
@@ -18,8 +18,8 @@ START_WAIT = SECOND             # that a robot may need to start, before it is s
 ROUNDS_BEFORE_WARNING = 2       # rounds of the search before the first warning
 
 
-class Line(Protocol):
-    """What leads to the robot. All methods may raise OSError."""
+class Line(SearchedLine, Protocol):
+    """What leads to the robot."""
 
     @property
     def is_same(self) -> bool:
@@ -27,18 +27,6 @@ class Line(Protocol):
 
     def confirm(self, found: Found) -> None:
         """A robot was found: from now on its guardian may stop it."""
-
-    def set_rate(self, baud: int) -> None:
-        """Set the rate, bits per second."""
-
-    def set_wake_lines(self, on: bool) -> None:
-        """Set RTS and DTR, or clear them. Raises NoWakeLines if the line has none."""
-
-    def write(self, data: bytes) -> None:
-        """Send bytes."""
-
-    def write_apart(self, data: bytes) -> None:
-        """Send bytes with a pause after each."""
 
 
 class Asker(Protocol):
@@ -82,7 +70,7 @@ class Contact:
         self._warned = False        # that no robot answers
 
     def attach(self, now: int, line: Line) -> None:
-        """A line was opened. The first bytes on it are a stop if the robot is known, and the first ones of the search if not."""
+        """A line was opened. Its first bytes are a stop if the robot is known, or the beginning of the search."""
         self.line = line
         self.answers = False
         if not (self.found and line.is_same):

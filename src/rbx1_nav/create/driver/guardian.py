@@ -6,6 +6,8 @@ hangs. It runs in a session of its own, so that a signal to the node's process g
 
 This file is the program too. It imports nothing of the package, so that it starts fast and whatever is installed.
 """
+from __future__ import annotations
+
 import os
 import select
 import signal
@@ -22,39 +24,41 @@ WRITE_TIMEOUT = 1.0     # s in which a line must accept the stop
 class Guardian:
     """The node's end."""
 
-    def __init__(self, line, stop):
+    def __init__(self, line: int, stop: bytes) -> None:
         """line: file descriptor of the port; stop: the bytes to send, until confirm() names others. Raises OSError if
         the process does not start."""
         self.process = subprocess.Popen(
             [sys.executable, '-E', '-S', os.path.abspath(__file__), str(line), stop.hex()],
             stdin=subprocess.PIPE, stdout=subprocess.PIPE, pass_fds=(line,), start_new_session=True, cwd='/')
+        assert self.process.stdin and self.process.stdout
+        self.beats = self.process.stdin     # a pipe that carries the signs of life
         self.alive = self.process.stdout    # a pipe that closes when the process dies
         if not (select.select([self.alive], [], [], START_TIMEOUT)[0] and os.read(self.alive.fileno(), 1)):
             self.process.kill()
             raise OSError('the guardian process does not start')
 
-    def beat(self):
+    def beat(self) -> bool:
         """Give a sign of life. Returns whether the guardian is alive."""
         return self._send('')
 
-    def confirm(self, stop):
+    def confirm(self, stop: bytes) -> None:
         """The robot is known: from now on, stop it with these bytes, at the rate that the port has now."""
         self._send(stop.hex())
 
-    def _send(self, text):
+    def _send(self, text: str) -> bool:
         try:
             data = text.encode() + b'\n'
-            return os.write(self.process.stdin.fileno(), data) == len(data) and self.process.poll() is None
+            return os.write(self.beats.fileno(), data) == len(data) and self.process.poll() is None
         except OSError:
             return False
 
-    def release(self):
+    def release(self) -> None:
         """Let the guardian stop the robot and exit. It is not waited for."""
-        self.process.stdin.close()
+        self.beats.close()
         self.alive.close()
 
 
-def send(line, data, settings):
+def send(line: int, data: bytes, settings: list[int | list[bytes | int]] | None) -> None:
     """Write bytes to a port, ahead of what is still waiting there. A port that has disconnected is no error.
 
     settings: its attributes, as tcgetattr() returns them, which another process may have changed; None: leave them.
@@ -76,7 +80,7 @@ def send(line, data, settings):
         pass
 
 
-def read_settings(line):
+def read_settings(line: int) -> list[int | list[bytes | int]] | None:
     """The attributes of a port, None if it has disconnected."""
     try:
         return termios.tcgetattr(line)
@@ -84,7 +88,7 @@ def read_settings(line):
         return None
 
 
-def main(line, stop):
+def main(line: int, stop: bytes) -> None:
     """Wait for the end of the node. line, stop: see Guardian."""
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGTSTP):
         signal.signal(number, signal.SIG_IGN)
@@ -93,7 +97,7 @@ def main(line, stop):
     except OSError:     # the node has died already
         pass
     received, settings = b'', None
-    timeout = None      # none before the first sign of life, and while the node hangs
+    timeout: float | None = None    # none before the first sign of life, and while the node hangs
     while True:
         if select.select([0], [], [], timeout)[0]:
             timeout = HANG

@@ -1,14 +1,21 @@
 """The open line to the robot, with its guardian: opened again whenever it is lost."""
+from __future__ import annotations
+
 import errno
 import os
 import select
 import termios
 import time
+from typing import Callable, Iterable
+
+import serial
 
 from rbx1_nav.create.driver import sequences
 from rbx1_nav.create.driver.guardian import Guardian
+from rbx1_nav.create.driver.parameters import Settings
 from rbx1_nav.create.driver.port import PortError, describe_adapter, open_port
-from rbx1_nav.create.driver.search import NoWakeLines
+from rbx1_nav.create.driver.search import Found, NoWakeLines, Search
+from rbx1_nav.create.driver.stream import FrameReader, ReplyReader
 from rbx1_nav.create.line_settings import rate_in, read_settings
 from rbx1_nav.units import SECOND
 
@@ -27,26 +34,26 @@ class Link:
     pyserial opens it. Its read() and write() are not used: they need three times as many system calls.
     """
 
-    def __init__(self, settings, warn):
-        """settings: Settings; warn(text): logs a line."""
+    def __init__(self, settings: Settings, warn: Callable[[str], None]) -> None:
+        """warn(text): logs a line."""
         self.path = settings.port
         self.warn = warn
         self.baud = settings.baud or settings.model.baud
-        self.port = None            # serial.Serial
-        self.guardian = None
+        self.port: serial.Serial = None     # None while it is not open
+        self.guardian: Guardian | None = None
         self.guarded = True         # whether the guardian lives
         self.problem = ''           # why the port is not open
-        self.lost_at = None         # since when
-        self.logged = None          # the problem that was logged
-        self.adapter = None         # the last one, as text
+        self.lost_at: int | None = None     # since when
+        self.logged = ''            # the problem that was logged
+        self.adapter = ''           # the last one, as text
         self.is_same = True         # whether it is that of the line before
-        self.attempt = None
+        self.attempt: int | None = None
         self.beat_time = 0
-        self.settings = None        # of the port, as read_settings() returns them
+        self.settings: bytes | None = None  # of the port, as read_settings() returns them
         self.changes = 0            # times that another process has changed them
         self.disturbed = False      # whether that has happened since a caller has cleared this
 
-    def open(self, now):
+    def open(self, now: int) -> bool:
         """Try to open the port, if it is time to. Returns whether it is open."""
         if self.attempt is not None and now - self.attempt < RETRY:
             return False
@@ -64,89 +71,90 @@ class Link:
                 self.logged = self.problem
                 self.warn(f'{self.problem}; trying again')
             return False
-        self.problem, self.logged, self.lost_at = '', None, None
+        self.problem, self.logged, self.lost_at = '', '', None
         self.guarded = True
         self.beat_time = now - BEAT
         self._compare_adapters()
         return True
 
-    def _compare_adapters(self):
+    def _compare_adapters(self) -> None:
         before, self.adapter = self.adapter, describe_adapter(self.path)
-        self.is_same = before in (None, self.adapter)
+        self.is_same = before in ('', self.adapter)
         if not self.is_same:
-            self.warn('%s is now %s, before it was %s: check that the same robot is connected'
-                      % (self.path, self.adapter, before))
+            self.warn(f'{self.path} is now {self.adapter}, before it was {before}: check that the same robot is '
+                      'connected')
 
-    def close(self):
+    def close(self) -> None:
         """Close the port. The guardian sends a last stop, if there still is a line."""
         if self.guardian:
             self.guardian.release()
         if self.port:
             self.port.close()
-        self.guardian = self.port = None
+        self.guardian, self.port = None, None
 
-    def set_rate(self, baud):
+    def set_rate(self, baud: int) -> None:
         """Set the rate (bits per second), and all that belongs to a raw line. Raises LineLost."""
         self.baud = baud
         try:
             self.port.baudrate = baud
         except (OSError, ValueError, termios.error) as error:
-            raise LineLost(f'{self.path}: {error}')
+            raise LineLost(f'{self.path}: {error}') from None
         self.settings = read_settings(self.port.fd)
 
-    def set_wake_lines(self, on):
+    def set_wake_lines(self, on: bool) -> None:
         """Set RTS and DTR, or clear them. Raises NoWakeLines, and LineLost."""
         try:
             self.port.rts = self.port.dtr = on
         except OSError as error:
             if error.errno not in (errno.ENOTTY, errno.EINVAL):
-                raise LineLost(f'{self.path}: RTS and DTR: {error.strerror}')
-            self.warn('wake_robot:=true: %s has no RTS and DTR: expected an adapter that has these lines; searching '
-                      'without waking the robot' % self.path)
-            raise NoWakeLines(error.errno, error.strerror)
+                raise LineLost(f'{self.path}: RTS and DTR: {error.strerror}') from None
+            self.warn(f'wake_robot:=true: {self.path} has no RTS and DTR: expected an adapter that has these lines; '
+                      'searching without waking the robot')
+            raise NoWakeLines(error.errno, error.strerror) from None
 
-    def confirm(self, found):
-        """The robot is known (Found): the guardian may stop it."""
+    def confirm(self, found: Found) -> None:
+        """The robot is known: the guardian may stop it."""
+        assert self.guardian
         self.guardian.confirm(sequences.guardian_stop(found.model))
 
-    def is_guarded(self, now):
+    def is_guarded(self, now: int) -> bool:
         """Look after the guardian and the settings, if it is time to. Returns whether the guardian is alive."""
         if self.guarded and now - self.beat_time >= BEAT:
             self.beat_time = now
             self._keep_settings()
-            self.guarded = self.guardian.beat()
+            self.guarded = self.guardian is not None and self.guardian.beat()
         return self.guarded
 
-    def _keep_settings(self):
+    def _keep_settings(self) -> None:
         """Set back what another process has changed. With an echo, say, the robot would execute its own readings."""
         settings = read_settings(self.port.fd)
-        if settings in (None, self.settings):
+        if settings is None or settings == self.settings:
             return
         self.changes += 1
         self.disturbed = True
         rate = rate_in(settings)
-        self.warn('%s: another process has changed the %s; set back' % (
-            self.path, 'settings' if rate == self.baud else 'rate to %d baud: expected %d' % (rate, self.baud)))
+        changed = 'settings' if rate == self.baud else f'rate to {rate} baud: expected {self.baud}'
+        self.warn(f'{self.path}: another process has changed the {changed}; set back')
         self.set_rate(self.baud)
 
-    def write(self, data):
+    def write(self, data: bytes) -> None:
         """Send bytes, at the right rate. Raises LineLost, also if the port has no room for them: then none have left it
         for seconds."""
         self._keep_settings()
         try:
             written = os.write(self.port.fd, data)
         except OSError as error:
-            raise LineLost(f'{self.path}: {error.strerror}')
+            raise LineLost(f'{self.path}: {error.strerror}') from None
         if written < len(data):
             raise LineLost(f'{self.path}: write timed out')
 
-    def write_apart(self, data):
+    def write_apart(self, data: bytes) -> None:
         """Send bytes with a pause after each, so that a receiver at another rate does not mix them. Raises LineLost."""
         for byte in data:
             self.write(bytes((byte,)))
             time.sleep(sequences.PAUSE / SECOND)
 
-    def read(self, duration, reader):
+    def read(self, duration: float, reader: FrameReader | ReplyReader | Search | None) -> bytes:
         """The bytes that arrive. Returns at once if the guardian has died. Raises LineLost.
 
         duration: s until the next tick; reader: if it is set, return when its next reading is complete. Waiting for all
@@ -161,19 +169,20 @@ class Link:
             data += self._read(0)
         return data
 
-    def _wait(self, descriptors, duration):
+    def _wait(self, descriptors: Iterable[int], duration: float) -> bool:
         """Whether one of the descriptors can be read within a time (s), in which the guardian lives."""
+        assert self.guardian
         ready = select.select((*descriptors, self.guardian.alive), (), (), duration)[0]
         self.guarded = self.guardian.alive not in ready
         return any(each in ready for each in descriptors)
 
-    def _read(self, timeout):
+    def _read(self, timeout: float) -> bytes:
         if not self._wait((self.port.fd,), timeout):
             return b''
         try:
             data = os.read(self.port.fd, 4096)
         except OSError as error:
-            raise LineLost(f'{self.path}: {error.strerror}')
+            raise LineLost(f'{self.path}: {error.strerror}') from None
         if not data:
             raise LineLost(f'{self.path}: device disconnected')
         return data

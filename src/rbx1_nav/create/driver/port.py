@@ -1,4 +1,6 @@
 """The serial port: opened for one process at a time, with one clear line for each reason why it cannot be."""
+from __future__ import annotations
+
 import errno
 import fcntl
 import glob
@@ -8,7 +10,6 @@ import termios
 
 import serial
 
-
 PSEUDO_TERMINALS = range(136, 144)      # major numbers of devices (admin-guide/devices.txt of Linux)
 
 
@@ -16,7 +17,7 @@ class PortError(OSError):
     """A port that cannot be opened. The text names the port, the reason, and what to do."""
 
 
-def open_port(path, baud):
+def open_port(path: str, baud: int) -> serial.Serial:
     """An open serial.Serial, whose file descriptor does not block. Raises PortError.
 
     flock(2) keeps other drivers away. It also holds for a process that inherits the file descriptor. TIOCEXCL keeps
@@ -31,16 +32,16 @@ def open_port(path, baud):
     except (OSError, ValueError) as error:
         cause = error.__context__       # of an error in termios, pyserial passes on the text only
         number = getattr(error, 'errno', None) or (cause.args[0] if isinstance(cause, termios.error) else None)
-        raise PortError(f'{path}: {reason(path, number, error)}')
+        raise PortError(f'{path}: {reason(path, number, error)}') from None
 
 
-def reason(path, number, error):
+def reason(path: str, number: int | None, error: Exception) -> str:
     """Why a port could not be opened. number: errno, or None; error: of pyserial."""
     if number in (errno.EAGAIN, errno.EBUSY):
-        return 'in use by %s: expected a port that nobody uses' % (user_of(path) or 'another process')
+        return f"in use by {user_of(path) or 'another process'}: expected a port that nobody uses"
     if number in (errno.EACCES, errno.EPERM):
-        return ('not permitted: expected a user of the group %s; `sudo adduser $USER %s`, and log in again'
-                % ((group_of(path),) * 2))
+        group = group_of(path)
+        return f'not permitted: expected a user of the group {group}; `sudo adduser $USER {group}`, and log in again'
     if number in (errno.ENOENT, errno.ENXIO, errno.ENODEV):
         return 'no such device: expected the adapter of the robot to be plugged in'
     if number in (errno.ENOTTY, errno.EINVAL, errno.EISDIR):
@@ -48,7 +49,7 @@ def reason(path, number, error):
     return str(error)
 
 
-def describe_adapter(path):
+def describe_adapter(path: str) -> str:
     """What identifies the adapter of a port: maker, product and serial number of a USB device, else the device's name.
     A pseudo-terminal has another one after each time that its other end was closed, so all count as the same."""
     name = os.path.realpath(path)
@@ -63,7 +64,7 @@ def describe_adapter(path):
     return name
 
 
-def _read_text(path):
+def _read_text(path: str) -> str:
     try:
         with open(path, encoding='utf-8', errors='replace') as file:
             return file.read().strip()
@@ -71,7 +72,7 @@ def _read_text(path):
         return ''
 
 
-def group_of(path):
+def group_of(path: str) -> str:
     """The name of the group that may use a device."""
     try:
         return grp.getgrgid(os.stat(path).st_gid).gr_name
@@ -79,7 +80,7 @@ def group_of(path):
         return 'dialout'
 
 
-def user_of(path):
+def user_of(path: str) -> str:
     """The process that has locked a device, as 'NAME (process NUMBER)'; '' if /proc does not show it."""
     for link in glob.glob('/proc/[0-9]*/fd/*'):
         try:
@@ -96,7 +97,7 @@ def user_of(path):
     return ''
 
 
-def command_of(pid):
+def command_of(pid: str) -> str:
     """The file name of a process's program; of a script, the script's."""
     with open(f'/proc/{pid}/cmdline', 'rb') as file:
         words = [os.path.basename(os.fsdecode(word)) for word in file.read().split(b'\0') if word]

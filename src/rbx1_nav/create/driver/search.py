@@ -4,7 +4,9 @@ Until a robot has answered, its rate is not known, and at a wrong rate almost an
 stop at 57600 baud is read at 115200 as 0x86, which starts spot cleaning. So the search sends only bytes that no
 receiver takes for a command: Start, and a query of the battery. At the right rate, Start ends every motion.
 """
-from collections import namedtuple
+from __future__ import annotations
+
+from typing import Callable, NamedTuple, Optional, Protocol, Sequence
 
 from rbx1_nav.create import protocol
 from rbx1_nav.create.driver import sequences
@@ -21,26 +23,30 @@ FEW_ROUNDS = 2                      # rounds before there are many
 MAX_BUFFER = 4096                   # bytes
 WAKE_TIME = SECOND * 3 // 4         # ns, of both levels: 0.5 s wake a robot, three shorter pulses change its rate
 
-Found = namedtuple('Found', 'model baud')
-Found.__doc__ = 'A robot that answers: its protocol.Model, and the rate of the line in bits per second.'
-
 _BATTERY = protocol.single_packets(protocol.CREATE, [sequences.BATTERY])
 _HEADER = bytes((protocol.FRAME_HEADER,))
 _BATTERY_FORMAT = protocol.packets_format(_BATTERY)
 
 
-def is_battery(data):
+class Found(NamedTuple):
+    """A robot that answers."""
+
+    model: protocol.Model
+    baud: int       # rate of the line, bits per second
+
+
+def is_battery(data: bytes) -> bool:
     """Whether bytes are the reply to a query of the battery: plausible values, and as many as there should be."""
     if len(data) != _BATTERY_FORMAT.size:
         return False
     values = dict(zip((packet.name for packet in _BATTERY), _BATTERY_FORMAT.unpack(data)))
-    return (values['charging_state'] <= 5 and protocol.MIN_VOLTAGE <= values['voltage'] <= protocol.MAX_VOLTAGE
+    return bool(values['charging_state'] <= 5 and protocol.MIN_VOLTAGE <= values['voltage'] <= protocol.MAX_VOLTAGE
             and -40 <= values['temperature'] <= 100)
 
 
-def has_frames(data):
+def has_frames(data: bytes) -> bool:
     """Whether bytes contain two frames of a stream, one right after the other: an earlier driver has left it on."""
-    def end_of_frame(start):
+    def end_of_frame(start: int) -> int | None:
         if data[start:start + 1] != _HEADER or start + 1 == len(data):
             return None
         end = start + 3 + data[start + 1]
@@ -49,55 +55,71 @@ def has_frames(data):
     return any(end_of_frame(end) for end in ends if end)
 
 
+# at a time
+Step = Callable[[int], Optional[Found]]
+
+
 class NoWakeLines(OSError):
     """The line has no RTS and DTR."""
 
 
+class SearchedLine(Protocol):
+    """What leads to a robot. All methods may raise OSError."""
+
+    def set_rate(self, baud: int) -> None:
+        """Set the rate, bits per second."""
+
+    def set_wake_lines(self, on: bool) -> None:
+        """Set RTS and DTR, or clear them. Raises NoWakeLines if the line has none."""
+
+    def write(self, data: bytes) -> None:
+        """Send bytes."""
+
+    def write_apart(self, data: bytes) -> None:
+        """Send bytes with a pause after each."""
+
+
 class Search:
-    """Asks at one rate after the other. All times are in ns.
+    """Asks at one rate after the other. All times are in ns."""
 
-    The line has set_rate(baud), write(data), write_apart(data), which pauses after each byte, and
-    set_wake_lines(on), which sets RTS and DTR, or clears them, and raises NoWakeLines if the line has none. All may
-    raise OSError.
-    """
-
-    def __init__(self, rates, wake=False):
+    def __init__(self, rates: Sequence[int], wake: bool = False) -> None:
         """rates: to be tried, bits per second, the likeliest first; wake: whether to wake a robot that sleeps."""
         self.rates = rates
         self.wake = wake
         self.rounds = 0         # complete ones without an answer
         self.baud = rates[0]    # that is being tried
-        self._line = None
-        self._order = []        # rates of the round that are still to be tried
+        self._line: SearchedLine
+        self._order: list[int] = []         # rates of the round that are still to be tried
         self._buffer = bytearray()
-        self._sizes = ()        # of the replies that are expected, bytes; the largest last
-        self._then = None       # what to do at the deadline: a function of the time, which may return Found
-        self._deadline = None
+        self._sizes: Sequence[int] = ()     # of the replies that are expected, bytes; the largest last
+        self._then: Step                    # what to do at the deadline
+        self._deadline = 0
         self._agreed = 0        # replies in a row
-        self._models = []       # which robot it is, by the replies so far; None for one that does not say
+        # which robot it is, by the replies so far; None for one that does not say
+        self._models: list[protocol.Model | None] = []
 
-    def begin(self, now, line, baud=None):
+    def begin(self, now: int, line: SearchedLine, baud: int | None = None) -> None:
         """Begin to search on a line. baud: the rate to be tried first, one of those above."""
         self._line = line
         self.rates = tuple(sorted(self.rates, key=lambda rate: rate != baud))
         self.rounds, self._order = 0, list(self.rates)
         self._next_rate(now)
 
-    def wait(self, now, duration):
+    def wait(self, now: int, duration: int) -> None:
         """Try the next rate after a time."""
         self._plan(now + duration, self._next_rate)
 
     @property
-    def next_time(self):
+    def next_time(self) -> int:
         """When tick() has something to do next."""
         return self._deadline
 
     @property
-    def missing(self):
+    def missing(self) -> int:
         """How many bytes complete the reply."""
         return max(0, self._sizes[-1] - len(self._buffer)) if self._sizes else 0
 
-    def receive(self, now, data):
+    def receive(self, now: int, data: bytes) -> None:
         """Process bytes of the robot."""
         self._buffer += data
         del self._buffer[:-MAX_BUFFER]
@@ -106,15 +128,15 @@ class Search:
         elif len(self._buffer) in self._sizes:
             self._deadline = min(self._deadline, now + SETTLE_TIME)
 
-    def tick(self, now):
+    def tick(self, now: int) -> Found | None:
         """Do what is due. Returns Found as soon as it is known, else None."""
         return self._then(now) if now >= self._deadline else None
 
-    def _plan(self, deadline, then, sizes=()):
+    def _plan(self, deadline: int, then: Step, sizes: Sequence[int] = ()) -> None:
         self._buffer.clear()
         self._deadline, self._then, self._sizes = deadline, then, sizes
 
-    def _next_rate(self, now):
+    def _next_rate(self, now: int) -> None:
         self._agreed = 0
         if not self._order:
             self.rounds += 1
@@ -125,7 +147,7 @@ class Search:
         self._line.set_rate(self.baud)
         self._ask(now)
 
-    def _begin_wake(self, now):
+    def _begin_wake(self, now: int) -> bool:
         """Begin to wake a robot, if that is wanted and possible. Returns whether it was begun."""
         if self.wake:
             try:
@@ -135,21 +157,21 @@ class Search:
                 self.wake = False
         return self.wake
 
-    def _end_wake(self, now):
+    def _end_wake(self, now: int) -> None:
         self._line.set_wake_lines(True)
         self._plan(now + WAKE_TIME, self._next_rate)
 
-    def _send(self, now, data, then, *sizes):
+    def _send(self, now: int, data: bytes, then: Step, *sizes: int) -> None:
         """Send a query whose reply has one of these sizes."""
         self._plan(now + (len(data) + max(sizes, default=0)) * 10 * SECOND // self.baud + REPLY_TIME, then, sizes)
         self._line.write(data)
 
-    def _ask(self, now):
+    def _ask(self, now: int) -> None:
         count = STARTS if self.rounds < FEW_ROUNDS else MANY_STARTS
         self._line.write_apart(sequences.START * count)
         self._send(now + count * sequences.PAUSE, sequences.ASK_BATTERY, self._judge_battery, _BATTERY_FORMAT.size)
 
-    def _judge_battery(self, now):
+    def _judge_battery(self, now: int) -> None:
         if not is_battery(self._buffer):
             self._next_rate(now)
             return
@@ -161,16 +183,16 @@ class Search:
 
     # the rate is right: now a command is what it is
 
-    def _pause_stream(self, now):
+    def _pause_stream(self, now: int) -> None:
         self._models = []
         self._send(now, sequences.PAUSE_STREAM, self._ask_model)
         self._deadline = now + QUIET_TIME
 
-    def _ask_model(self, now):
+    def _ask_model(self, now: int) -> None:
         # a Create has no encoders, and answers the second question only
         self._send(now, sequences.ASK_ENCODER + sequences.ASK_WALL, self._identify, 1, 3)
 
-    def _identify(self, now):
+    def _identify(self, now: int) -> Found | None:
         model = {1: protocol.CREATE, 3: protocol.CREATE_2}.get(len(self._buffer))
         if model and model in self._models:
             return Found(model, self.baud)

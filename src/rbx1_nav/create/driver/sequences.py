@@ -1,4 +1,8 @@
 """The sequences of bytes that the driver and its guardian send."""
+from __future__ import annotations
+
+from typing import Sequence
+
 from rbx1_nav.create import protocol
 from rbx1_nav.create.protocol import command
 from rbx1_nav.units import SECOND
@@ -22,7 +26,7 @@ ASK_ENCODER, ASK_WALL = command('sensors', 43), command('sensors', 8)
 PAUSE = SECOND // 500               # ns between two bytes that a receiver must not take for one
 
 
-def query(numbers):
+def query(numbers: Sequence[int]) -> bytes:
     """Asks for packets and groups, all in one reply."""
     return command('query_list', len(numbers), *numbers)
 
@@ -35,28 +39,28 @@ STOP = _PADDING + protocol.drive_direct(0, 0)
 FLUSH = bytes(512)
 
 
-def queried(model):
+def queried(model: protocol.Model) -> tuple[tuple[int, ...], ...]:
     """What a robot that is polled is asked for: all of it, and for a Create also without the angle."""
     return (QUERIED, QUERIED_WITHOUT_ANGLE) if model is protocol.CREATE else (STREAMED,)
 
 
-def start(model, polled):
+def start(model: protocol.Model, polled: bool) -> bytes:
     """Starts the interface of a robot that was switched off, and asks for a reading. It leads to passive mode."""
     return STOP + START + (query(queried(model)[0]) if polled else START_STREAM)
 
 
-def take_control(model, mode):
+def take_control(model: protocol.Model, mode: int) -> bytes:
     """Changes to a mode. On the TurtleBot, digital output 0 of a Create switches the power of the sensors."""
     outputs = model is protocol.CREATE and mode != protocol.PASSIVE
     return MODES[mode] + (command('digital_outputs', 1) if outputs else b'')
 
 
-def leave(model):
+def leave(model: protocol.Model) -> bytes:
     """Stops the robot after any beginning of a command, and leaves it in passive mode, where it can be charged."""
     return STOP + (command('digital_outputs', 0) if model is protocol.CREATE else b'') + START
 
 
-def guardian_stop(model):
+def guardian_stop(model: protocol.Model) -> bytes:
     """What a guardian sends: the same, again after what garbage may have begun, and an end of the stream."""
     stop = leave(model) + (b'' if model is protocol.CREATE else PAUSE_STREAM)
     return stop + FLUSH + stop

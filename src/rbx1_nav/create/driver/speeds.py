@@ -1,15 +1,17 @@
 """From a velocity to the speeds of the wheels that the robot accepts: whole mm/s, at most 500."""
+from __future__ import annotations
+
 from math import ceil, floor
 
 from rbx1_nav.create.protocol import MAX_SPEED
 
 
-def is_too_fast(linear, angular, width):
+def is_too_fast(linear: float, angular: float, width: float) -> bool:
     """Whether a wheel cannot go as fast as these m/s and rad/s need."""
     return 1000 * (abs(linear) + abs(angular) * width / 2) > MAX_SPEED
 
 
-def wheel_speeds(linear, angular, width):
+def wheel_speeds(linear: float, angular: float, width: float) -> tuple[float, float]:
     """(left, right) in mm/s for m/s and rad/s. Above the limit both are reduced alike, which leaves the curve as it
     is."""
     difference = angular * width / 2
@@ -21,16 +23,16 @@ def wheel_speeds(linear, angular, width):
 class Rounding:
     """Rounds the speed of a wheel so that the mean over time is the speed that was asked for."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         self.reset()
 
-    def reset(self):
+    def reset(self) -> None:
         """Stand, and owe nothing."""
         self.asked = 0.0    # mm/s
         self.sent = 0       # mm/s
         self.debt = 0.0     # mm that the wheel is behind
 
-    def next(self, asked, elapsed):
+    def next(self, asked: float, elapsed: float) -> int:
         """The whole mm/s to send for a speed (mm/s), `elapsed` seconds after the last one was sent."""
         if asked == 0:
             self.reset()

@@ -1,17 +1,24 @@
-"""From the bytes of the robot to readings. A reading is a dictionary of values by the name of the packet."""
+"""From the bytes of the robot to readings."""
+from __future__ import annotations
+
 from operator import le
+from typing import Dict, Iterable, Sequence, Tuple
 
 from rbx1_nav.create import protocol
+
+Reading = Dict[str, int]        # values by the name of the packet
+Numbers = Tuple[int, ...]       # of packets and groups
 
 
 class Ranges:
     """The values that Packets may have."""
 
-    def __init__(self, packets):
+    def __init__(self, packets: Iterable[protocol.Packet]) -> None:
+        packets = list(packets)
         self.low = [packet.low for packet in packets]
         self.high = [packet.high for packet in packets]
 
-    def contain(self, values):
+    def contain(self, values: Sequence[int]) -> bool:
         """Whether each value is one that its Packet may have."""
         return all(map(le, self.low, values)) and all(map(le, values, self.high))
 
@@ -19,10 +26,12 @@ class Ranges:
 class FrameReader:
     """Finds the frames of the stream. Where the checksum fails, it searches for the next frame byte by byte."""
 
-    def __init__(self, model, numbers):
-        """model: a Model; numbers: of the packets and groups that were requested."""
+    def __init__(self, model: protocol.Model, numbers: Numbers) -> None:
+        """numbers: of what was requested."""
         self.format = protocol.frame_format(model, numbers)
-        packets, self.indices, self.markers = [], [], []
+        packets: list[protocol.Packet] = []
+        self.indices: list[int] = []                # of the values in a frame
+        self.markers: list[tuple[int, int]] = []    # where each number is
         index = 2
         for number in numbers:
             self.markers.append((index, number))
@@ -39,24 +48,25 @@ class FrameReader:
         self.rejected = 0       # corrupted frames
         self.skipped = 0        # bytes in no good frame
 
-    def clear(self):
+    def clear(self) -> None:
         """Forget an incomplete frame."""
         self.buffer.clear()
         self.in_step = False
 
     @property
-    def missing(self):
+    def missing(self) -> int:
         """How many bytes complete the next frame."""
         return self.format.size - len(self.buffer)
 
-    def feed(self, data):
+    def feed(self, data: bytes) -> list[Reading]:
         """The readings that are complete with these bytes."""
-        buffer, readings = self.buffer, []
+        buffer = self.buffer
+        readings: list[Reading] = []
         buffer += data
         while True:
             begin = buffer.find(self.start)
             if begin < 0:       # keep the last byte if a frame may begin with it
-                begin = len(buffer) - buffer.endswith(self.start[:1])
+                begin = len(buffer) - (1 if buffer.endswith(self.start[:1]) else 0)
             self._skip(begin)
             if len(buffer) < self.format.size:
                 return readings
@@ -69,15 +79,16 @@ class FrameReader:
                 del buffer[:self.format.size]
                 self.in_step = True
 
-    def _skip(self, count):
+    def _skip(self, count: int) -> None:
         """Drop bytes. They count as one corrupted frame, up to the next good one or the next header."""
         if count:
-            self.rejected += self.in_step
+            if self.in_step:
+                self.rejected += 1
             self.skipped += count
             self.in_step = False
             del self.buffer[:count]
 
-    def decode(self, frame):
+    def decode(self, frame: bytes) -> Reading | None:
         """The reading in a frame; None if it is corrupted."""
         fields = self.format.unpack(frame)
         values = [fields[index] for index in self.indices]
@@ -90,7 +101,7 @@ class FrameReader:
 class Layout:
     """What the reply to a query consists of."""
 
-    def __init__(self, model, numbers):
+    def __init__(self, model: protocol.Model, numbers: Numbers) -> None:
         packets = protocol.single_packets(model, numbers)
         self.names = [packet.name for packet in packets]
         self.ranges = Ranges(packets)
@@ -101,8 +112,8 @@ class ReplyReader:
     """Takes the reply to a query, which has neither header nor checksum: only its length and the ranges of its values
     show that it is not corrupted."""
 
-    def __init__(self, model, *queries):
-        """model: a Model; queries: each a tuple of the numbers of packets and groups that are requested together."""
+    def __init__(self, model: protocol.Model, *queries: Numbers) -> None:
+        """queries: what is requested together."""
         self.layouts = {numbers: Layout(model, numbers) for numbers in queries}
         self.layout = self.layouts[queries[0]]  # of the reply that is expected
         self.buffer = bytearray()
@@ -110,24 +121,24 @@ class ReplyReader:
         self.rejected = 0       # replies
         self.skipped = 0        # bytes in no reply
 
-    def clear(self):
+    def clear(self) -> None:
         """Forget an incomplete reply, and expect none."""
         self.skipped += len(self.buffer)
         self.buffer.clear()
         self.waiting = False
 
-    def expect(self, numbers):
+    def expect(self, numbers: Numbers) -> None:
         """A query was sent: the next bytes are the reply. numbers: one of `queries`."""
         self.clear()
         self.layout = self.layouts[numbers]
         self.waiting = True
 
     @property
-    def missing(self):
+    def missing(self) -> int:
         """How many bytes complete the reply."""
         return self.layout.format.size - len(self.buffer) if self.waiting else 0
 
-    def feed(self, data):
+    def feed(self, data: bytes) -> list[Reading]:
         """The readings, at most one, that are complete with these bytes."""
         self.buffer += data
         layout = self.layout

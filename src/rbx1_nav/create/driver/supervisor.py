@@ -1,4 +1,8 @@
 """Who controls the robot: it falls back to passive mode when a wheel drops, at a cliff, and at its charger."""
+from __future__ import annotations
+
+from typing import Callable, Mapping
+
 from rbx1_nav.create import protocol
 from rbx1_nav.units import SECOND
 
@@ -12,8 +16,8 @@ BUMPS = protocol.BUMP_LEFT | protocol.BUMP_RIGHT
 CHARGER, DOCK = 1, 2    # bits of packet 34
 
 
-def causes(reading):
-    """Why a robot with this reading gives up safe mode: a list of texts."""
+def causes(reading: Mapping[str, int]) -> list[str]:
+    """Why a robot with this reading gives up safe mode."""
     found = []
     if reading['bumps_and_wheel_drops'] & WHEEL_DROPS:
         found.append('a wheel dropped')
@@ -27,19 +31,19 @@ def causes(reading):
 class Offset:
     """By how much a robot reports its mode too high: Roombas with Wi-Fi report it plus one (create_robot, issue 64)."""
 
-    def __init__(self, wanted, value=None):
+    def __init__(self, wanted: int, value: int | None = None) -> None:
         """wanted: the mode that is asked for; value: 0 or 1, or None to find out."""
         self.wanted = wanted
         self.value = value
-        self._reported = set()      # so far
+        self._reported: set[int | None] = set()     # so far
         self._attempts = 0
 
-    def ask(self, reported):
+    def ask(self, reported: int) -> None:
         """The wanted mode is asked for. reported: the mode before."""
         self._reported.add(reported)
         self._attempts += 1
 
-    def judge(self, reported, obstructed):
+    def judge(self, reported: int, obstructed: bool) -> None:
         """Find out from the mode that is reported after it was asked for. obstructed: whether the robot has had a
         reason not to leave passive mode."""
         self._reported.add(reported)
@@ -56,41 +60,45 @@ class Offset:
 class Supervisor:
     """Decides when to ask the robot for the mode in which it is driven."""
 
-    def __init__(self, mode, plus_one, info, warn):
+    def __init__(self, mode: int, plus_one: bool | None, info: Callable[[str], None],
+                 warn: Callable[[str], None]) -> None:
         """mode: the wanted one, of packet 35; plus_one: whether the robot reports its mode plus one, None to find out;
         info(text), warn(text): log a line."""
         self.wanted = mode
         self.plus_one = plus_one
         self.info = info
         self.warn = warn
-        self.mode = None            # of the last two readings
+        self.mode: int | None = None    # of the last two readings
         self.reason = ''            # why the robot is not in the wanted mode
         self.had_control = False
         self.offset_logged = False
         self.restart()
 
     @property
-    def in_control(self):
+    def in_control(self) -> bool:
         """Whether the robot is in the wanted mode."""
         return self.mode == self.wanted
 
-    def restart(self):
+    def restart(self) -> None:
         """The robot is started: it may be another one."""
         self.offset = Offset(self.wanted, None if self.plus_one is None else int(self.plus_one))
         self.forget()
 
-    def forget(self):
+    def forget(self) -> None:
         """There are no readings any more."""
-        self.mode = self.latest = self.clear_since = self.attempt = None
+        self.mode = None
+        self.latest: int | None = None          # mode of the last reading
+        self.clear_since: int | None = None     # ns, since when nothing keeps the robot from being driven
+        self.attempt: int | None = None         # ns, the last one
         self.obstructed = False     # since the last attempt
         self.failures = 0           # attempts in a row for whose failure there is no cause
 
-    def is_passive(self, reading):
+    def is_passive(self, reading: Mapping[str, int]) -> bool:
         """Whether a robot that was asked for passive mode may be in it."""
         offsets = (0, 1) if self.offset.value is None else (self.offset.value,)
         return reading['mode'] - protocol.PASSIVE in offsets
 
-    def update(self, now, reading, wants_motion):
+    def update(self, now: int, reading: Mapping[str, int], wants_motion: bool) -> bool:
         """Whether to ask for the wanted mode at `now` (ns). wants_motion: whether a command to move is in force."""
         reported, before = reading['mode'], self.latest
         self.latest = reported
@@ -116,42 +124,47 @@ class Supervisor:
             return False
         if obstructed:
             self.failures = 0
-        self._explain(', '.join(found + ['on the dock: carry it off if a command does not move it'] * docked
-                                + [self._contradiction(reported)] * (self.failures > ATTEMPTS_BEFORE_LOG)))
-        if found or docked and not wants_motion:
+        reasons = list(found)
+        if docked:
+            reasons.append('on the dock: carry it off if a command does not move it')
+        if self.failures > ATTEMPTS_BEFORE_LOG:
+            reasons.append(self._contradiction(reported))
+        self._explain(', '.join(reasons))
+        if found or (docked and not wants_motion):
             self.clear_since = None
             return False
         if self.clear_since is None:
             self.clear_since = now
-        if now - self.clear_since < HOLD * self.had_control or (
+        if (self.had_control and now - self.clear_since < HOLD) or (
                 self.attempt is not None and now - self.attempt < RETRY):
             return False
         return self._ask(now, reported, obstructed)
 
-    def _ask(self, now, reported, obstructed):
+    def _ask(self, now: int, reported: int, obstructed: bool) -> bool:
         self.attempt, self.obstructed = now, obstructed
-        self.failures += not obstructed
+        if not obstructed:
+            self.failures += 1
         self.offset.ask(reported)
         return True
 
-    def _contradiction(self, reported):
+    def _contradiction(self, reported: int) -> str:
         """Why a robot that has no reason to disobey may seem to. reported: the mode."""
         workaround = '' if self.plus_one is None else (
             f' with oi_mode_workaround:={str(self.plus_one).lower()}; without this parameter the base finds out')
-        return 'it reports mode %d after it was asked for %s mode: expected %d%s' % (
-            reported, protocol.MODE_NAMES[self.wanted], self.wanted + (self.offset.value or 0), workaround)
+        return (f'it reports mode {reported} after it was asked for {protocol.MODE_NAMES[self.wanted]} mode: expected '
+                f'{self.wanted + (self.offset.value or 0)}{workaround}')
 
-    def _note(self, mode):
+    def _note(self, mode: int) -> None:
         before, self.mode = self.mode, mode
         if mode == self.wanted and before != mode:
             self.had_control, self.reason = True, ''
             self.info(f'The robot is in {protocol.MODE_NAMES[mode]} mode')
         elif before == self.wanted and mode != before:
-            self.reason = None
-            self.warn('The robot is no longer driven: it changed from %s to %s mode' % (
-                protocol.MODE_NAMES[before], protocol.MODE_NAMES[mode]))
+            self.reason = ''
+            self.warn(f'The robot is no longer driven: it changed from {protocol.MODE_NAMES[self.wanted]} to '
+                      f'{protocol.MODE_NAMES[mode]} mode')
 
-    def _explain(self, reason):
+    def _explain(self, reason: str) -> None:
         before, self.reason = self.reason, reason
         if reason and reason != before:
             self.warn(f'The robot is not driven: {reason}')

@@ -1,20 +1,11 @@
-"""From what the robot counts to travel: wraps, gaps, and readings that cannot be true.
+"""From what the robot counts to travel: wraps, gaps, and readings that cannot be true."""
+from __future__ import annotations
 
-Both classes have
-
-    update(reading, elapsed, expected)  the Travel since the last good reading; raises Implausible
-    miss(begun, elapsed, expected)      a reading was lost on the line; begun: whether a part of it arrived
-    restart()                           the robot counts from 0 again: the next reading is no travel
-    is_reset(reading)                   whether this may be the reading of a robot that counts from 0 again
-    rounding                            (m, rad): 1 sigma of a position and a heading that are counted in whole units
-
-    elapsed: s since the last good reading; expected: Expected travel by the commands in the same time.
-"""
-from collections import namedtuple
 from math import degrees, radians
+from typing import Mapping, NamedTuple, Protocol
 
-from rbx1_nav.create.driver.fractions import LOST
-from rbx1_nav.create.protocol import MAX_SPEED
+from rbx1_nav.create.driver.fractions import LOST, Fractions
+from rbx1_nav.create.protocol import MAX_SPEED, Model
 
 WHEEL_LIMIT = 1.3 * MAX_SPEED / 1000    # m/s: faster than any wheel
 MARGIN = 0.015          # m: the wheels' travel between two readings may be late by so much
@@ -27,13 +18,32 @@ REPLY_SIZE = 30         # bytes
 LONG = 0.3              # s without a reading, after which there is nothing that the next one could be compared with
 ROUND = 1 / 12 ** 0.5   # 1 sigma of rounding to a whole number
 
-Travel = namedtuple('Travel', 'distance angle distance_variance angle_variance')
-Travel.__doc__ = 'An arc: its length (m) and angle (rad), and their variances beyond rounding and slip (m^2, rad^2).'
+
+class Travel(NamedTuple):
+    """An arc, and the variances of its length and angle beyond rounding and slip."""
+
+    distance: float             # m
+    angle: float                # rad
+    distance_variance: float    # m^2
+    angle_variance: float       # rad^2
+
+
+class Expected(NamedTuple):
+    """The travel of the wheels by the commands that were sent, m."""
+
+    left: float
+    right: float
+
+    def plus(self, other: Expected) -> Expected:
+        """Both, one after the other."""
+        return Expected(self.left + other.left, self.right + other.right)
+
+    def largest(self) -> float:
+        """That of the wheel that travels farther."""
+        return max(abs(self.left), abs(self.right))
+
+
 NOWHERE = Travel(0.0, 0.0, 0.0, 0.0)
-
-Expected = namedtuple('Expected', 'left right')
-Expected.__doc__ = 'The travel of the wheels by the commands that were sent, m.'
-
 STILL = Expected(0.0, 0.0)
 
 
@@ -41,18 +51,38 @@ class Implausible(ValueError):
     """A reading that no robot could produce: corrupted, or of a robot that was reset meanwhile."""
 
 
-def is_possible(left, right, elapsed):
+class Counter(Protocol):
+    """What the robot counts. elapsed: s since the last good reading; expected: by the commands in the same time."""
+
+    @property
+    def rounding(self) -> tuple[float, float]:
+        """1 sigma (m, rad) of a position and a heading that are counted in whole units."""
+
+    def update(self, reading: Mapping[str, int], elapsed: float, expected: Expected) -> Travel:
+        """The Travel since the last good reading. Raises Implausible."""
+
+    def miss(self, begun: bool, elapsed: float, expected: Expected) -> None:
+        """A reading was lost on the line. begun: whether a part of it arrived."""
+
+    def restart(self) -> None:
+        """The robot counts from 0 again: the next reading is no travel."""
+
+    def is_reset(self, reading: Mapping[str, int]) -> bool:
+        """Whether this may be the reading of a robot that counts from 0 again."""
+
+
+def is_possible(left: float, right: float, elapsed: float) -> bool:
     """Whether wheels can travel so far (m) in `elapsed` seconds."""
     return max(abs(left), abs(right)) <= WHEEL_LIMIT * elapsed + MARGIN
 
 
-def _distance(one, other):
-    """How far two Expected are apart: the larger difference of a wheel, m."""
-    return max(map(abs, (one.left - other.left, one.right - other.right)))
+def _distance(one: Expected, other: Expected) -> float:
+    """How far two travels are apart: the larger difference of a wheel, m."""
+    return max(abs(one.left - other.left), abs(one.right - other.right))
 
 
-def bridged(expected, measured, width):
-    """The Travel that was not read: as the commands would have it. measured: Expected, by the speeds of the last
+def bridged(expected: Expected, measured: Expected, width: float) -> Travel:
+    """The Travel that was not read: as the commands would have it. measured: by the speeds of the last
     reading; where the two differ, the wheels do not follow the commands, and who knows which is closer."""
     left, right = expected
     deviations = [abs(one - other) + LOST_SHARE * abs(one) for one, other in zip(expected, measured)]
@@ -60,7 +90,7 @@ def bridged(expected, measured, width):
     return Travel((left + right) / 2, (right - left) / width, variance / 4, variance / width ** 2)
 
 
-def unknown(expected, width):
+def unknown(expected: Expected, width: float) -> Travel:
     """The Travel of a robot that moved as commanded for some of the time, or not at all: uniform in between, from 0."""
     left, right = expected
     return Travel(0.0, 0.0, ((left + right) / 2) ** 2 / 3, ((right - left) / width) ** 2 / 3)
@@ -71,48 +101,46 @@ class EncoderTravel:
 
     WRAP = 1 << 16
 
-    def __init__(self, model):
-        """model: a Model with encoders."""
+    def __init__(self, model: Model) -> None:
+        """model: one with encoders."""
+        assert model.counts_per_metre
         self.scale = 1 / model.counts_per_metre
         self.width = model.wheel_separation
         self.rounding = self.scale * ROUND / 2 ** 0.5, 2 ** 0.5 * self.scale * ROUND / self.width
         self.restart()
 
-    def restart(self):
-        """See above."""
-        self.counts = None
-        self.suspect = None     # counts that were implausible
+    def restart(self) -> None:
+        self.counts: tuple[int, int] | None = None
+        self.suspect: tuple[int, int] | None = None     # counts that were implausible
         self.suspected = 0      # how often in a row
 
-    def update(self, reading, elapsed, expected):
-        """See above."""
+    def update(self, reading: Mapping[str, int], elapsed: float, expected: Expected) -> Travel:
         counts = reading['left_encoder'], reading['right_encoder']
         if self.counts is None:
             self.counts = counts
             return NOWHERE
-        left, right = (self.difference(new, old, travel)
-                       for new, old, travel in zip(counts, self.counts, expected))
+        before = self.counts
+        left, right = (self.difference(new, old, travel) for new, old, travel in zip(counts, before, expected))
         if not is_possible(left, right, elapsed):
             self.check_reset(counts)
-            raise Implausible('encoders: %s and %s after %s and %s' % (counts + self.counts))
+            raise Implausible(f'encoders: {counts[0]} and {counts[1]} after {before[0]} and {before[1]}')
         self.counts, self.suspected = counts, 0
         # beyond half a wrap, the commands decide how many there were, and they may not have been followed
         unsure = sum((self.WRAP * self.scale) ** 2 for travel in expected if abs(travel) > self.WRAP / 2 * self.scale)
         return Travel((left + right) / 2, (right - left) / self.width, unsure / 4, unsure / self.width ** 2)
 
-    def is_reset(self, reading):
-        """See above."""
+    def is_reset(self, reading: Mapping[str, int]) -> bool:
         counts = [reading[name] for name in ('left_encoder', 'right_encoder')]
         return (all(abs(self.difference(count, 0, 0.0)) < MARGIN for count in counts)
                 and not all(abs(self.difference(count, 0, 0.0)) < MARGIN for count in self.counts or (0, 0)))
 
-    def difference(self, new, old, expected):
+    def difference(self, new: int, old: int, expected: float) -> float:
         """The travel (m) between two counts: of all that wrap to the same, the closest to that expected or to none."""
         low = (new - old + self.WRAP // 2) % self.WRAP - self.WRAP // 2
         wraps = round((expected / self.scale - low) / self.WRAP)
         return (low + self.WRAP * wraps) * self.scale
 
-    def check_reset(self, counts):
+    def check_reset(self, counts: tuple[int, int]) -> None:
         """Readings that are implausible but agree with each other come from a robot that counts from 0 again."""
         agrees = self.suspect and all(abs(self.difference(new, old, 0.0)) <= 2 * MARGIN
                                       for new, old in zip(counts, self.suspect))
@@ -122,51 +150,48 @@ class EncoderTravel:
             self.restart()
             self.counts = counts
 
-    def miss(self, begun, elapsed, expected):
-        """See above: the encoders go on counting, nothing is lost."""
+    def miss(self, begun: bool, elapsed: float, expected: Expected) -> None:
+        """The encoders go on counting, nothing is lost."""
 
 
 class CounterTravel:
     """Of the Create: distance and angle since the last reply. If a reply is lost, so is the travel that it reported.
 
-    Also has wants_angle(expected): whether the next query is to ask for the angle. Between two readings of a robot that
-    may lose fractions of a degree, the turn is that by the commands.
+    Between two readings of the angle of a robot that may lose fractions of a degree, the turn is that by the commands.
     """
 
     CAP = 32767     # mm or degrees, where the robot stops to count
 
-    def __init__(self, model, fractions):
-        """model: a Model without encoders; fractions: a Fractions."""
+    def __init__(self, model: Model, fractions: Fractions) -> None:
+        """model: one without encoders."""
         self.width = model.wheel_separation
         self.fractions = fractions
         self.rounding = 1e-3 * ROUND, radians(1) * ROUND
         self.restart()
 
-    def restart(self):
-        """See above."""
+    def restart(self) -> None:
         self.first = True
-        self.lost = []          # Travel of replies that were lost
+        self.lost: list[Travel] = []    # by replies that were lost
         self.doubtful = STILL   # by the commands, before queries of which nobody knows if they arrived
         self.speed = STILL      # m/s, of the wheels by the last reading
         self.bad = 0.0          # share of the last replies that were lost
         self.asks_angle = True  # whether the last query does
         self._begin_angle()
 
-    def _begin_angle(self):
+    def _begin_angle(self) -> None:
         # since the angle was last read: s, and rad by the commands and as returned by update()
         self.angle_time = self.commanded_turn = self.returned_turn = 0.0
 
-    def _turn(self, expected):
+    def _turn(self, expected: Expected) -> float:
         return (expected.right - expected.left) / self.width
 
-    def wants_angle(self, expected):
-        """expected: Expected since the last query."""
+    def wants_angle(self, expected: Expected) -> bool:
+        """Whether the next query is to ask for the angle. expected: since the last query."""
         turn = degrees(self.commanded_turn + self._turn(expected))
         self.asks_angle = self.fractions.is_due(turn, self.angle_time)
         return self.asks_angle
 
-    def update(self, reading, elapsed, expected):
-        """See above."""
+    def update(self, reading: Mapping[str, int], elapsed: float, expected: Expected) -> Travel:
         distance = reading['distance'] / 1000
         if self.first:
             self.restart()
@@ -177,22 +202,23 @@ class CounterTravel:
         angle = radians(reading['angle']) * (elapsed / time if time else 1.0) if self.asks_angle else turn
         wheels = Expected(distance - angle * self.width / 2, distance + angle * self.width / 2)
         if not is_possible(*wheels, elapsed):
-            raise Implausible('distance: %s mm, angle: %s degrees in %.3f s'
-                              % (reading['distance'], reading.get('angle'), elapsed))
-        capped = abs(reading['distance']) >= self.CAP or self.asks_angle and abs(reading['angle']) >= self.CAP
+            raise Implausible(f"distance: {reading['distance']} mm, angle: {reading.get('angle')} degrees in "
+                              f'{elapsed:.3f} s')
+        capped = abs(reading['distance']) >= self.CAP or (self.asks_angle and abs(reading['angle']) >= self.CAP)
+        cap_variance = 100.0 if capped else 0.0
         angle, variance = self._read_angle(reading, time, turn)
         doubtful = self._doubt(wheels, expected, elapsed)
         resolved = self._resolve(wheels, expected)
         if self.fractions.coarse:       # the robot goes on counting the angle
             resolved = resolved._replace(angle=0.0)
-        parts = [Travel(distance, angle, 100.0 * capped, 100.0 * capped + variance), resolved, *self.lost, doubtful]
+        parts = [Travel(distance, angle, cap_variance, cap_variance + variance), resolved, *self.lost, doubtful]
         if elapsed > 0 and not self.lost and not any(resolved):
             self.speed = Expected(*(wheel / elapsed for wheel in wheels))
         self.lost.clear()
         self.doubtful = STILL
         return Travel(*map(sum, zip(*parts)))
 
-    def _doubt(self, wheels, expected, elapsed):
+    def _doubt(self, wheels: Expected, expected: Expected, elapsed: float) -> Travel:
         """The Travel by which a reading is to be corrected. wheels: what was read.
 
         A reply has no checksum. Where others are corrupted, some are without a sign of it: those that differ from what
@@ -202,14 +228,14 @@ class CounterTravel:
         if self.bad < BAD_LINE or elapsed > LONG:
             return NOWHERE
         by_speed = Expected(*(speed * elapsed for speed in self.speed))
-        with_doubtful = Expected(*map(sum, zip(expected, self.doubtful)))
-        far = DOUBT + LOST_SHARE * max(map(abs, expected))
+        with_doubtful = expected.plus(self.doubtful)
+        far = DOUBT + LOST_SHARE * expected.largest()
         closest = min((expected, with_doubtful, by_speed), key=lambda each: _distance(wheels, each))
         if _distance(wheels, closest) > far:
             # corrupted, if the robot does what it did before; else it may be a change
             share = 1.0 if _distance(expected, by_speed) < far else 0.5
             less = Expected(*(share * (one - other) for one, other in zip(closest, wheels)))
-            unsure = Expected(*((1 - share) * each + DOUBT for each in map(abs, less)))
+            unsure = Expected(*((1 - share) * abs(each) + DOUBT for each in less))
             return bridged(less, less, self.width)._replace(
                 distance_variance=sum(each ** 2 for each in unsure) / 4,
                 angle_variance=sum(each ** 2 for each in unsure) / self.width ** 2)
@@ -217,7 +243,7 @@ class CounterTravel:
         variance = 2 * self.bad / REPLY_SIZE * DOUBT ** 2
         return Travel(0.0, 0.0, variance / 4, variance / self.width ** 2)
 
-    def _read_angle(self, reading, time, turn):
+    def _read_angle(self, reading: Mapping[str, int], time: float, turn: float) -> tuple[float, float]:
         """The turn since the last update (rad), and its variance beyond rounding. time: s since the angle was read
         before; turn: by the commands since the last update."""
         self.commanded_turn += turn
@@ -231,34 +257,33 @@ class CounterTravel:
             self.returned_turn += turn
         angle += radians(self.fractions.make_up())
         # what was returned so far was off by as much as the angle is now
-        return angle, ((angle - turn) ** 2 / 4 + self.asks_angle * self.rounding[1] ** 2) * coarse
+        variance = (angle - turn) ** 2 / 4 + (self.rounding[1] ** 2 if self.asks_angle else 0.0)
+        return angle, variance if coarse else 0.0
 
-    def _resolve(self, wheels, expected):
+    def _resolve(self, wheels: Expected, expected: Expected) -> Travel:
         """The Travel that doubtful queries cost. wheels: the travel that was read at last.
 
         If they did not arrive, this includes the travel before them. If that cannot be seen: half, give or take half.
         """
         doubtful = self.doubtful
-        size = max(map(abs, doubtful))
+        size = doubtful.largest()
         if not size:
             return NOWHERE
         answered = max(abs(wheel - part) for wheel, part in zip(wheels, expected))
         ignored = max(abs(wheel - part - other) for wheel, part, other in zip(wheels, expected, doubtful))
-        if size > 2 * (LOST_SHARE * max(map(abs, expected)) + self.rounding[0] + self.rounding[1] * self.width):
+        if size > 2 * (LOST_SHARE * expected.largest() + self.rounding[0] + self.rounding[1] * self.width):
             return NOWHERE if ignored < answered else bridged(doubtful, doubtful, self.width)
         return bridged(Expected(*(part / 2 for part in doubtful)), STILL, self.width)
 
     @staticmethod
-    def is_reset(reading):
-        """See above."""
+    def is_reset(reading: Mapping[str, int]) -> bool:
         return reading['distance'] == 0 and reading.get('angle', 0) == 0
 
-    def miss(self, begun, elapsed, expected):
-        """See above."""
+    def miss(self, begun: bool, elapsed: float, expected: Expected) -> None:
         self.fractions.disturb()
         self.bad += (1 - self.bad) * MEMORY
         if not begun:
-            self.doubtful = Expected(*map(sum, zip(self.doubtful, expected)))
+            self.doubtful = self.doubtful.plus(expected)
             return
         measured = Expected(*(speed * elapsed for speed in self.speed))
         part = bridged(expected, measured, self.width)
@@ -270,6 +295,6 @@ class CounterTravel:
             self.returned_turn += part.angle
 
 
-def travel_of(model, fractions):
-    """The object above for a Model. fractions: see Fractions; of a robot without encoders."""
+def travel_of(model: Model, fractions: Fractions) -> EncoderTravel | CounterTravel:
+    """What a robot of this Model counts. fractions: of a robot without encoders."""
     return EncoderTravel(model) if model.counts_per_metre else CounterTravel(model, fractions)

@@ -1,78 +1,97 @@
 """The commands that a base subscribes to, on their way through its gate."""
+from __future__ import annotations
+
+from threading import Lock
+from typing import Any, Iterable, Protocol, Sequence, Tuple
+
 import rospy
 from diagnostic_msgs.msg import DiagnosticStatus
+from diagnostic_updater import DiagnosticStatusWrapper
 from geometry_msgs.msg import Twist
 from std_msgs.msg import Float64
 
 from rbx1_nav.control.contradiction import Senders
-from rbx1_nav.control.gate import RefusedCommand, RejectedCommand
+from rbx1_nav.control.gate import CommandGate, RefusedCommand, RejectedCommand
+from rbx1_nav.robot.joints import Joint
 from rbx1_nav.ros import messages
+from rbx1_nav.ros.base.clocks import Clock
 from rbx1_nav.ros.network.refusals import Refusals
 from rbx1_nav.units import SECOND
 
 RECENT = SECOND * 3 // 2    # ns: a node whose last command is older than that does not drive; rests last 1 s
+
+# linear in m/s, angular in rad/s, the velocities that the base cannot follow, the name of its sender
+Command = Tuple[float, float, Tuple[float, float, float, float], str]
+
+
+class Base(Protocol):
+    """What follows commands."""
+
+    def command(self, now: int, linear: float, angular: float, others: Sequence[float], sender: str) -> bool:
+        """Put a command in force at `now` (ns). Returns whether it was clamped. Raises RejectedCommand,
+        RefusedCommand."""
 
 
 class VelocityCommands:
     """The subscription to cmd_vel: logs what the gate does to a command, and tells a sender that the base refuses
     it."""
 
-    def __init__(self, base, gate, clock, lock):
-        """base: has command(now, linear, angular, others, sender); gate: its CommandGate; clock: see clocks.py; lock:
-        of the base."""
+    def __init__(self, base: Base, gate: CommandGate, clock: Clock, lock: Lock) -> None:
+        """gate, lock: of the base."""
         self.base = base
         self.gate = gate
         self.clock = clock
         self.lock = lock
         self.topic = rospy.resolve_name('cmd_vel')
         self.senders = Senders()
-        self.sender = None          # the connection header of the last command
-        self.subscriber = None
+        self.sender: object = None      # the connection header of the last command
+        self.subscriber: rospy.Subscriber | None = None
         self.refusals = Refusals()
         clock.set_driver(self.apply, self.connections)
 
-    def subscribe(self):
+    def subscribe(self) -> None:
         """Accept commands from now on."""
         if not self.subscriber:
             self.subscriber = rospy.Subscriber('cmd_vel', Twist, self.on_twist, queue_size=None, tcp_nodelay=True)
 
-    def connections(self):
+    # Any: rospy has no types
+    def connections(self) -> list[Any]:
         """rospy's present connections to publishers of cmd_vel."""
         return self.subscriber.impl.connections if self.subscriber else []
 
-    def on_twist(self, twist):
+    def on_twist(self, twist: Twist) -> None:
         """A command arrives: the clock decides when it is put in force."""
         self.sender = header = twist._connection_header
         command = messages.from_twist(twist)
         text = self.senders.contradiction(self.clock.now(), header, header['callerid'], command[:2],
                                           lambda: [connection.header for connection in self.connections()])
         if text:
-            rospy.logwarn_throttle(5, '%s: %s: expected one node that drives' % (self.topic, text))
+            rospy.logwarn_throttle(5, f'{self.topic}: {text}: expected one node that drives')
         self.clock.command(twist, command + (header['callerid'],))
 
-    def apply(self, command):
-        """Put a command in force: (linear in m/s, angular in rad/s, the velocities that the base cannot follow, the
-        name of its sender)."""
+    def apply(self, command: Command) -> None:
+        """Put a command in force."""
         sender = command[3]
         try:
             with self.lock:
                 clamped = self.base.command(self.clock.now(), *command)
         except RejectedCommand as error:
-            rospy.logerr_throttle(1, '%s: %s; rejected, and the base stopped' % (self.topic, error))
+            rospy.logerr_throttle(1, f'{self.topic}: {error}; rejected, and the base stopped')
             self.refusals.add(sender, str(error))
             return
         except RefusedCommand as error:
-            rospy.logwarn_throttle(5, '%s: refused a command of %s: %s' % (self.topic, sender, error))
+            rospy.logwarn_throttle(5, f'{self.topic}: refused a command of {sender}: {error}')
             self.refusals.add(sender, str(error))
             return
         if clamped:
-            rospy.logwarn_throttle(5, '%s: %g m/s, %g rad/s: expected at most %g and %g; clamped'
-                                   % ((self.topic,) + command[:2] + self.gate.limits))
+            (linear, angular), limits = command[:2], self.gate.limits
+            rospy.logwarn_throttle(5, f'{self.topic}: {linear:g} m/s, {angular:g} rad/s: expected at most '
+                                      f'{limits.linear:g} and {limits.angular:g}; clamped')
         if any(command[2]):
-            rospy.logwarn_throttle(5, '%s: linear.y, linear.z, angular.x, angular.y = %s: a differential drive cannot '
-                                      'follow these, expected 0; ignored' % (self.topic, command[2]))
+            rospy.logwarn_throttle(5, f'{self.topic}: linear.y, linear.z, angular.x, angular.y = {command[2]}: a '
+                                      'differential drive cannot follow these, expected 0; ignored')
 
-    def driver(self):
+    def driver(self) -> str | None:
         """The name of the node that drives the base now, also while it rests between two motions; None if none does."""
         last = self.gate.command_time
         if last is None or self.clock.now() - last > RECENT:
@@ -80,17 +99,17 @@ class VelocityCommands:
         return next((connection.header['callerid'] for connection in self.connections()
                      if connection.header is self.sender), None)
 
-    def log_timeout(self):
+    def log_timeout(self) -> None:
         """Log that the command in force timed out."""
-        rospy.logwarn_throttle(10, '%s: no command for %g s: stopped' % (self.topic, self.gate.timeout / SECOND))
+        rospy.logwarn_throttle(10, f'{self.topic}: no command for {self.gate.timeout / SECOND:g} s: stopped')
 
-    def diagnose(self, status):
-        """Add the gate's values to a DiagnosticStatus."""
+    def diagnose(self, status: DiagnosticStatusWrapper) -> None:
+        """Add the gate's values."""
         gate, now = self.gate, self.clock.now()
-        age = 'never' if gate.command_time is None else '%.3f' % ((now - gate.command_time) / SECOND)
+        age = 'never' if gate.command_time is None else f'{(now - gate.command_time) / SECOND:.3f}'
         text = self.senders.recent(now, RECENT)
         if text:
-            status.summary(DiagnosticStatus.WARN, 'Contradictory commands: ' + text)
+            status.summary(DiagnosticStatus.WARN, f'Contradictory commands: {text}')
         status.add('dX', gate.linear)
         status.add('dR', gate.angular)
         status.add('Age of the last command (s)', age)
@@ -100,16 +119,17 @@ class VelocityCommands:
         status.add('Contradictory commands', self.senders.contradictions)
 
 
-def subscribe_joints(joints, lock):
-    """Subscribe to the goals of Joint objects: <joint>/command, in rad. lock: held while a goal is set."""
+def subscribe_joints(joints: Iterable[Joint], lock: Lock) -> None:
+    """Subscribe to the goals of joints: <joint>/command, in rad. lock: held while a goal is set."""
     for joint in joints:
-        rospy.Subscriber(joint.name + '/command', Float64, _on_goal, (joint, lock), queue_size=10)
+        rospy.Subscriber(f'{joint.name}/command', Float64, _on_goal, (joint, lock), queue_size=10)
 
 
-def _on_goal(message, joint_and_lock):
+def _on_goal(message: Float64, joint_and_lock: tuple[Joint, Lock]) -> None:
     joint, lock = joint_and_lock
     try:
         with lock:
             joint.command(message.data)
     except ValueError as error:
-        rospy.logerr_throttle(1, '%s: %s; rejected' % (rospy.resolve_name(joint.name + '/command'), error))
+        topic = rospy.resolve_name(f'{joint.name}/command')
+        rospy.logerr_throttle(1, f'{topic}: {error}; rejected')

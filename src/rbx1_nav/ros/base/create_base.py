@@ -1,6 +1,9 @@
 """The base of a Create: connects a Driver with its line and with ROS."""
+from __future__ import annotations
+
 import threading
 import time
+from typing import Callable
 
 from diagnostic_updater import Updater
 import rospy
@@ -8,6 +11,9 @@ import rospy
 from rbx1_nav.control.gate import CommandGate
 from rbx1_nav.create.driver.driver import Driver
 from rbx1_nav.create.driver.link import Link
+from rbx1_nav.create.driver.motion_report import State
+from rbx1_nav.create.driver.parameters import Settings
+from rbx1_nav.robot.description import Robot
 from rbx1_nav.robot.readings import Uncertainty
 from rbx1_nav.ros.base.clocks import HardwareClock
 from rbx1_nav.ros.base.commands import VelocityCommands
@@ -23,8 +29,7 @@ LEAVE_TIME = 0.6    # s in which the robot must confirm that it has stopped
 class CreateBase:
     """Drives a robot until the node is to end."""
 
-    def __init__(self, settings, robot):
-        """settings: Settings; robot: a Robot."""
+    def __init__(self, settings: Settings, robot: Robot) -> None:
         gate = CommandGate(robot.limits, robot.timeout)
         self.clock = HardwareClock(settings.update_rate)
         self.lock = threading.Lock()
@@ -36,7 +41,7 @@ class CreateBase:
         self.commands = VelocityCommands(self.driver, gate, self.clock, self.lock)
         self.diagnostics = CreateStatus(Updater(), self.driver, self.link, self.commands)
 
-    def run(self):
+    def run(self) -> bool:
         """Drive the robot until the node is to end. Returns whether it stands then, as far as is known."""
         while not life.end_requested.is_set():
             self.guarded(self.step)
@@ -44,7 +49,7 @@ class CreateBase:
                 self.diagnostics.update()
         return self.leave()
 
-    def guarded(self, step):
+    def guarded(self, step: Callable[[], object]) -> None:
         """Do a step, and give up the line if it is lost."""
         try:
             step()
@@ -53,7 +58,7 @@ class CreateBase:
                          error)
             self.disconnect()
 
-    def step(self):
+    def step(self) -> None:
         """Process what has arrived, or try to open the line. Raises OSError if it is lost."""
         if not self.link.port:
             if not self.link.open(self.clock.now()):
@@ -81,8 +86,8 @@ class CreateBase:
         if self.driver.is_ready:
             self.commands.subscribe()
 
-    def exchange(self):
-        """Receive, and do what is due. Returns whether the command has timed out, and a State or None. Raises
+    def exchange(self) -> tuple[bool, State | None]:
+        """Receive, and do what is due. Returns whether the command has timed out, and what is to be published. Raises
         OSError."""
         data = self.link.read(self.driver.until_tick(self.clock.now()), self.driver.awaited)
         with self.lock:
@@ -94,7 +99,7 @@ class CreateBase:
             raise self.driver.sender.error
         return timed_out, state
 
-    def publish(self, now, state):
+    def publish(self, now: int, state: State) -> None:
         """Publish a State."""
         width = self.driver.model.wheel_separation
         if self.publisher.robot.base_width != width:    # another robot than expected has answered
@@ -107,15 +112,15 @@ class CreateBase:
         if self.joint_schedule.due(now):
             self.publisher.publish_joints(stamp, state.travel, state.velocity)
 
-    def disconnect(self):
+    def disconnect(self) -> None:
         """Give up the line. Another one will be opened."""
         with self.lock:
             self.driver.detach()
         self.link.close()
 
-    def leave(self):
+    def leave(self) -> bool:
         """Stop the robot for good. Returns whether it has confirmed that, or cannot move."""
-        def stop():
+        def stop() -> None:
             with self.lock:
                 self.driver.leave(self.clock.now())
         self.guarded(stop)

@@ -1,16 +1,25 @@
 """What /diagnostics says of a Create: the base, its battery, its sensors, its gyro and the serial line."""
+from __future__ import annotations
+
+from typing import Mapping
+
 import rospy
 from diagnostic_msgs.msg import DiagnosticStatus
+from diagnostic_updater import DiagnosticStatusWrapper, Updater
 
 from rbx1_nav.create import protocol
+from rbx1_nav.create.driver.driver import Driver
+from rbx1_nav.create.driver.link import Link
 from rbx1_nav.create.driver.supervisor import BUMPS, CLIFFS, WHEEL_DROPS
+from rbx1_nav.create.driver.travel import CounterTravel
+from rbx1_nav.ros.base.commands import VelocityCommands
 
 LOW, EMPTY = 0.2, 0.05      # of the battery's charge, fractions of its capacity
 CHARGING_STATES = ('not charging', 'reconditioning', 'charging', 'trickle charging', 'waiting', 'charging fault')
 OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR
 
 
-def charge_of(reading):
+def charge_of(reading: Mapping[str, int]) -> float | None:
     """The charge of the battery, a fraction; None if the robot does not know its capacity."""
     return reading['charge'] / reading['capacity'] if reading['capacity'] else None
 
@@ -18,8 +27,7 @@ def charge_of(reading):
 class CreateStatus:
     """Fills in the DiagnosticStatus of each part."""
 
-    def __init__(self, updater, driver, link, commands):
-        """updater: a diagnostic_updater.Updater; driver: a Driver; link: a Link; commands: the VelocityCommands."""
+    def __init__(self, updater: Updater, driver: Driver, link: Link, commands: VelocityCommands) -> None:
         self.driver, self.link, self.commands = driver, link, commands
         self.battery_level = OK     # the last one
         self.updater = updater
@@ -29,14 +37,14 @@ class CreateStatus:
                                 ('Serial line', self.line)):
             updater.add(title, function)
 
-    def update(self):
+    def update(self) -> None:
         """Publish /diagnostics."""
         if self.driver.gyro and self.driver.contact.found and not self.shows_gyro:
             self.shows_gyro = True
             self.updater.add('Gyro', self.gyro)
         self.updater.force_update()
 
-    def base(self, status):
+    def base(self, status: DiagnosticStatusWrapper) -> DiagnosticStatusWrapper:
         """Mode and commands."""
         driver, supervisor = self.driver, self.driver.supervisor
         if self.link.problem:
@@ -44,12 +52,12 @@ class CreateStatus:
         elif not driver.contact.answers:
             status.summary(ERROR, 'The robot does not answer')
         elif not supervisor.in_control:
-            status.summary(WARN, 'Not driven: %s' % (supervisor.reason or 'changing the mode'))
+            status.summary(WARN, f"Not driven: {supervisor.reason or 'changing the mode'}")
         else:
             status.summary(OK, 'Standing' if driver.motion.stands else 'Moving')
         found = driver.contact.found
         status.add('Robot type', found.model.name if found else 'unknown')
-        if driver.polled:
+        if driver.polled and isinstance(driver.counter, CounterTravel):
             status.add('Fractions of a degree', driver.counter.fractions.kind)
         mode = supervisor.mode
         status.add('Mode', 'unknown' if mode is None else protocol.MODE_NAMES[mode])
@@ -59,7 +67,7 @@ class CreateStatus:
         status.add('Commands above the speed of a wheel', driver.saturated)
         return status
 
-    def battery(self, status):
+    def battery(self, status: DiagnosticStatusWrapper) -> DiagnosticStatusWrapper:
         """Charge, voltage and the rest."""
         reading = self._reading(status)
         if not reading:
@@ -69,7 +77,7 @@ class CreateStatus:
             level, text = OK, CHARGING_STATES[reading['charging_state']]
         else:
             level = ERROR if charge < EMPTY else WARN if charge < LOW else OK
-            text = f"{'Low: ' if level else ''}{100 * charge:.0f} %"
+            text = f"{'' if level == OK else 'Low: '}{100 * charge:.0f} %"
         if level > self.battery_level:
             rospy.logwarn('Battery: %s: charge it soon', text)
         self.battery_level = level
@@ -83,14 +91,14 @@ class CreateStatus:
         status.add('Charging sources', reading['charging_sources'])
         return status
 
-    def sensors(self, status):
+    def sensors(self, status: DiagnosticStatusWrapper) -> DiagnosticStatusWrapper:
         """Bumpers, wheel drops and cliffs."""
         reading = self._reading(status)
         if not reading:
             return status
         bits = reading['bumps_and_wheel_drops']
         cliffs = [name for name in CLIFFS if reading[name]]
-        found = ['bumper'] * bool(bits & BUMPS) + ['wheel drop'] * bool(bits & WHEEL_DROPS) + cliffs
+        found = [name for name, mask in (('bumper', BUMPS), ('wheel drop', WHEEL_DROPS)) if bits & mask] + cliffs
         status.summary(WARN if found else OK, ', '.join(found).replace('_', ' ') or 'Nothing touched')
         for name, bit in (('Bumper left', protocol.BUMP_LEFT), ('Bumper right', protocol.BUMP_RIGHT),
                           ('Wheel drop left', protocol.WHEEL_DROP_LEFT),
@@ -102,9 +110,11 @@ class CreateStatus:
         status.add('Overcurrents', reading['overcurrents'])
         return status
 
-    def gyro(self, status):
+    def gyro(self, status: DiagnosticStatusWrapper) -> DiagnosticStatusWrapper:
         """The gyro's present reading and its offset."""
         gyro = self.driver.gyro
+        if not gyro:
+            return status
         offset = gyro.offset
         if gyro.check.problem:
             status.summary(ERROR, gyro.check.problem)
@@ -119,7 +129,7 @@ class CreateStatus:
         status.add('Readings at rest', len(gyro.rest))
         return status
 
-    def line(self, status):
+    def line(self, status: DiagnosticStatusWrapper) -> DiagnosticStatusWrapper:
         """What went wrong on the line."""
         driver = self.driver
         if self.link.problem:
@@ -137,7 +147,7 @@ class CreateStatus:
         status.add('Dropouts', driver.contact.dropouts)
         return status
 
-    def _reading(self, status):
+    def _reading(self, status: DiagnosticStatusWrapper) -> Mapping[str, int] | None:
         if not self.driver.contact.answers:
             status.summary(ERROR, 'The robot does not answer')
             return None

@@ -1,13 +1,18 @@
 """The nodes that drive a base on its own simulated clock, and whether they have done what a tick has woken them for."""
+from __future__ import annotations
+
+import socket
 import threading
 from time import monotonic
+from typing import Any, Callable, Iterable, Sequence
 from urllib.parse import urlparse
 
 import rosgraph
 import rospy
 
 from rbx1_nav.ros.network.master import call
-from rbx1_nav.ros.network.processes import Network, awake, listening_process, own_process, peer_process, still_polling
+from rbx1_nav.ros.network.processes import (
+    Network, PollingThread, Process, awake, listening_process, own_process, peer_process, still_polling)
 from rbx1_nav.ros.network.tcp import unread_bytes
 
 MASTER = 'the master'
@@ -23,24 +28,29 @@ class DrivingNodes:
     belong to the thread that runs the clock.
     """
 
-    def __init__(self, topic, connections, clock_connections):
+    # Any: rospy has no types
+    def __init__(self, topic: str, connections: Callable[[], list[Any]],
+                 clock_connections: Callable[[], list[Any]]) -> None:
         """topic: the name of cmd_vel; connections(): to its publishers; clock_connections(): to subscribers of
         /clock."""
         self.topic = topic
         self.connections = connections
         self.clock_connections = clock_connections
-        self.known = None           # the connections at the last update
-        self.drivers = set()        # names of the publishers of commands that are watched
-        self.upstream = set()       # names of all nodes that commands may come from
-        self.watched = set()        # those that update() has seen
+        # both sorts of connections and `upstream` at the last update
+        self.known: tuple[list[Any], list[Any], set[str]] | None = None
+        self.drivers: set[str] = set()      # names of the publishers of commands that are watched
+        self.upstream: set[str] = set()     # names of all nodes that commands may come from
+        self.watched: set[str] = set()      # those that update() has seen
         self.upstream_changed = threading.Event()
-        self.processes = {}         # by name
-        self.forgotten = {}         # sockets by name; None: not a matter of a connection
-        self.own = None             # of this node, without the thread that runs the clock
+        self.processes: dict[str, Process] = {}     # by name
+        # sockets by name; None: not a matter of a connection
+        self.forgotten: dict[str, socket.socket | None] = {}
+        self.own: Process | None = None     # of this node, without the thread that runs the clock
         self.network = Network()
-        self.new = {}               # by connection that is being made: s of the monotonic clock when it was first seen
+        # by connection that is being made: s of the monotonic clock when it was first seen
+        self.new: dict[Any, float] = {}
 
-    def update(self):
+    def update(self) -> None:
         """Look who is connected. To be called often."""
         connections = [each for each in self.connections() if is_complete(each)]
         listeners = list(self.clock_connections())
@@ -63,7 +73,7 @@ class DrivingNodes:
             self._watch(MASTER, listening_process(urlparse(rosgraph.get_master_uri()).port), None)
             self.upstream_changed.set()
 
-    def _can_look(self):
+    def _can_look(self) -> bool:
         """Whether the kernel tells what processes do."""
         if self.own is None:
             self.own = own_process()
@@ -71,69 +81,69 @@ class DrivingNodes:
                 threading.Thread(target=self._look_upstream, daemon=True).start()
         return self.own is not None
 
-    def _watch(self, name, process, sock):
+    def _watch(self, name: str, process: Process | None, sock: socket.socket | None) -> None:
         if name in self.processes:
             self.processes.pop(name).close()
         if process and name not in self.forgotten:
             process.socket = sock
             self.processes[name] = process
 
-    def sees(self, name):
+    def sees(self, name: str) -> bool:
         """Whether the process of a node is watched."""
         self.update()
         return name in self.processes
 
-    def on_clock(self, name):
+    def on_clock(self, name: str) -> bool:
         """Whether a node subscribes to /clock."""
         return any(connection.endpoint_id == name for connection in list(self.clock_connections()))
 
-    def mark(self, names):
+    def mark(self, names: set[str]) -> None:
         """Remember what the processes of these nodes do now, just before a tick."""
         for name in names & self.processes.keys():
             self.processes[name].mark()
 
-    def woke_by_itself(self, name):
+    def woke_by_itself(self, name: str) -> bool:
         """Whether a node may have woken by itself in the time between mark() and now."""
         return name in self.processes and self.processes[name].woke_by_itself()
 
-    def connecting(self):
+    def connecting(self) -> bool:
         """Whether a publisher of commands is being connected. It may take itself for connected a little earlier."""
         now = monotonic()
         connections = [each for each in self.connections() if not is_complete(each)]
         self.new = {each: self.new.get(each, now) for each in connections}
         return any(now - begin < CONNECT_TIME for begin in self.new.values())
 
-    def awake(self):
+    def awake(self) -> str | None:
         """The name of a node that is awake; None if all sleep."""
         if self.connecting():
             return self.topic
         self.update()
         if not self.drivers:
             return None
-        name = rospy.get_name()
-        processes = self.processes if name in self.forgotten else {**self.processes, name: self.own}
+        name: str = rospy.get_name()
+        processes = self.processes if not self.own or name in self.forgotten else {**self.processes, name: self.own}
         if self.network.busy():
             return name
         process = awake(processes.values())
-        return process and next(name for name, each in processes.items() if each is process)
+        return next((name for name, each in processes.items() if each is process), None)
 
-    def awake_drivers(self):
+    def awake_drivers(self) -> str | None:
         """The same of the publishers of commands alone."""
         names = sorted(self.drivers)
         process = awake([self.processes[name] for name in names])
-        return process and next(name for name in names if self.processes[name] is process)
+        return next((name for name in names if self.processes[name] is process), None)
 
-    def polling(self):
+    def polling(self) -> list[PollingThread]:
         """The threads that look at the time every moment, rather than wait for a tick: an object for
         still_polling()."""
         return [each for name in self.drivers & self.processes.keys() for each in self.processes[name].polling()]
 
     @staticmethod
-    def still_polling(threads):
+    def still_polling(threads: list[PollingThread]) -> bool:
         """Whether one of these has not looked since."""
         return still_polling(threads)
 
-    def forget(self, name):
+    def forget(self, name: str) -> None:
         """Do not look at a node any more, as long as its connection lasts."""
         process = self.processes.pop(name, None)
         if process:
@@ -144,43 +154,45 @@ class DrivingNodes:
         self.drivers = self.drivers - {name}
         self.known = None
 
-    def update_upstream(self):
+    def update_upstream(self) -> bool:
         """Ask the master who publishes what. Returns whether there are nodes that commands may come from, and that were
         not known before."""
         try:
             publishers, subscribers, _ = call(rosgraph.get_master_uri(), 'getSystemState')
-        except Exception:       # pylint: disable=broad-except
+        except Exception:       # whatever is wrong with the master, this thread must go on
             return False
         self.upstream = upstream = upstream_of(self.topic, publishers, subscribers) - {rospy.get_name()}
         return not upstream <= self.watched
 
-    def connected(self, header):
+    def connected(self, header: object) -> bool:
         """Whether a connection to a publisher of cmd_vel still exists. header: its own, one object for each."""
         return any(connection.header is header for connection in self.connections())
 
-    def unread(self, header):
+    def unread(self, header: object) -> bool:
         """Whether bytes have arrived by a connection that were not read yet."""
         return any(unread_bytes(connection.socket) for connection in self.connections() if connection.header is header)
 
-    def _look_upstream(self):
+    def _look_upstream(self) -> None:
         while True:
             self.upstream_changed.wait(UPSTREAM_PERIOD if self.drivers else None)
             self.upstream_changed.clear()
             self.update_upstream()
 
 
-def is_complete(connection):
+def is_complete(connection: Any) -> bool:
     """Whether a publisher has accepted a connection. The header of one that it refuses has an error only."""
     return bool(connection.header) and 'callerid' in connection.header
 
 
-def upstream_of(topic, publishers, subscribers):
-    """Names of all nodes whose messages may lead to one on a topic. publishers, subscribers: lists of [topic, names of
-    nodes], as of the master's getSystemState."""
-    publishers = dict(publishers)
-    found, new = set(), set(publishers.get(topic, ()))
+def upstream_of(topic: str, publishers: Iterable[tuple[str, Sequence[str]]],
+                subscribers: Iterable[tuple[str, Sequence[str]]]) -> set[str]:
+    """Names of all nodes whose messages may lead to one on a topic. publishers, subscribers: each topic with the
+    names of nodes, as of the master's getSystemState."""
+    names_of = dict(publishers)
+    found: set[str] = set()
+    new = set(names_of.get(topic, ()))
     while new:
         found |= new
         heard = {each for each, names in subscribers if new & set(names)}
-        new = {name for each in heard for name in publishers.get(each, ())} - found
+        new = {name for each in heard for name in names_of.get(each, ())} - found
     return found

@@ -1,7 +1,10 @@
 """What can happen to an emulated robot, as services and topics: it loses its cable, a wheel drops, and the like."""
+from __future__ import annotations
+
 from concurrent.futures import Future
 from math import floor
 import queue
+from typing import Callable
 
 import rospy
 from std_msgs.msg import Float64
@@ -9,15 +12,17 @@ from std_srvs.srv import SetBool, SetBoolResponse, Trigger, TriggerResponse
 
 from rbx1_nav.config import ConfigError
 from rbx1_nav.create.emulator.body import CAPACITY
+from rbx1_nav.create.emulator.emulator import EmulatedCreate
+from rbx1_nav.create.emulator.pseudo_terminal import PseudoTerminal
 from rbx1_nav.ros.node import life
 
 
 class RobotFaults:
     """The services and topics. They do nothing by themselves: the thread that owns the robot calls apply()."""
 
-    def __init__(self, robot, terminal):
-        """robot: an EmulatedCreate; terminal: a PseudoTerminal."""
-        self.requests = queue.Queue()
+    def __init__(self, robot: EmulatedCreate, terminal: PseudoTerminal) -> None:
+        # functions to be called, and where their result goes: a text that says what went wrong
+        self.requests: queue.Queue[tuple[Callable[[], object], Future[str]]] = queue.Queue()
         body, line = robot.body, robot.line
         for name, switch in [('pull_cable', lambda on: terminal.unplug() if on else terminal.plug()),
                              ('silence', lambda on: setattr(line, 'silent', on)),
@@ -32,7 +37,7 @@ class RobotFaults:
         self._offer_number('corruption', lambda value: setattr(line, 'corruption', value), 0, 1)
         self._offer_number('gyro_stuck', lambda value: setattr(body, 'gyro_stuck', floor(value)), -1, 1023)
 
-    def apply(self):
+    def apply(self) -> None:
         """Do what was asked for."""
         while not self.requests.empty():
             function, done = self.requests.get()
@@ -42,12 +47,12 @@ class RobotFaults:
             except ConfigError as error:    # the link cannot be made any more
                 done.set_result(str(error))
 
-    def _offer_switch(self, name, switch):
+    def _offer_switch(self, name: str, switch: Callable[[bool], None]) -> None:
         rospy.Service(f'~{name}', SetBool, lambda request: SetBoolResponse(
             *self._request(f'{name}: {request.data}', lambda: switch(request.data))))
 
-    def _offer_number(self, name, function, low, high):
-        def on_message(message):
+    def _offer_number(self, name: str, function: Callable[[float], None], low: int, high: int) -> None:
+        def on_message(message: Float64) -> None:
             if low <= message.data <= high:
                 self._request(f'{name}: {message.data:g}', lambda: function(message.data))
             else:
@@ -55,9 +60,9 @@ class RobotFaults:
         topic = rospy.resolve_name(f'~{name}')
         rospy.Subscriber(topic, Float64, on_message)
 
-    def _request(self, text, function):
+    def _request(self, text: str, function: Callable[[], object]) -> tuple[bool, str]:
         """Have a function called, and wait until it was. Returns whether it succeeded, and the text that is logged."""
-        done = Future()
+        done: Future[str] = Future()
         self.requests.put((function, done))
         while not done.done():
             if life.end_requested.is_set():

@@ -34,8 +34,8 @@ def read_clock(rate: float) -> Clock:
             raise ConfigError(f'real_time_factor: {factor:g}: expected /use_sim_time to be true')
         return OwnClock(factor, rate, round(step * SECOND), strict)
     if strict or 'clock_step' in section.values:
-        raise ConfigError('%s: expected a simulated clock of this node: real_time_factor is not set'
-                          % ('strict: true' if strict else 'clock_step: %g' % step))
+        given = 'strict: true' if strict else f'clock_step: {step:g}'
+        raise ConfigError(f'{given}: expected a simulated clock of this node: real_time_factor is not set')
     return RealTimeClock(rate) if rospy.rostime.is_wallclock() else FollowedClock(rate)
 
 
@@ -50,7 +50,7 @@ class OwnClock(FollowedClock):
         self.period = period
         self.strict = strict
         self.publisher = rospy.Publisher('/clock', ClockMessage, queue_size=10, tcp_nodelay=True)
-        # rospy subscribes each node to /clock; this one knows the time, and to be sent it costs a sixth of a tick
+        # rospy subscribes each node to /clock. This one knows the time, and receiving it would take a sixth of a tick
         simtime._clock_sub.unregister()
         self.lockstep: Lockstep     # from set_driver() on
         self.not_in_step: dict[str, str] = {}   # reasons, by the name of the node
@@ -66,9 +66,8 @@ class OwnClock(FollowedClock):
             raise rospy.ROSException(f'strict: {name} {reason}: expected nodes that are in step with /clock')
         self.not_in_step[name] = reason
         rospy.logwarn('%s %s: not in step with /clock. The clock no longer waits for it, and where the robot ends '
-                      'depends '
-                      'on the speed of the machine. Expected a node that sleeps on simulated time, as rospy.Rate does',
-                      name, reason)
+                      'depends on the speed of the machine. Expected a node that sleeps on simulated time, as '
+                      'rospy.Rate does', name, reason)
 
     def command(self, twist: Twist, command: Any) -> None:
         """At the tick at which it was sent."""
@@ -79,15 +78,16 @@ class OwnClock(FollowedClock):
         if self.not_in_step:
             status.mergeSummary(DiagnosticStatus.WARN, f"Not in step with /clock: {', '.join(self.not_in_step)}")
         status.add('Nodes not in step with /clock',
-                   '; '.join('%s %s' % each for each in self.not_in_step.items()) or 'none')
+                   '; '.join(f'{name} {reason}' for name, reason in self.not_in_step.items()) or 'none')
 
     def run(self, step: Callable[[], None]) -> None:
         beat = time.monotonic()
         while not life.end_requested.is_set():
             self.lockstep.begin_tick()
             self.time += self.period
-            rospy.rostime._set_rostime(self.stamp())
-            self.publisher.publish(self.stamp())
+            stamp = self.stamp()
+            rospy.rostime._set_rostime(stamp)
+            self.publisher.publish(stamp)
             if self.schedule.due(self.time):
                 step()
             self.lockstep.end_tick()

@@ -1,19 +1,43 @@
 """Publishes the combined odometry as a pose, as odometry and as a transform."""
+from __future__ import annotations
+
 import time
+from typing import Callable
 
 import rospy
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from nav_msgs.msg import Odometry
 from tf2_msgs.msg import TFMessage
 
+from rbx1_nav.estimation.combined_odometry import CombinedOdometry, Estimate
+from rbx1_nav.estimation.filter import Filter
 from rbx1_nav.robot.kinematics import relative_frame
 from rbx1_nav.ros import messages
-from rbx1_nav.ros.filter.estimated_twist import estimate_twist
+from rbx1_nav.ros.filter.estimated_twist import EstimatedTwist, estimate_twist
+from rbx1_nav.ros.filter.frame_tree import FrameTree
+from rbx1_nav.ros.filter.parameters import FilterParameters
 from rbx1_nav.schedule import Schedule
 from rbx1_nav.units import SECOND
 
 TRANSFORM_TIME = 2 * SECOND   # ns after the first estimate, in which a transform to the robot's frame may arrive
 MIN_WAIT = 1.0          # s of wall time for the same: a connection takes time, however fast simulated time passes
+
+
+def odometry_message(pose: PoseWithCovarianceStamped, child_frame_id: str, twist: EstimatedTwist | None) -> Odometry:
+    """An Odometry message of a pose and a twist in the frame of the robot; None: not known."""
+    message = Odometry()
+    message.header = pose.header
+    message.child_frame_id = child_frame_id
+    message.pose = pose.pose
+    if twist is None:
+        message.twist.covariance = messages.diagonal(*[messages.UNKNOWN] * 6)
+        return message
+    message.twist.twist.linear.x, message.twist.twist.linear.y = twist.forward, twist.left
+    message.twist.twist.angular.z = twist.turn
+    message.twist.covariance = messages.diagonal(
+        twist.forward_variance, twist.left_variance, messages.UNKNOWN, messages.UNKNOWN, messages.UNKNOWN,
+        twist.turn_variance)
+    return message
 
 
 class EstimatePublisher:
@@ -23,33 +47,36 @@ class EstimatePublisher:
     node publishes a transform to the robot's frame, ours leads to the frame of the odometry instead.
     """
 
-    def __init__(self, parameters, tree, log):
-        """parameters: those of the filter; tree: FrameTree; log(text): logs a line."""
-        self.output_frame = parameters['output_frame']
-        self.publish_tf = parameters['publish_tf']
+    def __init__(self, parameters: FilterParameters, tree: FrameTree, log: Callable[[str], None]) -> None:
+        """log(text): logs a line."""
+        self.output_frame = parameters.output_frame
+        self.publish_tf = parameters.publish_tf
         self.tree = tree
         self.log = log
-        self.schedule = Schedule(parameters['freq'])
+        self.schedule = Schedule(parameters.freq)
         self.pose_pub = rospy.Publisher('~odom_combined', PoseWithCovarianceStamped, queue_size=10)
         self.odometry_pub = rospy.Publisher('~odometry', Odometry, queue_size=10)
         self.tf_pub = rospy.Publisher('/tf', TFMessage, queue_size=100, tcp_nodelay=True)
-        self.frames = None, None    # of the odometry and of the robot
+        self.frames = '', ''        # of the odometry and of the robot; '': not known yet
         self.published = 0          # poses
-        self.last = self.before = None      # the latest Estimate, and the one that it follows without a jump
-        self.filter = None                  # Filter of `last`
-        self.placed = False                 # whether the next Estimate may be at another place, by set_pose
+        self.last: Estimate | None = None       # the latest one
+        self.before: Estimate | None = None     # the one that it follows without a jump
+        self.filter: Filter | None = None       # of `last`
+        self.placed = False                     # whether the next Estimate may be at another place, by set_pose
         self.restart()
 
-    def restart(self):
+    def restart(self) -> None:
         """Look anew who publishes the transform to the robot's frame."""
         self.tree.forget(self.frames[1])
-        self.child = None                       # frame that the transform leads to, None until that is known
+        self.child = ''                         # frame that the transform leads to, '' until that is known
         self.settled = not self.publish_tf      # whether no transform of other nodes can make a difference
-        self.first = None                       # (ns, s of wall time) of the first estimate
+        self.first: tuple[int, float] | None = None     # (ns, s of wall time) of the first estimate
 
-    def update(self, combined, odom_frame, base_frame):
-        """Publish the estimate of a CombinedOdometry if it is due. The frames are those of its odometry."""
+    def update(self, combined: CombinedOdometry, odom_frame: str, base_frame: str) -> None:
+        """Publish the estimate if it is due. The frames are those of its odometry."""
         estimate = combined.estimate
+        if not estimate:
+            return
         if estimate is not self.last:
             self.before = None if self.placed or combined.filter is not self.filter else self.last
             self.last, self.filter = estimate, combined.filter
@@ -62,7 +89,7 @@ class EstimatePublisher:
         self.published += 1
         if self.odometry_pub.get_num_connections():     # the message takes longer to make than the pose
             twist = estimate_twist(combined, self.before) if self.before else None
-            self.odometry_pub.publish(messages.odometry_of_estimate(pose, base_frame, twist))
+            self.odometry_pub.publish(odometry_message(pose, base_frame, twist))
         if not self.publish_tf:
             return
         if self.frames != (odom_frame, base_frame):
@@ -70,10 +97,10 @@ class EstimatePublisher:
             self.restart()
         self._choose_child(estimate.stamp, odom_frame, base_frame)
         if self.child:
-            pose = (estimate.pose if self.child == base_frame else relative_frame(estimate.pose, estimate.odom.pose))
-            self.tf_pub.publish([messages.transform(stamp, self.output_frame, self.child, pose)])
+            there = estimate.pose if self.child == base_frame else relative_frame(estimate.pose, estimate.odom.pose)
+            self.tf_pub.publish([messages.transform(stamp, self.output_frame, self.child, there)])
 
-    def _choose_child(self, now, odom_frame, base_frame):
+    def _choose_child(self, now: int, odom_frame: str, base_frame: str) -> None:
         """Set `child`. now: ns."""
         other = self.tree.publisher(base_frame)
         if self.output_frame == odom_frame:
@@ -87,7 +114,7 @@ class EstimatePublisher:
         elif now - self.first[0] >= TRANSFORM_TIME and time.monotonic() - self.first[1] >= MIN_WAIT:
             self._set_child(base_frame, f'no other node publishes one to {base_frame}')
 
-    def _set_child(self, child, why):
+    def _set_child(self, child: str, why: str) -> None:
         if child != self.child:
             self.child = child
             self.log(f'Transform from {self.output_frame} to {child}: {why}')

@@ -12,7 +12,7 @@ from rbx1_nav.simulation.floor_noise import CELL_TRAVELLED, CELL_TURNED
 from rbx1_nav.units import SECOND, wrap_angle
 
 
-class Twist(NamedTuple):
+class EstimatedTwist(NamedTuple):
     """Mean velocities in the robot's frame and their variances."""
 
     forward: float              # m/s
@@ -28,8 +28,8 @@ def _of_floor(noise: float, speed: float, elapsed: float, cell: float) -> float:
     return noise ** 2 * speed ** 2 / max(cell, speed * elapsed)
 
 
-def estimate_twist(combined: CombinedOdometry, before: Estimate) -> Twist | None:
-    """The Twist from the Estimate `before` to the latest one of a CombinedOdometry; None if their stamps are equal.
+def estimate_twist(combined: CombinedOdometry, before: Estimate) -> EstimatedTwist | None:
+    """The EstimatedTwist from the Estimate `before` to the latest one; None if their stamps are equal.
 
     The displacement is the odometry's, reduced by the estimated slip, and the turn is the filter's. An odometry dropout
     leaves the displacement unknown: then it is 0, with the uncertainty that the filter assumes for a dropout. So does a
@@ -71,4 +71,4 @@ def estimate_twist(combined: CombinedOdometry, before: Estimate) -> Twist | None
         floor = (_of_floor(ekf.prior.heading_noise_turning, abs(by_wheels), elapsed, CELL_TURNED)
                  + _of_floor(ekf.prior.heading_noise_straight, abs(forward), elapsed, CELL_TRAVELLED))
         turn_variance = max(last.odom.angular_variance, floor) + variance(TURNING) * turn ** 2
-    return Twist(forward, left, turn, forward_variance, left_variance, MEASURED + turn_variance)
+    return EstimatedTwist(forward, left, turn, forward_variance, left_variance, MEASURED + turn_variance)

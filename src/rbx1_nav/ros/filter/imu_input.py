@@ -1,13 +1,18 @@
 """Reads an IMU that may be mounted upside down or askew, and may send an orientation only."""
+from __future__ import annotations
+
 from math import acos, degrees
 import time
+from typing import Callable
 
 import rospy
+from sensor_msgs.msg import Imu as ImuMessage
 
 from rbx1_nav.config import show
-from rbx1_nav.estimation.gyro_input import UPRIGHT, GyroInput, vertical_axis
-from rbx1_nav.estimation.inputs import check
+from rbx1_nav.estimation.gyro_input import UPRIGHT, GyroInput, Vector, vertical_axis
+from rbx1_nav.estimation.inputs import Imu, check
 from rbx1_nav.ros import messages
+from rbx1_nav.ros.filter.frame_tree import FrameTree
 
 TRANSFORM_WARN_TIME = 1.0      # s of wall time for a transform to arrive before a line is logged
 
@@ -15,21 +20,22 @@ TRANSFORM_WARN_TIME = 1.0      # s of wall time for a transform to arrive before
 class ImuInput:
     """Turns the readings of an IMU to the robot's vertical axis, by a transform that is looked up once."""
 
-    def __init__(self, topic, tree, log):
-        """topic: name; tree: FrameTree; log(text): logs a line."""
+    def __init__(self, topic: str, tree: FrameTree, log: Callable[[str], None]) -> None:
+        """log(text): logs a line."""
         self.topic = rospy.resolve_name(topic)
         self.tree = tree
         self.log = log
         self.gyro = GyroInput(lambda text: log(f'{self.topic}: {text}'))
-        self.frames = self.vertical = None      # frames of the robot and of the IMU, and vertical_axis() for them
-        self.deadline = None
+        self.frames: tuple[str, str] | None = None      # of the robot and of the IMU
+        self.vertical: Vector | None = None             # vertical_axis() for them
+        self.deadline = 0.0                             # s of the monotonic clock
 
     @property
-    def settled(self):
+    def settled(self) -> bool:
         """Whether no transform is needed now."""
         return self.frames is None or self.vertical is not None
 
-    def read(self, message, base_frame, accept):
+    def read(self, message: ImuMessage, base_frame: str, accept: Callable[[Imu], None]) -> None:
         """Call accept(imu) with an Imu. base_frame: of the robot. Raises RejectedMessage, as accept() may."""
         frames = base_frame, message.header.frame_id.lstrip('/') or base_frame
         if frames != self.frames:
@@ -44,13 +50,13 @@ class ImuInput:
         accept(self.gyro.read(data, self.vertical))
         self.gyro.accepted(data)
 
-    def _find_vertical(self, base_frame, frame):
+    def _find_vertical(self, base_frame: str, frame: str) -> Vector | None:
         if frame == base_frame:
             return UPRIGHT
         rotation = self.tree.rotation(base_frame, frame)
         if rotation is None:
             return None
         vertical = vertical_axis(rotation)
-        self.log('%s: turned from %s to %s, its vertical axis by %.0f degrees'
-                 % (self.topic, frame, base_frame, degrees(acos(max(-1.0, min(1.0, vertical[2]))))))
+        tilt = degrees(acos(max(-1.0, min(1.0, vertical[2]))))
+        self.log(f'{self.topic}: turned from {frame} to {base_frame}, its vertical axis by {tilt:.0f} degrees')
         return vertical

@@ -1,10 +1,17 @@
 """The states of the filter and of its sensors, for /diagnostics."""
+from __future__ import annotations
+
+from functools import partial
 from math import radians, sqrt
+from threading import Lock
+from typing import Callable, Sequence
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticStatus
-from diagnostic_updater import Updater
+from diagnostic_updater import DiagnosticStatusWrapper, Updater
 
+from rbx1_nav.estimation.combined_odometry import CombinedOdometry
+from rbx1_nav.estimation.filter import Filter
 from rbx1_nav.estimation.model import BIAS, STRAIGHT, TURNING
 
 OK, WARN = DiagnosticStatus.OK, DiagnosticStatus.WARN
@@ -17,45 +24,49 @@ SUMMARIES = {'standstill': (OK, 'Standstill'), 'agreement': (OK, 'Wheels and gyr
 class Diagnostics:
     """Counts the messages to the filter, and publishes a DiagnosticStatus of it and one of each sensor."""
 
-    def __init__(self, sensors, timeout, lock, get_filter):
+    def __init__(self, sensors: Sequence[str], timeout: float, lock: Lock,
+                 get_filter: Callable[[], tuple[CombinedOdometry | None, int]]) -> None:
         """sensors: names; timeout: age of the last message from which on a sensor has timed out, s; lock: to be held
-        while the filter is read; get_filter(): the CombinedOdometry, or None, and the number of poses published."""
+        while the filter is read; get_filter(): the filter, and the number of poses published."""
         self.timeout = timeout
         self.lock = lock
         self.get_filter = get_filter
-        self.received = dict.fromkeys(sensors)      # rospy.Time of the last message of each
+        # when the last message of each arrived
+        self.received: dict[str, rospy.Time | None] = dict.fromkeys(sensors)
         self.rejected = dict.fromkeys([*sensors, 'set_pose'], 0)    # messages
-        self.filter = self.case = None
+        self.filter: Filter | None = None
+        self.case: str | None = None
         self.starts = 0
         self.counts = {'contradiction': 0, 'carried': 0}
         self.updater = Updater()
         self.updater.setHardwareID('none')
         self.updater.add('filter', self._diagnose_filter)
         for sensor in sensors:
-            self.updater.add(sensor, lambda status, sensor=sensor: self._diagnose_sensor(sensor, status))
+            self.updater.add(sensor, partial(self._diagnose_sensor, sensor))
 
-    def count(self, topic, now, combined):
-        """To be called after each message on a topic that the CombinedOdometry has accepted at `now`, a rospy.Time."""
+    def count(self, topic: str, now: rospy.Time, combined: CombinedOdometry) -> None:
+        """To be called after each message on a topic that the filter has accepted at `now`."""
         self.received[topic] = now
         if combined.filter is not self.filter:
             self.filter = combined.filter
-            self.starts += self.filter is not None
+            if self.filter:
+                self.starts += 1
         case = combined.case
         if case != self.case:
             self.case = case
-            if case in self.counts:
+            if case and case in self.counts:
                 self.counts[case] += 1
 
-    def publish(self):
+    def publish(self) -> None:
         """Publish all of them."""
         self.updater.force_update()
 
-    def _diagnose_filter(self, status):
+    def _diagnose_filter(self, status: DiagnosticStatusWrapper) -> DiagnosticStatusWrapper:
         with self.lock:
             combined, published = self.get_filter()
-            ekf = combined and combined.filter
-            case = combined.case if ekf else None
-            if not ekf:
+            ekf, estimate = (combined.filter, combined.estimate) if combined else (None, None)
+            case = combined.case if combined else None
+            if not combined or not ekf:
                 status.summary(WARN, 'No estimate yet')
             elif case:
                 status.summary(*SUMMARIES[case])
@@ -66,12 +77,12 @@ class Diagnostics:
             else:
                 status.summary(OK, 'The gyro is not used')
             status.add('Case', case or 'none')
-            for key, index, unit in (('Gyro bias (degrees/s)', BIAS, radians(1)), ('Slip in turns', TURNING, 1),
-                                     ('Slip in straight motion', STRAIGHT, 1)):
-                sigma = sqrt(ekf.P.variance(index)) if ekf else None
-                status.add(key, f'{ekf.state[index] / unit:.4f} +- {sigma / unit:.4f}' if ekf else 'unknown')
-            sigma = sqrt(combined.estimate.covariance[2, 2]) / radians(1) if ekf else None
-            status.add('Standard deviation of the heading (degrees)', f'{sigma:.2f}' if ekf else 'unknown')
+            for key, index, unit in (('Gyro bias (degrees/s)', BIAS, radians(1)), ('Slip in turns', TURNING, 1.0),
+                                     ('Slip in straight motion', STRAIGHT, 1.0)):
+                status.add(key, f'{ekf.state[index] / unit:.4f} +- {sqrt(ekf.P.variance(index)) / unit:.4f}' if ekf
+                           else 'unknown')
+            status.add('Standard deviation of the heading (degrees)',
+                       f'{sqrt(estimate.covariance[2, 2]) / radians(1):.2f}' if estimate else 'unknown')
             status.add('Contradictions', self.counts['contradiction'])
             status.add('Times carried', self.counts['carried'])
             status.add('Restarts', max(0, self.starts - 1))
@@ -79,13 +90,15 @@ class Diagnostics:
             status.add('Rejected messages on set_pose', self.rejected['set_pose'])
         return status
 
-    def _diagnose_sensor(self, sensor, status):
+    def _diagnose_sensor(self, sensor: str, status: DiagnosticStatusWrapper) -> DiagnosticStatusWrapper:
         with self.lock:
             combined, received = self.get_filter()[0], self.received[sensor]
             age = None if received is None else (rospy.Time.now() - received).to_sec()
+            if age is None or not combined:
+                status.summary(WARN, 'No message yet')
             # below 0: the clock has jumped back since
-            if age is None or not -1 <= age <= self.timeout or combined.timed_out[sensor]:
-                status.summary(WARN, 'No message yet' if age is None else 'Timed out, not used')
+            elif not -1 <= age <= self.timeout or combined.timed_out[sensor]:
+                status.summary(WARN, 'Timed out, not used')
             elif sensor == 'odom' and combined.suspect:
                 status.summary(*JUMPED)
             elif combined.case == 'contradiction':

@@ -11,7 +11,7 @@ import socket
 import sys
 import threading
 import time
-from typing import Callable, Iterable
+from typing import Callable, Iterable, Optional, Tuple
 
 POLL = 0.005    # s: a thread that sleeps for less than this polls, as ros::Rate does on simulated time
 ENDED = b'X', b'Z'      # states of a thread that has ended
@@ -26,7 +26,7 @@ def _cpu_clock(number: int, of_thread: bool) -> int:
     return ~number << 3 | (6 if of_thread else 2)
 
 
-class _Thread:
+class Thread:
     """One thread of a process."""
 
     def __init__(self, folder: str, number: int) -> None:
@@ -92,6 +92,9 @@ class _Thread:
         return time.monotonic() - self.changed < POLL and self.needs_no_message()
 
 
+PollingThread = Tuple[Thread, Optional[bytes]]      # with what it has run so far
+
+
 class Process:
     """A process of this machine."""
 
@@ -102,7 +105,7 @@ class Process:
         self.clock = _cpu_clock(pid, False)
         self.without = without
         self.socket: socket.socket | None = None    # by which it was found
-        self.threads: dict[int, _Thread] = {}       # by number
+        self.threads: dict[int, Thread] = {}       # by number
         self._update()
         if not self.threads:
             raise ProcessLookupError(f'no process {pid}')
@@ -128,22 +131,22 @@ class Process:
 
     def mark(self) -> None:
         """Remember what the threads do now, and have done since they were last looked at."""
-        self._each(_Thread.mark)
+        self._each(Thread.mark)
 
-    def polling(self) -> list[tuple[_Thread, bytes | None]]:
-        """The threads that sleep for a moment only, each with what it has run so far."""
-        return [(thread, thread.ran) for thread in self._each(_Thread.polls)]
+    def polling(self) -> list[PollingThread]:
+        """The threads that sleep for a moment only."""
+        return [(thread, thread.ran) for thread in self._each(Thread.polls)]
 
     def woke_by_itself(self) -> bool:
         """Whether a thread has run since mark() that slept for a time then, or had just run."""
-        return bool(self._each(_Thread.woke_by_itself))
+        return bool(self._each(Thread.woke_by_itself))
 
     def ended(self) -> bool:
         """A thread has ended, or all of them: look again which there are."""
         self._update()
         return not self.threads
 
-    def _each(self, function: Callable[[_Thread], bool | None]) -> list[_Thread]:
+    def _each(self, function: Callable[[Thread], bool | None]) -> list[Thread]:
         """Call a function with each thread; returns those for which it is true."""
         found = []
         for thread in self.threads.values():
@@ -163,7 +166,7 @@ class Process:
             self.threads.pop(number).close()
         for number in numbers - self.threads.keys():
             try:
-                self.threads[number] = _Thread(f'{self.folder}{number}/', number)
+                self.threads[number] = Thread(f'{self.folder}{number}/', number)
             except (FileNotFoundError, ProcessLookupError):
                 pass
 
@@ -212,7 +215,7 @@ def _cpu_time(process: Process) -> int | None:
         return None
 
 
-def still_polling(threads: Iterable[tuple[_Thread, bytes | None]]) -> bool:
+def still_polling(threads: Iterable[PollingThread]) -> bool:
     """Whether one of these threads, as of Process.polling(), still sleeps as it did then."""
     try:
         return any(thread.polls() and thread.ran == ran for thread, ran in threads)

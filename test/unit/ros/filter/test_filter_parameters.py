@@ -9,12 +9,12 @@ from rbx1_nav.ros.filter.parameters import read_parameters, search_value
 
 
 def test_the_defaults_of_the_limits():
-    assert read_parameters({})['limits'] == pytest.approx(Limits())
+    assert read_parameters({}).limits == pytest.approx(Limits())
 
 
 def test_each_limit_has_its_unit():
     limits = read_parameters({'max_speed': 2, 'max_turn_rate': 3, 'max_angular_acceleration': 4.5, 'gyro_bias': 5,
-                              'gyro_scale_error': 0})['limits']
+                              'gyro_scale_error': 0}).limits
     assert limits._replace(gyro_bias=degrees(limits.gyro_bias)) == pytest.approx((2, 3, 4.5, 5, 0))
 
 
