@@ -21,6 +21,7 @@ import xmlrpc.client
 
 import figures
 import processes
+import table
 from probe import Probe
 
 START = 30  # s of wall time for a roscore or a base to come up
@@ -215,64 +216,6 @@ def host():
             'time': time.strftime('%Y-%m-%dT%H:%M:%SZ', time.gmtime())}
 
 
-# heading, path in the figures of a run, factor to the unit shown, decimals
-COLUMNS = [
-    ('fwd', 'forward', 1, 0), ('turn', 'turning', 1, 0), ('zero', 'zero', 1, 0), ('all', 'total', 1, 0),
-    ('dist mm', 'distance_m', 1e3, 3), ('angle deg', 'angle_deg', 1, 3),
-    ('dev mm', 'deviation_m', 1e3, 4), ('dev mrad', 'deviation_rad', 1e3, 3),
-    ('min ms', 'command_period_s.min', 1e3, 2), ('p1', 'command_period_s.p1', 1e3, 2),
-    ('p50', 'command_period_s.p50', 1e3, 2), ('p99', 'command_period_s.p99', 1e3, 2),
-    ('max', 'command_period_s.max', 1e3, 2),
-    ('odom Hz', 'odom_hz', 1, 2), ('CPU %', 'cpu_percent', 1, 2), ('%/Hz', 'cpu_percent_per_odom_hz', 1, 4),
-    ('RSS MB', 'rss_peak_mb', 1, 1), ('PSS MB', 'pss_mb', 1, 1), ('x real', 'real_time_factor', 1, 2),
-]
-
-WIDTH = 6  # least width of a column
-
-
-def look_up(row, path):
-    """The figure at a dotted path; None if it does not exist."""
-    for key in path.split('.'):
-        row = row.get(key) if row else None
-    return row
-
-
-def remarks(row):
-    """Anything unusual about a run, as text."""
-    words = [f'{row["load"]} loops'] if row['load'] else []
-    words += [f'driver exit status {row["driver_exit"]}'] if row['driver_exit'] else []
-    words += [] if row['settled'] else ['still moving at the end']
-    return ', '.join(words)
-
-
-def line(name, values, remark=''):
-    """One line of the table; values in the units of the figures of a run."""
-    cells = []
-    for (heading, _, factor, decimals), value in zip(COLUMNS, values):
-        width = max(len(heading), WIDTH)
-        cells.append(f'{value * factor:{width}.{decimals}f}' if value is not None else f'{"-":>{width}}')
-    return f"{name:>6} {' '.join(cells)}{(f'  {remark}' if remark else '')}"
-
-
-def header():
-    """The first line of the table."""
-    return f"{'run':>6} {' '.join((f'{heading:>{max(len(heading), WIDTH)}}' for heading, *_ in COLUMNS))}"
-
-
-def summary(rows):
-    """The lines below the runs: minimum, median, 90th percentile and maximum of each column, as {name: [value...]}."""
-    kept = [[v for v in (look_up(row, path) for row in rows) if v is not None] for _, path, *_ in COLUMNS]
-    return {name: [figures.percentile(values, percent) if values else None for values in kept]
-            for name, percent in (('min', 0), ('median', 50), ('90 %', 90), ('max', 100))}
-
-
-def print_spread(name, values):
-    """Print one line for pooled values (s), in ms."""
-    if values:
-        numbers = ', '.join(f'{key} {1e3 * values[key]:.2f}' for key in ('min', 'p1', 'p50', 'p99', 'max'))
-        print(f'{name}, {values["count"]} pooled (ms): {numbers}')
-
-
 def arguments():
     """The command line."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
@@ -301,26 +244,26 @@ def arguments():
 
 def measure(args, result):
     """Measure what the command line asks for: print the figures, and add them to `result`."""
-    paths = [path for _, path, *_ in COLUMNS]
+    paths = [path for _, path, *_ in table.COLUMNS]
     periods, odom_periods = [], []
     if args.runs:
-        print(header(), flush=True)
+        print(table.header(), flush=True)
     for number in range(args.runs):
         row, new, new_odom = measure_run(args, args.load if number % 2 else 0)
         periods += new
         odom_periods += new_odom
         result['runs'].append(row)
-        print(line(number + 1, [look_up(row, path) for path in paths], remarks(row)), flush=True)
+        print(table.line(number + 1, [table.look_up(row, path) for path in paths], table.remarks(row)), flush=True)
     if args.runs:
-        for name, values in summary(result['runs']).items():
-            print(line(name, values))
+        for name, values in table.summary(result['runs']).items():
+            print(table.line(name, values))
             result['summary'][name] = dict(zip(paths, values))
         result.update(command_period_s=figures.spread(periods), odom_period_s=figures.spread(odom_periods))
-        print_spread('command period', result['command_period_s'])
-        print_spread('odometry period', result['odom_period_s'])
+        table.print_spread('command period', result['command_period_s'])
+        table.print_spread('odometry period', result['odom_period_s'])
     if args.latency:
         result['latency'] = measure_latency(args)
-        print_spread('command to odometry', result['latency']['latency_s'])
+        table.print_spread('command to odometry', result['latency']['latency_s'])
         if result['latency']['not_shown']:
             print(f'{result["latency"]["not_shown"]} of {args.latency} commands were never shown by the odometry')
 

@@ -1,4 +1,4 @@
-"""The rooms of the package: which of them may import which, where ROS may be imported, and how long a node may be."""
+"""The rooms of the package: which of them may import which, where ROS may be imported, and how long a file may be."""
 import ast
 import importlib.util
 import os
@@ -44,7 +44,7 @@ ALLOWED['nodes'] = set(ALLOWED) - {'__init__'}
 WITH_ROS = {room for room in ALLOWED if room.split('.')[0] == 'ros'} | {'nodes'}
 # what the other rooms may import besides Python's own modules
 THIRD_PARTY = {'matplotlib', 'numpy', 'scipy', 'serial', 'yaml'}
-MAX_NODE_LINES = 150
+MAX_NODE_LINES, MAX_LINES = 150, 300
 
 
 def python_files(folder):
@@ -212,3 +212,14 @@ def test_an_import_that_is_allowed_is_not_reported(module, source):
 def test_a_node_is_short(path):
     with open(path, encoding='utf-8') as file:
         assert len(file.readlines()) <= MAX_NODE_LINES
+
+
+@pytest.mark.parametrize('folder', ['src', 'test', 'bench', 'script', 'examples'])
+def test_no_file_is_long(folder):
+    long = []
+    for path in python_files(os.path.join(ROOT, folder)):
+        with open(path, encoding='utf-8') as file:
+            count = len(file.readlines())
+        if count > MAX_LINES:
+            long.append(f'{path}: {count} lines')
+    assert not long

@@ -2,8 +2,12 @@
 from rbx1_nav.create.emulator.body import Body, BodyErrors
 from rbx1_nav.create.emulator.emulator import EmulatedCreate
 from rbx1_nav.create.emulator.serial_line import SerialLine
-from rbx1_nav.create.protocol import command, packets_format, single_packets
+from rbx1_nav.create.protocol import FULL, OFF, PASSIVE, SAFE, command, packets_format, single_packets
 from rbx1_nav.units import SECOND
+
+# from off to each mode
+ENTER = {OFF: b'', PASSIVE: command('start'), SAFE: command('start') + command('safe'),
+         FULL: command('start') + command('full')}
 
 
 class Robot:
@@ -41,3 +45,11 @@ class Robot:
     def pose(self):
         """Where the robot really is."""
         return self.body.wheels.truth.pose
+
+
+def robot_in(mode, model, **options):
+    """A Robot of this Model in a mode."""
+    robot = Robot(model, **options)
+    robot.send(ENTER[mode])
+    assert robot.mode == mode
+    return robot

@@ -1,0 +1,207 @@
+"""The emulated Create: what it measures and reports, its buttons, battery and sound."""
+from math import pi, radians
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rbx1_nav.create.protocol import (
+    CREATE, CREATE_2, FULL, MODELS, OFF, PASSIVE, SAFE, command, drive_direct, encode_frame, packets_format,
+    single_packets)
+from robots import robot_in
+
+both = pytest.mark.parametrize('model', list(MODELS.values()), ids=list(MODELS))
+
+# sensors
+
+
+@both
+def test_every_packet_and_group_is_answered(model):
+    robot = robot_in(SAFE, model)
+    for number in [*model.packets, *model.groups]:
+        packets = single_packets(model, [number])
+        data = robot.send(command('sensors', number))
+        values = packets_format(packets).unpack(data)
+        for packet, value in zip(packets, values):
+            assert packet.low <= value <= packet.high
+
+
+@both
+def test_a_number_without_a_packet_is_not_answered(model):
+    robot = robot_in(PASSIVE, model)
+    assert robot.send(command('sensors', 99), command('query_list', 2, 7, 99), command('stream', 1, 99)) == b''
+    assert robot.read(35) == {'mode': PASSIVE}
+
+
+@both
+def test_a_query_list_is_answered_in_its_order(model):
+    robot = robot_in(SAFE, model)
+    robot.body.bumped = True
+    robot.run(0.1)
+    assert robot.send(command('query_list', 3, 35, 7, 1)) == bytes((SAFE, 3, 3)) + bytes(9)
+
+
+@both
+def test_a_stream_sends_a_frame_every_15_ms_until_it_is_paused(model):
+    robot = robot_in(SAFE, model)
+    frame = encode_frame(model, [7, 35], {'bumps_and_wheel_drops': 0, 'mode': SAFE})
+    robot.send(command('stream', 2, 7, 35))
+    assert robot.run(1.5) == 100 * frame
+    robot.send(command('pause_resume_stream', 0))
+    assert robot.run(1) == b''
+    assert robot.read(38) == {'stream_packets': 2}
+    robot.send(command('pause_resume_stream', 1))
+    assert robot.run(0.15)[:2 * len(frame)].startswith(frame)
+    robot.send(command('stream', 0))
+    assert robot.run(1) == b''
+
+
+def test_a_stream_longer_than_the_line_can_carry_loses_bytes():
+    robot = robot_in(PASSIVE, CREATE_2)
+    robot.send(command('stream', 3, 100, 100, 100))
+    received = robot.run(10)
+    # 15 ms carry 172 bytes, and a frame has 246
+    assert len(received) == pytest.approx(115200, rel=0.02)
+    starts = [index for index in range(len(received) - 246) if received[index:index + 3] == bytes((19, 243, 100))]
+    intact = [start for start in starts if sum(received[start:start + 246]) % 256 == 0]
+    assert 0 < len(intact) < len(starts)
+
+
+@both
+def test_distance_and_angle_are_those_since_the_last_reading(model):
+    robot = robot_in(FULL, model)
+    robot.send(drive_direct(200, 100))
+    robot.run(2)
+    robot.send(drive_direct(0, 0))
+    whole = robot.body.distance.total, robot.body.angle.total
+    first = robot.read(2)
+    assert first['distance'] == pytest.approx(whole[0], abs=0.5) and first['angle'] == pytest.approx(whole[1], abs=0.5)
+    assert robot.read(19) == {'distance': 0} and robot.read(20) == {'angle': 0}
+
+
+@both
+def test_a_frame_of_the_stream_reads_distance_too(model):
+    robot = robot_in(FULL, model)
+    robot.send(command('stream', 1, 19), drive_direct(100, 100))
+    received = robot.run(1)
+    frames = [received[index:index + 6] for index in range(0, len(received) - 5, 6)]
+    total = sum(int.from_bytes(frame[3:5], 'big') for frame in frames)
+    assert total == pytest.approx(100, abs=2)       # 15 ms at each end
+
+
+def test_distance_is_capped():
+    robot = robot_in(FULL, CREATE)
+    robot.send(drive_direct(500, 500))
+    robot.run(70)
+    assert robot.read(19) == {'distance': 32767}
+    robot.send(drive_direct(0, 0))
+    robot.read(19)
+    assert robot.read(19) == {'distance': 0}
+
+
+def test_encoders_wrap():
+    robot = robot_in(FULL, CREATE_2)
+    robot.send(drive_direct(500, -500))
+    robot.run(60)
+    robot.send(drive_direct(0, 0))
+    travel = robot.pose.yaw * CREATE_2.wheel_separation / 2
+    counts = round(travel * 508.8 / (pi * 0.072))
+    assert counts > 65536
+    values = robot.read(101)
+    assert values['right_encoder'] == counts % 65536
+    assert values['left_encoder'] == -counts % 65536 and values['left_encoder'] != values['right_encoder']
+
+
+def test_the_gyro_on_the_analog_input_of_a_create():
+    robot = robot_in(FULL, CREATE)
+    assert robot.read(33) == {'analog_input': 512}
+    robot.send(drive_direct(130, -130))      # 1 rad/s
+    adc = robot.read(33)['analog_input']
+    # create_node's law
+    assert radians(-(adc - 512) / 512 * 150) == pytest.approx(1, abs=radians(150 / 512 / 2))
+    assert robot_in(PASSIVE, CREATE_2).read(33) == {'analog_input': 0}
+
+
+# songs, buttons, baud rate
+
+@both
+def test_a_song_plays_for_its_duration_and_no_other_meanwhile(model):
+    robot = robot_in(SAFE, model)
+    robot.send(command('song', 1, 2, 60, 32, 62, 64), command('song', 2, 1, 60, 64))
+    assert robot.read(37) == {'song_playing': 0}
+    robot.send(command('play_song', 1), command('play_song', 2))
+    assert robot.read(36) == {'song_number': 1} and robot.read(37) == {'song_playing': 1}
+    robot.run(1.5)
+    assert robot.read(37) == {'song_playing': 0}
+    robot.send(command('play_song', model.songs))       # there is none
+    assert robot.read(37) == {'song_playing': 0}
+
+
+def test_a_pushed_button_comes_back():
+    robot = robot_in(SAFE, CREATE_2)
+    robot.send(command('push_buttons', 4))
+    assert robot.read(18) == {'buttons': 4}
+    robot.run(0.2)
+    assert robot.read(18) == {'buttons': 0}
+
+
+@both
+def test_baud(model):
+    robot = robot_in(PASSIVE, model)
+    robot.send(command('baud', 7))
+    assert robot.robot.line.baud == 19200
+    robot.send(command('sensors', 35))
+    robot.robot.line.host_baud = 19200
+    robot.run(1)
+    assert robot.read(35) == {'mode': PASSIVE}
+
+
+def test_outputs_are_kept():
+    robot = robot_in(SAFE, CREATE)
+    robot.send(command('leds', 8, 0, 255), command('low_side_drivers', 3), command('digital_outputs', 1))
+    assert robot.robot.outputs == {'leds': bytes((8, 0, 255)), 'low_side_drivers': bytes((3,)),
+                                   'digital_outputs': bytes((1,))}
+    robot.send(command('safe'))
+    assert 'leds' not in robot.robot.outputs
+
+
+# battery
+
+@both
+def test_the_battery_runs_down_and_a_dock_charges_it(model):
+    robot = robot_in(PASSIVE, model)
+    full = robot.read(3)
+    assert full['charge'] == full['capacity'] and full['current'] < 0 and full['charging_state'] == 0
+    robot.run(60)
+    low = robot.read(3)
+    assert low['charge'] == full['charge'] - 5 and low['voltage'] < full['voltage']
+    robot.body.docked = True
+    robot.run(6)
+    charging = robot.read(3)
+    assert charging['charge'] > low['charge'] and charging['current'] > 0 and charging['charging_state'] == 2
+    assert robot.read(34) == {'charging_sources': 2}
+    robot.send(command('full'))
+    assert robot.read(3)['charging_state'] == 0
+
+
+@both
+def test_an_empty_battery_switches_the_robot_off(model):
+    robot = robot_in(FULL, model)
+    robot.send(drive_direct(200, 200), command('stream', 1, 7))
+    robot.body.charge = 0
+    robot.run(0.1)
+    assert robot.mode == OFF and not robot.body.moving
+    assert robot.send(command('start'), command('sensors', 35)) == b'' and robot.mode == OFF
+    robot.body.charge = 3000
+    robot.send(command('start'))
+    assert robot.mode == PASSIVE and robot.read(19) == {'distance': 0}
+    assert robot.run(1) == b''      # it has forgotten the stream
+
+
+@both
+@given(st.binary(max_size=400))
+def test_no_bytes_upset_it(model, data):
+    robot = robot_in(FULL, model)
+    robot.send(data)
+    robot.run(1)
+    assert robot.mode in (OFF, PASSIVE, SAFE, FULL)

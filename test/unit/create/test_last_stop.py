@@ -1,0 +1,70 @@
+"""The last stop: when the robot must confirm it."""
+
+import pytest
+
+from rbx1_nav.create import protocol
+from rbx1_nav.create.emulator.body import Quirks
+
+from driven_create import DrivenCreate, started
+
+BOTH = pytest.mark.parametrize('robot_type', ['create', 'create2'])
+MODES = pytest.mark.parametrize('mode', [protocol.PASSIVE, protocol.SAFE, protocol.FULL])
+PLUS_ONE = Quirks(mode_plus_one=True)
+REPORTED = 'The robot reports its mode plus one: expected a mode from 0 to 3; corrected, as with ' \
+           'oi_mode_workaround:=true'
+
+
+@BOTH
+def test_the_robot_confirms_the_last_stop(robot_type):
+    driven = started(robot_type)
+    driven.drive(0.2, 0, 0.5)
+    driven.driver.leave(driven.now)
+    assert not driven.driver.left
+    driven.run(0.1)
+    assert driven.driver.left and driven.robot.mode == protocol.PASSIVE and driven.speeds == (0, 0)
+
+
+@BOTH
+@pytest.mark.parametrize('garbage', [b'\x8c\x00\xff', b'\x94\xff'], ids=['song', 'stream'])
+def test_the_last_stop_holds_after_garbage(robot_type, garbage):
+    driven = started(robot_type)
+    driven.drive(0.2, 0, 0.5)
+    driven.write(garbage)
+    driven.driver.leave(driven.now)
+    driven.run(0.3)
+    assert driven.driver.left and driven.speeds == (0, 0)
+
+
+@BOTH
+@pytest.mark.parametrize('garbage', [b'\x8c\x00\xff', b'\x94\xff'], ids=['song', 'stream'])
+def test_a_stop_after_a_reconnection_holds_after_garbage(robot_type, garbage):
+    driven = started(robot_type)
+    driven.drive(0.2, 0, 0.5)
+    driven.pull()
+    driven.robot.receive(garbage, driven.now)
+    driven.run(0.5)
+    driven.connect()
+    driven.run(0.3)
+    assert driven.speeds == (0, 0) and driven.driver.contact.answers
+
+
+@BOTH
+@pytest.mark.parametrize('drives', [False, True])
+def test_only_a_robot_that_may_still_move_must_confirm_the_last_stop(robot_type, drives):
+    driven = started(robot_type)
+    if drives:
+        driven.drive(0.2, 0, 0.5)
+    driven.line.silent = True
+    driven.run(1.5)
+    driven.driver.leave(driven.now)
+    driven.run(0.6)
+    assert driven.driver.left == (not drives) and driven.body.moving == drives
+
+
+def test_a_line_without_a_robot_needs_no_confirmation():
+    driven = DrivenCreate('auto', robot='create')
+    driven.line.silent = True
+    driven.connect()
+    driven.run(1)
+    driven.driver.leave(driven.now)
+    assert driven.driver.left

@@ -1,0 +1,42 @@
+"""A robot without errors that sends its messages to a filter."""
+
+import pytest
+
+from rbx1_nav.estimation.combined_odometry import CombinedOdometry
+from rbx1_nav.estimation.inputs import Imu, Odom
+from rbx1_nav.robot.kinematics import Pose, arc
+from rbx1_nav.units import SECOND
+from sample_priors import PRIORS
+from test_inputs import VARIANCES
+
+STEP = SECOND // 50
+
+
+class Robot:
+    """Sends the messages of a robot without errors every 0.02 s."""
+
+    def __init__(self, prior=PRIORS, **options):
+        self.warnings = []
+        self.combined = CombinedOdometry(prior, SECOND, warn=self.warnings.append, **options)
+        self.now = 1000 * SECOND
+        self.pose = Pose(0.0, 0.0, 0.0)
+
+    def send(self, ticks=1, linear=0.0, angular=0.0, odom=True, imu=True, bias=0.0):
+        """Move for a number of ticks, and send what both sensors measure; returns the last Estimate."""
+        for _ in range(ticks):
+            self.now += STEP
+            self.pose = arc(self.pose, linear * 0.02, angular * 0.02)
+            if imu:
+                self.combined.add_imu(self.now, Imu(self.now, angular + bias, 3e-6))
+            if odom:
+                self.combined.add_odom(self.now, self.odom(), VARIANCES)
+        return self.combined.estimate
+
+    def odom(self):
+        """The odometry of now."""
+        return Odom(self.now, self.pose, 1e-6, 1e-6)
+
+
+def exact(estimate, pose, abs=1e-9):
+    """Whether an Estimate is at a Pose."""
+    return estimate.pose == pytest.approx(pose, abs=abs)

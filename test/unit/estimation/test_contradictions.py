@@ -1,0 +1,66 @@
+"""Wheels and gyro that contradict each other, or the floor."""
+from math import sqrt
+
+import pytest
+
+from rbx1_nav.estimation.priors import UNKNOWN_FLOOR
+from rbx1_nav.estimation.inputs import Odom
+from rbx1_nav.robot.kinematics import arc
+from sample_priors import IDEAL
+from sample_robot import Robot
+from test_inputs import VARIANCES
+
+
+def turn_with_wheels(robot, ticks, factor, linear=0.0, angular=1.0, bias=0.0):
+    """Drive a robot whose odometry reports a multiple of each turn; returns the last Estimate."""
+    wheels = robot.pose
+    for _ in range(ticks):
+        robot.send(1, linear, angular, odom=False, bias=bias)
+        wheels = arc(wheels, linear * 0.02, factor * angular * 0.02)
+        robot.combined.add_odom(robot.now, Odom(robot.now, wheels, 1e-6, 1e-6), VARIANCES)
+    robot.pose = wheels
+    return robot.combined.estimate
+
+
+def test_wheels_and_gyro_that_contradict_each_other_are_reported_and_make_the_heading_uncertain():
+    robot = Robot()
+    robot.send(100)
+    estimate = turn_with_wheels(robot, 500, -1.0)
+    assert robot.combined.contradicts and len(robot.warnings) == 1
+    # they differ by 20 rad. The last turn, of 2 rad at most, may not be significant yet; the wrong slip that is learned
+    # may add a tenth
+    assert 15.0 < sqrt(estimate.covariance[2, 2]) < 22.0
+
+
+def test_a_contradiction_is_shown_for_5_seconds():
+    robot = Robot()
+    robot.send(100)
+    turn_with_wheels(robot, 74, -1.0)
+    # a turn of less than 1.5 rad, here at 1 rad/s, is not enough evidence
+    assert not robot.combined.contradicts
+    turn_with_wheels(robot, 10, -1.0)
+    assert robot.combined.contradicts
+    # 5 s, less up to 10 ticks since the contradiction was noticed
+    robot.send(239)
+    assert robot.combined.contradicts
+    robot.send(11)
+    assert not robot.combined.contradicts
+
+
+def test_a_slip_that_the_floor_does_not_have_is_reported_as_another_floor():
+    robot = Robot(IDEAL)
+    robot.send(100)
+    turn_with_wheels(robot, 500, 1.08)
+    assert robot.combined.doubts.another_floor and not robot.combined.contradicts and len(robot.warnings) == 1
+
+
+@pytest.mark.parametrize('motion', [
+    # the gyro reports -0.04 rad/s at standstill, and 0.01 rad/s in a turn at 0.05 rad/s
+    dict(factor=1.0, angular=0.05, bias=-0.04),
+    # a curve of 60 m, in which unequal wheels may turn the robot by 0.066 rad times the square root of the distance
+    dict(factor=1.6, linear=0.5, angular=0.06)])
+def test_neither_a_bias_in_a_slow_turn_nor_unequal_wheels_in_a_long_curve_are_a_contradiction(motion):
+    robot = Robot(UNKNOWN_FLOOR)
+    robot.send(500, bias=motion.get('bias', 0.0))
+    turn_with_wheels(robot, 6000, **motion)
+    assert not robot.warnings
