@@ -1,30 +1,77 @@
-# What script/demo and script/test share. Sourced by bash, after `set -euo pipefail`.
+# What the scripts share. Sourced by bash, after `set -euo pipefail`.
+
+# A program that ignores SIGINT, as with nohup or from cron, hands that on to all that it starts. bash cannot undo it.
+if [ -z "${RBX1_NAV_SIGINT:-}" ]; then
+  exec env --default-signal=INT RBX1_NAV_SIGINT=default bash "$0" "$@"
+fi
 
 source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
 
 # ROS lives in the system's Python, whatever else the PATH puts first.
 export PATH=/usr/sbin:/usr/bin:/sbin:/bin:$PATH
 
+unit_packages=(python3-diagnostic-updater python3-geometry-msgs python3-hypothesis python3-matplotlib python3-nav-msgs
+  python3-numpy python3-pil python3-pytest python3-rosbag python3-rospkg python3-rospy python3-scipy python3-sensor-msgs
+  python3-serial python3-std-srvs python3-tf2-msgs python3-tqdm python3-visualization-msgs python3-yaml)
 # Debian 13's RViz uses Qt 6 and does not depend on the plugin that reads its icons.
 rviz_packages=(rviz)
 if . /etc/os-release; [ "${VERSION_ID:-0}" = 13 ]; then rviz_packages+=(qt6-svg-plugins); fi
 
+missing_packages() {    # PACKAGE...: print those that are not installed
+  comm -23 <(printf '%s\n' "$@" | sort -u) <(dpkg-query -W -f '${binary:Package} ${db:Status-Status}\n' "$@" 2>/dev/null |
+    sed -n 's/:[^ ]* installed$//p; s/ installed$//p' | sort -u)
+}
+
+require_packages() {    # PACKAGE...: fail with one line if some are missing
+  local missing; mapfile -t missing < <(missing_packages "$@")
+  [ ${#missing[@]} -eq 0 ] || { echo "These packages are missing: sudo apt-get install ${missing[*]}" >&2; return 1; }
+}
+
 install_missing() {     # PACKAGE...: install those that are missing
-  local missing=() package run=()
-  for package in "$@"; do
-    [ "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null)" = installed ] || missing+=("$package")
-  done
+  local missing run=()
+  mapfile -t missing < <(missing_packages "$@")
   [ ${#missing[@]} -gt 0 ] || return 0
   if [ "$(id -u)" -ne 0 ]; then
     command -v sudo >/dev/null || { echo "These packages are missing: ${missing[*]}. Run this as root, or install sudo." >&2; return 1; }
     run=(sudo)
   fi
   echo "Installing ${missing[*]}"
-  # one at a time: a second script waits, and then finds nothing to do
+  # one script at a time: a second one waits, and then finds nothing to do. Another apt is waited for, for ten minutes
   "${run[@]}" flock /run/lock env DEBIAN_FRONTEND=noninteractive bash -euc '
     log=$(mktemp); trap "rm -f $log" EXIT
-    { apt-get update -qq && apt-get install -y -qq --no-install-recommends "$@"; } >"$log" 2>&1 || { tail -20 "$log" >&2; exit 1; }
+    for try in $(seq 120); do
+      { apt-get update -qq && apt-get install -y -qq --no-install-recommends "$@"; } >"$log" 2>&1 && exit
+      grep -Eq "(Could not get|Unable to acquire).*lock" "$log" || break
+      [ $try -gt 1 ] || echo "Waiting for another apt, which holds the lock"
+      sleep 5
+    done
+    tail -20 "$log" >&2; exit 1
   ' install "${missing[@]}"
+}
+
+changed_rooms() {       # print the folders of test/unit/ whose rooms have changes that are not committed
+  git -C "$source_dir" status --porcelain 2>/dev/null | cut -c 4- | sed -n 's,^\(src/rbx1_nav\|test/unit\)/,,p' | while read -r path; do
+    while [ "$path" != "${path%/*}" ]; do
+      path=${path%/*}
+      [ ! -d "$source_dir/test/unit/$path" ] || { echo "test/unit/$path"; break; }
+    done
+  done | sort -u
+}
+
+run() {                 # COMMAND...: in a process group of its own, so that a signal to this script can end all of it
+  set -m; "$@" </dev/null & set +m
+  wait $!
+}
+
+end_all() {             # DIR: end what run() has started, and the nodes whose ROS_HOME is in DIR, each in a session of its own
+  trap '' INT TERM HUP
+  local job i
+  for job in $(jobs -p); do
+    kill -INT -- "-$job" 2>/dev/null || continue
+    for ((i = 0; i < 100; i++)); do kill -0 -- "-$job" 2>/dev/null || break; sleep 0.1; done
+    kill -KILL -- "-$job" 2>/dev/null || true
+  done
+  for i in $(grep -lsz "^ROS_HOME=$1/ros\$" /proc/[0-9]*/environ | cut -d / -f 3); do kill -KILL "$i" 2>/dev/null || true; done
 }
 
 make_workspace() {      # DIR [CMAKE_ARGUMENT...]: make and build a catkin workspace there
@@ -33,13 +80,25 @@ make_workspace() {      # DIR [CMAKE_ARGUMENT...]: make and build a catkin works
   ln -sfn "$source_dir" "$workspace/src/rbx1_nav"
   # catkin does not look for packages inside a package, hence the second link
   ln -sfn "$source_dir/rbx1_bringup" "$workspace/src/rbx1_bringup"
-  # settings of another ROS installation must not be inherited
+  clean_environment
+  run build_workspace "$workspace" "$@"
+  use_workspace "$workspace"
+}
+
+use_workspace() {       # DIR: as in a terminal in which only this one was sourced
+  clean_environment
+  set +u; source "$1/devel/setup.bash"; set -u
+}
+
+clean_environment() {   # nothing of another ROS installation, and no bytecode beside the sources
   unset CMAKE_PREFIX_PATH ROS_PACKAGE_PATH ROS_MASTER_URI ROS_HOSTNAME ROS_NAMESPACE PYTHONPATH
-  # no bytecode beside the sources
   export PYTHONDONTWRITEBYTECODE=1
+}
+
+build_workspace() {     # see make_workspace
+  local workspace=$1; shift
   (cd "$workspace" && catkin_make -DPYTHON_EXECUTABLE=/usr/bin/python3 "$@") >"$workspace/build.log" 2>&1 ||
     { tail -40 "$workspace/build.log" >&2; return 1; }
-  set +u; source "$workspace/devel/setup.bash"; set -u
 }
 
 loopback_only() {       # DIR: use the loopback interface only, and a directory for logs

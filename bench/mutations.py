@@ -1,0 +1,132 @@
+#!/usr/bin/env python3
+"""Change the package at random places, and see whether the unit tests of the room notice. See README.md."""
+import argparse
+import ast
+from collections import namedtuple
+from concurrent.futures import ThreadPoolExecutor
+import os
+import random
+import shutil
+import subprocess
+import sys
+import tempfile
+
+ROOT = os.path.realpath(os.path.join(os.path.dirname(__file__), '..'))
+SOURCE = os.path.join('src', 'rbx1_nav')
+ROOMS = 'control', 'create', 'estimation', 'robot', 'simulation'
+LIMIT = 300     # s for the tests of a room; one that hangs has noticed too
+
+OTHER = {
+    ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult, ast.Pow: ast.Mult, ast.FloorDiv: ast.Mult,
+    ast.Mod: ast.Add, ast.LShift: ast.RShift, ast.BitAnd: ast.BitOr, ast.BitOr: ast.BitAnd, ast.And: ast.Or,
+    ast.Or: ast.And, ast.Lt: ast.LtE, ast.LtE: ast.Lt, ast.Gt: ast.GtE, ast.GtE: ast.Gt, ast.Eq: ast.NotEq,
+    ast.NotEq: ast.Eq, ast.Is: ast.IsNot, ast.IsNot: ast.Is, ast.In: ast.NotIn, ast.NotIn: ast.In}
+STATEMENTS = ast.Assign, ast.AugAssign, ast.Expr, ast.Raise, ast.Delete
+
+Mutation = namedtuple('Mutation', 'path line what source')
+Mutation.__doc__ = 'A changed file: its path, the line and what is changed there, and the whole source.'
+
+
+def is_number(node):
+    """Whether a node is a number."""
+    return isinstance(node, ast.Constant) and type(node.value) in (int, float)
+
+
+def is_statement(node):
+    """Whether a node is a statement that can be left out; docstrings and hints do nothing."""
+    return isinstance(node, STATEMENTS) and not (isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant))
+
+
+def places(tree):
+    """All (node, index of its operator) that can be changed."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Compare):
+            yield from ((node, index) for index, operator in enumerate(node.ops) if type(operator) in OTHER)
+        elif isinstance(node, (ast.BinOp, ast.BoolOp, ast.AugAssign)) and type(node.op) in OTHER:
+            yield node, 0
+        if is_number(node) or is_statement(node):
+            yield node, None
+
+
+def change(tree, node, index):
+    """Change a place of a tree; returns what was changed, as text."""
+    before = ast.unparse(node)
+    if index is not None:
+        operators = node.ops if isinstance(node, ast.Compare) else [node.op]
+        operators[index] = OTHER[type(operators[index])]()
+        if not isinstance(node, ast.Compare):
+            node.op = operators[0]
+    elif is_number(node):
+        node.value = node.value + 1 if isinstance(node.value, int) else node.value * 1.5 or 0.1
+    else:
+        for parent in ast.walk(tree):
+            for field in 'body', 'orelse', 'finalbody':
+                block = getattr(parent, field, None)
+                if isinstance(block, list) and node in block:
+                    block[block.index(node)] = ast.Pass()
+        return f'without `{before}`'
+    return f'`{before}` becomes `{ast.unparse(node)}`'
+
+
+def draw(paths, generator):
+    """A random Mutation of one of the files; each place is as probable."""
+    counts = []
+    for path in paths:
+        with open(os.path.join(ROOT, path), encoding='utf-8') as file:
+            counts.append(sum(1 for _ in places(ast.parse(file.read()))))
+    path, = generator.choices(paths, counts)
+    with open(os.path.join(ROOT, path), encoding='utf-8') as file:
+        tree = ast.parse(file.read())
+    node, index = generator.choice(list(places(tree)))
+    line = node.lineno
+    return Mutation(path, line, change(tree, node, index), ast.unparse(tree))
+
+
+def is_noticed(mutation):
+    """Whether the unit tests of the room fail with a Mutation, or hang."""
+    room = mutation.path[len(SOURCE) + 1:].split(os.sep)[0]
+    with tempfile.TemporaryDirectory() as folder:
+        for name in os.listdir(ROOT):
+            if name != 'src' and not name.startswith('.'):
+                os.symlink(os.path.join(ROOT, name), os.path.join(folder, name))
+        # the tests find the package beside their own folder
+        os.remove(os.path.join(folder, 'test'))
+        for name in 'src', 'test':
+            shutil.copytree(os.path.join(ROOT, name), os.path.join(folder, name))
+        with open(os.path.join(folder, mutation.path), 'w', encoding='utf-8') as file:
+            file.write(mutation.source)
+        try:
+            return subprocess.run(
+                ['/usr/bin/python3', '-m', 'pytest', '-q', '-x', '-p', 'no:cacheprovider', f'test/unit/{room}'],
+                cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=LIMIT).returncode != 0
+        except subprocess.TimeoutExpired:
+            return True
+
+
+def main():
+    """Draw, test and print. Returns the exit status."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument('rooms', nargs='*', default=ROOMS, metavar='ROOM', help=f"default: {' '.join(ROOMS)}")
+    parser.add_argument('--count', type=int, default=100, metavar='N', help='of mutations; default: 100')
+    parser.add_argument('--seed', type=int, default=0, help='default: 0')
+    parser.add_argument('--jobs', type=int, default=1, metavar='N', help='mutations at the same time; default: 1')
+    arguments = parser.parse_args()
+    paths = sorted(os.path.relpath(os.path.join(folder, name), ROOT) for room in arguments.rooms
+                   for folder, _, names in os.walk(os.path.join(ROOT, SOURCE, room))
+                   for name in names if name.endswith('.py') and name != '__init__.py')
+    if not paths:
+        parser.error(f"{' '.join(arguments.rooms)}: expected folders of {SOURCE}")
+    generator = random.Random(arguments.seed)
+    mutations = [draw(paths, generator) for _ in range(arguments.count)]
+    with ThreadPoolExecutor(arguments.jobs) as pool:
+        noticed = 0
+        for mutation, good in zip(mutations, pool.map(is_noticed, mutations)):
+            noticed += good
+            if not good:
+                print(f'{mutation.path}:{mutation.line}: {mutation.what}', flush=True)
+    print(f'{noticed} of {len(mutations)} mutations noticed')
+    return 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())

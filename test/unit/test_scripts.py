@@ -1,0 +1,63 @@
+"""What the scripts start ends with them, and has SIGINT's default action."""
+import os
+import signal
+import subprocess
+import time
+
+import pytest
+
+COMMON = os.path.realpath(os.path.join(os.path.dirname(__file__), '..', '..', 'script', 'common.sh'))
+LIMIT = 60      # s
+
+
+@pytest.fixture
+def start(tmp_path):
+    """start(text, **options): a script that sources common.sh; options: of subprocess.Popen."""
+    started = []
+
+    def make(text, **options):
+        path = tmp_path / f'script{len(started)}'
+        path.write_text(f'set -euo pipefail\nsource {COMMON}\n{text}\n')
+        started.append(subprocess.Popen(['bash', str(path)], stdout=subprocess.PIPE, text=True, **options))
+        return started[-1]
+    yield make
+    for process in started:
+        process.kill()
+        process.wait()
+        process.stdout.close()
+
+
+def ignore_sigint():
+    """As nohup, cron and background jobs of scripts do."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+def test_what_a_script_starts_has_the_default_action_of_sigint(start):
+    script = start("/usr/bin/python3 -c 'import signal; print(signal.getsignal(signal.SIGINT).__name__)'",
+                   preexec_fn=ignore_sigint)
+    assert script.communicate(timeout=LIMIT)[0] == 'default_int_handler\n'
+
+
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_signal_ends_what_a_script_has_started(start, tmp_path, number):
+    node = f'ROS_HOME={tmp_path}/ros setsid sleep 1000'
+    script = start(f"""trap 'end_all {tmp_path}' EXIT
+        trap 'exit 143' INT TERM HUP
+        ({node} & echo $!)
+        run bash -c 'echo $$; exec sleep 1000'""")
+    pids = [int(script.stdout.readline()) for _ in range(2)]
+    script.send_signal(number)
+    assert script.wait(LIMIT) == 143
+    end = time.monotonic() + LIMIT
+    while any(map(is_alive, pids)):
+        assert time.monotonic() < end, 'a process is left'
+        time.sleep(0.01)
+
+
+def is_alive(pid):
+    """Whether a process runs; one that has ended may still be there as a zombie."""
+    try:
+        with open(f'/proc/{pid}/stat', encoding='ascii') as file:
+            return file.read().rpartition(')')[2].split()[0] != 'Z'
+    except FileNotFoundError:
+        return False
