@@ -6,7 +6,8 @@ usage: fake_base.py [_parameter:=value ...] [topic:=new_topic ...]      usually 
 Parameters:
     ~controllers        one diff_controller, see config/turtlebot.yaml
     ~joints             servos, see config/pi_robot.yaml (default: none)
-    ~surface            ideal, hard_floor, low_ply_carpet, or the absolute path of a surface file (default: ideal)
+    ~surface            ideal, hard_floor, low_ply_carpet, create_lab_floor, or the absolute path of a
+                        surface file (default: ideal)
     ~seed               integer that slip and gyro errors are drawn from, or random; the log shows it (default: random)
     ~real_time_factor   simulated time, at most so many times as fast as real time (default: real time)
     ~clock_step         step of simulated time, s (default: 0.02)

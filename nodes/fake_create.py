@@ -8,7 +8,8 @@ Parameters:
     ~baud                   bits per second when the robot is switched on, 300 to 115200; 19200 is a robot whose power
                             button was held (default: create: 57600, create2: 115200)
     ~link                   path of a symbolic link to the device (default: none; the log shows the device's name)
-    ~surface                ideal, hard_floor, low_ply_carpet, or the absolute path of a surface file (default: ideal)
+    ~surface                ideal, hard_floor, low_ply_carpet, create_lab_floor, or the absolute path of a
+                            surface file (default: ideal)
     ~seed                   integer that slip, gyro errors and corruption are drawn from, or random; the log shows it
                             (default: random)
     ~charge                 of the battery, from 0 to 1 (default: 1)

@@ -10,12 +10,24 @@ source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
 # ROS lives in the system's Python, whatever else the PATH puts first.
 export PATH=/usr/sbin:/usr/bin:/sbin:/bin:$PATH
 
-unit_packages=(python3-diagnostic-updater python3-geometry-msgs python3-hypothesis python3-matplotlib python3-nav-msgs
-  python3-numpy python3-pil python3-pytest python3-rosbag python3-rospkg python3-rospy python3-scipy python3-sensor-msgs
-  python3-serial python3-std-srvs python3-tf2-msgs python3-tqdm python3-visualization-msgs python3-yaml)
+# what it takes to build and start the package
+tool_packages=(catkin g++ make ros-core ros-environment rosbash rospack-tools)
 # Debian 13's RViz uses Qt 6 and does not depend on the plugin that reads its icons.
-rviz_packages=(rviz)
-if . /etc/os-release; [ "${VERSION_ID:-0}" = 13 ]; then rviz_packages+=(qt6-svg-plugins); fi
+if . /etc/os-release; [ "${VERSION_ID:-0}" = 13 ]; then tool_packages+=(qt6-svg-plugins); fi
+
+dependencies() {        # KIND...: print the Debian packages of the dependencies in package.xml, of the kinds exec and test
+  local kind name
+  for kind in "$@"; do
+    sed -n "s,.*<${kind}_depend>\(.*\)</.*,\1,p" "$source_dir/package.xml" | while read -r name; do
+      case $name in
+        python3-*|rviz) echo "$name";;
+        robot_state_publisher) echo ros-robot-state-publisher;;
+        roscpp) echo libroscpp-dev;;
+        *) echo "python3-${name//_/-}";;
+      esac
+    done
+  done
+}
 
 missing_packages() {    # PACKAGE...: print those that are not installed
   comm -23 <(printf '%s\n' "$@" | sort -u) <(dpkg-query -W -f '${binary:Package} ${db:Status-Status}\n' "$@" 2>/dev/null |

@@ -1,5 +1,6 @@
 """What the scripts start ends with them, and has SIGINT's default action."""
 import os
+import re
 import signal
 import subprocess
 import time
@@ -61,3 +62,23 @@ def is_alive(pid):
             return file.read().rpartition(')')[2].split()[0] != 'Z'
     except FileNotFoundError:
         return False
+
+
+def words_of(command):
+    """What a bash command prints, with common.sh, as a set of words."""
+    script = f'set -euo pipefail; RBX1_NAV_SIGINT=default; source {COMMON}; {command}'
+    return set(subprocess.run(['bash', '-c', script], stdout=subprocess.PIPE, text=True, check=True).stdout.split())
+
+
+def test_the_installation_page_names_the_packages_that_the_scripts_install():
+    page = os.path.join(os.path.dirname(COMMON), '..', 'docs', 'installation.md')
+    with open(page, encoding='utf-8') as file:
+        command = re.search(r'sudo apt-get install (ros-robot(?:.*\\\n)*.*)', file.read())[1]
+    named = set(command.replace('\\\n', ' ').split())
+    # ros-robot depends on ros-core
+    needed = words_of('dependencies exec; printf "%s\n" "${tool_packages[@]}"') - {'ros-core', 'qt6-svg-plugins'}
+    assert named == needed | {'ros-robot'}
+
+
+def test_packages_that_are_not_installed_are_found():
+    assert words_of('missing_packages bash no-such-package coreutils') == {'no-such-package'}

@@ -148,3 +148,14 @@ def test_the_errors_of_runs_have_mean_and_spread_of_the_file():
     for values, middle, spread in zip(columns, (0.002, 0.005, 0, 0), (0.001, 0.002, radians(0.5), 0.003)):
         assert abs(mean(values) - middle) < 0.11 * spread
         assert stdev(values) == pytest.approx(spread, rel=0.08)
+
+
+@pytest.mark.parametrize('path', ['nodes/fake_base.py', 'nodes/fake_create.py', 'launch/fake_turtlebot.launch',
+                                  'launch/fake_pi_robot.launch', 'rbx1_bringup/launch/fake_turtlebot_create.launch',
+                                  'script/demo'])
+def test_whoever_lists_surfaces_lists_all(path):
+    with open(os.path.join(FOLDER, '..', '..', path), encoding='utf-8') as file:
+        listed = [line for line in file if 'hard_floor' in line]
+    assert listed
+    for line in listed:
+        assert all(name in line for name in known_surfaces(FOLDER)), line
