@@ -14,6 +14,9 @@ from std_srvs.srv import SetBool
 import support
 
 WITHIN = 0.01       # of the factor, which the project promises
+# the end of a run on a machine that is so busy that the odometry is late; it is repeated
+LOST = 'The last transform'
+ATTEMPTS = 5
 
 
 class TestFoundErrors(unittest.TestCase):
@@ -25,10 +28,12 @@ class TestFoundErrors(unittest.TestCase):
 
     def calibrate(self, script, line, measure):
         """Run a script; after this line answer what measure(true pose at the start, at the end) returns."""
-        start = support.pose(self.truth.next())
-        process = support.Process('rosrun', 'rbx1_nav', script)
-        self.addCleanup(process.kill)
-        process.wait_for_line(line)
+        for _ in range(ATTEMPTS):
+            start = support.pose(self.truth.next())
+            process = support.Process('rosrun', 'rbx1_nav', script)
+            self.addCleanup(process.kill)
+            if LOST not in process.wait_for_line(f'{line}|{LOST}')[0]:
+                break
         process.type(f'{measure(start, support.pose(self.truth.next())):.3f}')
         self.assertEqual(process.wait(), 0, process.output)
         return {key: float(value) for key, value in re.findall(r'^(\w+_correction): (\S+)$', process.output,
