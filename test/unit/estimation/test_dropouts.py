@@ -238,3 +238,16 @@ def test_a_turn_while_both_sensors_are_silent_is_never_certain(imu_first):
     error = abs(estimate.pose.yaw - robot.pose.yaw)
     # the wheels of this floor slip by 3 +- 5 % of the 0.75 rad
     assert error < 0.1 and error ** 2 < 9 * estimate.covariance[2, 2]
+
+
+def test_odometry_from_before_the_first_step_by_the_gyro_alone_counts_when_it_arrives():
+    robot = Robot(IDEAL)
+    robot.send(50, 0.2, 1.0)
+    late = []
+    for tick in range(60):
+        robot.send(1, 0.2, 1.0 if tick < 50 else 0.0, odom=False)
+        late.append(robot.odom())
+    assert robot.combined.timed_out['odom']
+    for odom in late:
+        robot.combined.add_odom(robot.now, odom, VARIANCES)
+    assert exact(robot.combined.estimate, robot.pose, abs=2e-3)
