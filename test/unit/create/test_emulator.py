@@ -1,5 +1,4 @@
 """The emulated robot's interface: modes, commands, and what it sends."""
-
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st

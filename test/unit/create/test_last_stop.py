@@ -1,17 +1,11 @@
 """The last stop: when the robot must confirm it."""
-
 import pytest
 
 from rbx1_nav.create import protocol
-from rbx1_nav.create.emulator.body import Quirks
 
 from driven_create import DrivenCreate, started
 
 BOTH = pytest.mark.parametrize('robot_type', ['create', 'create2'])
-MODES = pytest.mark.parametrize('mode', [protocol.PASSIVE, protocol.SAFE, protocol.FULL])
-PLUS_ONE = Quirks(mode_plus_one=True)
-REPORTED = 'The robot reports its mode plus one: expected a mode from 0 to 3; corrected, as with ' \
-           'oi_mode_workaround:=true'
 
 
 @BOTH

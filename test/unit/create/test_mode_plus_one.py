@@ -1,5 +1,4 @@
 """Robots that report their mode plus one."""
-
 import pytest
 
 from rbx1_nav.create import protocol

@@ -1,5 +1,4 @@
 """Senders that go on as if nothing had happened, and robots that are exchanged, disturbed or blocked."""
-
 import pytest
 
 from rbx1_nav.create import protocol
@@ -11,10 +10,7 @@ from rbx1_nav.create.emulator.serial_line import SerialLine
 from driven_create import DrivenCreate, started
 
 BOTH = pytest.mark.parametrize('robot_type', ['create', 'create2'])
-MODES = pytest.mark.parametrize('mode', [protocol.PASSIVE, protocol.SAFE, protocol.FULL])
 PLUS_ONE = Quirks(mode_plus_one=True)
-REPORTED = 'The robot reports its mode plus one: expected a mode from 0 to 3; corrected, as with ' \
-           'oi_mode_workaround:=true'
 
 
 def drop_a_wheel(driven):

@@ -1,5 +1,4 @@
 """A robot without errors that sends its messages to a filter."""
-
 import pytest
 
 from rbx1_nav.estimation.combined_odometry import CombinedOdometry

@@ -1,5 +1,4 @@
 """Readings of the gyro that are lost, and gyros that are slow."""
-
 import pytest
 
 from rbx1_nav.estimation.inputs import Imu

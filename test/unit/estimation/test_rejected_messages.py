@@ -1,5 +1,4 @@
 """Messages that the filter rejects leave no trace."""
-
 import numpy
 import pytest
 from hypothesis import given

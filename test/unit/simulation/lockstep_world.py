@@ -1,5 +1,4 @@
 """Nodes that drive by a clock, and the clock that is kept in step with them."""
-
 from rbx1_nav.simulation import lockstep
 from rbx1_nav.simulation.lockstep import Lockstep
 

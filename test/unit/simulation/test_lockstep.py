@@ -2,14 +2,9 @@
 import pytest
 
 from rbx1_nav.simulation import lockstep
-
-MOVE, FASTER, STOP = (0.2, 0.0), (0.3, 0.0), (0.0, 0.0)
 from lockstep_world import World
 
-
-@pytest.fixture
-def world():
-    return World()
+MOVE, FASTER, STOP = (0.2, 0.0), (0.3, 0.0), (0.0, 0.0)
 
 
 def test_a_command_takes_effect_at_the_tick_that_it_answers(world):

@@ -1,15 +1,8 @@
 """Drivers that have sent a command at each tick, and first commands that are late."""
-import pytest
-
 from rbx1_nav.simulation import lockstep
-
-MOVE, FASTER, STOP = (0.2, 0.0), (0.3, 0.0), (0.0, 0.0)
 from lockstep_world import World
 
-
-@pytest.fixture
-def world():
-    return World()
+MOVE, FASTER, STOP = (0.2, 0.0), (0.3, 0.0), (0.0, 0.0)
 
 
 def test_a_driver_at_every_tick_spares_the_look(world, monkeypatch):
