@@ -125,8 +125,7 @@ def main():
         count, inside_50, inside_90 = shares(comparisons)
         if count:
             print(f'Of {count} ends, {inside_50} are in the region of 50 % of the simulated ones, {inside_90} in '
-                  'that of '
-                  '90 %')
+                  'that of 90 %')
         text = surface_text(result, os.path.basename(arguments.start), [each.name for each in recordings])
         write_file(arguments.output, text.encode())
         print(f'Surface: {arguments.output}')
@@ -134,6 +133,8 @@ def main():
             draw_fit(arguments.plot, f'Fitted: {result.description}', comparisons)
             print(f'Picture: {arguments.plot}')
     except (OSError, ValueError) as error:
+        # the output may be what is full: at the end, Python would try it again
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         print(f"fit_surface.py: {' '.join(str(error).split())}", file=sys.stderr)
         return 1
     return 0

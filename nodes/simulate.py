@@ -130,6 +130,8 @@ def main():
             draw(arguments.plot, arguments.surface, results, seeds)
             print(f'Picture: {arguments.plot}')
     except (OSError, ValueError) as error:     # or a robot that is stuck
+        # the output may be what is full: at the end, Python would try it again
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         print(f"simulate.py: {' '.join(str(error).split())}", file=sys.stderr)
         return 1
     except BrokenProcessPool:

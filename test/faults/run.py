@@ -45,10 +45,12 @@ def read_arguments(names):
 
 
 def can_make_namespaces():
-    """Whether ip(8) can make and delete a network namespace here: some containers do not let root do it."""
-    name = 'rbx1-%d' % os.getpid()
-    return all(subprocess.run(['ip', 'netns', verb, name], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-                              check=False).returncode == 0 for verb in ('add', 'delete'))
+    """Whether ip(8) can make and use a network namespace here: some containers do not let root do it."""
+    name = f'rbx1-{os.getpid()}'
+    # a list, so that it is deleted in any case
+    return all([subprocess.run(['ip', *command], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                               check=False).returncode == 0
+                for command in (('netns', 'add', name), ('netns', 'exec', name, 'true'), ('netns', 'delete', name))])
 
 
 def run_row(name, module, times, seed):

@@ -42,7 +42,8 @@ class Simulation:
                 resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
         self.process = subprocess.Popen(['/usr/bin/python3', SIMULATE, *arguments], stdout=stdout, text=True,
                                         stderr=subprocess.PIPE, preexec_fn=prepare,
-                                        env=dict(os.environ, **{MARK: self.mark}))
+                                        # as for a user: output that is buffered is lost in another way
+                                        env=dict(os.environ, PYTHONUNBUFFERED='', **{MARK: self.mark}))
 
     def pids(self):
         """All its processes."""
