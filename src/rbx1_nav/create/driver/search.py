@@ -55,7 +55,7 @@ def has_frames(data: bytes) -> bool:
     return any(end_of_frame(end) for end in ends if end)
 
 
-# at a time
+# what is to be done at a time (ns); returns the robot once it is known
 Step = Callable[[int], Optional[Found]]
 
 
