@@ -1,8 +1,8 @@
 # What the scripts share. Sourced by bash, after `set -euo pipefail`.
 
 # A program that ignores SIGINT, as with nohup or from cron, hands that on to all that it starts. bash cannot undo it.
-if [ -z "${RBX1_NAV_SIGINT:-}" ]; then
-  exec env --default-signal=INT RBX1_NAV_SIGINT=default bash "$0" "$@"
+if [ "$(trap -p INT)" = "trap -- '' SIGINT" ] && [ -f "$0" ]; then
+  exec env --default-signal=INT bash "$0" "$@"
 fi
 
 source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)

@@ -66,7 +66,7 @@ def is_alive(pid):
 
 def words_of(command):
     """What a bash command prints, with common.sh, as a set of words."""
-    script = f'set -euo pipefail; RBX1_NAV_SIGINT=default; source {COMMON}; {command}'
+    script = f'set -euo pipefail; source {COMMON}; {command}'
     return set(subprocess.run(['bash', '-c', script], stdout=subprocess.PIPE, text=True, check=True).stdout.split())
 
 
