@@ -177,12 +177,14 @@ class Link:
         return any(each in ready for each in descriptors)
 
     def _read(self, timeout: float) -> bytes:
-        if not self._wait((self.port.fd,), timeout):
-            return b''
-        try:
-            data = os.read(self.port.fd, 4096)
-        except OSError as error:
-            raise LineLost(f'{self.path}: {error.strerror}') from None
-        if not data:
-            raise LineLost(f'{self.path}: device disconnected')
-        return data
+        # a process that changes the settings may discard what has arrived; a line that is lost stays readable
+        for wait in timeout, 0.0:
+            if not self._wait((self.port.fd,), wait):
+                return b''
+            try:
+                data = os.read(self.port.fd, 4096)
+            except OSError as error:
+                raise LineLost(f'{self.path}: {error.strerror}') from None
+            if data:
+                return data
+        raise LineLost(f'{self.path}: device disconnected')
