@@ -21,5 +21,5 @@ with exit_status():
     cmd_vel = rospy.Publisher('/cmd_vel', Twist, queue_size=5)
     with TimedDrive(cmd_vel, 50, shutdown) as drive:    # 50 commands per second
         for side in range(4):
-            # Your turn: drive forward, stop and rest; turn left, stop and rest.
+            # Fill this in: drive forward, stop and rest; turn left, stop and rest.
             pass

@@ -56,7 +56,8 @@ class OutAndBack:
         goal_angle = positive_param('goal_angle', pi)
         min_angular_speed = positive_param('min_angular_speed', 0.2)
 
-        # Two legs: out and back. Each motion calculates the distance to its goal, and the speed to get there.
+        # Two legs: out and back. Each motion calculates the distance to its goal, and the speed to get there. Shortly
+        # before its goal it stops once, to see how far the robot rolls on.
         legs = [(Straight('forward', goal_distance, linear_speed, min_linear_speed, rate),
                  Turn('turn left', goal_angle, angular_speed, min_angular_speed, rate)) for _ in range(2)]
 

@@ -36,7 +36,7 @@ class OutAndBack:
         # Publish commands at this rate (Hz). Many robots stop unless they receive a steady stream of them.
         rate = positive_param('rate', 50, 2, 1000)
 
-        # Forward: speed (m/s) and distance (m) give the duration (s), and with the rate the number of ticks.
+        # Forward: speed (m/s) and distance (m) give the duration (s), and with the rate the ticks, rounded down.
         linear_speed = positive_param('linear_speed', 0.2)
         goal_distance = positive_param('goal_distance', 1.0)
         linear_duration = goal_distance / linear_speed

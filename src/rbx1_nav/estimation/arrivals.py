@@ -62,8 +62,8 @@ class Arrivals:
         return before
 
     def _count(self, sensor: str, clock: int) -> None:
-        """A message arrives. A pause of both sensors counts little: the process may have been asleep, and the messages
-        of the one be processed before those of the other."""
+        """A message arrives. A pause of both sensors counts little: the process may have been asleep, and then
+        processes all messages of one sensor before those of the other."""
         self.time += min(max(0, clock - self.last_clock), self.timeout // 4)
         self.last_clock = clock
         self.last_time[sensor] = self.time

@@ -1,6 +1,6 @@
 """The covariance of the filter, kept as a square root: it has no negative eigenvalue, whatever is measured.
 
-The root S of a covariance P is a matrix with P = S S^T. The arithmetic is that of square root filters (Maybeck,
+The square root S of a covariance P is a matrix with P = S S^T. The arithmetic is that of square root filters (Maybeck,
 Stochastic Models, Estimation, and Control, volume 1, 1979, chapter 7):
 
 - A step of the model multiplies S by the derivatives F, and each source of noise is one more column.
@@ -26,12 +26,13 @@ class Covariance:
     """The covariance P (n x n) of the errors of a state.
 
     doubt, drift: two more vectors (n), which follow the steps of the model as the columns of S do, but are no part of
-    P. The filter adds them where it believes in them.
+    P. The filter adds them where it believes in them. Process noise is added when S is made square, so that up to then
+    P is a little too small.
     """
 
     def __init__(self, deviations: Sequence[float], process_noise: Callable[[], Array]) -> None:
         """deviations: n standard deviations of the initial state; process_noise(): called whenever S is made square,
-        the noise (n x k columns) of what has happened since the last time, apart from that of predict()."""
+        the noise (n x k columns) since the last call, which is not given to predict()."""
         size = len(deviations)
         self._columns = numpy.zeros((size, APART + size + SPARE))
         self.root = self._columns[:, APART:]        # S

@@ -1,10 +1,11 @@
 """The arithmetic of the combined odometry: a planar extended Kalman filter of wheel odometry and a gyro.
 
 The model, with the state, is in model.py. In each step, update() uses the difference of wheels and gyro as a
-measurement of their errors, and predict() makes the step with the mean of both. The difference of several steps is used
-at once, as their sum: a single step's turn by the wheels may be coarsely rounded. The rest is the standard filter, with
-its names: the covariance P, the derivatives F of the state after a step and H of a measured value, the noise R of that
-value, and the gain K (Thrun, Burgard and Fox, Probabilistic Robotics, section 3.3).
+measurement of their errors, and predict() makes the step with the mean of both. The differences of several steps are
+used as one sum: the wheels may report the turn of a single step in coarse units. The rest is the standard filter
+(Thrun, Burgard and Fox, Probabilistic Robotics, section 3.3; their letters in brackets): the covariance P (Sigma), the
+derivatives F (G) of the state after a step and H of a measured value, the variance R (Q) of that value, and the gain K.
+Unlike there, update() comes first in a step: the turn that predict() makes depends on the corrected errors.
 
 Which of the errors are learned depends on the case:
 
@@ -14,7 +15,8 @@ Which of the errors are learned depends on the case:
   one of bias and scale error only until the bias has been learned at rest, because wheels that slip in a way that the
   model does not know would corrupt them. The noise of the wheels is as small as the differences show (noise.py).
 - contradiction: they differ more than on any floor (agreement.py). The heading becomes as uncertain as they differ;
-  only the slip is still learned. When they agree again, the doubt shrinks to what this slip does not explain.
+  from then on, a turn is a measurement of the slip only. When they agree again, the doubt shrinks to what this slip
+  does not explain.
 - carried (standstill.py): the heading turns with the gyro, and becomes as uncertain as the turn is large; so does the
   position by the distance that the robot may have been carried.
 """
@@ -43,7 +45,7 @@ OUTLIER = 5.0               # standard deviations between wheels and gyro beyond
 MAX_SPREAD = 0.1            # 1 sigma of the straight slip, however far the robot drives
 MAX_ERROR = 0.8             # of slip and scale error: beyond it something else is wrong
 PART_TURN, PART_TIME = 0.2, 1.0     # rad, s: turn and time over which the differences of wheels and gyro are added up
-STEADY = 0.5                # variance of the gyro's turn over a gap at a steady rate / variance of the wheels' turn
+UNREAD = 0.5                # variance of the gyro's turn over a gap at a steady rate / variance of the wheels' turn
 MIN_DRIFT_TIME = 1.0        # s between two standstills from which a drift is learned
 COINCIDENCE = 0.4           # 1 sigma of the scale error / difference of wheels and gyro; the rest is slip
 CARRY_SPEED = 0.5           # m/s: how fast the robot may move (1 sigma) while it is carried
@@ -51,7 +53,7 @@ FADE = 0.5                  # rad: a doubt shrinks with the exponential of the t
 
 # what no surface file can promise: 1 sigma of the scale error of a gyro, of the slip in turns and straight on
 MIN_SCALE_ERROR, MIN_SPREAD_TURNING, MIN_SPREAD_STRAIGHT = 0.003, 0.05, 0.02
-# what a difference of wheels and gyro does not change once the bias is known, or while they contradict each other
+# what a difference of wheels and gyro does not change once the bias is known, or they have contradicted each other
 KEPT = [X, Y, YAW, BIAS, SCALE]
 
 
@@ -62,20 +64,20 @@ class Filter:
         """pose: the initial one; max_bias: rad/s, 1 sigma of the bias at first."""
         self.prior = prior
         self.state = [pose.x, pose.y, pose.yaw, 0.0, 0.0, prior.slip_turning, prior.slip_straight]
-        # its `doubt` is the error of the state if wheels and gyro have contradicted each other; its `drift` the change
-        # per rad/s^2 by which the bias drifts since it was last known
+        # its `doubt` is the error of the state after a contradiction of wheels and gyro; its `drift` is the change of
+        # the state since the bias was last known, if the bias drifts by 1 rad/s^2
         self.P = Covariance([sqrt(START_VARIANCE)] * 3 + [
             max_bias, max(prior.gyro_scale_error, MIN_SCALE_ERROR),
             max(prior.slip_turning_spread, MIN_SPREAD_TURNING),
-            max(prior.slip_straight_spread, MIN_SPREAD_STRAIGHT)], self._random_walks)
+            max(prior.slip_straight_spread, MIN_SPREAD_STRAIGHT)], self._take_random_walks)
         self.walked = [0.0] * 3     # s, rad, m since the random walks were last added
         self.part: Turns | None = None      # sum of the steps whose difference has not been used yet
         self.agreement = Agreement()
         self.bias_known = False     # whether the bias was learned at rest
-        self.drift = Drift()        # of the bias
+        self.bias_drift = Drift()        # of the bias
         self.carried: Array = numpy.zeros(2)    # rad, m: how far it may have been carried
-        self.loose = False          # whether wheels and gyro have contradicted each other
-        self.contradicted: Array = numpy.zeros(2)   # rad, what they measured then: wheels, gyro
+        self.contradicted = False          # whether wheels and gyro have contradicted each other
+        self.contradicting: Array = numpy.zeros(2)  # rad, what they measured then: wheels, gyro
         self.noise = NoiseFactor()  # of the wheels
         self.roughness = 1.0        # the noise of their last turn, as a fraction of the prior's
 
@@ -83,11 +85,11 @@ class Filter:
     def covariance(self) -> Array:
         """Of x, y (m) and yaw (rad), 3x3."""
         covariance = self.P.of_first(3)
-        if self.loose:
+        if self.contradicted:
             doubt = self.P.doubt[:3]
             covariance += doubt[:, None] * doubt
-        if self.drift.value:
-            drift = sqrt(self.drift.value) * self.P.drift[:3]
+        if self.bias_drift.value:
+            drift = sqrt(self.bias_drift.value) * self.P.drift[:3]
             covariance += drift[:, None] * drift
         return covariance
 
@@ -99,13 +101,13 @@ class Filter:
     @property
     def bias_sigma(self) -> float:
         """1 sigma of the gyro's bias, rad/s."""
-        return sqrt(self.P.variance(BIAS) + self.drift.value * float(self.P.drift[BIAS]) ** 2)
+        return sqrt(self.P.variance(BIAS) + self.bias_drift.value * float(self.P.drift[BIAS]) ** 2)
 
     def place(self, pose: Pose, covariance: Array) -> None:
         """The robot is at a Pose, with this covariance (3x3) of x, y (m) and yaw (rad)."""
         self.state[:3] = pose
         self.P.replace_first(covariance, START_VARIANCE)
-        self.carried[:] = self.contradicted[:] = 0.0
+        self.carried[:] = self.contradicting[:] = 0.0
 
     # what is measured
 
@@ -135,13 +137,14 @@ class Filter:
 
     def _compare(self, turns: Turns, missing: float) -> HeadingChange | None:
         """Add the step to the part, use the part when it is complete, and return the mean; None for an outlier."""
-        alone = bool(missing) or turns.gyro_variance > turns.wheel_variance     # its noise would hide the other steps'
+        # its noise would hide the differences of the other steps
+        alone = bool(missing) or turns.gyro_variance > turns.wheel_variance
         if alone:
             self._use_part()
         difference, R = innovation(self.state, turns)
         if missing:
             # if the rate changed while it was not read, the two turns differ by as much as the gyro's is wrong
-            unread = min(missing, STEADY * turns.wheel_variance + difference ** 2)
+            unread = min(missing, UNREAD * turns.wheel_variance + difference ** 2)
             turns = turns._replace(gyro_variance=turns.gyro_variance + unread)
             difference, R = innovation(self.state, turns)
         if difference ** 2 > OUTLIER ** 2 * R:      # rare: the errors in the state count too
@@ -173,7 +176,7 @@ class Filter:
         difference, R = innovation(self.state, turns)
         total = float(HS @ HS) + R
         self.noise.add(difference ** 2 / total, turns.wheel_variance * (1 - self.state[TURNING]) ** 2 / total)
-        self._correct(difference, HS, R, KEPT if self.bias_known or self.loose else None)
+        self._correct(difference, HS, R, KEPT if self.bias_known or self.contradicted else None)
 
     def _correct(self, difference: float, HS: Array, R: float, kept: list[int] | None = None) -> None:
         """Correct the state and P by an innovation (a difference), as in Covariance.update()."""
@@ -187,7 +190,7 @@ class Filter:
     def doubt_floor(self) -> bool:
         """If wheels and gyro show a slip that the prior's floor does not have, the straight slip, which nothing
         measures, becomes as uncertain as on an unknown floor. Returns whether that is so."""
-        if self.loose or not self.agreement.difference(self.prior, self.P.variance(BIAS)):
+        if self.contradicted or not self.agreement.difference(self.prior, self.P.variance(BIAS)):
             return False
         self.P.add_to(STRAIGHT, UNKNOWN_FLOOR.slip_straight_spread)
         return True
@@ -196,12 +199,12 @@ class Filter:
         """If wheels and gyro differ more than on any floor, one of them is wrong: the heading becomes as uncertain as
         they differ, and a new comparison begins. If they agree, that uncertainty shrinks. Returns the angle (rad) by
         which they differ, or 0."""
-        floor = UNKNOWN_FLOOR._replace(slip_turning=self.state[TURNING] if self.loose else 0.0)
+        floor = UNKNOWN_FLOOR._replace(slip_turning=self.state[TURNING] if self.contradicted else 0.0)
         difference = self.agreement.difference(floor, self.P.variance(BIAS))
         if difference:
             self.P.doubt[YAW] += abs(difference)
-            self.contradicted += self.agreement.wheels, self.agreement.gyro
-            self.loose = True
+            self.contradicting += self.agreement.wheels, self.agreement.gyro
+            self.contradicted = True
             self.agreement = Agreement()
         elif not self.P.doubt[YAW]:
             self._limit_scale()
@@ -213,7 +216,7 @@ class Filter:
         """Wheels and gyro agree: the wheels had slipped as they do now. The doubt shrinks to what this slip leaves
         unexplained. A gyro that was wrong, and is right again, leaves all of it."""
         doubt = float(self.P.doubt[YAW])
-        wheels, gyro = self.contradicted
+        wheels, gyro = self.contradicting
         unexplained = abs(wheels * (1 - self.state[TURNING]) - gyro)
         self.P.doubt *= max(exp(-abs(self.agreement.last.gyro) / FADE), min(1.0, unexplained / doubt))
 
@@ -241,8 +244,8 @@ class Filter:
         drift, difference = self.P.drift, rate - self.state[BIAS]
         if self.bias_known:
             if drift[BIAS] > MIN_DRIFT_TIME:
-                self.drift.add(float(drift[BIAS]), difference ** 2, self.P.variance(BIAS) + variance)
-            self.P.add(sqrt(self.drift.value) * drift)
+                self.bias_drift.add(float(drift[BIAS]), difference ** 2, self.P.variance(BIAS) + variance)
+            self.P.add(sqrt(self.bias_drift.value) * drift)
         self._correct(difference, self.P.root[BIAS], variance)
         drift[:] = 0.0
         self.bias_known = True
@@ -286,7 +289,7 @@ class Filter:
         self.P.predict(step.F, noise)
         self.P.drift[BIAS] += duration
 
-    def _random_walks(self) -> Array:
+    def _take_random_walks(self) -> Array:
         """The noise (7 x 3) by which bias and slips have walked since the last call."""
         walks = numpy.zeros((7, 3))
         variances = [walk ** 2 * path for walk, path in zip((BIAS_WALK, SLIP_WALK, SLIP_WALK), self.walked)]

@@ -1,4 +1,4 @@
-"""The errors of a motion that are drawn again and again on the way: a floor is not the same everywhere."""
+"""The random part of slip: errors of a motion that are drawn anew along the path, because a floor varies."""
 from __future__ import annotations
 
 from math import log

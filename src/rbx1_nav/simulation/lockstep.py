@@ -19,7 +19,8 @@ from rbx1_nav.simulation.stream import Stream
 NODE_TIMEOUT = 5.0      # s of wall time that a tick waits for a node
 LOOK = 2e-5         # s of wall time between two looks at the nodes
 FRESH = 2e-4        # s of wall time after which a look is repeated
-PROOF = 3           # commands of a stream that no tick has prompted: a single one may be the stop after Ctrl-C
+# after so many commands that no tick has prompted, a driver is released: a single one may be the stop after Ctrl-C
+UNPROMPTED = 3
 STEADY = 25         # ticks: a driver that has sent one command at each of them will do so at the next
 ANSWER_TIME = 0.005     # s of wall time that such a command is waited for before a look
 
@@ -103,21 +104,21 @@ class Lockstep:
 
     def begin_tick(self) -> None:
         """Call before each tick. A node that has woken by itself is still at the tick before."""
-        waiting = self.nodes.drivers - {driver.name for driver in self._seen_drivers() if driver.stream}
-        if self.nodes.connecting() or (waiting and monotonic() - self.over_since > FRESH):
+        quiet = self.nodes.drivers - {driver.name for driver in self._seen_drivers() if driver.stream}
+        if self.nodes.connecting() or (quiet and monotonic() - self.over_since > FRESH):
             self._wait_until_asleep()
-        self.nodes.mark(waiting)
+        self.nodes.mark(quiet)
         while not self._begin():
             self._wait_until_asleep()
             self._apply_arrived()
-            self.nodes.mark(waiting)
+            self.nodes.mark(quiet)
 
     def end_tick(self) -> None:
         """Call after each tick: waits for the commands that are still to come, and puts them in force."""
         delayed, self.delayed = self.delayed, []
         for command in delayed:
             self.apply(command)
-        if self._all_have_answered():
+        if self._all_steady_have_sent():
             self._wait_while_awake(self.nodes.awake_drivers)
         else:
             self._wait_until_asleep()
@@ -166,7 +167,7 @@ class Lockstep:
                 deadline += NODE_TIMEOUT
             sleep(LOOK)
 
-    def _all_have_answered(self) -> bool:
+    def _all_steady_have_sent(self) -> bool:
         """Whether all nodes that may drive are steady, and each has sent its command: nobody else need be looked at."""
         self.nodes.update()     # a node that has connected since must be looked at
         drivers = self._seen_drivers()
@@ -232,7 +233,7 @@ class Lockstep:
             self._release(driver, 'does not subscribe to /clock')
         elif not prompted:
             stream.unprompted += 1
-            if stream.unprompted >= PROOF and not self.nodes.update_upstream():
+            if stream.unprompted >= UNPROMPTED and not self.nodes.update_upstream():
                 self._release(driver, 'sends commands that no tick of /clock has prompted')
 
     def _release(self, driver: CommandSource, reason: str) -> None:

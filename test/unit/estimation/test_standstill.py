@@ -94,7 +94,7 @@ def test_standstill_wheels_that_report_later_than_the_gyro_are_not_carried():
 def test_standstill_noise_is_no_drift():
     robot = Robot()
     robot.go(60.0)
-    assert robot.combined.filter.drift.value == 0.0
+    assert robot.combined.filter.bias_drift.value == 0.0
 
 
 def test_a_drifting_bias_makes_the_heading_as_uncertain_as_it_is_wrong():

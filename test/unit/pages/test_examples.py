@@ -35,5 +35,5 @@ def test_a_block_is_a_part_of_a_file(page, number, block):
 def test_the_answer_is_the_exercise_filled_in():
     exercise, answer = ([line for line in markdown.read(ROOT, path).splitlines() if line]
                         for path in ('examples/square.py', 'examples/answers/square.py'))
-    kept = [line for line in exercise if 'Your turn' not in line and line.strip() != 'pass']
+    kept = [line for line in exercise if 'Fill this in' not in line and line.strip() != 'pass']
     assert kept == [line for line in answer if line in exercise]

@@ -83,7 +83,7 @@ class World:
 
     def send_unprompted(self):
         """Commands between two ticks, so many that they prove something."""
-        for _ in range(lockstep.PROOF):
+        for _ in range(lockstep.UNPROMPTED):
             self.send('a', MOVE)
 
     def tick(self, *commands):

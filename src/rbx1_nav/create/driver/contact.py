@@ -162,7 +162,7 @@ class Contact:
         before = self.found.model.name if self.found else self.settings.robot_type
         if before not in (AUTO, found.model.name):
             self._refuse(found, before)
-            self.search.wait(now, START_WAIT)
+            self.search.begin_later(now, START_WAIT)
             return
         self.searching, self._refused, self.found, self._baud = False, None, found, found.baud
         self.driver.use(found.model)

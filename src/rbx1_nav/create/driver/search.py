@@ -16,7 +16,7 @@ RATES = (57600, 115200, 19200)      # of a Create, of a Create 2, and of both af
 REPLY_TIME = SECOND * 12 // 100     # ns after the last byte of a query
 QUIET_TIME = SECOND // 20           # ns in which a stream that was paused ends
 SETTLE_TIME = SECOND // 50          # ns without another byte after a reply, which shows that it is one
-AGREED = 2                          # replies that agree
+AGREEING = 2                        # replies in a row that are plausible
 TRIES = 4                           # of the question which robot it is
 STARTS, MANY_STARTS = 8, 64         # bytes before a query; many complete what garbage may have begun, within seconds
 FEW_ROUNDS = 2                      # rounds before there are many
@@ -105,7 +105,7 @@ class Search:
         self.rounds, self._order = 0, list(self.rates)
         self._next_rate(now)
 
-    def wait(self, now: int, duration: int) -> None:
+    def begin_later(self, now: int, duration: int) -> None:
         """Try the next rate after a time."""
         self._plan(now + duration, self._next_rate)
 
@@ -145,7 +145,7 @@ class Search:
                 return
         self.baud = self._order.pop(0)
         self._line.set_rate(self.baud)
-        self._ask(now)
+        self._ask_battery(now)
 
     def _begin_wake(self, now: int) -> bool:
         """Begin to wake a robot, if that is wanted and possible. Returns whether it was begun."""
@@ -166,7 +166,7 @@ class Search:
         self._plan(now + (len(data) + max(sizes, default=0)) * 10 * SECOND // self.baud + REPLY_TIME, then, sizes)
         self._line.write(data)
 
-    def _ask(self, now: int) -> None:
+    def _ask_battery(self, now: int) -> None:
         count = STARTS if self.rounds < FEW_ROUNDS else MANY_STARTS
         self._line.write_apart(sequences.START * count)
         self._send(now + count * sequences.PAUSE, sequences.ASK_BATTERY, self._judge_battery, _BATTERY_FORMAT.size)
@@ -176,8 +176,8 @@ class Search:
             self._next_rate(now)
             return
         self._agreed += 1
-        if self._agreed < AGREED:
-            self._ask(now)
+        if self._agreed < AGREEING:
+            self._ask_battery(now)
         else:
             self._pause_stream(now)
 

@@ -31,6 +31,7 @@ FINE = 1e6              # ticks per metre: the wheels travel without steps, and 
 ADC_ZERO = 512          # the gyro's signal at rest, of 0 to 1023
 CAPACITY = 3000         # mAh
 EMPTY, FULL = 13.0, 16.5    # V
+CHARGING, RESTING, MOVING = 1500, -300, -1000     # mA: current of the battery
 FLOOR, NO_FLOOR = 1500, 20  # signals of a cliff sensor
 
 # values of packets that are not 0 and never change
@@ -161,8 +162,8 @@ class Body:
     def _use_battery(self, duration: float, charging: bool) -> int:
         """Charge or discharge the battery for `duration` (s); returns the current in mA."""
         if charging:
-            current = 1500 if self.charge < CAPACITY else 0
+            current = CHARGING if self.charge < CAPACITY else 0
         else:
-            current = -1000 if self.moving else -300
+            current = MOVING if self.moving else RESTING
         self.charge = max(0.0, min(CAPACITY, self.charge + current * duration / 3600))
         return current
