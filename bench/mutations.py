@@ -37,9 +37,19 @@ def is_statement(node):
     return isinstance(node, STATEMENTS) and not (isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant))
 
 
+def walk(node):
+    """A node and all below it, but no hints: they do nothing."""
+    yield node
+    for name, value in ast.iter_fields(node):
+        if name not in ('annotation', 'returns'):
+            for child in value if isinstance(value, list) else [value]:
+                if isinstance(child, ast.AST):
+                    yield from walk(child)
+
+
 def places(tree):
     """All (node, index of its operator) that can be changed."""
-    for node in ast.walk(tree):
+    for node in walk(tree):
         if isinstance(node, ast.Compare):
             yield from ((node, index) for index, operator in enumerate(node.ops) if type(operator) in OTHER)
         elif isinstance(node, (ast.BinOp, ast.BoolOp, ast.AugAssign)) and type(node.op) in OTHER:

@@ -4,21 +4,10 @@
 usage: calibrate_angular.py [_parameter:=value ...] [topic:=new_topic ...]
 example: rosrun rbx1_nav calibrate_angular.py _turns:=3
 
-Parameters:
-    ~turns              how many full turns to the left (default: 1)
-    ~angular_speed      turning speed, rad/s (default: 0.5)
-    ~min_angular_speed  lowest speed near the goal, rad/s (default: 0.2)
-    ~rate               commands per second, Hz (default: 50)
-    ~odom_frame         frame of the odometry (default: odom)
-    ~base_frame         frame of the robot (default: base_footprint or base_link, whichever exists)
-    ~base_node          node whose parameters are calibrated (default: turtlebot_node)
-    ~wait_timeout       how long to wait for roscore, for a base, and for its pose, s (default: 30)
-    ~measured           how far the robot turned in the last run, degrees: in place of an answer; does not drive
-
 Mark on the floor where the robot points to. Facing the mark again it has turned by 360 degrees; 10 degrees before it,
 by 350. The gyro is compared with the same turn.
 """
-from rbx1_nav.ros.driving.script import exit_status, frame_param, init_node, positive_param
+from rbx1_nav.ros.driving.script import exit_status, init_node, number, param
 
 from math import degrees, pi
 import sys
@@ -30,27 +19,32 @@ from rbx1_nav.config import ConfigError
 from rbx1_nav.control.legs import Turn
 from rbx1_nav.create.driver.fractions import LOST
 from rbx1_nav.create.driver.parameters import GYRO_CORRECTION
+from rbx1_nav.parameters import elsewhere
 from rbx1_nav.robot.calibration import corrected, read_measured, turn_by_gyro
+from rbx1_nav.ros.driving import calibration
 from rbx1_nav.ros.driving.calibration import (
-    Diagnosis, factor_in_force, forget_run, load_run, node_param, save_run, take_measured)
+    Diagnosis, factor_in_force, forget_run, load_run, save_run, take_measured)
 from rbx1_nav.ros.driving.pose_drive import CalibrationDrive
 from rbx1_nav.ros.driving.pose_listener import PoseListener
 from rbx1_nav.ros.node.question import ask
 
 ODOM_KEY, GYRO_KEY = 'odom_angular_scale_correction', 'gyro_scale_correction'
 
+PARAMETERS = [
+    number('turns', 1, '', 'how many full turns to the left', 0.1, 100),
+    number('angular_speed', 0.5, 'rad/s', 'turning speed'),
+    number('min_angular_speed', 0.2, 'rad/s', 'lowest speed near the goal'),
+    *calibration.PARAMETERS,
+    elsewhere('measured', 'how far the robot turned in the last run: in place of an answer; does not drive',
+              unit='degrees', note='the whole turn, 1800 for five')]
+
 
 def measure():
     """Turn once. Returns what odometry and gyro reported, degrees, and the factors with which they did."""
-    rate = positive_param('rate', 50, 2, 1000)                          # Hz
-    angular_speed = positive_param('angular_speed', 0.5)                # rad/s
-    leg = Turn('turn left',
-               2 * pi * positive_param('turns', 1, 0.1, 100),           # rad
-               angular_speed,
-               positive_param('min_angular_speed', 0.2),                # rad/s
-               rate)
-    base_node = node_param('base_node', 'turtlebot_node')
-    poses = PoseListener(frame_param('odom_frame', 'odom'), frame_param('base_frame', None), 0.0, angular_speed)
+    rate, angular_speed = param('rate'), param('angular_speed')
+    leg = Turn('turn left', 2 * pi * param('turns'), angular_speed, param('min_angular_speed'), rate)
+    base_node = param('base_node')
+    poses = PoseListener(param('odom_frame'), param('base_frame'), 0.0, angular_speed)
     readings = []       # of the gyro: (s, rad/s)
     rospy.Subscriber('imu/data', Imu, lambda message: readings.append((message.header.stamp.to_sec(),
                                                                        message.angular_velocity.z)))
@@ -85,7 +79,7 @@ def warn_of_gyro(error):
 
 def calibrate():
     """Turn, ask, and print the factors."""
-    init_node('calibrate_angular', __doc__)
+    init_node('calibrate_angular', __doc__, PARAMETERS)
     measured = take_measured()
     if measured is None:
         run = measure()

@@ -2,22 +2,6 @@
 """Combines wheel odometry and a gyro, and takes the place of robot_pose_ekf in a launch file.
 
 usage: ekf.py [_parameter:=value ...] [topic:=new_topic ...]      usually started by odom_ekf.launch
-
-Parameters:
-    ~freq               of odom_combined and its transform, Hz (default: 30)
-    ~sensor_timeout     a sensor that is silent for longer is not used until it recovers, s (default: 1)
-    ~publish_tf         whether to publish the transform (default: true)
-    ~imu_used           whether to use the gyro (default: true)
-    ~odom_used          only true is accepted
-    ~vo_used, ~gps_used, ~debug, ~self_diagnose   accepted: a line says that they have no effect
-    ~output_frame       frame of the combined pose (default: odom_combined)
-    ~base_footprint_frame   of the robot (default: child_frame_id of odom, or base_footprint if that is empty)
-    ~tf_prefix          of both names, unless they begin with a slash (default: none)
-    ~surface            the floor at first: a name or path, unknown, or auto: that of a simulated base (default: auto)
-    ~max_speed, ~max_turn_rate  limits above which odometry has jumped, m/s and rad/s (default: 6, 6)
-    ~max_angular_acceleration   limit of the robot's motion while gyro readings are lost, rad/s^2 (default: 10)
-    ~gyro_bias, ~gyro_scale_error   limit of the bias, degrees/s; 1 sigma of the scale error (default: 10, 0.015)
-    ~diagnostic_period  of /diagnostics, s (default: 1)
 """
 import rbx1_nav.ros.node.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded
 
@@ -36,7 +20,7 @@ from rbx1_nav.ros import messages
 from rbx1_nav.ros.filter.estimate_publisher import EstimatePublisher
 from rbx1_nav.ros.filter.frame_tree import FrameTree
 from rbx1_nav.ros.filter.imu_input import ImuInput
-from rbx1_nav.ros.filter.parameters import frames_of, load_parameters, make_filter, read_parameters
+from rbx1_nav.ros.filter.parameters import PARAMETERS, frames_of, load_parameters, make_filter, read_parameters
 from rbx1_nav.ros.filter.sensor_status import Diagnostics
 from rbx1_nav.ros.filter.single_publisher import OneSender
 from rbx1_nav.ros.node import life
@@ -141,7 +125,7 @@ class Ekf:
 
 def main():
     """Read the parameters, and run. Returns the exit status."""
-    life.init_node('robot_pose_ekf', __doc__, check=read_parameters)
+    life.init_node('robot_pose_ekf', __doc__, PARAMETERS, check=read_parameters)
     Ekf(load_parameters()).run()
     return 0
 

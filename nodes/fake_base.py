@@ -2,19 +2,6 @@
 """A simulated differential-drive base that takes the place of an ArbotiX base: cmd_vel in, odom out.
 
 usage: fake_base.py [_parameter:=value ...] [topic:=new_topic ...]      usually started by fake_turtlebot.launch
-
-Parameters:
-    ~controllers        one diff_controller, see config/turtlebot.yaml
-    ~joints             servos, see config/pi_robot.yaml (default: none)
-    ~surface            ideal, hard_floor, low_ply_carpet, create_lab_floor, or the absolute path of a
-                        surface file (default: ideal)
-    ~seed               integer that slip and gyro errors are drawn from, or random; the log shows it (default: random)
-    ~real_time_factor   simulated time, at most so many times as fast as real time (default: real time)
-    ~clock_step         step of simulated time, s (default: 0.02)
-    ~strict             whether a driver that is not in step with simulated time ends this node (default: false)
-    ~publish_tf         whether to publish the transform to the base frame (default: true)
-    ~sim, ~diagnostic_period, ~port, ~baud, ~rate, ~sync_write, ~sync_read, ~read_rate, ~write_rate
-                        accepted, as in ArbotiX files; they change nothing here
 """
 import rbx1_nav.ros.node.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded
 
@@ -32,12 +19,13 @@ from rbx1_nav.robot.description import read_robot
 from rbx1_nav.robot.joints import JointGroup
 from rbx1_nav.ros import messages
 from rbx1_nav.ros.base.commands import VelocityCommands, subscribe_joints
+from rbx1_nav.ros.base.parameters import FAKE_BASE as PARAMETERS
 from rbx1_nav.ros.base.publisher import BasePublisher
 from rbx1_nav.ros.base.simulated_clock import read_clock
-from rbx1_nav.ros.node import life, resources
+from rbx1_nav.ros.node import life
+from rbx1_nav.ros.node.params import param, stored_params
 from rbx1_nav.schedule import Schedule
 from rbx1_nav.simulation.base import make_base
-from rbx1_nav.simulation.surfaces import RANDOM, load_surface, read_seed
 from rbx1_nav.simulation.wheels import IdealWheels
 
 
@@ -116,15 +104,14 @@ class FakeBase:
 
 def main():
     """Read the configuration, and run. Returns the exit status."""
-    life.init_node('arbotix', __doc__, check=read_robot)
+    life.init_node('arbotix', __doc__, PARAMETERS, check=read_robot)
     try:
-        robot = read_robot(rospy.get_param(rospy.get_name(), {}))
-        surface = load_surface(rospy.get_param('~surface', 'ideal'), resources.surfaces())
-        seed = read_seed(rospy.get_param('~seed', RANDOM))
+        robot = read_robot(stored_params())
         clock = read_clock(robot.rate)
     except ConfigError as error:
         rospy.logfatal('%s/%s', rospy.get_name(), error)
         return 1
+    surface, seed = param('surface'), param('seed')
     if robot.hardware:
         rospy.loginfo('Simulated base: %d parameters that only hardware needs are ignored', len(robot.hardware))
     if robot.unknown:

@@ -3,28 +3,9 @@
 
 usage: fake_create.py [_parameter:=value ...] [topic:=new_topic ...]    usually started by fake_turtlebot_create.launch
 
-Parameters:
-    ~robot_type             create or create2 (default: create)
-    ~baud                   bits per second when the robot is switched on, 300 to 115200; 19200 is a robot whose power
-                            button was held (default: create: 57600, create2: 115200)
-    ~link                   path of a symbolic link to the device (default: none; the log shows the device's name)
-    ~surface                ideal, hard_floor, low_ply_carpet, create_lab_floor, or the absolute path of a
-                            surface file (default: ideal)
-    ~seed                   integer that slip, gyro errors and corruption are drawn from, or random; the log shows it
-                            (default: random)
-    ~charge                 of the battery, from 0 to 1 (default: 1)
-    ~corruption             fraction of the bytes to the host that are flipped, lost or doubled (default: 0)
-    ~gyro_measurement_range degrees/s at the end of the gyro's scale (default: 150)
-    ~gyro_sensitivity       what the gyro's signal shows / its nominal value (default: 1)
-    ~wheel_travel           what the encoders count / what the wheels travel (default: 1)
-    ~wheel_base             true distance of the wheels / its nominal value (default: 1)
-    ~gyro_stuck             count from 0 to 1023 at which the analog input is stuck, or -1 (default: -1, not stuck)
-    ~mode_plus_one          whether the robot reports its mode plus one, as a Roomba 642 does (default: false)
-    ~drops_fractions        whether each reading of the angle loses the fraction of a degree (default: false)
-
 What can happen to the robot:
     services ~pull_cable, ~silence, ~drop_wheel, ~cliff, ~bump, ~dock (SetBool) and ~power_cycle (Trigger);
-    topics ~charge, ~corruption and ~gyro_stuck (Float64), see above
+    topics ~charge, ~corruption and ~gyro_stuck (Float64), as the parameters
 It publishes /ground_truth, where the robot really is, and /line: each command that it receives, with its time.
 A pseudo-terminal has no RTS and DTR: a driver that insists on them gets an error.
 """
@@ -38,17 +19,18 @@ import rospy
 from nav_msgs.msg import Odometry
 from std_msgs.msg import String
 
-from rbx1_nav.config import ConfigError, Section, show
+from rbx1_nav.config import ConfigError
 from rbx1_nav.create.emulator.body import CAPACITY, Body, BodyErrors, Quirks
 from rbx1_nav.create.emulator.emulator import EmulatedCreate
 from rbx1_nav.create.emulator.pseudo_terminal import PseudoTerminal
 from rbx1_nav.create.emulator.serial_line import SerialLine
-from rbx1_nav.create.protocol import BAUD_RATES, MODELS
+from rbx1_nav.create.protocol import MODELS
 from rbx1_nav.ros import messages
+from rbx1_nav.ros.base.parameters import FAKE_CREATE as PARAMETERS
 from rbx1_nav.ros.base.robot_faults import RobotFaults
-from rbx1_nav.ros.node import life, resources
+from rbx1_nav.ros.node import life
+from rbx1_nav.ros.node.params import param
 from rbx1_nav.schedule import Schedule
-from rbx1_nav.simulation.surfaces import RANDOM, load_surface, read_seed
 from rbx1_nav.simulation.wheels import IdealWheels
 from rbx1_nav.units import SECOND
 
@@ -115,23 +97,16 @@ class FakeCreate:
 
 def main():
     """Read the parameters, and run. Returns the exit status."""
-    life.init_node('fake_create', __doc__)
+    life.init_node('fake_create', __doc__, PARAMETERS)
+    model, seed = MODELS[param('robot_type')], param('seed')
+    line = SerialLine(param('baud') or model.baud, seed)
+    line.corruption = param('corruption')
+    body = Body(model, param('surface'), seed, BodyErrors(*map(param, BodyErrors._fields)),
+                param('gyro_measurement_range'), Quirks(*map(param, Quirks._fields)))
+    body.charge = CAPACITY * param('charge')
+    body.gyro_stuck = floor(param('gyro_stuck'))
     try:
-        section = Section(rospy.get_param(rospy.get_name(), {}))
-        model = MODELS[section.choice('robot_type', tuple(MODELS), 'create')]
-        seed = read_seed(section.get('seed', RANDOM))
-        line = SerialLine(section.choice('baud', BAUD_RATES, model.baud), seed)
-        line.corruption = section.number('corruption', 0, 1, 0.0)
-        body = Body(model, load_surface(section.get('surface', 'ideal'), resources.surfaces()), seed,
-                    BodyErrors(*(section.number(name, 0.1, 10, 1.0, 'a factor') for name in BodyErrors._fields)),
-                    section.number('gyro_measurement_range', 1, 1e5, 150.0, unit='degrees/s'),
-                    Quirks(*(section.flag(name, False) for name in Quirks._fields)))
-        body.charge = CAPACITY * section.number('charge', 0, 1, 1.0)
-        body.gyro_stuck = floor(section.number('gyro_stuck', -1, 1023, -1.0, 'a count'))
-        link = section.get('link', '')
-        if not isinstance(link, str):
-            raise ConfigError(f'link: {show(link)}: expected a path')
-        terminal = PseudoTerminal(link or None)
+        terminal = PseudoTerminal(param('link') or None)
     except ConfigError as error:
         rospy.logfatal('%s/%s', rospy.get_name(), error)
         return 1

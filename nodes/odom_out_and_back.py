@@ -4,23 +4,10 @@
 usage: odom_out_and_back.py [_parameter:=value ...] [topic:=new_topic ...]
 example: rosrun rbx1_nav odom_out_and_back.py _odom_frame:=odom_combined
 
-Parameters:
-    ~rate               commands per second, Hz (default: 50)
-    ~linear_speed       forward speed, m/s (default: 0.2)
-    ~goal_distance      length of the way out, m (default: 1)
-    ~angular_speed      turning speed, rad/s (default: 1)
-    ~goal_angle         angle of a turn to the left, rad (default: pi)
-    ~min_linear_speed   lowest speed near the goal, m/s; less may not move your robot (default: 0.05)
-    ~min_angular_speed  the same in a turn, rad/s (default: 0.2)
-    ~odom_frame         frame that the pose is measured in; odom_combined: by wheels and gyro (default: odom)
-    ~base_frame         frame of the robot (default: base_footprint or base_link, whichever exists)
-    ~wait_timeout       how long to wait for roscore, for a base on /cmd_vel, and for its pose, s (default: 30)
-    ~transform_timeout  how long the robot stands and waits if its pose is lost, s (default: 5)
-
 The base counts how far its wheels turn, and publishes a pose: the transform from the frame odom to its own frame. So do
 not drive for a time: drive until you are there.
 """
-from rbx1_nav.ros.driving.script import exit_status, frame_param, init_node, positive_param
+from rbx1_nav.ros.driving.script import exit_status, frame, init_node, number, param
 
 from math import pi
 import time
@@ -32,39 +19,51 @@ from rbx1_nav.control.legs import Straight, Turn
 from rbx1_nav.ros.driving.pose_drive import OdomDrive
 from rbx1_nav.ros.driving.pose_listener import PoseListener
 
+# What can be set on the command line: name, default, unit, meaning. --help prints this list.
+PARAMETERS = [
+    number('rate', 50, 'Hz', 'commands per second', 2, 1000),
+    number('linear_speed', 0.2, 'm/s', 'forward speed'),
+    number('goal_distance', 1.0, 'm', 'length of the way out'),
+    number('min_linear_speed', 0.05, 'm/s', 'lowest speed near the goal; less may not move your robot'),
+    number('angular_speed', 1.0, 'rad/s', 'turning speed'),
+    number('goal_angle', pi, 'rad', 'angle of a turn to the left', shown='pi'),
+    number('min_angular_speed', 0.2, 'rad/s', 'lowest turning speed near the goal'),
+    frame('odom_frame', 'odom', 'frame that the pose is measured in; odom_combined: by wheels and gyro'),
+    frame('base_frame', None, 'frame of the robot', shown='base_footprint or base_link, whichever exists'),
+    number('transform_timeout', 5, 's', 'how long the robot stands and waits if its pose is lost', note='wall time')]
+
 
 class OutAndBack:
     """Drives the robot once out and back; creating one runs it."""
 
     def __init__(self):
         # Start the node under this name.
-        init_node('out_and_back', __doc__)
+        init_node('out_and_back', __doc__, PARAMETERS)
 
         # The base subscribes to this topic. With a queue, a slow subscriber does not hold up the others.
         self.cmd_vel = rospy.Publisher('/cmd_vel', Twist, queue_size=5)
 
         # Check the pose and publish a command at this rate (Hz).
-        rate = positive_param('rate', 50, 2, 1000)
+        rate = param('rate')
 
         # Forward: speed (m/s), distance (m), and the lowest speed, because the robot slows down near its goal.
-        linear_speed = positive_param('linear_speed', 0.2)
-        goal_distance = positive_param('goal_distance', 1.0)
-        min_linear_speed = positive_param('min_linear_speed', 0.05)
+        linear_speed = param('linear_speed')
+        goal_distance = param('goal_distance')
+        min_linear_speed = param('min_linear_speed')
 
         # Turn left: the same, in rad/s and rad.
-        angular_speed = positive_param('angular_speed', 1.0)
-        goal_angle = positive_param('goal_angle', pi)
-        min_angular_speed = positive_param('min_angular_speed', 0.2)
+        angular_speed = param('angular_speed')
+        goal_angle = param('goal_angle')
+        min_angular_speed = param('min_angular_speed')
 
         # Two legs: out and back. Each motion calculates the distance to its goal, and the speed to get there. Shortly
-        # before its goal it stops once, to see how far the robot rolls on.
+        # before the goal, the loops below stop once, to see how far the robot rolls on.
         legs = [(Straight('forward', goal_distance, linear_speed, min_linear_speed, rate),
                  Turn('turn left', goal_angle, angular_speed, min_angular_speed, rate)) for _ in range(2)]
 
         # Where the robot is: the pose of its base in the frame of its odometry.
-        transform_timeout = positive_param('transform_timeout', 5)
-        odom_frame, base_frame = frame_param('odom_frame', 'odom'), frame_param('base_frame', None)
-        poses = PoseListener(odom_frame, base_frame, linear_speed, angular_speed)
+        transform_timeout = param('transform_timeout')
+        poses = PoseListener(param('odom_frame'), param('base_frame'), linear_speed, angular_speed)
 
         # Wait for the base, and monitor it from here on. However this block exits, it calls shutdown().
         with OdomDrive(self.cmd_vel, rate, self.shutdown, poses, transform_timeout) as drive:

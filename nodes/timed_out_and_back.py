@@ -4,17 +4,9 @@
 usage: timed_out_and_back.py [_parameter:=value ...] [topic:=new_topic ...]
 example: rosrun rbx1_nav timed_out_and_back.py _goal_distance:=0.5
 
-Parameters:
-    ~rate               commands per second, Hz (default: 50)
-    ~linear_speed       forward speed, m/s (default: 0.2)
-    ~goal_distance      length of the way out, m (default: 1)
-    ~angular_speed      turning speed, rad/s (default: 1)
-    ~goal_angle         angle of a turn to the left, rad (default: pi)
-    ~wait_timeout       how long to wait for roscore, and for a base that subscribes to /cmd_vel, s (default: 30)
-
 The script never asks where the robot is. Drive at a known speed for a known time, and it should end where it began.
 """
-from rbx1_nav.ros.driving.script import TimedDrive, exit_status, init_node, positive_param, whole_ticks
+from rbx1_nav.ros.driving.script import TimedDrive, exit_status, init_node, number, param, whole_ticks
 
 from math import pi
 import time
@@ -22,29 +14,37 @@ import time
 import rospy
 from geometry_msgs.msg import Twist
 
+# What can be set on the command line: name, default, unit, meaning. --help prints this list.
+PARAMETERS = [
+    number('rate', 50, 'Hz', 'commands per second', 2, 1000),
+    number('linear_speed', 0.2, 'm/s', 'forward speed'),
+    number('goal_distance', 1.0, 'm', 'length of the way out'),
+    number('angular_speed', 1.0, 'rad/s', 'turning speed'),
+    number('goal_angle', pi, 'rad', 'angle of a turn to the left', shown='pi')]
+
 
 class OutAndBack:
     """Drives the robot once out and back; creating one runs it."""
 
     def __init__(self):
         # Start the node under this name.
-        init_node('out_and_back', __doc__)
+        init_node('out_and_back', __doc__, PARAMETERS)
 
         # The base subscribes to this topic. With a queue, a slow subscriber does not hold up the others.
         self.cmd_vel = rospy.Publisher('/cmd_vel', Twist, queue_size=5)
 
         # Publish commands at this rate (Hz). Many robots stop unless they receive a steady stream of them.
-        rate = positive_param('rate', 50, 2, 1000)
+        rate = param('rate')
 
         # Forward: speed (m/s) and distance (m) give the duration (s), and with the rate the ticks, rounded down.
-        linear_speed = positive_param('linear_speed', 0.2)
-        goal_distance = positive_param('goal_distance', 1.0)
+        linear_speed = param('linear_speed')
+        goal_distance = param('goal_distance')
         linear_duration = goal_distance / linear_speed
         linear_ticks = whole_ticks(linear_duration * rate, 'goal_distance / linear_speed * rate')
 
         # Turn left: the same, in rad/s and rad.
-        angular_speed = positive_param('angular_speed', 1.0)
-        goal_angle = positive_param('goal_angle', pi)
+        angular_speed = param('angular_speed')
+        goal_angle = param('goal_angle')
         angular_duration = goal_angle / angular_speed
         angular_ticks = whole_ticks(angular_duration * rate, 'goal_angle / angular_speed * rate')
 

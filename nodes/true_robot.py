@@ -3,9 +3,6 @@
 
 usage: true_robot.py [_parameter:=value ...] [topic:=new_topic ...]      started by fake_turtlebot.launch on a surface
 
-Parameters:
-    ~robot_description  the robot's URDF, as text
-
 RViz's own RobotModel shows the robot where its odometry reports it.
 """
 import rbx1_nav.ros.node.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded
@@ -17,10 +14,13 @@ import tf2_ros
 from nav_msgs.msg import Odometry
 from visualization_msgs.msg import Marker, MarkerArray
 
+from rbx1_nav.parameters import elsewhere
 from rbx1_nav.robot.urdf import read_visuals
 from rbx1_nav.ros.node import life
 from rbx1_nav.ros.tools import markers
 from rbx1_nav.schedule import Schedule
+
+PARAMETERS = [elsewhere('robot_description', "the robot's URDF, as text")]
 
 
 class TrueRobot:
@@ -55,7 +55,7 @@ class TrueRobot:
 
 def main():
     """Run until the node is to end. Returns the exit status."""
-    life.init_node('true_robot', __doc__)
+    life.init_node('true_robot', __doc__, PARAMETERS)
     try:
         visuals = read_visuals(str(rospy.get_param('~robot_description', '')))
     except ValueError as error:

@@ -30,7 +30,7 @@ class TestParameters(unittest.TestCase):
 
     def test_bad_parameters(self):
         for params, expected in [
-                (7, 'configuration: 7: expected a mapping'),
+                (7, ': 7: expected a mapping'),
                 ({'robot_type': 'roomba'}, "robot_type: 'roomba': expected one of create, create2"),
                 ({'robot_type': 2}, 'robot_type: 2: expected one of create, create2'),
                 ({'robot_type': ['create']}, "robot_type: ['create']: expected one of create, create2"),
@@ -54,7 +54,7 @@ class TestParameters(unittest.TestCase):
             self.assertEqual(process.wait(), 1, process.output)
             errors = [line for line in process.lines if '[FATAL]' in line]
             self.assertEqual(len(errors), 1, process.output)
-            self.assertIn(f'/fake_create/{expected}', errors[0])
+            self.assertIn(f'/fake_create{expected}' if expected[0] == ':' else f'/fake_create/{expected}', errors[0])
             self.assertNotIn('Traceback', process.output)
             rospy.delete_param('/fake_create')
 

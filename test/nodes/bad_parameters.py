@@ -10,6 +10,12 @@ import support
 BASE = {'type': 'diff_controller', 'base_width': 0.26}
 
 
+def forget(name):
+    """Delete what a node has left on the master. One that was never registered leaves nothing."""
+    if rospy.has_param(name):
+        rospy.delete_param(name)
+
+
 class TestBadParameters(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -34,7 +40,7 @@ class TestBadParameters(unittest.TestCase):
                                       ('_linear_speed:=1.0e+5', 'linear_speed * rate: 0.0005 ticks', 'from 1'),
                                       ('_linear_speed:=1.0e+300', '/linear_speed', '1e+300')]:
             self.check(support.out_and_back(argument), [name, value, 'expected'])
-            rospy.delete_param('/out_and_back')
+            forget('/out_and_back')
         self.assertFalse(commands.messages)
 
     def test_driving_by_odometry(self):
@@ -44,7 +50,7 @@ class TestBadParameters(unittest.TestCase):
                                       ('_odom_frame:=7', '/odom_frame', '7'),
                                       ('_base_frame:=a b', '/base_frame', "'a b'")]:
             self.check(support.by_odometry(argument), [name, value, 'expected'])
-            rospy.delete_param('/out_and_back')
+            forget('/out_and_back')
         self.assertFalse(commands.messages)
 
     def test_calibration(self):
@@ -56,8 +62,7 @@ class TestBadParameters(unittest.TestCase):
                 ('angular', '_turns:=many', ['/calibrate_angular/turns', "'many'"]),
                 ('angular', '_measured:=360', ['/last_calibration/angular: missing'])]:
             self.check(support.Process('rosrun', 'rbx1_nav', f'calibrate_{node}.py', argument), expected)
-            if rospy.has_param(f'/calibrate_{node}'):
-                rospy.delete_param(f'/calibrate_{node}')
+            forget(f'/calibrate_{node}')
         self.assertFalse(commands.messages)
 
     def test_filter(self):

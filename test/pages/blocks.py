@@ -38,6 +38,7 @@ MARKERS = {kind: re.compile(pattern) for kind, pattern in {
     'output': r'output(?: of (?P<of>[\w-]+))?(?:, (?:within (?P<tolerance>\d+)|(?P<exact>exact)))?',
     'not output': r'not output',
     'Ctrl-C': r'Ctrl-C: (?P<names>[\w-]+(?:, [\w-]+)*)'}.items()}
+GENERATED = re.compile(r'(?:parameter|key)s: \S+')   # script/parameter_tables.py writes what follows
 FOR_SHELL, FOR_OUTPUT = ('run', 'terminals', 'every terminal', 'not run'), ('output', 'not output')
 
 # The steps; line is that of the comment or the block. terminal None: the one used last. tolerance None: any number.
@@ -95,9 +96,9 @@ class _Reader:
         comment = COMMENT.match(line)
         if self.marker:
             self.end_marker(line)
-        if comment:
+        if comment and not GENERATED.fullmatch(comment['text']):
             self.marker = self.read_marker(number, comment['text'])
-        elif '<!--' in markdown.CODE_SPAN.sub('', line):
+        elif not comment and '<!--' in markdown.CODE_SPAN.sub('', line):
             raise PageError(number, 'expected a comment alone on its line')
         elif line.startswith(('    ', '\t')) and not self.before and not self.in_list:
             raise PageError(number, 'an indented code block, expected a fenced one')

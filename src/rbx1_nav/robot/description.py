@@ -6,6 +6,7 @@ import re
 from typing import Container, NamedTuple
 
 from rbx1_nav.config import ConfigError, Section, YamlValue, show, show_name
+from rbx1_nav.parameters import elsewhere, flag, frame, number, read
 from rbx1_nav.robot.joints import Joint
 from rbx1_nav.units import SECOND
 
@@ -19,6 +20,32 @@ MIN_TIMEOUT = 0.01  # s
 
 # the keys of diff_drive_controller, and the names in this package's URDF files
 WHEEL_JOINTS = {'left_wheel': 'base_l_wheel_joint', 'right_wheel': 'base_r_wheel_joint'}
+
+PARAMETERS = (
+    elsewhere('controllers', 'one diff_controller', note='see below'),
+    elsewhere('joints', 'servos', 'none', note='see below'),
+    flag('publish_tf', True, 'whether to publish the transform to the base frame', note='false if another node does'),
+    flag('sim', True, 'must be true: this base is a simulation'))
+
+CONTROLLER = (
+    elsewhere('type', '`diff_controller`'),
+    number('base_width', None, 'm', 'distance between the wheels', 0.001, 100, 'a width', required=True),
+    frame('base_frame_id', 'base_link', 'frame of the robot'),
+    frame('odom_frame_id', 'odom', 'frame of the odometry'),
+    number('rate', 50.0, 'Hz', 'of the odometry; on simulated time at most 50', 0.1, 1000, 'a rate'),
+    number('timeout', 1.0, 's', f'a command of this age stops the base; at least {MIN_TIMEOUT:g}, or 0: never', 0, 1e6,
+           'a time'),
+    number('max_linear_speed', inf, 'm/s', 'commands are clamped to it', 0.001, 1000, 'a speed', shown='no limit'),
+    number('max_angular_speed', inf, 'rad/s', 'the same in a turn', 0.001, 1000, 'a speed', shown='no limit'),
+    number('wheel_radius', 0.033, 'm', 'turns wheel travel into joint angles', 0.001, 100, 'a radius'),
+    elsewhere('left_wheel', 'joint of the left wheel in `joint_states`, as the URDF file names it',
+              WHEEL_JOINTS['left_wheel']),
+    elsewhere('right_wheel', 'joint of the right wheel', WHEEL_JOINTS['right_wheel']))
+
+JOINT = (
+    number('min_angle', -150.0, 'degrees', 'lower limit', -MAX_ANGLE, MAX_ANGLE, 'an angle'),
+    number('max_angle', 150.0, 'degrees', 'upper limit', -MAX_ANGLE, MAX_ANGLE, 'an angle'),
+    number('max_speed', 90.0, 'degrees/s', 'speed at which the joint moves to its goal', 0.01, MAX_ANGLE, 'a speed'))
 
 
 class Limits(NamedTuple):
@@ -48,12 +75,11 @@ class Robot(NamedTuple):
 
 def read_joint(name: str, section: Section) -> Joint:
     """A Joint from its Section, which is in degrees. Raises ConfigError."""
-    lower = section.number('min_angle', -MAX_ANGLE, MAX_ANGLE, -150.0, 'an angle', 'degrees')
-    upper = section.number('max_angle', -MAX_ANGLE, MAX_ANGLE, 150.0, 'an angle', 'degrees')
+    values = read(JOINT, section)
+    lower, upper = values['min_angle'], values['max_angle']
     if lower >= upper:
         raise ConfigError(f"{section.path('min_angle')}: {lower!r}: expected an angle below max_angle, {upper!r}")
-    speed = section.number('max_speed', 0.01, MAX_ANGLE, 90.0, 'a speed', 'degrees per second')
-    return Joint(name, radians(lower), radians(upper), radians(speed))
+    return Joint(name, radians(lower), radians(upper), radians(values['max_speed']))
 
 
 def read_wheel_joints(section: Section, servos: Container[str] = ()) -> tuple[str, str]:
@@ -84,9 +110,9 @@ def read_wheel_joints(section: Section, servos: Container[str] = ()) -> tuple[st
 def read_robot(params: YamlValue) -> Robot:
     """The Robot that a dictionary of ArbotiX parameters describes. Raises ConfigError."""
     top = Section(params, hardware=DRIVER_KEYS)
-    if not top.flag('sim', True):
+    values = read(PARAMETERS, top)
+    if not values['sim']:
         raise ConfigError('sim: False: expected true, this base is a simulation')
-    publish_tf = top.flag('publish_tf', True)
 
     controllers = top.section('controllers', expected='a mapping with one diff_controller')
     if len(controllers.values) != 1:
@@ -111,20 +137,20 @@ def read_robot(params: YamlValue) -> Robot:
         joints.append(read_joint(joint, section))
         sections.append(section)
 
-    timeout = base.number('timeout', 0, 1e6, 1.0, 'a time', 's')
+    keys = read(CONTROLLER, base)
+    timeout = keys['timeout']
     if 0 < timeout < MIN_TIMEOUT:   # less would become 0, which is no timeout at all
         raise ConfigError(f"{base.path('timeout')}: {timeout!r}: expected 0 (never), or at least {MIN_TIMEOUT:g} s")
     robot = Robot(
         name=show_name(name),
-        odom_frame_id=base.frame('odom_frame_id', 'odom'),
-        base_frame_id=base.frame('base_frame_id', 'base_link'),
-        base_width=base.number('base_width', 0.001, 100, what='a width', unit='m'),
-        wheel_radius=base.number('wheel_radius', 0.001, 100, 0.033, 'a radius', 'm'),
-        rate=base.number('rate', 0.1, 1000, 50.0, 'a rate', 'Hz'),
+        odom_frame_id=keys['odom_frame_id'],
+        base_frame_id=keys['base_frame_id'],
+        base_width=keys['base_width'],
+        wheel_radius=keys['wheel_radius'],
+        rate=keys['rate'],
         timeout=round(SECOND * timeout),
-        limits=Limits(base.number('max_linear_speed', 0.001, 1000, inf, 'a speed', 'm/s'),
-                      base.number('max_angular_speed', 0.001, 1000, inf, 'a speed', 'rad/s')),
-        publish_tf=publish_tf,
+        limits=Limits(keys['max_linear_speed'], keys['max_angular_speed']),
+        publish_tf=values['publish_tf'],
         joints=joints,
         wheel_joints=wheel_joints,
         hardware=sorted(key for section in [top, *sections] for key in section.ignored()),

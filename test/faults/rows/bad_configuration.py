@@ -4,15 +4,13 @@ import math
 import os
 
 import rospkg
-import rospy
 import yaml
-from rospy.impl.paramserver import get_param_server_cache
 
 from bad_values import TEXTS, VALUES, mutate, shown
-from rbx1_nav.config import ConfigError
+from rbx1_nav.config import ConfigError, Section
+from rbx1_nav.parameters import number, read
 from rbx1_nav.robot.description import read_robot
 from rbx1_nav.ros.filter.parameters import read_parameters
-from rbx1_nav.ros.node.params import positive_param
 from rbx1_nav.simulation.base import make_base
 from rbx1_nav.simulation.surfaces import load_surface, read_seed, read_surface
 from rbx1_nav.units import SECOND
@@ -71,13 +69,13 @@ def use_filter(values):
     return [parameters.sensor_timeout, *parameters.limits], 1 / parameters.freq
 
 
+SCRIPT = number('linear_speed', 0.2, 'm/s', ''), number('rate', 50, 'Hz', '', 2, 1000)     # as in the script
+
+
 def use_script(values):
     """A script's numbers, and its period."""
-    get_param_server_cache().set(rospy.get_name(), values)
-    # one that is not there would be asked for at a master
-    ranges = {'linear_speed': (), 'rate': (2, 1000)}     # as in the script
-    numbers = {name: positive_param(name, 1.0, *ranges[name]) for name in ranges if name in values}
-    return numbers.values(), 1 / numbers.get('rate', 50)
+    numbers = read(SCRIPT, Section(values))
+    return numbers.values(), 1 / numbers['rate']
 
 
 def use_seed(value):
@@ -89,7 +87,7 @@ def check(use, values, key):
     """One configuration. key: must be named in the error, unless None."""
     try:
         numbers, period = use(values)
-    except (ConfigError, rospy.ROSException) as error:
+    except ConfigError as error:
         text = str(error)
         assert len(text.splitlines()) == 1 and 'expected' in text, f'expected one line: {text[:500]!r}'
         assert text.isprintable() and len(text) < 1000, f'unreadable: {len(text)} characters, {text[:500]!r}'

@@ -7,12 +7,69 @@ from typing import NamedTuple
 from rbx1_nav.config import AUTO, ConfigError, Section, YamlValue, show
 from rbx1_nav.create import protocol
 from rbx1_nav.create.driver.fractions import KINDS
-from rbx1_nav.robot.description import Limits, Robot, read_wheel_joints
+from rbx1_nav.parameters import choice, custom, elsewhere, flag, frame, number, read
+from rbx1_nav.robot.description import WHEEL_JOINTS, Limits, Robot, read_wheel_joints
 from rbx1_nav.robot.odometry import OdometryErrors
 from rbx1_nav.units import SECOND
 
 GYRO_CORRECTION = 1.35  # create_node's default
 WHEEL_RADIUS = 0.033    # m, of the wheels that RViz shows
+
+
+def _check_port(port: YamlValue) -> str:
+    if not (isinstance(port, str) and port.startswith('/')):
+        raise ConfigError(f'port: {show(port)}: expected the absolute path of a device')
+    return port
+
+
+def _check_mode(mode: YamlValue) -> int:
+    if (not isinstance(mode, (int, float)) or isinstance(mode, bool)
+            or mode not in (protocol.PASSIVE, protocol.SAFE, protocol.FULL)):
+        raise ConfigError(f'operation_mode: {show(mode)}: expected 1 (passive), 2 (safe) or 3 (full)')
+    return int(mode)
+
+
+_CALIBRATED = 'see [calibration files](#calibration-files)'
+
+PARAMETERS = (
+    custom('port', '/dev/ttyUSB0', 'the serial port, or a link to it', _check_port),
+    choice('robot_type', (AUTO, *protocol.MODELS), AUTO, 'which robot; auto: whichever answers'),
+    choice('baud', (AUTO, *protocol.BAUD_RATES), AUTO, 'rate of the line', 'bits per second',
+           note='auto tries 57600, 115200 and 19200'),
+    number('update_rate', 30.0, 'Hz', 'of sensors, odometry and repeated commands', 5, 60, 'a rate'),
+    custom('operation_mode', protocol.SAFE,
+           '1: passive, the robot is not driven; 2: safe; 3: full, where neither cliff nor wheel drop stops the robot',
+           _check_mode, range='1, 2, 3'),
+    choice('oi_mode_workaround', (AUTO, True, False), AUTO,
+           'whether the robot reports its mode plus one, as some Roombas do; auto: find out'),
+    flag('wake_robot', False, 'whether to wake a robot that does not answer, by RTS and DTR',
+         note='on a line without them the node warns once, and searches without waking'),
+    number('cmd_vel_timeout', 0.6, 's', 'a command of this age stops the robot', 0.05, 10, 'a time'),
+    flag('stop_motors_on_bump', True, 'whether the bumper stops forward motion'),
+    number('min_abs_yaw_vel', 0.0, 'rad/s', 'slower turns are commanded at this speed', 0, 10, 'a speed'),
+    number('max_abs_yaw_vel', 0.0, 'rad/s', 'faster turns are limited to this speed; 0: no limit', 0, 10, 'a speed'),
+    flag('has_gyro', None, 'whether there is a gyro at the analog input', shown='true; create2: false'),
+    number('gyro_measurement_range', 150.0, 'degrees/s', "of the gyro's chip", 1, 1000, 'a rate', note=_CALIBRATED),
+    number('gyro_scale_correction', GYRO_CORRECTION, '', "factor for the gyro's angular velocity", 0.01, 100,
+           'a factor', note=_CALIBRATED),
+    number('odom_linear_scale_correction', 1.0, '', 'factor for the distance that the robot reports', 0.01, 100,
+           'a factor', note=_CALIBRATED),
+    number('odom_angular_scale_correction', 1.0, '', 'factor for the angle', 0.01, 100, 'a factor', note=_CALIBRATED),
+    choice('angle_fractions', KINDS, AUTO, 'what the robot does with fractions of a degree; auto: find out'),
+    number('odom_linear_error', 0.05, 'm', 'error of the calibrated distance, 1 sigma after 1 m', 0, 1, 'a distance'),
+    number('odom_angular_error', 0.09, 'rad', 'error of the calibrated angle, 1 sigma after 1 rad', 0, 1, 'an angle'),
+    number('odom_heading_error', 0.07, 'rad', 'error of the heading, 1 sigma after 1 m', 0, 1, 'an angle'),
+    number('moving_yaw_variance', 0.0, 'rad^2',
+           'variance of the heading while the robot moves, in place of the calculated one (create_node: 1000); 0: none',
+           0, 1e6, 'a variance'),
+    frame('odom_frame', 'odom', 'frame of the odometry'),
+    frame('base_frame', 'base_footprint', 'frame of the robot'),
+    elsewhere('left_wheel', 'joint of the left wheel in joint_states, as the URDF file names it',
+              WHEEL_JOINTS['left_wheel']),
+    elsewhere('right_wheel', 'joint of the right wheel', WHEEL_JOINTS['right_wheel']),
+    flag('publish_tf', True, 'whether to publish the transform to the base frame', note='false if another node does'),
+    choice('drive_mode', ('twist',), 'twist', 'the only one'),
+    elsewhere('diagnostic_period', 'accepted, and ignored: /diagnostics has 1 Hz'))
 
 
 class Settings(NamedTuple):
@@ -41,50 +98,31 @@ class Settings(NamedTuple):
 def read_settings(params: YamlValue) -> tuple[Settings, Robot]:
     """(Settings, Robot) from a dictionary of private parameters. Raises ConfigError."""
     section = Section(params)
-    name = section.choice('robot_type', (AUTO, *protocol.MODELS), AUTO)
+    values = read(PARAMETERS, section)
+    name = values['robot_type']
     model = protocol.MODELS.get(name, protocol.CREATE)
-    port = section.get('port', '/dev/ttyUSB0')
-    if not (isinstance(port, str) and port.startswith('/')):
-        raise ConfigError(f'port: {show(port)}: expected the absolute path of a device')
-    section.choice('drive_mode', ('twist',), 'twist')
-    rates: tuple[int | str, ...] = (AUTO, *protocol.BAUD_RATES)
-    baud = section.choice('baud', rates, AUTO)
-    mode = section.get('operation_mode', protocol.SAFE)
-    if (not isinstance(mode, (int, float)) or isinstance(mode, bool)
-            or mode not in (protocol.PASSIVE, protocol.SAFE, protocol.FULL)):
-        raise ConfigError(f'operation_mode: {show(mode)}: expected 1 (passive), 2 (safe) or 3 (full)')
-    workarounds: tuple[bool | str, ...] = (AUTO, True, False)
-    mode_plus_one = section.choice('oi_mode_workaround', workarounds, AUTO)
-    has_gyro = section.flag('has_gyro', model is protocol.CREATE)
+    has_gyro = model is protocol.CREATE if values['has_gyro'] is None else values['has_gyro']
     if has_gyro and model is not protocol.CREATE:
         raise ConfigError(f'has_gyro: True: expected false, a {name} has no analog input for a gyro')
     settings = Settings(
-        robot_type=name, model=model, port=port, baud=baud if isinstance(baud, int) else None,
-        wake=section.flag('wake_robot', False), mode=int(mode),
-        mode_plus_one=mode_plus_one if isinstance(mode_plus_one, bool) else None, has_gyro=has_gyro,
-        angle_fractions=section.choice('angle_fractions', KINDS, AUTO),
-        update_rate=section.number('update_rate', 5, 60, 30.0, 'a rate', 'Hz'),
-        gyro_range=section.number('gyro_measurement_range', 1, 1000, 150.0, 'a rate', 'degrees/s'),
-        gyro_correction=section.number('gyro_scale_correction', 0.01, 100, GYRO_CORRECTION, 'a factor'),
-        linear_correction=section.number('odom_linear_scale_correction', 0.01, 100, 1.0, 'a factor'),
-        angular_correction=section.number('odom_angular_scale_correction', 0.01, 100, 1.0, 'a factor'),
-        errors=OdometryErrors(section.number('odom_linear_error', 0, 1, 0.05, 'a distance', 'm'),
-                      section.number('odom_angular_error', 0, 1, 0.09, 'an angle', 'rad'),
-                      section.number('odom_heading_error', 0, 1, 0.07, 'an angle', 'rad')),
-        moving_yaw_variance=section.number('moving_yaw_variance', 0, 1e6, 0.0, 'a variance', 'rad^2'),
-        stop_on_bump=section.flag('stop_motors_on_bump', True),
-        min_yaw_speed=section.number('min_abs_yaw_vel', 0, 10, 0.0, 'a speed', 'rad/s'))
-    # 0 is no limit, as in create_node
-    max_yaw_speed = section.number('max_abs_yaw_vel', 0, 10, 0.0, 'a speed', 'rad/s') or inf
+        robot_type=name, model=model, port=values['port'], baud=None if values['baud'] == AUTO else values['baud'],
+        wake=values['wake_robot'], update_rate=values['update_rate'], mode=values['operation_mode'],
+        mode_plus_one=None if values['oi_mode_workaround'] == AUTO else values['oi_mode_workaround'],
+        has_gyro=has_gyro, gyro_range=values['gyro_measurement_range'], gyro_correction=values['gyro_scale_correction'],
+        linear_correction=values['odom_linear_scale_correction'],
+        angular_correction=values['odom_angular_scale_correction'], angle_fractions=values['angle_fractions'],
+        errors=OdometryErrors(values['odom_linear_error'], values['odom_angular_error'], values['odom_heading_error']),
+        moving_yaw_variance=values['moving_yaw_variance'], stop_on_bump=values['stop_motors_on_bump'],
+        min_yaw_speed=values['min_abs_yaw_vel'])
+    max_yaw_speed = values['max_abs_yaw_vel'] or inf    # 0 is no limit, as in create_node
     if settings.min_yaw_speed > max_yaw_speed:
         raise ConfigError(f'min_abs_yaw_vel: {settings.min_yaw_speed!r}: expected at most max_abs_yaw_vel, '
                           f'{max_yaw_speed!r}')
     robot = Robot(
-        name=name, odom_frame_id=section.frame('odom_frame', 'odom'),
-        base_frame_id=section.frame('base_frame', 'base_footprint'), base_width=model.wheel_separation,
-        wheel_radius=WHEEL_RADIUS, rate=settings.update_rate,
-        timeout=round(SECOND * section.number('cmd_vel_timeout', 0.05, 10, 0.6, 'a time', 's')),
-        limits=Limits(inf, max_yaw_speed), publish_tf=section.flag('publish_tf', True), joints=[],
+        name=name, odom_frame_id=values['odom_frame'], base_frame_id=values['base_frame'],
+        base_width=model.wheel_separation, wheel_radius=WHEEL_RADIUS, rate=settings.update_rate,
+        timeout=round(SECOND * values['cmd_vel_timeout']), limits=Limits(inf, max_yaw_speed),
+        publish_tf=values['publish_tf'], joints=[],
         wheel_joints=read_wheel_joints(section), hardware=[], unknown=[])
     if robot.odom_frame_id == robot.base_frame_id:
         raise ConfigError(f'base_frame: {show(robot.base_frame_id)}: expected a frame other than odom_frame')

@@ -10,11 +10,11 @@ from geometry_msgs.msg import Twist
 from rosgraph_msgs.msg import Clock as ClockMessage
 from rospy.impl import simtime
 
-from rbx1_nav.config import ConfigError, Section
+from rbx1_nav.config import ConfigError
 from rbx1_nav.ros.base.clocks import Clock, FollowedClock, RealTimeClock, wait_for_beat
 from rbx1_nav.ros.base.driving_nodes import DrivingNodes
 from rbx1_nav.ros.node import life
-from rbx1_nav.schedule import CLOCK_STEP
+from rbx1_nav.ros.node.params import param
 from rbx1_nav.simulation.lockstep import Lockstep
 from rbx1_nav.units import SECOND
 
@@ -24,16 +24,12 @@ def read_clock(rate: float) -> Clock:
 
     rate: of the odometry, Hz. Raises ConfigError.
     """
-    names = ('real_time_factor', 'clock_step', 'strict')
-    section = Section({name: rospy.get_param(f'~{name}') for name in names if rospy.has_param(f'~{name}')})
-    step = section.number('clock_step', 0.001, 0.1, CLOCK_STEP, 'a time', 's')
-    strict = section.flag('strict', False)
-    if 'real_time_factor' in section.values:
-        factor = section.number('real_time_factor', 0.01, 1000)
+    factor, step, strict = param('real_time_factor'), param('clock_step'), param('strict')
+    if factor is not None:
         if rospy.rostime.is_wallclock():
             raise ConfigError(f'real_time_factor: {factor:g}: expected /use_sim_time to be true')
         return OwnClock(factor, rate, round(step * SECOND), strict)
-    if strict or 'clock_step' in section.values:
+    if strict or rospy.has_param('~clock_step'):
         given = 'strict: true' if strict else f'clock_step: {step:g}'
         raise ConfigError(f'{given}: expected a simulated clock of this node: real_time_factor is not set')
     return RealTimeClock(rate) if rospy.rostime.is_wallclock() else FollowedClock(rate)

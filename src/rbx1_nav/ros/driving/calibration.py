@@ -5,8 +5,24 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from rosgraph.names import is_legal_name
 import rospy
 
-from rbx1_nav.config import ConfigError, Section, show
+from rbx1_nav.config import ConfigError, Section, YamlValue, show
+from rbx1_nav.parameters import custom, frame, number
 from rbx1_nav.robot.calibration import MAX_FACTOR
+
+
+def check_node_name(value: YamlValue) -> str:
+    """The value of ~base_node, the name of a node. Raises ConfigError."""
+    if not (isinstance(value, str) and value and is_legal_name(value)):
+        raise ConfigError(f'base_node: {show(value)}: expected the name of a node')
+    return value
+
+
+# of both scripts
+PARAMETERS = (
+    number('rate', 50, 'Hz', 'commands per second', 2, 1000),
+    frame('odom_frame', 'odom', 'frame of the odometry'),
+    frame('base_frame', None, 'frame of the robot', shown='base_footprint or base_link, whichever exists'),
+    custom('base_node', 'turtlebot_node', 'node whose parameters are calibrated', check_node_name))
 
 
 class Diagnosis:
@@ -29,14 +45,6 @@ class Diagnosis:
     def error(self) -> str:
         """The message of the last status if that is an error, else ''."""
         return self.last.message if self.last and self.last.level == DiagnosticStatus.ERROR else ''
-
-
-def node_param(name: str, default: str) -> str:
-    """The private parameter `name`, the name of a node. Raises ROSException with one line if it is not."""
-    value = rospy.get_param('~' + name, default)
-    if not (isinstance(value, str) and value and is_legal_name(value)):
-        raise rospy.ROSException(f"{rospy.resolve_name('~' + name)}: {show(value)}: expected the name of a node")
-    return value
 
 
 def factor_in_force(base_node: str, key: str, default: float | None = 1.0) -> float | None:

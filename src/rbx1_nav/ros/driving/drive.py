@@ -12,7 +12,7 @@ from tqdm import tqdm
 from rbx1_nav.ros.driving.rate import Rate, pause
 from rbx1_nav.ros.driving.waiting import wait_for_subscribers
 from rbx1_nav.ros.driving.watching import Listeners
-from rbx1_nav.ros.node.params import positive_param
+from rbx1_nav.ros.node.params import param
 
 Self = TypeVar('Self', bound='Drive')
 
@@ -31,7 +31,7 @@ class Drive:
         self.cmd_vel = cmd_vel
         self.rate = rate
         self.stop = stop
-        self.wait_timeout = positive_param('wait_timeout', 30)     # s
+        self.wait_timeout = param('wait_timeout')     # s
         self.current_rate: Optional[Rate] = None
 
     def __enter__(self: Self) -> Self:

@@ -195,7 +195,8 @@ class Listeners:
             self.next_look = now + LOOK_PERIOD
             self.look(now)
         if not self.publisher.impl.connections:
-            raise rospy.ROSException(f'{self.topic}: the last subscriber has gone: expected a base')
+            names = ', '.join(listener.peer.name for listener in self.listeners if not listener.ended)
+            raise rospy.ROSException(f'{self.topic}: the last subscriber has gone ({names}): expected a base')
         for listener in self.listeners:
             if listener.refusal:
                 raise rospy.ROSException(f'{self.topic}: {listener.refusal}')

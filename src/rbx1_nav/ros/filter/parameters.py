@@ -16,14 +16,70 @@ from rbx1_nav.estimation.combined_odometry import CombinedOdometry
 from rbx1_nav.estimation.inputs import check
 from rbx1_nav.estimation.limits import Limits
 from rbx1_nav.estimation.priors import UNKNOWN_FLOOR, Priors, priors
+from rbx1_nav.parameters import custom, flag, frame, number, read
 from rbx1_nav.ros.network.master import call
 from rbx1_nav.ros.node import resources
+from rbx1_nav.ros.node.params import stored_params
 from rbx1_nav.simulation.surfaces import load_surface
 from rbx1_nav.units import SECOND
 
 AUTO = 'auto'       # the surface of the simulated base, or else
 ANY = 'unknown'     # any floor
 DEFAULT = Limits()
+
+
+# as robot_pose_ekf has them; a line for each says that it has no effect
+UNSUPPORTED = {
+    'vo_used': 'visual odometry is not supported, and not used',
+    'gps_used': 'GPS is not supported, and not used',
+    'debug': 'no files are written; record the topics with rosbag',
+    'self_diagnose': 'see /diagnostics'}
+
+
+def _check_surface(name: YamlValue) -> str:
+    if name not in (AUTO, ANY):
+        try:
+            load_surface(name, resources.surfaces())
+        except ConfigError as error:
+            raise ConfigError(f'{error}; or {AUTO}, or {ANY}') from None
+    return str(name)
+
+
+def _check_prefix(prefix: YamlValue) -> str:
+    return Section({'tf_prefix': prefix}).frame('tf_prefix', '') if prefix else ''
+
+
+PARAMETERS = (
+    number('freq', 30.0, 'Hz', 'of ~odom_combined and its transform', 0.1, 1000, 'a rate',
+           note='`odom_ekf.launch` sets 10'),
+    number('sensor_timeout', 1.0, 's',
+           'a sensor that is silent for longer, while the other is not, is not used until it recovers',
+           0.01, 1e6, 'a time'),
+    flag('publish_tf', True, 'whether to publish the transform'),
+    flag('imu_used', True, 'whether to use the gyro'),
+    flag('odom_used', True, 'only true is accepted: nothing else measures the distance'),
+    frame('output_frame', 'odom_combined', 'frame of the estimated pose'),
+    frame('base_footprint_frame', None, 'frame of the robot',
+          shown='child_frame_id of odom, or base_footprint if that is empty'),
+    custom('tf_prefix', '', 'before both names, unless they begin with a slash', _check_prefix, shown='none',
+           note='also from a namespace around the node, as in tf'),
+    custom('surface', AUTO,
+           f'the floor that the filter starts with: a name or path, {ANY}, or {AUTO}: that of a simulated base',
+           _check_surface, note='see [surface files](#surface-files)'),
+    number('max_speed', DEFAULT.max_speed, 'm/s', 'odometry that moves faster has jumped', 0.01, 1000, 'a speed'),
+    number('max_turn_rate', DEFAULT.max_turn_rate, 'rad/s', 'odometry that turns faster has jumped', 0.01, 1000,
+           'a turn rate', note='on an `unknown` floor faster readings of the gyro are not used'),
+    number('max_angular_acceleration', DEFAULT.max_angular_acceleration, 'rad/s^2',
+           'largest change of the turn rate while gyro readings are lost', 0.01, 1e4, 'an angular acceleration',
+           note='see [messages that are not as expected](#messages-that-are-not-as-expected)'),
+    number('gyro_bias', degrees(DEFAULT.gyro_bias), 'degrees/s', 'largest gyro bias, either sign', 0.01, 1000, 'a bias',
+           note='a higher rate at rest is not learned as bias. Also the standard deviation of the bias before the '
+           'first standstill'),
+    number('gyro_scale_error', DEFAULT.gyro_scale_error, '',
+           "standard deviation of the gyro's scale error on an unknown floor", 0, 0.5, 'a fraction',
+           note='a surface file has its own'),
+    number('diagnostic_period', 1.0, 's', 'of /diagnostics', 0.1, 1e6, 'a time'),
+    *(flag(name, False, 'true is accepted, and has no effect') for name in UNSUPPORTED))
 
 
 class FilterParameters(NamedTuple):
@@ -44,48 +100,23 @@ class FilterParameters(NamedTuple):
 
 def read_parameters(params: dict[str, YamlValue]) -> FilterParameters:
     """The FilterParameters from those that are set. Raises ConfigError."""
-    section = Section(params)
-    prefix = section.frame('tf_prefix', '/') if params.get('tf_prefix') else ''
-    base_frame = _resolve(prefix, section.frame('base_footprint_frame', 'base_footprint'),
+    given = read(PARAMETERS, Section(params))
+    if not given['odom_used']:
+        raise ConfigError('odom_used: False: expected true, nothing else measures the distance')
+    base_frame = _resolve(given['tf_prefix'], given['base_footprint_frame'] or 'base_footprint',
                           params.get('base_footprint_frame'))
     values = FilterParameters(
-        freq=section.number('freq', 0.1, 1000, 30.0, 'a rate', 'Hz'),
-        sensor_timeout=section.number('sensor_timeout', 0.01, 1e6, 1.0, 'a time', 's'),
-        diagnostic_period=section.number('diagnostic_period', 0.1, 1e6, 1.0, 'a time', 's'),
-        limits=Limits(
-            section.number('max_speed', 0.01, 1000, DEFAULT.max_speed, 'a speed', 'm/s'),
-            section.number('max_turn_rate', 0.01, 1000, DEFAULT.max_turn_rate, 'a turn rate', 'rad/s'),
-            section.number('max_angular_acceleration', 0.01, 1e4, DEFAULT.max_angular_acceleration,
-                           'an angular acceleration', 'rad/s^2'),
-            radians(section.number('gyro_bias', 0.01, 1000, degrees(DEFAULT.gyro_bias), 'a bias', 'degrees/s')),
-            section.number('gyro_scale_error', 0.0, 0.5, DEFAULT.gyro_scale_error, 'a fraction')),
-        publish_tf=section.flag('publish_tf', True),
-        imu_used=section.flag('imu_used', True),
-        output_frame=_resolve(prefix, section.frame('output_frame', 'odom_combined'), params.get('output_frame')),
+        **{name: given[name] for name in ('freq', 'sensor_timeout', 'diagnostic_period', 'publish_tf', 'imu_used',
+                                          'surface')},
+        limits=Limits(**{**{name: given[name] for name in Limits._fields}, 'gyro_bias': radians(given['gyro_bias'])}),
+        output_frame=_resolve(given['tf_prefix'], given['output_frame'], params.get('output_frame')),
         base_footprint_frame=base_frame if 'base_footprint_frame' in params else '',
         default_base_frame=base_frame,
-        surface=_read_surface(section),
-        unsupported=[line for asked, line in [
-            (section.flag('vo_used', False), 'vo_used: visual odometry is not supported, and not used'),
-            (section.flag('gps_used', False), 'gps_used: GPS is not supported, and not used'),
-            (section.flag('debug', False), 'debug: no files are written; record the topics with rosbag'),
-            (section.flag('self_diagnose', False), 'self_diagnose: see /diagnostics')] if asked])
-    if not section.flag('odom_used', True):
-        raise ConfigError('odom_used: False: expected true, nothing else measures the distance')
+        unsupported=[f'{name}: {reason}' for name, reason in UNSUPPORTED.items() if given[name]])
     if values.base_footprint_frame and values.base_footprint_frame == values.output_frame:
         raise ConfigError(f'base_footprint_frame: {show(values.output_frame)}: expected a frame other than '
                           'output_frame')
     return values
-
-
-def _read_surface(section: Section) -> str:
-    name = section.get('surface', AUTO)
-    if name not in (AUTO, ANY):
-        try:
-            load_surface(name, resources.surfaces())
-        except ConfigError as error:
-            raise ConfigError(f'{error}; or {AUTO}, or {ANY}') from None
-    return str(name)
 
 
 def load_parameters() -> FilterParameters:
@@ -93,7 +124,7 @@ def load_parameters() -> FilterParameters:
 
     Logs what is asked for and not supported. Raises ROSException with one line.
     """
-    params = rospy.get_param(rospy.get_name(), {})
+    params = stored_params()
     prefix = search_value('tf_prefix', rospy.get_name(), rospy.get_param)
     try:
         values = read_parameters(params if prefix is None else dict(params, tf_prefix=prefix))
@@ -112,8 +143,8 @@ def frames_of(message: Odometry, parameters: FilterParameters) -> tuple[str, str
     base_frame = parameters.base_footprint_frame or message.child_frame_id.lstrip('/') or (
         parameters.default_base_frame)
     frames = message.header.frame_id.lstrip('/'), base_frame
-    for field, frame in zip(('header.frame_id', 'child_frame_id'), frames):
-        check(field, show(frame), frame, 'the name of a frame')
+    for field, name in zip(('header.frame_id', 'child_frame_id'), frames):
+        check(field, show(name), name, 'the name of a frame')
     check('child_frame_id', show(frames[1]), frames[1] != parameters.output_frame, 'a frame other than output_frame')
     return frames
 

@@ -1,44 +1,36 @@
-"""The command line and the private parameters of a node, checked against its usage text.
-
-A usage text lists the node's parameters, each on a line of its own that begins with `~` and the name; more names may
-follow after commas.
-"""
+"""The command line and the private parameters of a node, compared with the parameters that it has."""
 from __future__ import annotations
 
 import difflib
 import os
-import re
 import sys
-from typing import Sequence
+from typing import Mapping, Sequence
 import xmlrpc.client
 
 from rosgraph.names import is_legal_name
 import rospy
 import yaml
 
-from rbx1_nav.config import show_name, suggestion
+from rbx1_nav.config import YamlValue, show_name, suggestion
 
 EXPECTED = 'expected _parameter:=value or topic:=new_topic'
 
 
-def parameter_names(usage: str) -> list[str]:
-    """The names of the parameters that a usage text lists."""
-    lines = [line for line in usage.splitlines() if line.lstrip().startswith('~')]
-    return [name for line in lines for name in re.findall(r'~(\w+)', line)]
+def check_command_line(usage: str, names: Sequence[str]) -> None:
+    """Print the usage and exit if the command line asks for it, or has arguments that this node does not know.
 
-
-def check_command_line(usage: str) -> None:
-    """Print the usage and exit if the command line asks for it, or has arguments that this node does not know."""
+    names: of the node's parameters.
+    """
     arguments = sys.argv[1:]
     if '-h' in arguments or '--help' in arguments:
-        print(usage.strip())
+        print(usage)
         sys.exit(0)
     for argument in arguments:
-        problem = find_problem(argument, parameter_names(usage))
+        problem = find_problem(argument, names)
         if problem:
             # last, so that it stands just above the prompt, as with argparse
-            print('%s\n\n%s: error: %s: %s' % (usage.strip(), os.path.basename(sys.argv[0]), show_name(argument),
-                                              problem), file=sys.stderr)
+            print('%s\n\n%s: error: %s: %s' % (usage, os.path.basename(sys.argv[0]), show_name(argument), problem),
+                  file=sys.stderr)
             sys.exit(2)
 
 
@@ -75,12 +67,12 @@ def _is_value(text: str) -> bool:
     return bool(text) and ':=' not in text
 
 
-def report_parameters(usage: str) -> None:
-    """Log the private parameters that have no effect, and those that an earlier command left on the master."""
-    name, names = rospy.get_name(), parameter_names(usage)
-    stored = rospy.get_param(name, {})
-    if not isinstance(stored, dict):
-        return
+def report_parameters(stored: Mapping[str, YamlValue], names: Sequence[str]) -> None:
+    """Log the private parameters that have no effect, and those that an earlier command left on the master.
+
+    stored: those on the master; names: of the node's parameters.
+    """
+    name = rospy.get_name()
     unknown = sorted(show_name(each) + suggestion(each, names) for each in set(stored) - set(names))
     if any(argument.startswith('__log:=') for argument in sys.argv):    # by roslaunch, which sets parameters on purpose
         if unknown:

@@ -10,16 +10,17 @@ import signal
 import sys
 import threading
 import time
-from typing import Any, Callable, NoReturn, TextIO, cast
+from typing import Any, Callable, NoReturn, Sequence, TextIO, cast
 
 import rosgraph
 import rospy
 from rospy.impl.paramserver import get_param_server_cache
 
 from rbx1_nav.config import YamlValue
+from rbx1_nav.parameters import Parameter, list_parameters
 from rbx1_nav.ros.network.master import require_master, wait_for_master
 from rbx1_nav.ros.node.arguments import check_command_line, report_parameters
-from rbx1_nav.ros.node.params import check_before_start, future_name, read_wait_timeout
+from rbx1_nav.ros.node.params import check_before_start, future_name, load_params, read_wait_timeout, stored_params
 
 EXIT_DEADLINE = 1.4         # s of wall time from the request to the end of the process, whatever hangs
 UNREGISTER_TIMEOUT = 0.25   # s of wall time for the master to unregister the node
@@ -59,20 +60,24 @@ class _Terminal:
             os.dup2(os.open(os.devnull, os.O_WRONLY), self._stream.fileno())
 
 
-def init_node(name: str, usage: str, requires_master: bool = False,
+def init_node(name: str, usage: str, parameters: Sequence[Parameter] = (), requires_master: bool = False,
               check: Callable[[dict[str, YamlValue]], object] | None = None) -> None:
     """Start the node `name`. From here on, Ctrl-C, kill, a closed terminal and `rosnode kill` set end_requested.
 
-    usage: printed for --help, and for a command line that does not fit the parameters it lists; both end the process.
+    usage: printed, with the list of parameters, for --help and for a command line with anything else; both end the
+    process.
+    parameters: those that the node has. They are checked before the node can end an older one of the same name, and
+    are then read with params.param().
     requires_master: whether a master that does not answer is an error. Otherwise the node waits for it, for at most
-    ~wait_timeout if the usage lists this parameter.
-    check(params): raises ConfigError for private parameters that make no sense, before they can end an older node.
+    ~wait_timeout if it has this parameter.
+    check(params): raises ConfigError for private parameters that do not fit each other.
     Raises ROSInterruptException if the node is to end before it is registered, ROSException if the master does not
     answer, or for a parameter that makes no sense.
     """
+    names = [each.name for each in parameters]
     # not a TextIO by its class: the stream has the other methods
     sys.stdout, sys.stderr = cast(TextIO, _Terminal(sys.stdout)), cast(TextIO, _Terminal(sys.stderr))
-    check_command_line(usage)
+    check_command_line('\n\n'.join(filter(None, [usage.strip(), list_parameters(parameters)])), names)
     if requires_master:
         require_master()
     read_end, write_end = os.pipe()
@@ -83,9 +88,9 @@ def init_node(name: str, usage: str, requires_master: bool = False,
             signal.signal(number, lambda *_: None)
     threading.Thread(target=_wait_for_signal, args=(read_end,), daemon=True).start()
     rospy.on_shutdown(_request_end)
-    wait_for_master(future_name(name), lambda: read_wait_timeout(name, usage), end_requested.is_set, sleep)
-    if check and not end_requested.is_set():
-        check_before_start(name, check)
+    wait_for_master(future_name(name), lambda: read_wait_timeout(name, parameters), end_requested.is_set, sleep)
+    if not end_requested.is_set():
+        check_before_start(name, parameters, check)
     if end_requested.is_set():
         raise rospy.ROSInterruptException('shutdown requested')
     try:
@@ -99,7 +104,9 @@ def init_node(name: str, usage: str, requires_master: bool = False,
     # For each line that is logged, rospy asks the master for this parameter. A frozen master would block the node, and
     # a master that has given the name to another node would register this one again. The cached value avoids the call.
     get_param_server_cache().set('/rosout_disable_topics_generation', False)
-    report_parameters(usage)
+    stored = stored_params()
+    report_parameters(stored, names)
+    load_params(parameters, stored)
 
 
 def _wait_for_signal(pipe: int) -> None:

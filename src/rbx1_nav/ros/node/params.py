@@ -1,29 +1,27 @@
-"""Private parameters of a node, checked as they are read."""
+"""The private parameters of a node."""
 from __future__ import annotations
 
-import re
 import sys
-from typing import Callable, TypeVar
+from typing import Any, Callable, Sequence
 import xmlrpc.client
 
 import rosgraph
 import rospy
 
-from rbx1_nav.config import ConfigError, Section, YamlValue
+from rbx1_nav.config import ConfigError, Section, YamlValue, show
+from rbx1_nav.parameters import Parameter, read
 from rbx1_nav.ros.network.master import call
-from rbx1_nav.ros.node.arguments import parameter_names
 
-POSITIVE = 1e-6, 1e6    # a parameter without a range of its own
-
-Frame = TypeVar('Frame', str, None)
+_values: dict[str, Any] = {}        # those of this node, once it is registered
 
 
-def check_before_start(name: str, check: Callable[[dict[str, YamlValue]], object]) -> None:
-    """Call check(params) with the private parameters that a node of this name will have.
+def check_before_start(name: str, parameters: Sequence[Parameter],
+                       check: Callable[[dict[str, YamlValue]], object] | None = None) -> None:
+    """Check the private parameters that a node of this name will have, each for itself, and all by check(params).
 
     To be called before the node is registered: at that moment the master ends an older node with the same name, which
-    may be the base of a robot. Raises ROSException with one line if check() raises ConfigError. Nothing is checked if
-    the master does not answer, or the command line sets a part of a mapping.
+    may be the base of a robot. Raises ROSException with one line for the first ConfigError. Nothing is checked if the
+    master does not answer, or the command line sets a part of a mapping.
     """
     name = future_name(name)
     given = rospy.client.load_command_line_node_params(sys.argv)
@@ -34,7 +32,10 @@ def check_before_start(name: str, check: Callable[[dict[str, YamlValue]], object
     if any('/' in key for key in given):
         return
     try:
-        check(dict(stored if isinstance(stored, dict) else {}, **given))
+        values = dict(stored if isinstance(stored, dict) else {}, **given)
+        read(parameters, Section(values))
+        if check:
+            check(values)
     except ConfigError as error:
         rospy.core.configure_logging(name)      # as init_node() would, for the line to look like any other
         raise rospy.ROSException(f'{name}/{error}') from None
@@ -45,39 +46,35 @@ def future_name(name: str) -> str:
     return rosgraph.names.resolve_name(rospy.names.get_mappings().get('__name', name), rospy.get_name())
 
 
-def read_wait_timeout(name: str, usage: str) -> float | None:
-    """~wait_timeout as the command line sets it, or its default in the usage text, s; None if it is not listed there.
+def read_wait_timeout(name: str, parameters: Sequence[Parameter]) -> float | None:
+    """~wait_timeout as the command line sets it, or its default, s; None if it is not one of the parameters.
 
     For a node that has no master yet. Raises ROSException with one line for an invalid value.
     """
-    if 'wait_timeout' not in parameter_names(usage):
-        return None
-    match = re.search(r'~wait_timeout .*\(default: ([\d.]+)\)', usage)
-    assert match, 'a usage text gives the default'
-    default = float(match.group(1))
-    given = rospy.client.load_command_line_node_params(sys.argv)
+    declared = [each for each in parameters if each.name == 'wait_timeout']
     try:
-        return Section(given).number('wait_timeout', *POSITIVE, default)
+        values = read(declared, Section(rospy.client.load_command_line_node_params(sys.argv)))
     except ConfigError as error:
         raise rospy.ROSException(f'{future_name(name)}/{error}') from None
+    return values.get('wait_timeout')
 
 
-def positive_param(name: str, default: float, low: float = POSITIVE[0], high: float = POSITIVE[1]) -> float:
-    """The private parameter `name`, a number from `low` to `high`. Raises ROSException with one line if it is not."""
+def stored_params() -> dict[str, YamlValue]:
+    """The private parameters of this node that are set, as the master has them. Raises ROSException with one line."""
+    stored = rospy.get_param(rospy.get_name(), {})
+    if not isinstance(stored, dict):
+        raise rospy.ROSException(f'{rospy.get_name()}: {show(stored)}: expected a mapping of parameters to values')
+    return stored
+
+
+def load_params(parameters: Sequence[Parameter], stored: dict[str, YamlValue]) -> None:
+    """Check the private parameters of this node, for param(). Raises ROSException with one line."""
     try:
-        return Section({name: rospy.get_param(f'~{name}', default)}).number(name, low, high)
+        _values.update(read(parameters, Section(stored)))
     except ConfigError as error:
         raise rospy.ROSException(f'{rospy.get_name()}/{error}') from None
 
 
-def frame_param(name: str, default: Frame) -> str | Frame:
-    """The private parameter `name`, a frame without a leading slash. Raises ROSException with one line if it is not.
-
-    default: may also be None.
-    """
-    if not rospy.has_param(f'~{name}'):
-        return default
-    try:
-        return Section({name: rospy.get_param(f'~{name}')}).frame(name, '')
-    except ConfigError as error:
-        raise rospy.ROSException(f'{rospy.get_name()}/{error}') from None
+def param(name: str) -> Any:
+    """The value of the private parameter `name`, which was given to init_node(); its default if it is not set."""
+    return _values[name]

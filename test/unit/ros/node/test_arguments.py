@@ -1,25 +1,10 @@
 """Command-line arguments that rospy would drop in silence are found, and the parameter that was meant is suggested."""
 import pytest
 
-from rbx1_nav.ros.node.arguments import find_problem, parameter_names
+from rbx1_nav.ros.node.arguments import find_problem
 
-USAGE = """Drives.
-
-usage: drive.py [_parameter:=value ...]
-
-Parameters:
-    ~rate               commands per second, Hz
-    ~goal_distance      length of the way out, m
-    ~port, ~baud        accepted
-                        only the names at the beginning count: not ~this one
-"""
 NAMES = ['rate', 'goal_distance', 'odom_frame', 'odom_used', 'imu_used', 'surface']
 EXPECTED = 'expected _parameter:=value or topic:=new_topic'
-
-
-def test_a_usage_text_lists_the_parameters():
-    assert parameter_names(USAGE) == ['rate', 'goal_distance', 'port', 'baud']
-    assert parameter_names('usage: pose.py') == []
 
 
 @pytest.mark.parametrize('argument', [

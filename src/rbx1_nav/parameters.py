@@ -1,0 +1,102 @@
+"""Parameters, each declared once: checks, usage texts and the tables of docs/reference.md are made of it."""
+from __future__ import annotations
+
+from functools import partial
+import textwrap
+from typing import Any, Callable, Iterable, NamedTuple, Sequence
+
+from rbx1_nav.config import Scalar, Section, YamlValue
+
+POSITIVE = 1e-6, 1e6    # the range of a number that has none of its own
+WIDTH = 120             # characters of a line of a usage text
+
+
+class Parameter(NamedTuple):
+    """A parameter of a node, or a key of a YAML file."""
+
+    name: str
+    default: str        # as a usage text shows it; '' for none
+    unit: str
+    range: str | Callable[[], str]      # callable: called when it is shown
+    text: str
+    note: str = ''      # what only the table of the reference says, in Markdown
+    read: Callable[[Section], Any] | None = None    # its checked value; None for one that read() leaves out
+
+
+def number(name: str, default: float | None, unit: str, text: str, low: float = POSITIVE[0], high: float = POSITIVE[1],
+           what: str = 'a number', required: bool = False, shown: str = '', note: str = '') -> Parameter:
+    """A number from `low` to `high`. what: for the text of the error. For the rest, see flag()."""
+    as_text = '' if (low, high) == POSITIVE else f'{low:.7g} to {high:.7g}'
+    return Parameter(name, shown or ('' if default is None else f'{default:g}'), unit, as_text, text, note, _reader(
+        name, default is None and not required, lambda section: section.number(name, low, high, default, what, unit)))
+
+
+def flag(name: str, default: bool | None, text: str, shown: str = '', note: str = '') -> Parameter:
+    """True or false. default: if it is None, so is the value of a parameter that is not set; shown: in its place."""
+    return Parameter(name, shown or str(default).lower(), '', '', text, note, _reader(
+        name, default is None, lambda section: section.flag(name, bool(default))))
+
+
+def choice(name: str, choices: Sequence[Scalar], default: Scalar | None, text: str, unit: str = '', shown: str = '',
+           note: str = '') -> Parameter:
+    """One of several values. default, shown: as of flag()."""
+    as_text = ', '.join(str(each).lower() for each in choices)
+    return Parameter(name, shown or str(default).lower(), unit, as_text, text, note, _reader(
+        name, default is None, lambda section: section.choice(name, choices, default or '')))
+
+
+def frame(name: str, default: str | None, text: str, shown: str = '', note: str = '') -> Parameter:
+    """The name of a frame. default, shown: as of flag()."""
+    return Parameter(name, shown or default or '', '', '', text, note, _reader(
+        name, default is None, lambda section: section.frame(name, default or '')))
+
+
+def _reader(name: str, optional: bool, read: Callable[[Section], Any]) -> Callable[[Section], Any]:
+    return lambda section: None if optional and name not in section.values else read(section)
+
+
+def custom(name: str, default: YamlValue, text: str, check: Callable[[Any], Any], shown: str = '', note: str = '',
+           range: str | Callable[[], str] = '') -> Parameter:
+    """Any value. check(value): returns what read() returns for it, or raises ConfigError."""
+    return Parameter(name, shown or str(default), '', range, text, note,
+                     lambda section: check(section.get(name, default)))
+
+
+def elsewhere(name: str, text: str, shown: str = '', unit: str = '', note: str = '') -> Parameter:
+    """A parameter that is read elsewhere, or ignored."""
+    return Parameter(name, shown, unit, '', text, note)
+
+
+def read(parameters: Iterable[Parameter], section: Section) -> dict[str, Any]:
+    """The checked values, by name, in the order of the parameters. Raises ConfigError for the first wrong one."""
+    return {each.name: each.read(section) for each in parameters if each.read}
+
+
+def list_parameters(parameters: Sequence[Parameter]) -> str:
+    """The lines of a usage text; '' if there is no parameter."""
+    if not parameters:
+        return ''
+    indent = 6 + max(len(each.name) for each in parameters) + 2
+    wrap = partial(textwrap.fill, width=WIDTH, subsequent_indent=' ' * indent, break_long_words=False,
+                   break_on_hyphens=False)
+    lines = (wrap(f'    ~{each.name}'.ljust(indent) + _described(each)) for each in parameters)
+    return 'Parameters:\n' + '\n'.join(lines)
+
+
+def _described(parameter: Parameter) -> str:
+    default = parameter.default and f'default: {parameter.default}'
+    details = '; '.join(filter(None, [parameter.unit, _range(parameter), default]))
+    return f'{parameter.text} ({details})' if details else parameter.text
+
+
+def _range(parameter: Parameter) -> str:
+    return parameter.range() if callable(parameter.range) else parameter.range
+
+
+def table(parameters: Iterable[Parameter], kind: str = 'parameter') -> list[str]:
+    """The lines of a table in Markdown. kind: the title of the names; those of a `parameter` begin with ~."""
+    prefix = '~' if kind == 'parameter' else ''
+    rows = [(f'`{prefix}{each.name}`', each.default, each.unit, _range(each),
+             f'{each.text}; {each.note}' if each.note else each.text) for each in parameters]
+    head = [f'| {kind} | default | unit | range | |', '|---|---|---|---|---|']
+    return head + [f"| {' | '.join(row)} |" for row in rows]
