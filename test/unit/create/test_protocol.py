@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rbx1_nav.create.protocol import (
-    CREATE, CREATE_2, FRAME_HEADER, MODELS, checksum, command, drive_direct, encode_frame, frame_format, packets_format,
-    single_packets)
+    COUNTED, CREATE, CREATE_2, FRAME_HEADER, MODELS, NOTES, checksum, command, drive_direct, encode_frame, frame_format,
+    packets_format, single_packets)
 
 models = st.sampled_from(list(MODELS.values()))
 PACKETS = [pytest.param(packet, id='%s-%d' % (model.name, packet.number))
@@ -43,6 +43,26 @@ def test_values_are_big_endian():
     (CREATE_2, 6, 52), (CREATE_2, 100, 80), (CREATE_2, 101, 28), (CREATE_2, 106, 12), (CREATE_2, 107, 9)])
 def test_the_size_of_a_group(model, group, size):
     assert packets_format(single_packets(model, [group])).size == size
+
+
+# data bytes by opcode: Create p. 7 to 16, Create 2 p. 8 to 22; n: counted by the first byte, p: pairs, by the second
+@pytest.mark.parametrize('model, sizes', [
+    (CREATE, '7:0 128:0 129:1 130:0 131:0 132:0 133:0 134:0 135:0 136:1 137:4 138:1 139:3 140:p 141:1 142:1 143:0 '
+             '144:3 145:4 147:1 148:n 149:n 150:1 151:1 152:n 153:0 154:0 155:1 156:2 157:2 158:1'),
+    (CREATE_2, '7:0 128:0 129:1 130:0 131:0 132:0 133:0 134:0 135:0 136:0 137:4 138:1 139:3 140:p 141:1 142:1 143:0 '
+               '144:3 145:4 146:4 148:n 149:n 150:1 162:2 163:4 164:4 165:1 167:15 168:3 173:0')])
+def test_the_size_of_a_command(model, sizes):
+    letters = {COUNTED: 'n', NOTES: 'p'}
+    assert ' '.join(f'{opcode}:{letters.get(each.size, each.size)}'
+                    for opcode, each in sorted(model.commands.items())) == sizes
+
+
+@pytest.mark.parametrize('packet', PACKETS)
+def test_the_range_of_a_packet(packet):
+    """A signed one is as large both ways, or all that its bytes hold; an unsigned one begins at 0 and ends with ones,
+    but for modes, charging states, stream packets and songs."""
+    assert packet.low in ((-packet.high, -packet.high - 1) if packet.format in 'bh' else (0,))
+    assert packet.format in 'bh' or packet.high in (4, 5, 43, 108) or (packet.high & packet.high + 1) == 0
 
 
 @given(frames())

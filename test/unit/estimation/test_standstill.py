@@ -79,6 +79,13 @@ def test_standstill_a_claimed_variance_that_is_far_too_large_is_not_believed():
     assert sigma < 1.5
 
 
+def test_standstill_the_noise_of_the_gyro_is_measured():
+    robot = Robot()
+    robot.go(30.0)
+    # rad^2/s: variance of a reading times its time; the variance of 90 or more differences, 4 sigma
+    assert robot.combined.standstill.density == pytest.approx(NOISE ** 2 * IMU_STEP / SECOND, rel=4 * sqrt(3 / 90))
+
+
 def test_standstill_wheels_that_report_later_than_the_gyro_are_not_carried():
     robot = Robot()
     robot.go(3.0)
