@@ -12,6 +12,7 @@ import rospy
 import rostest
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
+from roslib.packages import find_node
 from rosgraph_msgs.msg import Clock
 
 LIMIT = 60      # s of wall time after which a wait fails; no test asserts less
@@ -130,13 +131,23 @@ class OwnClock:
         self.publisher.publish(rospy.Time.from_sec(now))
 
 
+def without_rosrun(command):
+    """The same command with the path of the node in place of `rosrun PACKAGE NODE`, which takes longer to find it than
+    the node to start. test/documents.py types rosrun."""
+    if 'rosrun' not in command:
+        return command
+    index = command.index('rosrun')
+    path, *_ = find_node(*command[index + 1:index + 3])
+    return [*command[:index], path, *command[index + 3:]]
+
+
 class Process:
     """A node under test in a process of its own. Keeps the lines of its output."""
 
     def __init__(self, *command, **environment):
         """environment: variables to set."""
         # unbuffered, so that a line arrives when it is printed
-        self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+        self.process = subprocess.Popen(without_rosrun(command), stdin=subprocess.PIPE, stdout=subprocess.PIPE,
                                         stderr=subprocess.STDOUT, text=True, start_new_session=True,
                                         env=dict(os.environ, PYTHONUNBUFFERED='1', **environment))
         self.lines = []
