@@ -8,6 +8,7 @@ import threading
 import time
 from xmlrpc.client import ServerProxy
 
+import rospkg
 import rospy
 import rostest
 from geometry_msgs.msg import Twist
@@ -137,7 +138,10 @@ def without_rosrun(command):
     if 'rosrun' not in command:
         return command
     index = command.index('rosrun')
-    path, *_ = find_node(*command[index + 1:index + 3])
+    try:
+        path, *_ = find_node(*command[index + 1:index + 3])
+    except rospkg.ResourceNotFound:     # Debian's topic_tools has no package.xml, but rosrun finds its nodes
+        return command
     return [*command[:index], path, *command[index + 3:]]
 
 

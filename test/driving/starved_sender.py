@@ -1,5 +1,7 @@
 #!/usr/bin/python3
-"""On a busy machine the thread that sends commands may starve: none is lost in lockstep, and a loss is named."""
+"""A thread that sends commands may starve, a script may be suspended: no command is lost in lockstep unnoticed."""
+import signal
+import time
 import unittest
 
 import rospkg
@@ -8,6 +10,7 @@ from geometry_msgs.msg import Twist
 
 import support
 
+NODE = f"{rospkg.RosPack().get_path('rbx1_nav')}/nodes/timed_out_and_back.py"
 # The script itself; what it sends to the node `peer` is delayed, by a number of seconds for each command. On a busy
 # machine a
 # thread does not sleep meanwhile, it waits for its turn; a recorder that reads slowly lets it sleep.
@@ -27,6 +30,22 @@ sys.argv = [node]
 runpy.run_path(node, run_name='__main__')
 """
 
+# The script itself, which stops its own process with the tenth command.
+SUSPENDED = """
+import os, runpy, signal, sys
+import rospy
+publish, count = rospy.Publisher.publish, 0
+def stop_at_the_tenth(self, *args):
+    global count
+    publish(self, *args)
+    count += self.name == '/cmd_vel'
+    if self.name == '/cmd_vel' and count == 10:
+        os.kill(os.getpid(), signal.SIGSTOP)
+rospy.Publisher.publish = stop_at_the_tenth
+sys.argv = sys.argv[1:]
+runpy.run_path(sys.argv[0], run_name='__main__')
+"""
+
 
 class TestStarvedSender(unittest.TestCase):
     @classmethod
@@ -37,8 +56,7 @@ class TestStarvedSender(unittest.TestCase):
 
     def drive(self, peer, delay, busy=True):
         """Run the exercise; returns the Process when it has ended."""
-        node = f"{rospkg.RosPack().get_path('rbx1_nav')}/nodes/timed_out_and_back.py"
-        driver = support.Process('/usr/bin/python3', '-c', STARVED, node, peer, str(delay),
+        driver = support.Process('/usr/bin/python3', '-c', STARVED, NODE, peer, str(delay),
                                  'busy' if busy else 'asleep')
         self.addCleanup(driver.kill)
         driver.wait()
@@ -69,6 +87,19 @@ class TestStarvedSender(unittest.TestCase):
         driver = self.drive(rospy.get_name(), 0.2, busy=False)
         self.check_end(driver, before)
         self.assertRegex(driver.output, r'\[WARN\].*: /cmd_vel: \d+ of 820 commands to /starved_sender\S* were lost')
+
+    def test_suspended(self):
+        driver = support.Process('/usr/bin/python3', '-c', SUSPENDED, NODE)
+        self.addCleanup(driver.kill)
+        with open(f'/proc/{driver.process.pid}/stat') as stat:
+            support.wait_for(lambda: (stat.seek(0), stat.read().rpartition(')')[2].split()[0])[1] == 'T',
+                             'a script that is suspended', 60)
+        time.sleep(6)
+        driver.process.send_signal(signal.SIGCONT)
+        driver.wait()
+        self.assertEqual(driver.process.returncode, 1, driver.output)
+        self.assertRegex(driver.output, r'This script was suspended for \d+\.\d s: expected at most 5 s, '
+                         'after which the clock of /arbotix continues')
 
 
 if __name__ == '__main__':

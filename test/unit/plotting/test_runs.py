@@ -3,6 +3,7 @@ from contextlib import contextmanager
 from math import pi, radians
 import resource
 import signal
+import sys
 
 import numpy
 import pytest
@@ -98,9 +99,11 @@ def full_disk():
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
     handler = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
     resource.setrlimit(resource.RLIMIT_FSIZE, (1000, before[1]))
+    dont_write_bytecode, sys.dont_write_bytecode = sys.dont_write_bytecode, True    # it would be cut short
     try:
         yield
     finally:
+        sys.dont_write_bytecode = dont_write_bytecode
         resource.setrlimit(resource.RLIMIT_FSIZE, before)
         signal.signal(signal.SIGXFSZ, handler)
 

@@ -11,6 +11,7 @@ import rospy
 
 from rbx1_nav.ros.driving.watching import Listeners
 from rbx1_nav.ros.node.life import end_requested, sleep
+from rbx1_nav.simulation.lockstep import NODE_TIMEOUT
 from rbx1_nav.units import SECOND
 
 MAX_DELAY = SECOND      # ns
@@ -22,11 +23,12 @@ def now() -> int:
     return time.monotonic_ns() if rospy.rostime.is_wallclock() else rospy.get_rostime().to_nsec()
 
 
-def _wait_until(end: int, longest: int, listeners: Listeners) -> None:
+def _wait_until(end: int, longest: int, listeners: Listeners, last_look: float) -> None:
     """Wait until now() is `end` (ns), but no longer than `longest` (ns) on a clock that jumped back.
 
+    last_look: when the script is known to have run, s of the monotonic clock.
     Raises ROSInterruptException as soon as the node is to end, and ROSException as Listeners.check(): a clock that
-    stands still may have ended with the base.
+    stands still may have ended with the base. ROSException also if the base's clock no longer waits for this script.
     """
     listeners.wait_for_room()
     warn_time = time.monotonic() + 5
@@ -34,6 +36,11 @@ def _wait_until(end: int, longest: int, listeners: Listeners) -> None:
     while True:
         if end_requested.is_set():
             raise rospy.ROSInterruptException('shutdown requested')
+        look = time.monotonic()
+        if listeners.clock and look - last_look > NODE_TIMEOUT:
+            raise rospy.ROSException(f'This script was suspended for {look - last_look:.1f} s: expected at most '
+                                     f'{NODE_TIMEOUT:g} s, after which the clock of {listeners.clock} continues')
+        last_look = look
         listeners.check()
         time_now = now()
         end = min(end, time_now + longest)
@@ -59,7 +66,7 @@ def pause(seconds: float, listeners: Listeners) -> None:
     Raises ROSInterruptException as soon as the node is to end, and ROSException if a listener no longer takes commands.
     """
     duration = round(seconds * SECOND)
-    _wait_until(now() + duration, duration, listeners)
+    _wait_until(now() + duration, duration, listeners, time.monotonic())
 
 
 class Rate:
@@ -78,20 +85,21 @@ class Rate:
             step = listeners.clock_step
             if hz * step > 1 + 1e-9:
                 raise rospy.ROSException(f'{rospy.get_name()}/rate: {hz:g}: expected at most {1 / step:g} Hz on '
-                                         'simulated '
-                                         f'time: the clock ticks every {step:g} s')
+                                         f'simulated time: the clock ticks every {step:g} s')
         self.listeners = listeners
         self.period = round(SECOND / hz)
         self.restart()
 
     def restart(self) -> None:
         """Begin anew, after a pause: the next tick is a period from now."""
+        self.last_look = time.monotonic()
         self.due = self.next = now() + self.period      # without delays, and with them
         self.free_ticks = FREE_TICKS if self.listeners.clock else 0
 
     def sleep(self) -> None:
         """Wait for the next tick. Raises as pause(), and ROSException for a delay that is too long."""
-        _wait_until(self.next, self.period, self.listeners)
+        _wait_until(self.next, self.period, self.listeners, self.last_look)
+        self.last_look = time.monotonic()
         time_now = now()
         if self.free_ticks:
             self.free_ticks -= 1
