@@ -1,10 +1,8 @@
 #!/usr/bin/python3
-"""Drive a square by time: four sides of 1 m, and after each a quarter turn to the left.
+"""Drive a square, timed: four sides of 1 m, and a quarter turn to the left after each."""
+from rbx1_nav.ros.driving.script import TimedDrive, exit_status, init_node, whole_ticks
 
-usage: square.py
-"""
-from rbx1_nav.ros.driving.script import TimedDrive, exit_status, init_node
-
+from math import pi
 import time
 
 import rospy
@@ -21,5 +19,6 @@ with exit_status():
     cmd_vel = rospy.Publisher('/cmd_vel', Twist, queue_size=5)
     with TimedDrive(cmd_vel, 50, shutdown) as drive:    # 50 commands per second
         for side in range(4):
-            # Fill this in: drive forward, stop and rest; turn left, stop and rest.
+            # Fill this in: drive forward, stop and rest; turn left, stop and rest. Ticks are whole numbers:
+            # whole_ticks() rounds down. Wait only with r.sleep() and drive.rest(): rospy's do not notice Ctrl-C.
             pass

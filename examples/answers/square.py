@@ -1,8 +1,5 @@
 #!/usr/bin/python3
-"""Drive a square by time: four sides of 1 m, and after each a quarter turn to the left.
-
-usage: square.py
-"""
+"""Drive a square, timed: four sides of 1 m, and a quarter turn to the left after each."""
 from rbx1_nav.ros.driving.script import TimedDrive, exit_status, init_node
 
 import time
