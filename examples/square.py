@@ -1,8 +1,10 @@
 #!/usr/bin/python3
-"""Drive a square, timed: four sides of 1 m, and a quarter turn to the left after each."""
-from rbx1_nav.ros.driving.script import TimedDrive, exit_status, init_node, whole_ticks
+"""Drive a square, timed: four sides of 1 m, and a quarter turn to the left after each.
 
-from math import pi
+Ticks are whole numbers. Wait only with r.sleep() and drive.rest(): the ways to wait in rospy do not notice Ctrl-C here.
+"""
+from rbx1_nav.ros.driving.script import TimedDrive, exit_status, init_node
+
 import time
 
 import rospy
@@ -19,6 +21,5 @@ with exit_status():
     cmd_vel = rospy.Publisher('/cmd_vel', Twist, queue_size=5)
     with TimedDrive(cmd_vel, 50, shutdown) as drive:    # 50 commands per second
         for side in range(4):
-            # Fill this in: drive forward, stop and rest; turn left, stop and rest. Ticks are whole numbers:
-            # whole_ticks() rounds down. Wait only with r.sleep() and drive.rest(): rospy's do not notice Ctrl-C.
+            # Fill this in: drive forward, stop and rest; turn left, stop and rest.
             pass
