@@ -222,6 +222,16 @@ def test_a_turn_of_a_robot_that_is_held_or_lifted_is_not_judged(event):
     assert not first and not lines(driven)
 
 
+@pytest.mark.parametrize('event', ['bumped', 'wheel_dropped'])
+def test_a_robot_that_is_turned_by_hand_at_rest_is_not_judged(event):
+    driven = calibrated()
+    setattr(driven.body, event, True)
+    driven.run(0.1)
+    rates, first, _ = read(driven, 1, 300)      # faster than a robot at rest turns
+    assert len(rates) > 20 and min(rates) > 50
+    assert not first and not lines(driven)
+
+
 @pytest.mark.parametrize('surface, sensitivity, drops', [
     ('ideal', 1.0, False), ('ideal', 1.5, True), ('hard_floor', 0.74, False), ('low_ply_carpet', 0.5, True),
     ('low_ply_carpet', 1.4, False), ('create_lab_floor', 1.0, False)])

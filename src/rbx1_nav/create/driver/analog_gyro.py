@@ -47,7 +47,7 @@ class AnalogGyro:
         """
         self._calibrate(count, step)
         offset, before, reading = self.offset, self.yaw, None
-        if offset is None or self.check.problem or not self.check.accepts(count, step.at_rest):
+        if offset is None or self.check.problem or not self.check.accepts(count, step.at_rest and not step.touched):
             self.yaw += step.turn
             self.variance += step.variance
         else:

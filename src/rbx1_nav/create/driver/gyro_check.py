@@ -75,7 +75,7 @@ class GyroCheck:
         whether the gyro broke now."""
         self._follow_count(count, step, shown)
         self._follow_power(count, step)
-        is_wrong = step.at_rest and count >= NO_POWER and not LOWEST <= count <= HIGHEST
+        is_wrong = step.at_rest and not step.touched and count >= NO_POWER and not LOWEST <= count <= HIGHEST
         self._wrong_rest = self._wrong_rest + 1 if is_wrong else 0
         before = self.problem
         kind, text = self._find_problem(count)
