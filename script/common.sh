@@ -61,8 +61,22 @@ install_missing() {     # PACKAGE...: install those that are missing
   ' install "${missing[@]}"
 }
 
+changed_files() {       # print the files with changes that are not committed
+  git -C "$source_dir" status --porcelain --untracked-files=all 2>/dev/null | cut -c 4-
+}
+
+changed_tests() {       # print the unit tests of those modules, by their names, and those of all declarations and imports
+  local path name any=
+  changed_files | grep -E '^(src|nodes|test/unit)/.*\.py$' | while read -r path; do
+    name=${path##*/}; name=${name%.py}
+    find test/unit -name "test_*${name#test_}*.py"
+    [ -n "$any" ] || printf '%s\n' test/unit/test_rooms.py test/unit/pages/test_parameter_tables.py
+    any=1
+  done | sort -u
+}
+
 changed_rooms() {       # print the folders of test/unit/ whose rooms have changes that are not committed
-  git -C "$source_dir" status --porcelain 2>/dev/null | cut -c 4- | sed -n 's,^\(src/rbx1_nav\|test/unit\)/,,p' | while read -r path; do
+  changed_files | sed -n 's,^\(src/rbx1_nav\|test/unit\)/,,p' | while read -r path; do
     while [ "$path" != "${path%/*}" ]; do
       path=${path%/*}
       [ ! -d "$source_dir/test/unit/$path" ] || { echo "test/unit/$path"; break; }
