@@ -106,6 +106,22 @@ def test_another_robot_at_another_adapter_gets_no_command_before_it_is_known():
     assert driven.log[-1] == 'A create2 answers at 115200 baud, in place of a create: restart this node to drive it'
 
 
+def test_a_stop_is_not_sent_to_another_robot_before_it_is_known():
+    driven = started('auto', robot='create')
+    driven.pull()
+    driven.is_same = False
+    sent, write = [], driven.write
+    driven.write = lambda data: (sent.append(data), write(data))
+    driven.connect()
+    driven.run(0.1)
+    sent.clear()
+    driven.driver.stop(driven.now)      # as when the guardian dies
+    assert not sent
+    driven.run(2)
+    driven.driver.stop(driven.now)
+    assert sequences.STOP in b''.join(sent)
+
+
 @BOTH
 @pytest.mark.parametrize('seconds', [0.0, 0.05, 0.3])
 def test_a_program_that_another_process_has_started_ends(robot_type, seconds):

@@ -98,7 +98,7 @@ class Driver:
     def stop(self, now: int) -> None:
         """Stop the robot, until the next command."""
         self.gate.halt()
-        if self.contact.found:
+        if self.contact.may_ask:
             self.sender.stop(now)
 
     def restore(self, now: int) -> None:
