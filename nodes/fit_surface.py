@@ -1,27 +1,29 @@
 #!/usr/bin/env python3
-"""Fits a surface file to recorded runs of a robot.
+"""Fits a surface to recorded runs of a robot and writes it to a file.
 
-A run is a bag with the velocity commands, the odometry and, where there is one, the gyro. Where the robot really was is
-known from a topic (--truth), or its ends were measured by hand (--ends). Robots of the UTIAS dataset are read from
-their text files: D6R1_Odometry.dat, with D6R1_Groundtruth.dat beside it.
+A run is a bag with the velocity commands, the odometry and, if there is one, the gyro. The true poses come from a topic
+(--truth), or the end poses were measured by hand (--ends). Runs of the UTIAS dataset are read from its text files:
+D6R1_Odometry.dat, with D6R1_Groundtruth.dat in the same folder.
 
-The file of --ends has a line for each bag: its name without folder, and the end in the frame of the start, x ahead:
+The --ends file has one line per bag: its name without folder, and the end pose relative to the start pose, x ahead:
 
   run1.bag: [0.02, 0.35, -12]   # x (m), y (m), heading (degrees)
-  position_error: 0.01          # of the tape, 1 sigma, m (default)
-  heading_error: 2              # the same of the heading, degrees (default)
+  position_error: 0.01          # standard deviation of a measured position, m (default)
+  heading_error: 2              # standard deviation of a measured heading, degrees (default)
 """
-import rbx1_nav.ros.node.early_interrupt     # Ctrl-C ends it quietly even while the rest is loaded
+import rbx1_nav.ros.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
 
 import argparse
 import os
 import signal
 import sys
 
-# the matrices are small: on a busy machine, threads that wait for each other take many times as long
+# the matrices are small, and on a busy machine, threads that wait for each other take many times as long
 os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
 
-from rbx1_nav.config import ConfigError, load_yaml, show_name
+from tqdm import tqdm
+
+from rbx1_nav.config import ConfigError, show_name
 from rbx1_nav.fitting.comparison import compare, shares
 from rbx1_nav.fitting.ends_file import read_ends
 from rbx1_nav.fitting.mrclam import is_commands_file, read_robot as read_text_files, truth_file
@@ -30,7 +32,7 @@ from rbx1_nav.fitting.surface_file import surface_text, table
 from rbx1_nav.fitting.whole import WholeFit
 from rbx1_nav.plotting.fit import draw_fit
 from rbx1_nav.plotting.runs import check_picture, check_writable, write_file
-from rbx1_nav.robot.description import read_robot
+from rbx1_nav.robot.description import load_robot
 from rbx1_nav.ros.node import resources
 from rbx1_nav.ros.tools.bags import Topics, read_bag
 from rbx1_nav.simulation.surfaces import known_surfaces, load_surface
@@ -39,21 +41,21 @@ START, CREATE_START = 'low_ply_carpet', 'create_lab_floor'
 
 
 def read_arguments():
-    """The command line."""
+    """Return the checked command-line arguments."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('runs', nargs='+', metavar='RUN', help='a bag, or a text file NAME_Odometry.dat')
     truth = parser.add_mutually_exclusive_group()
-    truth.add_argument('--truth', metavar='TOPIC', help='where the robot really was: nav_msgs/Odometry or '
+    truth.add_argument('--truth', metavar='TOPIC', help='topic with the true pose: nav_msgs/Odometry or '
                                                         'geometry_msgs/PoseStamped')
-    truth.add_argument('--ends', metavar='FILE', help='YAML file with the ends of the runs, measured by hand')
+    truth.add_argument('--ends', metavar='FILE', help='YAML file with the end poses of the runs, measured by hand')
     parser.add_argument('--output', required=True, metavar='FILE', help='the surface file to write')
     parser.add_argument('--plot', metavar='FILE', help='draw recorded and simulated paths (PNG, PDF, SVG)')
     parser.add_argument('--start', metavar='SURFACE',
-                        help='what the runs do not tell is as on this surface: one of '
+                        help='surface that provides the values that the runs cannot determine: one of '
                              f"{', '.join(known_surfaces(resources.surfaces()))}, or a YAML file; default: {START}, "
                              f'for text files {CREATE_START}')
     parser.add_argument('--config', default=resources.path('config', 'turtlebot.yaml'), metavar='FILE',
-                        help="ArbotiX YAML file of the base: its width, limits and timeout; default: the TurtleBot's")
+                        help="ArbotiX YAML file with the base's width, limits and timeout; default: the TurtleBot's")
     for name, topic in (('cmd-vel', '/cmd_vel'), ('odom', '/odom'), ('imu', '/imu/data')):
         parser.add_argument(f'--{name}', default=topic, metavar='TOPIC', help=f'default: {topic}')
     arguments = parser.parse_args()
@@ -69,14 +71,14 @@ def read_arguments():
     topics = [each.lstrip('/') for each in (arguments.cmd_vel, arguments.odom, arguments.imu, arguments.truth) if each]
     for topic in topics:
         if topics.count(topic) > 1:
-            parser.error(f'/{topic}: given twice: expected a topic of its own for commands, odometry, gyro and truth')
+            parser.error(f'/{topic}: given twice: expected different topics for commands, odometry, gyro and truth')
     text_files = [path for path in arguments.runs if is_commands_file(path)]
-    # without odometry, the drags stay: those of a carpet would be far from a Create's
+    # without odometry, the drag values are kept, and the values of a carpet would be far from a Create's
     arguments.start = arguments.start or (CREATE_START if text_files else START)
-    if os.path.splitext(arguments.start)[1]:        # a name has none
+    if os.path.splitext(arguments.start)[1]:        # the name of a surface has no extension
         arguments.start = os.path.abspath(arguments.start)
     if text_files and (arguments.truth or arguments.ends or len(text_files) < len(arguments.runs)):
-        parser.error(f'{show_name(text_files[0])}: a text file has its truth beside it: expected neither bags nor '
+        parser.error(f'{show_name(text_files[0])}: a text file comes with its ground truth: expected neither bags nor '
                      '--truth nor --ends')
     return arguments
 
@@ -84,12 +86,12 @@ def read_arguments():
 def check_output(path):
     """Raise ConfigError unless a surface file can be written to a path."""
     if not path.endswith('.yaml'):
-        raise ConfigError('expected a name that ends in .yaml')
+        raise ConfigError('expected a file name with the extension .yaml')
     check_writable(path)
 
 
 def read_runs(arguments, robot):
-    """(Recordings, errors of ends measured by hand or None). Raises ConfigError."""
+    """Return (Recordings, errors of the hand-measured end poses or None). Raises ConfigError."""
     if is_commands_file(arguments.runs[0]):
         return [read_text_files(path, truth_file(path)) for path in arguments.runs], None
     ends, errors = read_ends(arguments.ends, arguments.runs) if arguments.ends else ([None] * len(arguments.runs), None)
@@ -99,11 +101,8 @@ def read_runs(arguments, robot):
 
 
 def load_files(arguments):
-    """(Robot, starting Surface). Raises ConfigError."""
-    try:
-        robot = read_robot(load_yaml(arguments.config))
-    except ConfigError as error:
-        raise ConfigError(f'{show_name(arguments.config)}: {error}') from None
+    """Return (Robot, starting Surface). Raises ConfigError."""
+    robot = load_robot(arguments.config)
     start = load_surface(arguments.start, resources.surfaces())
     if start is None:
         raise ConfigError(f'--start: {show_name(arguments.start)}: the ideal surface: expected one with values')
@@ -111,21 +110,26 @@ def load_files(arguments):
 
 
 def main():
-    """Read, fit, print, write. Returns the exit status."""
-    signal.signal(signal.SIGPIPE, signal.SIG_DFL)               # the reader of a pipe may have seen enough
+    """Read the runs, fit, print and write the result; return the exit status."""
+    signal.signal(signal.SIGPIPE, signal.SIG_DFL)               # the reader of a pipe may stop reading early
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: os._exit(130))
     try:
         arguments = read_arguments()
         robot, start = load_files(arguments)
-        recordings, end_errors = read_runs(arguments, robot)
-        result = WholeFit(recordings, robot.base_width, start, end_errors).result()
+        # shown only in a terminal
+        with tqdm(disable=None, leave=False, bar_format='{desc}...') as bar:
+            bar.set_description('Reading the runs')
+            recordings, end_errors = read_runs(arguments, robot)
+            result = WholeFit(recordings, robot.base_width, start, end_errors,
+                              lambda part: bar.set_description(f'Fitting the {part}')).result()
+            bar.set_description('Simulating the runs on the new surface')
+            comparisons = compare(result.surface, recordings, robot.base_width)
         print('\n'.join(table(result, arguments.start)))
-        comparisons = compare(result.surface, recordings, robot.base_width)
         count, inside_50, inside_90 = shares(comparisons)
         if count:
-            print(f'Of {count} ends, {inside_50} are in the region of 50 % of the simulated ones, {inside_90} in '
-                  'that of 90 %')
+            print(f'Of {count} end poses, {inside_50} lie inside the 50 % region of the simulated ones, and '
+                  f'{inside_90} inside the 90 % region')
         text = surface_text(result, os.path.basename(arguments.start), [each.name for each in recordings])
         write_file(arguments.output, text.encode())
         print(f'Surface: {arguments.output}')
@@ -133,7 +137,7 @@ def main():
             draw_fit(arguments.plot, f'Fitted: {result.description}', comparisons)
             print(f'Picture: {arguments.plot}')
     except (OSError, ValueError) as error:
-        # the output may be what is full: at the end, Python would try it again
+        # the device of the output may be full, and Python would try to write to it again at exit
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         print(f"fit_surface.py: {' '.join(str(error).split())}", file=sys.stderr)
         return 1

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Simulates the exercise many times without ROS, and prints where it ends: by time, by odometry, by odometry and gyro.
+"""Simulates the exercise many times without ROS and prints the end poses: timed, with odometry, with odometry and gyro.
 
-The motions, the base and the filter are those of the nodes.
+It uses the same motions, base and filter as the nodes.
 """
-import rbx1_nav.ros.node.early_interrupt     # Ctrl-C ends it quietly even while the rest is loaded
+import rbx1_nav.ros.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
 
 import argparse
 from concurrent.futures.process import BrokenProcessPool
@@ -18,55 +18,60 @@ import time
 import numpy
 from tqdm import tqdm
 
-from rbx1_nav.config import ConfigError, load_yaml, show, show_name
+from rbx1_nav.config import ConfigError, show, show_name
+from rbx1_nav.plotting.animation import animate, check_animation
 from rbx1_nav.plotting.runs import PATHS, check_picture, draw
-from rbx1_nav.robot.description import read_robot
+from rbx1_nav.robot.description import load_robot
 from rbx1_nav.ros.node import resources
 from rbx1_nav.simulation.exercise import METHODS, simulate_many
 from rbx1_nav.simulation.surfaces import MAX_SEED, known_surfaces, load_surface
 from rbx1_nav.units import rounded, wrap_angle
 
-MOMENT = 1.0    # s: what takes longer gets a progress bar and all processor cores
+MOMENT = 1.0    # s: longer simulations get a progress bar and all processor cores
 
 
 def read_arguments():
-    """The command line."""
+    """Return the checked command-line arguments."""
     parser = argparse.ArgumentParser(description=__doc__.split('\n')[0])
     parser.add_argument('--surface', default='ideal', metavar='NAME',
                         help=f"one of {', '.join(known_surfaces(resources.surfaces()))}, or a YAML file; default: "
                              "ideal")
     parser.add_argument('--method', choices=METHODS, action='append',
-                        help='timed: by time alone; odom: by odometry; ekf: by odometry and gyro. Can be given more '
-                             'than once; default: all three')
-    parser.add_argument('--runs', type=int, default=100, metavar='N', help='runs of each method; default: 100')
+                        help='timed: with time alone; odom: with odometry; ekf: with odometry and gyro. Can be given '
+                             'more than once; default: all three')
+    parser.add_argument('--runs', type=int, default=100, metavar='N', help='number of runs per method; default: 100')
     parser.add_argument('--seed', type=int, default=0, metavar='S',
-                        help='the runs are drawn from S, S+1, ...; default: 0')
+                        help='seed of the first run; the next runs use S+1, S+2, ...; default: 0')
     parser.add_argument('--config', default=resources.path('config', 'turtlebot.yaml'), metavar='FILE',
-                        help="ArbotiX YAML file of the base, whose rate is not used; default: the TurtleBot's")
-    parser.add_argument('--plot', metavar='FILE', help='draw the ways and the end poses, side by side (PNG, PDF, SVG)')
+                        help="ArbotiX YAML file of the base; its rate is ignored; default: the TurtleBot's")
+    parser.add_argument('--plot', metavar='FILE', help='draw the paths and the end poses, side by side (PNG, PDF, SVG)')
+    parser.add_argument('--animate', metavar='FILE',
+                        help='draw the first run of each method as an animated picture, side by side (GIF, PNG)')
     parser.add_argument('--jobs', type=int, default=os.cpu_count(), metavar='N',
-                        help='processes; default: as many as there are processor cores')
+                        help='number of processes; default: the number of processor cores')
     arguments = parser.parse_args()
     for name, low, high in (('runs', 1, 10 ** 6), ('jobs', 1, 10 ** 6), ('seed', 0, MAX_SEED + 1 - arguments.runs)):
         value = getattr(arguments, name)
         if not low <= value <= high:
             parser.error(f'--{name}: {show(value)}: expected an integer from {low} to {high}')
-    if os.path.splitext(arguments.surface)[1]:      # a name has none
+    if os.path.splitext(arguments.surface)[1]:      # the name of a surface has no extension
         arguments.surface = os.path.abspath(arguments.surface)
-    if arguments.plot is not None:
+    for name, check in (('plot', check_picture), ('animate', check_animation)):
+        path = getattr(arguments, name)
         try:
-            check_picture(arguments.plot)
+            if path is not None:
+                check(path)
         except ConfigError as error:
-            parser.error(f'--plot: {show_name(arguments.plot)}: {error}')
+            parser.error(f'--{name}: {show_name(path)}: {error}')
     arguments.method = list(dict.fromkeys(arguments.method or METHODS))
     return arguments
 
 
 def run_all(method, robot, surface, seeds, arguments):
-    """The Results of a method, and the wall time they took in s."""
+    """Return the Results of a method, and the wall time that they took (s)."""
     start = time.monotonic()
     many = partial(simulate_many, method, robot, surface)
-    keep = PATHS if arguments.plot else 0
+    keep = PATHS if arguments.plot else int(bool(arguments.animate))
     results = list(many(seeds[:1], keep))
     long = (time.monotonic() - start) * len(seeds) > MOMENT
     with closing(many(seeds[1:], keep - 1, arguments.jobs if long else 1)) as rest:
@@ -75,19 +80,19 @@ def run_all(method, robot, surface, seeds, arguments):
 
 
 def spread(values):
-    """Mean and standard deviation, as text."""
+    """Return the mean and the standard deviation as text."""
     return f'{rounded(numpy.mean(values), 3):8.3f} +- {numpy.std(values):5.3f}'
 
 
 def spread_of_angles(angles):
-    """The same for angles in rad, in degrees: their mean is that of their directions."""
+    """Return the circular mean and the standard deviation of angles (rad) as text, in degrees."""
     mean = atan2(sum(map(sin, angles)), sum(map(cos, angles)))
     around = [degrees(wrap_angle(angle - mean)) for angle in angles]
     return f'{rounded(degrees(mean) + numpy.mean(around), 2):8.2f} +- {numpy.std(around):5.2f}'
 
 
 def report(method, results):
-    """Print where the robot is at the end, and where odometry and estimate put it."""
+    """Print the true end poses, and the end poses that odometry and estimate report."""
     rows = [('truth', [r.end.truth for r in results]), ('/odom', [r.end.odometry for r in results])]
     if results[0].end.estimate:
         rows.append(('/odom_ekf', [r.end.estimate for r in results]))
@@ -100,19 +105,11 @@ def report(method, results):
     print(f"{'':6} first leg {numpy.mean(legs):.3f} m ({min(legs):.3f} to {max(legs):.3f})")
 
 
-def load_robot(path):
-    """The Robot of an ArbotiX YAML file. Raises ConfigError."""
-    try:
-        return read_robot(load_yaml(path))
-    except ConfigError as error:
-        raise ConfigError(f'{show_name(path)}: {error}')
-
-
 def main():
-    """Simulate, print, draw. Returns the exit status."""
-    signal.signal(signal.SIGPIPE, signal.SIG_DFL)               # the reader of a pipe may have seen enough
+    """Simulate, print and draw; return the exit status."""
+    signal.signal(signal.SIGPIPE, signal.SIG_DFL)               # the reader of a pipe may stop reading early
     for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda *_: os._exit(130))         # at once; the other processes follow
+        signal.signal(number, lambda *_: os._exit(130))         # immediately; the other processes follow
     try:
         arguments = read_arguments()
         surface = load_surface(arguments.surface, resources.surfaces())
@@ -125,12 +122,15 @@ def main():
             results[method], took = run_all(method, robot, surface, seeds, arguments)
             report(method, results[method])
             simulated = sum(r.end.time for r in results[method])
-            print(f"{'':6} {simulated:.0f} s of the robot in {took:.2f} s, {simulated / took:.0f} times real time")
+            print(f"{'':6} {simulated:.0f} s simulated in {took:.2f} s, {simulated / took:.0f} times real time")
         if arguments.plot:
             draw(arguments.plot, arguments.surface, results, seeds)
             print(f'Picture: {arguments.plot}')
+        if arguments.animate:
+            animate(arguments.animate, arguments.surface, {method: each[0] for method, each in results.items()})
+            print(f'Animation: {arguments.animate}')
     except (OSError, ValueError) as error:     # or a robot that is stuck
-        # the output may be what is full: at the end, Python would try it again
+        # the device of the output may be full, and Python would try to write to it again at exit
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         print(f"simulate.py: {' '.join(str(error).split())}", file=sys.stderr)
         return 1

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""simulate.py at the command line: numbers, a picture, and one line for an invalid argument."""
+"""simulate.py on the command line prints numbers, writes a picture, and reports an invalid argument in one line."""
 import os
 import re
 import signal
@@ -13,7 +13,7 @@ import support
 
 
 def simulate(*arguments):
-    """Run it; returns the exit status and the output."""
+    """Run simulate.py; return the exit status and the output."""
     process = support.Process('rosrun', 'rbx1_nav', 'simulate.py', *arguments)
     try:
         return process.wait(), process.output
@@ -22,7 +22,7 @@ def simulate(*arguments):
 
 
 def simulate_with_limit(picture):
-    """Run it with a picture, where no file may have more than a kilobyte: as on a full disk, but without root."""
+    """Run simulate.py with a picture and a file size limit of a kilobyte: like a full disk, but without privileges."""
     process = support.Process('bash', '-c', 'trap "" XFSZ; ulimit -f 1; '
                               'exec rosrun rbx1_nav simulate.py --method timed --runs 1 --plot "$0"', picture,
                               PYTHONDONTWRITEBYTECODE='1')      # it would be cut short, and others would read it
@@ -33,13 +33,13 @@ def simulate_with_limit(picture):
 
 
 def children(pid):
-    """The process ids of a process' children."""
+    """Return the process ids of the children of a process."""
     with open('/proc/%d/task/%d/children' % (pid, pid)) as file:
         return [int(child) for child in file.read().split()]
 
 
 def runs(pid):
-    """Whether a process exists, and is no zombie."""
+    """Return whether a process exists and is not a zombie."""
     try:
         with open('/proc/%d/stat' % pid) as file:
             return file.read().rpartition(')')[2].split()[0] != 'Z'
@@ -58,7 +58,7 @@ class TestSimulateCommand(unittest.TestCase):
         self.assertEqual([method for method, _ in rows], ['timed', 'odom', 'ekf'], output)
         by_time, by_odometry, by_both = (float(distance) for _, distance in rows)
         self.assertTrue(by_time > by_odometry > by_both, output)
-        # three panels side by side, each with paths in blue and an end in red
+        # three panels side by side, each with paths in blue and an end pose in red
         for panel in numpy.array_split(pixels[:len(pixels) // 2], 3, axis=1):
             red, green, blue = (panel[..., i] for i in range(3))
             self.assertGreater(((blue > 150) & (red < 120)).sum(), 50)
@@ -67,12 +67,12 @@ class TestSimulateCommand(unittest.TestCase):
     def test_one_method_on_the_ideal_surface(self):
         status, output = simulate('--method', 'timed', '--runs', '1')
         self.assertEqual(status, 0, output)
-        # 157 ticks are a little less than pi seconds: 1.6 mm to the left, and 0.18 degrees short
+        # 157 ticks are slightly shorter than pi seconds: 1.6 mm to the left, and 0.18 degrees short
         self.assertRegex(output, r'timed +truth +0\.000 \+- 0\.000 +0\.002 \+- 0\.000 +-0\.18 \+- +0\.00 +0\.002')
         self.assertNotIn('ekf', output)
 
     def start_long(self):
-        """Simulate for long; returns the Process and the process ids of its children."""
+        """Start a long simulation; return the Process and the process ids of its children."""
         process = support.Process('rosrun', 'rbx1_nav', 'simulate.py', '--method', 'ekf', '--runs', '1000000', '--jobs',
                                   '2')
         self.addCleanup(process.kill)
@@ -80,7 +80,7 @@ class TestSimulateCommand(unittest.TestCase):
             lambda: len(children(process.process.pid)) == 2 and children(process.process.pid), 'two processes')
 
     def check_children_end(self, pids):
-        support.wait_for(lambda: not any(map(runs, pids)), f'the end of the processes {pids}')
+        support.wait_for(lambda: not any(map(runs, pids)), f'the exit of the processes {pids}')
 
     def test_a_process_that_is_killed(self):
         process, pids = self.start_long()
@@ -91,7 +91,7 @@ class TestSimulateCommand(unittest.TestCase):
         self.check_children_end(pids)
 
     def test_an_end_by_signal_is_that_of_all_processes(self):
-        # more than once, for an end at the start of the processes is special
+        # more than once, because shutdown during the start of the processes is a special case
         for number, status in 5 * [(signal.SIGINT, 130), (signal.SIGTERM, 130)] + [
                 (signal.SIGKILL, -signal.SIGKILL), (signal.SIGPIPE, -signal.SIGPIPE)]:
             process, pids = self.start_long()
@@ -114,6 +114,8 @@ class TestSimulateCommand(unittest.TestCase):
                 (['--method', 'luck'], 2, 'luck'), (['--runs', '0'], 2, '--runs: 0: expected'),
                 (['--plot', 'picture.doc'], 2, '--plot: picture.doc: expected'),
                 (['--plot', '/'], 2, '--plot: /: expected'),
+                (['--animate', 'run.mp4'], 2,
+                 '--animate: run.mp4: expected a file name with the extension .gif or .png'),
                 (['--config', '/dev/null'], 1, '/dev/null: configuration: None: expected'),
                 (['--seed', '-1'], 2, '--seed: -1: expected an integer from 0 to 2147483548'),
                 (['--config', '/nowhere.yaml'], 1, '/nowhere.yaml'),

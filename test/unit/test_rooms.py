@@ -1,4 +1,4 @@
-"""The rooms of the package: which of them may import which, where ROS may be imported, and how long a file may be."""
+"""Which rooms of the package may import which, where ROS may be imported, and the maximum length of a file."""
 import ast
 import importlib.util
 import os
@@ -9,8 +9,8 @@ import pytest
 ROOT = os.path.normpath(os.path.join(os.path.dirname(__file__), '..', '..'))
 SOURCE = os.path.join(ROOT, 'src')
 
-# room, a folder or a module of rbx1_nav: the rooms that it may import besides itself. Of two that hold a module, the
-# inner one counts
+# room (a folder or a module of rbx1_nav): the rooms that it may import in addition to itself. A module belongs to the
+# innermost room that contains it
 ALLOWED = {
     '__init__': set(),
     'arrays': set(),
@@ -46,8 +46,8 @@ ALLOWED = {
 }
 ALLOWED['nodes'] = set(ALLOWED) - {'__init__'}
 WITH_ROS = {room for room in ALLOWED if room.split('.')[0] == 'ros'} | {'nodes'}
-# what the other rooms may import besides Python's own modules
-THIRD_PARTY = {'matplotlib', 'numpy', 'scipy', 'serial', 'yaml'}
+# what the other rooms may import in addition to Python's own modules
+THIRD_PARTY = {'PIL', 'matplotlib', 'numpy', 'scipy', 'serial', 'yaml'}
 MAX_NODE_LINES, MAX_LINES = 150, 300
 
 
@@ -58,20 +58,20 @@ def python_files(folder):
 
 
 def room_of(module):
-    """The room of a module, or of a package below rbx1_nav; of none in the table, its first folder."""
+    """The room of a module or package below rbx1_nav; its first folder if it is in no room of the table."""
     parts = module.split('.')[1:] or ['__init__']
     rooms = ['.'.join(parts[:length]) for length in range(len(parts), 0, -1)]
     return next((room for room in rooms if room in ALLOWED), parts[0])
 
 
 def is_module(name):
-    """Whether a full name is that of a module or a package in SOURCE."""
+    """Whether a full name refers to a module or a package in SOURCE."""
     path = os.path.join(SOURCE, *name.split('.'))
     return os.path.isdir(path) or os.path.isfile(f'{path}.py')
 
 
 def imported_modules(source, module, is_package):
-    """The full names of all modules that a source imports. A dynamic import without a literal name counts as '?'."""
+    """The full names of all modules that a source imports; '?' for a dynamic import without a literal name."""
     package = module if is_package else module.rpartition('.')[0]
     for node in ast.walk(ast.parse(source)):
         if isinstance(node, ast.Import):
@@ -80,7 +80,7 @@ def imported_modules(source, module, is_package):
             parent = node.module or ''
             if node.level:
                 parent = importlib.util.resolve_name('.' * node.level + parent, package)
-            # what is imported may be a module itself: `from rbx1_nav import units`
+            # the imported name may itself be a module: `from rbx1_nav import units`
             yield from {name if is_module(name) else parent for name in (
                 f'{parent}.{alias.name}' for alias in node.names)}
         elif isinstance(node, ast.Call):
@@ -100,7 +100,7 @@ def is_standard(module):
 
 
 def violations(source, module, is_package=False):
-    """What a module imports although its room must not. module: full name; that of a node is nodes.<name>."""
+    """The imports of a module that its room does not allow. module: full name; nodes.<name> for a node."""
     room = room_of(module) if module.startswith('rbx1_nav') else 'nodes'
     found = []
     for name in imported_modules(source, module, is_package):
@@ -146,7 +146,7 @@ def test_no_two_rooms_import_each_other():
 
 
 def all_imports(path, module, is_package=False):
-    """The names of all modules of the package that one needs, directly or not."""
+    """The names of all modules of the package that a module depends on, directly or indirectly."""
     found, new = set(), [(path, module, is_package)]
     files = {name: (file, name, package) for file, name, package in modules()}
     while new:

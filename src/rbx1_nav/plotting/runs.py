@@ -1,4 +1,4 @@
-"""Pictures of simulated runs, with matplotlib."""
+"""Plots simulated runs, with matplotlib."""
 from __future__ import annotations
 
 import io
@@ -19,27 +19,27 @@ from rbx1_nav.robot.kinematics import ORIGIN, Pose
 from rbx1_nav.simulation.exercise import SimulationResult
 from rbx1_nav.units import rounded
 
-PATHS = 20      # paths in a picture; more would hide each other
-TITLES = {'timed': 'by time', 'odom': 'by odometry', 'ekf': 'by odometry and gyro'}
+PATHS = 20      # number of paths in a plot; more would hide each other
+TITLES = {'timed': 'timed', 'odom': 'with odometry', 'ekf': 'with odometry and gyro'}
 
 Extent = Tuple[float, float, float, float]    # xmin, xmax, ymin, ymax, m
 
 
 def check_picture(path: str) -> None:
-    """Try whether a picture can be written to this path. Raises ConfigError."""
-    formats = sorted(set(Figure().canvas.get_supported_filetypes()) - {'pgf'})      # that one needs LaTeX
+    """Check that a plot can be written to this path. Raises ConfigError."""
+    formats = sorted(set(Figure().canvas.get_supported_filetypes()) - {'pgf'})      # pgf needs LaTeX
     if os.path.splitext(path)[1][1:].lower() not in formats:
-        raise ConfigError(f"expected a name that ends in one of .{', .'.join(formats)}")
+        raise ConfigError(f"expected a file name with one of the extensions .{', .'.join(formats)}")
     check_writable(path)
 
 
 def check_writable(path: str) -> None:
-    """Try whether a file can be written. Raises ConfigError."""
+    """Check that a file can be written. Raises ConfigError."""
     if not os.path.isdir(os.path.dirname(os.path.abspath(path))):
         raise ConfigError('expected a folder that exists')
     new = not os.path.lexists(path)
     try:
-        open(path, 'ab').close()        # the permissions alone do not say all
+        open(path, 'ab').close()        # checking the permissions is not enough
         if new:
             os.remove(path)
     except OSError as error:
@@ -49,7 +49,7 @@ def check_writable(path: str) -> None:
 def draw(file: str, surface: str, results: Mapping[str, Sequence[SimulationResult]], seeds: range) -> None:
     """Draw a column for each method: above, true paths; below, the end poses of all runs, on one scale.
 
-    surface: its name; results: of each method.
+    surface: name of the surface; results: by method.
     """
     figure = Figure(figsize=(5.6 * len(results), 9.4), constrained_layout=True)
     panels = figure.subplots(2, len(results), squeeze=False)
@@ -70,22 +70,22 @@ def draw(file: str, surface: str, results: Mapping[str, Sequence[SimulationResul
 
 
 def save(figure: Figure, path: str) -> None:
-    """Write a Figure to a file, in the format that its name says. Raises OSError."""
-    # drawn in memory: a full disk is an OSError, and not one of all that the libraries below matplotlib may raise
+    """Write a Figure to a file, in the format given by its extension. Raises OSError."""
+    # draw in memory, so that a full disk raises OSError and not an exception of a library that matplotlib uses
     picture = io.BytesIO()
     figure.savefig(picture, dpi=90, bbox_inches='tight', format=os.path.splitext(path)[1][1:].lower())
     write_file(path, picture.getvalue())
 
 
 def write_file(path: str, content: bytes) -> None:
-    """Write a file as a whole or not at all: what was there before survives an error. Raises OSError."""
-    path = os.path.realpath(path)       # not in the place of a link to it
+    """Write a file atomically: after an error, the previous content is still there. Raises OSError."""
+    path = os.path.realpath(path)       # do not replace a link to the file
     new = os.path.join(os.path.dirname(path), f'.rbx1_nav-{os.getpid()}.tmp')
     try:
         with open(new, 'wb') as file:
             file.write(content)
             file.flush()
-            os.fsync(file.fileno())     # some disks are full only now
+            os.fsync(file.fileno())     # some file systems report a full disk only here
         if os.path.exists(path):
             shutil.copymode(path, new)
         os.replace(new, path)
@@ -96,14 +96,14 @@ def write_file(path: str, content: bytes) -> None:
 
 
 def end_poses(results: Iterable[SimulationResult]) -> Array:
-    """An array with a row for each result: true x and y (m), and the absolute heading error (degrees)."""
+    """Return an array with a row for each result: true x and y (m), and the absolute heading error (degrees)."""
     poses = numpy.array([result.end.truth for result in results])
     poses[:, 2] = abs(numpy.degrees(numpy.angle(numpy.exp(1j * poses[:, 2]))))
     return poses
 
 
 def common_extent(ends: Iterable[Array]) -> Extent:
-    """The square around the start and all end poses; at least 10 cm wide."""
+    """Return a square around the start and all end poses; at least 10 cm wide."""
     points = numpy.vstack([poses[:, :2] for poses in ends] + [numpy.zeros((1, 2))])
     low, high = points.min(axis=0), points.max(axis=0)
     half = max(0.05, 0.6 * (high - low).max())
@@ -112,19 +112,20 @@ def common_extent(ends: Iterable[Array]) -> Extent:
 
 
 def common_norm(ends: Iterable[Array]) -> Normalize | None:
-    """The colour scale of heading errors, from 0 to the largest; None if they are too small to tell apart."""
+    """Return the color scale of heading errors, from 0 to the largest; None if they are too small to distinguish."""
     largest = max(poses[:, 2].max() for poses in ends)
     return Normalize(0, largest) if largest > 1 else None
 
 
 def draw_paths(axes: Axes, results: Sequence[SimulationResult]) -> None:
-    """The true paths that were kept, on a floor with a grid of 0.5 m as in RViz; the first run's start and end."""
+    """Draw the true paths that were kept on a floor with a 0.5 m grid as in RViz, and the first run's start and end
+    poses."""
     for result in results:
         if result.path:
             x, y, _ = zip(*[snapshot.truth for snapshot in result.path])
             axes.plot(x, y, color='tab:blue', linewidth=0.8, alpha=0.5)
     draw_robot(axes, ORIGIN, 'black', 'start')
-    draw_robot(axes, results[0].end.truth, 'firebrick', 'end of the first run')
+    draw_robot(axes, results[0].end.truth, 'firebrick', 'end pose of the first run')
     axes.set(xlabel='x (m)', ylabel='y (m)', aspect='equal', xlim=(-0.35, 1.25), ylim=(-0.45, 0.85),
              xticks=[0, 0.5, 1], yticks=[0, 0.5])
     axes.grid(True, alpha=0.5)
@@ -132,7 +133,7 @@ def draw_paths(axes: Axes, results: Sequence[SimulationResult]) -> None:
 
 
 def draw_robot(axes: Axes, pose: Pose, color: str, label: str) -> None:
-    """The robot at a pose: a dot, and an arrow of 0.2 m."""
+    """Draw the robot at a pose: a dot, and an arrow of 0.2 m."""
     x, y, yaw = pose
     axes.plot(x, y, marker='o', linestyle='', color=color, zorder=4, label=label)
     axes.quiver(x, y, 0.2 * cos(yaw), 0.2 * sin(yaw), color=color, angles='xy', scale_units='xy', scale=1,
@@ -140,7 +141,8 @@ def draw_robot(axes: Axes, pose: Pose, color: str, label: str) -> None:
 
 
 def draw_ends(axes: Axes, poses: Array, extent: Extent, norm: Normalize | None) -> PathCollection:
-    """End poses in an extent, with an inset if their cloud is small in it. Returns the points, for a colour bar."""
+    """Draw end poses in an extent, with an inset if they occupy a small part of it. Returns the points, for a color
+    bar."""
     x, y, error = poses.T
     few = len(x) <= 500
     style = dict(s=12 if few else 3, alpha=0.8 if few else 0.4, linewidths=0)
@@ -149,7 +151,7 @@ def draw_ends(axes: Axes, poses: Array, extent: Extent, norm: Normalize | None) 
     axes.plot(0, 0, marker='+', markersize=14, color='black')
     size = max(numpy.ptp(x), numpy.ptp(y))
     end = f'({1000 * rounded(x.mean(), 4):.1f} mm, {1000 * rounded(y.mean(), 4):.1f} mm)'
-    axes.set(title='end poses (+ start)' if size > 1e-4 else f'all end at {end}',
+    axes.set(title='end poses (+ start)' if size > 1e-4 else f'all end poses at {end}',
              xlabel='x (m)', ylabel='y (m)', aspect='equal', xlim=extent[:2], ylim=extent[2:])
     axes.grid(True, alpha=0.5)
     if 1e-4 < size < 0.1 * (extent[1] - extent[0]):
@@ -158,6 +160,6 @@ def draw_ends(axes: Axes, poses: Array, extent: Extent, norm: Normalize | None) 
         half = 60 * size
         inset.set(aspect='equal', xlim=(50 * (x.min() + x.max()) - half, 50 * (x.min() + x.max()) + half),
                   ylim=(50 * (y.min() + y.max()) - half, 50 * (y.min() + y.max()) + half))
-        inset.set_title('the same, enlarged (cm)', fontsize='small')
+        inset.set_title('enlarged (cm)', fontsize='small')
         inset.tick_params(labelsize='small')
     return points

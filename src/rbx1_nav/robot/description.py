@@ -1,46 +1,50 @@
-"""A robot as the YAML files of ArbotiX users describe it."""
+"""Reads the description of a robot from parameters in the format of the ArbotiX driver."""
 from __future__ import annotations
 
 from math import inf, radians
 import re
 from typing import Container, NamedTuple
 
-from rbx1_nav.config import ConfigError, Section, YamlValue, show, show_name
+from rbx1_nav.config import ConfigError, Section, YamlValue, load_yaml, show, show_name
 from rbx1_nav.parameters import elsewhere, flag, frame, number, read
 from rbx1_nav.robot.joints import Joint
 from rbx1_nav.units import SECOND
 
-# what only the hardware needs: accepted and ignored
+# keys that only the hardware needs: accepted and ignored
 DRIVER_KEYS = {'port', 'baud', 'rate', 'sync_write', 'sync_read', 'read_rate', 'write_rate'}
 CONTROLLER_KEYS = {'ticks_meter', 'Kp', 'Kd', 'Ki', 'Ko', 'accel_limit'}
 JOINT_KEYS = {'id', 'neutral', 'invert', 'ticks', 'range'}
 
-MAX_ANGLE = 36000   # degrees: a joint of 100 turns
+MAX_ANGLE = 36000   # degrees: a joint that makes 100 turns
 MIN_TIMEOUT = 0.01  # s
 
-# the keys of diff_drive_controller, and the names in this package's URDF files
+# the keys of diff_drive_controller, and the joint names in this package's URDF files
 WHEEL_JOINTS = {'left_wheel': 'base_l_wheel_joint', 'right_wheel': 'base_r_wheel_joint'}
 
 PARAMETERS = (
-    elsewhere('controllers', 'one diff_controller', note='see below'),
+    elsewhere('controllers', 'mapping with one diff_controller', note='see below'),
     elsewhere('joints', 'servos', 'none', note='see below'),
-    flag('publish_tf', True, 'whether to publish the transform to the base frame', note='false if another node does'),
-    flag('sim', True, 'must be true: this base is a simulation'))
+    flag('publish_tf', True, 'whether to publish the transform to the base frame',
+         note='false if another node publishes it'),
+    flag('sim', True, 'whether the base is a simulation; must be true'))
 
 CONTROLLER = (
-    elsewhere('type', '`diff_controller`'),
+    elsewhere('type', 'controller type; must be `diff_controller`'),
     number('base_width', None, 'm', 'distance between the wheels', 0.001, 100, 'a width', required=True),
     frame('base_frame_id', 'base_link', 'frame of the robot'),
     frame('odom_frame_id', 'odom', 'frame of the odometry'),
-    number('rate', 50.0, 'Hz', 'of the odometry; on simulated time at most 50', 0.1, 1000, 'a rate'),
-    number('timeout', 1.0, 's', f'a command of this age stops the base; at least {MIN_TIMEOUT:g}, or 0: never', 0, 1e6,
-           'a time'),
-    number('max_linear_speed', inf, 'm/s', 'commands are clamped to it', 0.001, 1000, 'a speed', shown='no limit'),
-    number('max_angular_speed', inf, 'rad/s', 'the same in a turn', 0.001, 1000, 'a speed', shown='no limit'),
-    number('wheel_radius', 0.033, 'm', 'turns wheel travel into joint angles', 0.001, 100, 'a radius'),
-    elsewhere('left_wheel', 'joint of the left wheel in `joint_states`, as the URDF file names it',
+    number('rate', 50.0, 'Hz', 'publish rate of the odometry; at most 50 on simulated time', 0.1, 1000, 'a rate'),
+    number('timeout', 1.0, 's', f'command age at which the base stops; at least {MIN_TIMEOUT:g}, or 0 for no timeout',
+           0, 1e6, 'a time'),
+    number('max_linear_speed', inf, 'm/s', 'speed to which commands are clamped', 0.001, 1000, 'a speed',
+           shown='no limit'),
+    number('max_angular_speed', inf, 'rad/s', 'turn rate to which commands are clamped', 0.001, 1000, 'a speed',
+           shown='no limit'),
+    number('wheel_radius', 0.033, 'm', 'wheel radius, which converts wheel travel to joint angles', 0.001, 100,
+           'a radius'),
+    elsewhere('left_wheel', 'left wheel joint in `joint_states`, as named in the URDF file',
               WHEEL_JOINTS['left_wheel']),
-    elsewhere('right_wheel', 'joint of the right wheel', WHEEL_JOINTS['right_wheel']))
+    elsewhere('right_wheel', 'right wheel joint', WHEEL_JOINTS['right_wheel']))
 
 JOINT = (
     number('min_angle', -150.0, 'degrees', 'lower limit', -MAX_ANGLE, MAX_ANGLE, 'an angle'),
@@ -56,7 +60,10 @@ class Limits(NamedTuple):
 
 
 class Robot(NamedTuple):
-    """A robot's configuration. hardware, unknown: sorted names of keys without effect."""
+    """The configuration of a robot.
+
+    hardware, unknown: sorted names of keys that have no effect.
+    """
 
     name: str
     odom_frame_id: str
@@ -74,7 +81,7 @@ class Robot(NamedTuple):
 
 
 def read_joint(name: str, section: Section) -> Joint:
-    """A Joint from its Section, which is in degrees. Raises ConfigError."""
+    """Return the Joint that a Section describes in degrees. Raises ConfigError."""
     values = read(JOINT, section)
     lower, upper = values['min_angle'], values['max_angle']
     if lower >= upper:
@@ -83,36 +90,44 @@ def read_joint(name: str, section: Section) -> Joint:
 
 
 def read_wheel_joints(section: Section, servos: Container[str] = ()) -> tuple[str, str]:
-    """(left, right) names of the wheels' joints, from the Section that has their keys. Raises ConfigError.
+    """Return the (left, right) names of the wheel joints from the Section that has their keys. Raises ConfigError.
 
-    servos: names of other joints, which neither key may have. A default is not compared with them.
+    servos: names of other joints, which neither key may have as its value. A default is not compared with them.
     """
     names = []
     for key, default in WHEEL_JOINTS.items():
         name = section.get(key, default)
-        # more characters than a servo's name may have: no topic has this one
+        # more characters are allowed than in a servo's name, because no topic contains this name
         if not (isinstance(name, str) and re.fullmatch(r'[A-Za-z][\w./-]{0,199}', name, re.ASCII)):
             raise ConfigError(f'{section.path(key)}: {show(name)}: expected the name of a joint: '
                               'a letter, then up to 199 letters, digits or _ - . /')
         if key in section.values and name in servos:
-            raise ConfigError(f'{section.path(key)}: {show(name)}: expected the joint of a wheel, '
-                              'which is not one of joints')
+            raise ConfigError(f'{section.path(key)}: {show(name)}: expected a wheel joint, '
+                              'not a servo listed in joints')
         names.append(name)
     left, right = names
     if left == right:
         key, other = 'right_wheel', 'left_wheel'
-        if key not in section.values:   # the other one has its default
+        if key not in section.values:   # the right wheel has its default name
             key, other = other, key
         raise ConfigError(f'{section.path(key)}: {show(left)}: expected a joint other than {other}')
     return left, right
 
 
+def load_robot(path: str) -> Robot:
+    """Return the Robot that an ArbotiX YAML file describes. Raises ConfigError."""
+    try:
+        return read_robot(load_yaml(path))
+    except ConfigError as error:
+        raise ConfigError(f'{show_name(path)}: {error}') from None
+
+
 def read_robot(params: YamlValue) -> Robot:
-    """The Robot that a dictionary of ArbotiX parameters describes. Raises ConfigError."""
+    """Return the Robot that a dictionary of ArbotiX parameters describes. Raises ConfigError."""
     top = Section(params, hardware=DRIVER_KEYS)
     values = read(PARAMETERS, top)
     if not values['sim']:
-        raise ConfigError('sim: False: expected true, this base is a simulation')
+        raise ConfigError('sim: False: expected true, because this base is a simulation')
 
     controllers = top.section('controllers', expected='a mapping with one diff_controller')
     if len(controllers.values) != 1:
@@ -139,7 +154,7 @@ def read_robot(params: YamlValue) -> Robot:
 
     keys = read(CONTROLLER, base)
     timeout = keys['timeout']
-    if 0 < timeout < MIN_TIMEOUT:   # less would become 0, which is no timeout at all
+    if 0 < timeout < MIN_TIMEOUT:   # a tiny one would be rounded to 0, which means no timeout
         raise ConfigError(f"{base.path('timeout')}: {timeout!r}: expected 0 (never), or at least {MIN_TIMEOUT:g} s")
     robot = Robot(
         name=show_name(name),

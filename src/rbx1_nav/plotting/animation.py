@@ -1,0 +1,92 @@
+"""Animated pictures of simulated runs, side by side."""
+from __future__ import annotations
+
+import io
+from math import cos, hypot, sin
+import os
+from typing import List, Mapping
+
+from PIL import Image
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+import numpy
+
+from rbx1_nav.config import ConfigError
+from rbx1_nav.plotting.runs import TITLES, check_writable, write_file
+from rbx1_nav.robot.kinematics import Pose
+from rbx1_nav.simulation.exercise import SimulationResult, Snapshot
+
+FORMATS = {'.gif': 'GIF', '.png': 'PNG'}    # by file name extension
+SPEED = 4.0         # times real time
+FRAME = 0.1         # s that a frame is shown
+LAST_FRAME = 3.0    # s that the last frame is shown
+RADIUS = 0.17       # m, of a TurtleBot
+
+
+class Panel:
+    """The floor under one robot."""
+
+    def __init__(self, axes: Axes, method: str, path: List[Snapshot]) -> None:
+        """path: the Snapshots of all ticks."""
+        self.method, self.path = method, path
+        self.axes = axes
+        axes.set(xlim=(-0.45, 1.45), ylim=(-0.65, 1.05), aspect='equal', xticks=[0, 0.5, 1], yticks=[-0.5, 0, 0.5, 1])
+        axes.grid(True, alpha=0.5)
+        axes.tick_params(labelbottom=False, labelleft=False, length=0)
+        axes.plot(0, 0, marker='+', markersize=18, markeredgewidth=2, color='black')
+        self.trail, = axes.plot([], [], color='tab:blue', linewidth=2)
+        self.believed, = axes.plot([], [], color='gray', linestyle=':')
+        self.robot, = axes.plot([], [], color='firebrick', linewidth=2.5)
+
+    def show(self, time: float) -> None:
+        """Show the robot at a time (s), or at its end pose after the run."""
+        driven = [snapshot for snapshot in self.path if snapshot.time <= time] or self.path[:1]
+        last = driven[-1]
+        self.trail.set_data([each.truth.x for each in driven], [each.truth.y for each in driven])
+        self.robot.set_data(*outline(last.truth))
+        self.believed.set_data(*outline(last.estimate or last.odometry))
+        distance = f'{100 * hypot(last.truth.x, last.truth.y):.0f} cm from the start'
+        self.axes.set_title(f'{TITLES[self.method]}\n{distance if last is self.path[-1] else ""}')
+
+
+def outline(pose: Pose) -> tuple[list[float], list[float]]:
+    """Return the x and y (m) of the robot's outline: a circle, and a radius that points forward."""
+    angles = [pose.yaw + 0.1 * step for step in range(63)] + [pose.yaw]
+    return ([pose.x] + [pose.x + RADIUS * cos(angle) for angle in angles],
+            [pose.y] + [pose.y + RADIUS * sin(angle) for angle in angles])
+
+
+def check_animation(path: str) -> None:
+    """Check that an animation can be written to this path. Raises ConfigError."""
+    if os.path.splitext(path)[1].lower() not in FORMATS:
+        raise ConfigError(f"expected a file name with the extension {' or '.join(FORMATS)}")
+    check_writable(path)
+
+
+def animate(file: str, surface: str, results: Mapping[str, SimulationResult]) -> None:
+    """Draw one run of each method, side by side, at SPEED times real time. Raises OSError.
+
+    surface: name of the surface; results: one run of each method, with its path. The solid circle is the true pose of
+    the robot. The dotted circle is the pose from the filter, or without a filter from the odometry.
+    """
+    figure = Figure(figsize=(3.2 * len(results), 3.6), constrained_layout=True)
+    figure.suptitle(f'Out and back on {surface}')
+    canvas = FigureCanvasAgg(figure)
+    panels = [Panel(axes, method, result.path or [])
+              for axes, (method, result) in zip(figure.subplots(1, len(results), squeeze=False)[0], results.items())]
+    end = max(panel.path[-1].time for panel in panels)
+    frames = []
+    for number in range(int(end / (FRAME * SPEED)) + 2):
+        for panel in panels:
+            panel.show(number * FRAME * SPEED)
+        canvas.draw()
+        frames.append(Image.fromarray(numpy.asarray(canvas.buffer_rgba())[..., :3]))
+    # one palette of few colors, without dithering (0), keeps the file small: a frame then has only what has changed
+    palette = frames[-1].quantize(64, dither=0)
+    frames = [frame.quantize(palette=palette, dither=0) for frame in frames]
+    durations = [round(1000 * FRAME)] * (len(frames) - 1) + [round(1000 * LAST_FRAME)]
+    animation = io.BytesIO()
+    frames[0].save(animation, FORMATS[os.path.splitext(file)[1].lower()], save_all=True, append_images=frames[1:],
+                   duration=durations, loop=0, optimize=True)
+    write_file(file, animation.getvalue())
