@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""On an emulated Create whose errors are known, the calibration scripts find the factors that correct them.
+"""On an emulated Create with known errors, the calibration scripts find the factors that correct them.
 
 usage: found_errors.py LINEAR ANGULAR GYRO --      GYRO: none for a robot without a gyro
 """
@@ -13,10 +13,7 @@ from std_srvs.srv import SetBool
 
 import support
 
-WITHIN = 0.01       # of the factor, which the project promises
-# the end of a run on a machine that is so busy that the odometry is late; it is repeated
-LOST = 'The last transform'
-ATTEMPTS = 5
+WITHIN = 0.01       # relative error of the factor that the package guarantees
 
 
 class TestFoundErrors(unittest.TestCase):
@@ -27,12 +24,12 @@ class TestFoundErrors(unittest.TestCase):
         support.wait_for(lambda: cls.truth.last, '/ground_truth')
 
     def calibrate(self, script, line, measure):
-        """Run a script; after this line answer what measure(true pose at the start, at the end) returns."""
-        for _ in range(ATTEMPTS):
+        """Run a script; after `line`, enter the result of measure(true pose at the start, true pose at the end)."""
+        for _ in range(support.ATTEMPTS):
             start = support.pose(self.truth.next())
             process = support.Process('rosrun', 'rbx1_nav', script)
             self.addCleanup(process.kill)
-            if LOST not in process.wait_for_line(f'{line}|{LOST}')[0]:
+            if support.LATE not in process.wait_for_line(f'{line}|{support.LATE}')[0]:
                 break
         process.type(f'{measure(start, support.pose(self.truth.next())):.3f}')
         self.assertEqual(process.wait(), 0, process.output)
@@ -40,7 +37,7 @@ class TestFoundErrors(unittest.TestCase):
                                                                re.MULTILINE)}
 
     def check(self, found, expected):
-        """Compare factors by their names."""
+        """Compare factors by name."""
         self.assertEqual(sorted(found), sorted(expected))
         for key, factor in expected.items():
             self.assertAlmostEqual(found[key] / factor, 1, delta=WITHIN, msg=key)
@@ -53,7 +50,7 @@ class TestFoundErrors(unittest.TestCase):
         pull_cable(True)
         self.assertEqual(script.wait(), 1, script.output)
         self.assertRegex(script.output, r'\[ERROR\].* refused a command: the robot does not answer')
-        # the other tests begin with a robot that stands
+        # the other tests begin with a stationary robot
         pull_cable(False)
         support.wait_for(lambda: self.truth.next().twist.twist.linear.x == 0, 'a stop')
 

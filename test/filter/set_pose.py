@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""set_pose puts the robot at a pose in the output frame; a pose in another frame, or an invalid one, is rejected."""
+"""set_pose moves the estimate to a pose in the output frame; an invalid pose, or one in another frame, is rejected."""
 import math
 import unittest
 
@@ -13,7 +13,7 @@ import support
 
 
 def make_pose(frame_id, x, y, yaw):
-    """A message on set_pose."""
+    """Return a message for set_pose."""
     message = PoseWithCovarianceStamped()
     message.header.frame_id = frame_id
     message.pose.pose.position.x, message.pose.pose.position.y = x, y
@@ -37,8 +37,8 @@ class TestSetPose(unittest.TestCase):
                 m.name == '/robot_pose_ekf' and text in m.msg for m in list(log.messages)), text)
 
         def is_at(x, y, yaw):
-            at = support.pose(poses.last)
-            return math.hypot(at[0] - x, at[1] - y) < 1e-6 and abs(support.wrapped(at[2] - yaw)) < 1e-3
+            at = poses.last and support.pose(poses.last)
+            return at and math.hypot(at[0] - x, at[1] - y) < 1e-6 and abs(support.wrapped(at[2] - yaw)) < 1e-3
         publisher.publish(make_pose('odom_combined', 3.0, 4.0, 1.0))
         wait_for_log('/set_pose: odom: None: expected a message before this one; rejected')
 
@@ -51,7 +51,7 @@ class TestSetPose(unittest.TestCase):
             covariance = poses.next().pose.covariance
             self.assertAlmostEqual(covariance[0], 0.25, delta=0.01)
             self.assertAlmostEqual(covariance[35], 0.01, delta=0.001)
-        # being placed is no motion
+        # set_pose is not a motion
         self.assertLess(max(abs(m.twist.twist.angular.z) for m in estimates.messages), 0.01)
 
         publisher.publish(make_pose('map', 0.0, 0.0, 0.0))

@@ -1,8 +1,9 @@
-"""Waits for the subscribers of a topic: what is published before they are connected is lost."""
+"""Waits for the subscribers of a topic, because messages published before they are connected are lost."""
 from __future__ import annotations
 
 import threading
 import time
+from typing import Iterable
 
 import rosgraph
 import rospy
@@ -14,18 +15,17 @@ from rbx1_nav.ros.node.life import end_requested, sleep
 
 
 class _SubscriberMonitor(threading.Thread):
-    """Keeps the list of live subscribers of a topic up to date, until it is stopped."""
+    """Keeps the list of live subscribers of a topic up to date until it is stopped."""
 
     def __init__(self, topic: str) -> None:
         super().__init__(daemon=True)
         self.topic = topic
-        # (address, commands that it has refused) of each live subscriber by its name; None until the master has
-        # answered
+        # (address, number of refused commands) of each live subscriber, by its name; None until the master has answered
         self.live: dict[str, tuple[str, int | None]] | None = None
         self.dead: set[str | None] = set()      # addresses
         self.publishers: dict[str, list[str]] = {}      # names of the nodes that publish a topic
         self.odometry: list[str] = []   # topics
-        self.rounds = 0         # how often all of that was asked for
+        self.rounds = 0         # number of complete updates of these values
         self.done = threading.Event()
 
     def run(self) -> None:
@@ -44,8 +44,8 @@ class _SubscriberMonitor(threading.Thread):
             self.done.wait(0.1)
 
     def find(self, master: str, name: str) -> tuple[str, int | None] | None:
-        """(address, commands that it has refused) of a node that answers, else None; an address that did not answer is
-        not called again."""
+        """Return (address, number of refused commands) of a node that answers, else None. An address that did not
+        answer is not called again."""
         address = None
         try:
             address = call(master, 'lookupNode', name)
@@ -59,24 +59,24 @@ class _SubscriberMonitor(threading.Thread):
         return None
 
     def peer(self, name: str) -> Peer:
-        """The Peer of this name."""
+        """Return the Peer of this name."""
         uri, refused = (self.live or {}).get(name, (None, None))
         return Peer(name, uri, any(name in self.publishers.get(topic, ()) for topic in self.odometry),
                     name in self.publishers.get('/clock', ()), refused)
 
 
 def connected_nodes(publisher: rospy.Publisher) -> set[str]:
-    """Names of the nodes that are connected to a publisher now."""
+    """Return the names of the nodes that are connected to a publisher."""
     return {connection.endpoint_id for connection in publisher.impl.connections}
 
 
 def wait_for_subscribers(publisher: rospy.Publisher, timeout: float) -> Listeners:
-    """Wait until all live subscribers of a publisher's topic are connected to it, and simulated time has begun.
+    """Wait until all live subscribers of a publisher's topic are connected to it and simulated time has started.
 
-    All of them and not just the first: a recorder is not a base. Returns them as Listeners.
+    It waits for all subscribers, not only for the first, because that may be a recorder. Returns them as Listeners.
 
-    Raises ROSException if there is none, or one is missing, after `timeout` seconds of wall time, and
-    ROSInterruptException as soon as the node is to end.
+    Raises ROSException if there is no subscriber, or one is missing, after `timeout` seconds of wall time, or if this
+    node and the base are on different clocks, and ROSInterruptException as soon as shutdown is requested.
     """
     topic = publisher.resolved_name
     monitor = _SubscriberMonitor(topic)
@@ -88,11 +88,13 @@ def wait_for_subscribers(publisher: rospy.Publisher, timeout: float) -> Listener
     try:
         while True:
             connected = connected_nodes(publisher)
-            if connected != before:     # a round that is under way may have begun before
+            if connected != before:     # an update in progress may have begun before the change
                 before, known = connected, monitor.rounds + 2
             live = monitor.live or {}
             if connected and monitor.rounds >= known and live.keys() <= connected and rospy.get_rostime():
-                return Listeners(publisher, [monitor.peer(name) for name in connected])
+                peers = [monitor.peer(name) for name in connected]
+                _check_clock(peers)
+                return Listeners(publisher, peers)
             missing = ', '.join(sorted(live.keys() - connected))
             what = (f'the master to list the subscribers of {topic}'
                     if monitor.live is None or connected and monitor.rounds < known
@@ -108,3 +110,11 @@ def wait_for_subscribers(publisher: rospy.Publisher, timeout: float) -> Listener
                 raise rospy.ROSInterruptException('shutdown requested')
     finally:
         monitor.done.set()
+
+
+def _check_clock(peers: Iterable[Peer]) -> None:
+    """Raise ROSException if a subscriber publishes /clock, but this node, started earlier, does not use it."""
+    for peer in peers:
+        if peer.keeps_time and rospy.rostime.is_wallclock():
+            raise rospy.ROSException('/use_sim_time was false when this node started, but '
+                                     f'{peer.name} publishes /clock: start this node again')
