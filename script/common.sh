@@ -1,21 +1,21 @@
-# What the scripts share. Sourced by bash, after `set -euo pipefail`.
+# Functions shared by the scripts. To be sourced by bash after `set -euo pipefail`.
 
-# A program that ignores SIGINT, as with nohup or from cron, hands that on to all that it starts. bash cannot undo it.
+# A program that ignores SIGINT, as under nohup or cron, passes this on to all its children. bash cannot undo it.
 if [ "$(trap -p INT)" = "trap -- '' SIGINT" ] && [ -f "$0" ]; then
   exec env --default-signal=INT bash "$0" "$@"
 fi
 
 source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
 
-# ROS lives in the system's Python, whatever else the PATH puts first.
+# ROS is installed for the system's Python, even if another Python comes first in the PATH.
 export PATH=/usr/sbin:/usr/bin:/sbin:/bin:$PATH
 
-# what it takes to build and start the package
+# packages needed to build and start the package
 tool_packages=(catkin g++ make ros-core ros-environment rosbash rospack-tools)
 # Debian 13's RViz uses Qt 6 and does not depend on the plugin that reads its icons.
 if . /etc/os-release; [ "${VERSION_ID:-0}" = 13 ]; then tool_packages+=(qt6-svg-plugins); fi
 
-dependencies() {        # KIND...: print the Debian packages of the dependencies in package.xml, of the kinds exec and test
+dependencies() {        # KIND...: print the Debian packages of these kinds of dependencies in package.xml: exec, test
   local kind name
   for kind in "$@"; do
     sed -n "s,.*<${kind}_depend>\(.*\)</.*,\1,p" "$source_dir/package.xml" | while read -r name; do
@@ -29,7 +29,7 @@ dependencies() {        # KIND...: print the Debian packages of the dependencies
   done
 }
 
-missing_packages() {    # PACKAGE...: print those that are not installed
+missing_packages() {    # PACKAGE...: print the packages that are not installed
   comm -23 <(printf '%s\n' "$@" | sort -u) <(dpkg-query -W -f '${binary:Package} ${db:Status-Status}\n' "$@" 2>/dev/null |
     sed -n 's/:[^ ]* installed$//p; s/ installed$//p' | sort -u)
 }
@@ -39,7 +39,7 @@ require_packages() {    # PACKAGE...: fail with one line if some are missing
   [ ${#missing[@]} -eq 0 ] || { echo "These packages are missing: sudo apt-get install ${missing[*]}" >&2; return 1; }
 }
 
-install_missing() {     # PACKAGE...: install those that are missing
+install_missing() {     # PACKAGE...: install the missing packages
   local missing run=()
   mapfile -t missing < <(missing_packages "$@")
   [ ${#missing[@]} -gt 0 ] || return 0
@@ -48,7 +48,7 @@ install_missing() {     # PACKAGE...: install those that are missing
     run=(sudo)
   fi
   echo "Installing ${missing[*]}"
-  # one script at a time: a second one waits, and then finds nothing to do. Another apt is waited for, for ten minutes
+  # One script at a time: a second one waits, and then finds nothing to do. If another apt is running, wait up to ten minutes.
   "${run[@]}" flock /run/lock env DEBIAN_FRONTEND=noninteractive bash -euc '
     log=$(mktemp); trap "rm -f $log" EXIT
     for try in $(seq 120); do
@@ -61,11 +61,11 @@ install_missing() {     # PACKAGE...: install those that are missing
   ' install "${missing[@]}"
 }
 
-changed_files() {       # print the files with changes that are not committed
+changed_files() {       # print the files with uncommitted changes
   git -C "$source_dir" status --porcelain --untracked-files=all 2>/dev/null | cut -c 4-
 }
 
-changed_tests() {       # print the unit tests of those modules, by their names, and those of all declarations and imports
+changed_tests() {       # print the unit tests of the changed modules, found by name, and the tests of declarations and imports
   local path name any=
   changed_files | grep -E '^(src|nodes|test/unit)/.*\.py$' | while read -r path; do
     name=${path##*/}; name=${name%.py}
@@ -75,7 +75,7 @@ changed_tests() {       # print the unit tests of those modules, by their names,
   done | sort -u
 }
 
-changed_rooms() {       # print the folders of test/unit/ whose rooms have changes that are not committed
+changed_rooms() {       # print the folders of test/unit/ whose rooms have uncommitted changes
   changed_files | sed -n 's,^\(src/rbx1_nav\|test/unit\)/,,p' | while read -r path; do
     while [ "$path" != "${path%/*}" ]; do
       path=${path%/*}
@@ -84,12 +84,12 @@ changed_rooms() {       # print the folders of test/unit/ whose rooms have chang
   done | sort -u
 }
 
-run() {                 # COMMAND...: in a process group of its own, so that a signal to this script can end all of it
+run() {                 # COMMAND...: run in its own process group, so that a signal to this script can stop the whole group
   set -m; "$@" </dev/null & set +m
   wait $!
 }
 
-end_all() {             # DIR: end what run() has started, and the nodes whose ROS_HOME is in DIR, each in a session of its own
+end_all() {             # DIR: stop the processes of run(), and the nodes whose ROS_HOME is in DIR, which have their own sessions
   trap '' INT TERM HUP
   local job i
   for job in $(jobs -p); do
@@ -100,7 +100,7 @@ end_all() {             # DIR: end what run() has started, and the nodes whose R
   for i in $(grep -lsz "^ROS_HOME=$1/ros\$" /proc/[0-9]*/environ | cut -d / -f 3); do kill -KILL "$i" 2>/dev/null || true; done
 }
 
-make_workspace() {      # DIR [CMAKE_ARGUMENT...]: make and build a catkin workspace there
+make_workspace() {      # DIR [CMAKE_ARGUMENT...]: create and build a catkin workspace in DIR
   local workspace=$1; shift
   mkdir -p "$workspace/src"
   ln -sfn "$source_dir" "$workspace/src/rbx1_nav"
@@ -111,12 +111,12 @@ make_workspace() {      # DIR [CMAKE_ARGUMENT...]: make and build a catkin works
   use_workspace "$workspace"
 }
 
-use_workspace() {       # DIR: as in a terminal in which only this one was sourced
+use_workspace() {       # DIR: set the environment as in a terminal in which only this workspace was sourced
   clean_environment
   set +u; source "$1/devel/setup.bash"; set -u
 }
 
-clean_environment() {   # nothing of another ROS installation, and no bytecode beside the sources
+clean_environment() {   # remove other ROS installations from the environment, and keep bytecode out of the source tree
   unset CMAKE_PREFIX_PATH ROS_PACKAGE_PATH ROS_MASTER_URI ROS_HOSTNAME ROS_NAMESPACE PYTHONPATH
   export PYTHONDONTWRITEBYTECODE=1
 }
