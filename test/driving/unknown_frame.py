@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A frame that does not exist is named with those that do."""
+"""The error about a frame that does not exist lists the existing frames; an angle that looks like degrees is named."""
 import unittest
 
 from geometry_msgs.msg import Twist
@@ -12,7 +12,7 @@ class TestUnknownFrame(unittest.TestCase):
         support.init_node('unknown_frame')
         support.OdomWatch()
         commands = support.Watch('/cmd_vel', Twist)
-        # long enough for the static transforms to arrive, too
+        # long enough for the static transforms to arrive
         driver = support.by_odometry('_odom_frame:=odom_combine', '_wait_timeout:=5')
         self.addCleanup(driver.kill)
         self.assertEqual(driver.wait(), 1, driver.output)
@@ -20,6 +20,16 @@ class TestUnknownFrame(unittest.TestCase):
                                            'no transform from odom_combine to base_footprint or base_link; '
                                            'frames that exist: base_footprint, base_l_wheel_link, base_link, .*, odom$')
         self.assertFalse([command for command in commands.messages if command != Twist()])
+
+    def test_combined_frame_without_filter_and_angle_in_degrees(self):
+        support.init_node('unknown_frame')
+        driver = support.by_odometry('_odom_frame:=odom_combined', '_goal_angle:=180', '_wait_timeout:=5')
+        self.addCleanup(driver.kill)
+        self.assertEqual(driver.wait(), 1, driver.output)
+        self.assertRegex(driver.lines[-1], 'To start the filter that publishes odom_combined: '
+                                           'roslaunch rbx1_bringup odom_ekf.launch$')
+        self.assertIn('/out_and_back/goal_angle: 180: 28.6 turns, because the unit is radians. '
+                      'For 180 degrees: _goal_angle:=3.14159', driver.output)
 
 
 if __name__ == '__main__':

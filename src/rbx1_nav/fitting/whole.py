@@ -1,8 +1,8 @@
-"""From recordings to a surface, with a standard error for each value, and a word for each that they do not tell."""
+"""Fits a surface to recordings, with a standard error for each value or a reason why it cannot be determined."""
 from __future__ import annotations
 
 from math import degrees
-from typing import NamedTuple, Sequence
+from typing import Callable, NamedTuple, Sequence
 
 import numpy
 
@@ -18,18 +18,18 @@ from rbx1_nav.fitting.tape import TYPICAL
 from rbx1_nav.simulation.surfaces import KEYS, OPTIONAL_KEYS, Surface
 
 FLOOR = ('slip_straight', 'slip_turning', 'curvature', 'turning_loss')
-RESOLUTION = 0.0003, 0.0003, 0.001  # m, m, rad: of encoders; no end is measured better
-CAMERAS = 0.001, 0.001, 0.003       # m, m, rad: 1 sigma of a motion capture system, where nothing tells it
-SHORTEST, LONGEST = 2.0, 10.0       # s: of a window
-WINDOWS = 100       # of the shorter windows in all that was recorded
-WIDEST = 10.0       # times the error of the truth at rest: the largest that an end may have in motion
+RESOLUTION = 0.0003, 0.0003, 0.001  # m, m, rad: resolution of encoders, the smallest error of an end pose
+CAMERAS = 0.001, 0.001, 0.003       # m, m, rad: 1 sigma of a motion capture system, if the runs do not determine it
+SHORTEST, LONGEST = 2.0, 10.0       # s: limits of the length of a window
+WINDOWS = 100       # number of windows in the total time, within these limits
+WIDEST = 10.0       # largest ratio of the error of an end pose in motion to the error of the truth at rest
 CLEARLY_WIDER = 2.0
-MIN_RUNS = 3        # for a spread from run to run
+MIN_RUNS = 3        # number of runs required for a spread from run to run
 LARGEST = {'accel_limit': 0.3, 'lag': 0.1, 'gyro_noise': 0.02, 'gyro_bias': 0.02, 'gyro_scale_error': 0.01,
            **{key: error for key, (_, error) in MEANS.items()},
-           **dict.fromkeys(NOISES, 0.05), **dict.fromkeys(SPREADS, 0.02)}  # standard error of a value that is kept
-FAR_OFF = 30.0      # squared error of three normal values, of variance 1: exceeded once in a million
-POOR = 0.1          # what motors may leave unexplained of the travel, rms; and at least
+           **dict.fromkeys(NOISES, 0.05), **dict.fromkeys(SPREADS, 0.02)}  # largest standard error of an accepted value
+FAR_OFF = 30.0      # squared error of three normal values of variance 1: exceeded once in a million
+POOR = 0.1          # fraction of the travel, rms, that the motor model may leave unexplained; but always at least
 POOR_TRAVEL = 0.002     # m
 
 
@@ -38,27 +38,28 @@ class Value(NamedTuple):
 
     key: str
     value: float
-    error: float | None     # 1 sigma; None for a value that was left as it was
-    reason: str | None      # why it was
+    error: float | None     # 1 sigma; None for a value that was not fitted
+    reason: str | None      # why it was not fitted
 
 
 class FitResult(NamedTuple):
-    """What was fitted."""
+    """The result of a fit."""
 
     surface: Surface
-    values: list[Value]     # of each key, in the order of a file
+    values: list[Value]     # one per key, in the order of a file
     warnings: list[str]
-    description: str        # one line that says from what to what was fitted
+    description: str        # one line: what was fitted, and to which data
     notes: list[str]
 
 
 class WholeFit:
-    """Fits a surface, part by part."""
+    """Fits all parts of a surface."""
 
     def __init__(self, recordings: Sequence[Recording], base_width: float, start: Surface,
-                 end_errors: tuple[float, float, float] | None = None) -> None:
-        """recordings: all alike, see check_alike(); base_width: m; end_errors: of ends measured by hand: x, y (m), yaw
-        (rad)."""
+                 end_errors: tuple[float, float, float] | None = None,
+                 progress: Callable[[str], object] = lambda part: None) -> None:
+        """recordings: with equal series, see check_alike(); base_width: m; end_errors: 1 sigma of end poses measured by
+        hand: x, y (m), yaw (rad); progress(part): called with the name of each part before it is fitted."""
         check_alike(recordings)
         self.recordings = recordings
         self.base_width = base_width
@@ -71,39 +72,42 @@ class WholeFit:
         self.description = 'motors and gyro'
         self.has_odometry = recordings[0].odometry is not None
         if self.has_odometry:
+            progress('motors')
             self._fit_motors()
+        progress('floor')
         if recordings[0].truth:
             self._fit_to_truth()
         elif recordings[0].end:
             self._fit_to_ends()
         elif not self.has_odometry:
             raise ConfigError(f'{recordings[0].name}: neither odometry nor truth: expected at least one of them')
+        progress('gyro')
         self._fit_gyro()
 
     def result(self) -> FitResult:
-        """The FitResult."""
+        """Return the FitResult."""
         values = []
         for key in [*KEYS, *OPTIONAL_KEYS]:
             error = self.errors.get(key)
-            reason = None if error is not None else self.reasons.get(key, 'the recordings do not tell it')
+            reason = None if error is not None else self.reasons.get(key, 'not determined by these runs')
             values.append(Value(key, getattr(self.surface, key), error, reason))
         return FitResult(self.surface, values, self.warnings, self.description, self.notes)
 
     def _set(self, key: str, value: float, error: float, bounds: tuple[float, float] | None = None) -> bool:
-        """Keep a fitted value, unless its standard error is too large."""
+        """Accept a fitted value unless its standard error is too large. Returns whether it was accepted."""
         low, high = bounds or limits_of(key)
         if not error <= LARGEST[key]:
             self.reasons[key] = f'found {value:.3g} +- {error:.2g}: too uncertain'
             return False
         if bounds and (value <= low * 1.001 + 1e-9 or value >= high * 0.999) and low != 0:
-            self.warnings.append(f'{key}: {value:.4g}: at the end of its range')
+            self.warnings.append(f'{key}: {value:.4g}: at the limit of its range')
         self.surface = with_values(self.surface, {key: float(numpy.clip(value, *limits_of(key)))})
         self.errors[key] = float(error)
         self.reasons.pop(key, None)
         return True
 
     def _stopping_time(self) -> float:
-        """How long after a command (s) the motors have nearly followed it."""
+        """Return the time (s) after which the motors have almost reached a commanded speed."""
         return self.surface.delay + 5 * self.surface.lag
 
     def _fit_motors(self) -> None:
@@ -112,15 +116,15 @@ class WholeFit:
             if key not in fit.unused:
                 self._set(key, fit.values[key], fit.errors[key], LIMITS[key])
             else:
-                self.reasons[key] = 'it makes no difference in these runs'
-        if 'accel_limit' not in self.errors:    # never reached: then it must not limit on the new surface either
+                self.reasons[key] = 'no measurable effect in these runs'
+        if 'accel_limit' not in self.errors:    # never reached, so it must not take effect on the new surface either
             limit = max(self.start.accel_limit, fit.values['accel_limit'])
             self.surface = self.surface._replace(accel_limit=limit)
-            self.reasons['accel_limit'] = 'not reached in these runs: raised to about what they show at least'
+            self.reasons['accel_limit'] = 'not reached in these runs: at least about their highest acceleration'
         if fit.rms > max(POOR_TRAVEL, POOR * fit.travel):
-            self.warnings.append(f'odometry: {1e3 * fit.rms:.1f} mm rms in 0.2 s are not explained by commands and '
-                                 f'motors, of {1e3 * fit.travel:.1f} mm: check that the commands are those of this '
-                                 'robot')
+            self.warnings.append(f'odometry: of {1e3 * fit.travel:.1f} mm rms in 0.2 s, commands and motors do not '
+                                 f'explain {1e3 * fit.rms:.1f} mm: check that the commands and the odometry belong to '
+                                 'the same robot')
 
     def _fit_to_truth(self) -> None:
         runs = [PreparedRun(recording, self.base_width) for recording in self.recordings]
@@ -129,17 +133,18 @@ class WholeFit:
         windows = [run.windows(length) for run in runs]
         number = sum(len(each.first) for each in windows)
         if not number:
-            raise ConfigError(f'truth: no {length:.1f} s without a gap, in {len(runs)} recordings: expected some')
+            raise ConfigError(f'truth: no window of {length:.1f} s without a gap in {len(runs)} recordings: expected '
+                              'at least one')
         runs = [run for run, each in zip(runs, windows) if len(each.first)]
         windows = [each for each in windows if len(each.first)]
-        self.description = (f"floor from {'odometry' if self.has_odometry else 'commands'} to the truth, in {number} "
+        self.description = (f"floor, from {'odometry' if self.has_odometry else 'commands'} and the truth in {number} "
                             f'windows of {length:.1f} s')
         means = FLOOR if self.has_odometry else ('delay', 'lag') + FLOOR
         if not self.has_odometry:
             for key in ('accel_limit', 'drag_straight', 'drag_turning'):
                 self.reasons[key] = 'no odometry'
-            self.notes.append('Without odometry, drag and slip look alike: these slips belong to the drags of the '
-                              'starting surface.')
+            self.notes.append('Without odometry, the fit cannot distinguish drag from slip: these slips are valid with '
+                              'the drags of the starting surface.')
         noises = NOISES + (SPREADS if len(runs) >= MIN_RUNS else ())
         for key in SPREADS if len(runs) < MIN_RUNS else ():
             self.reasons[key] = f'{len(runs)} of at least {MIN_RUNS} runs'
@@ -153,21 +158,22 @@ class WholeFit:
             self._set(key, getattr(surface, key), error, BOUNDS.get(key))
         if fitter.wider > CLEARLY_WIDER:
             x, y, yaw = numpy.sqrt(numpy.diag(fitter.floor))
-            self.notes.append(f'The ends of the windows have errors of {1e3 * max(x, y):.1f} mm and '
-                              f'{degrees(yaw):.2f} degrees besides, which do not grow with the path: of the truth, or '
+            self.notes.append(f'The end poses of the windows have additional errors of {1e3 * max(x, y):.1f} mm and '
+                              f'{degrees(yaw):.2f} degrees, which do not grow along the path: errors of the truth, or '
                               'of the times of the commands. They are not in the surface.')
         self._look_for_outliers(fitter, surface)
 
     def _fit_known(self, fitter: Fitter, start: Surface, means: Sequence[str],
                    noises: Sequence[str]) -> tuple[Surface, dict[str, float]]:
-        """(Surface, {key: standard error}) of what can be told; the others stay as on the surface so far."""
+        """Fit the keys that the runs determine. Returns (Surface, {key: standard error}). The other keys keep their
+        current values."""
         prior = start
         while True:
             surface, errors, _ = fit_floor(fitter, start, means, noises, prior)
             unknown = [key for key in (*means, *noises) if not errors[key] <= LARGEST[key]]
             if not unknown:
                 break
-            # the worst first: without it, the others may be known
+            # drop the worst first: without it, the others may be determined
             worst = max(unknown, key=lambda key: errors[key] / LARGEST[key])
             self.reasons[worst] = f'found {getattr(surface, worst):.3g} +- {errors[worst]:.2g}: too uncertain'
             start = with_values(surface, {worst: getattr(self.surface, worst)})
@@ -184,15 +190,15 @@ class WholeFit:
             covariance = Covariance(surface, prediction.sensitivities(True), fitter.floor)
             squares = (covariance.whitened(prediction.errors).reshape(-1, 3) ** 2).sum(axis=1)
             far = numpy.flatnonzero(squares > FAR_OFF)
-            if len(far) > 0.02 * len(squares):      # a floor's errors have fat tails
+            if len(far) > 0.02 * len(squares):      # the errors of a floor have heavy tails
                 first = run.times[windows.first[far[0]]] - run.times[0]
-                self.warnings.append(f'{run.recording.name}: {len(far)} of {len(squares)} windows end far from where '
-                                     f'this floor would have them, the first {first:.0f} s after the start')
+                self.warnings.append(f'{run.recording.name}: {len(far)} of {len(squares)} windows have an end pose far '
+                                     f'from the prediction; the first one begins {first:.0f} s after the start')
 
     def _fit_to_ends(self) -> None:
         assert self.end_errors
         runs = [PreparedRun(recording, self.base_width) for recording in self.recordings]
-        self.description = (f"floor from {'odometry' if self.has_odometry else 'commands'} to {len(runs)} ends "
+        self.description = (f"floor, from {'odometry' if self.has_odometry else 'commands'} and {len(runs)} end poses "
                             'measured by hand')
         fit = tape.fit_ends(runs, self.surface, self.end_errors)
         self.surface = with_values(self.surface, fit.values)
@@ -205,35 +211,37 @@ class WholeFit:
         found = fit_gyro(self.recordings, self._stopping_time(),
                          self.end_errors[2] if self.end_errors else 0.0)
         for key in ('gyro_noise', 'gyro_bias', 'gyro_scale_error', 'gyro_measurement_range'):
-            self.reasons[key] = 'the recordings do not tell it' if self.recordings[0].gyro else 'no gyro'
+            self.reasons[key] = 'not determined by these runs' if self.recordings[0].gyro else 'no gyro'
         for key, (value, error) in found.items():
             if error == numpy.inf and len(self.recordings) == 1:
                 self.reasons[key] = 'one run only'
             elif not error < value:
-                self.reasons[key] = f'found {value:.2g}: less than its own uncertainty'
+                self.reasons[key] = f'found {value:.2g}: smaller than its uncertainty'
             else:
                 self._set(key, value, error)
 
 
 def limits_of(key: str) -> tuple[float, float]:
-    """(lowest, highest) value of a key, in SI units."""
+    """Return the (lowest, highest) value of a key, in SI units."""
     found = {**KEYS, **OPTIONAL_KEYS}[key]
     return found.convert(found.low), found.convert(found.high)
 
 
 def check_alike(recordings: Sequence[Recording]) -> None:
-    """Raise ConfigError unless all Recordings have the same series, gyros apart."""
+    """Raise ConfigError unless all Recordings contain the same series, ignoring gyros."""
     for field in ('odometry', 'truth', 'end'):
         having = [recording for recording in recordings if getattr(recording, field) is not None]
         if 0 < len(having) < len(recordings):
             without = next(each for each in recordings if getattr(each, field) is None)
-            raise ConfigError(f'{without.name}: no {field}, but {having[0].name} has it: expected all runs alike')
+            raise ConfigError(f'{without.name}: no {field}, although {having[0].name} has it: expected the same data '
+                              'in all runs')
 
 
 def truth_errors(recordings: Sequence[Recording], delay: float) -> tuple[float, ...]:
-    """1 sigma of x, y (m) and yaw (rad) of the truth, from robots that stand still; and no less than RESOLUTION.
+    """Return 1 sigma of x, y (m) and yaw (rad) of the truth, from stationary robots; at least RESOLUTION.
 
-    delay: of the motors, s."""
+    delay: of the motors, s.
+    """
     squares, number = numpy.zeros(3), 0
     for recording in recordings:
         truth = recording.truth

@@ -1,4 +1,4 @@
-"""The robot's pose by tf2, for a driving script that measures its way."""
+"""Looks up the robot's pose with tf2, for odometry-based driving scripts."""
 from __future__ import annotations
 
 from math import atan2
@@ -17,11 +17,12 @@ from rbx1_nav.ros.node.life import end_requested, sleep
 from rbx1_nav.units import wrap_angle
 
 MAX_AGE = 0.5       # s: older transforms are not used
-BASE_FRAMES = ('base_footprint', 'base_link')   # usual names of a robot's base, REP 105 and REP 120
+COMBINED_FRAME = 'odom_combined'    # the filter's output frame, see rbx1_bringup/launch
+BASE_FRAMES = ('base_footprint', 'base_link')   # usual names of a robot's base frame, REP 105 and REP 120
 
 
 def format_pose(pose: Pose) -> str:
-    """A Pose as text."""
+    """Return a Pose as text."""
     return f'({pose.x:.3f} m, {pose.y:.3f} m, {wrap_angle(pose.yaw):.3f} rad)'
 
 
@@ -33,7 +34,7 @@ class PoseListener:
     """Looks up the pose of the robot's base in a frame."""
 
     def __init__(self, odom_frame: str, base_frame: str | None, linear_speed: float, angular_speed: float) -> None:
-        """base_frame: a name; None for the first of BASE_FRAMES that exists; the robot's speeds: m/s, rad/s."""
+        """base_frame: a name, or None for the first of BASE_FRAMES that exists; speeds of the robot: m/s, rad/s."""
         self.speeds = linear_speed, angular_speed
         self.odom_frame = odom_frame
         self.base_frames: Sequence[str] = [base_frame] if base_frame else BASE_FRAMES
@@ -41,23 +42,23 @@ class PoseListener:
         self.listener = tf2_ros.TransformListener(self.buffer)
         self.reset = False  # whether the base was reset
         self.reset_sub = rospy.Subscriber('reset_odometry', Empty, self._on_reset)
-        # (stamp in s, Pose) of the last transform, None until a pose was returned
+        # (stamp in s, Pose) of the last transform; None until a pose has been returned
         self.before: tuple[float, Pose] | None = None
-        self.last: tuple[float, Pose] | None = None     # the same, None also after a rest
+        self.last: tuple[float, Pose] | None = None     # like `before`, but None also after a rest
         self.velocity = Pose(0.0, 0.0, 0.0)     # between the last two transforms, m/s and rad/s
 
     @property
     def base_frame(self) -> str:
-        """The robot's frame, or the frames that it may be."""
+        """The frame of the robot, or the candidates for it."""
         return ' or '.join(self.base_frames)
 
     def pose(self) -> Pose:
-        """The Pose now, extrapolated from the last two transforms; yaw not wrapped.
+        """Return the current Pose, extrapolated from the last two transforms; the yaw is not wrapped.
 
         Raises LostTransform, and ROSException if the base was reset since the first pose, or the pose has jumped.
         """
         if self.reset:
-            raise rospy.ROSException('The base was reset in mid-run: its pose is no longer measured from the start')
+            raise rospy.ROSException('The base was reset during the run: its pose is no longer measured from the start')
         transform = self._look_up()
         stamp = transform.header.stamp.to_sec()
         age = rospy.get_time() - stamp
@@ -71,11 +72,11 @@ class PoseListener:
         return Pose(*(value + rate * max(age, 0.0) for value, rate in zip(pose, self.velocity)))
 
     def forget_velocity(self) -> None:
-        """To be called when the robot was stopped: it does not move on as it did before."""
+        """Discard the velocity; to be called when the robot has been stopped."""
         self.last = None
 
     def wait(self, timeout: float, check: Callable[[], None] = lambda: None) -> Pose:
-        """pose() as soon as there is one. check(): called again and again, and may raise.
+        """Wait for a pose and return it as pose() does. check(): called repeatedly while waiting; may raise.
 
         Raises ROSException after `timeout` s of wall time, ROSInterruptException.
         """
@@ -109,7 +110,7 @@ class PoseListener:
         self.last = stamp, pose
 
     def _check_jump(self, stamp: float, pose: Pose) -> None:
-        """Raises ROSException if the robot cannot have got here since the last transform."""
+        """Raise ROSException if the robot cannot have moved to this pose since the last transform."""
         if self.before and not is_reachable(self.before[1], pose, stamp - self.before[0], *self.speeds):
             raise rospy.ROSException(f'The pose of {self.base_frame} in {self.odom_frame} jumped from '
                                      f'{format_pose(self.before[1])} to {format_pose(pose)}: was the base restarted?')
@@ -121,14 +122,17 @@ class PoseListener:
                 transform = self.buffer.lookup_transform(self.odom_frame, frame, rospy.Time(0))
             except tf2_ros.TransformException:
                 continue
-            self.base_frames = [frame]      # from now on this one
+            self.base_frames = [frame]      # from now on, only this frame
             return transform
         raise LostTransform(f'There is no transform from {self.odom_frame} to {self.base_frame}{self._known_frames()}')
 
     def _known_frames(self) -> str:
-        """The end of a message that lists the frames that exist, if one of ours does not."""
+        """Return the last part of a message: the list of existing frames, if one of ours does not exist."""
         tree = yaml.safe_load(self.buffer.all_frames_as_yaml()) or {}
         frames = set(tree) | {frame['parent'] for frame in tree.values()} if tree else set()
         if not frames or self.odom_frame in frames and frames.intersection(self.base_frames):
             return ''
-        return f"; frames that exist: {', '.join(sorted(frames))}"
+        existing = f"; frames that exist: {', '.join(sorted(frames))}"
+        if self.odom_frame == COMBINED_FRAME and self.odom_frame not in frames:
+            existing += f'. To start the filter that publishes {COMBINED_FRAME}: roslaunch rbx1_bringup odom_ekf.launch'
+        return existing
