@@ -1,4 +1,4 @@
-"""Other people's bases: the cases of bases.py."""
+"""Robot bases of other projects: the cases of bases.py."""
 from typing import NamedTuple, Optional
 
 SMALL, MEDIUM, LARGE = (1e-5, 1e-5), (0.001, 0.03), (0.1, 0.5)      # variances, see Case
@@ -6,25 +6,25 @@ LAB, HARD, CARPET = 'create_lab_floor', 'hard_floor', 'low_ply_carpet'
 
 
 class Case(NamedTuple):
-    """A base and the messages that it sends. Pairs of variances of odometry: of x and y (m^2) and of yaw (rad^2), which
-    are also those of the speeds (per s^2); of an IMU: of the rate (rad^2/s^2) and of the orientation (rad^2)."""
+    """A base and the messages that it sends. Pairs of variances for odometry: x and y (m^2), and yaw (rad^2), also used
+    for the speeds (per s^2); for an IMU: rate (rad^2/s^2), and orientation (rad^2)."""
     name: str
     floor: str
-    odom: Optional[tuple] = None        # variances; None: those of the simulated base
-    odom_at_rest: Optional[tuple] = None    # None: the same
-    twist: bool = True                  # whether the twist has a covariance, too; otherwise it is 0
-    imu: Optional[tuple] = None         # variances; None: those of the simulated gyro
-    bias: Optional[float] = None        # degrees/s, at the start; None: drawn, see the floor's file
+    odom: Optional[tuple] = None        # variances; None: as reported by the simulated base
+    odom_at_rest: Optional[tuple] = None    # None: as while moving
+    twist: bool = True                  # whether the twist also has a covariance; otherwise it is 0
+    imu: Optional[tuple] = None         # variances; None: as reported by the simulated gyro
+    bias: Optional[float] = None        # degrees/s, at the start; None: drawn, see the surface file
     drift: float = 0.0                  # of the bias, degrees/s per minute
-    scale: Optional[float] = None       # error of the gyro, fraction of the rate; None: drawn, see the floor's file
-    ratio: float = 1.0                  # mean ratio of the wheels' turn and the true one; 1: the floor's slip
+    scale: Optional[float] = None       # error of the gyro, fraction of the rate; None: drawn, see the surface file
+    ratio: float = 1.0                  # mean ratio of the wheels' turn to the true turn; 1: slip of the floor
     speed: float = 0.2                  # m/s
     odom_rate: int = 50                 # Hz
     imu_rate: int = 50                  # Hz
-    unbiased: str = ''                  # the name of the same case with a bias of 0
+    unbiased: str = ''                  # the name of the corresponding case with a bias of 0
 
 
-# the driver or robot that a case is taken from is beside it; the other cases vary one property
+# a comment names the driver or robot that a case is taken from; the other cases vary one property
 CASES = {case.name: case for case in (
     Case('lab_small', LAB, SMALL),
     Case('lab_medium', LAB, MEDIUM),            # husky_control, jackal_control: control.yaml of diff_drive_controller

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Run the filter on the messages of other people's bases, beside robot_pose_ekf's arithmetic. See README.md."""
+"""Compare the filter with robot_pose_ekf's arithmetic on the messages of other projects' bases. See README.md."""
 import argparse
 from bisect import bisect_right
 from concurrent.futures import ProcessPoolExecutor
@@ -25,47 +25,47 @@ from rbx1_nav.simulation.surfaces import load_surface
 from rbx1_nav.units import SECOND
 
 REST = 3.0              # s before the first motion
-RATIO_SPREAD = 0.1      # 1 sigma of a skid-steer's ratio from motion to motion, as a fraction of it
-SAMPLE = 0.5            # s between two poses whose NEES is taken
+RATIO_SPREAD = 0.1      # 1 sigma of a skid-steer's ratio from motion to motion, as a fraction of the ratio
+SAMPLE = 0.5            # s between two poses for which the NEES is calculated
 # (s, fraction of the speed, rad/s): the exercise three times; figures of eight; legs, some of them without a stop
 PATHS = (((5, 1, 0), (1, 0, 0), (3.2, 0, 1), (1, 0, 0)) * 6,
          ((10.4, 1, 0.6), (10.4, 1, -0.6), (2, 0, 0)) * 3,
          ((4, 1, 0), (3, 0.5, 0.5), (6, 1, 0), (1.6, 0, 0), (1.6, 0, -1), (3, 1, 0), (5, 1, -0.3), (1.4, 0, 0),
           (4, -0.5, 0), (4.8, 0, 1), (1, 0, 0)) * 2)
-ESTIMATORS = '', 'port_', 'reckoned_'      # prefixes of their figures; the first one is the filter
+ESTIMATORS = '', 'port_', 'reckoned_'      # prefixes of their figures; the first is the filter
 COLUMNS = (('heading', 'heading deg', 2), ('port_heading', 'port', 2), ('reckoned_heading', 'reckoned', 2),
            ('position', 'position m', 2), ('port_position', 'port', 2), ('reckoned_position', 'reckoned', 2),
            ('nees', 'NEES', 1), ('by_bias', 'by bias', 2))      # figure, title, decimals in Markdown
 
 
 class Record(NamedTuple):
-    """The messages of a run, each list in the order of its stamps, and the truth."""
+    """The messages of a run, each list in stamp order, and the truth."""
     odom: list      # (Odom, variances of its pose's x, y (m^2) and yaw (rad^2))
-    imu: list       # (Imu, (yaw, variance) of its orientation), the first one for the time from 0 on
+    imu: list       # (Imu, (yaw, variance) of its orientation), the first one for the time since 0
     truth: list     # Pose at the stamp of each Odom
 
 
 def drive(robot, case, surface, seed):
-    """The Record of a run. The seed also selects the path, and the side to which it turns."""
+    """The Record of a run. The seed also selects the path and its direction of turning."""
     rng = random.Random('bases %d' % seed)
-    if case.ratio != 1:     # as much noise in a true turn, although the wheels turn farther
+    if case.ratio != 1:     # equal noise in a true turn, although the wheels turn farther
         surface = surface._replace(heading_noise_turning=surface.heading_noise_turning / math.sqrt(case.ratio))
     base = make_base(robot._replace(rate=case.odom_rate), surface, seed)
     if case.bias is not None:
         base.gyro.run = base.gyro.run._replace(gyro_bias=math.radians(case.bias))
     if case.scale is not None:
         base.gyro.run = base.gyro.run._replace(gyro_scale_error=case.scale)
-    # wheels that report twice the turn are commanded to turn twice as fast: the paths are the same
+    # wheels that report twice the turn are commanded to turn twice as fast, so the paths are equal
     side = case.ratio * (1, -1)[seed // len(PATHS) % 2]
     legs = [(REST, 0, 0), *PATHS[seed % len(PATHS)], (1, 0, 0)]
     ends = [round(end * SECOND) for end in accumulate(leg[0] for leg in legs)]
-    # devices with different rates have different clocks
+    # devices with different rates have separate clocks
     phase = 0.0 if case.imu_rate == case.odom_rate else rng.random()
     stamps = [(round(number * SECOND / case.odom_rate), 1) for number in range(ends[-1] * case.odom_rate // SECOND + 1)]
     stamps += [(round((number + phase) * SECOND / case.imu_rate), 0)
                for number in range(1, ends[-1] * case.imu_rate // SECOND + 2)]
     record, current = Record([], [], []), None
-    base.read_gyro()        # readings begin now
+    base.read_gyro()        # readings start now
     for stamp, is_odom in sorted(stamps):
         base.advance(stamp)
         if is_odom:
@@ -98,14 +98,14 @@ def odometry(case, base, stamp):
 
 
 def run_filter(record):
-    """The Estimate of the filter at the stamp of each Odom; where it has none, the one before."""
+    """The Estimate of the filter at the stamp of each Odom, or the previous one if there is none."""
     estimates = replay(record, UNKNOWN_FLOOR, 0)
     stamps = sorted(estimates)
     return [estimates[stamps[bisect_right(stamps, odom.stamp) - 1]] for odom, _ in record.odom]
 
 
 def yaw_at_odometry(record, yaws):
-    """The values of each IMU message, interpolated at the stamps of the odometry, as robot_pose_ekf does."""
+    """The values of the IMU messages, interpolated at the odometry stamps, as in robot_pose_ekf."""
     return numpy.interp([odom.stamp for odom, _ in record.odom], [imu.stamp for imu, _ in record.imu], yaws)
 
 
@@ -119,8 +119,8 @@ def run_port(record):
 
 
 def reckon(record):
-    """The last pose of dead reckoning: the wheels' distance in the direction of the gyro, which is integrated after the
-    mean rate of the first REST seconds is subtracted."""
+    """The last pose of dead reckoning: wheel distance along the gyro heading. The mean gyro rate of the first REST
+    seconds is subtracted before the integration."""
     stamps = numpy.array([imu.stamp for imu, _ in record.imu]) / SECOND
     rates = numpy.array([imu.rate for imu, _ in record.imu])
     durations = numpy.diff(stamps, prepend=0.0)
@@ -134,7 +134,7 @@ def reckon(record):
 
 
 def judge(case, record):
-    """An array: squared errors at the end of each of ESTIMATORS (degrees^2, m^2), and the mean NEES of the filter."""
+    """An array: final squared errors of each of ESTIMATORS (degrees^2, m^2), and the mean NEES of the filter."""
     estimates, truth = run_filter(record), record.truth
     start, step = round((REST + SAMPLE) * case.odom_rate), round(SAMPLE * case.odom_rate)
     nees = numpy.mean([consistency(estimate.pose, true, estimate.covariance)
@@ -144,12 +144,12 @@ def judge(case, record):
 
 
 def run(task):
-    """(name of the case, what judge() returns) of a task: (robot, Case, Surface, seed)."""
+    """(name of the case, result of judge()) for a task: (robot, Case, Surface, seed)."""
     return task[1].name, judge(task[1], drive(*task))
 
 
 def figures(name, seeds, sums):
-    """The row of a case: root mean squares over the seeds of the errors at the end (degrees, m), and the mean NEES."""
+    """The row of a case: root mean square of the final errors over the seeds (degrees, m), and the mean NEES."""
     means = [float(value) / seeds for value in sums]
     row = dict(case=name, seeds=seeds, nees=means[-1])
     for prefix, heading, position in zip(ESTIMATORS, means[0::2], means[1::2]):
@@ -158,7 +158,7 @@ def figures(name, seeds, sums):
 
 
 def judged(row, unbiased=None):
-    """The row with its limits and misses. unbiased: the row of the same case with a bias of 0."""
+    """The row with its limits and misses. unbiased: the row of the corresponding case with a bias of 0."""
     row = dict(row, limits=dict(
         heading=(0, 1.1 * min(row['port_heading'], row['reckoned_heading']) + 0.1), nees=(0.3, 6)))
     if unbiased:
@@ -168,7 +168,7 @@ def judged(row, unbiased=None):
 
 
 def measure(robot, names, seeds, jobs):
-    """One row per case, in their order. names: of the cases."""
+    """One row per case, in the order of `names` (of the cases)."""
     surfaces = {floor: load_surface(floor, resources.surfaces()) for floor in {CASES[name].floor for name in names}}
     tasks = [(robot, CASES[name], surfaces[CASES[name].floor], seed) for name in names for seed in range(seeds)]
     sums = dict.fromkeys(names, 0.0)
@@ -188,7 +188,7 @@ def table(rows):
 
 
 def markdown(rows):
-    """The same in Markdown. What is beyond its limit is bold."""
+    """The rows in Markdown. Figures beyond their limits are bold."""
     yield f"| case | {' | '.join(title for _, title, _ in COLUMNS)} |"
     yield f"{'|---' * (len(COLUMNS) + 1)}|"
     for row in rows:
@@ -212,7 +212,7 @@ def main():
         if name not in CASES:
             parser.error(f"--case: {name}: expected one of {', '.join(CASES)}")
     wanted = set(arguments.case or CASES)
-    wanted |= {CASES[name].unbiased for name in wanted}     # a limit is relative to these
+    wanted |= {CASES[name].unbiased for name in wanted}     # limits are relative to these
     with open(resources.path('config', 'turtlebot.yaml'), encoding='utf-8') as file:
         robot = read_robot(yaml.safe_load(file))
     rows = measure(robot, [name for name in CASES if name in wanted], arguments.seeds, arguments.jobs)

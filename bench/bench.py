@@ -2,7 +2,7 @@
 """Measure any base with any driver from outside, given the shell commands that start them. See README.md.
 
 Each run starts a roscore on a free port of the loopback interface, the base, and a probe that records every command and
-every odometry message. No process is left behind, not even after Ctrl-C.
+every odometry message. All processes are cleaned up, even after Ctrl-C.
 """
 import argparse
 import contextlib
@@ -25,19 +25,19 @@ import table
 from probe import Probe
 
 START = 30  # s of wall time for a roscore or a base to come up
-SETTLE = 5  # s of wall time for the robot to come to a standstill after the driver has ended
+SETTLE = 5  # s of wall time for the robot to come to a standstill after the driver has exited
 SAMPLE = 0.25  # s between two samples of CPU time and memory
 SIGNALS = signal.SIGINT, signal.SIGTERM, signal.SIGHUP
-# Where the exercise ends when each command is in force for exactly 1/50 s: out 1 m, 3.14 rad, back 1 m, 3.14 rad.
+# End pose of the exercise if each command is in force for exactly 1/50 s: out 1 m, 3.14 rad, back 1 m, 3.14 rad.
 TUTORIAL = figures.arc(figures.arc(figures.arc(figures.arc((0, 0, 0), 1, 0, 1), 0, 1, 3.14), 1, 0, 1), 0, 1, 3.14)
 
 
 class Failure(Exception):
-    """A run that could not be measured; the text says why."""
+    """A run that could not be measured; the text gives the reason."""
 
 
 class Interrupted(BaseException):
-    """A signal ended the program."""
+    """A signal interrupted the program."""
 
 
 class Transport(xmlrpc.client.Transport):
@@ -50,7 +50,7 @@ class Transport(xmlrpc.client.Transport):
 
 
 class Session:
-    """A roscore and the commands that were started with it; leaving the context stops all of them."""
+    """A roscore and the commands that were started with it. Leaving the context stops all of them."""
 
     def __init__(self):
         self.folder = tempfile.mkdtemp(prefix='bench_')
@@ -60,7 +60,7 @@ class Session:
             port = free.getsockname()[1]
         self.changes = {'ROS_MASTER_URI': f'http://127.0.0.1:{port}', 'ROS_IP': '127.0.0.1', 'ROS_LOG_DIR': self.folder}
         self.environment = {**os.environ, **self.changes}
-        self.environment.pop('ROS_HOSTNAME', None)  # it would win over ROS_IP
+        self.environment.pop('ROS_HOSTNAME', None)  # it would take precedence over ROS_IP
         try:
             self.start(f'roscore -p {port}')
             # rosout is the last node that roscore starts
@@ -76,11 +76,11 @@ class Session:
         self.close()
 
     def close(self):
-        """Stop all commands in reverse order, by SIGINT or, if one does not end, by SIGKILL."""
+        """Stop all commands in reverse order, with SIGINT, or with SIGKILL if a command does not exit."""
         with uninterrupted():
             for process, command, _ in reversed(self.started):
                 if not processes.stop(process):
-                    print(f'bench: "{command}" did not end on SIGINT: killed', file=sys.stderr)
+                    print(f'bench: "{command}" did not exit on SIGINT: killed', file=sys.stderr)
             processes.kill_rest()
             shutil.rmtree(self.folder, ignore_errors=True)
 
@@ -92,7 +92,7 @@ class Session:
         return process
 
     def wait(self, condition, what):
-        """Return the first true value of condition(). Raises Failure after START seconds, or if a command ends."""
+        """Return the first true value of condition(). Raises Failure after START seconds, or if a command exits."""
         end = time.monotonic() + START
         while True:
             value = condition()
@@ -100,12 +100,12 @@ class Session:
                 return value
             ended = [command for process, command, _ in self.started if process.poll() is not None]
             if ended or time.monotonic() > end:
-                reason = f'"{ended[0]}" ended' if ended else f'timed out after {START} s'
+                reason = f'"{ended[0]}" exited' if ended else f'timed out after {START} s'
                 raise Failure(f'waiting for {what}: {reason}\n{self.output()}')
             time.sleep(0.05)
 
     def output(self):
-        """The last lines of output of the command that was started last."""
+        """The last lines of output of the most recently started command."""
         with open(self.started[-1][2], errors='replace') as file:
             return ''.join(file.readlines()[-15:])
 
@@ -127,14 +127,14 @@ class Session:
         return self.call(self.changes['ROS_MASTER_URI'], 'getParam', name)
 
     def node_process(self, name):
-        """The process id of a node, as soon as it runs."""
+        """The process id of a node, once it is running."""
         uri = self.wait(lambda: self.node_uri(name), f'the node {name}')
         return self.wait(lambda: self.call(uri, 'getPid'), f'the process id of {name}')
 
 
 @contextlib.contextmanager
 def uninterrupted():
-    """Ignore signals meanwhile: stopping must be completed."""
+    """Ignore signals within this context, because the shutdown must complete."""
     before = [signal.signal(number, signal.SIG_IGN) for number in SIGNALS]
     yield
     for number, handler in zip(SIGNALS, before):
@@ -142,12 +142,12 @@ def uninterrupted():
 
 
 def interrupt(number, _):
-    """Signal handler that ends the program by an exception, so that all commands are stopped."""
+    """Signal handler that raises an exception, so that all commands are stopped."""
     raise Interrupted(f'interrupted by {signal.Signals(number).name}')
 
 
 def prepare():
-    """Make sure that rospy is there, and that no process is left behind."""
+    """Make sure that rospy is installed and that all processes are cleaned up."""
     if not importlib.util.find_spec('rospy'):
         sys.exit(f'bench: {sys.executable} has no rospy: expected the Python of your ROS, as in\n'
                  f'  /usr/bin/python3 {sys.argv[0]} ...')
@@ -166,7 +166,7 @@ def bring_up(session, args, publish=False):
 
 
 def measure_run(args, load):
-    """One run with `load` busy loops beside it; returns its figures, and its periods (s) for pooling."""
+    """Measure one run with `load` busy loops in parallel; returns its figures, and its periods (s) for pooling."""
     with Session() as session:
         probe, pids = bring_up(session, args)
         simulated = bool(session.parameter('/use_sim_time'))
@@ -177,9 +177,9 @@ def measure_run(args, load):
         while driver.poll() is None:
             samples.append(processes.sample(pids))
             if time.monotonic() > end:
-                raise Failure(f'the driver did not end within {args.limit:g} s\n{session.output()}')
+                raise Failure(f'the driver did not exit within {args.limit:g} s\n{session.output()}')
             if session.started[1][0].poll() is not None:
-                raise Failure(f'"{args.base}" ended during the run')
+                raise Failure(f'"{args.base}" exited during the run')
             time.sleep(SAMPLE)
         proportional = processes.proportional(pids)
         settled = probe.ask('settled', SETTLE)
@@ -187,7 +187,7 @@ def measure_run(args, load):
             loop.kill()
         commands, odometry = probe.ask('record')
         if driver.returncode:
-            print(f'bench: the driver ended with status {driver.returncode}:\n{session.output()}', file=sys.stderr)
+            print(f'bench: the driver exited with status {driver.returncode}:\n{session.output()}', file=sys.stderr)
     row, periods, odom_periods = figures.run_figures(commands, odometry, samples, args.timeout,
                                                      args.exact if simulated else None)
     row.update(load=load, simulated_time=simulated, driver_exit=driver.returncode, settled=settled,
@@ -196,7 +196,7 @@ def measure_run(args, load):
 
 
 def measure_latency(args):
-    """The delays between commands at random phases and the first odometry that shows them, with a base at rest."""
+    """The delays from commands at random phases to the first odometry that shows them, starting at rest."""
     with Session() as session:
         probe, _ = bring_up(session, args, publish=True)
         time.sleep(1)
@@ -206,7 +206,7 @@ def measure_latency(args):
 
 
 def host():
-    """The machine and software that the numbers depend on."""
+    """The machine and the software on which the numbers depend."""
     model = 'unknown'
     with contextlib.suppress(OSError), open('/proc/cpuinfo') as file:
         model = next((line.split(':')[1].strip() for line in file if line.startswith('model name')), model)
@@ -220,12 +220,12 @@ def arguments():
     """The command line."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument('--base', required=True, help='shell command that starts the base, without a roscore')
-    parser.add_argument('--driver', help='shell command that drives the base, and ends')
+    parser.add_argument('--driver', help='shell command that drives the base, and exits')
     parser.add_argument('--runs', type=int, default=10, help='number of runs (default 10)')
     parser.add_argument('--latency', type=int, default=0, metavar='N',
                         help='after the runs, measure the latency of N commands')
     parser.add_argument('--latency-speed', type=float, default=0.1, help='speed of these commands, m/s (default 0.1)')
-    parser.add_argument('--load', type=int, default=0, metavar='N', help='run N busy loops beside every second run')
+    parser.add_argument('--load', type=int, default=0, metavar='N', help='run N busy loops during every second run')
     parser.add_argument('--json', metavar='FILE', help='write all figures to this file')
     parser.add_argument('--timeout', type=float, default=1.0,
                         help='timeout of a command in the base, s (default 1.0; 0: none)')
@@ -243,7 +243,7 @@ def arguments():
 
 
 def measure(args, result):
-    """Measure what the command line asks for: print the figures, and add them to `result`."""
+    """Measure what the command line requests: print the figures, and add them to `result`."""
     paths = [path for _, path, *_ in table.COLUMNS]
     periods, odom_periods = [], []
     if args.runs:

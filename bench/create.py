@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Measure the base node of a Create on the emulated robot: latency, CPU time, end of the exercise. See README.md.
+"""Measure the base node of a Create on the emulated robot: latency, CPU time, end pose of the exercise. See README.md.
 
-Each exercise has a roscore and a robot of its own, and so have latency and CPU time together. No process is left
-behind, not even after Ctrl-C.
+Each exercise has its own roscore and robot. Latency and CPU time share a roscore and a robot. All processes are cleaned
+up, even after Ctrl-C.
 """
 import argparse
 import math
@@ -25,14 +25,14 @@ FILTER = 'roslaunch rbx1_bringup odom_ekf.launch'
 BY_TIME = 'rosrun rbx1_nav timed_out_and_back.py'
 COMBINED = 'rosrun rbx1_nav odom_out_and_back.py _odom_frame:=odom_combined'
 COMMANDS = "rostopic pub -r 50 /cmd_vel geometry_msgs/Twist '[0.1, 0, 0]' '[0, 0, 0.2]'"
-REST = 5        # s that the robot stands first: its gyro finds its offset
+REST = 5        # s that the robot is stationary at first, so that the gyro offset can be determined
 CPU_TIME = 20   # s of each measurement of CPU time
 LIMIT = 120     # s of wall time for an exercise
 
 
 def start_robot(session, robot_type, surface, seed, *others):
-    """Start robot, base node and the other commands, and wait until the robot can be driven."""
-    session.environment['PYTHONUNBUFFERED'] = '1'   # the log shows a line when it is printed
+    """Start the robot, the base node and the other commands, and wait until the robot can be driven."""
+    session.environment['PYTHONUNBUFFERED'] = '1'   # each line reaches the log as soon as it is printed
     session.start(f'{BASE} robot_type:={robot_type} surface:={surface} seed:={seed} port:={session.folder}/port')
     log = session.started[-1][2]
     for command in others:
@@ -46,7 +46,7 @@ def start_robot(session, robot_type, surface, seed, *others):
 
 
 def exercise(robot_type, surface, seed, driver, *others):
-    """(m, degrees) between the robot's first and last pose, by ground truth."""
+    """(m, degrees) between the robot's first and last pose, from ground truth."""
     with bench.Session() as session:
         start_robot(session, robot_type, surface, seed, *others)
         probe = Probe(session.changes, '/cmd_vel', '/ground_truth')
@@ -62,7 +62,7 @@ def exercise(robot_type, surface, seed, driver, *others):
 
 
 def cpu(pids):
-    """CPU time of the processes and their children from now on, in % of a core."""
+    """CPU time of the processes and their children for the next CPU_TIME seconds, in % of a core."""
     samples = [processes.sample(pids)]
     time.sleep(CPU_TIME)
     samples.append(processes.sample(pids))
@@ -70,8 +70,8 @@ def cpu(pids):
 
 
 def line_delays(environment, count):
-    """The delays (s) from `count` commands at random phases to the last byte of each at the robot; in a new process."""
-    # Ctrl-C at the terminal reaches this process too, but the parent decides when it ends
+    """The delays (s) from `count` commands at random phases to their last byte at the robot; runs in a new process."""
+    # Ctrl-C in the terminal reaches this process too, but the parent decides when to stop it
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     os.environ.update(environment)
@@ -88,14 +88,14 @@ def line_delays(environment, count):
         time.sleep(random.uniform(0.05, 0.15))
         message = Twist()
         message.linear.x = 0.0 if index % 2 else 0.1
-        published.append((time.time(), message.linear.x))   # /line has ROS time, which is this one
+        published.append((time.time(), message.linear.x))   # /line uses ROS time, which equals this time
         publisher.publish(message)
     time.sleep(0.5)
     return figures.shown_after(published, figures.line_speeds(texts))
 
 
 def measure_node(robot_type, seed, count):
-    """The node's CPU time, and its latency with `count` commands: (what, text) of each."""
+    """Yield (what, text) for the node's CPU time, and for its latency with `count` commands."""
     with bench.Session() as session:
         start_robot(session, robot_type, 'ideal', seed)
         pids = [session.node_process('/turtlebot_node')]
@@ -116,7 +116,7 @@ def measure_node(robot_type, seed, count):
 
 
 def measure(args):
-    """Measure what the command line asks for: (robot_type, what, text) of each."""
+    """Measure what the command line requests: yield (robot_type, what, text) for each."""
     for robot_type in ROBOTS if args.commands else ():
         for what, text in measure_node(robot_type, args.seed, args.commands):
             yield robot_type, what, text
@@ -131,9 +131,9 @@ def measure(args):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument('--commands', type=int, default=300, metavar='N',
-                        help='commands of the latency (default 300; 0: neither latency nor CPU time)')
+                        help='commands for the latency (default 300; 0: neither latency nor CPU time)')
     parser.add_argument('--runs', type=int, default=3, help='runs of each exercise and robot (default 3)')
-    parser.add_argument('--seed', type=int, default=1, help='of the first run (default 1)')
+    parser.add_argument('--seed', type=int, default=1, help='seed of the first run (default 1)')
     args = parser.parse_args()
     bench.prepare()
     print(', '.join(f'{key} {value}' for key, value in bench.host().items()))

@@ -1,13 +1,13 @@
 """The figures of a run, computed from the recorded messages, without ROS, files or a clock.
 
-Units: metres, radians, seconds. Headings are counter-clockwise positive.
+Units: meters, radians, seconds. Headings are counter-clockwise positive.
 A command is (received, v, w): time of arrival (s), forward speed (m/s), turning speed (rad/s).
 An odometry record is (received, stamp, x, y, heading, v, w). A pose is (x, y, heading).
 """
 import math
 import struct
 
-GAP = 0.5  # s: a longer pause between two commands is the end of a stream
+GAP = 0.5  # s: a longer pause between two commands terminates a stream
 
 
 def wrap(angle):
@@ -21,14 +21,14 @@ def yaw(x, y, z, w):
 
 
 def relative(pose, start):
-    """The pose in the frame of the pose `start`: x ahead of it, y to its left; the heading is wrapped."""
+    """The pose in the frame of the pose `start`: x ahead, y to the left; the heading is wrapped."""
     dx, dy = pose[0] - start[0], pose[1] - start[1]
     c, s = math.cos(start[2]), math.sin(start[2])
     return c * dx + s * dy, c * dy - s * dx, wrap(pose[2] - start[2])
 
 
 def arc(pose, v, w, duration):
-    """The pose after `duration` (s) at constant v and w: along an arc, whose chord points half of the turn further."""
+    """The pose after `duration` (s) at constant v and w: along an arc, whose chord is rotated by half of the turn."""
     x, y, heading = pose
     half = w * duration / 2
     chord = v * duration * (math.sin(half) / half if abs(half) > 1e-6 else 1 - half * half / 6)
@@ -67,15 +67,15 @@ def spread(values):
 
 
 def command_periods(commands):
-    """How long each moving command was the latest (s), without pauses and without what follows a zero command."""
+    """How long each moving command was the latest one (s), excluding pauses and the time after zero commands."""
     return [after[0] - before[0] for before, after in zip(commands, commands[1:])
             if (before[1] or before[2]) and after[0] - before[0] <= GAP]
 
 
 def shown_after(published, odometry):
-    """The delay (s) from each published (time, v) to the first odometry that shows it; None if the next comes first.
+    """The delay (s) from each published (time, v) to the first odometry that shows it; None if the next one is earlier.
 
-    An odometry message shows a command if its forward speed is nearer to the new speed than to the old one or, for a
+    An odometry message shows a command if its forward speed is closer to the new speed than to the old one or, for a
     start from rest, if the position has changed by 0.1 mm.
     """
     delays = []
@@ -95,7 +95,7 @@ def shown_after(published, odometry):
 
 
 def line_speeds(texts):
-    """An odometry record of each Drive Direct command (145) in texts of /line: its time, and the mean speed as v."""
+    """An odometry record for each Drive Direct command (145) in texts of /line: its time, and the mean speed as v."""
     records = []
     for text in texts:
         stamp, data = text.split()
@@ -106,7 +106,7 @@ def line_speeds(texts):
 
 
 def usage(samples, begin, end):
-    """Share of a core between the first and the last sample in an interval; a sample is (time, CPU time, ...), s."""
+    """Fraction of a core between the first and the last sample in an interval; a sample is (time, CPU time, ...), s."""
     inside = [sample for sample in samples if begin <= sample[0] <= end]
     if len(inside) < 2:
         return None

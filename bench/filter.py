@@ -1,16 +1,16 @@
 #!/usr/bin/env python3
-"""Run the filter on every floor with every floor assumed, beside robot_pose_ekf's arithmetic. See README.md."""
+"""Compare the filter with robot_pose_ekf's arithmetic for every true and every assumed floor. See README.md."""
 import argparse
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import nullcontext
 
 import yaml
 
-from floors import UNKNOWN_FLOOR, Follower, KnownHeading, figures, limits, misses, markdown, report, table
+from floors import UNKNOWN, Follower, KnownHeading, figures, limits, misses, markdown, report, table
 from robot_pose_ekf import RobotPoseEkf
 from rbx1_nav.control.legs import StuckError
 from rbx1_nav.estimation.combined_odometry import CombinedOdometry
-from rbx1_nav.estimation.priors import UNKNOWN_FLOOR as any_floor, priors
+from rbx1_nav.estimation.priors import UNKNOWN_FLOOR, priors
 from rbx1_nav.robot.description import read_robot
 from rbx1_nav.ros.node import resources
 from rbx1_nav.simulation.exercise import EXERCISE, METHODS, feed, simulate
@@ -23,9 +23,9 @@ NOTHING = 0, 0, 0.0, 0.0, 0.0   # the arguments of figures() before the first ru
 
 
 def run(robot, surface, assumed, method, seed):
-    """One run: the Errors of the filter for each of `assumed` (name: Priors), those of the port and of KnownHeading.
+    """One run: the Errors of the filter for each of `assumed` (name: Priors), of the port, and of KnownHeading.
 
-    The assumed floor must be one if the method is ekf, where the robot follows the filter. Raises StuckError.
+    `assumed` must contain one floor if the method is ekf, because the robot then follows the filter. Raises StuckError.
     """
     prior = next(iter(assumed.values())) if method == 'ekf' else None
     filters = {} if prior else {name: CombinedOdometry(each, SECOND) for name, each in assumed.items()}
@@ -53,12 +53,12 @@ def run(robot, surface, assumed, method, seed):
 
 
 def add(one, other):
-    """The sum of the arguments of figures() of some runs and others."""
+    """The element-wise sum of two lists of arguments of figures()."""
     return [before + more for before, more in zip(one, other)]
 
 
 def run_some(task):
-    """Runs of some seeds: (true floor, method), {assumed: [arguments of figures()]}."""
+    """Runs with several seeds: (true floor, method), {assumed: [arguments of figures()]}."""
     robot, true, surface, assumed, method, seeds = task
     sums = {name: list(NOTHING) for name in assumed}
     for seed in seeds:
@@ -76,7 +76,7 @@ def tasks(robot, surfaces, assumed, methods, seeds):
     for true, surface in surfaces.items():
         count = seeds if surface else 1     # nothing is drawn on the ideal floor
         for method in methods:
-            # a robot that follows the filter drives another path with each
+            # a robot that follows the filter drives a different path with each prior
             for group in ([{name: prior} for name, prior in assumed.items()] if method == 'ekf' else [assumed]):
                 for start in range(0, count, CHUNK):
                     yield robot, true, surface, group, method, range(start, min(start + CHUNK, count))
@@ -104,12 +104,12 @@ def measure(robot, surfaces, assumed, methods, seeds, jobs):
 def main():
     """Measure, print, and write JSON."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument('--seeds', type=int, default=200, metavar='N', help='runs of each kind; default: 200')
+    parser.add_argument('--seeds', type=int, default=200, metavar='N', help='runs of each combination; default: 200')
     parser.add_argument('--true', action='append', metavar='NAME', help='only this true floor; can be repeated')
     parser.add_argument('--assumed', action='append', metavar='NAME', help='only this assumed floor; can be repeated')
     parser.add_argument('--method', action='append', choices=METHODS, help='only this method; can be repeated')
     parser.add_argument('--jobs', type=int, default=1, metavar='N', help='processes; default: 1')
-    parser.add_argument('--markdown', action='store_true', help='print the table of docs/figures.md')
+    parser.add_argument('--markdown', action='store_true', help='print the table of bench/filter_tables.md')
     parser.add_argument('--json', metavar='FILE')
     arguments = parser.parse_args()
     for name in 'seeds', 'jobs':
@@ -117,7 +117,7 @@ def main():
             parser.error('--%s: %d: expected an integer above 0' % (name, getattr(arguments, name)))
     folder = resources.surfaces()
     surfaces = {name: load_surface(name, folder) for name in known_surfaces(folder)}
-    assumed = {**{name: priors(surface) for name, surface in surfaces.items()}, UNKNOWN_FLOOR: any_floor}
+    assumed = {**{name: priors(surface) for name, surface in surfaces.items()}, UNKNOWN: UNKNOWN_FLOOR}
     for name, known in ('true', surfaces), ('assumed', assumed):
         for value in getattr(arguments, name) or ():
             if value not in known:

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Judge fit_surface.py by simulated runs on floors that it does not know. See README.md."""
+"""Evaluate fit_surface.py with simulated runs on floors that are unknown to it. See README.md."""
 import argparse
 from math import radians
 import random
@@ -23,15 +23,15 @@ from rbx1_nav.units import SECOND
 RUNS = 10
 RATE = 50           # Hz
 TAPE = 0.01, 0.01, radians(2)   # 1 sigma: m, m, rad
-RANGES = dict(      # of random surfaces: lowest, highest; the logarithm is drawn evenly where both are above 0
+RANGES = dict(      # of random surfaces: lowest, highest; drawn log-uniformly if both are above 0
     lag=(0.03, 0.3), accel_limit=(0.5, 3.0), drag_straight=(0.002, 0.02), drag_turning=(0.002, 0.03),
     slip_straight=(-0.02, 0.06), slip_straight_spread=(0.003, 0.02), slip_turning=(-0.02, 0.06),
     slip_turning_spread=(0.003, 0.02), ticks_meter=(4100, 4100), gyro_noise=(radians(0.05), radians(0.5)),
     gyro_bias=(radians(0.1), radians(2)), gyro_scale_error=(0.002, 0.02), gyro_measurement_range=(radians(150),) * 2,
     delay=(0.02, 0.3), curvature=(-0.1, 0.1), turning_loss=(0.0, 0.1), heading_noise_turning=(0.02, 0.12),
     heading_noise_straight=(0.01, 0.06), distance_noise=(0.005, 0.04))
-WITHIN = 'drag_straight', 'drag_turning', 'delay', 'slip_straight', 'slip_turning'     # 5 %, the latter two as a scale
-KNOWN = 0.025       # a value is identifiable within 5 % if its standard error is at most this part of it
+WITHIN = 'drag_straight', 'drag_turning', 'delay', 'slip_straight', 'slip_turning'     # 5 %, the last two as a scale
+KNOWN = 0.025       # a value is identifiable within 5 % if its relative standard error is at most this
 START = 'low_ply_carpet'
 
 
@@ -43,14 +43,14 @@ def random_surface(generator):
 
 
 def exercise():
-    """[(linear, angular, ticks)] of the tutorial's exercise, with its rests."""
+    """[(linear, angular, ticks)] of the tutorial's exercise, including its rests."""
     rest = (0.0, 0.0, RATE)
     motions = [each for motion in out_and_back(**EXERCISE) for each in (motion[1:], rest)]
     return [rest, rest] + motions + [rest]
 
 
 def drive(generator):
-    """The same of a drive with turns, arcs and straight parts at several speeds, 40 s."""
+    """[(linear, angular, ticks)] of a drive of 40 s with turns, arcs and straight parts at several speeds."""
     motions, left = [(0.0, 0.0, 2 * RATE)], 36 * RATE
     while left > 0:
         ticks = round(generator.uniform(1, 4) * RATE)
@@ -63,7 +63,7 @@ def drive(generator):
 
 
 def record(robot, surface, seed, motions, name='run'):
-    """(Recording with truth, the true Pose at its end)."""
+    """(Recording with truth, true end pose)."""
     base = make_base(robot, surface, seed)
     base.read_gyro()
     now, commands, odometry, truth, gyro = 0, [], [(0.0, 0, 0, 0)], [(0.0, 0, 0, 0)], []
@@ -81,7 +81,7 @@ def record(robot, surface, seed, motions, name='run'):
 
 
 def judge_values(robot, start, seeds, odometry=True):
-    """Fit random surfaces, and print how far the values are from the true ones, in standard errors."""
+    """Fit random surfaces, and print the deviations of the values from the true ones, in standard errors."""
     errors, parts, longest, left = {}, {key: [] for key in WITHIN}, 0.0, {}
     for seed in seeds:
         generator = random.Random(seed)
@@ -120,7 +120,7 @@ def judge_values(robot, start, seeds, odometry=True):
 
 
 def judge_tape(robot, start, seeds, odometry=True):
-    """Fit three runs of the exercise with ends by tape, and print how often the region of 90 % holds a fourth."""
+    """Fit three runs of the exercise with taped end poses; print how often the 90 % region contains a fourth one."""
     shares, with_heading = [], []
     for seed in seeds:
         generator = random.Random(seed)
@@ -135,18 +135,19 @@ def judge_tape(robot, start, seeds, odometry=True):
         shares.append(ends[0])
         with_heading.append(ends[1])
     for name, some in (('x, y', shares), ('x, y, heading', with_heading)):
-        print('tape%s, %-14s fourth ends in the region of 50 %%: %3.0f of 100, of 90 %%: %3.0f of 100 (%d trials)' % (
-            '' if odometry else ', no odometry', f'{name}:', 100 * (numpy.array(some) < 0.5).mean(),
-            100 * (numpy.array(some) < 0.9).mean(), len(some)), flush=True)
+        print('tape%s, %-14s fourth end poses in the 50 %% region: %3.0f of 100, in the 90 %% region: %3.0f of 100 '
+              '(%d trials)' % (
+                  '' if odometry else ', no odometry', f'{name}:', 100 * (numpy.array(some) < 0.5).mean(),
+                  100 * (numpy.array(some) < 0.9).mean(), len(some)), flush=True)
 
 
 def main():
-    """Measure, print."""
+    """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument('--surfaces', type=int, default=20, metavar='N', help='random surfaces; default: 20')
     parser.add_argument('--trials', type=int, default=100, metavar='N', help='trials with a tape; default: 100')
     parser.add_argument('--seed', type=int, default=0, metavar='S', help='the first seed; default: 0')
-    parser.add_argument('--no-odometry', action='store_true', help='from commands and truth alone')
+    parser.add_argument('--no-odometry', action='store_true', help='use only commands and truth')
     parser.add_argument('--start', default=START, metavar='NAME', help=f'starting surface; default: {START}')
     arguments = parser.parse_args()
     with open(resources.path('config', 'turtlebot.yaml'), encoding='utf-8') as file:

@@ -1,6 +1,6 @@
 """The figures of a filter under a true and an assumed floor, and their limits; without ROS and without a simulator.
 
-Units: metres, radians; headings in the results in degrees. A pose is (x, y, yaw).
+Units: meters, radians; headings in the results in degrees. A pose is (x, y, yaw).
 """
 from collections import namedtuple
 import json
@@ -17,7 +17,7 @@ CELLS = (('heading', 1, 2), ('port_heading', 1, 2), ('position', 100, 2), ('port
 
 Errors = namedtuple('Errors', 'ticks heading position end_heading end_position nees')
 Errors.__doc__ = """Sums over runs: number of ticks; squared errors of heading (degrees^2) and position (m^2) at all
-ticks, and at the end; normalised estimation error squared at the end (0 for the port)."""
+ticks, and at the end; normalized estimation error squared at the end (0 for the port)."""
 
 
 def squared_errors(pose, truth):
@@ -27,7 +27,7 @@ def squared_errors(pose, truth):
 
 
 def consistency(pose, truth, covariance):
-    """The normalised estimation error squared; infinite if the covariance is not positive definite."""
+    """The normalized estimation error squared; infinite if the covariance is not positive definite."""
     error = numpy.subtract(pose, truth)
     error[2] = math.remainder(error[2], 2 * math.pi)
     try:
@@ -59,14 +59,14 @@ class Follower:
 
 
 class KnownHeading:
-    """Dead reckoning that is told the true heading and the mean slip: no filter without another sensor does better."""
+    """Dead reckoning with the true heading and mean slip: no filter without another sensor can do better."""
 
     def __init__(self, slip):
         self.slip = slip
         self.pose = self.odom = None
 
     def update(self, odom, truth):
-        """Add the displacement that odometry reports. odom, truth: poses (x, y, yaw)."""
+        """Add the displacement reported by odometry. odom, truth: poses (x, y, yaw)."""
         if self.odom is None:
             self.pose = tuple(truth)
         else:
@@ -78,8 +78,8 @@ class KnownHeading:
 
 
 def figures(runs, stuck, errors, port, best):
-    """Root mean squares, their ratios, and the mean NEES. runs: their number; stuck: that of those that never ended;
-    errors, port, best: Errors of the filter, the port and KnownHeading, summed over the runs."""
+    """Root mean squares, their ratios, and the mean NEES. runs: number of runs; stuck: number of runs that never
+    finished; errors, port, best: Errors of the filter, the port and KnownHeading, summed over the runs."""
     errors, port, best = (Errors(*map(float, each)) for each in (errors, port, best))
     values = dict(runs=runs, stuck=stuck, nees=errors.nees / runs)
     for name, sums in ('', errors), ('port_', port), ('best_', best):
@@ -88,15 +88,15 @@ def figures(runs, stuck, errors, port, best):
                        f'{name}end_heading': math.sqrt(sums.end_heading / runs),
                        f'{name}end_position': math.sqrt(sums.end_position / runs)})
     for name in 'heading', 'position':
-        if values[f'port_{name}'] > 1e-9:   # on the ideal floor, the port's errors are those of rounding
+        if values[f'port_{name}'] > 1e-9:   # on the ideal floor, the port only has rounding errors
             values[f'{name}_ratio'] = values[name] / values[f'port_{name}']
     return values
 
 
 def limits(true, assumed, values, unobservable):
-    """{figure: (least, greatest)} of a pair of floors.
+    """{figure: (minimum, maximum)} for a pair of floors.
 
-    unobservable: m, the wrongly assumed straight slip times the path, which nothing on the robot can observe.
+    unobservable: m, the error of the assumed straight slip times the path, which nothing on the robot can measure.
     """
     heading, position = 1.1 * values['port_heading'] + 0.1, 1.1 * values['port_position'] + 0.002
     if true == assumed:
@@ -109,18 +109,18 @@ def limits(true, assumed, values, unobservable):
 
 
 def misses(values, bounds):
-    """The figures that are beyond their limits, and `stuck` if a run never ended."""
+    """The figures that are beyond their limits, and `stuck` if a run never finished."""
     return ([name for name, (least, greatest) in bounds.items() if not least <= values[name] <= greatest]
             + ['stuck'] * (values.get('stuck', 0) > 0))
 
 
 def digits(value):
-    """A figure as text, with three digits that count."""
+    """A figure as text, with three significant digits."""
     return '-' if math.isnan(value) else f'{value:.3g}' if value < 100 or value >= 1e5 else f'{value:.0f}'
 
 
 def aligned(lines, texts):
-    """Lines of cells as columns. texts: the number of first columns that are text, as the last one is."""
+    """Lines of cells as columns. texts: the number of leading text columns; the last column is text, too."""
     widths = [max(map(len, column)) for column in zip(*lines)]
     for line in lines:
         yield '  '.join(text.ljust(width) if number < texts or number == len(line) - 1 else text.rjust(width)
@@ -146,7 +146,7 @@ def table(rows):
 
 
 def markdown(rows):
-    """The same in Markdown, one line per pair of floors. Each cell has a value per method, bold if beyond its limit."""
+    """The rows in Markdown, one line per pair of floors. Each cell has a value per method, bold if beyond its limit."""
     titles = 'true floor', 'assumed', 'heading (degrees)', 'the port', 'position (cm)', 'the port', 'best', 'NEES'
     yield f"| {' | '.join(titles)} |"
     yield f"|{'---|' * len(titles)}"
@@ -159,5 +159,5 @@ def markdown(rows):
 
 
 def markdown_value(row, name, factor, places):
-    """A figure of a row, times a factor."""
+    """A figure of a row, multiplied by a factor."""
     return ('**%.*f**' if name in row['misses'] else '%.*f') % (places, factor * row.get(name, math.nan))

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Judge the filter on a recorded run by the GPS of the robot. See README.md."""
+"""Evaluate the filter on a recorded run against the GPS of the robot. See README.md."""
 import argparse
 from itertools import accumulate
 import math
@@ -21,7 +21,7 @@ RADIUS, SQUARED_ECCENTRICITY = 6378137.0, 6.69437999014e-3     # m; of the WGS 8
 
 
 class Record(NamedTuple):
-    """What a bag contains, each list in the order of its stamps (ns)."""
+    """The contents of a bag, each list in stamp order (ns)."""
     odom: list      # (Odom, variances of its pose's x, y (m^2) and yaw (rad^2))
     imu: list       # (Imu, None)
     speeds: list    # (m/s, rad/s) of each Odom
@@ -46,7 +46,7 @@ def read_record(path, odom, imu, fix):
 
 
 def gyro_readings(imus):
-    """(Imu, None) of each message. The vertical axis is the mean of what the orientations call up."""
+    """(Imu, None) for each message. The vertical axis is the mean up direction of the orientations."""
     x, y, z, w = numpy.array([[getattr(imu.orientation, name) for name in 'xyzw'] for imu in imus]).T
     up = numpy.array([2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]).mean(1)
     vertical = tuple((up / numpy.linalg.norm(up)).tolist())
@@ -59,7 +59,7 @@ def gyro_readings(imus):
 
 
 def local(fixes):
-    """(stamps in ns, east and north in m) of the fixes, in the plane that touches WGS 84 at the first one."""
+    """(stamps in ns, east and north in m) of the fixes, in the plane tangent to WGS 84 at the first one."""
     stamps, *angles = numpy.array(fixes).T
     (latitude, longitude) = numpy.radians(angles)
     flat = 1 - SQUARED_ECCENTRICITY * math.sin(latitude[0]) ** 2
@@ -81,7 +81,7 @@ def rms_to_gps(stamps, path, gps):
 
 
 def longest_rest(record):
-    """(first, last) stamp of the longest time in which the wheels report no motion."""
+    """(first, last) stamp of the longest interval in which the wheels report no motion."""
     still = [max(map(abs, speeds)) < STILL for speeds in record.speeds]
     since = accumulate(range(len(still)), lambda start, index: start if still[index - 1] and still[index] else index)
     first, last = max(((start, index) for index, start in enumerate(since) if still[index]),
@@ -90,8 +90,8 @@ def longest_rest(record):
 
 
 def reckon(record):
-    """The path (n x 2) of dead reckoning: the wheels' distance, in the direction of the gyro, whose mean rate in the
-    longest rest is subtracted."""
+    """The path (n x 2) of dead reckoning: wheel distance along the gyro heading. The mean gyro rate in the longest rest
+    is subtracted."""
     stamps, rates = numpy.array([(imu.stamp, imu.rate) for imu, _ in record.imu]).T
     first, last = longest_rest(record)
     at_rest = (stamps > first) & (stamps <= last)
@@ -106,10 +106,10 @@ def reckon(record):
 
 
 def judge(record):
-    """A dict: rms distances from the GPS (m), and what the filter claims at the end (1 sigma, m and rad)."""
+    """A dict: rms distances from the GPS (m), and the final uncertainty of the filter (1 sigma, m and rad)."""
     stamps, gps = [odom.stamp for odom, _ in record.odom], local(record.fixes)
     if not stamps[0] <= gps[0][-1] or not gps[0][0] <= stamps[-1]:
-        raise ValueError('the odometry and the GPS have no time in common')
+        raise ValueError('the odometry and the GPS do not overlap in time')
     estimates = replay(record, UNKNOWN_FLOOR, stamps[0])
     last = estimates[max(estimates)]
     return dict(
@@ -133,7 +133,7 @@ def main():
         print(f"{arguments.bag}: {getattr(error, 'strerror', None) or error}", file=sys.stderr)
         return 1
     print('rms distance from the GPS: filter %(filter).2f m, wheels %(wheels).2f m, wheels with the gyro '
-          '%(reckoned).2f m\nat the end, the filter claims 1 sigma of %(position_sigma).1f m and %(yaw_sigma).3f rad'
+          '%(reckoned).2f m\nfinal uncertainty of the filter (1 sigma): %(position_sigma).1f m, %(yaw_sigma).3f rad'
           % figures)
     return 0
 

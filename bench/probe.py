@@ -1,7 +1,7 @@
 """The probe: a process that records the messages of one run, so that every run has a new ROS node.
 
-It stores each message as bytes, with its time of arrival on the monotonic clock that all processes of a machine share,
-and decodes it after the run: a callback that does hardly anything does not delay the next message.
+It stores each message as bytes, with its arrival time on the monotonic clock, which all processes of a machine share.
+It decodes the messages after the run, because a callback that does very little does not delay the next message.
 """
 import gc
 import multiprocessing
@@ -18,7 +18,7 @@ STILL = 1e-4  # m and rad: smaller changes are noise
 
 
 class Probe:
-    """The side of the parent: starts the process, and sends it requests."""
+    """Parent side: starts the process, and sends requests to it."""
 
     def __init__(self, environment, cmd_vel, odom, publish=False):
         self.pipe, theirs = multiprocessing.Pipe()
@@ -28,7 +28,7 @@ class Probe:
         theirs.close()
 
     def ask(self, *request):
-        """Send a request (name, arguments...) and return the answer. Raises the exception that it caused."""
+        """Send a request (name, arguments...) and return the response. Raises the exception that it caused."""
         self.pipe.send(request)
         answer = self.pipe.recv()
         if isinstance(answer, Exception):
@@ -37,16 +37,16 @@ class Probe:
 
 
 def run_probe(ours, pipe, environment, cmd_vel, odom, publish):
-    """The process: subscribes to odometry, subscribes to or publishes commands, and answers the requests."""
+    """The process: subscribes to odometry, subscribes to or publishes commands, and responds to requests."""
     ours.close()
-    # Ctrl-C at the terminal reaches this process too, but the parent decides when it ends.
+    # Ctrl-C in the terminal reaches this process too, but the parent decides when to stop it.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     signal.signal(signal.SIGHUP, signal.SIG_IGN)
     os.environ.update(environment)
     import rospy
     from geometry_msgs.msg import Twist
-    # No ROS time: the base would have to serve one more subscriber of /clock.
+    # No ROS time: the base would have to serve an additional subscriber of /clock.
     rospy.init_node('bench_probe', anonymous=True, disable_rostime=True, disable_rosout=True, disable_signals=True)
     gc.disable()
     sys.setswitchinterval(1e-4)
@@ -76,7 +76,7 @@ def run_probe(ours, pipe, environment, cmd_vel, odom, publish):
             what, *arguments = pipe.recv()
             pipe.send(answers[what](*arguments))
         except EOFError:
-            os._exit(0)  # rospy's shutdown would call a master that is being stopped
+            os._exit(0)  # rospy's shutdown would call a master that is shutting down
         except Exception as error:
             pipe.send(RuntimeError(f'{what}: {error}'))
 
@@ -92,7 +92,7 @@ def wait(condition, timeout):
 
 
 def stands_still(odometry):
-    """Whether all poses of the last QUIET seconds are the same."""
+    """Whether all poses of the last QUIET seconds are equal."""
     since = time.monotonic() - QUIET
     recent = []
     for received, message in reversed(odometry):
@@ -106,10 +106,10 @@ def stands_still(odometry):
 
 
 def measure_latency(publisher, twist, odometry, count, speed):
-    """Publish `speed` (m/s) and 0 alternately, at random phases; returns the delays (s) until odometry shows each."""
+    """Alternately publish `speed` (m/s) and 0, at random phases; returns the delays (s) until odometry shows each."""
     published = []
     for index in range(count):
-        # Longer than any odometry takes to show a command, and shorter than the timeout of a base.
+        # Longer than odometry ever takes to show a command, and shorter than the command timeout of a base.
         time.sleep(random.uniform(0.3, 0.6))
         message = twist()
         message.linear.x = 0.0 if index % 2 else speed
@@ -122,7 +122,7 @@ def measure_latency(publisher, twist, odometry, count, speed):
 
 
 def decode(received, kind):
-    """The message in the received bytes. Raises TypeError if the topic has another type than `kind`."""
+    """The message in the received bytes. Raises TypeError if the type of the topic is not `kind`."""
     name = received._connection_header['type']
     if name != kind._type:
         raise TypeError(f'{name}: expected a topic of type {kind._type}')

@@ -1,4 +1,4 @@
-"""Processes: starting commands, measuring a process with all its children, stopping all of them. Linux only (/proc)."""
+"""Processes: start commands, measure a process with all its children, stop all of them. Linux only (/proc)."""
 import ctypes
 import os
 import signal
@@ -9,19 +9,19 @@ TICK = os.sysconf('SC_CLK_TCK')
 
 
 def adopt_orphans():
-    """Make this process the parent of every orphan below it, so that it can stop all that it has started."""
+    """Make this process the parent of every orphan below it, so that it can stop everything that it has started."""
     ctypes.CDLL(None).prctl(36, 1, 0, 0, 0)  # 36: PR_SET_CHILD_SUBREAPER of linux/prctl.h
 
 
 def start(command, environment, log):
-    """Start a shell command in a session of its own, so that Ctrl-C at the terminal does not reach it."""
+    """Start a shell command in a separate session, so that Ctrl-C in the terminal does not reach it."""
     with open(log, 'wb') as output:
         return subprocess.Popen(command, shell=True, env=environment, stdin=subprocess.DEVNULL, stdout=output,
                                 stderr=subprocess.STDOUT, start_new_session=True)
 
 
 def stop(process, timeout=5):
-    """Send SIGINT to a started command; returns whether it ends within `timeout` (s)."""
+    """Send SIGINT to a started command; returns whether it exits within `timeout` (s)."""
     if process.poll() is None:
         os.killpg(process.pid, signal.SIGINT)
     try:
@@ -45,25 +45,25 @@ def kill_rest():
                     killed.add(pid)
                 os.waitpid(pid, os.WNOHANG)
             except (OSError, ValueError):
-                pass  # it has ended, or is not yet a child of this process: the next round checks again
+                pass  # it has exited, or is not yet a child of this process: the next round checks again
         time.sleep(0.01)
 
 
 def stat(pid):
-    """The fields of /proc/<pid>/stat from the state on: item 0 is field 3 of proc(5)."""
+    """The fields of /proc/<pid>/stat, starting with the state: item 0 is field 3 of proc(5)."""
     with open(f'/proc/{pid}/stat', 'rb') as file:
         return file.read().rpartition(b')')[2].split()
 
 
 def tree(roots):
-    """The set of these processes and all their descendants."""
+    """These processes and all their descendants, as a set."""
     children = {}
     for name in os.listdir('/proc'):
         if name.isdigit():
             try:
                 children.setdefault(int(stat(name)[1]), []).append(int(name))
             except OSError:
-                pass  # it has just ended
+                pass  # it has just exited
     found, new = set(), list(roots)
     while new:
         pid = new.pop()
@@ -78,7 +78,7 @@ def sample(roots):
     now = time.monotonic()
     for pid in tree(roots):
         try:
-            # utime and stime, and those of children that have ended (cutime and cstime)
+            # utime and stime, and cutime and cstime of children that have exited
             cpu += sum(int(field) for field in stat(pid)[11:15])
             resident += memory(pid, 'status', 'VmRSS')
         except OSError:
@@ -95,7 +95,7 @@ def proportional(roots):
 
 
 def memory(pid, file, key):
-    """The value (bytes) of one 'Key:  N kB' line of a file in /proc/<pid>; 0 if it has none."""
+    """The value (bytes) of one 'Key:  N kB' line of a file in /proc/<pid>; 0 if there is none."""
     with open(f'/proc/{pid}/{file}') as lines:
         for line in lines:
             if line.startswith(f'{key}:'):

@@ -21,11 +21,12 @@ from rbx1_nav.ros.node import resources
 from rbx1_nav.simulation.surfaces import known_surfaces, load_surface
 from rbx1_nav.units import SECOND
 
-LEAST_RATIO = -1e-12    # of the least eigenvalue to the greatest
-LONG = 100      # steps: a filter that has run for so many runs for long
+LEAST_RATIO = -1e-12    # smallest eigenvalue / largest one
+LONG = 100      # steps after which a filter counts as long-running
 START = 1000 * SECOND   # ns, of the first message
 WARNINGS = (('dropouts', 'has timed out'), ('recoveries', 'has recovered'), ('restarts', 'restarting'),
-            ('outliers', ': ignored'), ('contradictions', 'one of them is wrong'), ('other floors', 'another floor'))
+            ('outliers', ': ignored'), ('contradictions', 'one of them is wrong'),
+            ('other floors', 'assumed floor'))
 
 
 def log_uniform(rng, low, high):
@@ -42,15 +43,15 @@ class Robot:
         self.pose = Pose(0.0, 0.0, 0.0)
         self.speeds = 0.0, 0.0              # m/s, rad/s
         self.period = log_uniform(rng, 0.01, 0.3)       # s
-        self.rate = log_uniform(rng, 1e-3, 0.05)        # how probable each fault is per tick
+        self.rate = log_uniform(rng, 1e-3, 0.05)        # probability of each fault per tick
         self.gaps = rng.random() < 0.7
         self.jumps = rng.random() < 0.5
-        # half of the sensors always report the same variances, the others any
+        # half of the sensors always report constant variances, the others arbitrary ones
         self.variances = [self._variance() for _ in range(5)] if rng.random() < 0.5 else None
         self.lags = [rng.choice([0.0, 0.0, 0.0, log_uniform(rng, 1e-3, 3.0)]) for _ in range(2)]   # s, odom and imu
         self.slip, self.bias = rng.gauss(0, 0.1), rng.gauss(0, 0.02)
         self.sensitivity = rng.choice([1.0] * 8 + [-1.0, 0.0])      # of the gyro: some are upside down, or broken
-        self.silent = [0, 0]                # ns until which odom and imu send nothing
+        self.silent = [0, 0]                # ns until which odom and imu are silent
         self.outlier = None                 # a Pose to report once
 
     def _variance(self):
@@ -68,7 +69,7 @@ class Robot:
         if rng.random() < 0.05:
             self.speeds = rng.choice([0.0, 0.0, 0.3, -0.3, 1.0]), rng.choice([0.0, 0.0, rng.gauss(0, 1.0)])
         self.now += round(elapsed * SECOND)
-        # within a gap it goes only so far that no sum of gaps leaves the accepted positions
+        # limited within a gap, so that no sum of gaps leaves the range of accepted positions
         moving = min(elapsed, 10.0)
         turned = self.speeds[1] * moving
         self.pose = arc(self.pose, self.speeds[0] * moving, turned / (1 - self.slip))
@@ -92,7 +93,7 @@ class Robot:
     def _odom(self):
         linear, angular, *pose_variances = self.variances and self.variances[:4] or [self._variance() for _ in range(4)]
         if self.rng.random() < 0.02:
-            linear = angular = 0.0      # those of the pose are used instead
+            linear = angular = 0.0      # the variances of the pose are used instead
         pose, self.outlier = self.outlier or self.pose, None
         noise = min(math.sqrt(angular), 0.003)
         x, y, yaw = pose
@@ -105,7 +106,7 @@ class Robot:
         return Imu(self.now, rate * self.sensitivity + self.bias + noise, variance)
 
     def _send(self, sensor, message):
-        """Lose it, double it, delay it."""
+        """Drop, duplicate or delay it."""
         rng, lag = self.rng, self.lags[sensor]
         if self._fault():
             return []
@@ -116,7 +117,7 @@ class Robot:
 
 
 def make_messages(rng, count):
-    """At least `count` messages of a Robot in the order of their arrival, some of them swapped."""
+    """At least `count` messages of a Robot in order of arrival, some of them swapped."""
     robot, messages = Robot(rng), []
     while len(messages) < count:
         messages += robot.tick()
@@ -129,7 +130,7 @@ def make_messages(rng, count):
 
 
 def judge(poses, covariances):
-    """(least ratio of the least eigenvalue to the greatest, number of the first bad estimate or None, what is bad).
+    """(minimum of smallest / largest eigenvalue, number of the first bad estimate or None, what is bad).
 
     poses: n x 3; covariances: n x 3 x 3.
     """
@@ -145,10 +146,10 @@ def judge(poses, covariances):
 
 
 def run(floors, count, seed):
-    """One sequence; a dict of counts, the worst ratio, and `failure`, a text ('' if there is none)."""
+    """Run one sequence; returns a dict of counts, the worst ratio, and `failure`, a text ('' if there is none)."""
     rng = random.Random(seed)
     floor = rng.choice(sorted(floors))
-    clock = [0]     # ns, of a computer on which simulated time passes at another rate
+    clock = [0]     # ns, of a computer on which simulated time runs at a different rate
     factor = rng.choice([None, 1.0, log_uniform(rng, 0.1, 30.0)])
     counts = Counter(sequences=1)
 
@@ -188,7 +189,7 @@ def run(floors, count, seed):
 
 
 def summary(results):
-    """The sums of the counts, the worst ratio, and the shares that tell whether the filter was really tried."""
+    """The sums of the counts, the worst ratio, and the shares that show whether the filter was really exercised."""
     counts = sum((Counter(result['counts']) for result in results), Counter())
     counts['longest'] = max(result['counts'].get('longest', 0) for result in results)
     worst = min(results, key=lambda result: result['ratio'])
@@ -201,8 +202,8 @@ def main():
     """Run, print, and write JSON. Returns the exit status."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('--sequences', type=int, default=2000, metavar='N', help='default: 2000')
-    parser.add_argument('--messages', type=int, default=1000, metavar='N', help='of each sequence; default: 1000')
-    parser.add_argument('--seed', type=int, default=0, help='of the first sequence; default: 0')
+    parser.add_argument('--messages', type=int, default=1000, metavar='N', help='messages per sequence; default: 1000')
+    parser.add_argument('--seed', type=int, default=0, help='seed of the first sequence; default: 0')
     parser.add_argument('--jobs', type=int, default=1, metavar='N', help='processes; default: 1')
     parser.add_argument('--json', metavar='FILE')
     arguments = parser.parse_args()
@@ -220,7 +221,7 @@ def main():
         'sequences', 'messages', 'rejected', 'estimates', *(name for name, _ in WARNINGS))))
     print('accepted messages: %.1f %%; estimates of a filter that has run for more than %d steps: %.1f %%; longest: %d '
           'steps' % (100 * sums['accepted'], LONG, 100 * sums['late'], sums['counts']['longest']))
-    print('least eigenvalue / greatest: at least %.3g (seed %d)' % (sums['worst_ratio'], sums['worst_seed']))
+    print('smallest eigenvalue / largest: at least %.3g (seed %d)' % (sums['worst_ratio'], sums['worst_seed']))
     failures = [result for result in results if result['failure']]
     for result in failures:
         print('--seed %d --sequences 1 --messages %d: %s: %s'

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Judge how well a simulated floor predicts real Creates: those of the UTIAS dataset. See README.md.
+"""Evaluate how well a simulated floor predicts the real Creates of the UTIAS dataset. See README.md.
 
-Fits a surface to the first half of each robot's record, unless one is given, and looks where the robots really were in
-the second half, some seconds after a known pose.
+Unless a surface is given, fits one to the first half of each robot's record. Then compares the prediction with the real
+poses in the second half, some seconds after a known pose.
 """
 import argparse
 import os
@@ -23,13 +23,13 @@ from rbx1_nav.ros.node import resources
 from rbx1_nav.simulation.surfaces import load_surface
 
 LENGTHS = 5, 10, 20, 40     # s
-FITTED = 10     # s, the windows of the fit
-ENDS = 500      # simulated, of each window
-UNEXPLAINED = 0.02, 0.02, 0.05  # m, m, rad: errors after FITTED that a constant slip cannot explain, nearly all of them
-BLOCK = 60      # s: of the bootstrap, since windows that are close have errors in common
+FITTED = 10     # s, length of the windows of the fit
+ENDS = 500      # simulated end poses per window
+UNEXPLAINED = 0.02, 0.02, 0.05  # m, m, rad: errors after FITTED that constant slip cannot explain: nearly all
+BLOCK = 60      # s, block of the bootstrap, because neighboring windows have errors in common
 DRAWS = 2000    # of the bootstrap
 PICTURES = 'real_paths.png', 'real_ends.png'
-PATH_LENGTH, END_LENGTH = 40, 20    # s, the windows in them
+PATH_LENGTH, END_LENGTH = 40, 20    # s, length of the windows shown
 MOTIONS = 'delay', 'lag', 'slip_straight', 'slip_turning', 'curvature', 'turning_loss'
 OLD_MOTIONS = 'lag', 'slip_straight', 'slip_turning', 'drag_straight', 'drag_turning'
 
@@ -46,27 +46,27 @@ def halves(recordings):
 
 
 def separate(windows):
-    """Each of some Windows, alone."""
+    """Split Windows into single ones."""
     return [Windows(windows.first[index:index + 1], windows.length, windows.ends[index:index + 1])
             for index in range(len(windows.first))]
 
 
 def starting_surface(**values):
-    """A surface without errors, for a fit to begin with."""
+    """A surface without errors, as the start of a fit."""
     surface = load_surface('hard_floor', resources.surfaces())
     zeros = dict.fromkeys(('slip_straight', 'slip_turning') + SPREADS, 0.0)
     return surface._replace(**{**zeros, 'drag_straight': 1e-6, 'drag_turning': 1e-6, **values})
 
 
 def ideal_surface():
-    """A surface on which a robot follows its commands, at once."""
+    """A surface on which a robot follows its commands immediately."""
     return starting_surface(lag=1e-4, accel_limit=1e3)
 
 
 def fit(runs, motions, noises):
     """The Surface with these keys fitted to runs, and their standard errors."""
     windows, errors = [run.windows(FITTED) for run in runs], CAMERAS
-    if noises == SPREADS:       # it does best if each window is a run, and few errors are its own
+    if noises == SPREADS:       # the best fit treats each window as a run, with few errors of its own
         errors = UNEXPLAINED
         runs, windows = zip(*((run, window) for run, each in zip(runs, windows) for window in separate(each)))
     fitter = Fitter(runs, windows, errors)
@@ -75,11 +75,11 @@ def fit(runs, motions, noises):
 
 
 class Judgement:
-    """What a surface predicts for windows of a length, beside the truth. One value for each window."""
+    """The prediction of a surface for windows of one length, compared with the truth. One value per window."""
 
     def __init__(self, runs, surface, length, seed=1):
         generator = numpy.random.default_rng(seed)
-        self.windows, self.ends = [], []    # (PreparedRun, Windows with one); simulated
+        self.windows, self.ends = [], []    # (PreparedRun, Windows with one window); simulated end poses
         self.blocks, inside, scores, errors = [], [], [], []
         for number, run in enumerate(runs):
             windows = run.windows(length, length / 2)
@@ -108,14 +108,14 @@ class Judgement:
         return numpy.quantile(drawn, [0.05, 0.95])
 
     def share(self, part):
-        """How many of the true ends are inside the region of a part of the simulated ones, with its interval, in %."""
+        """True end poses inside the region that contains a share of the simulated ones, with interval, in %."""
         def within(inside):
             return 100 * (inside < part).mean()
         return '%3.0f (%2.0f to %3.0f)' % (within(self.inside), *self.interval(within, self.inside))
 
 
 def judge(name, runs, surface):
-    """Print a line for each length. Returns the Judgements."""
+    """Print one line per length. Returns the Judgements."""
     judgements = {}
     for length in LENGTHS:
         each = judgements[length] = Judgement(runs, surface, length)
@@ -127,7 +127,7 @@ def judge(name, runs, surface):
 
 
 def plot(folder, surface, floor, judgements):
-    """Write the pictures. floor: what to call the Surface. Raises OSError."""
+    """Write the pictures. floor: name of the Surface in the titles. Raises OSError."""
     paths, ends = (os.path.join(folder, name) for name in PICTURES)
     draw_paths(paths, 'The same commands for %d s: real robots, and simulated ones on %s\n'
                'The window with the median score of each robot, from the second half of its record' % (
@@ -146,7 +146,7 @@ def show(surface, errors):
 
 
 def leave_out(first, second, judgements):
-    """Print how much worse the prediction is without each part of the model."""
+    """Print how much worse the prediction is without each parameter of the model."""
     print('\nLeft out, and how much the energy score of the second halves grows by it, in % (90 % interval):')
     for key in MOTIONS + NOISES:
         surface, _ = fit(first, [each for each in MOTIONS if each != key], [each for each in NOISES if each != key])
@@ -162,12 +162,12 @@ def leave_out(first, second, judgements):
 
 
 def main():
-    """Fit, judge, print."""
+    """Fit, evaluate, print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument('--data', required=True, metavar='DIR', help='folder of files such as D6R1_Odometry.dat')
     parser.add_argument('--set', type=int, default=6, metavar='N', help='number of the set (default 6)')
-    parser.add_argument('--surface', metavar='NAME', help='a surface, or its YAML file, in place of a fit')
-    parser.add_argument('--leave-out', action='store_true', help='also fit without each part of the model: minutes')
+    parser.add_argument('--surface', metavar='NAME', help='a surface, or its YAML file, instead of a fit')
+    parser.add_argument('--leave-out', action='store_true', help='also fit without each parameter (takes minutes)')
     parser.add_argument('--plot', metavar='DIR', help='write %s and %s to this folder' % PICTURES)
     args = parser.parse_args()
     if args.plot:

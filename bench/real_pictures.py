@@ -1,4 +1,4 @@
-"""Pictures of what real robots did, beside what a simulated floor predicts; windows are chosen by their scores."""
+"""Pictures of real robots and of the prediction for a simulated floor; windows are chosen by their scores."""
 from matplotlib.figure import Figure
 import numpy
 
@@ -9,11 +9,11 @@ from rbx1_nav.plotting.fit import SIMULATED, TRUTH, draw_regions
 from rbx1_nav.plotting.runs import PATHS, save
 
 QUARTILES = (0.25, 'first quartile'), (0.5, 'median'), (0.75, 'third quartile')
-HALF = 0.32     # m, of a panel with ends: the largest region has room
+HALF = 0.32     # m, half the size of a panel with end poses: the largest region fits
 
 
 def ranked(judgement, robot, part):
-    """The index of the window of a Run before which a part of its windows comes, the best predicted first."""
+    """The index of the window at a quantile of a Run, sorted by score, the best predicted window first."""
     own = [index for index, (run, _) in enumerate(judgement.windows) if run is robot]
     return sorted(own, key=lambda index: judgement.scores[index])[int(part * len(own))]
 
@@ -53,8 +53,8 @@ def draw_paths(file, title, judgement, surface, ideal):
 
 
 def draw_ends(file, title, judgement):
-    """For each robot, the windows with the quartiles of its scores: simulated ends, their regions and the real end.
-    Raises OSError."""
+    """For each robot, the windows at the quartiles of its scores: simulated end poses, their regions, and the real end
+    pose. Raises OSError."""
     found = robots(judgement)
     figure = Figure(figsize=(2.7 * len(found), 8.6))
     figure.suptitle(title)

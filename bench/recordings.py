@@ -1,9 +1,8 @@
 #!/usr/bin/env python3
-"""Record runs of timed_out_and_back.py with the filter live, and replay them to the filter and to robot_pose_ekf's
+"""Record runs of timed_out_and_back.py with a live filter, and replay them to the filter and to robot_pose_ekf's
 arithmetic. See README.md.
 
-Each run has a roscore of its own on a free port of the loopback interface. No process is left behind, not even after
-Ctrl-C.
+Each run has its own roscore on a free port of the loopback interface. All processes are cleaned up, even after Ctrl-C.
 """
 import argparse
 import json
@@ -42,7 +41,7 @@ def subscribers(session, topic):
 
 
 def finish(session, process, limit):
-    """Wait for a command to end by itself. Raises Failure."""
+    """Wait until a command exits on its own. Raises Failure."""
     try:
         status = process.wait(limit)
     except subprocess.TimeoutExpired:
@@ -60,7 +59,7 @@ def record(path, seed, args):
         recorder = session.start(f'{RECORDER} -O {path} {" ".join(TOPICS)}')
         session.wait(lambda: all(any(name.startswith('/record') for name in subscribers(session, topic))
                                  for topic in TOPICS), 'the recorder')
-        # the filter counts what it loses; its own subscriptions only, so that nothing else is slowed down
+        # the filter counts its lost messages; only on its own subscriptions, so that nothing else is slowed down
         master = session.changes['ROS_MASTER_URI']
         session.call(master, 'setParam', '/enable_statistics', True)
         session.start(FILTER)
@@ -68,11 +67,11 @@ def record(path, seed, args):
         session.wait(lambda: NODE in subscribers(session, '/imu/data'), 'the filter')
         session.call(master, 'setParam', '/enable_statistics', False)
         session.wait(lambda: probe.ask('arrived', 1), '/odom_ekf')
-        time.sleep(1)       # registered is not yet connected
+        time.sleep(1)       # a registered node may not be connected yet
 
         loops = [subprocess.Popen([sys.executable, '-c', 'while True: pass']) for _ in range(args.load)]
         began = time.monotonic()
-        # from here on the filter and a replay begin with the same message
+        # from here on, the filter and a replay start with the same message
         finish(session, session.start(RESET), bench.START)
         time.sleep(REST / args.factor)
         finish(session, session.start(DRIVER), args.limit)
@@ -81,11 +80,11 @@ def record(path, seed, args):
             loop.kill()
         for process, command, _ in session.started[:4]:
             if process.poll() is not None:
-                raise bench.Failure(f'"{command}" ended during the run')
+                raise bench.Failure(f'"{command}" exited during the run')
         received = [row[:2] for row in probe.ask('record')[1] if row[0] > began]
         processes.stop(recorder, STOP)
         end = time.monotonic() + STOP
-        while not os.path.exists(path):     # `rosbag` may end before the process that it has started to record
+        while not os.path.exists(path):     # `rosbag` may exit before its recording process
             if time.monotonic() > end:
                 raise bench.Failure(f'the recorder did not write {path} within {STOP} s')
             time.sleep(0.05)
@@ -129,7 +128,7 @@ def read(path):
 
 
 def evaluate(path, surface):
-    """The figures of a bag, and the lines of the filter. Raises Failure."""
+    """The figures of a bag, and the log lines of the filter. Raises Failure."""
     import rosbag
     from rbx1_nav.estimation.priors import priors
     from rbx1_nav.simulation.surfaces import load_surface
@@ -161,7 +160,7 @@ def line(row):
 
 
 def report(rows):
-    """Print the means, and what is beyond the limits; returns both."""
+    """Print the means and the figures beyond the limits; returns both."""
     mean, found = replay.means(rows), replay.misses(rows)
     print(f'mean of {len(rows)}: end {1e3 * mean["error_m"]:.2f} mm, {mean["error_deg"]:.3f} degrees; '
           f'the port {1e3 * mean["port_m"]:.2f} mm, {mean["port_deg"]:.3f} degrees; NEES {mean["nees"]:.2f}')
@@ -179,7 +178,7 @@ def arguments():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument('--runs', type=int, default=10, help='number of runs, with the seeds from 0 (default 10)')
     parser.add_argument('--factor', type=float, default=20, help='real_time_factor of the base (default 20)')
-    parser.add_argument('--load', type=int, default=0, metavar='N', help='busy loops beside each run (default 0)')
+    parser.add_argument('--load', type=int, default=0, metavar='N', help='busy loops during each run (default 0)')
     parser.add_argument('--surface', default='low_ply_carpet', help='the floor (default low_ply_carpet)')
     parser.add_argument('--limit', type=float, default=180, help='timeout of the driver, s of wall time (default 180)')
     parser.add_argument('--bags', metavar='DIR', help='keep the bags in this folder')
@@ -192,7 +191,7 @@ def arguments():
     if args.load < 0:
         parser.error(f'--load: {args.load}: expected at least 0')
     if args.replay and not args.bags:
-        parser.error('--replay: expected --bags DIR beside it')
+        parser.error('--replay: expected --bags DIR as well')
     return args
 
 

@@ -1,4 +1,4 @@
-"""The figures of a recorded run: the filter that ran live, the same filter replayed, and the port; without ROS.
+"""The figures of a recorded run: the live filter, the replayed filter, and the port of robot_pose_ekf; without ROS.
 
 Stamps are in ns, poses are (x, y, yaw) in m and rad; angles in the results are in degrees.
 """
@@ -11,24 +11,24 @@ from rbx1_nav.estimation.combined_odometry import CombinedOdometry
 from rbx1_nav.units import SECOND
 from robot_pose_ekf import RobotPoseEkf
 
-STILL = 1e-3        # m and rad: odometry has moved if it differs by more from a pose at rest
-STANDSTILL = 2 * SECOND     # ns before the first motion and after the last one, between which the errors count
-DIFFERENCE = 1e-6   # m and rad: more is no rounding
+STILL = 1e-3        # m and rad: odometry has moved if it differs by more than this from a pose at rest
+STANDSTILL = 2 * SECOND     # ns; errors count from this time before the first motion to this time after the last one
+DIFFERENCE = 1e-6   # m and rad: a larger difference is not rounding
 LIMITS = dict(difference_m=0.001, difference_deg=0.1, nees=(1, 5))
 MORE = re.compile(r'\(and (\d+) more of this kind\)')
 
 Recording = namedtuple('Recording', 'odom imu truth combined statistics missing lines')
-Recording.__doc__ = """What a bag has: odom: (Odom, variances of its pose); imu: (Imu, (yaw, variance) of its
+Recording.__doc__ = """The contents of a bag: odom: (Odom, variances of its pose); imu: (Imu, (yaw, variance) of its
 orientation); truth: {stamp: pose}; combined: Published; statistics: (first stamp, last stamp, number of gaps) of the
 filter's subscriptions, as rospy counts them; missing: by topic, (stamp after the gap, number of messages) that the
-recorder did not get; lines: those of the filter in /rosout."""
+recorder did not receive; lines: log lines of the filter in /rosout."""
 
 Published = namedtuple('Published', 'stamp pose yaw_variance')
-Published.__doc__ = 'What the filter published: stamp, pose, variance of the yaw (rad^2).'
+Published.__doc__ = 'A published estimate: stamp, pose, variance of the yaw (rad^2).'
 
 
 class Unusable(Exception):
-    """A recording that cannot be evaluated; the text says why."""
+    """A recording that cannot be evaluated; the text gives the reason."""
 
 
 def gaps(headers):
@@ -38,7 +38,7 @@ def gaps(headers):
 
 
 def count_lines(lines):
-    """{what: number of lines} about sensors that time out and recover, and rejected messages."""
+    """{what: number of lines} about sensor timeouts, recoveries, and rejected messages."""
     counts = {}
     for what, text in ('timed_out', 'has timed out'), ('recovered', 'has recovered'), ('rejected', '; rejected'):
         found = [line for line in lines if text in line]
@@ -47,9 +47,9 @@ def count_lines(lines):
 
 
 def replay(recording, prior, start, end=math.inf):
-    """{stamp: Estimate} of a filter that gets its first odometry at `start`, and all messages up to `end`."""
+    """{stamp: Estimate} of a filter that receives its first odometry at `start`, and all messages up to `end`."""
     combined = CombinedOdometry(prior, SECOND)
-    # the reading before the first odometry tells when the next one begins
+    # the interval of the next reading starts at the reading before the first odometry
     messages = [(imu.stamp, 0, imu) for imu, _ in recording.imu if start - SECOND <= imu.stamp <= end]
     messages += [(odom.stamp, 1, (odom, variances)) for odom, variances in recording.odom if start <= odom.stamp <= end]
     estimates = {}
@@ -105,10 +105,10 @@ def motion(odom):
 
 
 def is_scheduled(published, stamps, period):
-    """Whether a filter with estimates at `stamps` publishes those that were published, one per `period` (ns).
+    """Whether a filter with estimates at `stamps` publishes exactly `published`, one per `period` (ns).
 
-    It publishes the first estimate at or after each multiple of the period from some time on. So each one published
-    limits that time: it is not before the estimate that was not published yet, and not after the one that was.
+    From some start time on, it publishes the first estimate at or after each multiple of the period. Each published
+    estimate therefore limits the start time: not before the last unpublished estimate, and not after the published one.
     """
     earlier = dict(zip(stamps[1:], stamps))
     low, high = -math.inf, math.inf
@@ -132,18 +132,18 @@ def exercise(recording):
     begin, end = begin - STANDSTILL, end + STANDSTILL
     stamps = [odom.stamp for odom, _ in recording.odom]
     if stamps[0] > begin or stamps[-1] < end:
-        raise Unusable(f'the robot stood for less than {STANDSTILL / SECOND:g} s before or after its motion')
+        raise Unusable(f'the robot was stationary for less than {STANDSTILL / SECOND:g} s before or after its motion')
     return begin, end
 
 
 def live_figures(recording, prior, period):
-    """What the live filter reported, whether it got the messages that were recorded, and its difference from the
-    replay, from its restart to the end of the exercise. period: of what it publishes, ns. Raises Unusable."""
+    """The reports of the live filter, whether it received the recorded messages, and its difference from the replay,
+    from its restart to the end of the exercise. period: publishing period, ns. Raises Unusable."""
     start, (begin, end) = find_start(recording, prior), exercise(recording)
     if start > begin:
         raise Unusable(f'the filter was restarted less than {STANDSTILL / SECOND:g} s before the motion')
     estimates = replay(recording, prior, start, end)
-    # the gyro may be ahead at a restart: what is published at once differs
+    # the gyro may be ahead at a restart: the first published estimate differs
     published = [each for each in recording.combined if start + SECOND < each.stamp <= end]
     if not published:
         raise Unusable('no odom_combined during the exercise')
@@ -184,13 +184,13 @@ def means(rows):
 
 
 def misses(rows):
-    """What is beyond the limits, as text."""
+    """The figures beyond the limits, as text."""
     found = []
     for row in rows:
         lines = sum(row[name] for name in ('timed_out', 'recovered', 'rejected'))
         if lines:
             found.append('seed %d: %d lines about dropouts and rejected messages' % (row['seed'], lines))
-        # not `>`: a difference that is not known is a miss
+        # not `>`: a missing difference (NaN) is a miss
         if row['same'] and not all(row[name] <= LIMITS[name] for name in ('difference_m', 'difference_deg')):
             found.append('seed %d: the same messages, but %.2g m and %.2g degrees from the replay'
                          % (row['seed'], row['difference_m'], row['difference_deg']))

@@ -26,7 +26,7 @@ def turned(pose, other=(0.0, 0.0, 0.0)):
 
 
 def ends(robot, surface, seeds):
-    """(name, values) of the end poses of each method: the true one, and the error of the odometry."""
+    """(name, values) for the end poses of each method: the true end pose, and the odometry error."""
     for method in METHODS:
         runs = list(simulate_many(method, robot, surface, seeds))
         yield f'{method}: true end, from the start (m)', [distance(r.end.truth) for r in runs]
@@ -38,7 +38,7 @@ def ends(robot, surface, seeds):
 
 
 def errors(method, robot, surface, seeds):
-    """Root mean square errors over all ticks of all runs, and the consistency of the filter at their ends."""
+    """Root mean square errors over all ticks of all runs, and the final consistency of the filter."""
     followers = {'/odom': Follower(), '/odom_ekf': Follower()}
     nees = []
     for seed in seeds:
@@ -51,11 +51,11 @@ def errors(method, robot, surface, seeds):
     for title, field in ('heading RMSE (degrees)', 'heading'), ('position RMSE (m)', 'position'):
         for topic, follower in followers.items():
             values[f'{topic} {title}'] = math.sqrt(getattr(follower, field) / follower.ticks)
-    return {**values, 'mean normalised estimation error squared': numpy.mean(nees)}
+    return {**values, 'mean normalized estimation error squared': numpy.mean(nees)}
 
 
 def speed(method, robot, surface, seeds):
-    """Simulated time divided by wall time, for each run, on one core."""
+    """Simulated time divided by wall time for each run, on one core."""
     for seed in seeds:
         start = time.perf_counter()
         simulated = simulate(method, robot, surface, seed).end.time

@@ -1,4 +1,4 @@
-"""The table of bench.py: a line for each run, and their spread."""
+"""The table of bench.py: one line per run, and the spread of the runs."""
 import figures
 
 # heading, path in the figures of a run, factor to the unit shown, decimals
@@ -13,7 +13,7 @@ COLUMNS = [
     ('RSS MB', 'rss_peak_mb', 1, 1), ('PSS MB', 'pss_mb', 1, 1), ('x real', 'real_time_factor', 1, 2),
 ]
 
-WIDTH = 6  # least width of a column
+WIDTH = 6  # minimum width of a column
 
 
 def look_up(row, path):
@@ -24,7 +24,7 @@ def look_up(row, path):
 
 
 def remarks(row):
-    """Anything unusual about a run, as text."""
+    """Unusual facts about a run, as text."""
     words = [f'{row["load"]} loops'] if row['load'] else []
     words += [f'driver exit status {row["driver_exit"]}'] if row['driver_exit'] else []
     words += [] if row['settled'] else ['still moving at the end']

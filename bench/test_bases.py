@@ -1,4 +1,4 @@
-"""The judge of the filter on other people's bases: its messages and its figures."""
+"""The evaluation of the filter on other projects' bases: its messages and its figures."""
 import math
 import os
 
@@ -41,7 +41,7 @@ def test_a_case_with_a_bias_differs_from_its_reference_in_nothing_else(case):
         assert case._replace(name=case.unbiased, bias=0.0, unbiased='') == CASES[case.unbiased]
 
 
-@pytest.mark.parametrize('seed', range(6))      # each path, to both sides
+@pytest.mark.parametrize('seed', range(6))      # each path, turning to both sides
 def test_dead_reckoning_is_exact_without_errors(seed, robot):
     record = bases.drive(robot, IDEAL, None, seed)
     assert bases.reckon(record) == pytest.approx(record.truth[-1], abs=1e-9)        # rounding
@@ -73,7 +73,7 @@ def test_the_wheels_of_a_skid_steer_report_more_than_the_true_turn(robot, monkey
     even = surface_of(case)._replace(heading_noise_turning=0.0, heading_noise_straight=0.0)
 
     def ratio():
-        record = bases.drive(robot, case, even, 0)      # always turns to the same side, 17 rad or more
+        record = bases.drive(robot, case, even, 0)      # always turns in one direction, by 17 rad or more
         return record.odom[-1][0].pose.yaw / record.truth[-1].yaw
     varied = ratio()
     assert varied == pytest.approx(3.0, abs=0.4)        # 6 turns, 10 % each: three sigma of the mean
@@ -101,7 +101,7 @@ def test_errors_are_root_mean_squares_over_the_seeds():
 @pytest.mark.parametrize('values, missed', [
     ({}, []),
     ({'heading': 1.19}, []),
-    ({'heading': 1.21}, ['heading']),       # 1.1 times that of dead reckoning, and 0.1
+    ({'heading': 1.21}, ['heading']),       # 1.1 times the error of dead reckoning, plus 0.1
     ({'heading': 0.66, 'port_heading': 0.5}, ['heading']),
     ({'nees': 0.29}, ['nees']),
     ({'nees': 6.1}, ['nees']),

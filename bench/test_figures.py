@@ -9,7 +9,7 @@ EXACT = 1e-12  # far above the rounding of a few operations on numbers near 1
 
 
 def standing(times, v=0.0, x=0.0):
-    """Odometry records at these times, all with the same speed and position."""
+    """Odometry records at these times, all with identical speed and position."""
     return [(t, t, x, 0.0, 0.0, v, 0.0) for t in times]
 
 

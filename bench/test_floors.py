@@ -41,7 +41,7 @@ def test_a_covariance_that_is_none_is_not_consistent():
 
 def test_with_a_known_heading_only_the_distance_can_be_wrong():
     best = floors.KnownHeading(0.1)
-    for step in range(101):     # the robot goes 1 m to the north, its odometry reports 1.2 m to the north-east
+    for step in range(101):     # the robot drives 1 m north; its odometry reports 1.2 m northeast
         along = step / 100 * 1.2 * math.sqrt(0.5)
         best.update((along, along, math.pi / 4), (2.0, step / 100, math.pi / 2))
     assert best.pose == pytest.approx((2.0, 1.2 * 0.9, math.pi / 2))

@@ -1,4 +1,4 @@
-"""The judge by GPS: its projection, its alignment and its figures, on runs that are known exactly."""
+"""The evaluation against GPS: projection, alignment and figures, for runs that are known exactly."""
 from math import cos, degrees, hypot, pi, sin
 
 from geometry_msgs.msg import Quaternion
@@ -23,8 +23,8 @@ def on_its_side(yaw):
 
 
 def write_bag(path, slip=1.0, bias=0.0, fixes=2.0):
-    """A robot that rests for 5 s, and drives one and a half circles with a radius of 5 m. slip: wheels' turn / true
-    one; bias: rad/s, of the gyro; fixes: Hz."""
+    """A robot that rests for 5 s, then drives one and a half circles with a radius of 5 m. slip: wheels' turn / true
+    turn; bias: of the gyro, rad/s; fixes: Hz."""
     radius, rate = 5.0, 0.2
     with rosbag.Bag(str(path), 'w') as bag:
         for tick in range(int((5 + 3 * pi / rate) * 50)):
@@ -49,7 +49,7 @@ def write_bag(path, slip=1.0, bias=0.0, fixes=2.0):
             bag.write('/imu/data', imu, stamp)
 
             if fixes and tick % int(50 / fixes) == 0:
-                # north is where the robot's x axis points at first
+                # north is the initial direction of the robot's x axis
                 fix = NavSatFix(latitude=BERLIN[0] + radius * sin(turned) / METRE,
                                 longitude=BERLIN[1] - radius * (1 - cos(turned)) / METRE_EAST)
                 fix.header.stamp = stamp
@@ -63,7 +63,7 @@ def judge(path):
 
 def test_an_exact_run_is_exact(tmp_path):
     figures = judge(write_bag(tmp_path / 'exact.bag'))
-    # 0.02 m: the degrees above are rounded; the gyro's reading is that of the end of its interval
+    # 0.02 m: the degrees above are rounded; the gyro reading is taken at the end of its interval
     assert max(figures['filter'], figures['wheels'], figures['reckoned']) < 0.02
 
 
@@ -74,7 +74,7 @@ def test_wheels_that_slip_are_wrong_and_the_gyro_is_right(tmp_path):
 
 
 def test_the_projection_agrees_with_the_arc_of_a_great_circle():
-    # 1 km to the north-east, on a sphere with the earth's mean radius: the ellipsoid differs by less than 0.5 %
+    # 1 km northeast, on a sphere with the earth's mean radius: the ellipsoid differs by less than 0.5 %
     north = degrees(700 / 6371000)
     _, places = gps.local([(0, 52.0, 13.0), (1, 52.0 + north, 13.0 + north / cos(52 * pi / 180))])
     assert hypot(*places[1]) == pytest.approx(700 * 2 ** 0.5, rel=0.005)

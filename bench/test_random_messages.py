@@ -1,4 +1,4 @@
-"""The random sequences and what is checked of them."""
+"""The random sequences and their checks."""
 from collections import Counter
 import random
 
@@ -43,7 +43,7 @@ def test_a_sequence_can_be_repeated():
 
 
 def test_the_sequences_have_every_fault():
-    """Gaps up to 1e7 s, all variances, doubled and swapped messages, and each warning of the filter."""
+    """Gaps up to 1e7 s, all variances, duplicated and swapped messages, and each warning of the filter."""
     gap, variances, doubled, swapped, counts = 0, [], 0, 0, Counter()
     for seed in range(40):
         messages = [message for _, message in random_messages.make_messages(random.Random(seed), 500)]
@@ -54,7 +54,7 @@ def test_the_sequences_have_every_fault():
         doubled += sum(one is other for one, other in zip(messages, messages[1:]))
         swapped += sum(after < before for before, after in zip(stamps, stamps[1:]))
         counts.update(random_messages.run({'ideal': priors(None)}, 500, seed)['counts'])
-    assert 5e6 * SECOND < gap < 2e7 * SECOND    # two gaps may follow each other
+    assert 5e6 * SECOND < gap < 2e7 * SECOND    # two gaps may be consecutive
     assert MIN_VARIANCE <= min(variances) < 1e-11 and 1e11 < max(variances) <= MAX_VARIANCE
     assert doubled > 50 and swapped > 50
     assert all(counts[name] for name in ('dropouts', 'recoveries', 'restarts', 'outliers', 'other floors'))

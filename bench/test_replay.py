@@ -1,4 +1,4 @@
-"""The figures of a recorded run, on a run that is simulated without ROS."""
+"""The figures of a recorded run, for a run simulated without ROS."""
 import math
 import os
 
@@ -24,7 +24,7 @@ STANDSTILL = 200        # ticks before and after the motions
 
 @pytest.fixture(name='recording', scope='module')
 def fixture_recording():
-    """The Recording of a run whose filter is restarted at RESTART, and loses nothing."""
+    """The Recording of a run whose filter is restarted at RESTART, and loses no message."""
     found = replay.Recording([], [], {}, [], [], {}, [])
     combined = CombinedOdometry(PRIOR, SECOND)
 
@@ -55,7 +55,7 @@ def live_figures(recording):
 
 
 def without_odometry(recording, first, count):
-    """The Recording of a recorder that did not get some odometry."""
+    """The Recording of a recorder that missed some odometry."""
     return recording._replace(odom=recording.odom[:first] + recording.odom[first + count:],
                               missing={'/odom': [(recording.odom[first + count][0].stamp, count)]})
 
@@ -74,9 +74,8 @@ def test_the_restart_is_found(recording):
 
 
 def test_odometry_that_was_not_recorded_is_noticed(recording):
-    # while the robot turns: odometry of 5 ticks carries the wheels' part of the heading, which is small once the bias
-    # is
-    # known, and shows when the robot drives on
+    # while the robot turns: odometry of 5 ticks contributes the wheels' part of the heading, which is small once the
+    # bias is known, and becomes visible when the robot continues to drive
     row = live_figures(without_odometry(recording, 600, 5))
     assert not row['same'] and row['missing'] == {'/odom': 5}
     assert 11.5 < row['differs_after_s'] + RESTART / SECOND < 14.0     # tick 600 is at 12 s
@@ -124,7 +123,7 @@ def test_the_errors_are_those_at_the_end_of_the_exercise(recording):
     estimate = replay.replay(recording, PRIOR, begin, end)[end]
     truth = recording.truth[end]
     assert row['error_m'] == pytest.approx(math.hypot(estimate.pose.x - truth[0], estimate.pose.y - truth[1]))
-    # what is true after the end does not count
+    # the truth after the end does not count
     later = {stamp: pose if stamp <= end else (pose[0] + 1, pose[1], pose[2] + 2) for stamp, pose
              in recording.truth.items()}
     assert replay.end_figures(recording._replace(truth=later), PRIOR) == row
@@ -143,7 +142,7 @@ def test_the_port_follows_the_gyro(recording):
 
 
 def test_a_run_without_enough_standstill_cannot_be_evaluated(recording):
-    with pytest.raises(replay.Unusable, match='stood for less than 2 s'):
+    with pytest.raises(replay.Unusable, match='stationary for less than 2 s'):
         replay.exercise(recording._replace(odom=recording.odom[STANDSTILL - 50:]))
     with pytest.raises(replay.Unusable, match='did not move'):
         replay.exercise(recording._replace(odom=recording.odom[:STANDSTILL]))

@@ -1,7 +1,7 @@
 """robot_pose_ekf's arithmetic, against its results in closed form.
 
-The system noise hides the old estimate in each update. So what is left of the filter is: the position moves as the
-odometry does, seen from the estimated heading, and the heading turns by the mean of both turns, weighted by the inverse
+In each update, the system noise makes the old estimate negligible. What remains of the filter: the position follows the
+odometry, rotated to the estimated heading; and the heading turns by the mean of both turns, weighted by the inverse
 variances.
 """
 import cmath
@@ -13,12 +13,12 @@ import pytest
 
 from robot_pose_ekf import SYSTEM_NOISE, RobotPoseEkf
 
-ROUNDING = 1e-5     # of the weights: variances near 1e-5 as the difference of two numbers near SYSTEM_NOISE
+ROUNDING = 1e-5     # of the weights: variances near 1e-5 are differences of two numbers near SYSTEM_NOISE
 VARIANCES = 1e-3, 1e-3, 1e-3
 
 
 def run(messages):
-    """The filter after messages: (time, odometry's pose, its variances, IMU's yaw, its variance)."""
+    """The filter after these messages: (time, odometry pose, its variances, IMU yaw, its variance)."""
     port = RobotPoseEkf()
     for message in messages:
         port.update(*message)
@@ -26,7 +26,7 @@ def run(messages):
 
 
 def by_closed_form(messages):
-    """The same as complex position and yaw. The first message gives the pose, the second one the first measurements."""
+    """The result as complex position and yaw. The first message sets the pose, the second is the first measurement."""
     place, heading = complex(*messages[0][1][:2]), messages[0][1][2]
     for (_, before, _, imu_before, _), (_, odom, variances, imu, imu_variance) in zip(messages[1:], messages[2:]):
         place += (complex(*odom[:2]) - complex(*before[:2])) * cmath.exp(1j * (heading - before[2]))
@@ -43,7 +43,7 @@ def test_it_begins_at_the_pose_of_the_odometry():
 
 def test_straight_at_constant_speed_the_position_is_the_sum_of_the_odometry():
     messages = [(0.1 * n, (0.02 * n, 0.0, 0.0), VARIANCES, 0.3, 1e-3) for n in range(101)]
-    # the travel up to the second message is lost: the first update has nothing to compare with
+    # travel before the second message is lost: the first update has no previous pose to compare with
     assert run(messages).state == pytest.approx([1.98, 0.0, 0.0], abs=1e-9)
 
 
@@ -74,7 +74,7 @@ def test_a_stamp_that_is_not_later_has_no_effect():
 def test_any_drive_ends_as_in_closed_form(seed):
     generator = random.Random(seed)
     time, imu, x, y, yaw, messages = 0.0, 0.0, 0.0, 0.0, 0.0, []
-    for _ in range(300):    # several turns, both yaws reported within one turn, at changing intervals and variances
+    for _ in range(300):    # several turns, both yaws wrapped to one turn, at changing intervals and variances
         time += generator.uniform(0.05, 0.2)
         turn = generator.uniform(-0.1, 0.3)
         x, y = x + generator.uniform(-0.01, 0.04), y + generator.uniform(-0.04, 0.04)

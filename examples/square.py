@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Drive a square, timed: four sides of 1 m, and a quarter turn to the left after each.
 
-Ticks are whole numbers. Wait only with r.sleep() and drive.rest(): the ways to wait in rospy do not notice Ctrl-C here.
+Ticks are whole numbers. Wait only with r.sleep() and drive.rest(): rospy's own sleep functions ignore Ctrl-C here.
 """
 from rbx1_nav.ros.driving.script import TimedDrive, exit_status, init_node
 

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Calibrates the turn that wheels and gyro report: turns 360 degrees by odometry, asks how far it really was.
+"""Calibrates wheels and gyro: turns the robot until its odometry reports 360 degrees, and asks for the true angle.
 
 usage: calibrate_angular.py [_parameter:=value ...] [topic:=new_topic ...]
 example: rosrun rbx1_nav calibrate_angular.py _turns:=3
 
-Mark on the floor where the robot points to. Facing the mark again it has turned by 360 degrees; 10 degrees before it,
-by 350. The gyro is compared with the same turn.
+Mark the robot's heading on the floor. When the robot faces the mark again, it has turned 360 degrees; when it is 10
+degrees short of the mark, it has turned 350 degrees. The gyro is calibrated on the same turn.
 """
 from rbx1_nav.ros.driving.script import exit_status, init_node, number, param
 
@@ -31,40 +31,40 @@ from rbx1_nav.ros.node.question import ask
 ODOM_KEY, GYRO_KEY = 'odom_angular_scale_correction', 'gyro_scale_correction'
 
 PARAMETERS = [
-    number('turns', 1, '', 'how many full turns to the left', 0.1, 100),
+    number('turns', 1, '', 'number of full turns to the left', 0.1, 100),
     number('angular_speed', 0.5, 'rad/s', 'turning speed'),
     number('min_angular_speed', 0.2, 'rad/s', 'lowest speed near the goal'),
     *calibration.PARAMETERS,
-    elsewhere('measured', 'how far the robot turned in the last run: in place of an answer; does not drive',
-              unit='degrees', note='the whole turn, 1800 for five')]
+    elsewhere('measured', 'true angle of the last run, given instead of an answer; the robot does not move',
+              unit='degrees', note='the total angle, 1800 for five turns')]
 
 
 def measure():
-    """Turn once. Returns what odometry and gyro reported, degrees, and the factors with which they did."""
+    """Turn once; return the angles that odometry and gyro reported (degrees) and the factors in force."""
     rate, angular_speed = param('rate'), param('angular_speed')
     leg = Turn('turn left', 2 * pi * param('turns'), angular_speed, param('min_angular_speed'), rate)
     base_node = param('base_node')
     poses = PoseListener(param('odom_frame'), param('base_frame'), 0.0, angular_speed)
-    readings = []       # of the gyro: (s, rad/s)
+    readings = []       # gyro readings: (s, rad/s)
     rospy.Subscriber('imu/data', Imu, lambda message: readings.append((message.header.stamp.to_sec(),
                                                                        message.angular_velocity.z)))
     base, gyro = Diagnosis(base_node, 'Base'), Diagnosis(base_node, 'Gyro')
     forget_run('angular')
     with CalibrationDrive(rate, poses) as drive:
         run = {ODOM_KEY: factor_in_force(base_node, ODOM_KEY), GYRO_KEY: factor_in_force(base_node, GYRO_KEY, None)}
-        # What the gyro reports at rest is its bias.
+        # The gyro reports its bias while the robot is stationary.
         drive.rest(2)
         start = rospy.get_time()
         drive.drive(leg)
         end = rospy.get_time()
     run['reported'] = degrees(leg.done())
-    if run[GYRO_KEY] is None:   # the default of a Create's base
+    if run[GYRO_KEY] is None:   # use the default of the Create driver
         run[GYRO_KEY] = GYRO_CORRECTION if gyro.last else 1.0
     try:
         if gyro.error:
             raise ConfigError(f'the base reports an error: {gyro.error}')
         if not readings:
-            raise ConfigError(f"nothing arrives on {rospy.resolve_name('imu/data')}")
+            raise ConfigError(f"no messages on {rospy.resolve_name('imu/data')}")
         run['gyro'] = degrees(turn_by_gyro(list(readings), start, end, leg.done()))
     except ConfigError as error:
         warn_of_gyro(error)
@@ -88,9 +88,8 @@ def calibrate():
         run = load_run('angular', 'reported', 'loses_fractions', ODOM_KEY, GYRO_KEY)
     print(f"The odometry reports {run['reported']:.1f} degrees.")
     if run['loses_fractions']:
-        print('The robot loses fractions of a degree. The base noticed it in a turn, and now corrects its odometry. '
-              'With '
-              'the line angle_fractions in your file, it does so from the start.')
+        print('The robot loses fractions of a degree. The base detected this during a turn and now corrects its '
+              'odometry. With the angle_fractions line in your configuration file, it does so from the start.')
     if 'gyro' in run:
         print(f"The gyro reports {run['gyro']:.1f} degrees.")
 

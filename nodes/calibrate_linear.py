@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Calibrates the distance that the odometry reports: drives 1 m by odometry, asks how far it really was.
+"""Calibrates the odometry distance: drives until the odometry reports 1 m, and asks for the true distance.
 
 usage: calibrate_linear.py [_parameter:=value ...] [topic:=new_topic ...]
 example: rosrun rbx1_nav calibrate_linear.py _goal_distance:=2
 
-Put a tape on the floor, the zero at a mark on the robot. The odometry should report what you measure: if the robot went
-less far than it reports, the factor becomes smaller.
+Put a tape measure on the floor with its zero at a mark on the robot. The odometry should report the distance that you
+measure. If the true distance is shorter than the reported one, the factor decreases.
 """
 from rbx1_nav.ros.driving.script import exit_status, init_node, number, param
 
@@ -26,16 +26,16 @@ from rbx1_nav.ros.node.question import ask
 KEY = 'odom_linear_scale_correction'
 
 PARAMETERS = [
-    number('goal_distance', 1.0, 'm', 'how far to drive', 0.1, 100),
+    number('goal_distance', 1.0, 'm', 'distance to drive', 0.1, 100),
     number('linear_speed', 0.15, 'm/s', 'forward speed'),
     number('min_linear_speed', 0.05, 'm/s', 'lowest speed near the goal'),
     *calibration.PARAMETERS,
-    elsewhere('measured', 'how far the robot went in the last run: in place of an answer; does not drive', unit='m',
-              note='from half to twice of what was reported')]
+    elsewhere('measured', 'true distance of the last run, given instead of an answer; the robot does not move',
+              unit='m', note='from half to twice the reported distance')]
 
 
 def measure():
-    """Drive once. Returns what the odometry reported, m, and the factor with which it did."""
+    """Drive once; return the distance that the odometry reported (m) and the factor in force."""
     rate, linear_speed = param('rate'), param('linear_speed')
     leg = Straight('forward', param('goal_distance'), linear_speed, param('min_linear_speed'), rate)
     base_node = param('base_node')
@@ -44,7 +44,7 @@ def measure():
     with CalibrationDrive(rate, poses) as drive:
         factor = factor_in_force(base_node, KEY)
         drive.drive(leg)
-    # A tape measures from mark to mark, not along the robot's first heading.
+    # A tape measures from mark to mark, not along the robot's initial heading.
     return {'reported': hypot(leg.last.x - leg.start.x, leg.last.y - leg.start.y), KEY: factor}
 
 
@@ -65,7 +65,7 @@ def calibrate():
     measured = ask('How far is the robot from its start, in m?', check) if measured is None else check(measured)
     if measured is None:
         print('Measure how far the robot is from its start, in m. Then: rosrun rbx1_nav calibrate_linear.py '
-              '_measured:=METRES')
+              '_measured:=METERS')
         return
     factor = corrected(KEY, run[KEY], measured, run['reported'])
     print(f'The factor was {run[KEY]:.4f}. Now it should be:\n{KEY}: {factor:.4f}')

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Combines wheel odometry and a gyro, and takes the place of robot_pose_ekf in a launch file.
+"""Estimates the robot's pose from wheel odometry and a gyro, and replaces robot_pose_ekf in a launch file.
 
 usage: ekf.py [_parameter:=value ...] [topic:=new_topic ...]      usually started by odom_ekf.launch
 """
-import rbx1_nav.ros.node.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded
+import rbx1_nav.ros.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
 
 from functools import partial
 import threading
@@ -34,18 +34,18 @@ class Ekf:
     def __init__(self, parameters):
         self.parameters = parameters
         self.lock = threading.Lock()
-        self.combined = None        # CombinedOdometry of the present publisher of odometry
+        self.combined = None        # CombinedOdometry for the current publisher of odometry
         self.log = LimitedLog()
         self.warn = partial(self.log.add, rospy.logwarn)
         self.sender = OneSender('odom', parameters.sensor_timeout, self.warn, self.restart)
-        self.frames = None          # of its odometry, and of the robot
+        self.frames = None          # frames of its odometry and of the robot
         self.tree = FrameTree()
         self.publisher = EstimatePublisher(parameters, self.tree, partial(self.log.add, rospy.loginfo))
         self.imu = ImuInput('imu_data', self.tree, partial(self.log.add, rospy.loginfo))
         self.diagnostics = Diagnostics(('odom', 'imu_data')[:1 + parameters.imu_used], parameters.sensor_timeout,
                                        self.lock, lambda: (self.combined, self.publisher.published))
         self.tree.listen(True)
-        self.odom_sub = None    # a message may arrive before the next line is done
+        self.odom_sub = None    # a message may arrive before the next assignment
         self.odom_sub = rospy.Subscriber('odom', Odometry, self.on_odom, queue_size=None, tcp_nodelay=True)
         if parameters.imu_used:
             rospy.Subscriber('imu_data', Imu, self.on_imu, queue_size=None, tcp_nodelay=True)
@@ -53,33 +53,33 @@ class Ekf:
         rospy.Subscriber('set_pose', PoseWithCovarianceStamped, self.on_set_pose)
 
     def on_odom(self, message):
-        """Odometry arrives."""
+        """Process an odometry message."""
         with self.lock:
             connections = self.odom_sub.impl.connections if self.odom_sub else []
             if self.sender.accepts(message._connection_header, connections, rospy.Time.now()):
                 self.process('odom', self.add_odom, message)
 
     def on_imu(self, message):
-        """A reading of the gyro arrives."""
+        """Process an IMU message."""
         with self.lock:
             if self.frames:
                 self.process('imu_data', lambda now, imu: self.imu.read(
                     imu, self.frames[1], partial(self.combined.add_imu, now)), message)
 
     def on_reset(self, _):
-        """The base was reset."""
+        """Restart the filter because the base was reset."""
         with self.lock:
             if self.combined:
                 self.log.add(rospy.loginfo, 'reset_odometry: restarting at the pose of the odometry')
                 self.combined.reset(rospy.Time.now().to_nsec())
 
     def on_set_pose(self, message):
-        """Somebody knows where the robot is."""
+        """Set the pose of the robot."""
         with self.lock:
             self.process('set_pose', self.place, message)
 
     def place(self, now, message):
-        """Pass a pose to the filter, with the time of the last odometry: its clock may be another one."""
+        """Pass a pose to the filter, with the time of the last odometry, whose clock may differ from this node's."""
         check('odom', None, self.combined, 'a message before this one')
         self.combined.set_pose(self.combined.arrivals.last_stamp['odom'] or now,
                                *messages.from_set_pose(message, self.parameters.output_frame))
@@ -91,7 +91,7 @@ class Ekf:
         self.frames = frames
 
     def restart(self, sender):
-        """Start with the odometry of another node: it may be another robot."""
+        """Restart with the odometry of another node, which may belong to another robot."""
         if self.combined:
             self.warn('odom comes from another node: restarting')
             self.publisher.restart()
@@ -100,7 +100,7 @@ class Ekf:
     def process(self, topic, add, message):
         """Pass a message to the filter, and publish the result."""
         now = rospy.Time.now()
-        if not now:     # simulated time that has not begun
+        if not now:     # simulated time has not started
             return
         try:
             add(now.to_nsec(), message)
@@ -109,14 +109,14 @@ class Ekf:
             self.log.add(rospy.logerr, f'{rospy.resolve_name(topic)}: {error}; rejected')
             return
         self.diagnostics.count(topic, now, self.combined)
-        if self.combined.estimate and not life.end_requested.is_set():      # topics are closed at the end
+        if self.combined.estimate and not life.end_requested.is_set():      # topics are closed during shutdown
             self.publisher.update(self.combined, *self.frames)
 
     def run(self):
-        """Until the node is to end."""
+        """Run until shutdown is requested."""
         schedule = Schedule(1 / self.parameters.diagnostic_period)
         while not life.end_requested.is_set():
-            if schedule.due(time.monotonic_ns()):   # wall time: a clock that stands still is worth a diagnosis too
+            if schedule.due(time.monotonic_ns()):   # wall time: diagnostics are needed even if /clock has stopped
                 self.diagnostics.publish()
             self.log.flush(time.monotonic())
             self.tree.listen(not (self.publisher.settled and self.imu.settled))
@@ -124,7 +124,7 @@ class Ekf:
 
 
 def main():
-    """Read the parameters, and run. Returns the exit status."""
+    """Read the parameters and run; return the exit status."""
     life.init_node('robot_pose_ekf', __doc__, PARAMETERS, check=read_parameters)
     Ekf(load_parameters()).run()
     return 0

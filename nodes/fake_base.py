@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""A simulated differential-drive base that takes the place of an ArbotiX base: cmd_vel in, odom out.
+"""Simulates a differential-drive base, as a replacement for an ArbotiX base; cmd_vel in, odom out.
 
 usage: fake_base.py [_parameter:=value ...] [topic:=new_topic ...]      usually started by fake_turtlebot.launch
 """
-import rbx1_nav.ros.node.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded
+import rbx1_nav.ros.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
 
 import threading
 
@@ -55,7 +55,7 @@ class FakeBase:
         self.commands.subscribe()
 
     def step(self):
-        """Publish the present state of the base."""
+        """Publish the current state of the base."""
         with self.lock:
             now, stamp, base = self.clock.now(), self.clock.stamp(), self.base
             if stamp == self.last_stamp:
@@ -89,21 +89,21 @@ class FakeBase:
         self.reset_pub.publish()
         driver = self.commands.driver()
         if driver:
-            rospy.logwarn('Reset in mid-run: %s will not end where it started. Reset again after it has ended', driver)
+            rospy.logwarn('Reset while %s is driving: this run is not valid. Reset again when it has finished', driver)
         else:
             rospy.loginfo('Reset: %s is back at the origin of %s', self.robot.base_frame_id, self.robot.odom_frame_id)
         return EmptyResponse()
 
     def diagnose(self, status):
         """Fill in the DiagnosticStatus of the controller."""
-        status.summary(DiagnosticStatus.OK, 'Standing' if self.base.at_rest else 'Moving')
+        status.summary(DiagnosticStatus.OK, 'Stationary' if self.base.at_rest else 'Moving')
         self.commands.diagnose(status)
         self.clock.diagnose(status)
         return status
 
 
 def main():
-    """Read the configuration, and run. Returns the exit status."""
+    """Read the configuration and run; return the exit status."""
     life.init_node('arbotix', __doc__, PARAMETERS, check=read_robot)
     try:
         robot = read_robot(stored_params())
@@ -115,10 +115,10 @@ def main():
     if robot.hardware:
         rospy.loginfo('Simulated base: %d parameters that only hardware needs are ignored', len(robot.hardware))
     if robot.unknown:
-        rospy.logwarn('Unknown parameters, without effect: %s', ', '.join(robot.unknown))
+        rospy.logwarn('Ignoring unknown parameters: %s', ', '.join(robot.unknown))
     rospy.loginfo('Surface: %s', f'{surface.name}; seed:={seed} repeats this run' if surface else 'ideal')
     base = FakeBase(robot, make_base(robot, surface, seed), clock)
-    rospy.loginfo('Ready: %s stands at the origin of %s', robot.base_frame_id, robot.odom_frame_id)
+    rospy.loginfo('Ready: %s is at the origin of %s', robot.base_frame_id, robot.odom_frame_id)
     base.clock.run(base.step)
     return 0
 

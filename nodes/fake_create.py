@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
-"""An emulated iRobot Create at the other end of a pseudo-terminal, which a driver opens as its serial port.
+"""Emulates an iRobot Create on a pseudo-terminal, which a driver opens as its serial port.
 
 usage: fake_create.py [_parameter:=value ...] [topic:=new_topic ...]    usually started by fake_turtlebot_create.launch
 
-What can happen to the robot:
+Events and faults of the robot:
     services ~pull_cable, ~silence, ~drop_wheel, ~cliff, ~bump, ~dock (SetBool) and ~power_cycle (Trigger);
-    topics ~charge, ~corruption and ~gyro_stuck (Float64), as the parameters
-It publishes /ground_truth, where the robot really is, and /line: each command that it receives, with its time.
-A pseudo-terminal has no RTS and DTR: a driver that insists on them gets an error.
+    topics ~charge, ~corruption and ~gyro_stuck (Float64), which set the values of these parameters
+It publishes the true pose on /ground_truth, and each command that it receives, with its time, on /line.
+A pseudo-terminal has no RTS and DTR lines: a driver that requires them gets an error.
 """
-import rbx1_nav.ros.node.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded
+import rbx1_nav.ros.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
 
 from collections import namedtuple
 from math import floor
@@ -35,7 +35,7 @@ from rbx1_nav.simulation.wheels import IdealWheels
 from rbx1_nav.units import SECOND
 
 TRUTH_RATE = 50     # Hz
-CLIENT_TIMEOUT = 0.7    # s: half of the time that a node has to end
+CLIENT_TIMEOUT = 0.7    # s: half of the time that a node has to exit
 Frames = namedtuple('Frames', 'odom_frame_id base_frame_id')
 FRAMES = Frames('odom', 'base_footprint')
 
@@ -54,11 +54,11 @@ class FakeCreate:
         self.faults = RobotFaults(robot, terminal)
 
     def run(self):
-        """Run until the node is to end."""
+        """Run until shutdown is requested."""
         while not life.end_requested.is_set():
             self.step()
             self.terminal.wait(max(0.0, (self.robot.next_time - time.monotonic_ns()) / SECOND))
-        # a driver that ends at the same time stops the robot first: to it, a robot that vanishes is a lost line
+        # a driver that exits at the same time stops the robot first; without the robot it would report a disconnection
         deadline = time.monotonic() + CLIENT_TIMEOUT
         while self.terminal.has_client and time.monotonic() < deadline:
             self.step()
@@ -66,7 +66,7 @@ class FakeCreate:
         self.terminal.unplug()
 
     def step(self):
-        """Bring the robot up to the present."""
+        """Advance the robot to the current time."""
         robot, terminal, now = self.robot, self.terminal, time.monotonic_ns()
         self.set_host_baud()
         data = robot.advance(now)
@@ -79,11 +79,11 @@ class FakeCreate:
             self.publish_truth()
 
     def set_host_baud(self):
-        """Set the host's baud rate on the line as the client has set it."""
+        """Set the host's baud rate on the line to the rate that the client has set."""
         self.robot.line.host_baud = self.terminal.baud or self.robot.line.host_baud
 
     def publish_truth(self):
-        """Publish where the robot really is."""
+        """Publish the true pose of the robot."""
         wheels = self.robot.body.wheels
         self.truth_pub.publish(messages.odometry(rospy.Time.now(), FRAMES, wheels.truth.pose, wheels.true_velocity(
             *self.robot.body.velocity), IdealWheels.uncertainty))
@@ -96,7 +96,7 @@ class FakeCreate:
 
 
 def main():
-    """Read the parameters, and run. Returns the exit status."""
+    """Read the parameters and run; return the exit status."""
     life.init_node('fake_create', __doc__, PARAMETERS)
     model, seed = MODELS[param('robot_type')], param('seed')
     line = SerialLine(param('baud') or model.baud, seed)
@@ -110,7 +110,7 @@ def main():
     except ConfigError as error:
         rospy.logfatal('%s/%s', rospy.get_name(), error)
         return 1
-    rospy.loginfo('Emulated %s: serial port %s%s; seed:=%d repeats this robot', model.name, terminal.device,
+    rospy.loginfo('Emulated %s: serial port %s%s; seed:=%d recreates this robot', model.name, terminal.device,
                   f', linked as {terminal.link}' if terminal.link else '', seed)
     FakeCreate(EmulatedCreate(model, body, line, time.monotonic_ns()), terminal).run()
     return 0

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Republishes the combined odometry, a pose, as the odometry /odom_ekf, which RViz draws as arrows.
+"""Republishes the combined pose as odometry on /odom_ekf, which RViz draws as arrows.
 
 usage: odom_ekf.py [topic:=new_topic ...]      usually started by odom_ekf.launch; it has no parameters
 
-Both odometries start where the robot does, so /odom_ekf has the frames of odom: RViz shows them side by side.
+/odom and /odom_ekf both start at the robot's initial pose, so /odom_ekf uses the frames of odom: RViz shows both.
 """
-import rbx1_nav.ros.node.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded
+import rbx1_nav.ros.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
 
 from math import inf
 import time
@@ -32,26 +32,26 @@ class OdomEkf:
         rospy.Subscriber('odom_combined', PoseWithCovarianceStamped, self.on_pose)
 
     def on_odom(self, odom):
-        """The wheel odometry gives the names of the frames."""
+        """Take the names of the frames from the wheel odometry."""
         self.frames = odom.header.frame_id.lstrip('/'), odom.child_frame_id.lstrip('/')
 
     def on_pose(self, pose):
         """Republish a combined pose, with the mean velocity since the previous one."""
-        if self.frames and not life.end_requested.is_set():     # topics are closed at the end
+        if self.frames and not life.end_requested.is_set():     # topics are closed during shutdown
             self.publisher.publish(messages.odometry_of_pose(pose, self.last, *self.frames))
         self.last = pose
 
     def run(self):
-        """Until the node is to end. Warns once if there is nothing to republish."""
+        """Run until shutdown is requested; warn once if there is nothing to republish."""
         deadline = time.monotonic() + MESSAGE_WARN_TIME
         while not (self.frames and self.last):
             if life.end_requested.is_set():
                 return
             if time.monotonic() > deadline:
                 deadline = inf      # one warning is enough
-                # the filter needs odometry too: without a base both topics are silent
+                # the filter needs odometry too: without a base, neither topic has messages
                 topic, source = ('odom_combined', 'filter') if self.frames else ('odom', 'base')
-                rospy.logwarn('No message on %s for %d s: expected a running %s; %s follows as soon as there is one',
+                rospy.logwarn('No message on %s for %d s: expected a running %s; %s starts as soon as there is one',
                               rospy.resolve_name(topic), MESSAGE_WARN_TIME, source, self.publisher.resolved_name)
             life.sleep(1)
         rospy.loginfo('Publishing %s', self.publisher.resolved_name)
@@ -59,7 +59,7 @@ class OdomEkf:
 
 
 def main():
-    """Run. Returns the exit status."""
+    """Run the node; return the exit status."""
     OdomEkf().run()
     return 0
 

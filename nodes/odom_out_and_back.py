@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Out and back by odometry: forward 1 m, turn left 180 degrees, and the same again, measured by the robot's pose.
+"""Drives out and back using odometry: forward 1 m, turn left 180 degrees, forward 1 m, turn left 180 degrees.
 
 usage: odom_out_and_back.py [_parameter:=value ...] [topic:=new_topic ...]
 example: rosrun rbx1_nav odom_out_and_back.py _odom_frame:=odom_combined
 
-The base counts how far its wheels turn, and publishes a pose: the transform from the frame odom to its own frame. So do
-not drive for a time: drive until you are there.
+The base measures how far its wheels turn, and publishes its pose: the transform from the frame odom to its own frame.
+So the script does not drive for a fixed time. It drives until the pose shows that the robot has arrived.
 """
 from rbx1_nav.ros.driving.script import exit_status, frame, init_node, number, param
 
@@ -23,14 +23,14 @@ from rbx1_nav.ros.driving.pose_listener import PoseListener
 PARAMETERS = [
     number('rate', 50, 'Hz', 'commands per second', 2, 1000),
     number('linear_speed', 0.2, 'm/s', 'forward speed'),
-    number('goal_distance', 1.0, 'm', 'length of the way out'),
-    number('min_linear_speed', 0.05, 'm/s', 'lowest speed near the goal; less may not move your robot'),
+    number('goal_distance', 1.0, 'm', 'length of each leg'),
+    number('min_linear_speed', 0.05, 'm/s', 'lowest speed near the goal; a lower one may not move your robot'),
     number('angular_speed', 1.0, 'rad/s', 'turning speed'),
-    number('goal_angle', pi, 'rad', 'angle of a turn to the left', shown='pi'),
+    number('goal_angle', pi, 'rad', 'angle of each turn to the left', shown='pi'),
     number('min_angular_speed', 0.2, 'rad/s', 'lowest turning speed near the goal'),
-    frame('odom_frame', 'odom', 'frame that the pose is measured in; odom_combined: by wheels and gyro'),
+    frame('odom_frame', 'odom', 'frame in which the pose is measured; odom_combined: from wheels and gyro'),
     frame('base_frame', None, 'frame of the robot', shown='base_footprint or base_link, whichever exists'),
-    number('transform_timeout', 5, 's', 'how long the robot stands and waits if its pose is lost', note='wall time')]
+    number('transform_timeout', 5, 's', 'maximum wait of the stopped robot for a missing pose', note='wall time')]
 
 
 class OutAndBack:
@@ -51,13 +51,13 @@ class OutAndBack:
         goal_distance = param('goal_distance')
         min_linear_speed = param('min_linear_speed')
 
-        # Turn left: the same, in rad/s and rad.
+        # Turn left: speed (rad/s), angle (rad), and the lowest speed.
         angular_speed = param('angular_speed')
         goal_angle = param('goal_angle')
         min_angular_speed = param('min_angular_speed')
 
         # Two legs: out and back. Each motion calculates the distance to its goal, and the speed to get there. Shortly
-        # before the goal, the loops below stop once, to see how far the robot rolls on.
+        # before the goal, the loops below stop once, to measure how far the robot coasts.
         legs = [(Straight('forward', goal_distance, linear_speed, min_linear_speed, rate),
                  Turn('turn left', goal_angle, angular_speed, min_angular_speed, rate)) for _ in range(2)]
 
@@ -78,7 +78,7 @@ class OutAndBack:
                 # Stop the robot, and let it come to rest before the turn.
                 self.cmd_vel.publish(Twist())
                 drive.rest(1)
-                # Turn left in the same way.
+                # Turn left, again until the robot has arrived.
                 move_cmd = Twist()
                 r = drive.Rate()
                 for speed in drive.speeds(turn_left):

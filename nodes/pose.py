@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Prints where the robot is: in truth, by odometry, and by the estimate from wheels and gyro.
+"""Prints the robot's true pose, its odometry pose, and the pose estimated from wheels and gyro.
 
 usage: pose.py [topic:=new_topic ...]      it has no parameters
 
-The start is the origin of the frame odom, where a simulated base stands after its launch and after each reset. Only a
-simulated base publishes /ground_truth, and only odom_ekf.launch /odom_ekf.
+The start is the origin of the odom frame. A simulated base is there after launch and after each reset. Only a
+simulated base publishes /ground_truth, and only odom_ekf.launch starts a publisher of /odom_ekf.
 """
-import rbx1_nav.ros.node.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded
+import rbx1_nav.ros.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
 
 from math import degrees, hypot
 import time
@@ -23,7 +23,7 @@ TIMEOUT = 5.0       # s of wall time to wait for a base, and for a message on ea
 
 
 def receive():
-    """The latest Odometry by topic: None without a message; topics that nobody publishes are absent."""
+    """Return the latest Odometry by topic: None without a message; topics without a publisher are absent."""
     latest = {}
     subscribers = {}
     deadline = time.monotonic() + TIMEOUT
@@ -41,7 +41,7 @@ def receive():
 
 
 def row(topic, latest):
-    """One line of the table."""
+    """Return one line of the table."""
     text = f'{TOPICS[topic]:9} {rospy.resolve_name(topic):14}'
     if topic not in latest:
         return f'{text} not published'
@@ -53,7 +53,7 @@ def row(topic, latest):
 
 
 def main():
-    """Print a table. Returns the exit status."""
+    """Print a table; return the exit status."""
     life.init_node('pose', __doc__, requires_master=True)
     latest = receive()
     if not any(latest.values()):

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Out and back, by time alone: forward 1 m, turn left 180 degrees, and the same again.
+"""Drives out and back, timed: forward 1 m, turn left 180 degrees, forward 1 m, turn left 180 degrees.
 
 usage: timed_out_and_back.py [_parameter:=value ...] [topic:=new_topic ...]
 example: rosrun rbx1_nav timed_out_and_back.py _goal_distance:=0.5
 
-The script never asks where the robot is. Drive at a known speed for a known time, and it should end where it began.
+The script never asks where the robot is. After known times at known speeds, the robot should be back at its start.
 """
 from rbx1_nav.ros.driving.script import TimedDrive, exit_status, init_node, number, param, whole_ticks
 
@@ -18,9 +18,9 @@ from geometry_msgs.msg import Twist
 PARAMETERS = [
     number('rate', 50, 'Hz', 'commands per second', 2, 1000),
     number('linear_speed', 0.2, 'm/s', 'forward speed'),
-    number('goal_distance', 1.0, 'm', 'length of the way out'),
+    number('goal_distance', 1.0, 'm', 'length of each leg'),
     number('angular_speed', 1.0, 'rad/s', 'turning speed'),
-    number('goal_angle', pi, 'rad', 'angle of a turn to the left', shown='pi')]
+    number('goal_angle', pi, 'rad', 'angle of each turn to the left', shown='pi')]
 
 
 class OutAndBack:
@@ -33,7 +33,7 @@ class OutAndBack:
         # The base subscribes to this topic. With a queue, a slow subscriber does not hold up the others.
         self.cmd_vel = rospy.Publisher('/cmd_vel', Twist, queue_size=5)
 
-        # Publish commands at this rate (Hz). Many robots stop unless they receive a steady stream of them.
+        # Publish commands at this rate (Hz). Many robots stop unless they receive a steady stream of commands.
         rate = param('rate')
 
         # Forward: speed (m/s) and distance (m) give the duration (s), and with the rate the ticks, rounded down.
@@ -42,7 +42,7 @@ class OutAndBack:
         linear_duration = goal_distance / linear_speed
         linear_ticks = whole_ticks(linear_duration * rate, 'goal_distance / linear_speed * rate')
 
-        # Turn left: the same, in rad/s and rad.
+        # Turn left: the same calculation, in rad/s and rad.
         angular_speed = param('angular_speed')
         goal_angle = param('goal_angle')
         angular_duration = goal_angle / angular_speed

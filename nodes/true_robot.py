@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Shows the robot where it really is, for RViz: /ground_truth in, markers in the shape of the robot out.
+"""Shows the robot at its true pose in RViz: subscribes to /ground_truth and publishes markers in the robot's shape.
 
 usage: true_robot.py [_parameter:=value ...] [topic:=new_topic ...]      started by fake_turtlebot.launch on a surface
 
-RViz's own RobotModel shows the robot where its odometry reports it.
+RViz's own RobotModel display shows the robot at its odometry pose.
 """
-import rbx1_nav.ros.node.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded
+import rbx1_nav.ros.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
 
 import time
 
@@ -24,12 +24,12 @@ PARAMETERS = [elsewhere('robot_description', "the robot's URDF, as text")]
 
 
 class TrueRobot:
-    """Publishes the robot's markers while somebody subscribes."""
+    """Publishes the robot's markers while there are subscribers."""
 
     def __init__(self, visuals):
-        """visuals: of the robot, see robot/urdf.py."""
+        """visuals: the robot's Visuals, see robot/urdf.py."""
         self.visuals = visuals
-        self.schedule = Schedule(20)    # Hz of wall time, as the eye sees it
+        self.schedule = Schedule(20)    # Hz of wall time, for a human viewer
         self.buffer = tf2_ros.Buffer()
         self.listener = tf2_ros.TransformListener(self.buffer)
         self.publisher = rospy.Publisher('true_robot', MarkerArray, queue_size=1)
@@ -37,7 +37,7 @@ class TrueRobot:
 
     def on_truth(self, truth):
         """Publish the robot at its true pose."""
-        if life.end_requested.is_set():     # topics are closed at the end
+        if life.end_requested.is_set():     # topics are closed during shutdown
             return
         if self.publisher.get_num_connections() and self.schedule.due(time.monotonic_ns()):
             links = {}
@@ -54,7 +54,7 @@ class TrueRobot:
 
 
 def main():
-    """Run until the node is to end. Returns the exit status."""
+    """Run until shutdown is requested; return the exit status."""
     life.init_node('true_robot', __doc__, PARAMETERS)
     try:
         visuals = read_visuals(str(rospy.get_param('~robot_description', '')))

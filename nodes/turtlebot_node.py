@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""The base of a TurtleBot: drives an iRobot Create or Create 2 over a serial port. cmd_vel in, odom out.
+"""Drives a TurtleBot's base, an iRobot Create or Create 2, over a serial port: cmd_vel in, odom out.
 
 usage: turtlebot_node.py [_parameter:=value ...] [topic:=new_topic ...]  started by turtlebot_minimal_create.launch
 
-The parameters have the names of create_node's.
+The parameters are named as in create_node.
 """
-import rbx1_nav.ros.node.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded
+import rbx1_nav.ros.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
 
 import rospy
 
@@ -17,10 +17,10 @@ from rbx1_nav.ros.node.params import stored_params
 
 
 def main():
-    """Read the parameters, and run. Returns the exit status."""
+    """Read the parameters and run; return the exit status."""
     life.init_node('turtlebot_node', __doc__, PARAMETERS, check=read_settings)
     if not rospy.rostime.is_wallclock():
-        rospy.logfatal('/use_sim_time: true: expected false, a robot on a serial line runs in real time')
+        rospy.logfatal('/use_sim_time: true: expected false, because a robot on a serial line runs in real time')
         return 1
     try:
         settings, robot = read_settings(stored_params())

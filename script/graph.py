@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Prints the running system as Mermaid text: the graph of its nodes and topics, and the tree of its tf2 frames."""
+"""Prints the running system as Mermaid text: the graph of nodes and topics, and the tree of tf2 frames."""
 import argparse
 import re
 import socket
@@ -11,25 +11,25 @@ import tf2_ros
 import yaml
 
 LOGGING = {'/rosout', '/rosout_agg'}    # the node of this name, and the topics that all nodes publish
-# what roslaunch, rospy and roscpp append to an anonymous name: host, process id, random number or time
+# suffix that roslaunch, rospy and roscpp append to an anonymous name: host, process id, random number or time
 ANONYMOUS = re.compile(r'(_%s)?(_\d+)?_\d{9,}$' % re.sub(r'\W', '_', socket.gethostname()))
 
 
 def plain(node):
-    """The name of a node without what makes it anonymous."""
+    """Return the name of a node without the suffix that makes it anonymous."""
     return ANONYMOUS.sub('', node)
 
 
 def identifier(kind, name):
-    """A name as Mermaid can use it: a node, a topic and a frame may share one."""
+    """Return a name that Mermaid can use. A node, a topic and a frame with the same name get different identifiers."""
     return '%s_%s' % (kind, re.sub(r'\W', '_', name.lstrip('/')))
 
 
 def node_graph(publishers, subscribers, hidden):
-    """The graph as Mermaid text.
+    """Return the graph as Mermaid text.
 
-    publishers, subscribers: as of the master's getSystemState, lists of [topic, names of nodes]; hidden: names of
-    nodes.
+    publishers, subscribers: lists of [topic, names of nodes], as returned by the master's getSystemState; hidden: names
+    of nodes to leave out.
     """
     shapes, arrows = set(), set()
     for pairs, arrow in ((publishers, '{0} --> {1}'), (subscribers, '{1} --> {0}')):
@@ -44,7 +44,7 @@ def node_graph(publishers, subscribers, hidden):
 
 
 def frame_tree(frames):
-    """The tree as Mermaid text, each transform with the node that publishes it. frames: all_frames_as_yaml() of tf2."""
+    """Return the tree as Mermaid text, each transform with its publishing node. frames: all_frames_as_yaml() of tf2."""
     tree = yaml.safe_load(frames) or {}
     names = set(tree).union(frame['parent'] for frame in tree.values())
     shapes = [f"{identifier('frame', name)}[\"{name}\"]" for name in sorted(names)]
@@ -54,7 +54,7 @@ def frame_tree(frames):
 
 
 class RunningSystem:
-    """Asks the master and listens to /tf. Needs a node."""
+    """Reads the state of the master and listens to /tf. Requires an initialized node."""
 
     def __init__(self):
         self.master = rosgraph.Master(rospy.get_name())
@@ -62,13 +62,13 @@ class RunningSystem:
         self.listener = tf2_ros.TransformListener(self.buffer)
 
     def draw(self):
-        """Both pictures, as Mermaid texts."""
+        """Return both diagrams as Mermaid texts."""
         publishers, subscribers, _ = self.master.getSystemState()
         return node_graph(publishers, subscribers, [rospy.get_name()]), frame_tree(self.buffer.all_frames_as_yaml())
 
 
 def main():
-    """Print both pictures as Markdown blocks."""
+    """Print both diagrams as Markdown blocks."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('seconds', type=float, nargs='?', default=3.0, help='how long to listen to /tf; default: 3')
     seconds = parser.parse_args().seconds

@@ -1,22 +1,22 @@
 #!/usr/bin/env python3
-"""Writes the tables of parameters into docs/reference.md, as the nodes declare them.
+"""Writes the tables of the parameters that the nodes declare into the pages in docs/.
 
-A table is behind a comment: `<!-- parameters: FILE -->` for a node, `<!-- keys: NAME -->` for a part of a YAML file.
+A table follows a comment: `<!-- parameters: FILE -->` for a node, `<!-- keys: NAME -->` for a part of a YAML file.
 """
+import glob
 import importlib.util
 import os
 import re
 import sys
 
 ROOT = os.path.realpath(os.path.join(os.path.dirname(__file__), '..'))
-PAGE = os.path.join(ROOT, 'docs', 'reference.md')
 TABLE = re.compile(r'(?m)^<!-- (parameter|key)s: (\S+) -->\n\n(?:\|.*\n)*')
 sys.path.insert(0, os.path.join(ROOT, 'src'))
-os.environ['ROS_PACKAGE_PATH'] = ROOT      # where the names of the surfaces are
+os.environ['ROS_PACKAGE_PATH'] = ROOT      # needed to find the surface files
 
 
 def declared(kind, name):
-    """The parameters of a node, or the keys of a part of a YAML file."""
+    """Return the parameters of a node, or the keys of a part of a YAML file."""
     if kind == 'key':
         from rbx1_nav.robot import description
         return getattr(description, name)
@@ -29,7 +29,7 @@ def declared(kind, name):
 
 
 def filled_in(text):
-    """The page with its tables."""
+    """Return the page with up-to-date tables."""
     from rbx1_nav.parameters import table
 
     def fill(match):
@@ -39,11 +39,13 @@ def filled_in(text):
 
 
 def main():
-    """Write the page."""
-    with open(PAGE, encoding='utf-8') as file:
-        text = file.read()
-    with open(PAGE, 'w', encoding='utf-8') as file:
-        file.write(filled_in(text))
+    """Update all pages."""
+    for page in glob.glob(os.path.join(ROOT, 'docs', '*.md')):
+        with open(page, encoding='utf-8') as file:
+            text = file.read()
+        if filled_in(text) != text:
+            with open(page, 'w', encoding='utf-8') as file:
+                file.write(filled_in(text))
 
 
 if __name__ == '__main__':

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Prints where a recorded run ended, and draws it as arrows: report.py BAG PICTURE [SURFACE]"""
+"""Prints the end poses of a recorded run, and draws the run as arrows: report.py BAG PICTURE [SURFACE]"""
 import sys
 from math import atan2, cos, degrees, hypot, pi, sin
 
@@ -11,16 +11,16 @@ matplotlib.use('Agg')
 from matplotlib import pyplot       # noqa: E402  (the backend comes first)
 
 SPACING, TURN = 0.1, 0.15       # m and rad between two arrows, as in sim.rviz
-# in the order in which they are drawn: the truth last, on top; colours that colour-blind readers can tell apart
+# in drawing order, with the truth last, on top; the colors are distinguishable for color-blind readers
 TOPICS = {'/odom': ('odometry', '#d55e00'), '/odom_ekf': ('estimate from wheels and gyro', '#009e73'),
           '/ground_truth': ('truth', '#0072b2')}
 
-# otherwise rosbag generates the class, as Python code, from the definition in the bag: whoever wrote the bag wrote that
+# otherwise rosbag generates the class, as Python code, from the message definition in the bag, which may be untrusted
 rosbag.bag._message_types[Odometry._md5sum] = Odometry
 
 
 def read_paths(bag):
-    """For each of TOPICS that was recorded, all its (x, y, yaw): m and rad, the yaw not wrapped."""
+    """Return all (x, y, yaw) by topic, for each of TOPICS that was recorded: m and rad, the yaw not wrapped."""
     paths = {}
     with rosbag.Bag(bag) as file:
         for topic, message, _ in file.read_messages(list(TOPICS), connection_filter=is_odometry):
@@ -34,12 +34,12 @@ def read_paths(bag):
 
 
 def is_odometry(_topic, _datatype, md5sum, *_):
-    """Whether a connection of a bag has the messages that are read here."""
+    """Return whether a connection of a bag contains Odometry messages."""
     return md5sum == Odometry._md5sum
 
 
 def arrows(path):
-    """The poses that are far enough from the previous one to get an arrow of their own."""
+    """Return the poses that are far enough from the previously drawn pose to be drawn as an arrow."""
     chosen = path[:1]
     for x, y, yaw in path:
         if hypot(x - chosen[-1][0], y - chosen[-1][1]) >= SPACING or abs(yaw - chosen[-1][2]) >= TURN:
@@ -48,7 +48,7 @@ def arrows(path):
 
 
 def draw(paths, picture, surface):
-    """The arrows, seen from above, and where the robot really started and ended."""
+    """Draw the arrows, seen from above, and the true start and end positions."""
     figure, axes = pyplot.subplots(figsize=(9, 6.5))
     for topic, path in paths.items():
         name, color = TOPICS[topic]
@@ -69,18 +69,18 @@ def draw(paths, picture, surface):
 
 
 def rounded(value, digits):
-    """value with so many decimals, as text; 0 in place of -0."""
+    """Return a value rounded to a number of decimals as text, with 0 instead of -0."""
     return '%.*f' % (digits, round(value, digits) + 0.0)
 
 
 def main(bag, picture, surface='an unknown surface'):
-    """Report one run."""
+    """Report on one run."""
     paths = read_paths(bag)
     if '/odom' not in paths:
         sys.exit(f'{bag}: no odometry: expected messages on /odom')
     for topic, path in reversed(list(paths.items())):
         (x0, y0, yaw0), (x, y, yaw) = path[0], path[-1]
-        print('End by %-14s x %s m, y %s m, heading %s degrees; %s m from the start, %s degrees turned' % (
+        print('End pose, %-14s x %s m, y %s m, heading %s degrees; %s m from the start, turned %s degrees' % (
             f'{topic}:', rounded(x, 4), rounded(y, 4), rounded(degrees(atan2(sin(yaw), cos(yaw))), 2),
             rounded(hypot(x - x0, y - y0), 4), rounded(degrees(yaw - yaw0), 2)))
     draw(paths, picture, surface)

@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""Follows README.md and docs/*.md as a reader does: types their commands and compares the output.
+"""Follows README.md and docs/*.md as a reader would: types their commands and compares the output.
 
-    documents.py [NAME...] [--text]     only the pages with one of these in their name; --text prints the result
+    documents.py [NAME...] [--text]     only the pages whose name contains a NAME; --text prints the result
 
-test/pages/blocks.py describes the comments that say how. Source a built workspace first.
+test/pages/blocks.py describes the comments that control how. Source a built workspace first.
 """
 import os
 import re
@@ -35,7 +35,7 @@ def typed(steps, kind):
 
 
 def make_workspace(home, steps):
-    """Make ~/catkin_ws. Where the steps run catkin_make it contains only the sources, else it is the one sourced."""
+    """Make ~/catkin_ws: only the sources if the steps run catkin_make, otherwise the sourced workspace."""
     workspace = os.path.join(home, 'catkin_ws')
     if any('catkin_make' in command for command in typed(steps, blocks.Run)):
         os.makedirs(os.path.join(workspace, 'src'))
@@ -58,20 +58,20 @@ def follow(page):
 
 
 class Documents(unittest.TestCase):
-    """A test for each page. A page without steps is only read."""
+    """One test per page. A page without steps is only parsed."""
 
     @classmethod
     def setUpClass(cls):
-        # all at once: most of the time is spent waiting for robots that move in real time
+        # in parallel: the pages mostly wait for robots that move in real time
         with ThreadPoolExecutor(len(cls.pages)) as pool:
             cls.results = {page: pool.submit(follow, page) for page in cls.pages}
 
     @classmethod
     def add_tests(cls, names):
-        """Add the tests of the pages with one of these in their name; no names: of all pages."""
+        """Add tests for the pages whose name contains one of these names; without names, for all pages."""
         cls.pages = [page for page in markdown.documents(ROOT) if any(name in page for name in names or [''])]
         for page in cls.pages:
-            # no dots or slashes: rosunit would cut the name there
+            # no dots or slashes: rosunit would truncate the name there
             name = re.sub(r'\W+', '_', os.path.splitext(page)[0])
             setattr(cls, f'test_{name}', lambda self, page=page: self.check(page))
 

@@ -1,12 +1,12 @@
 #!/usr/bin/python3
-"""Prints a TCP port for a ROS master of one's own."""
+"""Prints a free TCP port for a private ROS master."""
 import random
 import socket
 
 
 def free_port():
-    """A TCP port of the loopback interface that nobody uses, and that no node gets meanwhile: nodes ask for any port,
-    and Linux then takes one of net.ipv4.ip_local_port_range, from 32768 on.
+    """A free TCP port of the loopback interface that no node gets in the meantime: nodes request any port, and Linux
+    then chooses one from net.ipv4.ip_local_port_range, which starts at 32768.
     """
     while True:
         port = random.randrange(20000, 32000)

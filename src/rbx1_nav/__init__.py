@@ -1,1 +1,4 @@
-"""Out and back with a differential drive. Only the subpackage `ros` may import rospy."""
+"""The out-and-back exercise for a differential-drive robot.
+
+Only the subpackage `ros` may import rospy.
+"""

@@ -1,4 +1,4 @@
-"""Reads configuration: mappings of keys to values, and one clear line for each value that makes no sense."""
+"""Reads configuration mappings, and reports each invalid value in one clear line."""
 from __future__ import annotations
 
 from datetime import date
@@ -10,9 +10,9 @@ from typing import Iterable, Mapping, Sequence, Union, overload
 
 import yaml
 
-AUTO = 'auto'       # a value that is found out at run time
+AUTO = 'auto'       # a value that is determined at run time
 
-# what a YAML file or the parameter server holds; a key that is no text is a mistake, and shown like any other one
+# content of a YAML file or the parameter server; a key that is not text is a mistake, and is shown like any other key
 YamlValue = Union[None, bool, int, float, str, bytes, date, Sequence['YamlValue'], Mapping[str, 'YamlValue']]
 Scalar = Union[bool, int, float, str]
 
@@ -21,32 +21,35 @@ _short.maxstring = _short.maxother = 200    # characters
 
 
 class ConfigError(ValueError):
-    """A value that makes no sense. The text names the key, the value and what is expected."""
+    """Raised for an invalid value.
+
+    The text names the key, the value and what is expected.
+    """
 
 
 def show(value: YamlValue) -> str:
-    """Any value as short text of one line."""
+    """Return any value as short text on one line."""
     if isinstance(value, int) and value.bit_length() > 1000:
         return f'an integer of {value.bit_length()} bits'
     try:
         return _short.repr(value)
-    except ValueError:      # such an integer inside of it: Python does not print more than 4300 digits
+    except ValueError:      # it contains such an integer, and Python does not print more than 4300 digits
         return f'a {type(value).__name__} with huge numbers'
 
 
 def show_name(name: YamlValue) -> str:
-    """A key, a frame, a path or an argument: as it is if it is text of one line, else as show()."""
+    """Return a key, a frame, a path or an argument unchanged if it is text on one line, else as show() does."""
     return name if isinstance(name, str) and name.isprintable() and len(name) <= 200 else show(name)
 
 
 def suggestion(name: YamlValue, names: Iterable[str]) -> str:
-    """For an unknown name: ' (did you mean NAME?)' with the known one that is most similar, '' if none is."""
+    """Return ' (did you mean NAME?)' with the known name that is most similar to an unknown one, or '' if none is."""
     close = difflib.get_close_matches(name, names, 1) if isinstance(name, str) else []
     return f' (did you mean {close[0]}?)' if close else ''
 
 
 def describe(value: YamlValue) -> str:
-    """A value as it stands in the YAML file, with a hint where YAML reads a number as text."""
+    """Return a value as written in the YAML file, with a hint where YAML reads a number as text."""
     if isinstance(value, str) and len(value) < 100:
         text = value.replace(',', '.')
         try:
@@ -59,7 +62,7 @@ def describe(value: YamlValue) -> str:
 
 
 def as_yaml_number(text: str) -> str:
-    """The number in a text, as YAML 1.1 reads it: with a decimal point, and a sign in the exponent."""
+    """Return the number in a text as YAML 1.1 requires it, with a decimal point and a sign in the exponent."""
     mantissa, _, exponent = text.strip().lower().partition('e')
     if not exponent:
         return f'{mantissa} without quotes'
@@ -69,21 +72,21 @@ def as_yaml_number(text: str) -> str:
 
 
 def load_yaml(path: str) -> YamlValue:
-    """The content of a YAML file. Raises ConfigError, which does not name the file."""
+    """Return the content of a YAML file. Raises ConfigError, which does not name the file."""
     try:
         with open(path, encoding='utf-8') as file:
             content: YamlValue = yaml.safe_load(file)
             return content
     except Exception as error:
-        # besides its own errors, yaml raises Python's: KeyError for `!!bool x`, RecursionError for `[[[[...`
+        # yaml raises its own errors, and also Python's: KeyError for `!!bool x`, RecursionError for `[[[[...`
         raise ConfigError(f"expected a YAML file: {' '.join(str(error).split()) or type(error).__name__}") from error
 
 
 class Section:
-    """One mapping of the configuration. Keeps track of the keys that were read, so that the others can be reported."""
+    """One mapping of the configuration, which tracks the keys that were read so that the others can be reported."""
 
     def __init__(self, values: YamlValue, key: str = '', hardware: Iterable[str] = ()) -> None:
-        """values: the mapping; key: its own full name; hardware: keys that only hardware needs. Raises ConfigError."""
+        """values: the mapping; key: its full name; hardware: keys that only hardware needs. Raises ConfigError."""
         self.key = key
         if not isinstance(values, dict):
             raise ConfigError(f"{key or 'configuration'}: {show(values)}: expected a mapping of keys to values")
@@ -92,11 +95,11 @@ class Section:
         self.known = set(hardware)
 
     def path(self, key: str) -> str:
-        """The full name of a key, as rosparam spells it."""
+        """Return the full name of a key, as rosparam spells it."""
         return f'{self.key}/{show_name(key)}' if self.key else show_name(key)
 
     def get(self, key: str, default: YamlValue = None, expected: str = 'a value') -> YamlValue:
-        """The value of a key. Raises ConfigError if it is missing and has no default."""
+        """Return the value of a key. Raises ConfigError if it is missing and has no default."""
         self.known.add(key)
         if key in self.values:
             return self.values[key]
@@ -106,10 +109,13 @@ class Section:
 
     def number(self, key: str, low: float, high: float, default: float | None = None, what: str = 'a number',
                unit: str = '') -> float:
-        """A number from `low` to `high`; only the default may be outside. what, unit: for the text of the error."""
+        """Return a number from `low` to `high`; only the default may be outside this range. Raises ConfigError.
+
+        what, unit: for the error message.
+        """
         expected = f'{what} from {low:.7g} to {high:.7g}' + (f' in {unit}' if unit else '')
         value = self.get(key, default, expected)
-        # bool is a subclass of int, and a mistake here; nan fails the comparison
+        # bool is a subclass of int, but a mistake here; nan fails the comparison
         if (isinstance(value, (int, float)) and not isinstance(value, bool)
                 and (low <= value <= high or key not in self.values)):
             return float(value)
@@ -125,7 +131,7 @@ class Section:
     def choice(self, key: str, choices: Sequence[Scalar], default: Scalar) -> Scalar: ...
 
     def choice(self, key: str, choices: Sequence[Scalar], default: Scalar) -> Scalar:
-        """One of several values: texts, numbers, or true and false."""
+        """Return one of several values: texts, numbers, or true and false. Raises ConfigError."""
         value = self.get(key, default)
         for each in choices:
             # 57600.0 is 57600, but true is not 1
@@ -135,29 +141,32 @@ class Section:
         raise ConfigError(f'{self.path(key)}: {show(value)}: expected one of {names}')
 
     def flag(self, key: str, default: bool) -> bool:
-        """True or false."""
+        """Return true or false. Raises ConfigError."""
         value = self.get(key, default)
         if not isinstance(value, bool):
             raise ConfigError(f'{self.path(key)}: {show(value)}: expected true or false')
         return value
 
     def frame(self, key: str, default: str) -> str:
-        """A tf2 frame name, of at most 200 characters. A leading slash, as in old files, is removed."""
+        """Return a tf2 frame name of at most 200 characters. Raises ConfigError.
+
+        A leading slash, as in old files, is removed.
+        """
         value = self.get(key, default)
         if not (isinstance(value, str) and re.fullmatch(r'/?[^/\s]+(/[^/\s]+)*', value) and value.isprintable()
-                and len(value) <= 200):     # lines of the log contain it
+                and len(value) <= 200):     # log lines contain it
             raise ConfigError(f'{self.path(key)}: {show(value)}: expected the name of a frame')
         return value.lstrip('/')
 
     def section(self, key: str, hardware: Iterable[str] = (), default: YamlValue = None,
                 expected: str = 'a mapping') -> Section:
-        """A mapping inside this one."""
+        """Return a mapping inside this one. Raises ConfigError."""
         return Section(self.get(key, default, expected), self.path(key), hardware)
 
     def ignored(self) -> list[str]:
-        """Full names of the keys that only hardware needs."""
+        """Return the full names of the keys that only hardware needs."""
         return [self.path(key) for key in self.values if key in self.hardware]
 
     def unknown(self) -> list[str]:
-        """Full names of the keys that were never read, each with its suggestion()."""
+        """Return the full names of the keys that were never read, each with its suggestion()."""
         return [self.path(key) + suggestion(key, self.known) for key in self.values if key not in self.known]

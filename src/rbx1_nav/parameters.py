@@ -1,4 +1,4 @@
-"""Parameters, each declared once: checks, usage texts and the tables of docs/reference.md are made of it."""
+"""Declares each parameter once: checks, usage texts and the tables in docs/ are generated from the declaration."""
 from __future__ import annotations
 
 from functools import partial
@@ -7,46 +7,52 @@ from typing import Any, Callable, Iterable, NamedTuple, Sequence
 
 from rbx1_nav.config import Scalar, Section, YamlValue
 
-POSITIVE = 1e-6, 1e6    # the range of a number that has none of its own
-WIDTH = 120             # characters of a line of a usage text
+POSITIVE = 1e-6, 1e6    # the default range of a number
+WIDTH = 120             # characters per line of a usage text
 
 
 class Parameter(NamedTuple):
     """A parameter of a node, or a key of a YAML file."""
 
     name: str
-    default: str        # as a usage text shows it; '' for none
+    default: str        # as shown in a usage text; '' for none
     unit: str
     range: str | Callable[[], str]      # callable: called when it is shown
     text: str
-    note: str = ''      # what only the table of the reference says, in Markdown
-    read: Callable[[Section], Any] | None = None    # its checked value; None for one that read() leaves out
+    note: str = ''      # text for the table of the reference only, in Markdown
+    read: Callable[[Section], Any] | None = None    # returns the checked value; None if read() skips the parameter
 
 
 def number(name: str, default: float | None, unit: str, text: str, low: float = POSITIVE[0], high: float = POSITIVE[1],
            what: str = 'a number', required: bool = False, shown: str = '', note: str = '') -> Parameter:
-    """A number from `low` to `high`. what: for the text of the error. For the rest, see flag()."""
+    """Declare a number from `low` to `high`.
+
+    what: for the error message. For the other arguments, see flag().
+    """
     as_text = '' if (low, high) == POSITIVE else f'{low:.7g} to {high:.7g}'
     return Parameter(name, shown or ('' if default is None else f'{default:g}'), unit, as_text, text, note, _reader(
         name, default is None and not required, lambda section: section.number(name, low, high, default, what, unit)))
 
 
 def flag(name: str, default: bool | None, text: str, shown: str = '', note: str = '') -> Parameter:
-    """True or false. default: if it is None, so is the value of a parameter that is not set; shown: in its place."""
+    """Declare a parameter that is true or false.
+
+    default: value if the parameter is not set, which may be None; shown: text shown instead of the default.
+    """
     return Parameter(name, shown or str(default).lower(), '', '', text, note, _reader(
         name, default is None, lambda section: section.flag(name, bool(default))))
 
 
 def choice(name: str, choices: Sequence[Scalar], default: Scalar | None, text: str, unit: str = '', shown: str = '',
            note: str = '') -> Parameter:
-    """One of several values. default, shown: as of flag()."""
+    """Declare a parameter with one of several values. default, shown: see flag()."""
     as_text = ', '.join(str(each).lower() for each in choices)
     return Parameter(name, shown or str(default).lower(), unit, as_text, text, note, _reader(
         name, default is None, lambda section: section.choice(name, choices, default or '')))
 
 
 def frame(name: str, default: str | None, text: str, shown: str = '', note: str = '') -> Parameter:
-    """The name of a frame. default, shown: as of flag()."""
+    """Declare the name of a frame. default, shown: see flag()."""
     return Parameter(name, shown or default or '', '', '', text, note, _reader(
         name, default is None, lambda section: section.frame(name, default or '')))
 
@@ -57,23 +63,29 @@ def _reader(name: str, optional: bool, read: Callable[[Section], Any]) -> Callab
 
 def custom(name: str, default: YamlValue, text: str, check: Callable[[Any], Any], shown: str = '', note: str = '',
            range: str | Callable[[], str] = '') -> Parameter:
-    """Any value. check(value): returns what read() returns for it, or raises ConfigError."""
+    """Declare a parameter with any value.
+
+    check(value): returns the result of read() for this value, or raises ConfigError.
+    """
     return Parameter(name, shown or str(default), '', range, text, note,
                      lambda section: check(section.get(name, default)))
 
 
 def elsewhere(name: str, text: str, shown: str = '', unit: str = '', note: str = '') -> Parameter:
-    """A parameter that is read elsewhere, or ignored."""
+    """Declare a parameter that is read elsewhere, or ignored."""
     return Parameter(name, shown, unit, '', text, note)
 
 
 def read(parameters: Iterable[Parameter], section: Section) -> dict[str, Any]:
-    """The checked values, by name, in the order of the parameters. Raises ConfigError for the first wrong one."""
+    """Return the checked values by name, in the order of the parameters.
+
+    Raises ConfigError for the first invalid value.
+    """
     return {each.name: each.read(section) for each in parameters if each.read}
 
 
 def list_parameters(parameters: Sequence[Parameter]) -> str:
-    """The lines of a usage text; '' if there is no parameter."""
+    """Return the lines of a usage text, or '' if there is no parameter."""
     if not parameters:
         return ''
     indent = 6 + max(len(each.name) for each in parameters) + 2
@@ -94,7 +106,10 @@ def _range(parameter: Parameter) -> str:
 
 
 def table(parameters: Iterable[Parameter], kind: str = 'parameter') -> list[str]:
-    """The lines of a table in Markdown. kind: the title of the names; those of a `parameter` begin with ~."""
+    """Return the lines of a table in Markdown.
+
+    kind: title of the column of names; if it is `parameter`, the names begin with ~.
+    """
     prefix = '~' if kind == 'parameter' else ''
     rows = [(f'`{prefix}{each.name}`', each.default, each.unit, _range(each),
              f'{each.text}; {each.note}' if each.note else each.text) for each in parameters]

@@ -1,13 +1,13 @@
-"""Whether something periodic is due, on any clock."""
+"""Determines when a periodic task is due, on any clock."""
 from __future__ import annotations
 
 from rbx1_nav.units import SECOND
 
-CLOCK_STEP = 0.02   # s, of a simulated clock that does not say otherwise
+CLOCK_STEP = 0.02   # s, default step of a simulated clock
 
 
 class Schedule:
-    """Whether something periodic is due, also on a clock that jumps."""
+    """Determines when a periodic task is due, even on a clock that jumps."""
 
     def __init__(self, rate: float) -> None:
         """rate: Hz."""
@@ -15,7 +15,7 @@ class Schedule:
         self.last = self.next = 0
 
     def due(self, now: int) -> bool:
-        """Whether it is due at `now` (ns). To be called about once per period or more often."""
+        """Return whether the task is due at `now` (ns). Call this about once per period or more often."""
         jumped_back = now < self.last
         self.last = now
         if now < self.next and not jumped_back:

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A command is in force for exactly the timeout; then the base stops."""
+"""A command stays in force for exactly the timeout; then the base stops."""
 import unittest
 
 import support

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Commands above the limits of the YAML file are clamped, keep their sign, and cause a warning."""
+"""Commands above the limits in the YAML file are clamped, keep their sign, and cause a warning."""
 import unittest
 
 from rosgraph_msgs.msg import Log

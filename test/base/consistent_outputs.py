@@ -24,7 +24,7 @@ class TestConsistentOutputs(unittest.TestCase):
         end = odom.last.header.stamp
         support.wait_for(lambda: joints.last and joints.last.header.stamp > end, 'joint states after the motion')
 
-        # each transform has exactly the pose of the odometry with its stamp
+        # each transform has exactly the pose of the odometry with the same stamp
         poses = {m.header.stamp: m for m in list(odom.messages)}
         sent = [t for m in list(transforms.messages) for t in m.transforms
                 if t.child_frame_id == 'base_footprint' and t.header.stamp in poses]
@@ -42,7 +42,7 @@ class TestConsistentOutputs(unittest.TestCase):
         angles = dict(zip(state.name, state.position))
         heading = (angles['base_r_wheel_joint'] - angles['base_l_wheel_joint']) * RADIUS / WIDTH
         self.assertAlmostEqual(support.wrapped(heading - support.yaw(odom.last)), 0, delta=1e-9)
-        # 0.2 m and 0.1 m, each for the timeout of 1.0 s
+        # 0.2 m and 0.1 m, each during the timeout of 1.0 s
         distance = (angles['base_r_wheel_joint'] + angles['base_l_wheel_joint']) * RADIUS / 2
         self.assertAlmostEqual(distance, 0.3, delta=support.MICROMETRE)
         for variance in (0, 7, 14, 21, 28, 35):

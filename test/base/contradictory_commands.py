@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Two nodes that drive the base at once, each in its own way: a warning and /diagnostics name both."""
+"""If two nodes drive the base at once with different commands, a warning and /diagnostics name both."""
 import re
 import unittest
 
@@ -32,9 +32,9 @@ class TestContradictoryCommands(unittest.TestCase):
             self.assertRegex(text, r'/rostopic\S* sends 0 m/s, 0\.5 rad/s')
         count, = [value.value for value in status().values if value.key == 'Contradictory commands']
         self.assertGreater(int(count), 0)
-        self.assertTrue(re.search('/cmd_vel: .*: expected one node that drives$', line), line)
+        self.assertTrue(re.search('/cmd_vel: contradictory commands: .*: expected only one driving node$', line), line)
 
-        # and if only one drives, all is well again
+        # when only one node drives, the status is OK again
         other.kill()
 
         def well():

@@ -1,4 +1,4 @@
-// The same driver with roscpp: driver_at_rate RATE COUNT
+// roscpp version of driver_at_rate.py: driver_at_rate RATE COUNT
 #include <cstdlib>
 
 #include <geometry_msgs/Twist.h>
@@ -21,6 +21,6 @@ int main(int argc, char** argv)
     rate.sleep();
   }
   publisher.publish(geometry_msgs::Twist());
-  ros::Duration(0.2).sleep();   // for the stop to be sent
+  ros::Duration(0.2).sleep();   // lets the stop be sent
   return 0;
 }

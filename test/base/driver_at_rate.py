@@ -1,11 +1,11 @@
 #!/usr/bin/python3
-"""A driver as other people write them: 0.2 m/s, so many commands per second, then a stop.
+"""A typical driver: it sends 0.2 m/s at a given rate, then a stop.
 
     driver_at_rate.py KIND RATE COUNT [SPEED]
 
-KIND: rate (rospy.Rate), sleep (rospy.sleep), timer (rospy.Timer); RATE: Hz; COUNT: commands; SPEED: m/s. With SPEED it
-reads the simulated time of the first command from its input, s. Otherwise it begins 0.3 s of wall time after the base
-has connected.
+KIND: rate (rospy.Rate), sleep (rospy.sleep), timer (rospy.Timer); RATE: Hz; COUNT: number of commands; SPEED: m/s. With
+SPEED, it reads the simulated time of the first command (s) from its input. Otherwise it begins 0.3 s of wall time after
+the base has connected.
 """
 import sys
 import threading
@@ -52,7 +52,7 @@ def main(kind, rate, count, speed=None):
     move = Twist()
     move.linear.x = float(speed or 0.2)
     drive(kind, float(rate), int(count), publisher, move)
-    rospy.sleep(0.2)    # for the stop to be sent
+    rospy.sleep(0.2)    # lets the stop be sent
 
 
 if __name__ == '__main__':

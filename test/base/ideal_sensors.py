@@ -37,7 +37,7 @@ class TestIdealSensors(unittest.TestCase):
         for message in readings:
             self.assertEqual(message.header.frame_id, 'base_footprint')
             self.assertEqual(message.orientation, odometry[message.header.stamp].pose.pose.orientation)
-            # the mean over the time since the last reading, which lies in between where the command has changed
+            # the mean since the last reading, which is in between if the command has changed
             rate = message.angular_velocity.z
             self.assertTrue(any(abs(rate - each) < 1e-9 for each in rates) or -0.4 < rate < 0.7, rate)
             for covariance in (message.orientation_covariance, message.angular_velocity_covariance):

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Drivers of one rate on simulated time: the robot ends where their own sleeps lead on an ideal clock, to a micrometre.
+"""With drivers on simulated time, the robot stops exactly where their sleeps lead on an ideal clock, to a micrometer.
 
     in_step.py RATE STEP     Hz; step of the clock, s
 """
@@ -19,26 +19,27 @@ SPEED = 0.2     # m/s
 
 
 class Ideal:
-    """When drivers send, on a clock that ticks every `step` ns, and wakes at the first tick not before each time."""
+    """Times at which drivers send on a clock that ticks every `step` ns and wakes them at the first tick not before."""
 
     def __init__(self, step):
         self.step = step
 
     def tick(self, time):
-        """The first tick not before a time, ns."""
+        """Return the first tick not before a time, ns."""
         return -(-time // self.step)
 
     def ticks(self, kind, rate, count):
-        """The ticks of the commands and the final stop, counted from the first command."""
-        if kind == 'sleep':         # each sleep counts from the tick at which it begins
+        """Return the ticks of the commands and of the final stop, counted from the first command."""
+        if kind == 'sleep':         # each sleep is measured from the tick at which it begins
             return [number * self.tick(round(SECOND / rate)) for number in range(count + 1)]
-        period = int(SECOND / rate)     # as rospy.Rate has it
+        period = int(SECOND / rate)     # as in rospy.Rate
         first = 1 if kind == 'timer' else 0     # a Timer's first call is a period after its creation
         ticks = [self.tick((number + first) * period) for number in range(count + 1)]
         return [tick - ticks[0] for tick in ticks]
 
     def distance(self, *drivers):
-        """How far the robot goes, m. drivers: (speed, ticks), in the order of their names, on the same first tick."""
+        """Return the distance that the robot travels, m. drivers: (speed, ticks) by name order, on the same first
+        tick."""
         sent = {}       # by tick: the last command
         for speed, ticks in drivers:
             for tick in ticks[:-1]:
@@ -54,25 +55,25 @@ class TestInStep(unittest.TestCase):
         support.init_node('in_step')
         rospy.wait_for_service('/arbotix/reset')
         cls.rate, step = (float(arg) for arg in sys.argv[1:3])
-        cls.count = round(cls.rate)     # commands: a second
+        cls.count = round(cls.rate)     # number of commands in a second
         cls.ideal = Ideal(round(step * SECOND))
 
     def start(self, *command):
-        """Start a driver, a Process that is killed in the end."""
+        """Start a driver, a Process that is killed after the test."""
         driver = support.Process(*map(str, command))
         self.addCleanup(driver.kill)
         return driver
 
     def check(self, expected, *drivers):
-        """Wait for the end of the drivers, and compare the distance; expected: m."""
+        """Wait for the drivers to exit, and compare the distance; expected: m."""
         for driver in drivers:
             self.assertEqual(driver.wait(), 0, driver.output)
-        # by a new connection: in that of a busy subscriber, old messages may wait
+        # through a new connection, because old messages may be queued in the connection of a busy subscriber
         x = rospy.wait_for_message('/odom', Odometry).pose.pose.position.x
         self.assertAlmostEqual(x, expected, delta=support.MICROMETRE)
 
     def check_kind(self, kind, *command):
-        """One driver of this kind, from the origin."""
+        """Check one driver of this kind, starting at the origin."""
         rospy.ServiceProxy('/arbotix/reset', Empty)()
         driver = self.start(*command)
         self.check(self.ideal.distance((SPEED, self.ideal.ticks(kind, self.rate, self.count))), driver)
@@ -105,7 +106,7 @@ class TestInStep(unittest.TestCase):
             driver.wait_for_line('ready')
         now = rospy.wait_for_message('/odom', Odometry).header.stamp.to_sec()
         for driver in drivers:
-            # whole seconds are ticks; both have read it by then, at this many times real time
+            # whole seconds are ticks; at this speed of simulated time, both drivers have read it by then
             driver.type(str(round(now) + 1 + 2 * rospy.get_param('/arbotix/real_time_factor')))
         self.check(self.ideal.distance((SPEED, self.ideal.ticks('rate', 20, 20)),
                                        (SPEED / 4, self.ideal.ticks('rate', self.rate, self.count))), *drivers)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A Twist that is not finite is rejected: it stops the base, is counted, and leaves no trace in the odometry."""
+"""A Twist with values that are not finite is rejected: it stops the base, is counted, and does not affect odometry."""
 import math
 import unittest
 
@@ -34,7 +34,7 @@ class TestRejectedCommands(unittest.TestCase):
             support.wait_for(counted, '%d rejected commands in /diagnostics' % count)
             self.assertGreater(len(odom.messages), start)
 
-        # what is rejected is not reported as ignored too
+        # a rejected command is not also reported as ignored
         lateral = support.twist(0.1)
         lateral.linear.y = 0.1
         commander.publisher.publish(lateral)

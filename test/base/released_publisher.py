@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The simulated clock does not wait for a publisher of /cmd_vel that does not drive by it."""
+"""The simulated clock does not wait for a publisher of /cmd_vel that does not use it."""
 import time
 import unittest
 

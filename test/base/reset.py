@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""~reset puts the base back at the origin, at a standstill, even while it drives."""
+"""~reset moves the base back to the origin, at standstill, even while it is driving."""
 import time
 import unittest
 
@@ -23,7 +23,7 @@ class TestReset(unittest.TestCase):
         support.wait_for(lambda: resets.subscriber.get_num_connections(), 'the base to connect')
         reset = rospy.ServiceProxy('/arbotix/reset', Empty)
 
-        def is_announced():     # the base may know its subscriber a little later than the subscriber knows it
+        def is_announced():     # the base may register the connection a little later than the subscriber
             reset()
             time.sleep(0.1)
             return resets.last
@@ -31,7 +31,7 @@ class TestReset(unittest.TestCase):
         odom.wait_for_twist(0.0)
         self.assertEqual(odom.position(), (0.0, 0.0))
         self.assertEqual(support.yaw(odom.last), 0.0)
-        # and it can drive again
+        # the base can drive again
         commander.send(0.2)
         support.wait_for(lambda: odom.position()[0] > 0.05, 'the base to move again')
 

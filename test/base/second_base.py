@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A base that is started while another one runs takes its place, and leaves one whole robot."""
+"""A base that is started while another one is running replaces it, and one complete robot remains."""
 import os
 import signal
 import tempfile
@@ -11,7 +11,7 @@ import tf2_ros
 
 import support
 
-# as in a launch file of somebody's own, with the usual name of the node that publishes the links
+# like a user's own launch file, with the usual name for the node that publishes the links
 OTHER_NAME = '''<launch>
   <rosparam command="load" file="$(find rbx1_nav)/config/turtlebot.yaml" ns="my_base"/>
   <param name="robot_description" textfile="$(find rbx1_nav)/urdf/turtlebot.urdf"/>
@@ -26,7 +26,7 @@ class TestSecondBase(unittest.TestCase):
         support.init_node('second_base')
 
     def launch(self, *arguments):
-        """A roslaunch that has started its nodes; it ends with the test."""
+        """Start a roslaunch and wait for its nodes; it is stopped after the test."""
         process = support.Process('roslaunch', *arguments)
         self.addCleanup(process.kill)
         self.addCleanup(process.wait)
@@ -35,7 +35,7 @@ class TestSecondBase(unittest.TestCase):
         return process
 
     def assert_whole(self, *links):
-        """Somebody who connects now, as RViz would, finds the way to all links."""
+        """Check that a new subscriber, such as RViz, receives the transforms of all links."""
         buffer = tf2_ros.Buffer(debug=False)
         listener = tf2_ros.TransformListener(buffer)
         for link in links:
@@ -65,7 +65,7 @@ class TestSecondBase(unittest.TestCase):
         self.launch(os.path.realpath(file.name))
         support.wait_for(lambda: '/robot_state_publisher' in rosnode.get_node_names(), 'the second publisher')
         self.assert_whole('base_l_wheel_link', 'laptop_link')
-        # and the first one's goes on
+        # the first publisher continues
         self.assertEqual(len([name for name in rosnode.get_node_names() if 'robot_state_publisher' in name]), 2)
 
 

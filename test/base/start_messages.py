@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What the base logs at its start: one line on ignored keys, the surface and the seed, where it stands; no more."""
+"""At its start, the base logs one line on ignored keys, the surface with the seed, and its pose, and nothing else."""
 import os
 import re
 import unittest
@@ -26,7 +26,7 @@ class TestStartMessages(unittest.TestCase):
         return base
 
     def messages(self, **params):
-        """What a base logs until it is ready: levels and texts."""
+        """Return the levels and texts that a base logs until it is ready."""
         base = self.base(**params)
         base.wait_for_line('Ready')
         base.kill()
@@ -35,7 +35,7 @@ class TestStartMessages(unittest.TestCase):
     def test_ideal(self):
         self.assertEqual(self.messages(), [
             'INFO Simulated base: 13 parameters that only hardware needs are ignored', 'INFO Surface: ideal',
-            'INFO Ready: base_footprint stands at the origin of odom'])
+            'INFO Ready: base_footprint is at the origin of odom'])
 
     def test_a_seed(self):
         self.assertIn('INFO Surface: low_ply_carpet; seed:=3 repeats this run',
@@ -49,7 +49,7 @@ class TestStartMessages(unittest.TestCase):
     def test_an_unknown_key(self):
         config = yaml.safe_load(yaml.safe_dump(self.config))
         config['controllers']['base_controller']['time_out'] = 2
-        self.assertIn('WARN Unknown parameters, without effect: controllers/base_controller/time_out '
+        self.assertIn('WARN Ignoring unknown parameters: controllers/base_controller/time_out '
                       '(did you mean timeout?)', self.messages(**config))
 
     def test_a_surface_file_that_does_not_exist(self):

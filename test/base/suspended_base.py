@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The timeout counts from the arrival of the command, even if the process of the base is suspended as it ends."""
+"""The timeout starts when the command arrives, even if the base process is suspended when the timeout expires."""
 import os
 import signal
 import time

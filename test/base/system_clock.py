@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A step of the system clock by hours does not move the robot; the stamps follow the clock."""
+"""A step of the system clock by hours does not move the robot, and the stamps follow the clock."""
 import os
 import tempfile
 import unittest
@@ -9,8 +9,8 @@ from tf2_msgs.msg import TFMessage
 
 import support
 
-# The node itself, with a time of day that is off by the number in a file. libfaketime would do it without a change in
-# Python, but that of Debian 12 breaks time.sleep().
+# The unchanged node, with a time of day that is shifted by the number in a file. libfaketime could do this without
+# patching Python, but the version in Debian 12 breaks time.sleep().
 STEPPED = """
 import runpy, sys, time
 real, (node, offset) = time.time, sys.argv[1:]
@@ -48,7 +48,7 @@ class TestSystemClock(unittest.TestCase):
             support.wait_for(lambda: abs(odom.last.header.stamp.to_sec() - before) > 3600, 'a stamp that has stepped')
             self.assertEqual(odom.last.header.stamp.to_sec() > before, hours > 0)
             odom.wait_for_twist(0.0)
-            # the timeout of 1.0 s ended the command, so it moved at 0.2 m/s for at most 1.0 s
+            # the command expired after the timeout of 1.0 s, so the base moved at 0.2 m/s for at most 1.0 s
             self.assertLessEqual(odom.position()[0] - start, 0.2 + support.MICROMETRE)
         self.assertAlmostEqual(odom.position()[0], 0.4, delta=support.MICROMETRE)
         stamps = [t.header.stamp for m in transforms.messages for t in m.transforms]

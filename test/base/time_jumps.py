@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Simulated time that jumps, stands still or jumps back never moves the robot by more than timeout times speed."""
+"""Simulated time that jumps, stops or jumps back never moves the robot farther than timeout times speed."""
 import math
 import unittest
 
@@ -19,18 +19,18 @@ class TestTimeJumps(unittest.TestCase):
         transforms = support.Watch('/tf', TFMessage)
         # OdomWatch would wait for odometry, and there is none before simulated time begins
         odom = support.Watch('/odom', support.Odometry)
-        # rospy subscribes to /clock for itself, and the base once more: wait for the second
+        # rospy itself subscribes to /clock, and then the base does: wait for the second subscription
         support.wait_for(lambda: clock.publish(clock.now + 0.02) or odom.last, '/odom')
 
         def jump(seconds):
-            """Publish a time that is later by this much; returns the odometry that follows."""
+            """Publish a later time; return the odometry that follows. seconds: the difference."""
             count = len(odom.messages)
             clock.publish(clock.now + seconds)
             support.wait_for(lambda: len(odom.messages) > count, 'odometry')
             return odom.last
 
         def drive():
-            """Send a command; returns the position as soon as it is in force, m."""
+            """Send a command; return the position as soon as it is in force, m."""
             commander.send(0.2)
             support.wait_for(lambda: jump(0.02).twist.twist.linear.x == 0.2, 'the command in force')
             return odom.last.pose.pose.position.x
@@ -48,16 +48,16 @@ class TestTimeJumps(unittest.TestCase):
         self.assertEqual(message.twist.twist.linear.x, 0)
         self.assertAlmostEqual(message.header.stamp.to_sec(), clock.now, delta=1e-6)
 
-        # standing still: the same time again does not lead to odometry
+        # stopped clock: the same time again does not lead to odometry
         start = drive()
         count = len(odom.messages)
         for _ in range(50):
             clock.publish(clock.now)
-        message = jump(0.02)    # arrives after the fifty
+        message = jump(0.02)    # arrives after the fifty messages
         self.assertEqual(len(odom.messages), count + 1)
         self.assertAlmostEqual(message.pose.pose.position.x - start, 0.2 * 0.02, delta=support.MICROMETRE)
 
-        # after all that it still drives
+        # after all this, the base still drives
         self.assertGreater(drive(), message.pose.pose.position.x)
 
         values = [v for m in odom.messages for v in (m.pose.pose.position.x, m.pose.pose.position.y,

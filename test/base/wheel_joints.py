@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The base publishes its wheels under the names of another robot's URDF file, and so its wheels have frames."""
+"""The base publishes its wheel joints under the names in another robot's URDF file, so the wheels have frames."""
 import unittest
 
 from sensor_msgs.msg import JointState

@@ -20,9 +20,9 @@ class TestAngularCalibration(unittest.TestCase):
         script = support.Process('rosrun', 'rbx1_nav', 'calibrate_angular.py', '_turns:=2')
         self.addCleanup(script.kill)
         script.wait_for_line('The gyro reports')
-        # both are short of, or beyond, two turns
+        # both differ from two turns
         real, reported = (720 + math.degrees(support.wrapped(support.yaw(topic.next()))) for topic in (truth, odom))
-        # on carpet the wheels slip by 3 % in a turn, with a standard deviation of 2 % over two turns
+        # on carpet the wheels slip by 3 % in turns, with a standard deviation of 2 % over two turns
         self.assertGreater(abs(reported - real), 3)
 
         script.type(f'{real:.1f}')
@@ -30,9 +30,9 @@ class TestAngularCalibration(unittest.TestCase):
         factors = {key: float(value) for key, value in re.findall(r'^(\w+_correction): (\S+)$', script.output,
                                                                   re.MULTILINE)}
         self.assertEqual(len(factors), 2, script.output)
-        # 0.2 degrees of rounding, in 720
+        # rounding of 0.2 degrees in 720
         self.assertAlmostEqual(factors['odom_angular_scale_correction'], ODOM_FACTOR * real / reported, delta=0.0005)
-        # the gyro's scale error has a standard deviation of 0.3 %, of which this seed draws less than two
+        # the gyro's scale error has a standard deviation of 0.3 %; with this seed the error is below two of these
         self.assertAlmostEqual(factors['gyro_scale_correction'], GYRO_FACTOR, delta=0.006 * GYRO_FACTOR)
 
 

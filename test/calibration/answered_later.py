@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Where nobody can answer, a calibration script keeps its run; _measured:= brings the answer later, without a drive."""
+"""Without a terminal, a calibration script stores its run; _measured:= supplies the answer later, without driving."""
 import re
 import unittest
 
@@ -15,7 +15,7 @@ class TestAnsweredLater(unittest.TestCase):
         support.init_node('answered_later')
 
     def check(self, node, argument, keys, wrong, expected):
-        """A run without an answer, then a result that makes no sense, then the same result twice."""
+        """Drive without an answer, then enter an invalid result, then a valid result twice."""
         script = f'calibrate_{node}.py'
         run = support.Process('rosrun', 'rbx1_nav', script)
         self.addCleanup(run.kill)
@@ -36,7 +36,7 @@ class TestAnsweredLater(unittest.TestCase):
                 self.assertIn(expected, later.output)
                 self.assertFalse(factors)
             else:
-                # the odometry of the simulated base reports about the goal, whose sixth part is missing
+                # the odometry of the simulated base reports about the goal, and a sixth of the goal is missing
                 self.assertEqual(sorted(factors), sorted(keys))
                 self.assertAlmostEqual(float(factors[keys[0]]), 5 / 6, delta=0.005)
             self.assertFalse(rospy.has_param(f'/calibrate_{node}/measured'), 'it belongs to this run only')

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A calibration script that is interrupted stops the robot and ends, while it drives and while it asks."""
+"""A calibration script that is interrupted while driving or asking stops the robot and exits."""
 import signal
 import unittest
 
@@ -16,7 +16,7 @@ class TestInterruptedCalibration(unittest.TestCase):
         cls.odom = support.OdomWatch()
 
     def check(self, script, line=None):
-        """Interrupt a script in motion, or after this line."""
+        """Interrupt a script in motion, or after `line`."""
         commands = support.Watch('/cmd_vel', Twist)
         self.addCleanup(commands.subscriber.unregister)
         kept = f"/last_calibration/{script[len('calibrate_'):-len('.py')]}"
@@ -34,7 +34,7 @@ class TestInterruptedCalibration(unittest.TestCase):
         self.assertNotIn('Traceback', process.output)
         support.wait_for(lambda: commands.last == Twist(), 'a stop')
         self.odom.wait_for_twist(0.0)
-        # the run before it does not count any more, and one that was interrupted never does
+        # the previous run is no longer valid, and an interrupted run never is
         self.assertEqual(rospy.has_param(kept), line is not None)
 
     def test_linear_in_motion(self):

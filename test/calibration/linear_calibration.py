@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""calibrate_linear.py finds by how much the wheels slip; with its factor, the odometry would report the truth."""
+"""calibrate_linear.py measures the slip of the wheels; with its factor, the odometry would report the truth."""
 import math
 import re
 import unittest
@@ -20,7 +20,7 @@ class TestLinearCalibration(unittest.TestCase):
         self.addCleanup(script.kill)
         script.wait_for_line('The odometry reports')
         real, reported = (math.hypot(*support.pose(topic.next())[:2]) for topic in (truth, odom))
-        # on carpet the wheels slip by 2 % in the mean, with a standard deviation of 4 % over 1 m
+        # on carpet the wheels slip by 2 % on average, with a standard deviation of 4 % over 1 m
         self.assertGreater(abs(reported - real), 0.003)
 
         for answer, shown in [('about 1', "'about 1'"), (f'{100 * real:.0f}', r'9\d.0')]:
@@ -28,11 +28,11 @@ class TestLinearCalibration(unittest.TestCase):
             script.wait_for_line(f'measured: {shown}: expected a distance from')
         script.type(f'{real:.3f}')
         self.assertEqual(script.wait(), 0, script.output)
-        # what it reports is rounded to millimetres
+        # the reported distance is rounded to millimeters
         shown = float(re.search(r'The odometry reports (\S+) m', script.output)[1])
         self.assertAlmostEqual(shown, reported, delta=0.0006)
         factor = float(re.search(r'^odom_linear_scale_correction: (\S+)$', script.output, re.MULTILINE)[1])
-        # a millimetre of rounding in what was typed, in 1 m, and the last decimal of the factor
+        # rounding of the answer, 1 mm in 1 m, and of the last decimal of the factor
         self.assertAlmostEqual(factor, FACTOR * real / reported, delta=0.0007)
 
 

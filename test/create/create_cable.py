@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The cable is pulled and put back in motion: a stop comes first, and the odometry counts what moved meanwhile."""
+"""The cable is unplugged and plugged in during motion: a stop is sent first, and the odometry includes the gap."""
 import unittest
 
 from driven import CHI_SQUARE, STOP, DrivenRobot
@@ -21,13 +21,13 @@ class TestCreateCable(unittest.TestCase):
             robot.switch('pull_cable', True)
             robot.node.wait_for_line('Lost the serial connection')
             robot.wait_for_status('no such device')
-            # it goes on with its last command
+            # the robot keeps executing its last command
             support.wait_for(lambda: abs(support.yaw(robot.truth.next()) - support.yaw(start)) > 0.3, 'it to move on')
             count = len(robot.received())
             robot.switch('pull_cable', False)
             robot.wait_for_standstill()
             self.assertEqual(robot.commands_since(count)[0], STOP)
-            robot.wait_for_status('Standing')
+            robot.wait_for_status('Stationary')
             self.assertLess(robot.normalized_error(), CHI_SQUARE)
         self.assertEqual(robot.value('Serial line', 'Dropouts'), '2')
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""1 % of the bytes from the robot are corrupted: it drives on, and the odometry stays right."""
+"""1 % of the bytes from the robot are corrupted: it continues to drive, and the odometry remains right."""
 import unittest
 
 from driven import DrivenRobot
@@ -11,16 +11,16 @@ class TestCreateCorruption(unittest.TestCase):
         support.init_node('create_corruption')
         robot = DrivenRobot(self, 'create2')
         robot.publish('corruption', 0.01)
-        robot.drive(0.2, 0.0, lambda: robot.truth.last.pose.pose.position.x > 1.0, 'a metre')
+        robot.drive(0.2, 0.0, lambda: robot.truth.last.pose.pose.position.x > 1.0, 'a meter')
         robot.drive(0.0, 1.0, lambda: support.yaw(robot.truth.last) > 3.0, 'half a turn')
         robot.wait_for_standstill()
         robot.publish('corruption', 0.0)
         robot.diagnostics.next()
         robot.diagnostics.next()
-        # each frame of 36 bytes is hit with a probability of 0.3, and 66 come a second
+        # each frame of 36 bytes is corrupted with a probability of 0.3, at 66 frames per second
         self.assertGreater(int(robot.value('Serial line', 'Corrupted readings')), 50)
         self.assertEqual(robot.value('Serial line', 'Dropouts'), '0')
-        self.assertLess(max(map(abs, robot.error())), 0.003)     # rounding, over a path of 1 m
+        self.assertLess(max(map(abs, robot.error())), 0.003)     # rounding along a path of 1 m
 
 
 if __name__ == '__main__':

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The base node drives an emulated robot: odometry, gyro, joints and diagnostics agree with it, and it ends at rest."""
+"""The base node drives an emulated robot: odometry, gyro, joints and diagnostics match it, and it stops at the end."""
 import math
 import signal
 import unittest
@@ -17,20 +17,20 @@ class TestCreateDrives(unittest.TestCase):
         support.init_node('create_drives')
 
     def check(self, robot_type, angle, distance):
-        """angle, distance: how far the odometry may be off: what its sensors are rounded to, along the path."""
+        """Drive the robot. angle, distance: odometry errors allowed for the rounding of the sensors along the path."""
         robot = DrivenRobot(self, robot_type, gyro_scale_correction=1.0)
         joints = support.Watch('/joint_states', JointState)
         transforms = support.Watch('/tf', TFMessage)
-        robot.drive(0.2, 0.0, lambda: robot.truth.last.pose.pose.position.x > 0.5, 'half a metre')
+        robot.drive(0.2, 0.0, lambda: robot.truth.last.pose.pose.position.x > 0.5, 'half a meter')
         robot.drive(0.0, 1.0, lambda: support.yaw(robot.truth.last) > 1.5, 'a turn')
-        # without another command it times out
+        # without another command, the command times out
         robot.wait_for_standstill()
         robot.node.wait_for_line('no command for 0.6 s: stopped')
         x, y, yaw = robot.error()
         self.assertLess(abs(yaw), angle)
         self.assertLess(max(abs(x), abs(y)), distance)
 
-        robot.wait_for_status('Standing')
+        robot.wait_for_status('Stationary')
         message = robot.odom.next()
         self.assertEqual((message.header.frame_id, message.child_frame_id), ('odom', 'base_footprint'))
         transform = support.wait_for(lambda: [each for tf in list(transforms.messages) for each in tf.transforms
@@ -46,7 +46,7 @@ class TestCreateDrives(unittest.TestCase):
         robot, turned = self.check('create', 0.02, 0.02)
         imu = support.Watch('/imu/data', Imu)
         rotation = imu.next().orientation
-        # a gyro of 0.3 degrees/s a count, at 30 Hz, whose readings are instants of the motion
+        # the gyro has 0.3 degrees/s per count, at 30 Hz, and its readings are instantaneous
         self.assertAlmostEqual(2 * math.atan2(rotation.z, rotation.w), turned, delta=0.1)
         robot.wait_for_status('Calibrated', 'Gyro')
 

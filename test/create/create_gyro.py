@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A gyro that breaks in motion: imu/data pauses at once, with an error in log and /diagnostics, until it works
+"""A gyro fault in motion: imu/data pauses at once, with an error in the log and /diagnostics, until the gyro works
 again."""
 import unittest
 
@@ -23,13 +23,13 @@ class TestCreateGyro(unittest.TestCase):
         robot.wait_for_status('12 counts', 'Gyro')
         self.assertEqual(robot.status('Gyro').level, DiagnosticStatus.ERROR)
         self.assertEqual(robot.value('Gyro', 'Reading (counts)'), '12')
-        # -(12 - 512) / 512 * 150 degrees/s are 2.6 rad/s; the robot turns at 0.5
+        # -(12 - 512) / 512 * 150 degrees/s is 2.6 rad/s; the robot turns at 0.5 rad/s
         self.assertLess(max(abs(message.angular_velocity.z) for message in imu.messages), 0.6)
         self.assertEqual(len(imu.messages), broken)
 
         robot.publish('gyro_stuck', -1)
         robot.wait_for_standstill()
-        robot.node.wait_for_line('Gyro: works again')
+        robot.node.wait_for_line('Gyro: working again')
         robot.wait_for_status('Calibrated', 'Gyro')
         self.assertLess(abs(imu.next().angular_velocity.z), 0.01)
         self.assertEqual(robot.node.output.count('Gyro: '), 2, robot.node.output)

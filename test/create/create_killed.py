@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""A node is killed or hangs in motion: its guardian stops the robot. Without a guardian the node starts another."""
+"""If a node is killed or hangs in motion, its guardian stops the robot. If the guardian dies, the node starts a new
+one."""
 import os
 import signal
 import unittest
@@ -36,7 +37,7 @@ class TestCreateKilled(unittest.TestCase):
         robot.wait_for_stop(count)
         os.kill(pid, signal.SIGCONT)
         robot.wait_for_standstill()
-        # the guardian has paused the stream of readings, which the node takes for a robot that has fallen silent
+        # the guardian has paused the stream of readings, so the node assumes that the robot has stopped responding
         robot.node.wait_for_line(r'(?s)The robot answers again.*in safe mode')
         robot.commander.send(0.0, 0.0)
         robot.wait_for_motion()

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A port that is absent or in use: one line says so, and the node waits for it. Bad parameters end it."""
+"""If the port is absent or in use, the node logs one line and waits. With invalid parameters it exits."""
 import os
 import signal
 import unittest
@@ -17,8 +17,8 @@ class TestCreatePort(unittest.TestCase):
         robot = DrivenRobot(self, 'create2')
         pid = support.pid_of('/turtlebot_node')
         second = robot.start_node('__name:=second')
-        second.wait_for_line(rf'{robot.link}: in use by \S+ \(process \d+\): expected a port that nobody uses')
-        # nothing disturbs the first
+        second.wait_for_line(rf'{robot.link}: in use by \S+ \(process \d+\): expected a port that is not in use')
+        # the first node is not disturbed
         robot.wait_for_motion()
         # when the port is free, the second one uses it
         os.kill(pid, signal.SIGINT)
@@ -30,7 +30,7 @@ class TestCreatePort(unittest.TestCase):
         second = robot.start_node(_update_rate='fast')
         self.assertEqual(second.wait(), 1, second.output)
         self.assertIn("/turtlebot_node/update_rate: 'fast': expected a rate from 5 to 60 in Hz", second.output)
-        # although it has the same name, the first one goes on; once could be a last command of a node that ends
+        # the first node continues although the names are equal; one motion could be its last command before it exits
         robot.wait_for_motion()
         robot.wait_for_standstill()
         robot.wait_for_motion()
@@ -40,7 +40,7 @@ class TestCreatePort(unittest.TestCase):
         robot.end_node(robot.node)
         robot.switch('pull_cable', True)
         node = robot.start_node()
-        node.wait_for_line(f'{robot.link}: no such device: expected the adapter of the robot to be plugged in')
+        node.wait_for_line(f"{robot.link}: no such device: expected the robot's adapter to be plugged in")
         robot.switch('pull_cable', False)
         node.wait_for_line('in safe mode')
 

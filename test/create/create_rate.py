@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Another process changes the rate of the port: it is set back, and a last stop that nobody confirms is reported."""
+"""Another process changes the rate of the port: the node restores it, and reports a last stop without confirmation."""
 import signal
 import subprocess
 import unittest
@@ -18,12 +18,12 @@ class TestCreateRate(unittest.TestCase):
             robot = DrivenRobot(self, robot_type)
             robot.wait_for_motion()
             subprocess.run(['stty', '-F', robot.link, '9600', 'sane'], check=True)
-            robot.node.wait_for_line('%s: another process has changed the rate to 9600 baud: expected %d; set back'
+            robot.node.wait_for_line('%s: another process has changed the rate to 9600 baud: expected %d; restored'
                                      % (robot.link, robot.model.baud))
-            robot.wait_for_status('Standing')
+            robot.wait_for_status('Stationary')
             robot.commander.send(0.0, 0.0)
             robot.wait_for_motion()
-            # at once before the end: the stop needs the rate too
+            # immediately before the exit: the stop also needs the right rate
             subprocess.run(['stty', '-F', robot.link, '9600'], check=True)
             count = len(robot.received())
             robot.node.signal(signal.SIGTERM)

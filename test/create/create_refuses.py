@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""A wheel drops, or the cable is out, while a script drives: it exits with 1 and says why, and the robot stays where
-it is."""
+"""A wheel drops, or the cable is unplugged, while a script drives: it exits with 1 and the reason, and the robot does
+not move again."""
 import unittest
 
 from driven import DrivenRobot
@@ -29,14 +29,14 @@ class TestCreateRefuses(unittest.TestCase):
         robot.switch('drop_wheel', True)
         self.check_refusal(script, 'a wheel dropped')
         robot.wait_for_standstill()
-        # another sender, which has not noticed
+        # another sender, which has not noticed the stop
         robot.switch('drop_wheel', False)
         robot.drive(0.2, 0.0, lambda: robot.value(None, 'Refused commands') != '0', 'commands to be refused')
         robot.drive(0.2, 0.0, lambda: robot.value(None, 'Mode') == 'safe', 'safe mode')
         count = len(robot.received())
         robot.drive(0.2, 0.0, lambda: len(robot.received()) > count + 30, 'a second of commands')
         self.assertFalse(robot.moving)
-        # until it stops
+        # its commands are refused until it sends a stop
         robot.commander.send(0.0, 0.0)
         robot.wait_for_motion()
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The robot gives up safe mode: the node says why, and takes control again only when the cause is gone."""
+"""The robot leaves safe mode: the node reports the cause, and takes control again only when the cause is removed."""
 import unittest
 
 from driven import DrivenRobot
@@ -21,17 +21,17 @@ class TestCreateSafety(unittest.TestCase):
             robot.drive(0.2, 0.0, lambda why=reason: robot.status().message == f'Not driven: {why}', reason)
             robot.node.wait_for_line('it changed from safe to passive mode')
             count = len(robot.received())
-            # commands do not change that
+            # commands do not change the mode
             self.assertFalse(robot.moving)
             robot.diagnostics.next()
             robot.diagnostics.next()
             self.assertNotIn(command('safe'), robot.commands_since(count))
             robot.switch(service, False)
-            robot.wait_for_status('Standing')
+            robot.wait_for_status('Stationary')
             robot.wait_for_mode('safe')
         robot.wait_for_motion()
 
-        # on the dock it is charged, until it is to move
+        # on the dock the robot charges until a command to move arrives
         robot.switch('dock', True)
         robot.wait_for_status('Not driven: on the dock')
         robot.publish('charge', 0.15)
@@ -39,7 +39,7 @@ class TestCreateSafety(unittest.TestCase):
         robot.switch('dock', False)
         robot.wait_for_status('Low: 15 %', 'Battery')
         robot.node.wait_for_line('Battery: Low: 15 %')
-        robot.wait_for_status('Standing')
+        robot.wait_for_status('Stationary')
         robot.publish('charge', 0.0)
         robot.wait_for_status('The robot does not answer')
 

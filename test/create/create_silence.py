@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The line falls silent, and the robot is switched off and on: both are noticed, and neither is travel."""
+"""A silent line, and a robot that is switched off and on: both are detected, and neither is counted as travel."""
 import unittest
 
 from driven import STOP, DrivenRobot
@@ -22,19 +22,19 @@ class TestCreateSilence(unittest.TestCase):
         robot.switch('silence', False)
         robot.wait_for_standstill()
         self.assertEqual(robot.commands_since(count)[0], STOP)
-        robot.wait_for_status('Standing')
+        robot.wait_for_status('Stationary')
         self.assertLess(abs(robot.error()[0]), distance)
 
         before = robot.odom.position()
         robot.power_cycle()
         robot.node.wait_for_line('it was switched off or reset')
-        robot.wait_for_status('Standing')
+        robot.wait_for_status('Stationary')
         robot.odom.next()
         self.assertEqual(robot.odom.position(), before)
         robot.wait_for_motion()
 
     def test_a_create(self):
-        # a reply on its way may be lost or not: half of 0.2 m/s for 33 ms, more on a busy machine
+        # a reply in transit may be lost or not: half of 0.2 m/s for 33 ms, more on a busy machine
         self.check('create', 0.03)
 
     def test_a_create_2(self):

@@ -12,18 +12,18 @@ from rbx1_nav.create.protocol import command, drive_direct
 import support
 
 STOP = drive_direct(0, 0)
-CHI_SQUARE = 16.3       # 99.9 % of 3 degrees of freedom
+CHI_SQUARE = 16.3       # 99.9 % quantile for 3 degrees of freedom
 
 
 def guardian_of(pid):
-    """The process id of the guardian of a node's process; None if there is none."""
+    """Return the process id of the guardian of a node's process; None if there is none."""
     for name in glob.glob('/proc/[0-9]*'):
         try:
             with open(f'{name}/stat', encoding='ascii') as stat, open(f'{name}/cmdline', 'rb') as command:
                 parent = int(stat.read().rpartition(')')[2].split()[1])
                 if parent == pid and b'guardian.py' in command.read():
                     return int(os.path.basename(name))
-        except OSError:     # it has ended meanwhile
+        except OSError:     # the process has exited
             pass
     return None
 
@@ -32,8 +32,8 @@ class DrivenRobot(EmulatedRobot):
     """turtlebot_node.py on the port of an emulated robot."""
 
     def __init__(self, case, robot_type, emulated=(), obstacle='', **params):
-        """case: the TestCase, at whose end both end; emulated: parameters of the robot; obstacle: the service of the
-        robot that keeps the node from driving it at first, or ''; params: of the node."""
+        """case: the TestCase, whose cleanup stops both processes; emulated: parameters of the robot; obstacle: the
+        service of the robot that prevents the node from driving it at first, or ''; params: parameters of the node."""
         super().__init__(case, robot_type, **dict(emulated))
         self.case = case
         if obstacle:
@@ -44,12 +44,12 @@ class DrivenRobot(EmulatedRobot):
         self.commander = support.Commander()
         if obstacle:
             return
-        self.wait_for_status('Standing')
+        self.wait_for_status('Stationary')
         if robot_type == 'create':
             self.wait_for_status('Calibrated', 'Gyro')
 
     def start_node(self, *arguments, **params):
-        """Another base node on this port."""
+        """Start another base node on this port."""
         if rospy.has_param('/turtlebot_node'):
             rospy.delete_param('/turtlebot_node')
         node = support.Process('rosrun', 'rbx1_nav', 'turtlebot_node.py', f'_port:={self.link}', *arguments,
@@ -58,7 +58,7 @@ class DrivenRobot(EmulatedRobot):
         return node
 
     def end_node(self, node):
-        """End a node, if it runs, and look at what it has logged."""
+        """Stop a node if it is running, and check its log."""
         if node.process.poll() is None:
             node.signal(signal.SIGINT)
             self.case.assertEqual(node.wait(), 0, node.output)
@@ -66,17 +66,17 @@ class DrivenRobot(EmulatedRobot):
         self.case.assertNotIn('Traceback', node.output)
 
     def status(self, name=None):
-        """The latest status of a part of the robot, by default of the base; None if there is none."""
+        """Return the latest status of a part of the robot, by default of the base; None if there is none."""
         name = name or 'Base'
         statuses = [status for message in list(self.diagnostics.messages) for status in message.status]
         return next((status for status in reversed(statuses) if status.name == f'turtlebot_node: {name}'), None)
 
     def value(self, part, key):
-        """A value in the status of a part."""
+        """Return a value in the status of a part."""
         return next(each.value for each in self.status(part).values if each.key == key)
 
     def wait_for_status(self, message, name=None):
-        """Wait until the message of a status contains a text."""
+        """Wait until the message of a status contains `message`."""
         try:
             return support.wait_for(lambda: message in getattr(self.status(name), 'message', ''), repr(message))
         except AssertionError as error:
@@ -95,15 +95,15 @@ class DrivenRobot(EmulatedRobot):
         self.drive(linear, angular, lambda: self.moving, f'the robot to move: {self.node.output}')
 
     def wait_for_standstill(self):
-        """Wait until the robot stands, by ground truth."""
+        """Wait until the robot is stationary according to the ground truth."""
         support.wait_for(lambda: not self.moving, f'the robot to stop: {self.node.output}')
 
     def wait_for_mode(self, mode):
-        """Wait until diagnostics show a mode."""
+        """Wait until the diagnostics show a mode."""
         support.wait_for(lambda: self.value(None, 'Mode') == mode, f'mode {mode}')
 
     def commands_since(self, count):
-        """The commands that the robot has received after the first `count`."""
+        """Return the commands that the robot has received after the first `count`."""
         return [data for _, data in self.received()[count:]]
 
     def wait_for_stop(self, count):
@@ -115,19 +115,20 @@ class DrivenRobot(EmulatedRobot):
         self.wait_for_standstill()
 
     def poses(self):
-        """(odometry, ground truth), each (x, y, yaw), of a robot that stands."""
+        """Return (odometry, ground truth), each (x, y, yaw), of a stationary robot."""
         self.wait_for_standstill()
         self.odom.next()
         self.odom.next()
         return support.pose(self.odom.last), support.pose(self.truth.next())
 
     def error(self):
-        """The odometry's error, (x, y, yaw)."""
+        """Return the error of the odometry, (x, y, yaw)."""
         (x, y, yaw), (true_x, true_y, true_yaw) = self.poses()
         return x - true_x, y - true_y, support.wrapped(yaw - true_yaw)
 
     def normalized_error(self):
-        """The odometry's squared error, normalized by its covariance: chi-square with 3 degrees of freedom."""
+        """Return the squared error of the odometry, normalized by its covariance: chi-square with 3 degrees of freedom.
+        """
         error = numpy.array(self.error())
         covariance = numpy.array(self.odom.last.pose.covariance).reshape(6, 6)[numpy.ix_([0, 1, 5], [0, 1, 5])]
         return error @ numpy.linalg.solve(covariance, error)

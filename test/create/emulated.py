@@ -1,4 +1,4 @@
-"""An emulated robot as a process of its own, for the tests in this folder."""
+"""An emulated robot as a separate process, for the tests in this folder."""
 import os
 import signal
 import tempfile
@@ -14,10 +14,10 @@ import support
 
 
 class EmulatedRobot:
-    """fake_create.py, and a client at its serial port."""
+    """fake_create.py, and a client on its serial port."""
 
     def __init__(self, case, robot_type, **params):
-        """case: the TestCase, at whose end it ends; params: of the node."""
+        """case: the TestCase, whose cleanup stops the process; params: parameters of the node."""
         self.model = MODELS[robot_type]
         folder = tempfile.TemporaryDirectory()
         case.addCleanup(folder.cleanup)
@@ -39,7 +39,7 @@ class EmulatedRobot:
         self.port = None
 
     def end(self):
-        """End it, so that another one can have its name."""
+        """Stop the process, so that another one can use its name."""
         if self.ended:
             return
         self.ended = True
@@ -54,7 +54,7 @@ class EmulatedRobot:
         self.port = serial.Serial(self.link, baud or self.model.baud, timeout=support.LIMIT)
 
     def send(self, *commands):
-        """Send commands, and wait until the robot has them. Returns when it had the last one, in s of ROS time."""
+        """Send commands, and wait until they arrive. Returns the arrival time of the last one, in s of ROS time."""
         count = len(self.line.messages)
 
         def arrived():
@@ -64,17 +64,17 @@ class EmulatedRobot:
         return support.wait_for(arrived, f'{commands} on /line')
 
     def wait_until_read(self):
-        """Wait until the robot has read all that was sent so far."""
-        for _ in range(3):      # one message may be on its way, and one be published while it reads
+        """Wait until the robot has read everything that was sent so far."""
+        for _ in range(3):      # one message may be in transit, and one may be published while the robot reads
             self.truth.next()
 
     def received(self):
-        """(s of ROS time, bytes) of each command that the robot has received."""
+        """Return (s of ROS time, bytes) of each command that the robot has received."""
         texts = [message.data.split() for message in self.line.messages]
         return [(float(stamp), bytes.fromhex(data)) for stamp, data in texts]
 
     def read(self, number):
-        """The values of a packet or group, by the names of the packets."""
+        """Return the values of a packet or group, by packet name."""
         packets = single_packets(self.model, [number])
         form = packets_format(packets)
         self.port.reset_input_buffer()
@@ -89,13 +89,13 @@ class EmulatedRobot:
         support.wait_for(lambda: self.read(number)[packet.name] == value, f'{packet.name} = {value!r}')
 
     def switch(self, service, on):
-        """Call one of the services that have a SetBool."""
+        """Call one of the SetBool services."""
         name = f'/fake_create/{service}'
         rospy.wait_for_service(name, support.LIMIT)
         assert rospy.ServiceProxy(name, SetBool)(on).success
 
     def power_cycle(self):
-        """Take the battery out, and put it in again."""
+        """Remove the battery and insert it again."""
         assert rospy.ServiceProxy('/fake_create/power_cycle', Trigger)().success
 
     def publish(self, topic, value):
@@ -112,6 +112,6 @@ class EmulatedRobot:
 
     @property
     def moving(self):
-        """Whether the robot moves by ground truth."""
+        """Whether the robot moves according to the ground truth."""
         twist = self.truth.next().twist.twist
         return bool(twist.linear.x or twist.angular.z)

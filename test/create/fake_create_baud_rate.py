@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""At a wrong baud rate, nothing sensible passes the line; after the command Baud, the new rate is the right one."""
+"""At a wrong baud rate, only garbage passes the line; after the Baud command, the new rate is right."""
 import unittest
 
 from emulated import EmulatedRobot
@@ -18,7 +18,7 @@ class TestBaudRate(unittest.TestCase):
             robot.port.close()
             robot.open()
             robot.send(command('start'))
-            # garbage may be a command, but not these
+            # garbage may contain a command, but not this one
             self.assertNotIn(drive_direct(100, 100), [data for _, data in robot.received()])
             self.assertFalse(robot.moving)
             robot.send(command('stream', 1, 35))
@@ -32,7 +32,7 @@ class TestBaudRate(unittest.TestCase):
             robot.port.baudrate = robot.model.baud
             robot.send(command('pause_resume_stream', 0))
             # 19200, a rate that both robots know
-            robot.send(command('baud', 7))      # the robot has it, so the rate may change
+            robot.send(command('baud', 7))      # the robot has received it, so the rate may change
             robot.port.baudrate = 19200
             self.assertEqual(robot.read(35), {'mode': PASSIVE})
             robot.end()

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""The emulated robot loses its cable, or its line falls silent: it goes on with its last Drive, and can be reached
-again."""
+"""The cable of the emulated robot is unplugged, or its line is silent: it keeps executing its last Drive, and can be
+reached again later."""
 import os
 import unittest
 
@@ -40,7 +40,7 @@ class TestCable(unittest.TestCase):
             robot.switch('pull_cable', False)
             old = robot.port
             robot.open()
-            # while the old device is still open, the new one cannot have its name
+            # while the old device is still open, the new device must have a different name
             self.assertNotEqual(os.path.realpath(robot.link), device)
             old.close()
             self.assertEqual(robot.read(35), {'mode': FULL})

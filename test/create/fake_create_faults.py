@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What can happen to the emulated robot: wheel drop, cliff, bump, dock, power, battery, bad bytes, a stuck gyro."""
+"""Faults and events of the emulated robot: wheel drop, cliff, bump, dock, power, battery, bad bytes, a stuck gyro."""
 import unittest
 
 from emulated import EmulatedRobot

@@ -1,6 +1,5 @@
 #!/usr/bin/python3
-"""/line shows each command that the emulated robot receives, also one that it ignores, with the time of its last
-byte."""
+"""/line shows each command that the emulated robot receives, even if it ignores it, with the time of the last byte."""
 import time
 import unittest
 
@@ -8,7 +7,7 @@ from emulated import EmulatedRobot
 from rbx1_nav.create.protocol import command, drive_direct
 import support
 
-CLOCKS = 0.001      # s: the robot's clock is not the one that stamps are made of
+CLOCKS = 0.001      # s: the robot and the stamps use different clocks
 
 
 class TestLine(unittest.TestCase):
@@ -17,7 +16,7 @@ class TestLine(unittest.TestCase):
         robot = EmulatedRobot(self, 'create')
         robot.open()
         sent = time.time()
-        # a robot that is passive ignores the second one
+        # in passive mode, the robot ignores the second command
         stamp = robot.send(command('start'), drive_direct(100, -100))
         received = time.time()
         self.assertEqual([data for _, data in robot.received()], [command('start'), bytes((145, 0, 100, 255, 156))])

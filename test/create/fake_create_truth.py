@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""/ground_truth is where the emulated robot really is: its sensors agree with it, as far as its errors let them."""
+"""/ground_truth is the true pose of the emulated robot: its sensors agree with it, within their errors."""
 from math import pi
 import unittest
 
@@ -7,7 +7,7 @@ from emulated import EmulatedRobot
 from rbx1_nav.create.protocol import command, drive_direct
 import support
 
-COUNTS = 508.8 / (pi * 0.072)   # of an encoder, per metre
+COUNTS = 508.8 / (pi * 0.072)   # encoder counts per meter
 
 
 class TestTruth(unittest.TestCase):
@@ -16,7 +16,7 @@ class TestTruth(unittest.TestCase):
         support.init_node('fake_create_truth')
 
     def stopped(self, robot):
-        """The true pose after a stop."""
+        """Return the true pose after a stop."""
         robot.send(drive_direct(0, 0))
         support.wait_for(lambda: not robot.moving, 'the robot to stand')
         return support.pose(robot.truth.last)
@@ -28,7 +28,7 @@ class TestTruth(unittest.TestCase):
         x, y, yaw = self.stopped(robot)
         self.assertEqual((y, yaw), (0, 0))
         travel = robot.read(19)['distance'] / 1000
-        self.assertAlmostEqual(travel, x * wheel_travel, delta=0.001)    # whole millimetres
+        self.assertAlmostEqual(travel, x * wheel_travel, delta=0.001)    # whole millimeters
         if robot.model.counts_per_metre:
             self.assertAlmostEqual(robot.read(43)['left_encoder'], x * wheel_travel * COUNTS, delta=1)
         robot.end()
@@ -68,7 +68,7 @@ class TestTruth(unittest.TestCase):
         robot.send(command('start'), command('full'), drive_direct(200, 200))
         support.wait_for(lambda: robot.position > 0.3, 'the robot to drive')
         x, _, _ = self.stopped(robot)
-        # a mean slip of 2 %; the noise over 0.3 m has a standard deviation of 8 %: this seed draws less than two
+        # the mean slip is 2 %; the noise over 0.3 m has a standard deviation of 8 %, and is below two with this seed
         ratio = robot.read(43)['left_encoder'] / COUNTS / x
         self.assertTrue(0.85 < ratio < 1.25 and abs(ratio - 1) > 0.003, ratio)
 

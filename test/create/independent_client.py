@@ -1,8 +1,8 @@
 #!/usr/bin/python3
-"""pycreate2, a driver from elsewhere, drives the emulated Create 2 and reads sensors that agree with the simulation.
+"""pycreate2, an independent driver, drives the emulated Create 2 and reads sensors that match the simulation.
 
-It is installed from the Python package index into a folder of this test. Where that is not reached, the test is
-skipped.
+The test installs pycreate2 from the Python package index into a temporary folder. If the index cannot be reached, the
+test is skipped.
 """
 from math import pi
 import subprocess
@@ -14,11 +14,11 @@ from emulated import EmulatedRobot
 import support
 
 VERSION = '0.8.0'
-COUNTS = 508.8 / (pi * 0.072)   # of an encoder, per metre
+COUNTS = 508.8 / (pi * 0.072)   # encoder counts per meter
 
 
 def import_pycreate2(folder):
-    """Install pycreate2 there, and import it. Raises SkipTest."""
+    """Install pycreate2 into a folder and import it. Raises SkipTest."""
     try:
         subprocess.run([sys.executable, '-m', 'pip', 'install', '--quiet', '--no-deps', '--retries', '0',
                         '--target', folder, f'pycreate2=={VERSION}'],
@@ -83,7 +83,7 @@ class TestIndependentClient(unittest.TestCase):
         robot.switch('bump', True)
         support.wait_for(lambda: client.get_sensors().bumps_wheeldrops.bump_left, 'a bump')
 
-        client.SCI.ser.timeout = 1      # it asks for more than there is
+        client.SCI.ser.timeout = 1      # it requests more bytes than there are
         self.assertIn(b'r3_robot/tags/release-', client.reset())
         client.close()
         client.drive_stop = client.led = client.digit_led_ascii = client.stop = lambda *_: None    # for its __del__

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""turtlebot_minimal_create.launch brings up all that steps 5 to 7 of the tutorial need, on any serial port."""
+"""turtlebot_minimal_create.launch starts everything that steps 5 to 7 of the tutorial need, on any serial port."""
 import unittest
 
 import rospy
@@ -20,7 +20,7 @@ class TestMinimalLaunch(unittest.TestCase):
         self.assertEqual((message.header.frame_id, message.child_frame_id), ('odom', 'base_footprint'))
         buffer = tf2_ros.Buffer()
         self.listener = tf2_ros.TransformListener(buffer)
-        # the base publishes the first transform; robot_state_publisher the others, the wheel's with the joint states
+        # the base publishes the first transform, and robot_state_publisher the others (the wheel's from joint_states)
         for frame in 'base_footprint', 'gyro_link', 'base_l_wheel_link':
             support.wait_for(lambda frame=frame: buffer.can_transform('odom', frame, rospy.Time(0)), frame)
 
@@ -29,7 +29,7 @@ class TestMinimalLaunch(unittest.TestCase):
             self.assertTrue(support.Watch(topic, kind).next())
 
     def test_the_robot_in_rviz_is_solid(self):
-        # transparent is the one that is not where it seems to be, beside a /ground_truth
+        # the robot is transparent only if there is a /ground_truth, from which the odometry pose differs
         self.assertIn('rgba="0.88 0.88 0.85 1"', rospy.get_param('/robot_description'))
         self.assertNotIn('/true_robot', dict(rospy.get_published_topics()))
 

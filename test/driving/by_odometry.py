@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 """odom_out_and_back.py returns to the start.
 
-usage: by_odometry.py FRAME METRES DEGREES [TOPIC...] --
+usage: by_odometry.py FRAME METERS DEGREES [TOPIC...] --
 
-It measures the pose in FRAME, and must end at most METRES and DEGREES from the start, by /ground_truth. The test waits
-for a message on each TOPIC first.
+The script measures the pose in FRAME. Its true end pose on /ground_truth must be within METERS and DEGREES of the
+start. The test first waits for a message on each TOPIC.
 """
 import math
 import sys
@@ -23,7 +23,7 @@ class TestByOdometry(unittest.TestCase):
         support.wait_for(lambda: truth.last, '/ground_truth')
         for topic in topics:
             rospy.wait_for_message(topic, rospy.AnyMsg, support.LIMIT)
-        # the filter estimates the bias of the gyro at standstill, for 2 s as in simulation/exercise.py
+        # the filter estimates the gyro bias at standstill, for 2 s as in simulation/exercise.py
         start = truth.last.header.stamp
         support.wait_for(lambda: (truth.last.header.stamp - start).to_sec() > 2, 'two seconds')
 

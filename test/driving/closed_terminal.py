@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A terminal is closed while the robot drives: the robot stops, and /rosout still receives the last two lines."""
+"""If the terminal is closed while the robot is driving, the robot stops, and /rosout receives the last two lines."""
 import fcntl
 import os
 import pty
@@ -29,7 +29,7 @@ class TestClosedTerminal(unittest.TestCase):
         os.close(theirs)
         odom.wait_for_twist(0.01)
         os.close(ours)
-        support.wait_for(lambda: driver.poll() is not None, 'the end of the driver')
+        support.wait_for(lambda: driver.poll() is not None, 'the driver to exit')
         self.assertEqual(driver.returncode, 0)
         odom.wait_for_twist(0.0)
         for line in ('Stopping the robot...', 'Out-and-Back node terminated.'):

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A command line with a mistake does not move the robot; remappings and names pass."""
+"""A command line with a mistake does not move the robot; remappings and node names are accepted."""
 import unittest
 
 import rospy
@@ -7,7 +7,7 @@ from geometry_msgs.msg import Twist
 
 import support
 
-MISTAKES = {'goal_distance:=0.1': 'this renames a topic: did you mean _goal_distance:=0.1?',
+MISTAKES = {'goal_distance:=0.1': 'this remaps a topic: did you mean _goal_distance:=0.1?',
             '_goal_distanc:=0.1': 'unknown parameter: did you mean _goal_distance:=0.1?',
             '_goal_distance=0.1': 'unknown argument: did you mean _goal_distance:=0.1?'}
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Every run of the exercise ends at the exact pose, to a micrometre."""
+"""Every run of the exercise ends at the exact pose, to a micrometer."""
 import unittest
 
 import support
@@ -19,7 +19,7 @@ class TestFinalPose(unittest.TestCase):
                 x, y = odom.position()
                 self.assertAlmostEqual(x, support.EXACT_X, delta=support.MICROMETRE)
                 self.assertAlmostEqual(y, support.EXACT_Y, delta=support.MICROMETRE)
-            # the heading adds up over the runs; 1e-6 rad is a micrometre at the distance of 1 m
+            # the heading accumulates over the runs; 1e-6 rad is a micrometer at a distance of 1 m
             self.assertAlmostEqual(support.wrapped(support.yaw(message) - run * support.EXACT_TURN), 0, delta=1e-6)
 
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The pose jumps in mid-run, as that of a base that was restarted: the script that measures its way stops and ends."""
+"""If the pose jumps during a run, as when the base restarts, the odometry-based script stops the robot and exits."""
 import unittest
 
 import rospy
@@ -16,7 +16,7 @@ class TestJumpingPose(unittest.TestCase):
         cls.odom = support.OdomWatch()
         cls.commands = support.Watch('/cmd_vel', Twist)
         rospy.wait_for_service('/arbotix/reset', support.LIMIT)
-        # back to the origin, and without reset_odometry, which the launch file has renamed, nobody says so
+        # back to the origin without a notice, because the launch file has remapped reset_odometry
         cls.to_origin = rospy.ServiceProxy('/arbotix/reset', Empty)
 
     def check(self, condition, what):
@@ -35,7 +35,7 @@ class TestJumpingPose(unittest.TestCase):
         self.assertEqual(self.commands.last, Twist())
 
     def test_on_the_way_out(self):
-        self.check(lambda: self.odom.position()[0] > 0.3, 'the way out')
+        self.check(lambda: self.odom.position()[0] > 0.3, 'the first leg')
 
     def test_in_a_turn(self):
         self.check(lambda: self.odom.last.twist.twist.angular.z > 0.5, 'a turn')
@@ -44,7 +44,7 @@ class TestJumpingPose(unittest.TestCase):
         self.check(lambda: self.odom.position()[0] > 0.9 and self.odom.last.twist.twist.linear.x == 0, 'a rest')
 
     def test_on_the_way_back(self):
-        self.check(lambda: self.odom.position()[0] < 0.8 and abs(support.yaw(self.odom.last)) > 3, 'the way back')
+        self.check(lambda: self.odom.position()[0] < 0.8 and abs(support.yaw(self.odom.last)) > 3, 'the second leg')
 
 
 if __name__ == '__main__':

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A node that took the commands at the start and no longer does: the run ends with an error that names it."""
+"""If a node no longer accepts commands during a run, the run fails with an error that names the node."""
 import os
 import signal
 import subprocess
@@ -31,7 +31,7 @@ class TestLostListener(unittest.TestCase):
 
     @staticmethod
     def subscribers():
-        """Names of the nodes that subscribe to /cmd_vel."""
+        """Return the names of the nodes that subscribe to /cmd_vel."""
         return dict(rospy.get_master().getSystemState()[2][1]).get('/cmd_vel', ())
 
     def drive(self, *arguments, script=support.out_and_back):
@@ -54,21 +54,21 @@ class TestLostListener(unittest.TestCase):
         for script in (support.out_and_back, support.by_odometry):
             driver = self.drive('_linear_speed:=0.02', script=script)
             self.base.kill()
-            self.check_error(driver, '/arbotix has gone')
+            self.check_error(driver, '/arbotix disconnected')
             self.base = self.start('rosrun', 'rbx1_nav', 'fake_base.py')
             self.base.wait_for_line('at the origin')
 
     def test_the_base_ends(self):
         driver = self.drive('_linear_speed:=0.02')
         self.base.signal(signal.SIGINT)
-        self.check_error(driver, '/arbotix, which publishes the odometry, has gone')
+        self.check_error(driver, '/arbotix, which publishes the odometry, disconnected')
 
     def test_the_base_is_suspended(self):
         pid = support.pid_of('/arbotix')
         driver = self.drive('_linear_speed:=0.02')
         self.addCleanup(os.kill, pid, signal.SIGCONT)
         os.kill(pid, signal.SIGSTOP)
-        self.check_error(driver, '/arbotix no longer answers')
+        self.check_error(driver, '/arbotix has stopped responding')
         os.kill(pid, signal.SIGCONT)
 
     def test_a_base_that_starts_after_the_script_is_suspended(self):
@@ -83,19 +83,19 @@ class TestLostListener(unittest.TestCase):
         pid = support.pid_of('/arbotix')
         self.addCleanup(os.kill, pid, signal.SIGCONT)
         os.kill(pid, signal.SIGSTOP)
-        self.check_error(driver, '/arbotix no longer answers')
+        self.check_error(driver, '/arbotix has stopped responding')
         os.kill(pid, signal.SIGCONT)
 
     def test_another_listener_is_killed(self):
         driver = self.drive('_linear_speed:=0.02')
         self.recorder.kill()
-        self.check_error(driver, '/recorder has gone')
+        self.check_error(driver, '/recorder disconnected')
         subprocess.run(['rosnode', 'cleanup'], input=b'y\n', check=True)
 
     def test_another_listener_ends(self):
         driver = self.drive('_linear_speed:=0.5', '_angular_speed:=2')
         self.recorder.signal(signal.SIGINT)
-        driver.wait_for_line(r'\[WARN\].*: /cmd_vel: /recorder has gone: the others go on')
+        driver.wait_for_line(r'\[WARN\].*: /cmd_vel: /recorder disconnected; continuing with the other subscribers')
         self.assertEqual(driver.wait(), 0, driver.output)
         self.assertIn('Done: ', driver.output)
 

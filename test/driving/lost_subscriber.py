@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""If the base ends while the robot drives, the driving script ends with an error."""
+"""If the base exits while the robot is driving, the driving script exits with an error."""
 import signal
 import unittest
 
@@ -41,9 +41,10 @@ class TestLostSubscriber(unittest.TestCase):
             self.check(driver, '/arbotix')
 
     def check(self, driver, name):
-        """The driving script has noticed who has gone, sent a stop, and ended with an error."""
+        """Check that the driving script has named the lost node, sent a stop, and exited with an error."""
         self.assertEqual(driver.wait(), 1, driver.output)
-        self.assertRegex(driver.output, fr'ERROR.*/cmd_vel: the last subscriber has gone \({name}\): expected a base')
+        self.assertRegex(driver.output,
+                         fr'ERROR.*/cmd_vel: the last subscriber disconnected \({name}\): expected a base')
         self.assertIn('Stopping the robot...', driver.output)
         self.assertNotIn('Traceback', driver.output)
 

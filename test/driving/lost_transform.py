@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Without a recent transform the robot stops. It continues when there is a new one; else the script ends in time."""
+"""Without a recent transform, the robot stops; it continues with a new one, otherwise the script exits in time."""
 import os
 import signal
 import unittest
@@ -19,13 +19,13 @@ class TestLostTransform(unittest.TestCase):
         self.addCleanup(self.commands.subscriber.unregister)
 
     def suspend_base(self, *arguments):
-        """Suspend the base while the robot drives by odometry; returns the script once it has stopped the robot."""
+        """Suspend the base during an odometry-based run; return the script once it has stopped the robot."""
         driver = support.by_odometry('_linear_speed:=0.1', *arguments)
         self.addCleanup(driver.kill)
         self.odom.wait_for_twist(0.1)
         os.kill(self.base, signal.SIGSTOP)
         driver.wait_for_line(r'\[WARN\].*last transform from odom to base_footprint is .* s old: '
-                             'the robot waits for a new one')
+                             'stopping the robot until there is a new one')
         support.wait_for(lambda: self.commands.last.linear.x == 0, 'a command to stop')
         return driver
 

@@ -20,11 +20,11 @@ class TestMessageCounts(unittest.TestCase):
         received = [(m.linear.x, m.angular.z) for m in commands.messages]
         groups = [(command, len(list(same))) for command, same in itertools.groupby(received)]
         forward, turn, stop = (0.2, 0.0), (0.0, 1.0), (0.0, 0.0)
-        # the last motion ends with a stop, so does the exercise, and so does the node
+        # there is a stop at the end of the last motion, of the exercise, and of the node
         self.assertEqual(groups, [(forward, 250), (stop, 1), (turn, 157), (stop, 1),
                                   (forward, 250), (stop, 1), (turn, 157), (stop, 3)])
 
-        # and no more in two seconds of simulated time
+        # no more messages in two seconds of simulated time
         end = odom.last.header.stamp.to_sec() + 2
         support.wait_for(lambda: odom.last.header.stamp.to_sec() > end, 'two seconds of simulated time')
         self.assertEqual(len(commands.messages), len(received))

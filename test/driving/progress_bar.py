@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Both driving scripts draw a progress bar for each motion in a terminal, and none in a pipe."""
+"""Both driving scripts draw a progress bar for each motion in a terminal, but not in a pipe."""
 import fcntl
 import os
 import re
@@ -13,7 +13,7 @@ import support
 
 
 def output_in_a_terminal(*command):
-    """Run a command in a terminal of its own; returns its exit status and all that it wrote."""
+    """Run a command in its own terminal; return its exit status and all its output."""
     terminal, child_end = os.openpty()
     fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack('HHHH', 24, 80, 0, 0))    # rows and columns
     process = subprocess.Popen(command, stdin=child_end, stdout=child_end, stderr=child_end, start_new_session=True)
@@ -24,7 +24,7 @@ def output_in_a_terminal(*command):
     try:
         while True:
             output += os.read(terminal, 65536)
-    except OSError:     # the other end is closed
+    except OSError:     # the other side is closed
         pass
     finally:
         timer.cancel()
@@ -43,7 +43,7 @@ class TestProgressBar(unittest.TestCase):
         bars = re.findall(r'(forward  |turn left): \|[^|]*\| (\S+) of (\S+) (\w+)', output)
         for name, total, unit in ('forward  ', *forward), ('turn left', *turn):
             shown = [float(number) for *bar, number, goal, of in bars if bar == [name] and (goal, of) == (total, unit)]
-            # twice from 0 to the goal, with something to see on the way
+            # twice from 0 to the goal, with visible progress in between
             self.assertEqual(shown[0], 0, output)
             for number in max(shown), shown[-1]:
                 # at the slowest speed, 0.2 rad/s, the robot turns by 0.01 rad between two poses

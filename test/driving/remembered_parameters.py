@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Parameters that an earlier command left on the master are named, with the command that forgets them."""
+"""Parameters that an earlier command left on the master are named, with the command that deletes them."""
 import signal
 import subprocess
 import tempfile
@@ -28,7 +28,7 @@ class TestRememberedParameters(unittest.TestCase):
             rospy.delete_param('/out_and_back')
 
     def warnings(self, driver):
-        """The warnings of a script until it has looked at its parameters, without time stamps."""
+        """Return the warnings that a script logs until it has checked its parameters, without time stamps."""
         self.addCleanup(driver.kill)
         driver.wait_for_line('forward: ')
         driver.signal(signal.SIGINT)
@@ -36,7 +36,7 @@ class TestRememberedParameters(unittest.TestCase):
         return [line.split(']: ', 1)[1] for line in driver.lines if '[WARN]' in line]
 
     def roslaunch(self, more):
-        """Run the script by roslaunch, with one parameter and `more`."""
+        """Run the script with roslaunch, with one parameter and `more`."""
         file = tempfile.NamedTemporaryFile('w', suffix='.launch')
         self.addCleanup(file.close)
         file.write(LAUNCH % more)
@@ -45,25 +45,25 @@ class TestRememberedParameters(unittest.TestCase):
 
     def test_what_is_still_in_force(self):
         self.assertEqual(self.warnings(support.out_and_back('_goal_distance:=0.2', '_rate:=40')), [])
-        expected = 'Left by an earlier command, still in force: goal_distance = 0.2%s (`%s` removes all)'
-        # what this command line sets again is no surprise
+        expected = 'Left by an earlier command, still in force: goal_distance = 0.2%s (`%s` removes them)'
+        # a parameter that this command line sets again causes no warning
         self.assertEqual(self.warnings(support.by_odometry('_rate:=50')), [expected % ('', FORGET)])
         self.assertEqual(self.warnings(support.out_and_back()), [expected % (', rate = 50', FORGET)])
         subprocess.run(FORGET.split(), check=True)
         self.assertEqual(self.warnings(support.out_and_back()), [])
 
     def test_what_has_no_effect(self):
-        # both scripts have one name: the parameters of the one are on the master when the other one runs
+        # both scripts have the same name: the parameters of one are on the master when the other one runs
         self.assertEqual(self.warnings(support.by_odometry('_odom_frame:=odom')), [])
         rospy.set_param('/out_and_back/goal_distanc', 0.2)
-        expected = 'Left by an earlier command, without effect here: %s (`%s` removes all)'
+        expected = 'Left by an earlier command, without effect here: %s (`%s` removes them)'
         self.assertEqual(self.warnings(support.out_and_back()), [
             expected % ('goal_distanc (did you mean goal_distance?), odom_frame', FORGET)])
 
     def test_what_a_launch_file_sets_is_no_surprise(self):
         self.assertEqual(self.warnings(self.roslaunch('')), [])
         self.assertEqual(self.warnings(self.roslaunch('<param name="goal_angl" value="1"/>')),
-                         ['Unknown parameters, without effect: goal_angl (did you mean goal_angle?)'])
+                         ['Ignoring unknown parameters: goal_angl (did you mean goal_angle?)'])
 
 
 if __name__ == '__main__':

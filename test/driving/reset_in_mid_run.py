@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A reset in mid-run: the base names the node that was driving, and the script that measures its way ends."""
+"""After a reset during a run, the base names the driving node, and the odometry-based script exits."""
 import unittest
 
 import rospy
@@ -19,11 +19,11 @@ class TestResetInMidRun(unittest.TestCase):
         cls.commands = support.Watch('/cmd_vel', Twist)
         rospy.wait_for_service('/arbotix/reset', support.LIMIT)
         cls.reset_base = rospy.ServiceProxy('/arbotix/reset', Empty)
-        cls.idle = support.Commander()      # somebody else who could drive, but does not
+        cls.idle = support.Commander()      # another node that could drive, but does not
         rospy.wait_for_message('/odom_ekf', rospy.AnyMsg, support.LIMIT)
 
     def reset(self):
-        """Reset the base; returns the level and text of what it logs."""
+        """Reset the base; return the level and text of the line that it logs."""
         start = len(self.logs.messages)
 
         def logged():
@@ -41,8 +41,8 @@ class TestResetInMidRun(unittest.TestCase):
         return driver
 
     def check_warning(self):
-        self.assertEqual(self.reset(), (Log.WARN, 'Reset in mid-run: /out_and_back will not end where it started. '
-                                                  'Reset again after it has ended'))
+        self.assertEqual(self.reset(), (Log.WARN, 'Reset while /out_and_back is driving: this run is not valid. '
+                                                  'Reset again when it has finished'))
 
     def check_script(self, *arguments):
         driver = self.start(support.by_odometry, *arguments)
@@ -50,7 +50,7 @@ class TestResetInMidRun(unittest.TestCase):
         self.assertEqual(driver.wait(), 1, driver.output)
         errors = [line for line in driver.lines if '[INFO]' not in line and '[WARN]' not in line]
         self.assertEqual(len(errors), 1, driver.output)
-        self.assertRegex(errors[0], r'\[ERROR\].*: The base was reset in mid-run: '
+        self.assertRegex(errors[0], r'\[ERROR\].*: The base was reset during the run: '
                                     'its pose is no longer measured from the start$')
         self.assertEqual(self.commands.last, Twist())
         self.check_without_a_driver()

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Each driving script ends with its result: by time what it commanded, by odometry where the robot stands."""
+"""Each driving script logs its result: the timed script what it commanded, the odometry-based script the end pose."""
 import math
 import unittest
 
@@ -28,7 +28,7 @@ class TestResult(unittest.TestCase):
                          'To see where that led: rosrun rbx1_nav pose.py$')
 
     def test_by_odometry(self):
-        # not from the origin: half a turn, so that the script starts somewhere else than it ends
+        # not at the origin, and with half a turn, so that the end pose differs from the start pose
         start = support.pose(self.odom.last)
         driver = support.by_odometry('_goal_distance:=0.5', '_goal_angle:=2.0')
         line = self.last_line(driver)
@@ -38,7 +38,7 @@ class TestResult(unittest.TestCase):
         turned = math.degrees(abs(support.wrapped(end[2] - start[2])))
         self.assertGreater(distance, 0.1)
         self.assertGreater(turned, 100)
-        self.assertIn('Done: measured in odom, the robot is %.3f m from its start and %.1f degrees off its first '
+        self.assertIn('Done: measured in odom, the robot is %.3f m from its start and %.1f degrees off its initial '
                       'heading' % (distance, turned), line)
 
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A thread that sends commands may starve, a script may be suspended: no command is lost in lockstep unnoticed."""
+"""If the thread that sends commands starves, or the script is suspended, no command is lost in lockstep unnoticed."""
 import signal
 import time
 import unittest
@@ -11,9 +11,8 @@ from geometry_msgs.msg import Twist
 import support
 
 NODE = f"{rospkg.RosPack().get_path('rbx1_nav')}/nodes/timed_out_and_back.py"
-# The script itself; what it sends to the node `peer` is delayed, by a number of seconds for each command. On a busy
-# machine a
-# thread does not sleep meanwhile, it waits for its turn; a recorder that reads slowly lets it sleep.
+# The unchanged script; each command to the node `peer` is delayed by a number of seconds. On a busy machine, a thread
+# does not sleep during the delay but waits for CPU time; with a recorder that reads slowly, it sleeps.
 STARVED = """
 import runpy, sys, time
 from rospy.impl.tcpros_base import TCPROSTransport
@@ -55,7 +54,7 @@ class TestStarvedSender(unittest.TestCase):
         cls.turned = 0.0
 
     def drive(self, peer, delay, busy=True):
-        """Run the exercise; returns the Process when it has ended."""
+        """Run the exercise; return the Process when it has exited."""
         driver = support.Process('/usr/bin/python3', '-c', STARVED, NODE, peer, str(delay),
                                  'busy' if busy else 'asleep')
         self.addCleanup(driver.kill)
@@ -64,10 +63,10 @@ class TestStarvedSender(unittest.TestCase):
         return driver
 
     def check_end(self, driver, before):
-        """The exercise ended with status 0, and turned the robot by as much as it should; before: heading, rad."""
+        """Check that the exit status is 0 and that the robot has turned by the exact angle; before: heading, rad."""
         self.assertEqual(driver.process.returncode, 0, driver.output)
         turn = support.wrapped(support.yaw(self.odom.next()) - before - support.EXACT_TURN)
-        self.assertAlmostEqual(turn, 0, delta=1e-6)     # far less than the 0.02 rad of one command
+        self.assertAlmostEqual(turn, 0, delta=1e-6)     # much less than the 0.02 rad of one command
 
     def test_to_the_base(self):
         before = support.yaw(self.odom.next())
@@ -78,7 +77,7 @@ class TestStarvedSender(unittest.TestCase):
     def test_to_the_base_for_too_long(self):
         driver = self.drive('/arbotix', 3, busy=False)
         self.assertEqual(driver.process.returncode, 1, driver.output)
-        self.assertRegex(driver.output, '/cmd_vel: /arbotix took no command for 1 s')
+        self.assertRegex(driver.output, '/cmd_vel: /arbotix accepted no commands for 1 s')
 
     def test_to_another_listener(self):
         recorder = support.Watch('/cmd_vel', Twist)

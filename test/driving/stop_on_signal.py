@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Signals and `rosnode kill` while the robot drives: one command to stop, none after it, and both lines are logged."""
+"""After a signal or `rosnode kill` during a motion, the last command is a stop, and both lines are logged."""
 import os
 import signal
 import subprocess
@@ -18,10 +18,10 @@ class TestStopOnSignal(unittest.TestCase):
         cls.odom = support.OdomWatch()
 
     def check(self, end):
-        """end(driver) ends the driving script while the robot moves."""
+        """Check the reaction to end(driver), which shuts down the driving script while the robot is moving."""
         commands = support.Watch('/cmd_vel', Twist)
         self.addCleanup(commands.subscriber.unregister)
-        # slow, so that the motion lasts until it is ended
+        # slow, so that the motion lasts until the shutdown
         driver = support.out_and_back('_linear_speed:=0.01')
         self.addCleanup(driver.kill)
         self.odom.wait_for_twist(0.01)
@@ -35,7 +35,7 @@ class TestStopOnSignal(unittest.TestCase):
         self.assertEqual(moves.count(False), 1)
 
     def check_suspended(self, pid):
-        """SIGINT while another process is suspended."""
+        """Send SIGINT while another process is suspended."""
         def end(driver):
             os.kill(pid, signal.SIGSTOP)
             driver.signal(signal.SIGINT)
@@ -47,7 +47,7 @@ class TestStopOnSignal(unittest.TestCase):
         self.odom.wait_for_twist(0.0)
 
     def check_end(self, end):
-        """The exit status is 0, and the robot stands still."""
+        """Check that the exit status is 0 and the robot is stationary."""
         status = []
         self.check(lambda driver: (end(driver), status.append(driver.wait())))
         self.assertEqual(status, [0])

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""On carpet the timed script misses as in the picture of the tutorial, and exactly as the simulation without ROS."""
+"""On carpet, the timed script misses as in the picture in the tutorial, exactly like the simulation without ROS."""
 import math
 import os
 import unittest
@@ -26,11 +26,11 @@ class TestTimedOnCarpet(unittest.TestCase):
         odom.next()
         x, y, yaw = support.pose(truth.next())
 
-        # the picture of the tutorial: about half a metre to the left of the start, with another heading
+        # as in the picture in the tutorial: about half a meter to the left of the start, with a different heading
         self.assertGreater(y, 0.35)
         self.assertLess(math.hypot(x, y), 0.65)
         self.assertTrue(20 < abs(math.degrees(support.wrapped(yaw))) < 90, math.degrees(yaw))
-        # most of the error is known to the odometry
+        # most of the error is visible in the odometry
         self.assertLess(math.hypot(x - odom.position()[0], y - odom.position()[1]), 0.20)
 
         # 1e-9 is far above the rounding in a thousand steps

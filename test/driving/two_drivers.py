@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A second driving script takes over the name of the first, which stops the robot and ends; the second one finishes."""
+"""A second driving script takes over the name of the first, which stops the robot and exits; the second finishes."""
 import unittest
 
 import support

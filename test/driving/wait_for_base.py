@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The driving script waits for all live subscribers, ignores those that do not answer, and times out without a base."""
+"""The driving script waits for all live subscribers, ignores dead ones, and times out without a base."""
 import signal
 import unittest
 
@@ -51,7 +51,7 @@ class TestWaitForBase(unittest.TestCase):
     def test_a_subscriber_that_does_not_answer_is_named_and_ignored(self):
         suspended = self.base('suspended')
         suspended.signal(signal.SIGSTOP)
-        # a regular end, so that the node is unregistered
+        # a regular exit, so that the node is unregistered
         self.addCleanup(suspended.wait)
         self.addCleanup(suspended.signal, signal.SIGTERM)
         self.addCleanup(suspended.signal, signal.SIGCONT)

@@ -172,9 +172,9 @@ class Suite:
 
 
 def spread(values):
-    """Numbers as text: one, or smallest, median and largest."""
+    """Numbers as text: one value if all are equal; otherwise smallest, largest and median."""
     values = sorted(values)
-    if len(values) == 1:
+    if values[0] == values[-1]:
         return f'{values[0]:.4g}'
     return f'{values[0]:.3g} to {values[-1]:.3g}, median {values[len(values) // 2]:.3g}'
 
@@ -190,7 +190,7 @@ def write_table(path, modules, results, seed):
             happened = (f"skipped: {result['skipped']}" if result['skipped'] else
                         'all held' if not result['failures'] else f"{len(result['failures'])} failed")
             if result['repeated'] and not result['failures']:
-                happened += ', at the second try'
+                happened += ', on the second attempt'
             for figure, values in sorted(result['figures'].items()):
                 happened += f'; {figure}: {spread(values)}'
             file.write('| `%s` | %s | %d | %s | %s |\n' % (result['name'], module.FAULT, result['faults'],

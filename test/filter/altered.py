@@ -1,4 +1,4 @@
-"""A robot whose sensors reach the filter as other drivers would send them."""
+"""A robot whose sensor messages are altered to look like messages from other drivers."""
 import math
 
 import rospy
@@ -9,14 +9,14 @@ from sensor_msgs.msg import Imu
 
 import support
 
-STANDSTILL = 100    # messages of the odometry, 2 s: time for the filter to estimate the bias of the gyro
-TURNS = 4           # of about 50 degrees: in the end the wheels are off by more than
+STANDSTILL = 100    # odometry messages in 2 s: time for the filter to estimate the gyro bias
+TURNS = 4           # turns of about 50 degrees, after which the wheels are off by more than
 WHEEL_ERROR = math.radians(30)
-GYRO_ERROR = math.radians(3)    # what is left of bias, scale error and noise is about a degree
+GYRO_ERROR = math.radians(3)    # the remaining bias, scale error and noise amount to about a degree
 
 
 class AlteredRobot:
-    """Sends the odometry and the IMU of the simulated base on to the filter, altered."""
+    """Passes altered odometry and IMU messages of the simulated base on to the filter."""
 
     def __init__(self, odom=lambda message: None, imu=lambda message: None):
         """odom(message), imu(message): alter a message."""
@@ -37,7 +37,7 @@ class AlteredRobot:
         publisher.publish(message)
 
     def lines(self, text):
-        """The lines of the filter with a text."""
+        """Return the lines that the filter has logged with a text."""
         return [m.msg for m in list(self.log.messages) if m.name == '/robot_pose_ekf' and text in m.msg]
 
     def wait_for_line(self, text):
@@ -45,7 +45,7 @@ class AlteredRobot:
         support.wait_for(lambda: self.lines(text), f'a line of the filter with {text!r}')
 
     def turn(self):
-        """Stand, turn left, and stand again."""
+        """Stay stationary, turn left, and stay stationary again."""
         count = len(self.odom.messages)
         support.wait_for(lambda: len(self.odom.messages) > count + STANDSTILL, 'the odometry of a standstill')
         for _ in range(TURNS):
@@ -56,7 +56,7 @@ class AlteredRobot:
         self.estimates.next()
 
     def check_heading(self, case):
-        """The estimate has followed the gyro: it is right although the wheels are not."""
+        """Check that the estimate has followed the gyro and is right although the wheels are wrong."""
         true = support.yaw(self.truth.last)
         case.assertGreater(abs(support.wrapped(support.yaw(self.odom.last) - true)), WHEEL_ERROR)
         case.assertLess(abs(support.wrapped(support.yaw(self.estimates.last) - true)), GYRO_ERROR)

@@ -12,7 +12,7 @@ class TestEkfAccuracy(unittest.TestCase):
         odom = support.OdomWatch()
         truth = support.Watch('/ground_truth', support.Odometry)
         ekf = support.Watch('/odom_ekf', support.Odometry)
-        # the filter estimates the bias of the gyro at standstill, for 2 s at 10 poses per second
+        # the filter estimates the gyro bias at standstill, for 2 s at 10 poses per second
         support.wait_for(lambda: truth.last and len(ekf.messages) > 20, '/odom_ekf')
         driver = support.out_and_back()
         self.addCleanup(driver.kill)
@@ -22,7 +22,7 @@ class TestEkfAccuracy(unittest.TestCase):
         true = {m.header.stamp: support.pose(m) for m in list(truth.messages)}
 
         def errors(messages):
-            """Root mean square errors of position (m) and heading (rad)."""
+            """Return the root mean square errors of position (m) and heading (rad)."""
             pairs = [(support.pose(m), true[m.header.stamp]) for m in list(messages) if m.header.stamp in true]
             self.assertGreater(len(pairs), 100)
             return (math.sqrt(sum((a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2 for a, b in pairs) / len(pairs)),

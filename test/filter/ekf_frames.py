@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The transform of the filter leads from PARENT to CHILD, and with the others of the tree to the estimated pose.
+"""The transform of the filter is from PARENT to CHILD, and with the rest of the tree yields the estimated pose.
 
 usage: ekf_frames.py PARENT CHILD --
 """
@@ -14,7 +14,7 @@ import support
 
 
 def pose(transform):
-    """(x, y, yaw) of a Transform."""
+    """Return (x, y, yaw) of a Transform."""
     rotation = transform.rotation
     return transform.translation.x, transform.translation.y, 2 * math.atan2(rotation.z, rotation.w)
 
@@ -61,7 +61,7 @@ class TestEkfFrames(unittest.TestCase):
                 base = support.pose(odom_by_stamp[stamp])
                 x, y, yaw = (x + base[0] * math.cos(yaw) - base[1] * math.sin(yaw),
                              y + base[0] * math.sin(yaw) + base[1] * math.cos(yaw), yaw + base[2])
-            # 1e-9 is far above the rounding of two rotations
+            # 1e-9 is far above the rounding errors of two rotations
             self.assertAlmostEqual(x, message.pose.pose.position.x, delta=1e-9)
             self.assertAlmostEqual(y, message.pose.pose.position.y, delta=1e-9)
             self.assertAlmostEqual(support.wrapped(yaw - support.yaw(message)), 0, delta=1e-9)

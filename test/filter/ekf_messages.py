@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The filter node and its messages: invalid ones are rejected, sensors time out and recover, and resets restart it."""
+"""The filter node rejects invalid messages, handles timeouts and recovery of sensors, and restarts after resets."""
 import math
 import unittest
 
@@ -105,7 +105,7 @@ class TestEkfMessages(unittest.TestCase):
         self.odom.active = False
         self.wait_for_log('odom has timed out')
         self.wait_for_status('odom', DiagnosticStatus.WARN)
-        # meanwhile no sensor measures the distance
+        # during this time, no sensor measures the distance
         support.wait_for(lambda: self.poses.last.pose.covariance[0] > 0.2, 'a growing uncertainty')
         self.odom.active = True
         self.wait_for_log('odom has recovered')
@@ -128,14 +128,14 @@ class TestEkfMessages(unittest.TestCase):
                 'more of this kind' in m.msg for m in self.log.messages[start:]), 'a line that counts')
         self.odom.make = good
         lines = [m for m in self.log.messages[start:] if m.name == '/robot_pose_ekf']
-        # two lines a second by the wall clock of the node: not more than two within any second, less the way of a line
+        # two lines per second on the node's wall clock: at most two in any second, minus the transit time of a line
         for first, third in zip(lines, lines[2:]):
             self.assertGreater((third.header.stamp - first.header.stamp).to_sec(), 0.9)
 
     def test_another_sender_at_the_same_time_is_ignored(self):
         other = support.Process('rostopic', 'pub', '-r', '20', '/odom', 'nav_msgs/Odometry', '{}')
         self.addCleanup(other.kill)
-        self.wait_for_log('/odom: messages of /rostopic', 'ignored', 'publishes it too')
+        self.wait_for_log('/odom: messages from /rostopic', 'ignored', 'also publishes this topic')
         self.assertAlmostEqual(self.poses.next().pose.pose.position.x, 0.5, delta=0.01)
 
     def test_another_sender_restarts_the_filter(self):
@@ -143,7 +143,7 @@ class TestEkfMessages(unittest.TestCase):
 
         def make():
             message = make_odom()
-            message.pose.pose.position.x = 0.48     # too near for a jump
+            message.pose.pose.position.x = 0.48     # too close for a jump
             return message
         type(self).odom = Sender('odom', make)
         self.wait_for_log('odom comes from another node: restarting')

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""/diagnostics has the case that the filter is in, the errors that it has learned, and counts."""
+"""/diagnostics contains the current case of the filter, the errors that it has estimated, and counts."""
 import math
 import unittest
 
@@ -17,7 +17,7 @@ class TestFilterDiagnostics(unittest.TestCase):
         diagnostics = support.Watch('/diagnostics', DiagnosticArray)
 
         def status():
-            """(level, message, values) of the filter in the latest message that has it."""
+            """Return (level, message, values) of the filter in the latest message that contains its status."""
             for message in reversed(list(diagnostics.messages)):
                 for each in message.status:
                     if each.name.endswith(': filter'):
@@ -30,7 +30,7 @@ class TestFilterDiagnostics(unittest.TestCase):
         wait_for_case('none', DiagnosticStatus.WARN, 'No estimate yet')
         self.assertEqual(status()[2]['Gyro bias (degrees/s)'], 'unknown')
 
-        rate, heading = [math.radians(BIAS)], [0.0, 0.0]     # rad/s; rad, and rad for each message
+        rate, heading = [math.radians(BIAS)], [0.0, 0.0]     # rad/s; rad, and rad per message
 
         def imu():
             message = make_imu()
@@ -52,7 +52,7 @@ class TestFilterDiagnostics(unittest.TestCase):
         self.assertRegex(status()[2]['Slip in straight motion'], r'^-?0\.0\d\d\d \+- 0\.0\d\d\d$')
 
         rate[0] += 0.5
-        heading[1] = 0.5 * 0.02     # about as fast: the senders have no exact rate
+        heading[1] = 0.5 * 0.02     # only about as fast, because the rates of the senders are not exact
         wait_for_case('agreement', DiagnosticStatus.OK, 'Wheels and gyro agree')
         heading[1] = -0.5 * 0.02
         wait_for_case('contradiction', DiagnosticStatus.WARN, 'Wheels and gyro contradict each other')

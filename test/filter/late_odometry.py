@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Odometry that is always later than ~sensor_timeout is waited for: the estimate is late, and right."""
+"""The filter waits for odometry that is always later than ~sensor_timeout: the estimate is late but right."""
 from collections import deque
 import math
 import unittest
@@ -13,7 +13,7 @@ LAG = rospy.Duration(1.5)
 
 
 class LateRobot(AlteredRobot):
-    """Its odometry is passed on after LAG of simulated time."""
+    """A robot whose odometry is passed on after LAG of simulated time."""
 
     def __init__(self):
         self.waiting = deque()
@@ -39,7 +39,7 @@ class TestLateOdometry(unittest.TestCase):
             support.wait_for(lambda: robot.odom.last.twist.twist.linear.x > 0.05, 'the robot to drive')
             robot.odom.wait_for_twist(0.0)
         end = robot.odom.next().header.stamp
-        support.wait_for(lambda: robot.estimates.last.header.stamp > end, 'the estimate of the end')
+        support.wait_for(lambda: robot.estimates.last.header.stamp > end, 'the estimate of the end pose')
         x, y, yaw = support.pose(robot.truth.last)
         estimate = support.pose(robot.estimates.last)
         self.assertGreater(x, 0.3)

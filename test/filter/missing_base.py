@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""odom_ekf.launch without a base: one warning says so, and one line when there is one."""
+"""Without a base, odom_ekf.launch logs one warning, and one line as soon as there is a base."""
 import unittest
 
 import rospy
@@ -19,7 +19,7 @@ class TestMissingBase(unittest.TestCase):
         def lines(level):
             return [log.msg for log in logs.messages
                     if log.name in ('/odom_ekf', '/robot_pose_ekf') and log.level == level]
-        missing = 'No message on /odom for 5 s: expected a running base; /odom_ekf follows as soon as there is one'
+        missing = 'No message on /odom for 5 s: expected a running base; /odom_ekf starts as soon as there is one'
         support.wait_for(lambda: missing in lines(Log.WARN), 'the warning')
 
         rospy.set_param('/arbotix', BASE)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A namespace that is called tf_prefix is no prefix: the filter starts, with the frames that it has without one."""
+"""A namespace called tf_prefix is not a prefix: the filter starts with the same frames as without a prefix."""
 import unittest
 
 from geometry_msgs.msg import PoseWithCovarianceStamped

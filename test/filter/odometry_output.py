@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The estimate as nav_msgs/Odometry: the pose of ~odom_combined, and a velocity that is as right as its covariance."""
+"""The estimate as nav_msgs/Odometry has the pose of ~odom_combined, and a velocity that agrees with its covariance."""
 import math
 import unittest
 
@@ -15,7 +15,7 @@ class TestOdometryOutput(unittest.TestCase):
         truth = support.Watch('/ground_truth', Odometry)
         poses = support.Watch('/robot_pose_ekf/odom_combined', PoseWithCovarianceStamped)
         estimates = support.Watch('/robot_pose_ekf/odometry', Odometry)
-        # the filter estimates the bias of the gyro at standstill
+        # the filter estimates the gyro bias at standstill
         support.wait_for(lambda: truth.last and len(estimates.messages) > 60, 'estimates at standstill')
         driver = support.out_and_back()
         self.addCleanup(driver.kill)
@@ -29,7 +29,7 @@ class TestOdometryOutput(unittest.TestCase):
             self.assertEqual(message.pose, by_stamp[message.header.stamp])
             self.assertEqual([message.twist.covariance[7 * axis] for axis in (2, 3, 4)], [1e6] * 3)
 
-        # the twist of /ground_truth is that of the motors, without the carpet's noise: the poses have it
+        # the twist of /ground_truth is the twist of the motors; only the poses contain the carpet's noise
         true = {}
         for before, after in zip(truth.messages, truth.messages[1:]):
             elapsed = (after.header.stamp - before.header.stamp).to_sec()
@@ -43,11 +43,12 @@ class TestOdometryOutput(unittest.TestCase):
         self.assertGreater(len(moving), 300)
         # m/s: within a cell of the carpet, the odometry of 0.2 m/s has an error of 14 %, 1 sigma
         self.check([(t.twist.linear.x - speed, t.covariance[0]) for t, speed, _ in moving], 0.04)
-        # rad/s: of the gyro's noise, 0.1 degrees/s, its bias and its scale error of 0.3 %
+        # rad/s: from the gyro noise of 0.1 degrees/s, its bias, and its scale error of 0.3 %
         self.check([(t.twist.angular.z - turn, t.covariance[35]) for t, _, turn in moving], 0.008)
 
     def check(self, errors, limit):
-        """errors: pairs of an error and its variance. Their rms is below a limit, and not much above the variances."""
+        """Check that the rms error is below a limit and not much above the variances. errors: (error, variance)
+        pairs."""
         self.assertLess(math.sqrt(sum(error ** 2 for error, _ in errors) / len(errors)), limit)
         self.assertLess(sum(error ** 2 / variance for error, variance in errors) / len(errors), 2)
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Of an IMU without an angular velocity, the filter uses the change of the orientation."""
+"""If an IMU sends no angular velocity, the filter uses the change of its orientation."""
 import unittest
 
 from geometry_msgs.msg import Vector3
@@ -9,7 +9,7 @@ import support
 
 
 def orientation_only(imu):
-    """What an IMU sends that has no angular velocity, by the definition of the message."""
+    """Mark the angular velocity as not measured, as defined for the message."""
     imu.angular_velocity = Vector3()
     imu.angular_velocity_covariance = [-1.0] + [0.0] * 8
 
@@ -21,7 +21,7 @@ class TestOrientationOnlyImu(unittest.TestCase):
         robot.turn()
         robot.check_heading(self)
         self.assertEqual(robot.lines('/imu_altered'), [
-            '/imu_altered: no angular velocity: the change of its orientation is used'])
+            '/imu_altered: no angular velocity: using the change in orientation instead'])
 
 
 if __name__ == '__main__':

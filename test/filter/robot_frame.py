@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The transform leads to the robot's frame, also if the odometry does not name it, until another node publishes one."""
+"""The transform leads to the robot's frame, even without child_frame_id, until another node publishes one to it."""
 import unittest
 
 import rospy
@@ -19,7 +19,7 @@ class TestRobotFrame(unittest.TestCase):
         others = rospy.Publisher('/tf', TFMessage, queue_size=10)
 
         def children(child_frame_id=''):
-            """Where the latest transform of the filter leads from and to, after one more odometry message."""
+            """Return the frames of the filter's latest transform after one more odometry message."""
             message = Odometry()
             message.header.frame_id, message.header.stamp = 'odom', rospy.Time.now()
             message.child_frame_id = child_frame_id
@@ -36,7 +36,7 @@ class TestRobotFrame(unittest.TestCase):
                          'the transform to the frame of the robot')
         support.wait_for(lambda: has_logged('to robot/base_footprint: no other node publishes one'), 'the line')
 
-        # the base starts to publish its own
+        # the base starts to publish its own transform
         base = TransformStamped()
         base.header.frame_id, base.child_frame_id = 'odom', 'robot/base_footprint'
         base.transform.rotation.w = 1.0

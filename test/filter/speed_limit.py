@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A robot at 3 m/s is estimated all along its path; with a lower ~max_speed, its odometry has jumped."""
+"""A robot at 3 m/s is estimated along its whole path; with a lower ~max_speed, its odometry counts as jumped."""
 import unittest
 
 import rospy
@@ -43,7 +43,7 @@ class TestSpeedLimit(unittest.TestCase):
         support.wait_for(lambda: {('slow: odom', IGNORED), ('slow: filter', IGNORED)} <= {
             (each.name, each.message) for message in list(diagnostics.messages) for each in message.status}, IGNORED)
         self.assertEqual(lines('standard'), [])
-        # no two poses are much farther apart than 0.1 m, the distance at 30 Hz, even on a busy machine
+        # two poses are never much farther apart than 0.1 m, the distance at 30 Hz, even on a busy machine
         positions = [m.pose.pose.position.x for m in list(poses['standard'].messages)]
         self.assertGreater(positions[-1], 8.0)
         self.assertLess(max(b - a for a, b in zip(positions, positions[1:])), 1.5)

@@ -1,4 +1,4 @@
-"""A robot that stands still, for tests that need no base."""
+"""A stationary robot, for tests that need no base."""
 import threading
 
 import rospy
@@ -7,10 +7,10 @@ from sensor_msgs.msg import Imu
 
 
 def make_odom():
-    """The odometry of a robot that stands still, with the present time."""
+    """Return the odometry of a stationary robot, with the current time."""
     message = Odometry()
     message.header.stamp = rospy.Time.now()
-    message.header.frame_id, message.child_frame_id = '/odom', '/base_footprint'    # with the slash of old senders
+    message.header.frame_id, message.child_frame_id = '/odom', '/base_footprint'    # slashes as from old senders
     message.pose.pose.position.x = 0.5
     message.pose.pose.orientation.w = 1.0
     message.pose.covariance[::7] = message.twist.covariance[::7] = [1e-6] * 6
@@ -18,7 +18,7 @@ def make_odom():
 
 
 def make_imu():
-    """The gyro reading of a robot that stands still, with the present time."""
+    """Return the gyro reading of a stationary robot, with the current time."""
     message = Imu()
     message.header.stamp = rospy.Time.now()
     message.angular_velocity_covariance[8] = 1e-6
@@ -29,7 +29,7 @@ class Sender(threading.Thread):
     """Sends the valid messages of a sensor at about 50 Hz, and others on request."""
 
     def __init__(self, topic, make):
-        """make(): the next valid message."""
+        """make(): returns the next valid message."""
         super().__init__(daemon=True)
         self.publisher = rospy.Publisher(topic, type(make()), queue_size=100)
         self.make = make

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The launch file of robot_pose_ekf, with another pkg and type: the combined pose, and one connected tree of frames."""
+"""With a new pkg and type, robot_pose_ekf's launch file yields the combined pose and one connected tree of frames."""
 import unittest
 
 import rospy
@@ -31,13 +31,13 @@ class TestStockLaunchFile(unittest.TestCase):
         for _ in range(3):
             commander.send(0.2, 0.7)
             support.wait_for(lambda: odom.last.twist.twist.linear.x, 'the robot to move')
-            support.wait_for(lambda: not odom.last.twist.twist.linear.x, 'the robot to stand')
+            support.wait_for(lambda: not odom.last.twist.twist.linear.x, 'the robot to stop')
         count = len(poses.messages)
         support.wait_for(lambda: len(poses.messages) > count + 10, 'combined poses after the motion')
 
         x, y, yaw = support.pose(poses.last)
         true_x, true_y, true_yaw = support.pose(truth.last)
-        # 0.5 m and 2 rad on carpet: five standard deviations of what the wheels measure, and a few per cent
+        # 0.5 m and 2 rad on carpet: five standard deviations of the wheel measurements, and a few percent
         self.assertAlmostEqual(x, true_x, delta=0.15)
         self.assertAlmostEqual(y, true_y, delta=0.15)
         self.assertAlmostEqual(support.wrapped(yaw - true_yaw), 0.0, delta=0.05)
@@ -60,7 +60,7 @@ class TestStockLaunchFile(unittest.TestCase):
         for frame in 'base_footprint', 'base_link', 'base_l_wheel_link', 'gyro_link':
             support.wait_for(lambda: buffer.can_transform('odom_combined', frame, rospy.Time()), f'the frame {frame}')
 
-        # 30 Hz of messages that come 50 times a second: every second one, or two of three
+        # 30 Hz from messages that arrive at 50 Hz: every second one, or two of three
         stamps = [m.header.stamp.to_sec() for m in poses.messages]
         self.assertAlmostEqual((len(stamps) - 1) / (stamps[-1] - stamps[0]), 30, delta=6)
         self.assertEqual([m.msg for m in log.messages if m.name == '/robot_pose_ekf' and 'Transform' in m.msg], [

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What robot_pose_ekf can do and the filter cannot is named, each in a line; the filter runs without it."""
+"""The filter logs a line for each requested feature of robot_pose_ekf that it does not support, and runs without it."""
 import unittest
 
 import rospy
@@ -8,13 +8,13 @@ from nav_msgs.msg import Odometry
 
 import support
 
-LINES = ['vo_used: visual odometry is not supported, and not used', 'gps_used: GPS is not supported, and not used',
+LINES = ['vo_used: visual odometry is not supported and not used', 'gps_used: GPS is not supported and not used',
          'debug: no files are written; record the topics with rosbag', 'self_diagnose: see /diagnostics']
 
 
 class TestUnsupportedInputs(unittest.TestCase):
     def start(self, value):
-        """Start the filter with this value of all four parameters, and wait for a pose; returns the process."""
+        """Start the filter with this value of all four parameters and wait for a pose; return the process."""
         ekf = support.Process('rosrun', 'rbx1_nav', 'ekf.py', '_imu_used:=false', *(
             f"_{line.split(':')[0]}:={value}" for line in LINES))
         self.addCleanup(ekf.kill)
@@ -38,7 +38,7 @@ class TestUnsupportedInputs(unittest.TestCase):
             self.assertEqual(process.output.count(line), 1, process.output)
         process.kill()
         process = self.start('false')
-        process.wait_for_line('Floor that the filter starts with')
+        process.wait_for_line('Initially assumed floor')
         self.assertNotIn('[WARN]', process.output)
 
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""An IMU that is mounted upside down is not used without a transform to its frame, and turned by the first one."""
+"""An IMU that is mounted upside down is used as soon as there is a transform to its frame, which rotates it."""
 import unittest
 
 import rospy
@@ -11,7 +11,7 @@ import support
 
 
 def upside_down(imu):
-    """What the IMU sends when it is rolled by 180 degrees."""
+    """Change the message to the message of an IMU that is rolled by 180 degrees."""
     imu.header.frame_id = 'imu_link'
     imu.angular_velocity.y *= -1
     imu.angular_velocity.z *= -1
@@ -24,18 +24,18 @@ class TestUpsideDownImu(unittest.TestCase):
         support.init_node('upside_down_imu')
         robot = AlteredRobot(imu=upside_down)
         robot.wait_for_line("/imu_altered: header.frame_id: 'imu_link': expected a transform from base_footprint to it")
-        robot.estimates.next()      # by the wheels alone
+        robot.estimates.next()      # from the wheels alone
 
         transform = TransformStamped()
         transform.header.frame_id, transform.child_frame_id = 'base_link', 'imu_link'
         transform.transform.rotation.x = 1.0
         publisher = rospy.Publisher('/tf_static', TFMessage, queue_size=1, latch=True)
         publisher.publish([transform])
-        robot.wait_for_line('turned from imu_link to base_footprint, its vertical axis by 180 degrees')
+        robot.wait_for_line('rotating readings from imu_link to base_footprint, vertical axis tilted by 180 degrees')
         robot.turn()
         robot.check_heading(self)
 
-        # it is looked up once
+        # the transform is looked up once
         transform.transform.rotation.x, transform.transform.rotation.w = 0.0, 1.0
         publisher.publish([transform])
         robot.turn()

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A filter that is told another floor than that below the robot notices it, and is less certain of the distance."""
+"""A filter that assumes a different floor than the true one detects this and increases the distance uncertainty."""
 import math
 import unittest
 
@@ -24,17 +24,17 @@ class TestWrongFloor(unittest.TestCase):
         right.next()
         wrong.next()
 
-        noticed = [(m.name, m.msg) for m in list(log.messages) if 'another floor than the one' in m.msg]
+        noticed = [(m.name, m.msg) for m in list(log.messages) if 'does not match the assumed floor' in m.msg]
         self.assertEqual([name for name, _ in noticed], ['/wrong'], noticed)
         self.assertRegex(noticed[0][1], r'^odom turned by \d+\.\d\d rad, imu_data by \d+\.\d\d rad: ')
         variances = {m.header.stamp: m.pose.covariance[0] for m in list(right.messages)}
         ratios = [m.pose.covariance[0] / variances[m.header.stamp] for m in list(wrong.messages)
                   if m.header.stamp in variances]
         self.assertGreater(len(ratios), 100)
-        # on the way out it was more certain than on the carpet, or as certain: the base reports the carpet's noise
+        # on the first leg, it was at least as certain as on carpet: the base reports the carpet's noise
         self.assertLess(ratios[len(ratios) // 4], 1.1)
         self.assertGreater(max(ratios), 1.5)
-        # the heading is the gyro's, whatever is assumed of the wheels
+        # the heading follows the gyro, whatever is assumed about the wheels
         for estimate in right, wrong:
             self.assertLess(abs(support.wrapped(support.yaw(estimate.last) - true_yaw)), math.radians(4))
 

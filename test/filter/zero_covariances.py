@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""An IMU without covariances is used with those of robot_pose_ekf; odometry without covariances is rejected."""
+"""An IMU without covariances is used with robot_pose_ekf's covariances; odometry without covariances is rejected."""
 import unittest
 
 from altered import AlteredRobot
@@ -7,7 +7,7 @@ import support
 
 
 def without_covariances(imu):
-    """What many drivers of IMUs send."""
+    """Set the covariances to zero, as many IMU drivers do."""
     imu.angular_velocity_covariance = imu.orientation_covariance = [0.0] * 9
 
 
@@ -28,7 +28,7 @@ class TestZeroCovariances(unittest.TestCase):
         robot.turn()
         robot.check_heading(self)
         self.assertEqual(robot.lines('/imu_altered'), [
-            '/imu_altered: no covariance of the angular velocity: 0.00017 rad/s assumed'])
+            '/imu_altered: no angular velocity covariance: assuming 0.00017 rad/s'])
 
 
 if __name__ == '__main__':

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""An invalid parameter ends a node with one line that names the key, the value and what is expected."""
+"""A node with an invalid parameter exits with one line that contains the key, the value and what is expected."""
 import unittest
 
 import rospy
@@ -11,7 +11,7 @@ BASE = {'type': 'diff_controller', 'base_width': 0.26}
 
 
 def forget(name):
-    """Delete what a node has left on the master. One that was never registered leaves nothing."""
+    """Delete the parameters that a node has left on the master; a node that was never registered leaves none."""
     if rospy.has_param(name):
         rospy.delete_param(name)
 
@@ -22,7 +22,7 @@ class TestBadParameters(unittest.TestCase):
         support.init_node('bad_parameters')
 
     def check(self, process, expected):
-        """The process ends with status 1, and with one error that contains all the expected texts."""
+        """Check that the process exits with status 1 and one error that contains all expected texts."""
         self.addCleanup(process.kill)
         self.assertEqual(process.wait(), 1, process.output)
         errors = [line for line in process.lines if '[ERROR]' in line or '[FATAL]' in line]

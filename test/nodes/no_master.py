@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Without a master, the scripts give up with one line, and bases and filter say that they wait, until it comes."""
+"""Without a master, the scripts give up with one line; bases and filter log that they are waiting, and then start."""
 import os
 import signal
 import sys
@@ -58,9 +58,9 @@ class TestNoMaster(unittest.TestCase):
         for node in base, script:
             node.wait_for_line('Waiting for the master')
         master = self.start('roscore', '-p', str(self.port))
-        self.addCleanup(master.wait)        # it ends its processes, which are not in its process group
+        self.addCleanup(master.wait)        # roscore stops its processes, which are not in its process group
         self.addCleanup(master.signal, signal.SIGINT)
-        base.wait_for_line('Ready: base_link stands at the origin of odom')
+        base.wait_for_line('Ready: base_link is at the origin of odom')
         script.wait_for_line('forward: 1.00 m')
         self.assertEqual(base.output.count('Waiting'), 1, base.output)
         self.assertNotIn('register', base.output)       # rospy's own line for this

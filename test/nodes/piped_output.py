@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What a program prints to stdout reaches a pipe while the program runs, not when it exits."""
+"""The output of a program reaches a pipe while the program is running, not when it exits."""
 import signal
 import unittest
 
@@ -7,17 +7,17 @@ import support
 
 CASES = [(('rosrun', 'rbx1_nav', 'timed_out_and_back.py'), r'INFO.*Waiting for a base'),
          (('roslaunch', 'rbx1_nav', 'fake_turtlebot.launch'), r'INFO.*Ready: base_footprint'),
-         # so many runs take hours
+         # this number of runs takes hours
          (('rosrun', 'rbx1_nav', 'simulate.py', '--runs', '1000000', '--jobs', '1'),
           r'Runs of each method on ideal: 1000000')]
 
 
 class TestPipedOutput(unittest.TestCase):
     def start(self, *command):
-        """Run a command as its user does: the Process of the other tests is unbuffered."""
+        """Run a command as a user does, unlike the unbuffered Process of the other tests."""
         process = support.Process('env', '-u', 'PYTHONUNBUFFERED', *command)
         self.addCleanup(process.kill)
-        self.addCleanup(process.wait)       # roslaunch ends its nodes, which are not in its process group
+        self.addCleanup(process.wait)       # roslaunch stops its nodes, which are not in its process group
         self.addCleanup(process.signal, signal.SIGINT)
         return process
 

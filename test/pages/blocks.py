@@ -1,25 +1,25 @@
 """Reads a Markdown page as a list of steps that a program can follow.
 
-Directly above each shell block (sh, bash) a comment says how its commands are run:
+A comment directly above each shell block (sh, bash) defines how its commands are run:
 
-    <!-- run -->                      one by one in one terminal, which keeps its directory; each ends with status 0
-    <!-- run, status 1 -->            the same, and each ends with status 1
-    <!-- terminals: base, rviz -->    a name for each command. It stays in the foreground of the terminal of this name.
-                                      The name run is for a command that ends, as above
-    <!-- every terminal -->           first in every terminal; in a page without such a block, README's is used
-    <!-- not run: installation -->    not run. NOT_RUN lists the permitted reasons
+    <!-- run -->                      one by one in one terminal, which keeps its directory; each exits with status 0
+    <!-- run, status 1 -->            as above, but each exits with status 1
+    <!-- terminals: base, rviz -->    a name for each command, which stays in the foreground of the terminal with this
+                                      name. The name run is for a command that exits, as above
+    <!-- every terminal -->           run first in every terminal; a page without this block uses the block of README.md
+    <!-- not run: installation -->    not run; NOT_RUN lists the permitted reasons
 
-Directly above each text block a comment says what it is compared with:
+A comment directly above each text block defines what it is compared with:
 
-    <!-- output -->                   the output of the last block or Ctrl-C: these lines appear in this order, others
-                                      may come between. A number matches any number, ... matches any text
-    <!-- output of base -->           the output in that terminal, from the last line compared on
+    <!-- output -->                   the output of the last block or Ctrl-C: these lines appear in this order, with
+                                      other lines in between. A number matches any number, ... matches any text
+    <!-- output of base -->           the output in that terminal, after the last compared line
     <!-- output, within 5 -->         each number differs by at most 5 units of its last decimal; exact: not at all
     <!-- not output -->               nothing
 
-Directly above a line of prose that contains "Ctrl-C":
+A comment directly above a line of prose that contains "Ctrl-C":
 
-    <!-- Ctrl-C: base -->             press Ctrl-C in these terminals; their names are then free for other commands
+    <!-- Ctrl-C: base -->             press Ctrl-C in these terminals; their names can then be reused
 """
 import re
 from collections import namedtuple
@@ -28,7 +28,7 @@ from . import markdown
 
 SHELL, OUTPUT = ('sh', 'bash', 'shell', 'console'), 'text'
 NOT_RUN = ('installation', 'the two commands', 'needs root', 'needs two machines', 'needs a robot', 'takes long')
-RUN = 'run'     # name of the terminal for commands that end
+RUN = 'run'     # name of the terminal for commands that exit
 COMMENT = re.compile(r'\s*<!-- (?P<text>.*?) -->\s*$')
 MARKERS = {kind: re.compile(pattern) for kind, pattern in {
     'run': r'run(?:, status (?P<status>\d+))?',
@@ -38,10 +38,10 @@ MARKERS = {kind: re.compile(pattern) for kind, pattern in {
     'output': r'output(?: of (?P<of>[\w-]+))?(?:, (?:within (?P<tolerance>\d+)|(?P<exact>exact)))?',
     'not output': r'not output',
     'Ctrl-C': r'Ctrl-C: (?P<names>[\w-]+(?:, [\w-]+)*)'}.items()}
-GENERATED = re.compile(r'(?:parameter|key)s: \S+')   # script/parameter_tables.py writes what follows
+GENERATED = re.compile(r'(?:parameter|key)s: \S+')   # script/parameter_tables.py generates the table below
 FOR_SHELL, FOR_OUTPUT = ('run', 'terminals', 'every terminal', 'not run'), ('output', 'not output')
 
-# The steps; line is that of the comment or the block. terminal None: the one used last. tolerance None: any number.
+# The steps; line: number of the comment or the block; terminal None: last terminal used; tolerance None: any number
 Setup = namedtuple('Setup', 'line commands')
 Run = namedtuple('Run', 'line commands status')
 Start = namedtuple('Start', 'line command terminal')
@@ -50,7 +50,7 @@ Interrupt = namedtuple('Interrupt', 'line terminal')
 
 
 class PageError(ValueError):
-    """A page that cannot be followed; the text begins with the line number."""
+    """A page that cannot be parsed; the text begins with the line number."""
 
     def __init__(self, line, text, *values):
         super().__init__('%d: %s' % (line, text % values))
@@ -88,11 +88,11 @@ class _Reader:
     def __init__(self):
         self.steps = []
         self.marker = None              # (line, kind, values) of the comment directly above
-        self.running = set()            # names of terminals with a command in the foreground
+        self.running = set()            # names of the terminals with a command in the foreground
         self.before, self.in_list = '', False
 
     def line(self, number, line):
-        """A line outside of fenced blocks."""
+        """Process a line outside of fenced blocks."""
         comment = COMMENT.match(line)
         if self.marker:
             self.end_marker(line)
@@ -107,7 +107,7 @@ class _Reader:
         self.before = line.strip()
 
     def read_marker(self, number, text):
-        """A comment as (line, kind, values)."""
+        """Parse a comment into (line, kind, values)."""
         for kind, pattern in MARKERS.items():
             match = pattern.fullmatch(text)
             if match:
@@ -115,7 +115,7 @@ class _Reader:
         raise PageError(number, 'unknown comment %r, expected one that test/pages/blocks.py lists', text)
 
     def end_marker(self, line):
-        """The comment above this line of prose: only Ctrl-C belongs there."""
+        """Process the comment above this line of prose: only Ctrl-C is allowed there."""
         number, kind, values = self.marker
         self.marker = None
         if kind != 'Ctrl-C':
@@ -129,7 +129,7 @@ class _Reader:
             self.steps.append(Interrupt(number, name))
 
     def block(self, number, language, lines):
-        """A fenced block."""
+        """Process a fenced block."""
         _, kind, values = self.marker or (None, None, None)
         self.marker, self.before = None, ''
         if language in SHELL and kind not in FOR_SHELL:
@@ -152,7 +152,7 @@ class _Reader:
             raise PageError(number, 'not run: %r: expected one of %s', values['reason'], ', '.join(NOT_RUN))
 
     def terminals(self, number, names, typed):
-        """A block whose commands run in terminals of their own."""
+        """Process a block whose commands run in separate terminals."""
         if len(names) != len(typed):
             raise PageError(number, '%d names for %d commands', len(names), len(typed))
         for name, command in zip(names, typed):
@@ -165,7 +165,7 @@ class _Reader:
                 self.steps.append(Start(number, command, name))
 
     def output(self, number, lines, values):
-        """A block of expected output."""
+        """Process a block of expected output."""
         if not any(isinstance(each, (Run, Start)) for each in self.steps):
             raise PageError(number, 'output without a command before')
         if values['of'] and not any(isinstance(each, Start) and each.terminal == values['of'] for each in self.steps):

@@ -6,9 +6,9 @@ import subprocess
 
 @contextlib.contextmanager
 def virtual_display():
-    """An X server for the time of this context. The value is its DISPLAY."""
+    """A context with a running X server. The value is its DISPLAY."""
     ours, its = os.pipe()
-    # displayfd: it chooses a free number and reports it. noreset: it keeps running when its last client leaves
+    # displayfd: the server chooses a free number and reports it. noreset: it keeps running after its last client quits
     server = subprocess.Popen(
         ['Xvfb', '-displayfd', str(its), '-screen', '0', '1280x800x24', '+extension', 'GLX', '-nolisten', 'tcp',
          '-noreset'], pass_fds=[its], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)

@@ -1,4 +1,4 @@
-"""Compares what a page says that a terminal shows with what it does show."""
+"""Compares the terminal output that a page shows with the actual output."""
 import re
 
 NUMBER = r'[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?'
@@ -6,7 +6,7 @@ TOKEN = re.compile(r'(?P<any>\.\.\.)|(?P<number>' + NUMBER + r')|(?P<space>\s+)|
 
 
 def pattern(expected):
-    """The regular expression for a line of the page, and (number, unit of its last decimal) for each of its numbers."""
+    """The regular expression for a line of the page, and (value, unit of the last decimal) of each number in it."""
     parts, numbers = [], []
     for token in TOKEN.finditer(expected.strip()):
         if token['any']:
@@ -21,20 +21,20 @@ def pattern(expected):
 
 
 def same(expected, line, tolerance=None):
-    """Whether a line of a terminal is as expected. ... matches any text, a number any number within the tolerance.
+    """Whether a terminal line is as expected. ... matches any text, a number any number within the tolerance.
 
     tolerance: in units of the last decimal of each number; None for any number.
     """
     regex, numbers = pattern(expected)
     match = regex.fullmatch(line)
     return bool(match) and (tolerance is None or all(
-        # 1e-9 for what decimals lose in binary
+        # 1e-9: rounding of decimals in binary
         abs(float(shown) - number) <= tolerance * unit + 1e-9
         for shown, (number, unit) in zip(match.groups(), numbers)))
 
 
 def find(expected, lines, tolerance=None):
-    """Look for the expected lines in their order. Returns (indices of those found, the first line missing or None)."""
+    """Search for the expected lines in order. Returns (indices of the lines found, the first missing line or None)."""
     found, ahead = [], iter(enumerate(lines))
     for wanted in expected:
         if wanted.strip() in ('', '...'):

@@ -15,7 +15,7 @@ PICTURES = ('.png', '.svg', '.jpg', '.jpeg', '.gif')
 
 
 def slug(heading):
-    """The anchor that GitHub gives a heading."""
+    """The anchor that GitHub generates for a heading."""
     text = re.sub(r'!?\[([^\]]*)\]\([^)]*\)', r'\1', heading)
     return re.sub(r'[^\w\- ]', '', text.strip().lower()).replace(' ', '-')
 
@@ -37,7 +37,7 @@ def anchors(text):
 
 
 def prose(text):
-    """The lines outside fenced blocks, as markdown.split yields them."""
+    """The lines outside fenced blocks, in the form of markdown.split."""
     return (each for each in markdown.split(text) if each[1] is None)
 
 
@@ -47,7 +47,7 @@ def targets(text):
         line = markdown.CODE_SPAN.sub('``', line)
         for match in IMAGE.finditer(line):
             yield number, match['target'] or match['html'], True
-        # without the image, [![text](image)](target) is a plain link
+        # with the image removed, [![text](image)](target) is a plain link
         line = IMAGE.sub('', line)
         for match in LINK.finditer(line):
             yield number, match['target'] or match['defined'] or match['html'] or match['auto'], False
@@ -72,9 +72,9 @@ def trouble(root, page, target):
 
 
 def problems(root):
-    """All problems of a repository, one line each.
+    """All problems in a repository, one line each.
 
-    Broken links, pages in docs/ that README.md does not lead to, and pictures that no page shows.
+    These are broken links, pages in docs/ that README.md does not lead to, and pictures that no page shows.
     """
     found, graph, shown = [], {}, set()
     for page in markdown.files(root, '.md'):

@@ -1,4 +1,4 @@
-"""Markdown files, and their text divided into fenced blocks and prose."""
+"""Finds Markdown files, and splits their text into fenced blocks and prose."""
 import os
 import re
 
@@ -24,7 +24,7 @@ def read(root, path):
 def split(text):
     """Yield (line number, language, lines) for each fenced block, and (line number, None, [line]) for any other line.
 
-    The lines of a block lose the indentation of its fence. Raises ValueError for a fence without end.
+    The indentation of the fence is removed from the lines of its block. Raises ValueError for an unclosed fence.
     """
     lines = enumerate(text.splitlines(), 1)
     for number, line in lines:
@@ -38,7 +38,7 @@ def split(text):
                 break
             body.append(inner[min(len(fence['indent']), len(inner) - len(inner.lstrip())):])
         else:
-            raise ValueError('%d: this fence has no end' % number)
+            raise ValueError('%d: this fence is not closed' % number)
         yield number, fence['language'], body
 
 

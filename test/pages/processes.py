@@ -1,4 +1,4 @@
-"""Finds the processes of a session by their HOME: nodes leave the terminal and the process group they start in."""
+"""Finds the processes of a session by their HOME, because nodes leave their terminal and their process group."""
 import os
 import signal
 import time
@@ -14,13 +14,13 @@ def find(home):
             with open(f'/proc/{pid}/cmdline', 'rb') as file:
                 if ours:
                     found[int(pid)] = file.read().replace(b'\0', b' ').decode(errors='replace')
-        except OSError:     # another user's, or gone
+        except OSError:     # another user's process, or it has exited
             pass
     return found
 
 
 def kill(home):
-    """Kill them, and wait until they are gone."""
+    """Kill all processes with this HOME, and wait until they have exited."""
     while True:
         found = find(home)
         for pid in found:

@@ -1,4 +1,4 @@
-"""Follows a Markdown page as a reader does, with a home directory, terminals and a ROS master of its own."""
+"""Follows a Markdown page as a reader would, with a separate home directory, terminals and ROS master."""
 import os
 import re
 import time
@@ -9,13 +9,13 @@ from . import blocks, expected, processes
 from .master import Master
 from .terminal import BASHRC, PROMPT, Terminal
 
-LIMIT = 300             # s after which a step counts as hanging; generous, for a machine under load
+LIMIT = 300             # s after which a step counts as hung; generous, for a machine under load
 AFTER_CTRL_C = (0, 130)         # exit status: 130 is 128 + SIGINT
 
-# Output that fails the page unless the page shows it. The last one is roslaunch's, of a node that ended by itself.
+# Output that fails the page unless the page shows it. roslaunch prints the last one when a node exits on its own.
 ERROR = re.compile(r'\[ *(ERROR|FATAL)\]|Traceback \(most|RLException|\] process has (died|finished)')
 
-# the end of a traceback that ROS's own tools may print on Debian 11 when they end: Python 3.9 has no Thread.isAlive()
+# last line of a traceback that ROS's own tools may print on exit on Debian 11: Python 3.9 has no Thread.isAlive()
 HARMLESS = re.compile(r"AttributeError: '\w+' object has no attribute 'isAlive'")
 
 # roscore ignores the port in ROS_MASTER_URI
@@ -23,7 +23,7 @@ ROSCORE = 'roscore() { command roscore -p "${ROS_MASTER_URI##*:}" "$@"; }\n'
 
 
 class PageFailed(AssertionError):
-    """The page and what happens differ. The text includes what the terminals show."""
+    """The actual output differs from the page. The text includes the contents of the terminals."""
 
 
 def is_harmless(lines):
@@ -33,20 +33,20 @@ def is_harmless(lines):
 
 
 class Session:
-    """A context in which the steps of a page are followed. On exit, processes that are left are killed."""
+    """A context in which the steps of a page are followed. On exit, remaining processes are killed."""
 
     def __init__(self, page, home, display='', limit=LIMIT):
-        """page: its name. home: a directory for this page alone. display: DISPLAY. limit: s that a step may take."""
+        """page: name of the page. home: a directory for this page only. display: DISPLAY. limit: s allowed per step."""
         self.page, self.home, self.limit = page, home, limit
         self.line = 0               # of the page
-        self.setup = []             # commands that are typed first in each new terminal
+        self.setup = []             # commands typed first in each new terminal
         self.terminals = {}         # by name
-        self.last = None            # name of the terminal used last
-        self.first = {}             # by name: index of the first line in which output is searched
+        self.last = None            # name of the last terminal used
+        self.first = {}             # by name: index of the first line to search for output
         self.shown = set()          # (name, index) of the lines that the page shows
         uri = 'http://127.0.0.1:%d' % free_port()
         self.master = Master(uri)
-        # nothing is inherited: the page has to set up what its commands need
+        # nothing is inherited: the page must set up what its commands need
         self.env = {
             'HOME': home, 'PATH': '/usr/sbin:/usr/bin:/sbin:/bin', 'TERM': 'xterm-256color', 'LANG': 'C.UTF-8',
             'ROS_MASTER_URI': uri, 'ROS_IP': '127.0.0.1', 'PYTHONDONTWRITEBYTECODE': '1', 'DISPLAY': display,
@@ -62,7 +62,7 @@ class Session:
         self.close_terminals()
 
     def follow(self, steps):
-        """Follow all steps, then end what still runs. Raises PageFailed."""
+        """Follow all steps, then stop the commands that still run. Raises PageFailed."""
         begin = time.monotonic()
         for step, following in zip(steps, steps[1:] + [None]):
             self.line = step.line
@@ -80,14 +80,14 @@ class Session:
             elif isinstance(step, blocks.Interrupt):
                 self.interrupt(step.terminal)
             else:
-                # output that the page shows is the better sign that a program is up
+                # if the page shows output, that is a better sign that the program is up
                 self.start(step, wait=not isinstance(following, blocks.Output))
         self.end()
 
     # the steps
 
     def set_up(self, step):
-        """Type commands in every terminal: now in the open ones, later in the others."""
+        """Type commands in every terminal: in the open ones now, and in new ones when they open."""
         self.setup += step.commands
         for name, terminal in self.terminals.items():
             if terminal.status is not None:
@@ -110,7 +110,7 @@ class Session:
         terminal, first = self.terminals[name], self.first[name]
 
         def complete():
-            # read before the lines: once a command has ended, its output is complete
+            # read before the lines: once a command has exited, its output is complete
             ended = terminal.status is not None
             found, missing = expected.find(step.lines, terminal.lines[first:], step.tolerance)
             if missing is None:
@@ -128,16 +128,16 @@ class Session:
             self.fail('ended before Ctrl-C, with status %d' % terminal.status, name)
         self.last, self.first[name] = name, len(terminal.lines) - 1
         deadline = time.monotonic() + self.limit
-        # bash may miss the key between two commands of one line: a reader presses it again
+        # bash may miss the key between two commands on one line: a reader would press it again
         while terminal.status is None and time.monotonic() < deadline:
             terminal.interrupt()
             self.wait(lambda: terminal.status is not None, 10)
-        self.wait_for(lambda: terminal.status is not None, name, 'Ctrl-C does not end it')
+        self.wait_for(lambda: terminal.status is not None, name, 'Ctrl-C does not stop it')
         if terminal.status not in AFTER_CTRL_C:
             self.fail('status %d after Ctrl-C' % terminal.status, name)
 
     def end(self):
-        """Press Ctrl-C in all terminals where a command runs, the newest first. No process may be left."""
+        """Press Ctrl-C in all terminals with a running command, newest first. No process may remain."""
         for name in reversed(list(self.terminals)):
             if self.terminals[name].status is None:
                 self.interrupt(name)
@@ -146,37 +146,37 @@ class Session:
         deadline = time.monotonic() + self.limit
         while processes.find(self.home):
             if time.monotonic() > deadline:
-                raise PageFailed(f'{self.page}: processes left at the end: {processes.find(self.home)}')
+                raise PageFailed(f'{self.page}: processes left after the last step: {processes.find(self.home)}')
             time.sleep(0.05)
 
     # the terminals
 
     def open(self, name):
-        """Select the terminal of that name; a new one if there is none. Its command has ended."""
+        """Select the terminal with this name, or open a new one. Its command has exited."""
         if name not in self.terminals:
             terminal = self.terminals[name] = Terminal(self.env)
             self.wait_for(lambda: terminal.status is not None, name, 'the shell does not start')
             self.run(name, self.setup)
-        # the last line is the prompt: the command will be on it
+        # the last line is the prompt, where the command will appear
         self.last, self.first[name] = name, len(self.terminals[name].lines) - 1
         return self.terminals[name]
 
     def close_terminals(self):
-        """Close all."""
+        """Close all terminals."""
         while self.terminals:
             self.terminals.popitem()[1].close()
 
     def run(self, name, commands, status=0):
-        """Type commands and wait for the end of each."""
+        """Type commands and wait until each exits."""
         terminal = self.terminals[name]
         for command in commands:
             terminal.type(command)
-            self.wait_for(lambda: terminal.status is not None, name, f'{command} does not end')
+            self.wait_for(lambda: terminal.status is not None, name, f'{command} does not exit')
             if terminal.status != status:
                 self.fail('%s ended with status %d, expected %d' % (command, terminal.status, status), name)
 
     def wait_for(self, condition, name, trouble):
-        """Wait for a condition of a terminal, or fail."""
+        """Wait for a condition, or fail."""
         if not self.wait(condition, self.limit):
             self.fail(f'{trouble} after {self.limit:g} s', name)
 
@@ -199,7 +199,7 @@ class Session:
                     self.fail(f'the page does not show {line!r}', name)
 
     def fail(self, trouble, name):
-        """Fail with what the terminals show, the one in question last."""
+        """Fail with the contents of the terminals, this one last."""
         names = [each for each in self.terminals if each != name] + [name]
         raise PageFailed('%s:%d: %s\n%s' % (self.page, self.line, trouble, '\n'.join(
             '--- terminal %s\n%s' % (each, self.terminals[each].screen) for each in names)))

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Runs recorded on a floor, a surface fitted to them, and the same exercise simulated on that surface."""
+"""A surface fitted to recorded runs agrees with the floor, and the exercise simulated on it with the runs."""
 import os
 import re
 import signal
@@ -28,13 +28,13 @@ class TestFittedFloor(unittest.TestCase):
         support.wait_for(lambda: self.truth.last, '/ground_truth')
 
     def run_process(self, process):
-        """Wait for a Process that must succeed; returns its output."""
+        """Wait for a Process that must succeed; return its output."""
         self.addCleanup(process.kill)
         self.assertEqual(process.wait(), 0, process.output)
         return process.output
 
     def record(self, name):
-        """Drive the exercise, and record it; returns the path of the bag."""
+        """Drive the exercise and record it; return the path of the bag."""
         path = os.path.join(self.folder, name)
         recorder = support.Process('rosbag', 'record', '-O', path, *TOPICS)
         self.addCleanup(recorder.kill)
@@ -43,7 +43,7 @@ class TestFittedFloor(unittest.TestCase):
                                      for topic, nodes in master.getSystemState()[1] if topic in TOPICS), 'the recorder')
         start = self.truth.next()
         self.run_process(support.out_and_back())
-        # a second of the robot at rest, also for the gyro
+        # a second at standstill, also for the gyro
         end = self.truth.next().header.stamp + rospy.Duration(3)
         support.wait_for(lambda: self.truth.last.header.stamp > end, 'the robot at rest')
         recorder.signal(signal.SIGINT)
@@ -71,19 +71,19 @@ class TestFittedFloor(unittest.TestCase):
         for key, tolerance in (
                 # the carpet's noise over 4 m and 4 half turns: three standard deviations, 0.022 and 0.024
                 ('slip_straight', 0.07), ('slip_turning', 0.07),
-                # the recorder stamps commands when they arrive, in simulated time, which runs at 10 times its clock
+                # the recorder stamps commands when they arrive, in simulated time, which is 10 times as fast
                 ('drag_straight', 0.003), ('drag_turning', 0.003)):
             self.assertAlmostEqual(getattr(fitted, key), getattr(floor, key), delta=tolerance, msg=f"{key}\n{output}")
             self.assertRegex(text, rf'\n{key}: .*fitted, \+- ')
         for key in 'heading_noise_turning', 'heading_noise_straight', 'distance_noise':     # within a factor of 3
             self.assertTrue(1 / 3 < getattr(fitted, key) / getattr(floor, key) < 3, f"{key}\n{output}")
-        self.assertGreater(abs(start.drag_turning - floor.drag_turning), 0.01)      # so the start would not do
-        self.assertRegex(text, r'\nticks_meter: 4100 .*left as it was')
+        self.assertGreater(abs(start.drag_turning - floor.drag_turning), 0.01)      # so the start values would fail
+        self.assertRegex(text, r'\nticks_meter: 4100 .*not fitted')
 
         output = self.run_process(support.Process('rosrun', 'rbx1_nav', 'simulate.py', '--surface', surface, '--method',
                                                   'timed', '--runs', '20'))
         x, y = map(float, re.search(r'timed +truth +(\S+) \+- \S+ +(\S+) \+-', output).groups())
-        # the mean of two runs, by which the slip was fitted; the ideal robot ends at the start, half a metre away
+        # mean of the two runs to which slip was fitted; the end pose of the ideal robot is the start, half a meter away
         self.assertLess(abs(x - real[0]), 0.20, (real, output))
         self.assertLess(abs(y - real[1]), 0.20, (real, output))
         self.assertGreater(real[1], 0.3)

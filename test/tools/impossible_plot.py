@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""simulate.py rejects a picture that it could not write before it simulates anything."""
+"""simulate.py rejects a picture that it cannot write before it starts the simulation."""
 import os
 import tempfile
 import unittest
@@ -12,9 +12,9 @@ class TestImpossiblePlot(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             os.mkdir(os.path.join(folder, 'taken.png'))
             for path, expected in [
-                    ('/proc/picture.png', 'expected a file that can be written: '),     # not even by root
+                    ('/proc/picture.png', 'expected a file that can be written: '),     # not even by a superuser
                     (os.path.join(folder, 'taken.png'), 'expected a file that can be written: Is a directory'),
-                    ('', 'expected a name that ends in one of ')]:
+                    ('', 'expected a file name with one of the extensions ')]:
                 process = support.Process('rosrun', 'rbx1_nav', 'simulate.py', '--runs', '1', '--plot', path)
                 self.addCleanup(process.kill)
                 self.assertEqual(process.wait(), 2, process.output)

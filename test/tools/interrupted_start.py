@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Ctrl-C while modules are loaded ends each executable at once and without a traceback."""
+"""Ctrl-C while modules are being imported stops each executable immediately and without a traceback."""
 import fcntl
 import os
 import signal
@@ -10,14 +10,14 @@ import support
 
 NODES = ['ekf.py', 'fake_base.py', 'fit_surface.py', 'odom_ekf.py', 'odom_out_and_back.py', 'pose.py', 'simulate.py',
          'timed_out_and_back.py']
-F_SETPIPE_SZ = 1031     # fcntl has this name since Python 3.10
+F_SETPIPE_SZ = 1031     # defined in fcntl since Python 3.10
 
 
 class TestInterruptedStart(unittest.TestCase):
     def interrupt(self, name):
-        """Interrupt an executable while it loads its modules; returns its exit status and what it wrote after that."""
-        # Python writes a line for each module that it has loaded. If nobody reads them, it stops as soon as the pipe is
-        # full: after some 50 modules of more than 300.
+        """Interrupt an executable while it imports modules; return its exit status and its output after that."""
+        # Python writes a line for each imported module. If the lines are not read, it blocks as soon as the pipe is
+        # full, after about 50 of more than 300 modules.
         read_end, write_end = os.pipe()
         fcntl.fcntl(write_end, F_SETPIPE_SZ, 4096)
         process = subprocess.Popen(['rosrun', 'rbx1_nav', name], stdout=write_end, stderr=write_end,

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""roslaunch --ros-args lists no argument as required: each has a documented default. Arguments reach the nodes."""
+"""Every launch argument has a default and a description in `roslaunch --ros-args`; arguments reach the nodes."""
 import subprocess
 import unittest
 
@@ -12,7 +12,7 @@ LAUNCH_FILES = [('rbx1_nav', 'fake_turtlebot.launch'), ('rbx1_nav', 'fake_pi_rob
 
 
 def roslaunch(*arguments):
-    """What roslaunch prints with these arguments."""
+    """Return the output of roslaunch with these arguments."""
     return subprocess.run(['roslaunch', *arguments], check=True, timeout=support.LIMIT, stdout=subprocess.PIPE,
                           universal_newlines=True).stdout
 
@@ -35,7 +35,7 @@ class TestLaunchArguments(unittest.TestCase):
         for file in 'fake_turtlebot.launch', 'fake_pi_robot.launch':
             self.assertIn('seed (default "random")', texts['rbx1_nav', file])
             self.assertIn('surface (default "ideal")', texts['rbx1_nav', file])
-            # the tutorial's names have the same arguments
+            # the launch files with the tutorial's names have the same arguments
             self.assertEqual(texts['rbx1_nav', file], texts['rbx1_bringup', file])
         self.assertIn('surface (default "auto")', texts['rbx1_bringup', 'odom_ekf.launch'])
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""pose.py prints truth, odometry and estimate side by side, and ends by itself, whatever is running."""
+"""pose.py prints truth, odometry and estimate below each other, and always exits by itself."""
 import math
 import re
 import signal
@@ -22,13 +22,13 @@ class TestPoseTable(unittest.TestCase):
         support.init_node('pose_table')
 
     def pose(self, *prefix):
-        """Run pose.py; returns its exit status and its lines."""
+        """Run pose.py; return its exit status and its lines."""
         process = support.Process(*prefix, 'rosrun', 'rbx1_nav', 'pose.py')
         self.addCleanup(process.kill)
         return process.wait(), process.lines
 
     def start(self, *node):
-        """Start a node with arguments; it is ended, and unregistered, after the test."""
+        """Start a node with arguments; it is stopped and unregistered after the test."""
         process = support.Process('rosrun', 'rbx1_nav', *node)
         self.addCleanup(process.kill)
         self.addCleanup(process.wait)
@@ -36,7 +36,7 @@ class TestPoseTable(unittest.TestCase):
         return process
 
     def publish_odometry(self, x, y, yaw):
-        """Publish the odometry of a robot that stands; returns the message."""
+        """Publish the odometry of a stationary robot; return the message."""
         publisher = rospy.Publisher('/odom', Odometry, queue_size=1, latch=True)
         self.addCleanup(publisher.unregister)
         odom = Odometry()
@@ -46,7 +46,7 @@ class TestPoseTable(unittest.TestCase):
         return odom
 
     def check(self, line, message):
-        """A line of the table against the message that it shows: half a digit more or less."""
+        """Compare a line of the table with the message that it shows, within half a digit."""
         row = re.fullmatch(ROW, line)
         self.assertTrue(row, line)
         x, y, yaw = support.pose(message)
@@ -80,7 +80,7 @@ class TestPoseTable(unittest.TestCase):
         driver = support.out_and_back('_goal_distance:=0.3', '_goal_angle:=2.0')
         self.addCleanup(driver.kill)
         self.assertEqual(driver.wait(), 0, driver.output)
-        # the robot stands: these are the poses that the table shows
+        # the robot is stationary: these are the poses that the table shows
         for watch in watches:
             watch.next()
         status, lines = self.pose()
@@ -89,13 +89,13 @@ class TestPoseTable(unittest.TestCase):
         self.assertEqual([re.match(ROW, line).group(1) for line in lines[1:]], topics, lines)
         for line, watch in zip(lines[1:], watches):
             self.check(line, watch.last)
-            self.assertEqual(len(line), len(lines[0]), 'columns that end below each other')
+            self.assertEqual(len(line), len(lines[0]), 'aligned columns')
 
     def test_a_base_that_starts_later(self):
         process = support.Process('rosrun', 'rbx1_nav', 'pose.py')
         self.addCleanup(process.kill)
         support.wait_for(lambda: '/pose' in str(rospy.get_master().getSystemState()), 'pose.py to start')
-        # not a real one, which may need more time to start than pose.py waits
+        # not a real base, which may take longer to start than pose.py waits
         odom = self.publish_odometry(1.0, 0.0, 0.0)
         self.assertEqual(process.wait(), 0, process.output)
         self.assertRegex(process.lines[1], 'truth +/ground_truth +not published')
@@ -103,7 +103,7 @@ class TestPoseTable(unittest.TestCase):
         self.assertRegex(process.lines[3], 'estimate +/odom_ekf +not published')
 
     def test_a_filter_without_messages(self):
-        # of a robot almost where it started, so that there is a -0.0004 to be rounded
+        # pose of a robot almost at its start, so that -0.0004 must be rounded
         odom = self.publish_odometry(-0.0004, -0.1, -2.0)
         silent = rospy.Publisher('/odom_ekf', Odometry, queue_size=1)
         self.addCleanup(silent.unregister)

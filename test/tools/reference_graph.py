@@ -24,11 +24,11 @@ class TestReferenceGraph(unittest.TestCase):
         support.init_node('reference_graph')
         system = graph.RunningSystem()
         try:
-            # nodes come up one after the other
+            # nodes start one after the other
             support.wait_for(lambda: list(system.draw()) == expected, 'the pictures of docs/reference.md')
         except AssertionError:
             self.assertEqual('\n'.join(system.draw()), '\n'.join(expected),
-                             '\nThe lines with - are drawn now, those with + are on the page')
+                             '\nLines with - are in the current diagrams, lines with + are on the page')
 
 
 if __name__ == '__main__':

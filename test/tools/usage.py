@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Each executable prints its usage for -h and --help, also without a master, and rejects unknown arguments."""
+"""Each executable prints its usage for -h and --help, even without a master, and rejects unknown arguments."""
 import os
 import unittest
 

@@ -7,21 +7,21 @@ from hypothesis import HealthCheck, settings
 import pytest
 
 sys.path.insert(0, os.path.join(os.path.dirname(__file__), '..', '..', 'src'))
-# what reads and follows the Markdown pages
+# the modules that read and follow the Markdown pages
 sys.path.insert(0, os.path.join(os.path.dirname(__file__), '..'))
 
-# no test here is about time, and a busy machine is slow
+# no test here checks timing, and a busy machine is slow
 settings.register_profile('any_machine', deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile('any_machine')
 
-LIMIT = 600     # s, after which a test hangs, also on a busy machine
+LIMIT = 600     # s after which a test counts as hung, even on a busy machine
 
 
 @pytest.hookimpl(hookwrapper=True)
 def pytest_runtest_call(item):
-    """A test that hangs fails."""
+    """Fail a test that hangs."""
     def fail(*_):
-        pytest.fail(f'{item.name} hangs: no end after {LIMIT} s')
+        pytest.fail(f'{item.name} hangs: not finished after {LIMIT} s')
     signal.signal(signal.SIGALRM, fail)
     signal.alarm(LIMIT)
     yield

@@ -1,4 +1,4 @@
-"""A surface for tests, between carpet and a hard floor, and the errors of one run on it."""
+"""A surface for tests, between carpet and a hard floor, and the random errors of one run on it."""
 from rbx1_nav.simulation.surfaces import RandomErrors, Surface
 
 SURFACE = Surface('test', lag=0.1, accel_limit=1.0, drag_straight=0.01, drag_turning=0.02,

@@ -1,4 +1,4 @@
-"""Any configuration is either accepted, with finite values, or rejected with one line."""
+"""Any configuration is either accepted, with finite values, or rejected with a one-line message."""
 import glob
 import os
 from math import isfinite
@@ -34,7 +34,7 @@ OPTIONAL = st.dictionaries(st.sampled_from(sorted(OPTIONAL_KEYS)), st.floats(0, 
 
 
 def with_change(data, mapping):
-    """A copy of nested mappings, in which one value, or one key, is any."""
+    """A copy of nested mappings in which one value or one key is replaced by an arbitrary one."""
     key = data.draw(st.sampled_from(sorted(mapping)))
     inner = mapping[key]
     if isinstance(inner, dict) and inner and data.draw(st.integers(0, 9)):
@@ -45,7 +45,7 @@ def with_change(data, mapping):
 
 
 def one_line(text):
-    """Whether a text can be a line of a log."""
+    """Whether a text is suitable as one line of a log."""
     return text.isprintable() and len(text) < 3000
 
 

@@ -1,4 +1,4 @@
-"""Reading configuration: values as they are, and one line that names the key, the value and what is expected."""
+"""Reading configuration: a value is returned, or an error of one line names the key, the value and what is expected."""
 from math import inf, nan
 
 import pytest

@@ -1,4 +1,4 @@
-"""A parameter that is declared once is checked, listed in the usage text, and has a row in the reference."""
+"""A parameter is declared once, and then checked, listed in the usage text, and given a row in the reference."""
 from math import inf, pi
 
 import pytest

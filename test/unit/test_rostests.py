@@ -1,7 +1,7 @@
 """No two rostests share a name or a script.
 
-roslaunch runs the first script of a name that it finds in the package, and rostest overwrites the result of a test of
-the same name.
+roslaunch runs the first script with a matching name in the package, and rostest overwrites the result of another test
+with the same name.
 """
 import collections
 import os

@@ -1,4 +1,4 @@
-"""When something periodic is due."""
+"""When a periodic task is due."""
 from hypothesis import given
 from hypothesis import strategies as st
 

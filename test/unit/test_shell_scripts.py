@@ -1,4 +1,4 @@
-"""What the scripts start ends with them, and has SIGINT's default action."""
+"""Processes started by the scripts stop with them, and have SIGINT's default action."""
 import os
 import re
 import signal
@@ -13,7 +13,7 @@ LIMIT = 60      # s
 
 @pytest.fixture
 def start(tmp_path):
-    """start(text, **options): a script that sources common.sh; options: of subprocess.Popen."""
+    """start(text, **options): start a script that sources common.sh; options: for subprocess.Popen."""
     started = []
 
     def make(text, **options):
@@ -29,7 +29,7 @@ def start(tmp_path):
 
 
 def ignore_sigint():
-    """As nohup, cron and background jobs of scripts do."""
+    """Ignore SIGINT, as nohup, cron and background jobs of scripts do."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
@@ -56,7 +56,7 @@ def test_a_signal_ends_what_a_script_has_started(start, tmp_path, number):
 
 
 def is_alive(pid):
-    """Whether a process runs; one that has ended may still be there as a zombie."""
+    """Whether a process is running; one that has exited may still exist as a zombie."""
     try:
         with open(f'/proc/{pid}/stat', encoding='ascii') as file:
             return file.read().rpartition(')')[2].split()[0] != 'Z'
@@ -65,7 +65,7 @@ def is_alive(pid):
 
 
 def words_of(command):
-    """What a bash command prints, with common.sh, as a set of words."""
+    """The output of a bash command, with common.sh sourced, as a set of words."""
     script = f'set -euo pipefail; source {COMMON}; {command}'
     return set(subprocess.run(['bash', '-c', script], stdout=subprocess.PIPE, text=True, check=True).stdout.split())
 

@@ -1,11 +1,11 @@
-"""The udev rules for the serial adapter: udev ignores a line that it cannot read, and only logs it."""
+"""The udev rules for the serial adapter: udev ignores a line that it cannot parse, and only logs it."""
 import os
 import re
 
 import pytest
 
 PATH = os.path.join(os.path.dirname(__file__), '..', '..', 'config', 'create', '60-turtlebot-create.rules')
-# udev(7): keys that are compared, and keys that are assigned
+# udev(7): match keys, and assignment keys
 COMPARED = {'ACTION', 'SUBSYSTEM', 'DRIVER', 'ATTRS{idVendor}', 'ATTRS{idProduct}', 'ENV{CREATE_CABLE}'}
 ASSIGNED = {'ENV{CREATE_CABLE}', 'ENV{ID_MM_PORT_IGNORE}', 'ENV{ID_MM_DEVICE_IGNORE}', 'SYMLINK', 'GROUP', 'MODE',
             'ATTR{latency_timer}', 'GOTO', 'LABEL'}

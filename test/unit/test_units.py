@@ -1,4 +1,4 @@
-"""Units, and the arithmetic of single numbers."""
+"""Units, and arithmetic on single numbers."""
 from math import copysign, cos, inf, pi, sin
 
 import pytest

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Drives 1.000 m forward, 0.2 m/s for 5 s, and stops. Sends 20 commands per second."""
+"""Drives 1.000 m forward at 0.2 m/s for 5 s, then stops. Sends 20 commands per second."""
 import rospy
 from geometry_msgs.msg import Twist
 
@@ -7,10 +7,10 @@ from geometry_msgs.msg import Twist
 def main():
     rospy.init_node('drive')
     publisher = rospy.Publisher('/cmd_vel', Twist, queue_size=10)
-    # what is sent before the base is connected is lost
+    # commands that are sent before the base is connected are lost
     while not publisher.get_num_connections():
         rospy.sleep(0.1)
-    # from now on, simulated time waits for this node: a rate that begins earlier may be some ticks late at first
+    # from now on, simulated time waits for this node: a Rate that was created earlier may be a few ticks late at first
     rospy.sleep(1)
 
     rate = rospy.Rate(20)
@@ -20,7 +20,7 @@ def main():
         publisher.publish(forward)
         rate.sleep()
     publisher.publish(Twist())
-    # what a node sends just before it exits may be lost
+    # a message that a node sends just before it exits may be lost
     rate.sleep()
 
 

@@ -9,7 +9,7 @@ from nav_msgs.msg import Odometry
 
 
 def drive():
-    """Run the driver. Returns the robot's true pose and velocity after that."""
+    """Run the driver, and return the robot's true pose and velocity afterwards."""
     rospy.init_node('one_metre')
     # the base is ready when it publishes
     rospy.wait_for_message('/odom', Odometry)
@@ -24,7 +24,7 @@ class TestOneMetre(unittest.TestCase):
             end = drive()
         except KeyboardInterrupt:
             # the base has exited, and roslaunch stops all nodes: without this line, rostest counts 0 tests and succeeds
-            self.fail('the base has exited: its output says why')
+            self.fail('the base has exited: see its output for the reason')
         self.assertEqual(end.twist.twist.linear.x, 0)
         self.assertAlmostEqual(end.pose.pose.position.x, 1, delta=1e-6)
         self.assertAlmostEqual(end.pose.pose.position.y, 0, delta=1e-6)

@@ -1,1 +1,1 @@
-"""What the robot is to do: motions, legs, and the gate that every command passes."""
+"""Motion commands: timed motions, odometry-based legs, and the gate that checks every command."""

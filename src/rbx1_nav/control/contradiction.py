@@ -1,4 +1,4 @@
-"""Notices nodes that drive one base at the same time, each in its own way."""
+"""Detects nodes that send conflicting commands to one base at the same time."""
 from __future__ import annotations
 
 from threading import Lock
@@ -6,41 +6,42 @@ from typing import Callable, Iterable, NamedTuple
 
 from rbx1_nav.units import SECOND
 
-WINDOW = SECOND // 2    # ns: a sender that was silent for longer has left the base to another one
+WINDOW = SECOND // 2    # ns: a sender that was silent for longer has given up control of the base
 
 
 class SentCommand(NamedTuple):
     """The last command of a sender."""
 
-    connection: object  # whatever stands for the sender: only its identity counts
+    connection: object  # any object that represents the sender: only its identity matters
     time: int           # ns
     name: str
     command: tuple[float, float]    # m/s, rad/s
 
 
 class Senders:
-    """Remembers the last command of each sender, and how many contradicted those of another one."""
+    """Stores the last command of each sender, and counts the commands that contradict another sender."""
 
     def __init__(self) -> None:
         self.latest: dict[int, SentCommand] = {}    # by id of the connection
         self.contradictions = 0
         self.last: tuple[int, str] | None = None    # (time in ns, text) of the last contradiction
-        self.lock = Lock()      # commands of several senders arrive in several threads
+        self.lock = Lock()      # commands from different senders arrive in different threads
 
     def contradiction(self, now: int, connection: object, name: str, command: tuple[float, float],
                       connections: Callable[[], Iterable[object]]) -> str | None:
-        """A text that names both senders and their commands, if commands alternate and differ; else None.
+        """Return a text that names both senders and their commands if commands alternate and differ, else None.
 
-        now: ns; connection: any object, one per sender; command: (m/s, rad/s); connections(): those that still exist.
-        A sender that takes over is no contradiction: its commands do not alternate with those of another one.
+        now: ns; connection: any object, one per sender; command: (m/s, rad/s); connections(): returns the connections
+        that still exist. A sender that takes over does not contradict the previous one, because their commands do not
+        alternate.
         """
         with self.lock:
             before = self.latest.pop(id(connection), None)
-            others = list(self.latest.values())     # the oldest first, for a command moves its sender to the end
+            others = list(self.latest.values())     # the oldest first: each command moves its sender to the end
             self.latest[id(connection)] = SentCommand(connection, now, name, command)
             if not others:
                 return None
-            if before is None:      # seldom enough to look for those that have gone
+            if before is None:      # rare: a good moment to remove senders that have disconnected
                 live = set(map(id, connections()))
                 self.latest = {key: value for key, value in self.latest.items()
                                if key in live or key == id(connection)}
@@ -56,5 +57,5 @@ class Senders:
         return None
 
     def recent(self, now: int, age: int) -> str | None:
-        """The text of the last contradiction, if it is not older than `age` (ns); else None."""
+        """Return the text of the last contradiction if it is at most `age` (ns) old, else None."""
         return self.last[1] if self.last and 0 <= now - self.last[0] <= age else None

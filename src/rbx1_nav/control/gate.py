@@ -1,4 +1,4 @@
-"""The gate that every velocity command passes on its way to a base, simulated or real."""
+"""Checks and limits each velocity command before it reaches a base, simulated or real."""
 from __future__ import annotations
 
 from math import inf
@@ -11,18 +11,24 @@ MAX_COMMAND = 1e6   # m/s or rad/s: far above any robot, and far below where sum
 
 
 class RejectedCommand(ValueError):
-    """A command that no base should follow. The text gives the value and what is expected."""
+    """Raised for a command that no base should follow.
+
+    The text gives the value and what is expected.
+    """
 
 
 class RefusedCommand(ValueError):
-    """A command that the robot does not follow now. The text says why."""
+    """Raised for a command that the robot does not follow at present.
+
+    The text gives the reason.
+    """
 
 
 class CommandGate:
     """Holds the command in force: finite, within the limits, and no older than the timeout."""
 
     def __init__(self, limits: Limits, timeout: int) -> None:
-        """timeout: ns, 0 for none."""
+        """timeout: ns; 0 for no timeout."""
         self.limits = limits
         self.timeout = timeout
         self.linear = 0.0       # m/s, in force
@@ -33,19 +39,19 @@ class CommandGate:
 
     @property
     def moving(self) -> bool:
-        """Whether the command in force is a motion."""
+        """Whether the command in force moves the robot."""
         return self.linear != 0 or self.angular != 0
 
     @property
     def expiry(self) -> float:
-        """When the command in force times out, ns; infinite without a timeout."""
+        """The time at which the command in force times out, ns; infinite without a timeout."""
         return self.command_time + self.timeout if self.timeout and self.command_time is not None else inf
 
     def command(self, now: int, linear: float, angular: float, others: Iterable[float] = ()) -> bool:
-        """Put a command in force at `now` (ns): m/s forward and rad/s to the left. Returns whether a limit clamped it.
+        """Put a command in force at `now` (ns), and return whether a limit clamped it.
 
-        others: velocities that a differential drive cannot follow; they must be finite all the same. Raises
-        RejectedCommand, and halts, if a value is not finite or above MAX_COMMAND.
+        linear: m/s forward; angular: rad/s to the left; others: velocities that a differential drive cannot follow, but
+        which must also be finite. Raises RejectedCommand, and halts, if a value is not finite or above MAX_COMMAND.
         """
         self.command_time = now
         for value in (linear, angular, *others):
@@ -61,10 +67,10 @@ class CommandGate:
         return clamped
 
     def halt(self) -> None:
-        """No motion until the next command."""
+        """Stop the motion until the next command."""
         self.linear = self.angular = 0.0
 
     def forget(self) -> None:
-        """Halt, and forget when the last command arrived: for a clock that jumped back."""
+        """Halt, and discard the arrival time of the last command: for a clock that jumped back."""
         self.halt()
         self.command_time = None

@@ -1,4 +1,4 @@
-"""The exercise by odometry: a list of legs, each of which ends when the robot's pose says so."""
+"""The odometry-based exercise: a list of legs, each of which stops when the robot's pose has reached its goal."""
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
@@ -10,17 +10,19 @@ from rbx1_nav.control.motions import ticks
 from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.units import wrap_angle
 
-SLOW_DOWN = 0.5     # s: the distance at which a leg begins to slow down, as a travel time
-SPEED_WINDOW = 0.1  # s over which the robot's speed is measured: a few counts of the encoders, a message or two
-COASTING = 1.0      # s: how long a robot that is no longer commanded may go on
-POSE_TOLERANCE = 0.1    # m, and twice as many rad: what a pose may be corrected by at once
-STUCK_TIME = 5.0    # s without progress: something holds the robot, or turns it the wrong way
+SLOW_DOWN = 0.5     # s: travel time to the goal at which a leg begins to slow down
+SPEED_WINDOW = 0.1  # s over which the robot's speed is measured: a few encoder counts, one or two messages
+COASTING = 1.0      # s: how long a robot may continue to move without a command
+POSE_TOLERANCE = 0.1    # m, and twice this value in rad: largest correction of a pose in one message
+STUCK_TIME = 5.0    # s without progress: something holds the robot, or turns it in the wrong direction
 
 
 def is_reachable(before: Pose, after: Pose, elapsed: float, linear_speed: float, angular_speed: float) -> bool:
-    """Whether a robot that drives forward (m/s) and turns left (rad/s) can get from one Pose to another in `elapsed` s.
+    """Return whether a robot can get from one Pose to another in `elapsed` s.
 
-    Half as fast again is allowed. A robot whose pose is lost for long is stopped, so no more than COASTING counts.
+    The robot drives forward at up to linear_speed (m/s) and turns left at up to angular_speed (rad/s). It may
+    exceed both by 50 %. A robot that has been without a pose for a long time has been stopped, so at most COASTING of
+    the time counts.
     """
     time = 1.5 * min(max(elapsed, 0.0), COASTING)
     x, y = after.x - before.x, after.y - before.y
@@ -33,35 +35,35 @@ def is_reachable(before: Pose, after: Pose, elapsed: float, linear_speed: float,
 
 
 class StuckError(ValueError):
-    """A leg that makes no progress towards its goal."""
+    """Raised if a leg makes no progress toward its goal."""
 
 
 class State(Enum):
-    """What a Leg is about."""
+    """The state of a Leg."""
 
-    NEW = 'it has no pose yet'
-    APPROACH = 'it drives, slower and slower'
-    TRIAL_STOP = 'it has stopped just before its goal, and is called again when the robot is at a standstill'
-    LAST_PART = 'it drives on, and knows the stopping distance'
-    FINISHED = 'it has stopped at its goal'
+    NEW = 'no pose received yet'
+    APPROACH = 'driving and slowing down'
+    TRIAL_STOP = 'stopped just before the goal; the next call follows when the robot is stationary'
+    LAST_PART = 'driving the rest of the leg, with a known stopping distance'
+    FINISHED = 'stopped at the goal'
 
 
 class Leg(ABC):
-    """One motion, slower and slower towards its goal, with a trial stop just before it.
+    """One motion that slows down toward its goal, with a trial stop just before the goal.
 
-    A robot does not stop at once. Its stopping distance depends on the robot, the floor, and all delays in between. The
-    trial stop measures it. Then the robot goes on at its lowest speed, and stops that far before the goal. So a leg is
-    driven in two parts, with a rest between them.
+    No robot stops instantly. Its stopping distance depends on the robot, the floor, and all delays in between. The
+    trial stop measures this distance. Then the robot continues at its lowest speed, and stops at this distance from the
+    goal. So a leg is driven in two parts, with a rest between them.
     """
 
     unit: str
-    keys: str               # of the configuration, for errors
+    keys: str               # configuration keys, for error messages
     deceleration: float     # m/s^2 or rad/s^2
-    start: Pose             # at the first call of next_speed()
-    last: Pose              # at the last one
+    start: Pose             # pose at the first call of next_speed()
+    last: Pose              # pose at the latest call
 
     def __init__(self, name: str, goal: float, speed: float, min_speed: float, rate: float) -> None:
-        """goal: m or rad; speed, min_speed: m/s or rad/s; rate: of the calls, Hz. Raises ValueError, see ticks()."""
+        """goal: m or rad; speed, min_speed: m/s or rad/s; rate: call rate, Hz. Raises ValueError, see ticks()."""
         self.name = name
         self.goal = goal
         self.speed = speed
@@ -71,11 +73,11 @@ class Leg(ABC):
         self.turned = 0.0       # rad
         self.nearest = goal     # m or rad
         self.patience = self.stuck_ticks = max(2, int(min(STUCK_TIME * rate, 1e9)))
-        # m or rad to go, at the last calls
+        # m or rad to go at the latest calls
         self.recent: deque[float] = deque(maxlen=1 + round(min(max(1, SPEED_WINDOW * rate), 1000)))
         self.trial_to_go = 0.0      # m or rad to go when the trial stop began
         self.trial_travel = 0.0     # m or rad per tick at that moment
-        self.roll_out = 0.0         # m or rad from there to the standstill
+        self.roll_out = 0.0         # m or rad from that point until the robot is stationary
         try:
             ticks(goal, self.min_speed, rate)
         except ValueError as error:
@@ -83,23 +85,23 @@ class Leg(ABC):
 
     @abstractmethod
     def done(self) -> float:
-        """What is covered of the goal, m or rad."""
+        """Return how much of the goal has been covered, m or rad."""
 
     @staticmethod
     @abstractmethod
     def velocity(speed: float) -> tuple[float, float]:
-        """(linear, angular) for a speed, m/s and rad/s."""
+        """Return (linear, angular) for a speed, m/s and rad/s."""
 
     @property
     def finished(self) -> bool:
-        """Whether it has stopped at its goal."""
+        """Whether the leg has stopped at its goal."""
         return self.state is State.FINISHED
 
     def next_speed(self, pose: Pose) -> float:
-        """The speed for the next tick, with the robot at `pose`. Raises StuckError.
+        """Return the speed for the next tick, with the robot at `pose`. Raises StuckError.
 
-        0 is a stop: first the trial stop, after which it is called again when the robot is at a standstill; then the
-        goal.
+        A speed of 0 is a stop. The first stop is the trial stop: make the next call when the robot is stationary. The
+        second stop is the goal.
         """
         self._follow(pose)
         to_go = self.goal - self.done()
@@ -108,21 +110,21 @@ class Leg(ABC):
         if self.state is State.TRIAL_STOP:
             self._end_trial(to_go)
         travel = self._measure_travel(to_go)
-        # half of a tick's travel is as near as it can get
+        # the robot cannot get closer to the goal than half of the travel per tick
         if to_go - self._expected_roll_out(travel) <= min(travel, self.min_speed / self.rate) / 2:
             self.state = State.FINISHED
             return 0.0
         self._check_progress(to_go)
-        # it has reached its lowest speed, with SLOW_DOWN left to go on at it
+        # the robot has reached its lowest speed, and is less than SLOW_DOWN from the goal
         if self.state is State.APPROACH and to_go < SLOW_DOWN * self.min_speed:
             self._begin_trial(to_go, travel)
             return 0.0
-        # no faster than it can brake, and never past the goal within two ticks
+        # slow enough to brake in time, and never past the goal within two ticks
         limit = min(to_go / max(SLOW_DOWN, 2 / self.rate), sqrt(2 * self.deceleration * to_go))
         return min(self.speed, max(self.min_speed, limit))
 
     def _follow(self, pose: Pose) -> None:
-        """The robot has got to a pose."""
+        """Update the leg with a new pose of the robot."""
         if self.state is State.NEW:
             self.start = self.last = pose
             self.state = State.APPROACH
@@ -130,31 +132,31 @@ class Leg(ABC):
         self.last = pose
 
     def _begin_trial(self, to_go: float, travel: float) -> None:
-        """Stop, to measure the stopping distance. travel: per tick, m or rad."""
+        """Begin the trial stop, which measures the stopping distance. travel: per tick, m or rad."""
         self.trial_to_go = to_go
         self.trial_travel = max(travel, 1e-9)   # never divide by 0
         self.state = State.TRIAL_STOP
 
     def _end_trial(self, to_go: float) -> None:
-        """The robot is at a standstill, and goes on."""
+        """Finish the trial stop: the robot is stationary, and the last part begins."""
         self.roll_out = max(0.0, self.trial_to_go - to_go)
         self.recent.clear()
         self.state = State.LAST_PART
 
     def _measure_travel(self, to_go: float) -> float:
-        """The robot's present travel per tick, m or rad."""
+        """Return the robot's current travel per tick, m or rad."""
         self.recent.append(to_go)
         return max(0.0, self.recent[0] - to_go) / max(1, len(self.recent) - 1)
 
     def _expected_roll_out(self, travel: float) -> float:
-        """How far the robot would roll on (m or rad): as in the trial stop, or less if it is slower now.
+        """Return how far the robot would coast (m or rad): as far as in the trial stop, or less if it is slower now.
 
         travel: per tick, m or rad.
         """
         return self.roll_out * min(1.0, travel / self.trial_travel) if self.roll_out else 0.0
 
     def _check_progress(self, to_go: float) -> None:
-        """Raises StuckError if the robot has not come nearer for STUCK_TIME."""
+        """Raise StuckError if the robot has not come closer to the goal for STUCK_TIME."""
         self.patience -= 1
         if to_go < self.nearest - self.min_speed / self.rate:
             self.nearest = to_go
@@ -165,14 +167,14 @@ class Leg(ABC):
 
 
 class Straight(Leg):
-    """Forward, in m and m/s."""
+    """A straight leg forward, in m and m/s."""
 
     unit = 'm'
     keys = 'goal_distance, min_linear_speed'
     deceleration = 0.4      # m/s^2
 
     def done(self) -> float:
-        """The distance covered in the direction of the start, m."""
+        """Return the distance covered in the direction of the initial heading, m."""
         return ((self.last.x - self.start.x) * cos(self.start.yaw) + (self.last.y - self.start.y) * sin(self.start.yaw))
 
     @staticmethod
@@ -181,14 +183,14 @@ class Straight(Leg):
 
 
 class Turn(Leg):
-    """To the left on the spot, in rad and rad/s."""
+    """A turn to the left on the spot, in rad and rad/s."""
 
     unit = 'rad'
     keys = 'goal_angle, min_angular_speed'
     deceleration = 2.0      # rad/s^2
 
     def done(self) -> float:
-        """The angle turned, rad."""
+        """Return the angle turned, rad."""
         return self.turned
 
     @staticmethod
@@ -198,7 +200,10 @@ class Turn(Leg):
 
 def out_and_back_by_odometry(linear_speed: float, goal_distance: float, angular_speed: float, goal_angle: float,
                              rate: float, min_linear_speed: float, min_angular_speed: float) -> list[Leg]:
-    """The same exercise as four Legs; in m/s, m, rad/s, rad, Hz, m/s and rad/s. Raises ValueError, see ticks()."""
+    """Return the odometry-based exercise as four Legs. Raises ValueError, see ticks().
+
+    The arguments are in m/s, m, rad/s, rad, Hz, m/s and rad/s.
+    """
     return [leg for _ in range(2)
             for leg in (Straight('forward', goal_distance, linear_speed, min_linear_speed, rate),
                         Turn('turn left', goal_angle, angular_speed, min_angular_speed, rate))]

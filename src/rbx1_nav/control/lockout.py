@@ -1,29 +1,32 @@
-"""Keeps a robot that was stopped by something else from being driven on by a sender that has not noticed."""
+"""Refuses commands of senders that have not noticed that something else stopped the robot."""
 
 from __future__ import annotations
 
-MAX_SENDERS = 20    # that are remembered before those are forgotten that have been silent
+MAX_SENDERS = 20    # senders that are stored before the silent ones are removed
 
 
 class Lockout:
-    """After an event, a sender is obeyed again as soon as it has sent a zero command, or nothing for a while.
+    """Refuses commands after an event until their sender has sent a zero command or has been silent for a while.
 
     All times are in ns.
     """
 
     def __init__(self, silence: int) -> None:
-        """silence: how long a sender must have sent nothing."""
+        """silence: how long a sender must be silent."""
         self.silence = silence
-        self.reason = ''        # of the last event
-        self._released: set[str] | None = None      # the senders that are obeyed; None for all of them
-        self._latest: dict[str, int] = {}   # by sender: when its last command arrived
+        self.reason = ''        # reason of the last event
+        self._released: set[str] | None = None      # senders whose commands are accepted; None for all senders
+        self._latest: dict[str, int] = {}   # arrival time of the last command, by sender
 
     def lock(self, reason: str) -> None:
-        """Something has stopped the robot."""
+        """Refuse the commands of all senders, because something has stopped the robot."""
         self.reason, self._released = reason, set()
 
     def refuses(self, now: int, sender: str, moving: bool) -> bool:
-        """Whether a command that arrives now is not to be obeyed. sender: its name; moving: whether it is a motion."""
+        """Return whether to refuse a command that arrives at `now`.
+
+        sender: name of the sender; moving: whether the command moves the robot.
+        """
         last = self._latest.get(sender)
         self._latest[sender] = now
         if len(self._latest) > MAX_SENDERS:

@@ -1,15 +1,15 @@
-"""The settings of a serial port, as they are now."""
+"""Reads the current settings of a serial port."""
 from __future__ import annotations
 
 import fcntl
 import struct
 
-# termios.tcgetattr() knows the common rates only; this request (ioctl_tty(2)) knows all, as numbers
+# termios.tcgetattr() supports only the common rates; this request (ioctl_tty(2)) returns any rate as a number
 TCGETS2, TERMIOS2 = 0x802c542a, struct.Struct('=4I20s2I')
 
 
 def read_settings(descriptor: int) -> bytes | None:
-    """All settings of an open terminal, as bytes that can be compared; None if it has disconnected."""
+    """Return all settings of an open terminal as comparable bytes; None if it has disconnected."""
     try:
         return fcntl.ioctl(descriptor, TCGETS2, bytes(TERMIOS2.size))
     except OSError:
@@ -17,12 +17,12 @@ def read_settings(descriptor: int) -> bytes | None:
 
 
 def read_rate(descriptor: int) -> int | None:
-    """The rate of an open terminal, bits per second; None if it has disconnected."""
+    """Return the rate of an open terminal in bits per second; None if it has disconnected."""
     settings = read_settings(descriptor)
     return None if settings is None else rate_in(settings)
 
 
 def rate_in(settings: bytes) -> int:
-    """The rate in the result of read_settings()."""
+    """Return the rate (bits per second) in the result of read_settings()."""
     rate: int = TERMIOS2.unpack(settings)[-1]
     return rate

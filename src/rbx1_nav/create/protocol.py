@@ -1,6 +1,6 @@
 """The Open Interface of the iRobot Create and Create 2: commands, sensor packets, and the frames of the stream.
 
-Both ends of the line use these tables: the driver and the emulated robot. The documents, with the pages of each part:
+Both the driver and the emulated robot use these tables. The source documents, with the pages of each part:
 
 iRobot Create Open Interface (OI) Specification, 2006:
     serial port 5, modes 6, start and modes 7, demos 8, actuators 9-12, input 13-14, scripts 15, waiting 15-16,
@@ -15,22 +15,22 @@ from math import pi
 from struct import Struct
 from typing import Iterable, Mapping, NamedTuple, Optional, Tuple
 
-MAX_SPEED = 500         # mm/s, of a wheel either way (Create p. 9, Create 2 p. 13)
+MAX_SPEED = 500         # mm/s, wheel speed limit in either direction (Create p. 9, Create 2 p. 13)
 UPDATE_PERIOD = 0.015   # s, between two frames of the stream (Create p. 13, Create 2 p. 21)
-MIN_VOLTAGE, MAX_VOLTAGE = 5000, 25000      # mV, of the battery of a robot that runs
+MIN_VOLTAGE, MAX_VOLTAGE = 5000, 25000      # mV, battery voltage of a running robot
 FRAME_HEADER = 19       # the first byte of a frame (Create p. 13, Create 2 p. 22)
 
 OFF, PASSIVE, SAFE, FULL = range(4)     # values of packet 35
 MODE_NAMES = ('off', 'passive', 'safe', 'full')
 
-# bits of packet 7; the castor's only on the Create (Create p. 17, Create 2 p. 24)
+# bits of packet 7; the caster bit exists only on the Create (Create p. 17, Create 2 p. 24)
 BUMP_RIGHT, BUMP_LEFT, WHEEL_DROP_RIGHT, WHEEL_DROP_LEFT, WHEEL_DROP_CASTOR = 1, 2, 4, 8, 16
 
 # special values of a radius in mm (Create p. 9, Create 2 p. 13)
 STRAIGHT = (32767, -32768)
 IN_PLACE_LEFT, IN_PLACE_RIGHT = 1, -1
 
-# by the code in the command Baud, bits per second (Create p. 7, Create 2 p. 9)
+# bits per second, indexed by the code in the Baud command (Create p. 7, Create 2 p. 9)
 BAUD_RATES = (300, 600, 1200, 2400, 4800, 9600, 14400, 19200, 28800, 38400, 57600, 115200)
 
 
@@ -39,15 +39,15 @@ class Packet(NamedTuple):
 
     number: int
     name: str
-    format: str     # as in struct, big-endian
-    low: int        # the range of the value
-    high: int
-    unit: str       # '' for none, or for bits
+    format: str     # struct format character, big-endian
+    low: int        # smallest value
+    high: int       # largest value
+    unit: str       # '' for a number without a unit, or for bits
 
 
 _Range = Tuple[int, int]
 
-# number, name, format, range on the Create, range on the Create 2 (None: not there), unit
+# number, name, format, range on the Create (None: no such packet), range on the Create 2, unit
 _PACKETS: Tuple[Tuple[int, str, str, Optional[_Range], _Range, str], ...] = (
     (7, 'bumps_and_wheel_drops', 'B', (0, 31), (0, 15), ''),
     (8, 'wall', 'B', (0, 1), (0, 1), ''),
@@ -77,7 +77,7 @@ _PACKETS: Tuple[Tuple[int, str, str, Optional[_Range], _Range, str], ...] = (
     (32, 'digital_inputs', 'B', (0, 31), (0, 255), ''),     # unused on the Create 2
     (33, 'analog_input', 'H', (0, 1023), (0, 65535), ''),   # 0 to 5 V; unused on the Create 2
     (34, 'charging_sources', 'B', (0, 3), (0, 3), ''),
-    (35, 'mode', 'B', (0, 4), (0, 4), ''),      # 3 is full mode, which some robots report as 4
+    (35, 'mode', 'B', (0, 4), (0, 4), ''),      # full mode is 3, but some robots report it as 4
     (36, 'song_number', 'B', (0, 15), (0, 15), ''),
     (37, 'song_playing', 'B', (0, 1), (0, 1), ''),
     (38, 'stream_packets', 'B', (0, 43), (0, 108), ''),
@@ -102,11 +102,11 @@ _PACKETS: Tuple[Tuple[int, str, str, Optional[_Range], _Range, str], ...] = (
     (57, 'side_brush_current', 'h', None, (-32768, 32767), 'mA'),
     (58, 'stasis', 'B', None, (0, 3), ''))
 
-# number of a group: its first and last packet (Create p. 17, Create 2 p. 23)
+# group number: its first and last packet (Create p. 17, Create 2 p. 23)
 _GROUPS = {0: (7, 26), 1: (7, 16), 2: (17, 20), 3: (21, 26), 4: (27, 34), 5: (35, 42), 6: (7, 42)}
 _GROUPS_2 = {100: (7, 58), 101: (43, 58), 106: (46, 51), 107: (54, 58)}
 
-COUNTED = 'counted'     # the first data byte is the number of those that follow
+COUNTED = 'counted'     # the first data byte is the number of data bytes that follow
 NOTES = 'notes'         # the second data byte is the number of pairs that follow
 
 STARTED, DRIVING = (PASSIVE, SAFE, FULL), (SAFE, FULL)
@@ -119,17 +119,17 @@ class Command(NamedTuple):
     opcode: int
     name: str
     size: int | str         # number of data bytes, COUNTED or NOTES
-    modes: tuple[int, ...]  # that accept it
-    mode: int | None        # that it leads to
+    modes: tuple[int, ...]  # modes that accept the command
+    mode: int | None        # mode after the command; None: unchanged
 
 
 _BOTH = (
     Command(128, 'start', 0, ALWAYS, PASSIVE),
     Command(129, 'baud', 1, STARTED, None),
-    Command(130, 'control', 0, STARTED, SAFE),      # in the Roomba's interface, and kept by both robots
+    Command(130, 'control', 0, STARTED, SAFE),      # from the Roomba's interface; both robots still accept it
     Command(131, 'safe', 0, STARTED, SAFE),
     Command(132, 'full', 0, STARTED, FULL),
-    Command(133, 'power', 0, STARTED, OFF),         # Create: not in the document; Create 2: passive mode there
+    Command(133, 'power', 0, STARTED, OFF),         # not in the Create document; passive mode in the Create 2 document
     Command(134, 'spot', 0, STARTED, PASSIVE),
     Command(135, 'cover', 0, STARTED, PASSIVE),     # Create 2: clean
     Command(137, 'drive', 4, DRIVING, None),
@@ -172,16 +172,16 @@ _CREATE_2 = (
 
 
 class Model(NamedTuple):
-    """A robot."""
+    """A robot model."""
 
     name: str
-    baud: int                           # bits per second after it was switched on
+    baud: int                           # bits per second, after power-on
     wheel_separation: float             # m
-    counts_per_metre: float | None      # of an encoder, None without
+    counts_per_metre: float | None      # encoder counts; None without encoders
     packets: dict[int, Packet]          # by number
-    groups: dict[int, tuple[int, ...]]  # numbers of packets by the number of their group
+    groups: dict[int, tuple[int, ...]]  # packet numbers by group number
     commands: dict[int, Command]        # by opcode
-    songs: int                          # how many it stores
+    songs: int                          # number of songs that it stores
 
 
 def _packets_by_number(packets: Iterable[Packet]) -> dict[int, Packet]:
@@ -201,7 +201,7 @@ CREATE = Model(
     packets=_packets_by_number(Packet(number, name, form, *values, unit)
                                for number, name, form, values, _, unit in _PACKETS if values),
     groups=_packets_of(_GROUPS), commands=_commands_by_opcode(_BOTH + _CREATE), songs=16)
-# wheels of 72 mm, 508.8 counts a turn (Create 2, at packet 43)
+# 72 mm wheels, 508.8 counts per revolution (Create 2, packet 43)
 CREATE_2 = Model(
     name='create2', baud=115200, wheel_separation=0.235, counts_per_metre=508.8 / (pi * 0.072),
     packets=_packets_by_number(Packet(number, name, form, *values, unit)
@@ -212,38 +212,38 @@ OPCODES = {command.name: command.opcode for command in _BOTH + _CREATE + _CREATE
 
 
 def command(name: str, *data: int) -> bytes:
-    """The bytes of a command. data: its data bytes, from 0 to 255."""
+    """Return the bytes of a command. data: its data bytes, from 0 to 255."""
     return bytes((OPCODES[name], *data))
 
 
 def drive_direct(right: int, left: int) -> bytes:
-    """The bytes of the command Drive Direct. right, left: speeds of the wheels, mm/s. Raises struct.error."""
+    """Return the bytes of a Drive Direct command. right, left: wheel speeds, mm/s. Raises struct.error."""
     return command('drive_direct', *Struct('>hh').pack(right, left))
 
 
 def single_packets(model: Model, numbers: Iterable[int]) -> list[Packet]:
-    """The Packets that numbers of packets and groups stand for, in the order that they are sent in. Raises KeyError."""
+    """Expand packet and group numbers to Packets, in the order in which they are sent. Raises KeyError."""
     return [model.packets[each] for number in numbers for each in model.groups.get(number, (number,))]
 
 
 def packets_format(packets: Iterable[Packet]) -> Struct:
-    """The Struct of the values of Packets, one after another."""
+    """Return the Struct of the concatenated values of Packets."""
     return Struct('>' + ''.join(packet.format for packet in packets))
 
 
 def frame_format(model: Model, numbers: Iterable[int]) -> Struct:
-    """The Struct of a frame of the stream: header, length, each number with its values, and the checksum."""
+    """Return the Struct of a stream frame: header, length, each number with its values, and the checksum."""
     formats = (''.join(packet.format for packet in single_packets(model, [number])) for number in numbers)
     return Struct('>BB' + ''.join(f'B{each}' for each in formats) + 'B')
 
 
 def checksum(data: bytes) -> int:
-    """The byte that makes the sum of a frame a multiple of 256. data: the frame without it."""
+    """Return the byte that makes the sum of a frame a multiple of 256. data: the frame without the checksum."""
     return -sum(data) & 0xff
 
 
 def encode_frame(model: Model, numbers: Iterable[int], values: Mapping[str, int]) -> bytes:
-    """A frame of the stream. numbers: of packets and groups; values: by the name of the packet."""
+    """Return a frame of the stream. numbers: packets and groups; values: by packet name."""
     data = bytearray()
     for number in numbers:
         packets = single_packets(model, [number])

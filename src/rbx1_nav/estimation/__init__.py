@@ -1,1 +1,1 @@
-"""Where the robot is: an extended Kalman filter of odometry and gyro."""
+"""Pose estimation: an extended Kalman filter for odometry and gyro."""

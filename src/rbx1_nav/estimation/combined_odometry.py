@@ -1,4 +1,4 @@
-"""The combined odometry: puts messages in order, handles dropouts and jumps, and steps the filter."""
+"""The combined odometry: sorts the messages, handles dropouts and jumps, and steps the filter."""
 from __future__ import annotations
 
 from collections import deque
@@ -20,7 +20,7 @@ from rbx1_nav.estimation.standstill import Part, Standstill
 from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.units import SECOND, wrap_angle
 
-DROPOUT_SPEED = 0.5     # m/s: how fast the robot may move (1 sigma) while no odometry arrives
+DROPOUT_SPEED = 0.5     # m/s: possible speed of the robot (1 sigma) while no odometry arrives
 
 
 class Estimate(NamedTuple):
@@ -29,24 +29,25 @@ class Estimate(NamedTuple):
     stamp: int          # ns
     pose: Pose
     covariance: Array   # 3x3, of x, y (m) and yaw (rad)
-    odom: Odom          # the last one that it is based on
+    odom: Odom          # the last odometry that the estimate is based on
 
 
 class CombinedOdometry:
-    """Runs the filter on messages in the order of their stamps: one step per odometry message.
+    """Runs the filter on messages in the order of their stamps, with one step per odometry message.
 
-    A step waits until the gyro has reported up to its end. So the result depends on stamps (ns) only, and not on when
-    messages arrive, as long as no sensor times out. A sensor has timed out if by stamps the other one is ahead by more
-    than `timeout`, and nothing has arrived from it for as long: one that is late is not silent. It is not used until it
-    recovers: without the gyro, the turn is measured by the wheels; without odometry, by the gyro, and the uncertainty
-    of the position grows. The travel during a dropout of the odometry counts when it recovers.
+    A step waits until the gyro has reported up to the stamp of the odometry. So the result depends only on stamps (ns),
+    not on arrivals, as long as no sensor times out. A sensor has timed out if the other sensor's stamps are ahead by
+    more than `timeout`, and nothing has arrived from it for that time: a late sensor is not silent. A sensor that has
+    timed out is not used until it recovers. Without the gyro, the wheels measure the turn. Without odometry, the gyro
+    measures the turn, and the uncertainty of the position grows. The travel during an odometry dropout counts when the
+    odometry recovers.
     """
 
     def __init__(self, prior: Priors, timeout: int, gyro_used: bool = True,
                  warn: Callable[[str], None] = lambda text: None, clock: Callable[[], int] | None = None,
                  max_lead: int = MAX_LEAD, limits: Limits = Limits()) -> None:
-        """timeout: ns; gyro_used: whether to wait for a gyro at all; warn(text): logs a warning; clock(): ns, tells
-        when a message arrives if `now` may be simulated time; max_lead: ns, of a stamp."""
+        """timeout: ns; gyro_used: whether to wait for a gyro at all; warn(text): logs a warning; clock(): returns the
+        arrival time (ns) if `now` may be simulated time; max_lead: ns that a stamp may be ahead."""
         self.prior = prior
         if prior == UNKNOWN_FLOOR:
             self.prior = prior._replace(gyro_scale_error=limits.gyro_scale_error,
@@ -60,44 +61,44 @@ class CombinedOdometry:
         self.restart()
 
     def reset(self, now: int) -> None:
-        """The base was reset at `now` (ns): restart. Odometry from before it does not count if it arrives later."""
+        """Restart, because the base was reset at `now` (ns). Odometry from before the reset is ignored."""
         self.restart()
         self.start = max([now] + [stamp for stamp in self.arrivals.last_stamp.values() if stamp])
 
     def restart(self, reason: str = '') -> None:
-        """Forget everything; the next odometry message gives the initial pose."""
+        """Discard the estimate; the next odometry message gives the initial pose."""
         if reason:
-            self.warn(f'{reason}: restarting at the pose of the odometry')
+            self.warn(f'{reason}: restarting at the odometry pose')
         self.start = 0              # ns, stamp of the first message that counts
         self.filter: Filter | None = None
         self.estimate: Estimate | None = None       # the latest one
-        self.pending: Deque[tuple[int, Odom]] = deque()     # with ns of arrival, until the gyro has caught up
+        self.pending: Deque[tuple[int, Odom]] = deque()     # with arrival times (ns), until the gyro has caught up
         self.readings.waiting.clear()
-        self.time = 0               # ns, the end of the last step
-        self.odom: Odom | None = None       # the last one of a step
+        self.time = 0               # ns, time after the last step
+        self.odom: Odom | None = None       # the last odometry that was used in a step
         self.odom_yaw = 0.0         # rad, the filter's yaw at that time
-        self.yaws = PastYaws()      # since then, where the gyro is ahead of the odometry
+        self.yaws = PastYaws()      # yaws since then, if the gyro is ahead of the odometry
         self.doubts = Doubts(self.warn)
         self.standstill = Standstill(self.limits.gyro_bias)
         self.placed: tuple[int, Pose, Array] | None = None      # arguments of set_pose(), until the first step after it
         self.placed_at = 0          # ns, the time of the last set_pose() that counts
-        self.suspect: Odom | None = None    # one that has jumped, until the next one confirms it
+        self.suspect: Odom | None = None    # odometry that has jumped, until the next message confirms it
         self.arrivals.restart()
 
     @property
     def timed_out(self) -> dict[str, bool]:
-        """By sensor, whether it is not used because it is silent."""
+        """For each sensor, whether it has timed out and is not used."""
         return self.arrivals.timed_out
 
     @property
     def contradicts(self) -> bool:
-        """Whether wheels and gyro contradict each other, or did so a moment ago."""
+        """Whether wheels and gyro contradict each other, or did so recently."""
         return self.doubts.contradicts(self.time)
 
     @property
     def case(self) -> str | None:
-        """Which rule the last step has followed: 'standstill', 'agreement', 'contradiction' or 'carried'; None without
-        one of the sensors."""
+        """The rule that the last step has followed: 'standstill', 'agreement', 'contradiction' or 'carried'; None if a
+        sensor is missing."""
         if not self.filter or not self.gyro_used or self.suspect or any(self.timed_out.values()):
             return None
         if self.standstill.case:
@@ -107,8 +108,8 @@ class CombinedOdometry:
     # input
 
     def set_pose(self, now: int, pose: Pose, covariance: Array) -> None:
-        """The robot is at a Pose at `now` (ns), with this covariance (3x3) of x, y (m) and yaw (rad). What the filter
-        has learned of the sensors is kept. It counts from the first step after `now`."""
+        """Set the robot's Pose at `now` (ns), with its covariance (3x3) of x, y (m) and yaw (rad). It takes effect at
+        the first step after `now`. The filter keeps what it has learned about the sensors."""
         self.placed = now, pose, covariance
         if self.filter and self.time >= now:
             self._place(self.filter)
@@ -117,8 +118,8 @@ class CombinedOdometry:
     def add_odom(self, now: int, odom: Odom, pose_variances: Sequence[float]) -> None:
         """Process an Odom that arrived at `now` (ns). Raises RejectedMessage.
 
-        pose_variances: of x, y (m^2) and yaw (rad^2). They are used if the sender gives none for its speeds (0): as
-        those of one second's travel, like in robot_pose_ekf.
+        pose_variances: x, y (m^2) and yaw (rad^2). If the sender gives no variances of its speeds (0), these are used
+        as the variances of one second's travel, as in robot_pose_ekf.
         """
         check_odom(odom, pose_variances)
         if not (odom.linear_variance and odom.angular_variance):
@@ -132,14 +133,14 @@ class CombinedOdometry:
         """Process an Imu that arrived at `now` (ns). Raises RejectedMessage."""
         check_imu(imu)
         before = self._arrive(IMU, now, imu.stamp)
-        # the first reading after a dropout covers a time whose start is unknown
+        # the first reading after a dropout covers a period whose start is unknown
         if (self.filter or self.pending) and before is not None and imu.stamp - before <= self.timeout:
             self.readings.add(imu)
         self.readings.last = imu
         self._make_steps()
 
     def _arrive(self, sensor: str, now: int, stamp: int) -> int | None:
-        """Check and store a stamp; returns the previous one, or None."""
+        """Check and store a stamp; return the previous stamp, or None."""
         back = self.arrivals.step_back(now)
         if back:
             self.restart(f'The clock jumped back by {back / SECOND:.3f} s')
@@ -158,20 +159,20 @@ class CombinedOdometry:
             self._step_by_gyro(self.filter, reported)
 
     def _gyro_is_ready(self) -> bool:
-        """Whether the gyro has reported up to the first pending odometry, or need not be waited for."""
+        """Return whether the gyro has reported up to the first pending odometry, or there is no need to wait for it."""
         (arrival, first), (_, last) = self.pending[0], self.pending[-1]
         reported = self.arrivals.last_stamp[IMU]
         if not self.gyro_used or self.timed_out[IMU] or (reported is not None and reported >= first.stamp):
             return True
         if self.arrivals.time - arrival > MAX_WAIT:
-            self.arrivals.set_timed_out(IMU, f'its messages come more than {MAX_WAIT / SECOND:g} s late')
+            self.arrivals.set_timed_out(IMU, f'its messages arrive more than {MAX_WAIT / SECOND:g} s late')
         elif (last.stamp - (first.stamp if reported is None else reported) > self.timeout
               and self.arrivals.is_silent(IMU, arrival)):
             self.arrivals.set_timed_out(IMU)
         return self.timed_out[IMU]
 
     def _step(self, odom: Odom) -> None:
-        """A step up to an Odom."""
+        """Make a step up to an Odom."""
         if self.odom and (odom.stamp <= self.odom.stamp or self._is_outlier(self.odom, odom)):
             return
         ekf, last = self.filter, self.odom
@@ -180,7 +181,7 @@ class CombinedOdometry:
             return
         if self.placed and odom.stamp > self.placed[0]:
             self._place(ekf)
-        duration = max(0, odom.stamp - self.time) / SECOND      # less than since `last` if the gyro was used alone
+        duration = max(0, odom.stamp - self.time) / SECOND      # shorter than since `last` if the gyro was used alone
         gyro, missing = self._gyro_turn(odom.stamp)
         if self.standstill.rests(odom.stamp, odom.pose) and gyro and self.time == last.stamp:
             ekf.rest(duration)
@@ -193,7 +194,7 @@ class CombinedOdometry:
         self._finish(ekf, max(odom.stamp, self.time), odom)
 
     def _begin(self, odom: Odom) -> None:
-        """The first Odom gives the pose."""
+        """Begin at the pose of the first Odom."""
         ekf = self.filter = Filter(self.prior, odom.pose, self.limits.gyro_bias)
         self.odom_yaw = odom.pose.yaw
         if self.placed:
@@ -201,8 +202,8 @@ class CombinedOdometry:
         self._finish(ekf, odom.stamp, odom)
 
     def _is_outlier(self, last: Odom, odom: Odom) -> bool:
-        """Whether an Odom is to be ignored: a single one that jumps is an outlier, but a second one that agrees with it
-        is a new place, where the filter restarts."""
+        """Return whether to ignore an Odom. A single jump is an outlier; if a second Odom agrees with it, the robot is
+        at a new place, and the filter restarts there."""
         suspect, self.suspect = self.suspect, None
         if (suspect and not has_jumped(suspect, odom, self.limits)
                 and distance(suspect, odom) <= distance(last, odom)):
@@ -215,10 +216,10 @@ class CombinedOdometry:
 
     def _drive(self, ekf: Filter, last: Odom, odom: Odom, duration: float, gyro: Measurement | None,
                missing: float) -> None:
-        """The robot has moved from the one Odom to the other; duration: s of that since the last step; gyro, missing:
-        as of Readings.turn()."""
+        """Move the robot from one Odom to the next. duration: time since the last step, s; gyro, missing: see
+        Readings.turn()."""
         elapsed = (odom.stamp - last.stamp) / SECOND
-        # the robot was put to its place at some time since the last odometry: only the rest of the distance counts
+        # if set_pose() took effect since the last odometry, only the rest of the distance counts
         share = min(1.0, max(0, odom.stamp - self.placed_at) / (odom.stamp - last.stamp))
         dx, dy = share * (odom.pose.x - last.pose.x), share * (odom.pose.y - last.pose.y)
         turned = wrap_angle(odom.pose.yaw - last.pose.yaw)
@@ -235,11 +236,11 @@ class CombinedOdometry:
             if ekf.agreement.add(wheels[0], by_gyro, gyro[1] + missing, hypot(dx, dy), duration):
                 self.doubts.check(ekf, self.time)
 
-        # the displacement in the wheels' heading half way
+        # the displacement in the frame of the wheels' heading halfway through the turn
         heading = last.pose.yaw + turned / 2
         c, s = cos(heading), sin(heading)
         forward, left = dx * c + dy * s, dy * c - dx * s
-        # that heading in the filter's frame: half way between the yaws at the last odometry and at this one
+        # this heading in the filter's frame: halfway between the yaws at the last odometry and at this one
         yaw = ekf.state[YAW]
         end = yaw + turn.angle if odom.stamp >= self.time else self.yaws.at(odom.stamp)
         ahead = turned + wrap_angle(end - self.odom_yaw - turned)
@@ -248,7 +249,7 @@ class CombinedOdometry:
         self.odom_yaw = end
 
     def _leave_standstill(self, ekf: Filter) -> None:
-        """The last moment at rest, in which the robot may have begun to turn, is a turn that the gyro measured."""
+        """Use the gyro's turn in the last part at rest, in which the robot may have begun to turn."""
         last = self.standstill.leave(ekf)
         if last.time:
             before = ekf.state[YAW]
@@ -256,7 +257,7 @@ class CombinedOdometry:
             self.odom_yaw += ekf.state[YAW] - before
 
     def _step_by_gyro(self, ekf: Filter, end: int) -> None:
-        """A step up to `end` (ns) without odometry."""
+        """Make a step up to `end` (ns) without odometry."""
         duration = (end - self.time) / SECOND
         if duration > 0:
             if self.placed and end > self.placed[0]:
@@ -272,11 +273,11 @@ class CombinedOdometry:
             self.yaws.add(end, ekf.state[YAW])
 
     def _gyro_turn(self, end: int) -> tuple[Measurement | None, float]:
-        """The turn since the last step, as of Readings.turn()."""
+        """Return the turn since the last step, see Readings.turn()."""
         return self.readings.turn(self.time, end, self.prior.gyro_measurement_range, self.standstill.max_density)
 
     def _place(self, ekf: Filter) -> None:
-        """Put the filter where set_pose() has said."""
+        """Move the filter to the pose of set_pose()."""
         assert self.placed
         (self.placed_at, pose, covariance), self.placed = self.placed, None
         turned = pose.yaw - ekf.state[YAW]

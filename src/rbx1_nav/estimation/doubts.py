@@ -1,4 +1,4 @@
-"""What wheels and gyro show of each other, told to the filter and to the user."""
+"""Reports disagreement between wheels and gyro to the filter and to the user."""
 from __future__ import annotations
 
 from typing import Callable
@@ -6,24 +6,24 @@ from typing import Callable
 from rbx1_nav.estimation.filter import Filter
 from rbx1_nav.units import SECOND
 
-CONTRADICTION = 5 * SECOND  # ns for which a contradiction is shown
+CONTRADICTION = 5 * SECOND  # ns for which a contradiction is reported
 
 
 class Doubts:
-    """Warns where wheels and gyro contradict what the filter believes, or each other."""
+    """Warns if wheels and gyro contradict the assumptions of the filter, or each other."""
 
     def __init__(self, warn: Callable[[str], None]) -> None:
         """warn(text): logs a warning."""
         self.warn = warn
-        self.another_floor = False  # whether the sensors have shown that the prior is that of another floor
+        self.another_floor = False  # whether the sensors have shown that the prior is for another floor
         self.contradicted: int | None = None    # ns, when wheels and gyro last contradicted each other
 
     def contradicts(self, time: int) -> bool:
-        """Whether wheels and gyro contradict each other at a time (ns), or did so a moment ago."""
+        """Return whether wheels and gyro contradict each other at a time (ns), or did so recently."""
         return self.contradicted is not None and time - self.contradicted < CONTRADICTION
 
     def check(self, ekf: Filter, time: int) -> None:
-        """There is something new in the agreement of a Filter, at a time (ns)."""
+        """Check the agreement of a Filter, which has new results, at a time (ns)."""
         sums = ekf.agreement
         measured = f'odom turned by {sums.wheels:.2f} rad, imu_data by {sums.gyro:.2f} rad'
         if ekf.doubt_heading():
@@ -32,5 +32,4 @@ class Doubts:
             self.contradicted = time
         elif not self.another_floor and ekf.doubt_floor():
             self.another_floor = True
-            self.warn(f'{measured}: this is another floor than the one that the filter started with; the distance is '
-                      'less certain')
+            self.warn(f'{measured}: the slip does not match the assumed floor; the distance is less certain')

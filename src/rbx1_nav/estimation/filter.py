@@ -1,24 +1,24 @@
 """The arithmetic of the combined odometry: a planar extended Kalman filter of wheel odometry and a gyro.
 
-The model, with the state, is in model.py. In each step, update() uses the difference of wheels and gyro as a
-measurement of their errors, and predict() makes the step with the mean of both. The differences of several steps are
-used as one sum: the wheels may report the turn of a single step in coarse units. The rest is the standard filter
-(Thrun, Burgard and Fox, Probabilistic Robotics, section 3.3; their letters in brackets): the covariance P (Sigma), the
+The model and its state are in model.py. In each step, update() uses the difference of wheels and gyro as a measurement
+of their errors, and predict() makes the step with the mean of both. The differences of several steps are used as one
+sum, because the wheels may report the turn of a single step in coarse units. The rest is the standard filter (Thrun,
+Burgard and Fox, Probabilistic Robotics, section 3.3; their letters in parentheses): the covariance P (Sigma), the
 derivatives F (G) of the state after a step and H of a measured value, the variance R (Q) of that value, and the gain K.
-Unlike there, update() comes first in a step: the turn that predict() makes depends on the corrected errors.
+Unlike there, update() comes first in a step, because the turn in predict() depends on the corrected errors.
 
 Which of the errors are learned depends on the case:
 
-- standstill (standstill.py): the gyro's rate is its bias. How much the bias has changed between two standstills shows
-  how fast it drifts, and so how uncertain the heading becomes between them.
-- agreement: wheels and gyro differ no more than they may on a floor. The difference is a measurement of the slip. It is
-  one of bias and scale error only until the bias has been learned at rest, because wheels that slip in a way that the
-  model does not know would corrupt them. The noise of the wheels is as small as the differences show (noise.py).
-- contradiction: they differ more than on any floor (agreement.py). The heading becomes as uncertain as they differ;
-  from then on, a turn is a measurement of the slip only. When they agree again, the doubt shrinks to what this slip
-  does not explain.
-- carried (standstill.py): the heading turns with the gyro, and becomes as uncertain as the turn is large; so does the
-  position by the distance that the robot may have been carried.
+- standstill (standstill.py): the gyro's rate is its bias. The change of the bias between two standstills shows how fast
+  it drifts, and so how uncertain the heading becomes between them.
+- agreement: wheels and gyro differ by no more than a floor allows. The difference is a measurement of the slip. It is
+  also a measurement of bias and scale error, but only until the bias has been learned at rest, because slip that is not
+  in the model would corrupt them. The noise of the wheels is as small as the differences show (noise.py).
+- contradiction: wheels and gyro differ by more than on any floor (agreement.py). The heading uncertainty grows by the
+  difference. From then on, a turn measures only the slip. When wheels and gyro agree again, the doubt
+  shrinks to the part that this slip does not explain.
+- carried (standstill.py): the heading turns with the gyro, and its uncertainty grows by the turn. The uncertainty of
+  the position grows by the distance that the robot may have been carried.
 """
 from __future__ import annotations
 
@@ -38,52 +38,52 @@ from rbx1_nav.estimation.priors import UNKNOWN_FLOOR, Priors
 from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.units import clamp
 
-START_VARIANCE = 1e-9       # of the first pose, m^2 and rad^2: the frame begins where the robot does
+START_VARIANCE = 1e-9       # variance of the first pose, m^2 and rad^2: the frame begins at this pose
 BIAS_WALK = radians(0.0005)  # rad/s after 1 s: random walk of a bias that does not drift; 0.03 degrees/s in an hour
 SLIP_WALK = 0.02            # after 1 rad or 1 m: random walk of the slip
 OUTLIER = 5.0               # standard deviations between wheels and gyro beyond which one of them must be wrong
 MAX_SPREAD = 0.1            # 1 sigma of the straight slip, however far the robot drives
-MAX_ERROR = 0.8             # of slip and scale error: beyond it something else is wrong
-PART_TURN, PART_TIME = 0.2, 1.0     # rad, s: turn and time over which the differences of wheels and gyro are added up
+MAX_ERROR = 0.8             # largest slip and scale error: if they are larger, something else is wrong
+PART_TURN, PART_TIME = 0.2, 1.0     # rad, s: turn and time over which the differences of wheels and gyro are summed
 UNREAD = 0.5                # variance of the gyro's turn over a gap at a steady rate / variance of the wheels' turn
-MIN_DRIFT_TIME = 1.0        # s between two standstills from which a drift is learned
+MIN_DRIFT_TIME = 1.0        # minimum time (s) between two standstills to learn a drift
 COINCIDENCE = 0.4           # 1 sigma of the scale error / difference of wheels and gyro; the rest is slip
-CARRY_SPEED = 0.5           # m/s: how fast the robot may move (1 sigma) while it is carried
-FADE = 0.5                  # rad: a doubt shrinks with the exponential of the turn in which wheels and gyro agree
+CARRY_SPEED = 0.5           # m/s: possible speed of the robot (1 sigma) while it is carried
+FADE = 0.5                  # rad: a doubt decays exponentially with the turn in which wheels and gyro agree
 
-# what no surface file can promise: 1 sigma of the scale error of a gyro, of the slip in turns and straight on
+# lower limits of the values in a surface file: 1 sigma of the gyro's scale error, of the slip in turns and straight on
 MIN_SCALE_ERROR, MIN_SPREAD_TURNING, MIN_SPREAD_STRAIGHT = 0.003, 0.05, 0.02
-# what a difference of wheels and gyro does not change once the bias is known, or they have contradicted each other
+# not changed by a difference of wheels and gyro once the bias is known, or they have contradicted each other
 KEPT = [X, Y, YAW, BIAS, SCALE]
 
 
 class Filter:
-    """The state and its covariance. Knows nothing of time stamps, dropouts or invalid messages."""
+    """The state and its covariance. Time stamps, dropouts and invalid messages are handled elsewhere."""
 
     def __init__(self, prior: Priors, pose: Pose, max_bias: float = Limits().gyro_bias) -> None:
-        """pose: the initial one; max_bias: rad/s, 1 sigma of the bias at first."""
+        """pose: initial pose; max_bias: initial 1 sigma of the bias, rad/s."""
         self.prior = prior
         self.state = [pose.x, pose.y, pose.yaw, 0.0, 0.0, prior.slip_turning, prior.slip_straight]
-        # its `doubt` is the error of the state after a contradiction of wheels and gyro; its `drift` is the change of
-        # the state since the bias was last known, if the bias drifts by 1 rad/s^2
+        # `doubt` is the error of the state after a contradiction of wheels and gyro; `drift` is the change of the state
+        # since the bias was last known, for a drift of 1 rad/s^2
         self.P = Covariance([sqrt(START_VARIANCE)] * 3 + [
             max_bias, max(prior.gyro_scale_error, MIN_SCALE_ERROR),
             max(prior.slip_turning_spread, MIN_SPREAD_TURNING),
             max(prior.slip_straight_spread, MIN_SPREAD_STRAIGHT)], self._take_random_walks)
         self.walked = [0.0] * 3     # s, rad, m since the random walks were last added
-        self.part: Turns | None = None      # sum of the steps whose difference has not been used yet
+        self.part: Turns | None = None      # sum of the steps whose differences have not been used yet
         self.agreement = Agreement()
         self.bias_known = False     # whether the bias was learned at rest
-        self.bias_drift = Drift()        # of the bias
-        self.carried: Array = numpy.zeros(2)    # rad, m: how far it may have been carried
+        self.bias_drift = Drift()        # drift of the bias
+        self.carried: Array = numpy.zeros(2)    # rad, m: how far the robot may have been carried
         self.contradicted = False          # whether wheels and gyro have contradicted each other
-        self.contradicting: Array = numpy.zeros(2)  # rad, what they measured then: wheels, gyro
-        self.noise = NoiseFactor()  # of the wheels
-        self.roughness = 1.0        # the noise of their last turn, as a fraction of the prior's
+        self.contradicting: Array = numpy.zeros(2)  # rad, turns measured then: wheels, gyro
+        self.noise = NoiseFactor()  # noise of the wheels
+        self.roughness = 1.0        # noise of the wheels' last turn, as a fraction of the prior's noise
 
     @property
     def covariance(self) -> Array:
-        """Of x, y (m) and yaw (rad), 3x3."""
+        """The covariance of x, y (m) and yaw (rad), 3x3."""
         covariance = self.P.of_first(3)
         if self.contradicted:
             doubt = self.P.doubt[:3]
@@ -95,7 +95,7 @@ class Filter:
 
     @property
     def bias(self) -> float:
-        """Of the gyro, rad/s."""
+        """The bias of the gyro, rad/s."""
         return self.state[BIAS]
 
     @property
@@ -104,21 +104,20 @@ class Filter:
         return sqrt(self.P.variance(BIAS) + self.bias_drift.value * float(self.P.drift[BIAS]) ** 2)
 
     def place(self, pose: Pose, covariance: Array) -> None:
-        """The robot is at a Pose, with this covariance (3x3) of x, y (m) and yaw (rad)."""
+        """Set the robot's Pose, with its covariance (3x3) of x, y (m) and yaw (rad)."""
         self.state[:3] = pose
         self.P.replace_first(covariance, START_VARIANCE)
         self.carried[:] = self.contradicting[:] = 0.0
 
-    # what is measured
+    # measurements
 
     def update(self, duration: float, wheels: Measurement | None = None, gyro: Measurement | None = None,
                travelled: float = 0.0, missing: float = 0.0) -> HeadingChange:
-        """Update the errors in the state by what the sensors have measured in a step of `duration` (s), and estimate
-        the HeadingChange for predict().
+        """Update the errors in the state with the measurements of a step, and return the HeadingChange for predict().
 
-        travelled: m, by the wheels; missing: additional variance (rad^2) of the gyro's turn because readings are
-        missing within this step. If wheels and gyro disagree by more than OUTLIER, the wheels have slipped far more
-        than usual: the gyro is used alone.
+        duration: s; travelled: distance measured by the wheels, m; missing: additional variance (rad^2) of the gyro's
+        turn because readings are missing in this step. If wheels and gyro disagree by more than OUTLIER, the wheels
+        have slipped far more than usual, and only the gyro is used.
         """
         if wheels:
             prior, (angle, variance) = self.prior, wheels
@@ -136,18 +135,18 @@ class Filter:
         return HeadingChange(0.0, 0.0, 0.0, 0.0, 0.0)
 
     def _compare(self, turns: Turns, missing: float) -> HeadingChange | None:
-        """Add the step to the part, use the part when it is complete, and return the mean; None for an outlier."""
-        # its noise would hide the differences of the other steps
+        """Add a step to the part, use the part if it is complete, and return the mean, or None for an outlier."""
+        # the noise of this step would hide the differences of the other steps
         alone = bool(missing) or turns.gyro_variance > turns.wheel_variance
         if alone:
             self._use_part()
         difference, R = innovation(self.state, turns)
         if missing:
-            # if the rate changed while it was not read, the two turns differ by as much as the gyro's is wrong
+            # if the rate changed while it was not read, the difference is the error of the gyro's turn
             unread = min(missing, UNREAD * turns.wheel_variance + difference ** 2)
             turns = turns._replace(gyro_variance=turns.gyro_variance + unread)
             difference, R = innovation(self.state, turns)
-        if difference ** 2 > OUTLIER ** 2 * R:      # rare: the errors in the state count too
+        if difference ** 2 > OUTLIER ** 2 * R:      # rare: also consider the errors in the state
             HS = self._derivatives(turns)
             if difference ** 2 > OUTLIER ** 2 * (R + float(HS @ HS)):
                 return None
@@ -160,7 +159,7 @@ class Filter:
         return mean_turn(self.state, turns)
 
     def _derivatives(self, turns: Turns) -> Array:
-        """H S of innovation()."""
+        """Return H S of innovation()."""
         HS: Array = innovation_derivatives(self.state, turns) @ self.P.root[BIAS:STRAIGHT]
         return HS
 
@@ -179,26 +178,26 @@ class Filter:
         self._correct(difference, HS, R, KEPT if self.bias_known or self.contradicted else None)
 
     def _correct(self, difference: float, HS: Array, R: float, kept: list[int] | None = None) -> None:
-        """Correct the state and P by an innovation (a difference), as in Covariance.update()."""
+        """Correct the state and P with an innovation (a difference), as in Covariance.update()."""
         K = self.P.update(HS, R, kept)
         state = self.state = [old + gain * difference for old, gain in zip(self.state, K.tolist())]
         for index in SCALE, TURNING:
             state[index] = clamp(state[index], MAX_ERROR)
 
-    # what wheels and gyro show of each other
+    # comparison of wheels and gyro
 
     def doubt_floor(self) -> bool:
-        """If wheels and gyro show a slip that the prior's floor does not have, the straight slip, which nothing
-        measures, becomes as uncertain as on an unknown floor. Returns whether that is so."""
+        """Return whether wheels and gyro show a slip that the prior's floor does not have. If so, make the straight
+        slip, which nothing measures, as uncertain as on an unknown floor."""
         if self.contradicted or not self.agreement.difference(self.prior, self.P.variance(BIAS)):
             return False
         self.P.add_to(STRAIGHT, UNKNOWN_FLOOR.slip_straight_spread)
         return True
 
     def doubt_heading(self) -> float:
-        """If wheels and gyro differ more than on any floor, one of them is wrong: the heading becomes as uncertain as
-        they differ, and a new comparison begins. If they agree, that uncertainty shrinks. Returns the angle (rad) by
-        which they differ, or 0."""
+        """Return the angle (rad) by which wheels and gyro differ if no floor explains it, or 0. If it is not 0, one of
+        them is wrong: the heading uncertainty grows by this angle, and a new comparison begins. If they agree, that
+        uncertainty shrinks."""
         floor = UNKNOWN_FLOOR._replace(slip_turning=self.state[TURNING] if self.contradicted else 0.0)
         difference = self.agreement.difference(floor, self.P.variance(BIAS))
         if difference:
@@ -213,34 +212,34 @@ class Filter:
         return difference
 
     def _shrink_doubt(self) -> None:
-        """Wheels and gyro agree: the wheels had slipped as they do now. The doubt shrinks to what this slip leaves
-        unexplained. A gyro that was wrong, and is right again, leaves all of it."""
+        """Shrink the doubt, because wheels and gyro agree, to the part that the present slip does not explain. If the
+        gyro was wrong, and is right again, the whole doubt remains."""
         doubt = float(self.P.doubt[YAW])
         wheels, gyro = self.contradicting
         unexplained = abs(wheels * (1 - self.state[TURNING]) - gyro)
         self.P.doubt *= max(exp(-abs(self.agreement.last.gyro) / FADE), min(1.0, unexplained / doubt))
 
     def _limit_scale(self) -> None:
-        """If wheels and gyro agree over a long turn, the scale error is as small as their difference: it would be a
-        coincidence if a larger one had the same effect as the slip of the wheels."""
+        """Limit the scale error to the difference of wheels and gyro if they agree over a long turn: it would be a
+        coincidence if a larger scale error had the same effect as the slip of the wheels."""
         seen = self.agreement.ratio(self.P.variance(BIAS))
         if seen:
             variance = self.P.variance(SCALE)
             least = max(seen * COINCIDENCE, MIN_SCALE_ERROR) ** 2
             if variance > 1.01 * least:
-                # a measurement of 0 with a noise that leaves a variance of `least`
+                # a measurement of 0, with noise that leaves a variance of `least`
                 self._correct(-self.state[SCALE], self.P.root[SCALE], 1 / (1 / least - 1 / variance))
 
-    # what standstill.py finds
+    # results of standstill.py
 
     def rest(self, duration: float) -> None:
-        """The wheels are at rest for `duration` (s)."""
+        """Make a step of `duration` (s) in which the wheels are at rest."""
         self._use_part()
         self.walked[0] += duration
         self.P.drift[BIAS] += duration
 
     def learn_bias(self, rate: float, variance: float) -> None:
-        """The gyro's mean rate (rad/s), with its variance, is its bias, because the robot is at rest."""
+        """Learn the bias from the gyro's mean rate (rad/s) and its variance, because the robot is at rest."""
         drift, difference = self.P.drift, rate - self.state[BIAS]
         if self.bias_known:
             if drift[BIAS] > MIN_DRIFT_TIME:
@@ -251,8 +250,8 @@ class Filter:
         self.bias_known = True
 
     def carry(self, angle: float, duration: float) -> None:
-        """The gyro has turned by an angle (rad) in `duration` (s) while the wheels were at rest. Where the robot was
-        carried to, nothing measures."""
+        """Turn the robot by an angle (rad) that the gyro measured in `duration` (s) while the wheels were at rest. No
+        sensor measures how far the robot was carried."""
         self.state[YAW] += angle
         before, self.carried = self.carried, self.carried + (abs(angle), CARRY_SPEED * duration)
         turned, moved = numpy.sqrt(self.carried ** 2 - before ** 2)
@@ -261,7 +260,7 @@ class Filter:
         self.P.add_to(Y, moved)
 
     def doubt_bias(self, rate: float) -> None:
-        """The wheels were at rest, and the gyro's rate (rad/s) was steady for a while: it may be the bias."""
+        """Make the bias uncertain: the wheels were at rest, and a steady rate (rad/s) of the gyro may be the bias."""
         self.P.add_to(BIAS, abs(rate - self.state[BIAS]))
 
     # the model
@@ -270,8 +269,8 @@ class Filter:
                 left: float = 0.0, variance: float = 0.0) -> None:
         """Predict the state after a step of `duration` (s) with a HeadingChange from update() and a displacement.
 
-        forward, left: displacement (m) measured by the wheels, in a frame that is rotated by `direction` (rad) against
-        the robot's own half way through the turn; variance: of the displacement, m^2.
+        forward, left: displacement (m) measured by the wheels, in a frame that is rotated by `direction` (rad) relative
+        to the robot's own frame halfway through the turn; variance: variance of the displacement, m^2.
         """
         step = move(self.state, turn, direction, forward, left)
         deviation = sqrt(turn.variance)
@@ -290,10 +289,10 @@ class Filter:
         self.P.drift[BIAS] += duration
 
     def _take_random_walks(self) -> Array:
-        """The noise (7 x 3) by which bias and slips have walked since the last call."""
+        """Return the noise (7 x 3) of the random walks of bias and slips since the last call."""
         walks = numpy.zeros((7, 3))
         variances = [walk ** 2 * path for walk, path in zip((BIAS_WALK, SLIP_WALK, SLIP_WALK), self.walked)]
-        # nothing measures the straight slip: it would become ever more uncertain
+        # nothing measures the straight slip, so its uncertainty would grow without limit
         variances[2] = min(variances[2], max(0.0, MAX_SPREAD ** 2 - self.P.variance(STRAIGHT)))
         walks[[BIAS, TURNING, STRAIGHT], range(3)] = numpy.sqrt(variances)
         self.walked = [0.0] * 3

@@ -1,4 +1,4 @@
-"""What the filter accepts: odometry and gyro readings, and the checks that reject invalid ones."""
+"""The inputs of the filter: odometry and gyro readings, and the checks that reject invalid messages."""
 from __future__ import annotations
 
 from typing import NamedTuple, Sequence
@@ -6,7 +6,7 @@ from typing import NamedTuple, Sequence
 from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.robot.readings import MIN_VARIANCE
 
-MAX_NUMBER = 1e6        # m or rad/s: above this, sums lose what is small
+MAX_NUMBER = 1e6        # m or rad/s: above this, sums lose small terms
 MAX_VARIANCE = 1 / MIN_VARIANCE
 NUMBER = f'a number of at most {MAX_NUMBER:g}'
 VARIANCE = f'a variance above 0, from {MIN_VARIANCE:g} to {MAX_VARIANCE:g}'
@@ -18,9 +18,9 @@ class Odom(NamedTuple):
     """Wheel odometry."""
 
     stamp: int                  # ns
-    pose: Pose                  # in the frame of the odometry
-    linear_variance: float      # of the speed, m^2/s^2
-    angular_variance: float     # of the speed, rad^2/s^2
+    pose: Pose                  # in the odometry frame
+    linear_variance: float      # variance of the linear speed, m^2/s^2
+    angular_variance: float     # variance of the angular speed, rad^2/s^2
 
 
 class Imu(NamedTuple):
@@ -33,29 +33,32 @@ class Imu(NamedTuple):
 
 
 class RejectedMessage(ValueError):
-    """A message that must not reach the filter. The text names the field, the value and what is expected."""
+    """Raised for a message that must not reach the filter.
+
+    The text names the field, the value and what is expected.
+    """
 
 
 def check(field: str, value: object, good: object, expected: str) -> None:
-    """Raises RejectedMessage if a value is not good."""
+    """Raise RejectedMessage if a value is not good."""
     if not good:
         raise RejectedMessage(f'{field}: {value}: expected {expected}')
 
 
 def check_number(field: str, value: float) -> None:
-    """Raises RejectedMessage if a value is not finite, or above MAX_NUMBER."""
+    """Raise RejectedMessage if a value is not finite, or above MAX_NUMBER."""
     check(field, value, abs(value) <= MAX_NUMBER, NUMBER)
 
 
 def check_variance(field: str, value: float) -> None:
-    """Raises RejectedMessage if a variance is not between MIN_VARIANCE and MAX_VARIANCE."""
+    """Raise RejectedMessage if a variance is not between MIN_VARIANCE and MAX_VARIANCE."""
     check(field, value, MIN_VARIANCE <= value <= MAX_VARIANCE, VARIANCE)
 
 
 def check_odom(odom: Odom, pose_variances: Sequence[float]) -> None:
-    """Raises RejectedMessage if an Odom cannot be used.
+    """Raise RejectedMessage if an Odom cannot be used.
 
-    pose_variances: of x, y (m^2) and yaw (rad^2). A variance of 0 of a speed means that the sender does not give it.
+    pose_variances: x, y (m^2) and yaw (rad^2). A speed variance of 0 means that the sender does not provide it.
     """
     for field, value in zip(POSE_FIELDS, odom.pose):
         check_number(field, value)
@@ -68,6 +71,6 @@ def check_odom(odom: Odom, pose_variances: Sequence[float]) -> None:
 
 
 def check_imu(imu: Imu) -> None:
-    """Raises RejectedMessage if an Imu cannot be used."""
+    """Raise RejectedMessage if an Imu cannot be used."""
     check_number('angular_velocity.z', imu.rate)
     check_variance('angular_velocity_covariance[8]', imu.variance)

@@ -1,16 +1,16 @@
-"""How large noise and drift of the sensors are, learned from what is measured."""
+"""Learns the noise of the wheels and the drift of the gyro from measurements."""
 from __future__ import annotations
 
 from math import sqrt
 
-FIRST_COUNT = 5.0   # differences that seem to have been as large as expected, before the first one
-GREATEST = 9.0      # square of a difference / its variance: a larger one counts as this
+FIRST_COUNT = 5.0   # number of differences of the expected size that are assumed before the first real one
+GREATEST = 9.0      # square of a difference / its variance: larger values are limited to this
 
 
 class NoiseFactor:
     """Noise of the wheels, as a fraction (at most 1) of the assumed variance.
 
-    It is learned from the squares of the differences of wheels and gyro, relative to what is expected (covariance
+    It is learned from the squares of the differences of wheels and gyro, relative to their expected values (covariance
     matching: Mehra, Approaches to Adaptive Filtering, IEEE Transactions on Automatic Control 17, 1972).
     """
 
@@ -19,10 +19,13 @@ class NoiseFactor:
         self.value = 1.0
 
     def add(self, square: float, share: float) -> None:
-        """square: of a difference, divided by its variance; share: the fraction of this variance that is noise of the
-        wheels."""
+        """Add a difference.
+
+        square: square of the difference, divided by its variance; share: fraction of this variance that is noise of the
+        wheels.
+        """
         self.count += share ** 2
-        # toward the factor with which the square would be as large as expected
+        # toward the factor for which the square has its expected size
         self.mean *= 1 + share * (min(square, GREATEST) - 1) / self.count
         # cautious at first, by 2 sigma: the relative variance of a mean of squares of normal numbers is 2 / count
         self.value = min(1.0, self.mean * (1 + 2 * sqrt(2 / self.count)))
@@ -30,14 +33,19 @@ class NoiseFactor:
 
 class Drift:
     """Variance (rad^2/s^4) of the rate at which the gyro's bias changes between two standstills, by least squares.
-    Only what exceeds the noise by 1 sigma counts."""
+
+    Only the part that exceeds the noise by 1 sigma counts.
+    """
 
     def __init__(self) -> None:
         self.num = self.den = self.noise = self.value = 0.0
 
     def add(self, time: float, square: float, noise: float) -> None:
-        """time: s since the bias was last known; square: of its change, rad^2/s^2; noise: the expected square without a
-        drift."""
+        """Add a change of the bias.
+
+        time: s since the bias was last known; square: square of the change, rad^2/s^2; noise: expected square without a
+        drift.
+        """
         weight = time ** 2
         self.num += weight * (square - noise)
         self.den += weight ** 2

@@ -1,4 +1,4 @@
-"""The filter's yaw in the past, for odometry that is behind the gyro."""
+"""Stores the filter's past yaws, for odometry that is behind the gyro."""
 from __future__ import annotations
 
 from collections import deque
@@ -6,22 +6,22 @@ from typing import Deque
 
 
 class PastYaws:
-    """Yaws (rad) of the filter with their times (ns)."""
+    """Past yaws (rad) of the filter, with their times (ns)."""
 
     def __init__(self) -> None:
         self.yaws: Deque[tuple[int, float]] = deque()
 
     def add(self, time: int, yaw: float) -> None:
-        """Add the latest yaw, if that time has none."""
+        """Add the latest yaw, if there is none for its time."""
         if not self.yaws or self.yaws[-1][0] < time:
             self.yaws.append((time, yaw))
 
     def turn(self, angle: float) -> None:
-        """Add an angle (rad) to all of them."""
+        """Add an angle (rad) to all yaws."""
         self.yaws = deque((time, yaw + angle) for time, yaw in self.yaws)
 
     def at(self, time: int) -> float:
-        """The yaw at a time between the first and the last of them. What is before it is forgotten."""
+        """Return the yaw at a time between the first and the last yaw, and discard the yaws before it."""
         yaws = self.yaws
         while yaws[1][0] < time:
             yaws.popleft()

@@ -1,4 +1,4 @@
-"""What the filter assumes of the floor and of the gyro before the first message."""
+"""The filter's assumptions about the floor and the gyro before the first message."""
 from __future__ import annotations
 
 from math import inf
@@ -27,13 +27,13 @@ class Floor(Protocol):
     def _asdict(self) -> dict[str, float]: ...
 
 
-# any floor. The noise is that of five real robots, config/surfaces/create_lab_floor.yaml; the spreads are as wide as
-# the slips of all files are apart
+# any floor. The noise was measured with five real robots, config/surfaces/create_lab_floor.yaml; the spreads are as
+# wide as the differences between the slips of all files
 UNKNOWN_FLOOR = Priors(0.0, 0.05, 0.0, 0.05, Limits().gyro_scale_error, Limits().max_turn_rate, 0.084, 0.066, 0.044)
 
 
 def priors(surface: Floor | None) -> Priors:
-    """The Priors of a Surface (None: the ideal one)."""
+    """Return the Priors of a Surface (None: the ideal surface)."""
     if surface is None:
         return Priors(0.0, 0.0, 0.0, 0.0, 0.0, inf, 0.0, 0.0, 0.0)
     values = surface._asdict()

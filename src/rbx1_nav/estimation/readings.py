@@ -1,4 +1,4 @@
-"""The readings of the gyro that wait for the odometry, and the turn that they measure."""
+"""Stores gyro readings until the odometry arrives, and integrates them into a turn."""
 from __future__ import annotations
 
 from collections import deque
@@ -10,16 +10,16 @@ from rbx1_nav.estimation.model import Measurement
 from rbx1_nav.units import SECOND
 
 SHORT = SECOND // 20    # ns between two readings in which the rate hardly changes
-LOST = 1.5              # times the usual time between two readings: others between them were lost
+LOST = 1.5              # times the usual time between two readings: in a longer gap, readings were lost
 
 
 class Reading(NamedTuple):
-    """An Imu, and the time for which its rate stands."""
+    """An Imu, and the period to which its rate applies."""
 
-    start: int          # ns; the end is its stamp
+    start: int          # ns; the period extends from here to the stamp
     imu: Imu
-    changed: float      # variance of the rate because it changes in that time, rad^2/s^2
-    lost: float         # the same because readings were lost
+    changed: float      # variance of the rate because it changes in this period, rad^2/s^2
+    lost: float         # variance of the rate because readings were lost, rad^2/s^2
 
 
 class Readings:
@@ -28,15 +28,16 @@ class Readings:
     def __init__(self, limits: Limits) -> None:
         self.limits = limits
         self.last: Imu | None = None        # the latest one
-        self.period = 0                     # ns, usual time between two of them; 0: not known
+        self.period = 0                     # ns, usual time between two readings; 0: not known
         self.waiting: Deque[Reading] = deque()
 
     def add(self, imu: Imu) -> None:
-        """Store a reading that follows the last one. Its rate stands for the time since then, if that is short.
+        """Store a reading that follows the last one. Its rate applies to the time between them, if that is short.
 
-        In a longer time the rate may have been anything between the two. And if readings in between were lost, one that
-        changes by at most A in a second makes the turn in a time T wrong by at most A T^2 / 4. Both errors are taken as
-        uniformly distributed. The second one is kept apart, because the wheels may have measured the gap.
+        In a longer time the rate may have been anywhere between the two readings. If readings were also lost in
+        between, a rate that changes by at most A per second makes the turn in a time T wrong by at most A T^2 / 4. Both
+        errors are assumed to be uniformly distributed. The second error is stored separately, because the wheels may
+        have measured the gap.
         """
         last = self.last
         assert last is not None
@@ -54,10 +55,11 @@ class Readings:
         self.waiting.append(Reading(last.stamp, imu, changed, lost))
 
     def turn(self, start: int, end: int, max_rate: float, max_density: float) -> tuple[Measurement | None, float]:
-        """The turn in the time from `start` to `end` (ns), None if the readings do not cover all of it; and the
-        additional variance because readings were lost, if the whole gap is within that time. The readings are used up.
+        """Return the turn from `start` to `end` (ns), and the additional variance because readings were lost.
 
-        max_rate: rad/s, which the gyro can measure; max_density: rad^2/s, a noise density that it does not exceed.
+        The turn is None if the readings do not cover the whole time. The additional variance is returned if the whole
+        gap is within this time. The readings are removed. max_rate: largest rate that the gyro can measure, rad/s;
+        max_density: largest noise density of the gyro, rad^2/s.
         """
         angle = variance = missing = 0.0
         time, good = start, True

@@ -1,13 +1,13 @@
-"""Standstill: what the gyro measures while the wheels are at rest is its bias, unless the robot is carried.
+"""Standstill: learns the gyro's bias while the wheels are at rest, and detects a robot that is carried.
 
-The wheels are at rest if the pose of the odometry has not changed for REST. Its variances are not used: many drivers
-publish constants. The gyro's turns are then added up in parts of PART. There are two cases:
+The wheels are at rest if the odometry pose has not changed for REST. The variances of the odometry are not used,
+because many drivers publish constants. The gyro's turns are then summed in parts of PART. There are two cases:
 
-- standstill: the rate of a part is the bias that is known, or the robot has just been switched on and the rate is
-  steady and within the limit. It is the bias.
+- standstill: the rate of a part is the known bias, or the robot has just been switched on and the rate is steady and
+  within the limit. This rate is the bias.
 - carried: any other rate. Someone turns the robot by hand: it turns as the gyro measures, and its pose is uncertain.
-  A rate that is steady for longer than a hand can be is a bias that has changed. If it was steady for a shorter time
-  when the robot drives off, the bias is uncertain.
+  A rate that is steady for longer than a hand can hold it is a bias that has changed. If it was steady for a shorter
+  time when the robot drives off, the bias is uncertain.
 """
 from __future__ import annotations
 
@@ -24,31 +24,31 @@ REST = SECOND // 2          # ns for which the pose has not changed
 ROUNDING = 1e-6             # s
 SAME = 1e-4                 # m and rad: a smaller change is rounding
 PART = 0.1                  # s over which the gyro's rate is averaged
-STEADY = radians(1)         # rad/s: a bias changes less from one standstill to the next
+STEADY = radians(1)         # rad/s: a bias changes by less than this from one standstill to the next
 FIRST_STEADY = 0.2          # s for which a rate must be steady to be the first bias
 BIAS_DEVIATIONS = 2.0       # standard deviations by which the bias may have changed
 STEADY_DOUBT = 1.0          # s for which another rate must be steady to make the bias uncertain
 STEADY_AGAIN = 10.0         # s for which another rate must be steady to be a bias that has changed
-DEVIATIONS = 5.0            # standard deviations of the gyro's noise that are no chance
+DEVIATIONS = 5.0            # standard deviations of the gyro's noise beyond which a difference is not due to chance
 MIN_SAMPLES = 10            # differences of rates from which the noise is measured
-NOISE_FACTOR = 2.0          # claimed variance of the noise / measured one, above which the claimed one is too large
+NOISE_FACTOR = 2.0          # reported / measured noise variance, above which the reported variance is too large
 MIN_DENSITY = radians(0.005) ** 2   # rad^2/s: square of the noise density of a quiet MEMS gyro
 
 
 class Part(NamedTuple):
-    """What the gyro has measured in some time: s, rad, rad^2."""
+    """A measurement of the gyro over a period: s, rad, rad^2."""
 
     time: float = 0.0
     angle: float = 0.0
     variance: float = 0.0
 
     def plus(self, other: Part) -> Part:
-        """The sum of both."""
+        """Return the sum of two parts."""
         return Part(self.time + other.time, self.angle + other.angle, self.variance + other.variance)
 
 
 class Standstill:
-    """Watches the odometry and the gyro, and tells the filter what they mean while the wheels are at rest."""
+    """Watches the odometry and the gyro, and updates the filter while the wheels are at rest."""
 
     def __init__(self, max_bias: float) -> None:
         """max_bias: rad/s, the largest bias of a gyro."""
@@ -57,19 +57,19 @@ class Standstill:
         self.since = 0              # ns, stamp of the first message with it
         self.case: str | None = None        # STANDSTILL or CARRIED while the wheels are at rest
         self.density = 0.0          # rad^2/s, measured noise of the gyro
-        self.samples = 0            # that it is measured from
-        self.max_density = inf      # rad^2/s: a reading that claims more noise than that is not believed
+        self.samples = 0            # number of samples of this noise
+        self.max_density = inf      # rad^2/s: the noise of a reading is limited to this value
         self._clear()
 
     def _clear(self) -> None:
         self.case = None
-        self.part = Part()          # the present one
-        self.complete: Part | None = None   # the one before, used once the wheels are at rest after it, too
+        self.part = Part()          # the current part
+        self.complete: Part | None = None   # the previous part, used if the wheels are still at rest after it
         self.undecided = Part()     # parts with a steady rate that is not known to be the bias
         self.last: Part | None = None       # the last Part that was used
 
     def rests(self, stamp: int, pose: Pose) -> bool:
-        """Whether the wheels are at rest at the Pose with this stamp (ns)."""
+        """Return whether the wheels are at rest at the Pose with this stamp (ns)."""
         last = self.pose
         if (last is None or abs(pose.x - last.x) > SAME or abs(pose.y - last.y) > SAME
                 or abs(wrap_angle(pose.yaw - last.yaw)) > SAME):
@@ -77,8 +77,10 @@ class Standstill:
         return stamp - self.since >= REST
 
     def leave(self, ekf: Filter) -> Part:
-        """The wheels are not at rest. Returns the Part in which the robot may have begun to move: the Filter has not
-        used it."""
+        """Return the Part in which the robot may have begun to move, because the wheels are no longer at rest.
+
+        The Filter has not used this Part.
+        """
         unused = self.part.plus(self.complete or Part())
         if ekf.bias_known and self.undecided.time > STEADY_DOUBT - ROUNDING:
             ekf.doubt_bias(self.undecided.angle / self.undecided.time)
@@ -86,7 +88,7 @@ class Standstill:
         return unused
 
     def add(self, step: Part, ekf: Filter) -> None:
-        """Add a step (Part) at rest, and tell the Filter what the parts before it mean."""
+        """Add a step (Part) at rest, and update the Filter with the parts before it."""
         self.case = self.case or STANDSTILL
         if self.complete:
             self._use(self.complete, ekf)
@@ -96,7 +98,7 @@ class Standstill:
             self.complete, self.part = self.part, Part()
 
     def _use(self, part: Part, ekf: Filter) -> None:
-        """Tell the Filter what a Part means."""
+        """Update the Filter with a Part."""
         rate = part.angle / part.time
         margin = STEADY + DEVIATIONS * sqrt(part.variance) / part.time
         possible = abs(rate) <= self.max_bias
@@ -118,7 +120,7 @@ class Standstill:
             self._learn(self.undecided, ekf)
 
     def _measure_noise(self, part: Part, rate: float) -> None:
-        """The noise by the differences of successive rates: the variance of each is that of the angle / time^2."""
+        """Measure the noise from the differences of successive rates, whose variances are angle variance / time^2."""
         if self.last:
             sample = (rate - self.last.angle / self.last.time) ** 2 / (1 / part.time + 1 / self.last.time)
             self.samples += 1

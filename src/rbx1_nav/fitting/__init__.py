@@ -1,1 +1,1 @@
-"""From recorded runs to a surface."""
+"""Fits surfaces to recorded runs."""

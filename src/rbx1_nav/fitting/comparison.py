@@ -1,4 +1,4 @@
-"""Recorded runs beside simulated ones of the same commands."""
+"""Compares recorded runs with simulated runs of the same commands."""
 from __future__ import annotations
 
 from typing import Iterator, NamedTuple, Sequence
@@ -12,26 +12,26 @@ from rbx1_nav.fitting.recording import Recording, relative
 from rbx1_nav.fitting.run import PreparedRun
 from rbx1_nav.simulation.surfaces import Surface
 
-ENDS = 500      # simulated, of each run
-LONG = 60.0     # s: of longer runs, parts are compared, each from where the robot really was
-PART = 20.0     # s: length of such a part
-MAX_SHOWN = 12  # runs, or parts
+ENDS = 500      # number of simulated end poses per run
+LONG = 60.0     # s: longer runs are compared in parts, each of which starts at the true pose
+PART = 20.0     # s: length of a part
+MAX_SHOWN = 12  # number of runs or parts
 
 
 class Comparison(NamedTuple):
     """One run or a part of it, in the frame of its start."""
 
     name: str
-    recorded: Array | None      # x and y (m) of its path
-    is_truth: bool      # whether this is the truth, and not odometry
+    recorded: Array | None      # x and y (m) of the recorded path
+    is_truth: bool      # whether the recorded path is the truth and not odometry
     simulated: Array    # x and y (m) of one path with the same commands
-    ends: Array         # (ENDS, 3): simulated x, y (m) and yaw (rad)
-    end: Array | None   # the true one
+    ends: Array         # (ENDS, 3): simulated end poses: x, y (m) and yaw (rad)
+    end: Array | None   # true end pose
 
 
 def predict(surface: Surface, recording: Recording, base_width: float, start: float | None = None,
             end: float | None = None) -> tuple[PreparedRun, Prediction]:
-    """(PreparedRun without its odometry, Prediction for the whole of it by its commands)."""
+    """Return (PreparedRun without its odometry, Prediction for the whole run from its commands)."""
     run = PreparedRun(recording._replace(odometry=None), base_width, start, end)
     windows = Windows(numpy.array([0]), len(run.times) - 1, numpy.zeros((1, 3)))
     return run, Prediction(surface, run.steps(surface), windows)
@@ -39,8 +39,8 @@ def predict(surface: Surface, recording: Recording, base_width: float, start: fl
 
 def region_share(surface: Surface, recording: Recording, base_width: float, end: Array,
                  seed: int) -> tuple[float, float]:
-    """inner_share() of a true end (x, y in m, yaw in rad, not wrapped) of a run, by its commands alone: of x and y, and
-    of all three."""
+    """Return inner_share() of the true end pose of a run, predicted from its commands alone: for x and y, and for all
+    three values. end: x, y (m), yaw (rad, not wrapped)."""
     _, prediction = predict(surface, recording, base_width)
     ends = simulate_paths(surface, prediction, 0, ENDS, numpy.random.default_rng(seed))[:, :, -1]
     return inner_share(ends[:, :2], end[:2]), inner_share(ends, end)
@@ -48,11 +48,11 @@ def region_share(surface: Surface, recording: Recording, base_width: float, end:
 
 def compare(surface: Surface, recordings: Sequence[Recording], base_width: float,
             seed: int = 1) -> list[Comparison]:
-    """The Comparisons of Recordings with a Surface that was fitted to them; at most MAX_SHOWN."""
+    """Return Comparisons of Recordings with a Surface that was fitted to them; at most MAX_SHOWN."""
     comparisons: list[Comparison] = []
     for recording, start, end in choose(recordings):
         run, prediction = predict(surface, recording, base_width, start, end)
-        # another path in each, but the same region for the same commands
+        # each run shows a different path, but equal commands have equal regions
         number = len(comparisons)
         paths = simulate_paths(surface, prediction, 0, ENDS, numpy.random.default_rng(seed))
         track = recording.truth or recording.odometry
@@ -73,7 +73,7 @@ def compare(surface: Surface, recordings: Sequence[Recording], base_width: float
 
 
 def choose(recordings: Sequence[Recording]) -> Iterator[tuple[Recording, float | None, float | None]]:
-    """(Recording, start, end) of what is compared; start and end (s) are None for the whole."""
+    """Yield (Recording, start, end) for each run or part to compare; start and end (s) are None for a whole run."""
     if len(recordings) > MAX_SHOWN:
         recordings = [recordings[index] for index in numpy.linspace(0, len(recordings) - 1, MAX_SHOWN).astype(int)]
     each = max(1, MAX_SHOWN // len(recordings))
@@ -82,13 +82,13 @@ def choose(recordings: Sequence[Recording]) -> Iterator[tuple[Recording, float |
         if time[-1] - time[0] <= LONG or not recording.truth:
             yield recording, None, None
             continue
-        # parts, evenly over the record
+        # parts, spread evenly over the recording
         first, last = max(time[0], recording.truth.time[0]), min(time[-1], recording.truth.time[-1])
         for start in numpy.linspace(first, last - PART, each + 2)[1:-1]:
             yield recording, start, start + PART
 
 
 def shares(comparisons: Sequence[Comparison]) -> tuple[int, int, int]:
-    """(number of true ends, of those inside the region of 50 %, and of 90 %), by x and y."""
+    """Return the numbers of (true end poses, those inside the 50 % region, those inside the 90 % region) in x and y."""
     inside = numpy.array([inner_share(each.ends[:, :2], each.end[:2]) for each in comparisons if each.end is not None])
     return len(inside), int((inside < 0.5).sum()), int((inside < 0.9).sum())

@@ -1,4 +1,4 @@
-"""Reads the ends of runs that were measured by hand."""
+"""Reads end poses of runs that were measured by hand."""
 from __future__ import annotations
 
 from math import radians
@@ -13,10 +13,10 @@ ERRORS = dict(position_error=(1e-4, 10.0, 0.01, 'm'), heading_error=(0.01, 90.0,
 
 
 def read_ends(path: str, bags: Sequence[str]) -> tuple[list[Pose], tuple[float, float, float]]:
-    """([Pose of each bag], (error of x, of y in m, of the heading in rad)) of a YAML file. bags: paths.
+    """Read ([Pose of each bag], (error of x in m, of y in m, of the heading in rad)) from a YAML file. bags: paths.
 
-    The file maps the name of each bag, without folder, to [x (m), y (m), heading (degrees)] of its end, in the frame of
-    its start. position_error (m) and heading_error (degrees) say how well that was measured. Raises ConfigError.
+    The file maps the name of each bag, without folder, to its end pose [x (m), y (m), heading (degrees)] in the frame
+    of its start pose. position_error (m) and heading_error (degrees) give the measurement error. Raises ConfigError.
     """
     try:
         section = Section(load_yaml(path))
@@ -25,7 +25,7 @@ def read_ends(path: str, bags: Sequence[str]) -> tuple[list[Pose], tuple[float, 
         names = [os.path.basename(bag) for bag in bags]
         twice = [name for name in names if names.count(name) > 1]
         if twice:
-            raise ConfigError(f'{show_name(twice[0])}: two bags of this name: expected names that differ')
+            raise ConfigError(f'{show_name(twice[0])}: two bags have this name: expected unique names')
         ends = [read_end(section, name) for name in names]
         if section.unknown():
             raise ConfigError(f"{section.unknown()[0]}: unknown: expected {', '.join(ERRORS)} and names of bags on "
@@ -36,7 +36,7 @@ def read_ends(path: str, bags: Sequence[str]) -> tuple[list[Pose], tuple[float, 
 
 
 def read_end(section: Section, name: str) -> Pose:
-    """The Pose of one bag. Raises ConfigError."""
+    """Read the Pose of one bag. Raises ConfigError."""
     expected = '[x in m, y in m, heading in degrees]'
     values = section.get(name, expected=expected)
     if not (isinstance(values, list) and len(values) == 3):

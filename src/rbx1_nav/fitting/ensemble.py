@@ -1,4 +1,4 @@
-"""Where many robots end that drive alike on the same floor, and whether a real one ends among them."""
+"""Simulates the end poses of many runs with equal commands on one floor, and compares them with a real end pose."""
 from __future__ import annotations
 
 import numpy
@@ -10,8 +10,8 @@ from rbx1_nav.simulation.surfaces import Surface
 
 
 def cell_noise(generator: numpy.random.Generator, count: int, path: Array, cell: float) -> Array:
-    """The errors (count, m) in each of m steps of `path`, by noise of strength 1: simulation.floor_noise.Noise in
-    arrays."""
+    """Return the errors (count, m) in each of m steps of `path` due to noise of strength 1. This is
+    simulation.floor_noise.Noise in arrays."""
     borders = numpy.concatenate([[0.0], numpy.cumsum(path)]) / cell + generator.random((count, 1))
     number = borders.astype(int)
     sums = numpy.cumsum(generator.laplace(0.0, (cell / 2) ** 0.5, (count, number[:, -1].max() + 1)), axis=1)
@@ -23,8 +23,8 @@ def cell_noise(generator: numpy.random.Generator, count: int, path: Array, cell:
 
 def simulate_paths(surface: Surface, prediction: Prediction, index: int, count: int,
                    generator: numpy.random.Generator) -> Array:
-    """(count, 3, steps): x, y (m), yaw (rad) after each step of a window of a Prediction, each in a run of its own on a
-    Surface."""
+    """Return x, y (m) and yaw (rad) after each step of a window of a Prediction, in `count` separate runs on a Surface.
+    The shape is (count, 3, steps)."""
     straight, turn = prediction.straight[index], prediction.turn[index]
     angle = numpy.repeat(prediction.angle[index][None], count, axis=0)
     distance = numpy.repeat(prediction.distance[index][None], count, axis=0)
@@ -41,31 +41,31 @@ def simulate_paths(surface: Surface, prediction: Prediction, index: int, count: 
 
 def simulate_ends(surface: Surface, prediction: Prediction, index: int, count: int,
                   generator: numpy.random.Generator) -> Array:
-    """(count, 3): the ends of such paths."""
+    """Return the end poses of simulate_paths(), with shape (count, 3)."""
     ends: Array = simulate_paths(surface, prediction, index, count, generator)[:, :, -1]
     return ends
 
 
 def mahalanobis(ends: Array, points: Array) -> Array:
-    """The squared Mahalanobis distances of points (n, d), by mean and covariance of `ends` (count, d)."""
+    """Return the squared Mahalanobis distances of points (n, d) from the mean and covariance of `ends` (count, d)."""
     away = points - ends.mean(axis=0)
     covariance = numpy.cov(ends.T)
-    # a robot that stands has no spread, and a Mahalanobis distance all the same
+    # the end poses of a stationary robot have no spread; keep the covariance invertible
     covariance += 1e-12 * numpy.eye(len(covariance))
     squares: Array = (away * numpy.linalg.solve(covariance, away.T).T).sum(axis=1)
     return squares
 
 
 def inner_share(ends: Array, end: Array) -> float:
-    """The share of simulated ends that are closer, by Mahalanobis distance, to their mean than `end` is: below p for an
-    end inside the region that holds p of them. ends: (count, d); end: (d,)."""
+    """Return the share of simulated end poses whose Mahalanobis distance from their mean is smaller than the distance
+    of `end`. It is below p for an end pose inside the region that contains a share p. ends: (count, d); end: (d,)."""
     share: float = (mahalanobis(ends, ends) < mahalanobis(ends, end[None])).mean()
     return share
 
 
 def energy_score(ends: Array, point: Array) -> float:
-    """How well an ensemble (count, d) predicted a point (d,), in its unit: the smaller, the better (Gneiting and
-    Raftery, Strictly proper scoring rules, prediction, and estimation, 2007, section 4.3)."""
+    """Return how well an ensemble (count, d) predicted a point (d,), in the unit of the point; lower is better
+    (Gneiting and Raftery, Strictly proper scoring rules, prediction, and estimation, 2007, section 4.3)."""
     half = len(ends) // 2
     score: float = (numpy.linalg.norm(ends - point, axis=1).mean()
                     - numpy.linalg.norm(ends[:half] - ends[half:2 * half], axis=1).mean() / 2)

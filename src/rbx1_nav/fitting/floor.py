@@ -1,7 +1,7 @@
-"""The floor in arrays: where wheels that travel in Steps take a robot, and how sure that is.
+"""The floor model in arrays: the pose that results from wheel travel in Steps, and its covariance.
 
-The same model as that of simulation/wheels.py and simulation/floor_noise.py, for many windows at once. Covariances
-are propagated to first order: each error turns or shifts the rest of the path.
+The model matches simulation/wheels.py and simulation/floor_noise.py, for many windows at once. Covariances are
+propagated to first order: each error turns or shifts the rest of the path.
 """
 from __future__ import annotations
 
@@ -22,28 +22,28 @@ SPREADS = ('slip_straight_spread', 'slip_turning_spread')
 
 
 class Windows(NamedTuple):
-    """Parts of a recording that have a measured end."""
+    """Parts of a recording with measured end poses."""
 
-    first: NDArray[numpy.int_]      # (n,), the step that each begins with
-    length: int     # their number of steps
-    ends: Array     # (n, 3), in the frame of the start of each: x, y (m), yaw (rad)
+    first: NDArray[numpy.int_]      # (n,), index of the first step of each window
+    length: int     # number of steps in each window
+    ends: Array     # (n, 3), end poses in the frame of the start of each window: x, y (m), yaw (rad)
 
 
 def with_values(surface: Surface, values: Mapping[str, float]) -> Surface:
-    """The same Surface, but for the values of some keys."""
-    # with the name, mypy knows that no value is for it
+    """Return a copy of a Surface with the given values."""
+    # passing the name shows mypy that no value is meant for it
     return surface._replace(name=surface.name, **values)
 
 
 def floor_travel(surface: Surface, straight: Array, turn: Array) -> tuple[Array, Array]:
-    """(distance in m, angle in rad) of the robot, in arrays like those of the wheels' travel, without noise."""
+    """Return the (distance in m, angle in rad) that a robot travels without noise. straight, turn: wheel travel."""
     distance = straight * (1 - surface.slip_straight)
     distance = numpy.sign(distance) * numpy.maximum(0.0, abs(distance) - surface.turning_loss * abs(turn))
     return distance, turn * (1 - surface.slip_turning) + surface.curvature * straight
 
 
 def integrate(distance: Array, angle: Array) -> tuple[Array, Array, Array]:
-    """(x, y, yaw) after each step, along the last axis, of a robot that was at the origin before the first."""
+    """Return (x, y, yaw) after each step, along the last axis, of a robot that starts at the origin."""
     yaw = numpy.cumsum(angle, axis=-1)
     middle = yaw - angle / 2
     chord = distance * numpy.sinc(angle / 2 / numpy.pi)     # see kinematics.arc()
@@ -51,20 +51,20 @@ def integrate(distance: Array, angle: Array) -> tuple[Array, Array, Array]:
 
 
 def cell_covariance(path: Array, cell: float) -> Array:
-    """(m, m): the covariance of the errors in each of m steps of a path, by noise of strength 1 with cells."""
+    """Return the covariance (m, m) of the errors in m steps of a path due to noise of strength 1 with cells."""
     position = numpy.append(0.0, numpy.cumsum(path)) / cell
     apart = abs(position[:, None] - position)
-    # the variance of the error in a part of the path: its cells lie anywhere
+    # the variance of the error in a part of the path, for a random position of the cells
     variance = cell * numpy.where(apart < 1, apart ** 2 * (1 - apart / 3), apart - 1 / 3)
     covariance: Array = (variance[:-1, 1:] + variance[1:, :-1] - variance[:-1, :-1] - variance[1:, 1:]) / 2
     return covariance
 
 
 class Prediction:
-    """What a Surface predicts for n windows of m steps."""
+    """The prediction of a Surface for n windows of m steps."""
 
     def __init__(self, surface: Surface, steps: Steps, windows: Windows) -> None:
-        """steps: of the whole recording."""
+        """steps: Steps of the whole recording."""
         part = windows.first[:, None] + numpy.arange(windows.length)
         self.straight: Array = steps.straight[part]     # (n, m)
         self.turn: Array = steps.turn[part]     # (n, m)
@@ -74,11 +74,11 @@ class Prediction:
         self.errors = windows.ends - self.means
 
     def sensitivities(self, by_cells: bool = False) -> dict[str, Array]:
-        """A dictionary: for each of NOISES the covariances of the ends for a strength of 1, (n, 3, 3); for each of
-        SPREADS the derivatives of the ends by a slip that is constant in the run, (n, 3).
+        """Return a dictionary: for each of NOISES, the covariances (n, 3, 3) of the end poses for a strength of 1; for
+        each of SPREADS, the derivatives (n, 3) of the end poses with respect to a slip that is constant in the run.
 
-        by_cells: whether noise is that of simulation.floor_noise.Noise with its cells, which makes a difference for
-        windows of few cells; otherwise it is white.
+        by_cells: whether the noise has the cells of simulation.floor_noise.Noise, which matters for windows of few
+        cells; otherwise it is white.
         """
         x, y, yaw = self.path
         middle = yaw - self.angle / 2
@@ -100,10 +100,10 @@ class Prediction:
 
 
 class Covariance:
-    """The covariance of all ends of a run: independent noise in each window, and slips that are the same in all."""
+    """The covariance of all end poses of a run: independent noise in each window, and slips common to all windows."""
 
     def __init__(self, surface: Surface, sensitivities: Mapping[str, Array], floor: Array) -> None:
-        """sensitivities: see Prediction; floor: 3x3, of a measured end."""
+        """sensitivities: see Prediction; floor: covariance (3, 3) of a measured end pose."""
         blocks = floor + sum(getattr(surface, key) ** 2 * sensitivities[key] for key in NOISES)
         self.roots = numpy.linalg.cholesky(blocks)      # (n, 3, 3)
         common = numpy.stack([self._white(getattr(surface, key) * sensitivities[key]) for key in SPREADS], axis=1)
@@ -115,14 +115,14 @@ class Covariance:
         return numpy.linalg.solve(self.roots, errors[..., None]).ravel()
 
     def whitened(self, errors: Array) -> Array:
-        """Errors of the ends, (n, 3), as 3 n independent numbers of variance 1."""
+        """Transform errors of the end poses, (n, 3), to 3 n independent numbers of variance 1."""
         white = self._white(errors)
         along = self.axes.T @ white
         whitened: Array = white + self.axes @ (along * (self.variances ** -0.5 - 1))
         return whitened
 
     def half_log_determinant(self) -> float:
-        """Half of the logarithm of the determinant."""
+        """Return half of the logarithm of the determinant."""
         half: float = (numpy.log(numpy.diagonal(self.roots, axis1=1, axis2=2)).sum()
                        + numpy.log(self.variances).sum() / 2)
         return half

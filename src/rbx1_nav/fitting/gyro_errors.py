@@ -1,4 +1,4 @@
-"""Fits the errors of a gyro: at rest its bias and noise, and by the true heading its scale."""
+"""Fits the errors of a gyro: its bias and noise at rest, and its scale from the true heading."""
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Sequence
@@ -14,13 +14,14 @@ from rbx1_nav.simulation.gyro import NOISE_RATE
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-SETTLED = 1.5       # s after a stop command until a robot counts as standing
+SETTLED = 1.5       # s after a stop command after which a robot counts as stationary
 INTERVAL = 1.0      # s: turns in intervals of this length are compared
-MIN_TURN = 3.0      # rad: no scale from less
+MIN_TURN = 3.0      # rad: minimum turn for fitting the scale
 
 
 def rests_at(recording: Recording, times: Array, delay: float = 0.0) -> NDArray[numpy.bool_]:
-    """Whether the robot stood still at each of `times` (s): no command to move since SETTLED and a delay (s)."""
+    """Return whether the robot was stationary at each of `times` (s): no command to move for SETTLED plus `delay` (s).
+    """
     commands = recording.commands
     moving = (commands.linear != 0) | (commands.angular != 0)
     before = numpy.searchsorted(commands.time, times, side='right') - 1
@@ -33,8 +34,8 @@ def rests_at(recording: Recording, times: Array, delay: float = 0.0) -> NDArray[
 
 
 def rest_of(recording: Recording, gyro: Rates, delay: float) -> tuple[float, float, int] | None:
-    """(bias in rad/s, noise at NOISE_RATE in rad/s, number of readings) of the gyro while the robot stood; None if
-    that was never long enough."""
+    """Return (bias in rad/s, noise at NOISE_RATE in rad/s, number of readings) of the gyro while the robot was
+    stationary; None if there are too few readings."""
     time, rate = gyro
     at_rest = rests_at(recording, time, delay)
     period = numpy.median(numpy.diff(time)) if len(time) > 1 else 0.0
@@ -45,14 +46,15 @@ def rest_of(recording: Recording, gyro: Rates, delay: float) -> tuple[float, flo
 
 
 def gyro_turns(gyro: Rates, bias: float, times: Array) -> Array:
-    """The angle (rad) that the gyro measured between `times` (s). A reading is the mean since the one before."""
+    """Return the angles (rad) that the gyro measured between `times` (s). A reading is the mean since the previous one.
+    """
     time, rate = gyro
     angle = numpy.append(0.0, numpy.cumsum((rate[1:] - bias) * numpy.diff(time)))
     return numpy.diff(numpy.interp(times, time, angle))
 
 
 def scale_by_truth(gyro: Rates, truth: Track, bias: float, noise: float) -> tuple[float, float] | None:
-    """(scale error, its standard error) by a continuous truth; None if that turns too little.
+    """Return (scale error, its standard error) from a continuous truth; None if the robot turns too little.
 
     bias, noise: of the gyro, rad/s.
     """
@@ -73,9 +75,9 @@ def scale_by_truth(gyro: Rates, truth: Track, bias: float, noise: float) -> tupl
 
 def scale_by_end(gyro: Rates, end: Pose, bias: float, noise: float,
                  heading_error: float) -> tuple[float, float] | None:
-    """(scale error, its standard error) by an end measured by hand; None if the run turns too little.
+    """Return (scale error, its standard error) from an end pose measured by hand; None if the run turns too little.
 
-    heading_error: of that, rad.
+    bias, noise: of the gyro, rad/s; heading_error: 1 sigma of the measured heading, rad.
     """
     time = gyro.time
     turned = gyro_turns(gyro, bias, time[[0, -1]])[0]
@@ -87,7 +89,7 @@ def scale_by_end(gyro: Rates, end: Pose, bias: float, noise: float,
 
 
 def root_mean_square(values: Sequence[float], errors: Sequence[float]) -> tuple[float, float]:
-    """(rms of what the values are in truth, its standard error), where each was measured with an error."""
+    """Return (rms of the true values, its standard error) for values that were measured with errors."""
     variance = (numpy.asarray(values) ** 2).mean()
     of_errors = (numpy.asarray(errors) ** 2).mean()
     own = max(variance - of_errors, 0.0)
@@ -98,9 +100,9 @@ def root_mean_square(values: Sequence[float], errors: Sequence[float]) -> tuple[
 
 def fit_gyro(recordings: Sequence[Recording], delay: float = 0.0,
              heading_error: float = 0.0) -> dict[str, tuple[float, float]]:
-    """{key: (value, standard error)} for those of gyro_noise, gyro_bias (rad/s) and gyro_scale_error that the
-    Recordings tell; the standard error is infinite for one run only. delay: of the motors, s; heading_error: of ends
-    measured by hand, rad."""
+    """Fit gyro_noise and gyro_bias (rad/s) and gyro_scale_error. Returns {key: (value, standard error)} for the keys
+    that the Recordings determine; the standard error is infinite for a single run. delay: of the motors, s;
+    heading_error: 1 sigma of end poses measured by hand, rad."""
     found: dict[str, tuple[float, float]] = {}
     biases: list[tuple[float, float]] = []
     scales: list[tuple[float, float]] = []

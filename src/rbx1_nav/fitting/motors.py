@@ -1,4 +1,4 @@
-"""Fits delay, lag and drag: from commands to what odometry reports."""
+"""Fits delay, lag, acceleration limit and drag of the motors to commands and odometry."""
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple, Sequence
@@ -18,21 +18,21 @@ if TYPE_CHECKING:
 
 INTERVAL = 0.2      # s: the travel in intervals of about this length is compared
 KEYS = ('delay', 'lag', 'accel_limit', 'drag_straight', 'drag_turning')
-STEPS = dict(delay=1e-3, lag=1e-3, accel_limit=1e-2, drag_straight=1e-5, drag_turning=1e-5)     # of derivatives
+STEPS = dict(delay=1e-3, lag=1e-3, accel_limit=1e-2, drag_straight=1e-5, drag_turning=1e-5)     # for derivatives
 LIMITS: dict[str, tuple[float, float]] = {**BOUNDS, 'accel_limit': (0.01, 100)}
-FIRST_DELAYS = 0.0, 0.05, 0.1, 0.2, 0.4, 0.8    # s: the fit begins with the best, since it has no slope from afar
+FIRST_DELAYS = 0.0, 0.05, 0.1, 0.2, 0.4, 0.8    # s: the fit starts at the best of these; far away, the cost is flat
 
-SIGNIFICANT = 9.0   # by how much a limit must lower the sum of squares, in variances of a residual: 3 sigma
+SIGNIFICANT = 9.0   # required decrease of the sum of squares by a limit, in variances of a residual: 3 sigma
 
 
 class MotorFit(NamedTuple):
-    """What was found for KEYS."""
+    """The result of fit_motors() for KEYS."""
 
     values: dict[str, float]
     errors: dict[str, float]    # standard errors
-    unused: list[str]   # the keys that made no difference
-    rms: float      # m per INTERVAL: of what is left
-    travel: float   # m per INTERVAL: rms of the travel itself
+    unused: list[str]   # keys without a measurable effect
+    rms: float      # m per INTERVAL: rms of the residuals
+    travel: float   # m per INTERVAL: rms of the travel
 
 
 class Intervals:
@@ -55,19 +55,21 @@ class Intervals:
         return numpy.concatenate([straight, turn * self.half_width])
 
     def errors(self, surface: Surface) -> Array:
-        """Reported less predicted travel of the wheels, m: straight, then turning."""
+        """Return reported minus predicted travel of the wheels, m: straight, then turning."""
         steps = commanded_travel(surface, 2 * self.half_width, self.commands, self.times)
         errors: Array = self.travel - self._sides(steps.straight, steps.turn)
         return errors
 
 
 def standard_errors(slopes: Array, left: Array, borders: NDArray[numpy.int_]) -> Array:
-    """Of values fitted by least squares: the largest of three. From the variance of the residuals `left`; from each of
-    them by itself, because rounding to whole ticks leaves more of a start than of a rest; and from their sums in each
-    run, because it is not independent in one interval and the next (the sandwich of Liang and Zeger, Longitudinal data
+    """Return the standard errors of values fitted by least squares: the largest of three estimates.
+
+    The first uses the variance of the residuals `left`. The second uses each residual individually, because rounding to
+    whole ticks leaves larger residuals in a start than at rest. The third uses their sums in each run, because
+    residuals of successive intervals are not independent (the sandwich estimator of Liang and Zeger, Longitudinal data
     analysis using generalized linear models, 1986). borders: index of the end of each run.
     """
-    sizes = numpy.sqrt((slopes ** 2).sum(axis=0))       # the units differ by far
+    sizes = numpy.sqrt((slopes ** 2).sum(axis=0))       # the units differ widely
     bread = numpy.linalg.pinv((slopes / sizes).T @ (slopes / sizes)) / numpy.outer(sizes, sizes)
     variances = [(left ** 2).sum() / max(1, len(left) - slopes.shape[1]) * numpy.diag(bread)]
     scores = slopes * left[:, None]
@@ -78,7 +80,7 @@ def standard_errors(slopes: Array, left: Array, borders: NDArray[numpy.int_]) ->
 
 
 def fit_motors(surface: Surface, base_width: float, recordings: Sequence[Recording]) -> MotorFit:
-    """The MotorFit to Recordings with odometry, beginning with a Surface. base_width: m."""
+    """Fit the motors to Recordings with odometry, starting from a Surface. base_width: m."""
     intervals = [each for each in (Intervals(one, base_width) for one in recordings) if len(each.times) > 1]
 
     def with_clipped(values: Array) -> Surface:
@@ -97,7 +99,7 @@ def fit_motors(surface: Surface, base_width: float, recordings: Sequence[Recordi
         base, columns = residuals(values), []
         for index, key in enumerate(KEYS):
             step = numpy.zeros(len(KEYS))
-            # at its upper bound the other way
+            # downward at the upper bound
             step[index] = STEPS[key] if values[index] + STEPS[key] < LIMITS[key][1] else -STEPS[key]
             columns.append((residuals(values + step) - base) / step[index])
         return numpy.stack(columns, axis=1)
@@ -108,10 +110,10 @@ def fit_motors(surface: Surface, base_width: float, recordings: Sequence[Recordi
                            x_scale=[0.01, 0.01, 0.3, 0.001, 0.001], xtol=1e-6, ftol=1e-8, max_nfev=60)
     slopes = jacobian(result.x)
     left = residuals(result.x)
-    # a parameter without effect: less than a micrometre in sum for a tenth of its value
+    # a parameter without effect: a tenth of its value changes the residuals by less than 1 micrometer in total
     unused = [key for key, column, value in zip(KEYS, slopes.T, result.x)
               if abs(column).sum() * max(abs(value), STEPS[key]) < 1e-5]
-    # and one just above what the motors need: as good as none
+    # a limit just above the acceleration that the motors need also has no effect
     without = residuals(numpy.where([key == 'accel_limit' for key in KEYS], LIMITS['accel_limit'][1], result.x))
     variance = (left ** 2).sum() / max(1, len(left) - len(KEYS))
     if 'accel_limit' not in unused and (without ** 2).sum() - (left ** 2).sum() < SIGNIFICANT * variance:

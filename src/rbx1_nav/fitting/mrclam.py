@@ -13,23 +13,23 @@ from rbx1_nav.config import ConfigError, show, show_name
 from rbx1_nav.fitting.recording import Commands, Recording, Track, check_recording
 
 BASE_WIDTH = 0.26               # m, of a Create
-CAMERAS = 0.001, 0.001, 0.003   # m, m, rad: 1 sigma of the motion capture system, from robots that stand still
+CAMERAS = 0.001, 0.001, 0.003   # m, m, rad: 1 sigma of the motion capture system, from stationary robots
 
-COMMANDS, TRUTH = '_Odometry.dat', '_Groundtruth.dat'   # ends of file names
+COMMANDS, TRUTH = '_Odometry.dat', '_Groundtruth.dat'   # suffixes of file names
 
 
 def is_commands_file(path: str) -> bool:
-    """Whether the name of a file is that of a robot's commands."""
+    """Return whether a file contains the commands of a robot, according to its name."""
     return path.endswith(COMMANDS)
 
 
 def truth_file(path: str) -> str:
-    """The path of the truth that belongs to the commands in `path`."""
+    """Return the path of the truth file that belongs to the commands file `path`."""
     return path[:-len(COMMANDS)] + TRUTH
 
 
 def read_table(path: str) -> Array:
-    """The columns of a text file of numbers. Raises ConfigError."""
+    """Return the columns of a text file of numbers. Raises ConfigError."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter('ignore', UserWarning)    # a file without numbers: its columns are counted below
@@ -41,8 +41,11 @@ def read_table(path: str) -> Array:
 
 
 def read_robot(commands: str, truth: str) -> Recording:
-    """The Recording of two files: NAME_Odometry.dat has time (s), m/s and rad/s, as commanded; NAME_Groundtruth.dat has
-    time (s), x and y (m), and heading (rad). Raises ConfigError."""
+    """Read a Recording from two files. Raises ConfigError.
+
+    NAME_Odometry.dat contains time (s) and commanded m/s and rad/s; NAME_Groundtruth.dat contains time (s), x and y
+    (m), and heading (rad).
+    """
     tables = []
     for path, width in ((commands, 3), (truth, 4)):
         table = read_table(path)
@@ -56,7 +59,8 @@ def read_robot(commands: str, truth: str) -> Recording:
 
 
 def read_set(folder: str, number: int) -> list[Recording]:
-    """The Recordings of all robots of a set in a folder: D6R1_Odometry.dat and so on for set 6. Raises ConfigError."""
+    """Read the Recordings of all robots of a set from a folder: for set 6, D6R1_Odometry.dat and so on. Raises
+    ConfigError."""
     pattern = f'D{number}R*{COMMANDS}'
     paths = sorted(glob.glob(os.path.join(glob.escape(folder), pattern)))
     if not paths:

@@ -1,6 +1,6 @@
 """A recorded run: what was commanded, what the robot's sensors reported, and where the robot really was.
 
-Times are in s, on one clock; all arrays of a series have one value per time.
+Times are in s, on one clock. All arrays of a series have one value per time.
 """
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from rbx1_nav.robot.description import Robot
 from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.units import SECOND
 
-LARGEST = 1e10      # s, m, ...: no number of a run is larger
-MIN_TRAVEL, MIN_TURN = 0.02, 0.1    # m, rad: less is no motion
+LARGEST = 1e10      # s, m, ...: largest number allowed in a run
+MIN_TRAVEL, MIN_TURN = 0.02, 0.1    # m, rad: thresholds for motion
 
 
 class Commands(NamedTuple):
-    """Each is in force until the next."""
+    """Velocity commands, each of which is in force until the next."""
 
     time: Array     # s
     linear: Array   # m/s forward
@@ -27,7 +27,7 @@ class Commands(NamedTuple):
 
 
 class Track(NamedTuple):
-    """Poses."""
+    """A series of poses."""
 
     time: Array     # s
     x: Array        # m
@@ -36,7 +36,7 @@ class Track(NamedTuple):
 
 
 class Rates(NamedTuple):
-    """A gyro."""
+    """The readings of a gyro."""
 
     time: Array     # s
     rate: Array     # rad/s
@@ -47,16 +47,16 @@ class Recording(NamedTuple):
 
     name: str       # for messages
     commands: Commands
-    odometry: Track | None      # by the wheels
+    odometry: Track | None      # wheel odometry
     gyro: Rates | None
     truth: Track | None
-    end: Pose | None    # in the frame of the first pose, measured by hand
+    end: Pose | None    # end pose measured by hand, in the frame of the first pose
 
 
 def check_series(name: str, series: Commands | Track | Rates) -> None:
-    """Raise ConfigError unless all values of a Commands, Track or Rates are finite, and its stamps never go back.
+    """Raise ConfigError unless all values of a Commands, Track or Rates are finite, and its stamps never decrease.
 
-    name: what to call the series, with its file.
+    name: name of the series in messages, including its file.
     """
     for field, values in zip(series._fields, series):
         bad = numpy.flatnonzero(~(abs(values) < LARGEST))
@@ -66,13 +66,12 @@ def check_series(name: str, series: Commands | Track | Rates) -> None:
     back = numpy.flatnonzero(numpy.diff(series.time) < 0)
     if back.size:
         before, after = series.time[back[0]:back[0] + 2]
-        raise ConfigError(f'{name}: stamp of message {back[0] + 2}: {before - after:.3f} s before that of message '
-                          f'{back[0] + 1}: expected stamps that never go back')
+        raise ConfigError(f'{name}: stamp of message {back[0] + 2}: {before - after:.3f} s before message '
+                          f'{back[0] + 1}: expected stamps that never decrease')
 
 
 def check_recording(recording: Recording) -> Recording:
-    """Raise ConfigError unless a Recording has commands, motion, and series without mistakes on one clock. Returns it.
-    """
+    """Return a Recording that has commands, motion, and valid series on one clock. Raises ConfigError for any other."""
     name, commands = recording.name, recording.commands
     if not len(commands.time):
         raise ConfigError(f'{name}: no commands: expected the velocity commands of a run')
@@ -89,16 +88,17 @@ def check_recording(recording: Recording) -> Recording:
         first, last = max(series.time[0], commands.time[0]), min(series.time[-1], commands.time[-1])
         if not last - first > 0.5 * (commands.time[-1] - commands.time[0]):
             raise ConfigError(f'{name}: {field} from {series.time[0]:.1f} to {series.time[-1]:.1f} s, but commands '
-                              f'from {commands.time[0]:.1f} to {commands.time[-1]:.1f} s: expected the same time, by '
-                              'one clock')
+                              f'from {commands.time[0]:.1f} to {commands.time[-1]:.1f} s: expected the same time span, '
+                              'on one clock')
         if field != 'gyro' and not (max(numpy.ptp(series.x), numpy.ptp(series.y)) > MIN_TRAVEL
                                     or numpy.ptp(series.yaw) > MIN_TURN):
-            raise ConfigError(f'{name}: {field}: no motion, although it was commanded: expected a robot that moves')
+            raise ConfigError(f'{name}: {field}: the robot did not move, although it was commanded to: expected the '
+                              'topic of the robot that was driven')
     return recording
 
 
 def in_force(commands: Commands, robot: Robot) -> Commands:
-    """The Commands that a base puts in force: within the limits of a Robot, and until they time out."""
+    """Return the Commands as a base executes them: within the limits of a Robot, and until they time out."""
     time, linear, angular = commands
     linear = numpy.clip(linear, -robot.limits.linear, robot.limits.linear)
     angular = numpy.clip(angular, -robot.limits.angular, robot.limits.angular)
@@ -113,7 +113,7 @@ def in_force(commands: Commands, robot: Robot) -> Commands:
 
 def relative(pose: Array | Sequence[float] | Sequence[Array],
              other: Array | Sequence[float] | Sequence[Array]) -> Array:
-    """The pose `other` (x, y in m, yaw in rad) in the frame of `pose`, as an array; each may be many poses."""
+    """Return the pose `other` (x, y in m, yaw in rad) in the frame of `pose` as an array; each may be many poses."""
     x, y = other[0] - pose[0], other[1] - pose[1]
     c, s = numpy.cos(pose[2]), numpy.sin(pose[2])
     return numpy.array([c * x + s * y, c * y - s * x, other[2] - pose[2]])

@@ -1,4 +1,4 @@
-"""The result of a fit as text: a surface file with comments, and a table to print."""
+"""Formats the result of a fit as text: a surface file with comments, and a table to print."""
 from __future__ import annotations
 
 from math import degrees, radians
@@ -11,18 +11,18 @@ from rbx1_nav.fitting.whole import FitResult, Value, limits_of
 from rbx1_nav.simulation.surfaces import KEYS, OPTIONAL_KEYS
 
 UNITS = {'lag': 's', 'accel_limit': 'm/s^2', 'drag_straight': 'm/s', 'drag_turning': 'm/s at the wheel',
-         'ticks_meter': 'ticks per metre', 'gyro_noise': 'degrees/s rms, at 50 readings per second',
+         'ticks_meter': 'ticks per meter', 'gyro_noise': 'degrees/s rms, at 50 readings per second',
          'gyro_bias': 'degrees/s', 'gyro_scale_error': 'fraction of the rate', 'gyro_measurement_range': 'degrees/s',
-         'delay': 's', 'curvature': 'rad to the left per metre', 'turning_loss': 'm per rad',
-         'heading_noise_turning': 'rad, after one rad', 'heading_noise_straight': 'rad, after one metre',
-         'distance_noise': 'm, after one metre'}
+         'delay': 's', 'curvature': 'rad to the left per meter', 'turning_loss': 'm per rad',
+         'heading_noise_turning': 'rad, after 1 rad', 'heading_noise_straight': 'rad, after 1 m',
+         'distance_noise': 'm, after 1 m'}
 PARTS = (
     ('Motors: delay and lag after a command, and the speed lost by drag.',
      ('delay', 'lag', 'accel_limit', 'drag_straight', 'drag_turning')),
-    ("Slip: the fraction of the wheels' travel that the robot does not make, and its spread from run to run.",
+    ('Slip: the fraction of the wheel travel that is lost, and its spread from run to run.',
      ('slip_straight', 'slip_straight_spread', 'slip_turning', 'slip_turning_spread')),
-    ('The same in every run: drift to the left, and distance lost in an arc.', ('curvature', 'turning_loss')),
-    ('Errors that are drawn again and again on the way, 1 sigma after one unit of it.',
+    ('Constant in all runs: drift to the left, and distance lost in an arc.', ('curvature', 'turning_loss')),
+    ('Noise that varies along the path, 1 sigma after 1 m or 1 rad.',
      ('heading_noise_turning', 'heading_noise_straight', 'distance_noise')),
     ('Encoders.', ('ticks_meter',)),
     ('Gyro: bias and scale error are constant in a run.',
@@ -31,12 +31,12 @@ WIDTH = 117     # of a line
 
 
 def in_file_units(key: str, number: float) -> float:
-    """A value in SI units, in the unit of surface files."""
+    """Convert a value in SI units to the unit of surface files."""
     return degrees(number) if {**KEYS, **OPTIONAL_KEYS}[key].convert is radians else number
 
 
 def shown(value: Value) -> tuple[str, str | None]:
-    """(value, standard error or None) of a Value, as text in the unit of the file: with two digits of the error."""
+    """Return (value, standard error or None) of a Value as text in the unit of the file, to two digits of the error."""
     number = in_file_units(value.key, value.value)
     if value.error is None:
         return f'{number:.6g}', None
@@ -46,25 +46,25 @@ def shown(value: Value) -> tuple[str, str | None]:
 
 
 def yaml_number(value: Value) -> str:
-    """A Value as a number of YAML, inside the range of its key."""
+    """Return a Value as a YAML number within the range of its key."""
     text = shown(value)[0]
     low, high = (in_file_units(value.key, limit) for limit in limits_of(value.key))
-    if not low <= float(text) <= high:      # by rounding
+    if not low <= float(text) <= high:      # due to rounding
         text = repr(in_file_units(value.key, value.value))
         text = text if low <= float(text) <= high else repr(low if float(text) < low else high)
     return as_yaml_number(text) if 'e' in text else text
 
 
 def comment(value: Value) -> str:
-    """What stands behind a Value."""
+    """Return the comment after a Value."""
     unit = UNITS.get(value.key)
     error = shown(value)[1]
-    text = f'left as it was: {value.reason}' if error is None else f'fitted, +- {error}'
+    text = f'not fitted: {value.reason}' if error is None else f'fitted, +- {error}'
     return f'{unit}; {text}' if unit else text
 
 
 def wrapped(text: str) -> list[str]:
-    """The lines of a comment."""
+    """Wrap text to the lines of a comment."""
     lines, line = [], '#'
     for word in text.split():
         if len(line) + 1 + len(word) > WIDTH and line != '#':
@@ -75,11 +75,11 @@ def wrapped(text: str) -> list[str]:
 
 
 def surface_text(result: FitResult, start_name: str, names: Sequence[str]) -> str:
-    """A surface file. start_name: of the starting surface; names: of the recordings."""
+    """Return the text of a surface file. start_name: name of the starting surface; names: names of the recordings."""
     lines = wrapped(f"Fitted by fit_surface.py to {len(names)} recording{'' if len(names) == 1 else 's'}: "
                     f"{', '.join(show_name(name) for name in names)}.")
-    lines += wrapped(f'Fitted: {result.description}. "+-" is one standard error. A value that was "left as it was" is '
-                     f'that of {show_name(start_name)}.')
+    lines += wrapped(f'Fitted: {result.description}. "+-" is one standard error. A value marked "not fitted" is taken '
+                     f'from {show_name(start_name)}.')
     for text in result.notes:
         lines += wrapped(text)
     for text in result.warnings:
@@ -94,7 +94,7 @@ def surface_text(result: FitResult, start_name: str, names: Sequence[str]) -> st
 
 
 def table(result: FitResult, start_name: str) -> list[str]:
-    """The lines to print."""
+    """Return the lines to print."""
     values = {value.key: value for value in result.values}
     ordered = [values[key] for _, keys in PARTS for key in keys]
     lines = [f'Fitted: {result.description}']
@@ -104,6 +104,6 @@ def table(result: FitResult, start_name: str) -> list[str]:
             lines.append(f"  {value.key:<24} {number:>10} +- {error:<8} {UNITS.get(value.key, '')}".rstrip())
     left = [value for value in ordered if value.error is None]
     if left:
-        lines.append(f'Left as on {show_name(start_name)}:')
+        lines.append(f'Not fitted, taken from {show_name(start_name)}:')
         lines += [f'  {value.key:<24} {shown(value)[0]:>10}    {value.reason}' for value in left]
     return lines + [f'Note: {text}' for text in result.notes] + [f'Warning: {text}' for text in result.warnings]

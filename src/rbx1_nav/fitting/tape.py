@@ -1,7 +1,7 @@
-"""Fits a floor to runs of which only the ends are known, measured with a tape.
+"""Fits a surface to runs for which only the end pose was measured, with a tape.
 
-A few ends tell the mean slips and how large the errors are as a whole, not each noise by itself. So all noises and
-spreads are multiplied by one common factor. What so few runs leave open is added to the spreads.
+A few end poses determine the mean slips and the overall size of the errors, but not each noise individually. So all
+noises and spreads are multiplied by one common factor. The remaining uncertainty of the slips is added to the spreads.
 """
 from __future__ import annotations
 
@@ -19,25 +19,25 @@ from rbx1_nav.simulation.surfaces import Surface
 SLIPS = ('slip_straight', 'slip_turning')
 TYPICAL = dict(heading_noise_turning=0.09, heading_noise_straight=0.07, distance_noise=0.04,     # of real Creates
                slip_straight_spread=0.01, slip_turning_spread=0.01)
-FACTORS = 0.02, 50.0    # of the noises
-PRIOR = 1.0     # 1 sigma of the logarithm of the factor, before any run is seen: floors differ by so much
+FACTORS = 0.02, 50.0    # limits of the factor
+PRIOR = 1.0     # prior 1 sigma of the logarithm of the factor: the variation between floors
 ROUNDS = 3
-PART = 0.9      # the region that has to hold this part of the ends of further runs
+PART = 0.9      # share of the end poses of future runs that the region should contain
 FAR_OFF = 5.0   # a factor above this, or below its reciprocal, is suspicious
 
 
 class EndsFit(NamedTuple):
-    """What was found."""
+    """The result of fit_ends()."""
 
     values: dict[str, float]
     errors: dict[str, float]    # standard errors
-    reasons: dict[str, str]     # for keys that are not told
+    reasons: dict[str, str]     # for keys that cannot be determined
     notes: list[str]
     warnings: list[str]
 
 
 def fit_ends(runs: Sequence[PreparedRun], surface: Surface, end_errors: Sequence[float]) -> EndsFit:
-    """The EndsFit; end_errors: 1 sigma of x, y (m) and yaw (rad)."""
+    """Fit slips, noises and spreads to the end poses of runs. end_errors: 1 sigma of x, y (m) and yaw (rad)."""
     start = surface
     if not any(getattr(surface, key) for key in NOISES):
         surface = start = with_values(surface, {key: getattr(surface, key) or value
@@ -72,29 +72,29 @@ def fit_ends(runs: Sequence[PreparedRun], surface: Surface, end_errors: Sequence
         values[key] = float(min(0.5, wider * numpy.hypot(getattr(surface, key), errors.get(mean, 0.0))))
     relative = (1 / (2 * degrees)) ** 0.5
     found = {key: float(values[key] * relative) for key in (*NOISES, *spreads) if values[key]}
-    notes = [f'Noises and spreads are those of the starting surface times {factor:.2f}, one common factor that '
-             f'{len(runs)} ends tell, and times {wider:.2f}, since {3 * len(runs)} values are few: the region of 90 % '
-             "is to hold 90 % of the ends of further runs (Student's t distribution). The spreads also contain the "
-             'standard errors of the mean slips.']
+    notes = [f'The noises and spreads of the starting surface are multiplied by {factor:.2f}, one common factor fitted '
+             f'to {len(runs)} end poses, and by {wider:.2f} because {3 * len(runs)} values are few: the 90 % region '
+             "should contain 90 % of the end poses of future runs (Student's t distribution). The spreads also contain "
+             'the standard errors of the mean slips.']
     warnings = [] if 1 / FAR_OFF < factor < FAR_OFF else [
-        f'noise: {factor:.2f} times that of the starting surface: check the ends, and their order']
+        f'noise: {factor:.2f} times the noise of the starting surface: check the end poses and their order']
     return EndsFit({key: float(value) for key, value in values.items()}, {**errors, **found}, reasons, notes, warnings)
 
 
 def ends_of(run: PreparedRun, surface: Surface) -> Windows:
-    """The Windows, one, of a run, with the heading nearest to what a Surface predicts."""
+    """Return the single window of a run, with the heading closest to the prediction of a Surface."""
     steps = run.steps(surface)
     yaw = (1 - surface.slip_turning) * steps.turn.sum() + surface.curvature * steps.straight.sum()
     return run.whole(yaw)
 
 
 def scaled(surface: Surface, start: Surface, factor: float) -> Surface:
-    """A Surface with the noises and spreads of another one, times a factor."""
+    """Return a Surface with the noises and spreads of `start` times a factor."""
     return with_values(surface, {key: min(0.5, factor * getattr(start, key)) for key in NOISES + SPREADS})
 
 
 def fit_factor(fitter: Fitter, surface: Surface, start: Surface, means: Sequence[str]) -> float:
-    """The most probable factor of all noises and spreads."""
+    """Return the most probable factor for all noises and spreads."""
     cost = fitter.noise_cost(surface, means)
 
     def total(logarithm: float) -> float:
@@ -104,6 +104,6 @@ def fit_factor(fitter: Fitter, surface: Surface, start: Surface, means: Sequence
 
 
 def widening(degrees: int) -> float:
-    """By how much a region must be wider if its size was itself estimated, with so many degrees of freedom: the root of
-    the ratio of Hotelling's T squared, for two coordinates, and chi squared."""
+    """Return the factor by which to widen a region whose size was estimated with `degrees` degrees of freedom: the
+    square root of the ratio of Hotelling's T squared, for two coordinates, to chi squared."""
     return float((2 * f_distribution.ppf(PART, 2, degrees) / chi2.ppf(PART, 2)) ** 0.5)

@@ -1,4 +1,4 @@
-"""From commands, or from odometry, to the travel of the wheels in small steps."""
+"""Converts commands or odometry to the wheel travel in small steps."""
 from __future__ import annotations
 
 from typing import NamedTuple
@@ -14,7 +14,7 @@ STEP = 0.05     # s
 
 
 class Steps(NamedTuple):
-    """The travel of the wheels by their encoders in each step."""
+    """The wheel travel in each step, as measured by the encoders."""
 
     time: Array         # s; one value more than the others, the start of the first step
     straight: Array     # m
@@ -22,12 +22,12 @@ class Steps(NamedTuple):
 
 
 def grid(start: float, end: float) -> Array:
-    """Times from `start` to `end` (s), STEP apart."""
+    """Return times from `start` to `end` (s), STEP apart."""
     return start + STEP * numpy.arange(int((end - start) / STEP) + 1)
 
 
 def commanded_travel(surface: Surface, base_width: float, commands: Commands, times: Array) -> Steps:
-    """The Steps between `times` (s) of motors on a Surface that stood before the first of the Commands.
+    """Return the Steps between `times` (s) of motors on a Surface that were at rest before the first of the Commands.
 
     base_width: m.
     """
@@ -49,9 +49,9 @@ def commanded_travel(surface: Surface, base_width: float, commands: Commands, ti
 
 
 def reported_travel(odometry: Track, times: Array) -> Steps:
-    """The Steps between `times` (s) by odometry, a Track."""
+    """Return the Steps between `times` (s) according to the odometry."""
     x, y, yaw = (numpy.interp(times, odometry.time, values) for values in odometry[1:])
     turn = numpy.diff(yaw)
     middle = yaw[:-1] + turn / 2
     chord = numpy.diff(x) * numpy.cos(middle) + numpy.diff(y) * numpy.sin(middle)
-    return Steps(times, chord / numpy.sinc(turn / 2 / numpy.pi), turn)      # kinematics.arc(), the other way round
+    return Steps(times, chord / numpy.sinc(turn / 2 / numpy.pi), turn)      # the inverse of kinematics.arc()

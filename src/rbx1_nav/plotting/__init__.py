@@ -1,1 +1,1 @@
-"""Pictures, with matplotlib."""
+"""Plots, drawn with matplotlib."""

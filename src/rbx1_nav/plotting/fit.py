@@ -1,4 +1,4 @@
-"""A picture of a fit: recorded and simulated paths of the same commands, and where they end."""
+"""Plots a fit: recorded and simulated paths with the same commands, and their end poses."""
 from __future__ import annotations
 
 from math import atan2, degrees
@@ -14,14 +14,14 @@ from rbx1_nav.fitting.comparison import Comparison, shares
 from rbx1_nav.fitting.ensemble import mahalanobis
 from rbx1_nav.plotting.runs import save
 
-TRUTH, ODOMETRY, SIMULATED = '#0072b2', '#d55e00', '#009e73'    # as in script/report.py; safe for the colour-blind
-REGIONS = (0.9, 0.2), (0.5, 0.35)       # part of the simulated ends, opacity
-MARGIN = 0.08       # around all paths, as a part of their extent
-POINTS = 150        # simulated ends of each run that are shown
+TRUTH, ODOMETRY, SIMULATED = '#0072b2', '#d55e00', '#009e73'    # as in script/report.py; safe for color-blind readers
+REGIONS = (0.9, 0.2), (0.5, 0.35)       # share of the simulated end poses, opacity
+MARGIN = 0.08       # margin around all paths, as a fraction of their extent
+POINTS = 150        # number of simulated end poses shown per run
 
 
 def draw_fit(file: str, title: str, comparisons: Sequence[Comparison]) -> None:
-    """Draw Comparisons side by side to a file. Raises OSError."""
+    """Draw recorded paths, simulated paths and end poses of Comparisons side by side into a file. Raises OSError."""
     figure = Figure(figsize=(15.5, 5.9), constrained_layout=True)
     figure.suptitle(title)
     recorded, simulated, ends = figure.subplots(1, 3)
@@ -32,18 +32,18 @@ def draw_fit(file: str, title: str, comparisons: Sequence[Comparison]) -> None:
         if each.end is not None:
             for axes in (recorded, ends):
                 axes.plot(*each.end[:2], 's', color='black', markerfacecolor='white', markersize=6, zorder=5,
-                          label=None if number else 'end, measured')
+                          label=None if number else 'end pose, measured')
         simulated.plot(*each.simulated, color=SIMULATED, linewidth=1, alpha=0.7, label=None if number else 'simulated')
         simulated.plot(*each.simulated[:, -1], 'o', color='black', markerfacecolor='white', markersize=5, zorder=5,
-                       label=None if number else 'end, simulated')
+                       label=None if number else 'end pose, simulated')
         if not any(alike(each, other) for other in comparisons[:number]):
             draw_regions(ends, each.ends[:, :2], label=not number)
     set_extents(comparisons, recorded, simulated)
     count, inside_50, inside_90 = shares(comparisons)
     recorded.set_title('recorded', fontsize='medium')
     simulated.set_title('simulated on the fitted floor, same commands', fontsize='medium')
-    ends.set_title(f'of {count} measured ends, {inside_50} are inside 50 %, {inside_90} inside 90 %'
-                   if count else 'simulated ends', fontsize='medium')
+    ends.set_title(f'{count} measured end poses: {inside_50} inside 50 %, {inside_90} inside 90 %'
+                   if count else 'simulated end poses', fontsize='medium')
     for axes in (recorded, simulated, ends):
         if axes is not ends:
             axes.plot(0, 0, marker='+', markersize=14, color='black', linestyle='', label='start')
@@ -55,12 +55,13 @@ def draw_fit(file: str, title: str, comparisons: Sequence[Comparison]) -> None:
 
 
 def alike(comparison: Comparison, other: Comparison) -> bool:
-    """Whether two runs have the same region, as far as can be seen: they had the same commands."""
+    """Return whether two runs have visibly equal regions, because they had the same commands."""
     return bool(mahalanobis(other.ends[:, :2], comparison.ends[:, :2].mean(axis=0)[None])[0] < 0.02)
 
 
 def draw_regions(axes: Axes, points: Array, label: bool) -> None:
-    """Simulated ends, (n, 2), and the regions that hold parts of them. label: whether they are for the legend."""
+    """Draw simulated end positions, (n, 2), and the regions that contain shares of them. label: whether to add them to
+    the legend."""
     axes.plot(*points[:POINTS].T, '.', color=SIMULATED, markersize=4, alpha=0.6, zorder=1, markeredgewidth=0,
               label='simulated' if label else None)
     covariance = numpy.cov(points.T)
@@ -75,7 +76,7 @@ def draw_regions(axes: Axes, points: Array, label: bool) -> None:
 
 
 def set_extents(comparisons: Sequence[Comparison], *panels: Axes) -> None:
-    """The same part of the floor for paths, however long."""
+    """Show the same part of the floor, which contains all paths, in all panels."""
     points = numpy.concatenate([path for each in comparisons for path in (each.recorded, each.simulated)
                                 if path is not None] + [numpy.zeros((2, 1))], axis=1)
     low, high = points.min(axis=1), points.max(axis=1)

@@ -1,1 +1,1 @@
-"""What is true of any robot: kinematics, odometry, its description, and what its sensors report."""
+"""Code for any robot, real or simulated: kinematics, odometry, the description of a robot, and sensor readings."""

@@ -1,4 +1,4 @@
-"""Calibration: the factor that corrects a sensor, from what the sensor reported and what was measured."""
+"""Calibration: the correction factor of a sensor, calculated from the reported and the measured value."""
 from __future__ import annotations
 
 from math import degrees, inf, isfinite
@@ -7,17 +7,17 @@ from typing import Sequence
 
 from rbx1_nav.config import ConfigError, Section, YamlValue, show
 
-MAX_ERROR = 2.0         # a distance or turn that is wrong by more than this factor is a mistake, and no calibration
-MAX_FACTOR = 10.0       # the same for a correction factor; create_node's highest is 6
-MAX_GAP = 0.5           # s between two readings of a gyro; it turns by 15 degrees at the speed of the script
-REST = 1.0              # s at least, to know a gyro's bias
-UNITS = {'m': 'm', 'degrees': 'degrees?|deg|°'}   # how an answer may end
+MAX_ERROR = 2.0         # a distance or turn that is wrong by more than this factor is a mistake, not a calibration
+MAX_FACTOR = 10.0       # largest correction factor, and inverse of the smallest one; create_node's highest is 6
+MAX_GAP = 0.5           # s between two gyro readings, in which the robot turns by 15 degrees at the script's speed
+REST = 1.0              # minimum time at rest (s) to determine a gyro's bias
+UNITS = {'m': 'm', 'degrees': 'degrees?|deg|°'}   # unit that may follow the number in an answer
 
 
 def read_measured(key: str, value: YamlValue, expected: float, what: str, unit: str) -> float:
-    """What somebody has measured: a number, or text as typed; at least half and at most twice of `expected`.
+    """Return a measured value, given as a number or as typed text; at least half and at most twice `expected`.
 
-    unit: m or degrees; key, what: for the text of the error. Raises ConfigError.
+    unit: m or degrees; key, what: for the error message. Raises ConfigError.
     """
     if isinstance(value, str):
         if re.search(r'\d,\d', value):
@@ -31,9 +31,9 @@ def read_measured(key: str, value: YamlValue, expected: float, what: str, unit: 
 
 
 def corrected(key: str, factor: float, measured: float, reported: float) -> float:
-    """The new value of the correction factor `key`, whose value was `factor` when the sensor reported this.
+    """Return the new value of the correction factor `key`, which was `factor` during the measurement.
 
-    measured, reported: of the same distance or turn, in the same unit. Raises ConfigError.
+    measured, reported: the same distance or turn, in the same unit. Raises ConfigError.
     """
     new = factor * measured / reported if reported else inf
     if not 1 / MAX_FACTOR <= new <= MAX_FACTOR:
@@ -43,15 +43,15 @@ def corrected(key: str, factor: float, measured: float, reported: float) -> floa
 
 
 def turn_by_gyro(readings: Sequence[tuple[float, float]], start: float, end: float, expected: float) -> float:
-    """The angle (rad) that a gyro has measured from `start`, when the robot began to turn, to `end`.
+    """Return the angle (rad) that a gyro has measured from `start`, when the robot began to turn, to `end`.
 
-    readings: (time in s, angular velocity in rad/s), in their order. The mean of those up to `start`, at rest, is the
-    gyro's bias. Each of the others is the mean since the one before. expected: the turn by the odometry, rad. Raises
-    ConfigError if the gyro has not measured the whole turn, or nothing of it.
+    readings: (time in s, angular velocity in rad/s), in the order of their times. The mean of the readings up to
+    `start`, at rest, is the gyro's bias. Each later reading is the mean since the previous one. expected: the turn that
+    the odometry measured, rad. Raises ConfigError if the gyro has not measured the whole turn, or has measured no turn.
     """
     rest = [rate for time, rate in readings if time <= start]
     if not rest or start - readings[0][0] < REST:
-        raise ConfigError(f'{len(rest)} readings at rest: expected {REST:g} s of them')
+        raise ConfigError(f'{len(rest)} readings at rest: expected at least {REST:g} s of readings')
     bias = sum(rest) / len(rest)
     turned, before = 0.0, readings[len(rest) - 1][0]
     for time, rate in readings[len(rest):]:
@@ -64,5 +64,5 @@ def turn_by_gyro(readings: Sequence[tuple[float, float]], start: float, end: flo
     if not isfinite(turned):
         raise ConfigError(f'a turn of {turned:g} rad: expected finite readings')
     if abs(turned) < abs(expected) / MAX_FACTOR:
-        raise ConfigError(f'it reports no turn ({degrees(turned):.1f} degrees)')
+        raise ConfigError(f'the gyro reports no turn ({degrees(turned):.1f} degrees)')
     return turned

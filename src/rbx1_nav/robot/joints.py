@@ -1,4 +1,4 @@
-"""A position-controlled joint, as simple as the ArbotiX driver's simulation of its servos."""
+"""A position-controlled joint, modeled as simply as the servos in the ArbotiX driver's simulation."""
 from __future__ import annotations
 
 from math import isfinite
@@ -8,7 +8,10 @@ from rbx1_nav.units import SECOND, clamp
 
 
 class Joint:
-    """Moves towards its goal at its maximum speed and stays within its limits. Radians and seconds."""
+    """A joint that moves toward its goal at its maximum speed and stays within its limits.
+
+    Radians and seconds.
+    """
 
     def __init__(self, name: str, lower: float, upper: float, max_speed: float) -> None:
         """lower, upper: limits, rad; max_speed: rad/s."""
@@ -29,19 +32,19 @@ class Joint:
         """Move for `duration` seconds."""
         step = clamp(self.goal - self.position, self.max_speed * duration)
         self.velocity = step / duration if duration > 0 else 0.0
-        # end at the goal itself, not a rounding error beside it
+        # stop exactly at the goal, without a rounding error
         self.position = self.goal if step == self.goal - self.position else self.position + step
 
 
 class JointGroup:
-    """Advances joints together, on a clock in ns."""
+    """Advances several joints on one clock, in ns."""
 
     def __init__(self, joints: Sequence[Joint]) -> None:
         self.joints = joints
         self.now: int | None = None
 
     def advance(self, now: int) -> None:
-        """Move up to `now`. A clock that jumped back moves nothing."""
+        """Advance the joints to `now`. If the clock jumped back, no joint moves."""
         elapsed = max(0, now - self.now) if self.now is not None else 0
         self.now = now
         for joint in self.joints:

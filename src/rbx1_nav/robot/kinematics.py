@@ -1,6 +1,6 @@
-"""Differential-drive kinematics: how wheel travel becomes a pose.
+"""Differential-drive kinematics: integrates wheel travel into a pose.
 
-Metres, radians, seconds; x forward, y left, counter-clockwise positive (REP 103).
+Meters, radians, seconds; x forward, y left, counter-clockwise positive (REP 103).
 """
 from __future__ import annotations
 
@@ -20,17 +20,17 @@ ORIGIN = Pose(0.0, 0.0, 0.0)
 
 
 def relative_frame(pose: Pose, other: Pose) -> Pose:
-    """The Pose of the frame of `other` in the frame of `pose`, where both are the pose of the same robot."""
+    """Return the Pose of the frame of `other` in the frame of `pose`, where both are poses of the same robot."""
     yaw = pose.yaw - other.yaw
     return Pose(pose.x - other.x * cos(yaw) + other.y * sin(yaw), pose.y - other.x * sin(yaw) - other.y * cos(yaw), yaw)
 
 
 def arc(pose: Pose, distance: float, angle: float) -> Pose:
-    """The pose after a circular arc of length `distance` (m) through `angle` (rad).
+    """Return the pose after a circular arc of length `distance` (m) through `angle` (rad).
 
-    Exact for any pair: the chord of an arc is distance * sin(angle/2) / (angle/2), and it points half the angle
-    further than the first heading (plane geometry; the same closed form as Siegwart, Nourbakhsh and Scaramuzza,
-    Introduction to Autonomous Mobile Robots, 2nd ed., section 5.2.4, without its straight-line approximation).
+    Exact for any pair: the chord of an arc is distance * sin(angle/2) / (angle/2), and its direction is the initial
+    heading plus half the angle (plane geometry; the closed form of Siegwart, Nourbakhsh and Scaramuzza, Introduction to
+    Autonomous Mobile Robots, 2nd ed., section 5.2.4, without its straight-line approximation).
     """
     half = angle / 2
     # below 1e-4 rad the next term of the series is below the resolution of a float
@@ -39,7 +39,7 @@ def arc(pose: Pose, distance: float, angle: float) -> Pose:
 
 
 class Odometry:
-    """Integrates the travel of two wheels to a pose."""
+    """Integrates the travel of two wheels into a pose."""
 
     def __init__(self, base_width: float) -> None:
         """base_width: distance between the wheels, m."""
@@ -47,7 +47,7 @@ class Odometry:
         self.pose = ORIGIN
 
     def update(self, left: float, right: float) -> None:
-        """Add the travel (m) of both wheels, each at a constant speed."""
+        """Add the travel (m) of both wheels, each driven at a constant speed."""
         self.move((left + right) / 2, (right - left) / self.base_width)
 
     def move(self, distance: float, angle: float) -> None:

@@ -1,4 +1,4 @@
-"""Odometry that knows how uncertain it is."""
+"""Odometry with a covariance."""
 from __future__ import annotations
 
 from math import cos, sin
@@ -9,38 +9,38 @@ import numpy
 from rbx1_nav.arrays import Array
 from rbx1_nav.robot.kinematics import Odometry, Pose
 
-HELD = 0.3      # m: a robot that drives straight ahead leaves a rounded heading as it is for so long
+HELD = 0.3      # m: path over which a rounded heading stays constant while the robot drives straight ahead
 
 
 class Travel(Protocol):
-    """What a robot has travelled by its sensors, and the variances of that."""
+    """The travel that a robot's sensors have measured, and its variances."""
 
     @property
     def distance(self) -> float:
-        """m."""
+        """Distance, m."""
 
     @property
     def angle(self) -> float:
-        """rad."""
+        """Angle, rad."""
 
     @property
     def distance_variance(self) -> float:
-        """m^2."""
+        """Variance of the distance, m^2."""
 
     @property
     def angle_variance(self) -> float:
-        """rad^2."""
+        """Variance of the angle, rad^2."""
 
 
 class OdometryErrors(NamedTuple):
-    """Of the wheels' travel on the floor, 1 sigma. They grow with the root of the travel."""
+    """Errors of the wheels' travel on the floor, 1 sigma, which grow with the square root of the travel."""
 
     linear: float   # m after 1 m
     angular: float  # rad after a turn of 1 rad
     heading: float  # rad after 1 m
 
     def variances(self, travel: Travel) -> tuple[float, float]:
-        """Of the length (m^2) and the angle (rad^2)."""
+        """Return the variances of the length (m^2) and the angle (rad^2)."""
         distance, angle = abs(travel.distance), abs(travel.angle)
         return self.linear ** 2 * distance, self.angular ** 2 * angle + self.heading ** 2 * distance
 
@@ -48,16 +48,16 @@ class OdometryErrors(NamedTuple):
 class UncertainOdometry:
     """A pose with its 3x3 covariance (x, y in m, yaw in rad), propagated to first order along the path.
 
-    Each step adds independent errors of its length and angle, whose variances grow with the travel: Siegwart,
-    Nourbakhsh and Scaramuzza, Introduction to Autonomous Mobile Robots, 2nd ed., section 5.2.4.
+    Each step adds independent errors of its length and its angle. Their variances grow with the travel (Siegwart,
+    Nourbakhsh and Scaramuzza, Introduction to Autonomous Mobile Robots, 2nd ed., section 5.2.4).
     """
 
     def __init__(self, width: float, errors: OdometryErrors, rounding: tuple[float, float]) -> None:
-        """width: between the wheels, m; rounding: see travel.py."""
+        """width: distance between the wheels, m; rounding: see travel.py."""
         self.odometry = Odometry(width)
         self.errors = errors
         self.rounding = rounding[0] ** 2, rounding[1] ** 2      # m^2, rad^2
-        # the covariance without rounding, which does not add up: the next count makes up for it
+        # the covariance without rounding errors, which do not accumulate: the next count compensates for them
         self.xx = self.xy = self.yy = self.x_yaw = self.y_yaw = self.yaw_yaw = 0.0
 
     @property
@@ -66,17 +66,17 @@ class UncertainOdometry:
 
     @property
     def covariance(self) -> Array:
-        """Of x, y (m^2) and yaw (rad^2)."""
+        """The covariance of x, y (m^2) and yaw (rad^2)."""
         position, yaw = self.rounding
         return numpy.array([[self.xx + position, self.xy, self.x_yaw],
                             [self.xy, self.yy + position, self.y_yaw],
                             [self.x_yaw, self.y_yaw, self.yaw_yaw + yaw]])
 
     def _variances(self, travel: Travel) -> tuple[float, float, float]:
-        """Variances of the length, the displacement to the side (m^2) and the angle (rad^2).
+        """Return the variances of the length, the sideways displacement (m^2) and the angle (rad^2).
 
-        To the side: the heading is counted in whole units, and its rounding is the same until the next unit. So it adds
-        up over the path to that unit, or else is the mean of two roundings.
+        Sideways: the heading is counted in whole units, and its rounding error is constant until the next unit. So this
+        error adds up over the path to that unit. Over a longer step, it is the mean of two rounding errors.
         """
         distance, angle = abs(travel.distance), abs(travel.angle)
         length, turn = self.errors.variances(travel)
@@ -93,8 +93,8 @@ class UncertainOdometry:
             return
         middle = self.pose.yaw + angle / 2
         c, s = cos(middle), sin(middle)
-        # J C J' + K V K', with the Jacobians of the new pose by the old one, and by the travel: written out, since
-        # numpy needs six times as long for matrices this small, at each reading
+        # J C J' + K V K', with the Jacobians of the new pose with respect to the old pose and to the travel. This is
+        # written out because numpy needs six times as long for matrices this small, and this runs at each reading
         x, y = -distance * s, distance * c
         self.xx += (2 * self.x_yaw + x * self.yaw_yaw) * x + along * c * c + aside * s * s + turn * x * x / 4
         self.xy += (self.y_yaw * x + self.x_yaw * y + self.yaw_yaw * x * y

@@ -1,4 +1,4 @@
-"""What the sensors of a robot report, simulated or real, and how uncertain that is."""
+"""Readings of a robot's sensors, simulated or real, and their uncertainties."""
 from __future__ import annotations
 
 from typing import NamedTuple
@@ -8,18 +8,18 @@ MIN_VARIANCE = 1e-12    # smallest variance that a sensor may report, same units
 
 
 class Uncertainty(NamedTuple):
-    """Variances."""
+    """Variances of a pose and of the speeds."""
 
-    position: float     # of x and y, m^2
-    yaw: float          # rad^2
-    linear: float       # of the speed, m^2/s^2
-    angular: float      # of the speed, rad^2/s^2
+    position: float     # variance of x and y, m^2
+    yaw: float          # variance of the yaw, rad^2
+    linear: float       # variance of the linear speed, m^2/s^2
+    angular: float      # variance of the angular speed, rad^2/s^2
 
 
 class Reading(NamedTuple):
     """A reading of a gyro."""
 
     rate: float             # angular velocity with bias and scale error, rad/s
-    rate_variance: float    # of its noise, rad^2/s^2
+    rate_variance: float    # variance of the noise of the rate, rad^2/s^2
     yaw: float              # the heading integrated from calibrated readings, rad, not wrapped
     yaw_variance: float     # rad^2

@@ -1,4 +1,4 @@
-"""What a robot looks like: the visuals of a URDF file."""
+"""Reads the visuals of a URDF file, which define the appearance of a robot."""
 from __future__ import annotations
 
 from typing import Mapping, NamedTuple, Tuple, TypeVar, cast
@@ -13,17 +13,17 @@ T = TypeVar('T')
 class Visual(NamedTuple):
     """A visual of a link."""
 
-    link: str | None        # its name
+    link: str | None        # name of the link
     xyz: Numbers            # position in the frame of the link, m
     rpy: Numbers            # roll, pitch, yaw in the frame of the link, rad
     shape: str              # one of SHAPES
-    size: Numbers           # extent along x, y and z, m; of a mesh: its scale
-    mesh: str               # its URL, or ''
+    size: Numbers           # extent along x, y and z, m; for a mesh: its scale
+    mesh: str               # URL of the mesh, or ''
     color: Numbers | None   # r, g, b, alpha
 
 
 def read_visuals(text: str) -> list[Visual]:
-    """The Visuals in the text of a URDF file. Raises ValueError if it is not one."""
+    """Return the Visuals in the text of a URDF file. Raises ValueError if it is not a URDF file."""
     try:
         root = ElementTree.fromstring(text)
         if root.tag != 'robot':
@@ -37,8 +37,8 @@ def read_visuals(text: str) -> list[Visual]:
 
 
 def _required(value: T | None) -> T:
-    """What a URDF file has. If it does not, the use of None is an error that read_visuals() catches."""
-    return cast(T, value)   # a check of its own would change the text of that error
+    """Return a value that a URDF file must contain. Using None raises an error, which read_visuals() catches."""
+    return cast(T, value)   # a separate check would change the text of that error
 
 
 def _numbers(text: str | None, count: int = 3) -> Numbers:

@@ -1,1 +1,1 @@
-"""What the nodes share and what depends on ROS. The only subpackage that may import rospy."""
+"""Code shared by the nodes, and everything that depends on ROS. The only subpackage that may import rospy."""

@@ -1,4 +1,4 @@
-"""Conversion between the core's types and ROS messages."""
+"""Conversions between the types of the core and ROS messages."""
 from __future__ import annotations
 
 from math import atan2, cos, isnan, nan, pi, sin, sqrt
@@ -20,33 +20,33 @@ from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.robot.readings import MEASURED, Reading, Uncertainty
 from rbx1_nav.units import wrap_angle
 
-ROUNDING = 1e-6     # of a correlation that somebody has calculated
-UNKNOWN = 1e6       # variance of what is not measured, as in diff_drive_controller and robot_pose_ekf
+ROUNDING = 1e-6     # tolerance for rounding errors of a received correlation
+UNKNOWN = 1e6       # variance of a quantity that is not measured, as in diff_drive_controller and robot_pose_ekf
 
 
 def diagonal(*variances: float) -> list[float]:
-    """A 6x6 covariance, row by row, from the variances of x, y, z, roll, pitch and yaw."""
+    """Return a 6x6 covariance, row by row, from the variances of x, y, z, roll, pitch and yaw."""
     matrix = [0.0] * 36
     matrix[::7] = variances
     return matrix
 
 
 def from_twist(twist: Twist) -> tuple[float, float, tuple[float, float, float, float]]:
-    """(linear, angular, others) of a Twist: m/s forward, rad/s to the left, and the four velocities that a differential
-    drive cannot follow."""
+    """Return (linear, angular, others) of a Twist: m/s forward, rad/s to the left, and the four velocities that a
+    differential drive cannot follow."""
     return (twist.linear.x, twist.angular.z,
             (twist.linear.y, twist.linear.z, twist.angular.x, twist.angular.y))
 
 
 def squared_norm(rotation: Quaternion) -> float:
-    """The squared length of a Quaternion; nan if it is not normalized."""
+    """Return the squared length of a Quaternion; nan if it is not normalized."""
     # not `** 2`, which raises an OverflowError for huge numbers
     norm = sum(value * value for value in (rotation.x, rotation.y, rotation.z, rotation.w))
     return norm if 0.9 < norm < 1.1 else nan
 
 
 def unit_quaternion(rotation: Quaternion) -> tuple[float, float, float, float] | None:
-    """(x, y, z, w) of a Quaternion, of length 1; None if it is not normalized."""
+    """Return (x, y, z, w) of a Quaternion, scaled to length 1; None if it is not normalized."""
     length = sqrt(squared_norm(rotation))
     if isnan(length):
         return None
@@ -54,7 +54,7 @@ def unit_quaternion(rotation: Quaternion) -> tuple[float, float, float, float] |
 
 
 def yaw_of(rotation: Quaternion) -> float:
-    """The yaw (rad) of a Quaternion; nan if it is not normalized."""
+    """Return the yaw (rad) of a Quaternion; nan if it is not normalized."""
     norm = squared_norm(rotation)
     if isnan(norm):
         return nan
@@ -63,12 +63,12 @@ def yaw_of(rotation: Quaternion) -> float:
 
 
 def quaternion(yaw: float) -> Quaternion:
-    """The rotation by yaw (rad) about z."""
+    """Return the Quaternion of a rotation by yaw (rad) about z."""
     return Quaternion(0.0, 0.0, sin(yaw / 2), cos(yaw / 2))
 
 
 def planar(covariance: Array) -> list[float]:
-    """A 6x6 covariance, row by row, from the 3x3 covariance of x, y (m) and yaw (rad)."""
+    """Return a 6x6 covariance, row by row, from the 3x3 covariance of x, y (m) and yaw (rad)."""
     matrix = diagonal(0.0, 0.0, UNKNOWN, UNKNOWN, UNKNOWN, 0.0)
     for row, values in zip((0, 1, 5), covariance.tolist()):
         for column, value in zip((0, 1, 5), values):
@@ -78,9 +78,9 @@ def planar(covariance: Array) -> list[float]:
 
 def odometry(stamp: rospy.Time, robot: Robot, pose: Pose, velocity: tuple[float, float], uncertainty: Uncertainty,
              covariance: Array | None = None) -> Odometry:
-    """An Odometry message: the Pose in the odom frame, the velocity (m/s, rad/s) in the base frame, an Uncertainty.
+    """Return an Odometry message: Pose in the odom frame, velocity (m/s, rad/s) in the base frame, Uncertainty.
 
-    covariance: 3x3, of the pose, in place of the Uncertainty's.
+    covariance: the 3x3 covariance of the pose; it replaces the pose variances of the Uncertainty.
     """
     message = Odometry()
     message.header.stamp = stamp
@@ -93,13 +93,13 @@ def odometry(stamp: rospy.Time, robot: Robot, pose: Pose, velocity: tuple[float,
     message.pose.covariance = (diagonal(position, position, UNKNOWN, UNKNOWN, UNKNOWN, yaw) if covariance is None
                                else planar(covariance))
     message.twist.twist.linear.x, message.twist.twist.angular.z = velocity
-    # wheels do not roll sideways: the lateral speed is known
+    # wheels do not roll sideways, so the lateral speed is known
     message.twist.covariance = diagonal(linear, MEASURED, UNKNOWN, UNKNOWN, UNKNOWN, angular)
     return message
 
 
 def imu(stamp: rospy.Time, frame_id: str, reading: Reading) -> Imu:
-    """An Imu message of a gyro's Reading, which measures the vertical axis only."""
+    """Return an Imu message with the Reading of a gyro, which measures only the vertical axis."""
     message = Imu()
     message.header.stamp = stamp
     message.header.frame_id = frame_id
@@ -107,12 +107,12 @@ def imu(stamp: rospy.Time, frame_id: str, reading: Reading) -> Imu:
     message.orientation_covariance = [UNKNOWN, 0, 0, 0, UNKNOWN, 0, 0, 0, reading.yaw_variance]
     message.angular_velocity.z = reading.rate
     message.angular_velocity_covariance = [UNKNOWN, 0, 0, 0, UNKNOWN, 0, 0, 0, reading.rate_variance]
-    message.linear_acceleration_covariance[0] = -1      # not measured, by the message's definition
+    message.linear_acceleration_covariance[0] = -1      # means not measured, by the definition of the message
     return message
 
 
 def transform(stamp: rospy.Time, frame_id: str, child_frame_id: str, pose: Pose) -> TransformStamped:
-    """A TransformStamped with the Pose of the child frame."""
+    """Return a TransformStamped with the Pose of the child frame."""
     message = TransformStamped()
     message.header.stamp = stamp
     message.header.frame_id = frame_id
@@ -124,7 +124,7 @@ def transform(stamp: rospy.Time, frame_id: str, child_frame_id: str, pose: Pose)
 
 
 def joint_states(stamp: rospy.Time, joints: Sequence[Joint], wheels: Sequence[tuple[str, float, float]]) -> JointState:
-    """A JointState. joints: Joint objects; wheels: (name, angle in rad, speed in rad/s) of each wheel."""
+    """Return a JointState. joints: Joint objects; wheels: (name, angle in rad, speed in rad/s) of each wheel."""
     message = JointState()
     message.header.stamp = stamp
     message.name = [joint.name for joint in joints] + [name for name, _, _ in wheels]
@@ -134,7 +134,7 @@ def joint_states(stamp: rospy.Time, joints: Sequence[Joint], wheels: Sequence[tu
 
 
 def from_odometry(message: Odometry) -> tuple[Odom, tuple[float, float, float]]:
-    """(Odom, variances of the pose's x, y and yaw) of an Odometry message, for the filter."""
+    """Return (Odom, variances of x, y and yaw of the pose) of an Odometry message, for the filter."""
     pose = message.pose.pose
     covariance = message.pose.covariance
     return (Odom(message.header.stamp.to_nsec(),
@@ -144,7 +144,7 @@ def from_odometry(message: Odometry) -> tuple[Odom, tuple[float, float, float]]:
 
 
 def from_imu(message: Imu) -> ImuData:
-    """The ImuData of an Imu message. By its definition, a first variance of -1 stands for what is not measured."""
+    """Return the ImuData of an Imu message. By its definition, a first variance of -1 means not measured."""
     rate = message.angular_velocity
     has_rates, has_orientation = (covariance[0] != -1 for covariance in (
         message.angular_velocity_covariance, message.orientation_covariance))
@@ -155,7 +155,7 @@ def from_imu(message: Imu) -> ImuData:
 
 
 def planar_pose(stamp: rospy.Time, frame_id: str, pose: Pose, covariance: Array) -> PoseWithCovarianceStamped:
-    """A PoseWithCovarianceStamped of a Pose and the 3x3 covariance of x, y (m) and yaw (rad)."""
+    """Return a PoseWithCovarianceStamped with a Pose and the 3x3 covariance of x, y (m) and yaw (rad)."""
     message = PoseWithCovarianceStamped()
     message.header.stamp = stamp
     message.header.frame_id = frame_id
@@ -167,9 +167,9 @@ def planar_pose(stamp: rospy.Time, frame_id: str, pose: Pose, covariance: Array)
 
 
 def from_set_pose(message: PoseWithCovarianceStamped, output_frame: str) -> tuple[Pose, Array]:
-    """(Pose, 3x3 covariance of x, y and yaw) of the PoseWithCovarianceStamped of set_pose. Raises RejectedMessage.
+    """Return (Pose, 3x3 covariance of x, y and yaw) of a message on set_pose. Raises RejectedMessage.
 
-    output_frame: the frame that the pose must be in; an empty frame_id stands for it.
+    output_frame: the required frame of the pose; an empty frame_id stands for this frame.
     """
     frame = message.header.frame_id.lstrip('/')
     check('header.frame_id', show(frame), frame in ('', output_frame), f'{output_frame}, the output_frame')
@@ -185,7 +185,7 @@ def from_set_pose(message: PoseWithCovarianceStamped, output_frame: str) -> tupl
         check_variance(f'pose.covariance[{index}]', value)
     deviations = numpy.sqrt(covariance.diagonal())
     correlations = covariance / numpy.outer(deviations, deviations)
-    # nan fails the first comparison
+    # the first comparison is false for nan
     good = ((abs(correlations) < 1 + ROUNDING).all() and abs(correlations - correlations.T).max() < ROUNDING
             and numpy.linalg.eigvalsh(correlations).min() > -ROUNDING)
     check('pose.covariance', show(covariance.tolist()), good, 'a covariance: symmetric, no correlation above 1')
@@ -194,8 +194,8 @@ def from_set_pose(message: PoseWithCovarianceStamped, output_frame: str) -> tupl
 
 def odometry_of_pose(pose: PoseWithCovarianceStamped, before: PoseWithCovarianceStamped | None, frame_id: str,
                      child_frame_id: str) -> Odometry:
-    """An Odometry message of a PoseWithCovarianceStamped. Its velocity is the mean since the pose `before` (may be
-    None), with an unknown variance."""
+    """Return an Odometry message with the pose of a PoseWithCovarianceStamped. Its velocity is the mean since the pose
+    `before`, which may be None, with an unknown variance."""
     message = Odometry()
     message.header.stamp = pose.header.stamp
     message.header.frame_id = frame_id

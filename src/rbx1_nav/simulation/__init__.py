@@ -1,1 +1,1 @@
-"""A simulated robot, the floor below it, and the clock that it keeps in step with its drivers."""
+"""A simulated robot, the floor below it, and a simulated clock that stays in step with the drivers."""

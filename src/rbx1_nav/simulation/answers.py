@@ -1,8 +1,9 @@
-"""Keeps a simulated clock in step with a driver whose process cannot be seen.
+"""Keeps a simulated clock in step with a driver whose process cannot be observed.
 
-It has to answer each tick with one command. While the robot rests, the clock runs freely. So when a stream of commands
-begins, the clock may be some ticks ahead of the driver, which then answers all of them at once. They wait in a queue,
-and each tick takes one. A publisher that does not drive by this clock never gives such answers. Three rules detect it.
+The driver must answer each tick with one command. While the robot rests, the clock runs freely. So when a stream of
+commands begins, the clock may be some ticks ahead of the driver, which then answers all of these ticks at once. Its
+commands wait in a queue, and each tick takes one command. A publisher that does not use this clock never answers like
+this. Three rules detect such publishers.
 """
 from __future__ import annotations
 
@@ -14,19 +15,22 @@ from time import monotonic
 from typing import Callable, Deque, Tuple
 
 COMMAND_TIMEOUT = 1.0   # s of wall time that a tick waits for its command
-PROOF = 25              # ticks: a driver that has answered so many drives by this clock
+PROOF = 25              # ticks: a driver that has answered this many ticks uses this clock
 PROVEN_TIMEOUT = 5.0          # s of wall time that a tick waits for such a driver
-FIRST_QUIET = 0.1       # s of wall time without a command that end a driver's first burst
-QUIET = 0.03            # s, the same at the start of each later stream
-SLOW_ANSWER = 0.05      # s of wall time: a later command may not be an answer to the tick at all
-BURST_TIME = 1.0        # s of wall time: a burst answers at most the ticks of this time
-MAX_BACKLOG = 25        # commands: more of them in the queue than at the start mean more than one per tick
+FIRST_QUIET = 0.1       # s of wall time without a command after which a driver's first burst is over
+QUIET = 0.03            # s of wall time: replaces FIRST_QUIET at the start of each later stream
+SLOW_ANSWER = 0.05      # s of wall time: a command after this time may not be an answer to the tick
+BURST_TIME = 1.0        # s of wall time: a burst answers at most the ticks of this period
+MAX_BACKLOG = 25        # commands: a queue that has grown by more than this receives more than one command per tick
 
-ReceivedCommand = Tuple[float, ...]     # linear (m/s), angular (rad/s), and what else is in it
+ReceivedCommand = Tuple[float, ...]     # linear (m/s), angular (rad/s), and the remaining values
 
 
 class NotInStep(Exception):
-    """The driver does not answer the ticks. The text says how it shows."""
+    """Raised if a driver does not answer the ticks.
+
+    The text describes what the driver does instead.
+    """
 
 
 class Answers:
@@ -34,25 +38,25 @@ class Answers:
 
     def __init__(self, ticks: Deque[float], changed: Condition, connected: Callable[[], bool],
                  unread: Callable[[], bool], ended: Callable[[], bool]) -> None:
-        """ticks: s of the monotonic clock, those of the last BURST_TIME; changed: a Condition that is notified when a
-        command arrives; connected(): whether the driver is still there; unread(): whether commands have come that are
-        not received yet; ended(): whether not to wait any more."""
+        """ticks: times of the ticks in the last BURST_TIME, s of the monotonic clock; changed: a Condition that is
+        notified when a command arrives; connected(): whether the driver is still connected; unread(): whether commands
+        have arrived that have not been received yet; ended(): whether to stop waiting."""
         self.ticks = ticks
         self.changed = changed
         self.connected = connected
         self.unread = unread
         self.ended = ended
-        # one per tick; longer where the clock ran ahead of the driver at first
+        # one command per tick; more if the clock ran ahead of the driver at first
         self.queue: Deque[ReceivedCommand] = deque()
         self.received = 0
         self.quiet = FIRST_QUIET
         self.lag = 0                # length of the queue when the stream began
-        self.streaming = False      # its last command was a motion: the next tick will bring another
-        self.answered = 0           # ticks, each with one command
+        self.streaming = False      # the last command was a motion, so the next tick will bring another command
+        self.answered = 0           # ticks that were answered with one command each
 
     @property
     def proven(self) -> bool:
-        """Whether it drives by this clock: what looks otherwise is a busy machine."""
+        """Whether the driver is known to use this clock. If it then appears not to, the machine is busy."""
         return self.answered >= PROOF
 
     def receive(self, command: ReceivedCommand) -> None:
@@ -61,9 +65,9 @@ class Answers:
         self.queue.append(command)
 
     def next(self) -> ReceivedCommand | None:
-        """Wait for this tick's command, and return it; None if there is none. Raises NotInStep.
+        """Wait for the command of this tick, and return it, or None if there is none. Raises NotInStep.
 
-        To be called for each tick, holding `changed`.
+        Call this for each tick, with `changed` held.
         """
         if self.streaming:
             self._wait_for_answer()
@@ -73,7 +77,7 @@ class Answers:
         if self.queue:
             command = self.queue.popleft()
             linear, angular, *_ = command
-            self.streaming = 0 < abs(linear) < inf or 0 < abs(angular) < inf    # neither is true of nan
+            self.streaming = 0 < abs(linear) < inf or 0 < abs(angular) < inf    # both are false for nan
             if self.streaming and len(self.queue) <= self.lag:
                 self.answered += 1
         if len(self.queue) > self.lag + MAX_BACKLOG and not self.proven:
@@ -81,7 +85,7 @@ class Answers:
         return command
 
     def _begin_stream(self) -> None:
-        """The clock ran freely until now: let the driver answer all ticks that it has seen."""
+        """Let the driver answer all ticks that it has seen, because the clock ran freely until now."""
         self._wait_until_quiet(self.quiet)
         self.quiet = QUIET
         self.lag = len(self.queue)
@@ -107,7 +111,7 @@ class Answers:
         while monotonic() < deadline and not self.ended():
             received = self.received
             heard = self._wait_for(partial(self._has_received_more_than, received), quiet)
-            # unread: the thread that receives may not have had its turn
+            # unread: the receiving thread may not have run yet
             if not heard and not self.unread():
                 return
         if not (self.proven or self.ended()):
@@ -117,8 +121,10 @@ class Answers:
         return self.received > number
 
     def _wait_for(self, condition: Callable[[], bool], timeout: float) -> bool:
-        """Wait until condition(), for at most `timeout` s of wall time, or until the driver has gone or all is to end.
-        Returns condition()."""
+        """Wait until condition() is true, and return condition().
+
+        The wait takes at most `timeout` s of wall time. It also stops if the driver disconnects or ended() is true.
+        """
         deadline = monotonic() + timeout
         while not condition() and self.connected() and not self.ended():
             left = deadline - monotonic()

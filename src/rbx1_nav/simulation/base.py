@@ -1,4 +1,4 @@
-"""A simulated differential-drive base: the gate for commands, the wheels that follow them, odometry, and a gyro."""
+"""A simulated differential-drive base: the command gate, the wheels that follow the commands, odometry, and a gyro."""
 from __future__ import annotations
 
 from typing import Iterable
@@ -17,15 +17,20 @@ MAX_SPEED_WINDOW = 0.1  # s: the longest time over which encoder counts are aver
 
 
 def make_base(robot: Robot, surface: Surface | None, seed: int) -> SimulatedBase:
-    """The SimulatedBase of a Robot on a Surface (None: ideal). seed: an integer that the run's random errors depend
-    on."""
+    """Return the SimulatedBase of a Robot on a Surface (None: ideal).
+
+    seed: an integer that determines the random errors of the run.
+    """
     wheels, gyro = make_wheels_and_gyro(robot.base_width, surface, seed, min(1 / robot.rate, MAX_SPEED_WINDOW))
     return SimulatedBase(wheels, CommandGate(robot.limits, robot.timeout), gyro)
 
 
 def make_wheels_and_gyro(base_width: float, surface: Surface | None, seed: int,
                          window: float) -> tuple[AnyWheels, AnyGyro]:
-    """The wheels and the gyro of a robot. base_width: m; surface, seed: see make_base(); window: see Wheels."""
+    """Return the wheels and the gyro of a robot.
+
+    base_width: m; surface, seed: see make_base(); window: see Wheels.
+    """
     if surface is None:
         return IdealWheels(base_width), IdealGyro()
     run = draw_run(surface, seed)
@@ -33,10 +38,10 @@ def make_wheels_and_gyro(base_width: float, surface: Surface | None, seed: int,
 
 
 class SimulatedBase:
-    """A base on a clock that the caller chooses; all times are in ns.
+    """A base on a clock that the caller provides; all times are in ns.
 
-    A command is in force from its arrival until the next one arrives or until it times out. The pose is the exact
-    integral over those intervals, whenever it is asked for.
+    A command is in force from its arrival until the next command arrives or until it times out. The pose is the exact
+    integral over these intervals, independent of the times at which it is read.
     """
 
     def __init__(self, wheels: AnyWheels, gate: CommandGate, gyro: AnyGyro) -> None:
@@ -46,8 +51,8 @@ class SimulatedBase:
         self.odometry = Odometry(wheels.base_width)
         self.left = 0.0         # m, total travel that the left wheel's encoder counted
         self.right = 0.0        # m
-        self.now = 0            # ns, up to where the motion is integrated
-        self._gyro_time: int | None = None      # ns, of the last reading
+        self.now = 0            # ns, up to which the motion is integrated
+        self._gyro_time: int | None = None      # ns, time of the last reading
 
     @property
     def velocity(self) -> tuple[float, float]:
@@ -61,18 +66,18 @@ class SimulatedBase:
 
     @property
     def at_rest(self) -> bool:
-        """Whether the robot is at a standstill and no command will change that."""
+        """Whether the robot is stationary and no command will change that."""
         return not self.gate.moving and self.wheels.at_rest
 
     def command(self, now: int, linear: float, angular: float, others: Iterable[float] = (), _sender: str = '') -> bool:
-        """Put a command in force from `now` on; arguments, result and errors as of CommandGate.command()."""
+        """Put a command in force from `now` on; for arguments, result and errors see CommandGate.command()."""
         self.advance(now)
         return self.gate.command(now, linear, angular, others)
 
     def advance(self, now: int) -> bool:
-        """Integrate the motion up to `now`. Returns whether the command in force timed out on the way.
+        """Integrate the motion up to `now`, and return whether the command in force has timed out by then.
 
-        If the clock jumped back, the command in force is dropped: its age is no longer known.
+        If the clock jumped back, the command in force is dropped, because its age is no longer known.
         """
         gate = self.gate
         timed_out = False
@@ -91,14 +96,14 @@ class SimulatedBase:
         return timed_out
 
     def read_gyro(self) -> Reading | None:
-        """The gyro's Reading since the last call; None if no time has passed, or at the first call."""
+        """Return the gyro's Reading since the last call, or None at the first call or if no time has passed."""
         last, self._gyro_time = self._gyro_time, self.now
         if last is None or self.now <= last:
             return None
         return self.gyro.read(self.wheels.truth.pose.yaw, (self.now - last) / SECOND, self.at_rest)
 
     def reset(self) -> None:
-        """Stand still at the origin."""
+        """Put the base back at the origin, at rest."""
         self.gate.halt()
         self.wheels.reset()
         self.gyro.reset()

@@ -1,6 +1,6 @@
-"""The exercise without ROS: the same motions, base and filter as in the nodes, as fast as they can be computed.
+"""The exercise without ROS: runs the motions, the base and the filter of the nodes at full speed.
 
-Metres, radians, seconds.
+Meters, radians, seconds.
 """
 from __future__ import annotations
 
@@ -28,44 +28,44 @@ from rbx1_nav.units import SECOND
 
 METHODS = ('timed', 'odom', 'ekf')
 
-# the tutorial's numbers, the nodes' defaults: m/s, m, rad/s, rad, Hz
+# the tutorial's values, which are the nodes' defaults: m/s, m, rad/s, rad, Hz
 EXERCISE = dict(linear_speed=0.2, goal_distance=1.0, angular_speed=1.0, goal_angle=pi, rate=50)
 MIN_SPEEDS = dict(min_linear_speed=0.05, min_angular_speed=0.2)
 TICK = round(SECOND / EXERCISE['rate'])     # ns
 REST = 50       # ticks between two motions
 TRIAL_REST = 25     # ticks at the trial stop of a leg
-CALIBRATION = 100   # ticks at rest before the first motion, in which the filter estimates the gyro's bias
+CALIBRATION = 100   # ticks at rest before the first motion, during which the filter estimates the gyro's bias
 
 
 class Snapshot(NamedTuple):
-    """Where the robot is at a moment."""
+    """The true, the measured and the estimated pose of the robot at one time."""
 
     time: float             # s since the start
     truth: Pose
     odometry: Pose
-    estimate: Pose | None   # of the filter; None if there is none
+    estimate: Pose | None   # pose of the filter; None without a filter
 
 
 class SimulationResult(NamedTuple):
-    """A run."""
+    """The result of a run."""
 
     end: Snapshot
-    first_leg: float            # m, the true distance at the end of the first motion
-    covariance: Array | None    # 3x3, of the filter's pose (m and rad); None without a filter
-    path: list[Snapshot] | None     # of all ticks; None if not kept
+    first_leg: float            # m, true distance after the first motion
+    covariance: Array | None    # 3x3, covariance of the filter's pose (m and rad); None without a filter
+    path: list[Snapshot] | None     # Snapshots of all ticks; None if not kept
 
 
 class Messages(NamedTuple):
-    """What the base publishes at a tick."""
+    """The messages that the base publishes at a tick."""
 
     imu: Imu
     orientation: tuple[float, float]        # yaw (rad) and its variance (rad^2)
     odom: Odom
-    pose_variances: tuple[float, float, float]      # of the pose's x, y (m^2) and yaw (rad^2)
+    pose_variances: tuple[float, float, float]      # variances of the pose's x, y (m^2) and yaw (rad^2)
 
 
 def feed(combined: CombinedOdometry, messages: Messages) -> None:
-    """Give a CombinedOdometry the Messages of a tick."""
+    """Pass the Messages of a tick to a CombinedOdometry."""
     now = messages.odom.stamp
     combined.add_imu(now, messages.imu)
     combined.add_odom(now, messages.odom, messages.pose_variances)
@@ -109,25 +109,25 @@ class Simulation:
                         (uncertainty.position, uncertainty.position, uncertainty.yaw))
 
     def rest(self, ticks: int) -> None:
-        """Stand still for a number of ticks."""
+        """Keep the robot at rest for a number of ticks."""
         self.base.command(self.now, 0.0, 0.0)
         for _ in range(ticks):
             self.tick()
 
     def snapshot(self) -> Snapshot:
-        """The present Snapshot."""
+        """Return the current Snapshot."""
         estimate = self.filter.estimate if self.filter else None
         return Snapshot(self.now / SECOND, self.base.wheels.truth.pose, self.base.odometry.pose,
                         estimate.pose if estimate else None)
 
     def drive_by_time(self, motion: Motion) -> None:
-        """One motion of timed_out_and_back.py."""
+        """Drive one motion of timed_out_and_back.py."""
         for _ in range(motion.ticks):
             self.base.command(self.now, motion.linear, motion.angular)
             self.tick()
 
     def drive_by_pose(self, leg: Leg, get_pose: Callable[[], Pose]) -> None:
-        """One leg of odom_out_and_back.py; get_pose(): the Pose that it is controlled by."""
+        """Drive one leg of odom_out_and_back.py. get_pose(): returns the Pose that controls the leg."""
         self._drive_to_stop(leg, get_pose)
         self.rest(TRIAL_REST)
         self._drive_to_stop(leg, get_pose)
@@ -143,11 +143,11 @@ class Simulation:
 
 def simulate(method: str, robot: Robot, surface: Surface | None, seed: int, filtered: bool = False, keep: bool = False,
              prior: Priors | None = None, listen: Listen | None = None) -> SimulationResult:
-    """The exercise by one of METHODS; returns a SimulationResult. Raises StuckError.
+    """Run the exercise with one of METHODS, and return a SimulationResult. Raises StuckError.
 
-    robot: a Robot; surface: a Surface, or None; seed: of the run's random errors; filtered: whether to run the filter,
-    as `ekf` always does; keep: whether to keep the path; prior: Priors of the filter, if not those of the surface;
-    listen(Snapshot, Messages): called at each tick.
+    robot: a Robot; surface: a Surface, or None; seed: seed of the run's random errors; filtered: whether to run the
+    filter, which `ekf` always runs; keep: whether to keep the path; prior: Priors of the filter, if they differ from
+    the surface; listen(Snapshot, Messages): called at each tick.
     """
     simulation = Simulation(robot, surface, seed, filtered or method == 'ekf', keep, prior, listen)
     simulation.rest(CALIBRATION)
@@ -162,7 +162,7 @@ def simulate(method: str, robot: Robot, surface: Surface | None, seed: int, filt
 
 
 def _drives(simulation: Simulation, method: str) -> list[Callable[[], None]]:
-    """Four functions, each of which drives one motion of the exercise."""
+    """Return four functions, each of which drives one motion of the exercise."""
     if method == 'timed':
         return [partial(simulation.drive_by_time, motion) for motion in out_and_back(**EXERCISE)]
     combined = simulation.filter if method == 'ekf' else None
@@ -176,9 +176,10 @@ def _drives(simulation: Simulation, method: str) -> list[Callable[[], None]]:
 
 def simulate_many(method: str, robot: Robot, surface: Surface | None, seeds: Sequence[int], keep: int = 0,
                   jobs: int = 1) -> Iterator[SimulationResult]:
-    """Yields the Results of all seeds in their order; keep: the number of paths to keep; jobs: number of processes.
+    """Yield the SimulationResults of all seeds, in the order of the seeds.
 
-    Closing it ends the processes. Raises BrokenProcessPool if one of them is killed.
+    keep: number of paths to keep; jobs: number of processes. Closing the generator stops the processes. Raises
+    BrokenProcessPool if one of them is killed.
     """
     work = partial(_simulate_some, method, robot, surface)
     tasks = [(seed, number < keep) for number, seed in enumerate(seeds)]
@@ -194,18 +195,18 @@ def simulate_many(method: str, robot: Robot, surface: Surface | None, seeds: Seq
         try:
             for chunk in chunks:
                 results.append(pool.submit(work, chunk))
-                if len(results) > 4 * jobs:     # enough for all processes, and not everything in memory
+                if len(results) > 4 * jobs:     # enough work for all processes, but not all results in memory
                     yield from results.popleft().result()
             while results:
                 yield from results.popleft().result()
-        except BaseException:       # do not wait for runs that nobody will see
+        except BaseException:       # do not wait for runs whose results are not needed
             for process in multiprocessing.active_children():
                 process.kill()
             raise
 
 
 def _follow_the_parent() -> None:
-    """In a new process: leave Ctrl-C to the parent, and end when it ends, even if it was killed."""
+    """Make a new process leave Ctrl-C to its parent, and exit when its parent exits, even if the parent is killed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     threading.Thread(target=_end_with_the_parent, daemon=True).start()
@@ -220,5 +221,5 @@ def _end_with_the_parent() -> None:
 
 def _simulate_some(method: str, robot: Robot, surface: Surface | None,
                    tasks: Sequence[tuple[int, bool]]) -> list[SimulationResult]:
-    """The Results of some tasks: pairs of a seed and whether to keep the path."""
+    """Return the SimulationResults of some tasks, which are pairs of a seed and whether to keep the path."""
     return [simulate(method, robot, surface, seed, keep=keep) for seed, keep in tasks]

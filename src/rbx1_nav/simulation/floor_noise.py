@@ -1,4 +1,4 @@
-"""The random part of slip: errors of a motion that are drawn anew along the path, because a floor varies."""
+"""The random part of slip: motion errors that vary along the path, because a floor is not uniform."""
 from __future__ import annotations
 
 from math import log
@@ -6,20 +6,21 @@ import random
 
 from rbx1_nav.simulation.surfaces import Surface
 
-CELL_TURNED = 0.25      # rad } the size of a cell; both were found in records of five Creates: docs/why_it_misses.md
+CELL_TURNED = 0.25      # rad } cell sizes, determined from recordings of five Creates: docs/real_runs.md
 CELL_TRAVELLED = 0.1    # m   }
 
 
 class Noise:
-    """White noise along a path. Its variance grows by strength ** 2 with each unit of the path, however the path is cut
-    into steps (the form of Chong and Kleeman, Accurate odometry and error modelling for a mobile robot, 1997).
+    """White noise along a path, whose variance grows by strength ** 2 with each unit of the path.
 
-    The path is divided into cells. The error grows evenly within a cell, and each cell has another one, drawn from a
-    Laplace distribution: large errors are more frequent than in a normal distribution.
+    The variance does not depend on how the path is divided into steps (the form of Chong and Kleeman, Accurate odometry
+    and error modelling for a mobile robot, 1997). The path is divided into cells. The error grows linearly within a
+    cell. The error of each cell is drawn from a Laplace distribution, in which large errors are more frequent than in a
+    normal distribution.
     """
 
     def __init__(self, strength: float, cell: float, generator: random.Random) -> None:
-        """strength: 1 sigma after one unit of the path; cell: in units of the path."""
+        """strength: 1 sigma after one unit of the path; cell: length of a cell, in units of the path."""
         self.scale: float = strength / (2 * cell) ** 0.5       # a Laplace distribution of scale 1 has a variance of 2
         self.cell = cell
         self.random = generator.random
@@ -30,8 +31,8 @@ class Noise:
         self.left = size
 
     def over(self, path: float) -> float:
-        """The error of the next `path` (0 or more)."""
-        if path <= self.left:       # nearly always
+        """Return the error over the next `path` (0 or more)."""
+        if path <= self.left:       # the usual case
             self.left -= path
             return self.slope * path
         error = 0.0
@@ -44,18 +45,18 @@ class Noise:
 
 
 class Roughness:
-    """The errors of one run, by the travel of the wheels."""
+    """The motion errors of one run as a function of the wheel travel."""
 
     def __init__(self, surface: Surface, seed: int) -> None:
         def noise(key: str, cell: float) -> Noise:
-            # a generator for each: in a common one, the length of the steps would decide whose turn it is
+            # one generator each: with a shared one, the length of the steps would determine which noise draws next
             return Noise(getattr(surface, key), cell, random.Random(f'{key} {seed}'))
         self.turning = noise('heading_noise_turning', CELL_TURNED)
         self.heading = noise('heading_noise_straight', CELL_TRAVELLED)
         self.distance = noise('distance_noise', CELL_TRAVELLED)
 
     def over(self, straight: float, turn: float) -> tuple[float, float]:
-        """The errors of distance (m) and angle (rad) while the wheels travel by `straight` (m) and `turn` (rad)."""
+        """Return the errors of distance (m) and angle (rad) while the wheels travel `straight` (m) and `turn` (rad)."""
         distance = angle = 0.0
         if straight:
             distance, angle = self.distance.over(abs(straight)), self.heading.over(abs(straight))
@@ -65,6 +66,6 @@ class Roughness:
 
 
 def make_roughness(surface: Surface, seed: int) -> Roughness | None:
-    """A Roughness; None for a Surface without noise."""
+    """Return the Roughness of a Surface, or None if the surface has no noise."""
     return Roughness(surface, seed) if (surface.heading_noise_turning or surface.heading_noise_straight
                                         or surface.distance_noise) else None

@@ -1,4 +1,4 @@
-"""A gyro about the vertical axis: its readings, and the heading that they add up to.
+"""A gyro about the vertical axis: its readings, and the heading that is integrated from them.
 
 Radians and seconds; counter-clockwise positive.
 """
@@ -11,21 +11,21 @@ from rbx1_nav.robot.readings import MEASURED, MIN_VARIANCE, Reading
 from rbx1_nav.simulation.surfaces import RandomErrors, Surface
 from rbx1_nav.units import clamp
 
-NOISE_RATE = 50.0   # Hz, the rate that gyro_noise refers to: white noise grows with the root of the rate
+NOISE_RATE = 50.0   # Hz, the rate that gyro_noise refers to: white noise grows with the square root of the rate
 
 
 class AnyGyro(Protocol):
-    """What all gyros have."""
+    """The interface of all gyros."""
 
     def read(self, yaw: float, duration: float, at_rest: bool) -> Reading:
-        """A Reading, `duration` (s, above 0) after the previous one; the robot's true heading is now `yaw` (rad).
+        """Return a Reading, `duration` (s, above 0) after the previous one.
 
-        The rate is the mean over that time, as of a gyro that samples faster than it is read. at_rest: whether the
-        wheels stood still meanwhile.
+        yaw: the robot's true heading now, rad; at_rest: whether the wheels were at rest during this time. The rate of
+        the Reading is the mean over this time, as from a gyro that samples faster than it is read.
         """
 
     def reset(self) -> None:
-        """Start again with a robot at the origin."""
+        """Restart with the robot at the origin."""
 
 
 class IdealGyro:
@@ -46,21 +46,21 @@ class IdealGyro:
 class Gyro:
     """A gyro with bias, scale error, noise and a limited range.
 
-    While the robot stands before its first motion, the gyro is calibrated as by the TurtleBot's driver: the mean of
-    those readings is subtracted before later ones are integrated to a heading. The angular velocity is reported
-    uncalibrated.
+    While the robot is stationary before its first motion, the gyro is calibrated as in the TurtleBot's driver: the mean
+    of these readings is subtracted from later readings before they are integrated into a heading. The reported angular
+    velocity is uncalibrated.
     """
 
     _true_yaw: float
     _yaw: float
     _turned: float          # rad, both directions counted positive
     _time: float            # s since the calibration
-    _rest: float            # s, of the calibration
-    _rest_angle: float      # rad, of the readings in this time
+    _rest: float            # s, duration of the calibration
+    _rest_angle: float      # rad, sum of the readings in this time
     _calibrating: bool
 
     def __init__(self, surface: Surface, run: RandomErrors, seed: int) -> None:
-        """run: the errors drawn from the surface; seed: of the noise."""
+        """run: the errors drawn from the surface; seed: seed of the noise."""
         self.surface = surface
         self.run = run
         self.noise = random.Random(f'gyro {seed}').gauss
@@ -88,7 +88,7 @@ class Gyro:
         return Reading(rate, max(noise ** 2, MIN_VARIANCE), self._yaw, variance)
 
     def reset(self) -> None:
-        """Start again with a robot at the origin. Bias and scale error stay as they are."""
+        """Restart with the robot at the origin. Bias and scale error do not change."""
         self._true_yaw = self._yaw = self._turned = self._time = 0.0
         self._rest = self._rest_angle = 0.0     # duration (s) and summed readings (rad) of the calibration
         self._calibrating = True

@@ -1,9 +1,9 @@
-"""Keeps a simulated clock in step with the nodes that drive by it.
+"""Keeps a simulated clock in step with the nodes that use it to drive.
 
-A tick is over when all that it has woken sleeps again: every driver has sent what it sends at this tick, and it has
-arrived. Only then does the next tick begin. So a run has the same result on every machine and at every speed, whatever
-the rates of the drivers are. That takes an eye on their processes, the `nodes`. Where it is not possible, answers.py
-counts commands instead.
+A tick is over when everything that it woke is asleep again: every driver has sent its commands for this tick, and the
+commands have arrived. Only then does the next tick begin. So a run has the same result on every machine and at every
+speed, whatever the rates of the drivers are. For this, the processes of the drivers, the `nodes`, are observed. Where
+that is not possible, answers.py counts commands instead.
 """
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from rbx1_nav.simulation.answers import BURST_TIME, Answers, NotInStep, Received
 from rbx1_nav.simulation.stream import Stream
 
 NODE_TIMEOUT = 5.0      # s of wall time that a tick waits for a node
-LOOK = 2e-5         # s of wall time between two looks at the nodes
-FRESH = 2e-4        # s of wall time after which a look is repeated
-# after so many commands that no tick has prompted, a driver is released: a single one may be the stop after Ctrl-C
+LOOK = 2e-5         # s of wall time between two checks of the nodes
+FRESH = 2e-4        # s of wall time after which a check is repeated
+# a driver is released after this number of commands that no tick has prompted: one may be the stop after Ctrl-C
 UNPROMPTED = 3
-STEADY = 25         # ticks: a driver that has sent one command at each of them will do so at the next
-ANSWER_TIME = 0.005     # s of wall time that such a command is waited for before a look
+STEADY = 25         # ticks: a driver that has sent one command at each of them will also do so at the next tick
+ANSWER_TIME = 0.005     # s of wall time to wait for this command before the nodes are checked
 
 
 class Nodes(Protocol):
-    """An eye on the processes of nodes: ros/base/driving_nodes.py."""
+    """Observes the processes of nodes; implemented in ros/base/driving_nodes.py."""
 
     drivers: set[str]
 
@@ -38,7 +38,7 @@ class Nodes(Protocol):
     def connecting(self) -> bool: ...
     def awake(self) -> str | None: ...
     def awake_drivers(self) -> str | None: ...
-    # Any: what polling() returns is only handed to still_polling()
+    # Any: the result of polling() is only passed to still_polling()
     def polling(self) -> list[Any]: ...
     def still_polling(self, threads: list[Any]) -> bool: ...
     def forget(self, name: str) -> None: ...
@@ -48,46 +48,51 @@ class Nodes(Protocol):
 
 
 class CommandSource:
-    """One connection that brings commands."""
+    """A connection on which commands arrive."""
 
     def __init__(self, connection: object, name: str) -> None:
         self.connection = connection
         self.name = name
-        self.seen: bool | None = None           # whether its process can be seen; None: not known yet
-        self.answers: Answers | None = None     # an Answers if not
+        self.seen: bool | None = None           # whether its process can be observed; None: not known yet
+        self.answers: Answers | None = None     # an Answers if the process cannot be observed
         self.stream: Stream | None = None       # a Stream, from its first motion to its next stop
-        self.released = False       # is not in step: its commands take effect as they arrive
+        self.released = False       # whether it is not in step: its commands take effect as they arrive
 
     def steady(self, tick: int) -> bool:
-        """Whether it has sent one command at each of the last ticks before this one, and so will send one at this."""
+        """Return whether it has sent one command at each of the ticks before this one, and so will send one now."""
         return self.stream is not None and self.stream.in_a_row >= STEADY and self.stream.last == tick - 1
 
 
 class Lockstep:
-    """Applies commands, tuples that begin with linear (m/s) and angular (rad/s), at the tick at which they were
-    sent."""
+    """Applies each command at the tick at which it was sent.
+
+    A command is a tuple that begins with linear (m/s) and angular (rad/s).
+    """
 
     def __init__(self, apply: Callable[[ReceivedCommand], None], report: Callable[[str, str], None], nodes: Nodes,
                  ended: Callable[[], bool]) -> None:
-        """apply(command): puts a command in force; report(name, reason): a node is not in step; ended(): whether not
-        to wait any more."""
+        """apply(command): puts a command in force; report(name, reason): reports a node that is not in step; ended():
+        whether to stop waiting."""
         self.apply = apply
         self.report = report
         self.nodes = nodes
         self.ended = ended
-        # by the id of the connection, which the CommandSource keeps alive: so it stays unique
+        # by the id of the connection, which stays unique because the CommandSource keeps the connection alive
         self.drivers: dict[int, CommandSource] = {}
         # (driver, command, whether a tick may have prompted it), not in force yet
         self.arrived: list[tuple[CommandSource, ReceivedCommand, bool]] = []
         self.delayed: list[ReceivedCommand] = []    # commands for the next tick
-        self.tick = 0           # number of the present tick
-        self.ticks: Deque[float] = deque()      # s of the monotonic clock: those of the last BURST_TIME
-        self.over = True        # whether it is over
+        self.tick = 0           # number of the current tick
+        self.ticks: Deque[float] = deque()      # s of the monotonic clock: the ticks of the last BURST_TIME
+        self.over = True        # whether the current tick is over
         self.over_since = 0.0   # s of the monotonic clock
         self.changed = Condition()
 
     def receive(self, connection: object, name: str, command: ReceivedCommand) -> None:
-        """Accept a command that just arrived, in any thread. connection: any object; name: of the node that sent it."""
+        """Accept a command that just arrived, in any thread.
+
+        connection: any object; name: name of the node that sent the command.
+        """
         with self.changed:
             driver = self.drivers.get(id(connection))
             if not driver:
@@ -103,7 +108,10 @@ class Lockstep:
             self.changed.notify()
 
     def begin_tick(self) -> None:
-        """Call before each tick. A node that has woken by itself is still at the tick before."""
+        """Begin a tick; call this before each tick.
+
+        A node that has woken by itself still belongs to the previous tick.
+        """
         quiet = self.nodes.drivers - {driver.name for driver in self._seen_drivers() if driver.stream}
         if self.nodes.connecting() or (quiet and monotonic() - self.over_since > FRESH):
             self._wait_until_asleep()
@@ -114,7 +122,7 @@ class Lockstep:
             self.nodes.mark(quiet)
 
     def end_tick(self) -> None:
-        """Call after each tick: waits for the commands that are still to come, and puts them in force."""
+        """Wait for the outstanding commands, and put them in force; call this after each tick."""
         delayed, self.delayed = self.delayed, []
         for command in delayed:
             self.apply(command)
@@ -129,7 +137,7 @@ class Lockstep:
                 self._collect(driver, driver.answers)
 
     def _begin(self) -> bool:
-        """Begin the next tick, unless there are commands of the present one."""
+        """Begin the next tick unless there are commands of the current one; return whether it has begun."""
         with self.changed:
             if self.arrived:
                 return False
@@ -142,12 +150,12 @@ class Lockstep:
             return True
 
     def _seen_drivers(self) -> list[CommandSource]:
-        """The drivers that are in step and whose process is looked at."""
+        """Return the drivers that are in step and whose processes are observed."""
         return [driver for driver in list(self.drivers.values())
                 if driver.seen and not driver.released and driver.name in self.nodes.drivers]
 
     def _wait_until_asleep(self) -> None:
-        """Wait until all that a tick or anything else has woken sleeps again."""
+        """Wait until everything that a tick or another event woke is asleep again."""
         self._wait_while_awake(self.nodes.awake)
         polling = self.nodes.polling()      # these may not have seen the tick yet
         if polling:
@@ -156,7 +164,7 @@ class Lockstep:
             self._wait_while_awake(self.nodes.awake)
 
     def _wait_while_awake(self, look: Callable[[], str | None]) -> None:
-        """look(): the name of a node that is awake, or None."""
+        """Wait while a node is awake. look(): returns the name of a node that is awake, or None."""
         deadline = monotonic() + NODE_TIMEOUT
         while not self.ended():
             name = look()
@@ -168,8 +176,11 @@ class Lockstep:
             sleep(LOOK)
 
     def _all_steady_have_sent(self) -> bool:
-        """Whether all nodes that may drive are steady, and each has sent its command: nobody else need be looked at."""
-        self.nodes.update()     # a node that has connected since must be looked at
+        """Return whether all nodes that may drive are steady and have sent their commands.
+
+        In this case no other node needs to be checked.
+        """
+        self.nodes.update()     # a node that has connected in the meantime must be checked
         drivers = self._seen_drivers()
         if not drivers or len(drivers) < len(self.nodes.drivers):
             return False
@@ -180,11 +191,11 @@ class Lockstep:
                 lambda: self.ended() or {id(each[0]) for each in self.arrived} >= set(map(id, drivers)), ANSWER_TIME)
 
     def _give_up(self, name: str) -> None:
-        """No longer wait for a node, which need not be a driver."""
+        """Stop waiting for a node, which need not be a driver."""
         for driver in self._seen_drivers():
             driver.released = driver.released or driver.name == name
         self.nodes.forget(name)
-        self.report(name, f'did not come to rest within {NODE_TIMEOUT:g} s')
+        self.report(name, f'did not become idle within {NODE_TIMEOUT:g} s')
 
     def _new_drivers(self) -> list[CommandSource]:
         with self.changed:
@@ -193,11 +204,11 @@ class Lockstep:
     def _apply_arrived(self) -> None:
         new = self._new_drivers()
         while new:
-            for driver in new:      # not while a command may wait to be received
+            for driver in new:      # without the lock, so that commands can still be received
                 driver.seen = self.nodes.sees(driver.name)
-            new = self._new_drivers()       # another one may have sent its first command by now
+            new = self._new_drivers()       # another driver may have sent its first command by now
         with self.changed:
-            # the order at one tick must not be left to chance
+            # the order within a tick must not depend on chance
             arrived = sorted((each for each in self.arrived if each[0].seen is not None), key=lambda each: each[0].name)
             self.arrived = [each for each in self.arrived if each[0].seen is None]
             self.over = True
@@ -228,7 +239,7 @@ class Lockstep:
             self.apply(command)
 
     def _check_prompt(self, driver: CommandSource, stream: Stream, prompted: bool) -> None:
-        """Release a driver that does not send its commands because of a tick."""
+        """Release a driver whose commands are not prompted by ticks."""
         if not self.nodes.on_clock(driver.name):
             self._release(driver, 'does not subscribe to /clock')
         elif not prompted:

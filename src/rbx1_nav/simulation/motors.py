@@ -1,4 +1,4 @@
-"""The motors of a base: how their speeds follow a command, and when."""
+"""The motors of a base: how and when their speeds follow a command."""
 from __future__ import annotations
 
 from collections import deque
@@ -9,20 +9,20 @@ from typing import Deque, Iterator
 class Motor:
     """A speed that follows a command with a lag and a limited acceleration, and stays below it because of drag.
 
-    The acceleration is (command - speed -+ drag) / lag, limited to accel_limit. Drag always acts against the motion: it
-    slows the start, shortens the stop, and holds a standing wheel while the command does not exceed it. Solved in
-    closed form, so the result does not depend on the number of steps.
+    The acceleration is (command - speed -+ drag) / lag, limited to accel_limit. Drag always opposes the motion: it
+    slows the start, shortens the stop, and holds a stationary wheel while the command does not exceed it. The equation
+    is solved in closed form, so the result does not depend on the number of steps.
     """
 
     def __init__(self, lag: float, accel_limit: float, drag: float) -> None:
-        """lag: s, accel_limit: m/s^2, drag: m/s; all above 0."""
+        """lag: s; accel_limit: m/s^2; drag: m/s. All are above 0."""
         self.lag = lag
         self.accel_limit = accel_limit
         self.drag = drag
         self.speed = 0.0        # m/s
 
     def travel(self, command: float, duration: float) -> float:
-        """The travel (m) while a speed (m/s) is commanded for `duration` (s)."""
+        """Return the travel (m) while a speed (m/s) is commanded for `duration` (s)."""
         travel = 0.0
         while duration > 0:
             target = command - copysign(self.drag, self.speed or command)
@@ -30,7 +30,7 @@ class Motor:
                 break       # drag holds it
             gap = target - self.speed
             limited = self.accel_limit * self.lag   # m/s: above this gap the acceleration is limited
-            if abs(gap) > limited + 1e-12 * (abs(self.speed) + abs(target)):    # by more than rounding
+            if abs(gap) > limited + 1e-12 * (abs(self.speed) + abs(target)):    # by more than rounding errors
                 acceleration = copysign(self.accel_limit, gap)
                 time = (abs(gap) - limited) / self.accel_limit
                 if self.speed and (self.speed > 0) != (gap > 0):
@@ -49,14 +49,14 @@ class Motor:
                     time = min(time, self.lag * log(1 - self.speed / target))
                 closed = gap * (1 - exp(-time / self.lag))
                 travel += target * time - closed * self.lag
-                # a wheel that stops before the end of the duration stops exactly
+                # a wheel that stops before the duration is over stops exactly
                 self.speed = self.speed + closed if time == duration else 0.0
             duration -= time
         return travel
 
 
 class Delay:
-    """Commands, each of them passed on after the same time."""
+    """Delays commands by a fixed time."""
 
     def __init__(self, delay: float) -> None:
         """delay: s, above 0."""
@@ -64,17 +64,17 @@ class Delay:
         self.clear()
 
     def clear(self) -> None:
-        """Forget the commands that are under way."""
-        # m/s, rad/s, and for how long: s
+        """Discard the delayed commands."""
+        # linear (m/s), angular (rad/s), duration (s)
         self.parts: Deque[list[float]] = deque([[0.0, 0.0, self.delay]])
 
     @property
     def is_empty(self) -> bool:
-        """Whether no command to move is under way."""
+        """Whether no delayed command is a motion."""
         return not any(linear or angular for linear, angular, _ in self.parts)
 
     def over(self, linear: float, angular: float, duration: float) -> Iterator[tuple[float, float, float]]:
-        """Yields (linear, angular, duration) of what is passed on while a command is in force for `duration` (s)."""
+        """Yield (linear, angular, duration) of the delayed commands while a command is in force for `duration` (s)."""
         parts = self.parts
         if parts[-1][:2] == [linear, angular]:
             parts[-1][2] += duration

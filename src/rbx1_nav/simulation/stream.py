@@ -1,22 +1,22 @@
-"""The ticks at which a driver sends, and whether its first command was sent one tick before it arrived."""
+"""Determines from the ticks of a driver's commands whether its first command was sent one tick before it arrived."""
 from __future__ import annotations
 
-LENGTH = 16     # commands that are looked at
-ENOUGH = 10     # commands that tell any rate
+LENGTH = 16     # commands that are examined
+ENOUGH = 10     # commands that are enough to determine any rate
 
 
 class Stream:
     """The commands of one driver from its first motion to its next stop.
 
-    A driver that wakes by itself, in place of by a tick, may begin just while the next tick is on its way to it. Then
-    its rate counts from the tick before, but its first command arrives at this one: the motion would be short by a
-    tick. The ticks of the following commands tell, at the usual rates. Then all that changes the motion later takes
-    effect one tick later.
+    A driver that wakes by itself, and not because of a tick, may begin while the next tick is already being delivered.
+    Then its rate counts from the previous tick, but its first command arrives at this tick: the motion would be one
+    tick too short. At the usual rates, the ticks of the following commands show this. Every later change of the
+    motion then takes effect one tick later.
     """
 
     def __init__(self, tick: int, command: tuple[float, float], uncertain: bool) -> None:
-        """tick: number of the tick at which the first command, `command`, arrived; uncertain: whether it may have been
-        sent before."""
+        """tick: number of the tick at which the first command, `command`, arrived; uncertain: whether this command may
+        have been sent before that tick."""
         self.command = command
         self.ticks = [tick]
         self.uncertain = uncertain
@@ -26,11 +26,11 @@ class Stream:
         self.in_a_row = 1       # ticks up to the last one, each with one command
 
     def lag_of(self, tick: int, command: tuple[float, float]) -> int:
-        """How many ticks later a further command of this tick takes effect."""
+        """Return how many ticks later another command, which arrives at `tick`, takes effect."""
         self.in_a_row = self.in_a_row + 1 if tick == self.last + 1 else 0
         self.last = tick
         if self.uncertain:
-            # the first command that differs need not be at the same rate: it counts where the others say too little
+            # the first command that differs need not follow the rate: it is used only if there are too few others
             if command == self.command or len(self.ticks) < ENOUGH:
                 self.ticks = (self.ticks + [tick])[:LENGTH]
             if command != self.command:
@@ -40,7 +40,7 @@ class Stream:
 
 
 def is_late(ticks: list[int]) -> bool:
-    """Whether the first command was sent one tick earlier than `ticks` says, the others as it says."""
+    """Return whether the first command was sent one tick earlier than in `ticks`, and the others as in `ticks`."""
     if len(ticks) < ENOUGH:
         # a rate that begins with the first command waits for a whole period, rounded up: no later gap is longer
         first, *others = [after - before for before, after in zip(ticks, ticks[1:])]
@@ -49,8 +49,10 @@ def is_late(ticks: list[int]) -> bool:
 
 
 def possible_periods(ticks: list[int]) -> float:
-    """For how large a range of periods, in ticks, a rate sends at just these ticks: at the first one not before each
-    of its times, which lie a period apart. Negative if no rate does.
+    """Return the width of the range of periods, in ticks, with which a rate sends at exactly these ticks.
+
+    The times of a rate are one period apart. It sends at the first tick that is not before each of its times. The width
+    is negative if no rate fits.
 
     Command k at tick n[k] means that n[k] - 1 < begin + k * period <= n[k]; two commands i before k then give
     (n[k] - n[i] - 1) / (k - i) < period < (n[k] - n[i] + 1) / (k - i).

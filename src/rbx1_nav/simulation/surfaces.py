@@ -1,7 +1,7 @@
-"""The surface below the robot: reads config/surfaces/*.yaml, and draws one run's random errors from it.
+"""The surface below the robot: reads config/surfaces/*.yaml, and draws the random errors of a run from a surface.
 
-One file serves both the simulated base, which draws its slip and its gyro's errors from it, and the filter, which takes
-its initial uncertainties from it.
+The simulated base and the filter use the same file: the base draws its slip and its gyro's errors from it, and the
+filter takes its initial uncertainties from it.
 """
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from typing import Callable, NamedTuple
 
 from rbx1_nav.config import ConfigError, Section, YamlValue, load_yaml, show, show_name
 
-RANDOM = 'random'   # the word for a seed that is drawn anew
+RANDOM = 'random'   # the value that requests a new random seed
 MAX_SEED = 2 ** 31 - 1
 
 
@@ -44,7 +44,7 @@ KEYS = {
     'gyro_scale_error': FRACTION,
     'gyro_measurement_range': Key(1, 1e5, convert=radians)}
 
-# those that a file may leave out: they are 0 then
+# keys that a file may omit; their default is 0
 OPTIONAL_KEYS = {
     'delay': Key(0, 5),
     'curvature': Key(-10, 10),
@@ -89,14 +89,14 @@ class RandomErrors(NamedTuple):
 
 
 def known_surfaces(folder: str) -> list[str]:
-    """Names of the surfaces that have a file in a folder, sorted."""
+    """Return the sorted names of the surfaces that have a file in a folder."""
     return sorted(name[:-len('.yaml')] for name in os.listdir(folder) if name.endswith('.yaml'))
 
 
 def load_surface(name: YamlValue, folder: str) -> Surface | None:
-    """The Surface of this name in a folder, or of the file with this absolute path; None for the ideal surface.
+    """Return the Surface with this name in a folder, or from the file at this absolute path.
 
-    Raises ConfigError.
+    The result is None for the ideal surface. Raises ConfigError.
     """
     path = None
     if isinstance(name, str):
@@ -118,8 +118,10 @@ def load_surface(name: YamlValue, folder: str) -> Surface | None:
 
 
 def read_surface(values: YamlValue, name: str) -> Surface | None:
-    """The Surface of a mapping with all KEYS, and some OPTIONAL_KEYS; None, the ideal surface, for an empty mapping.
-    Raises ConfigError."""
+    """Return the Surface of a mapping with all KEYS and some OPTIONAL_KEYS. Raises ConfigError.
+
+    The result is None, the ideal surface, for an empty mapping.
+    """
     section = Section(values, f'surface {show_name(name)}')
     if not values:
         return None
@@ -133,7 +135,7 @@ def read_surface(values: YamlValue, name: str) -> Surface | None:
 
 
 def read_seed(value: YamlValue) -> int:
-    """A seed: an integer from 0 to 2147483647, its digits as text, or `random` for a new one. Raises ConfigError."""
+    """Return a seed, given as an integer from 0 to 2147483647, as text, or as `random`. Raises ConfigError."""
     if value == RANDOM:
         return random.randrange(10 ** 6)
     seed = int(value) if isinstance(value, str) and re.fullmatch(r'\d{1,10}', value, re.ASCII) else value
@@ -143,7 +145,7 @@ def read_seed(value: YamlValue) -> int:
 
 
 def draw_run(surface: Surface, seed: int) -> RandomErrors:
-    """The RandomErrors that a seed (an integer) stands for."""
+    """Return the RandomErrors that a seed (an integer) determines."""
     normal = random.Random(seed).gauss
     return RandomErrors(normal(surface.slip_straight, surface.slip_straight_spread),
                         normal(surface.slip_turning, surface.slip_turning_spread),

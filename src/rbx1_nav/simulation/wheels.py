@@ -1,4 +1,4 @@
-"""Wheels: how they follow a command, what their encoders count, and where they take the robot."""
+"""Simulated wheels: how they follow commands, what their encoders count, and how they move the robot."""
 from __future__ import annotations
 
 from math import copysign, hypot
@@ -13,35 +13,37 @@ from rbx1_nav.simulation.surfaces import RandomErrors, Surface
 
 
 class AnyWheels(Protocol):
-    """What all wheels have."""
+    """The interface of all wheels."""
 
     base_width: float       # distance between the wheels, m
-    truth: Odometry         # of the robot itself, which no encoder knows
+    truth: Odometry         # motion of the robot itself, which no encoder measures
 
     @property
     def at_rest(self) -> bool:
-        """Whether they stand still, and will until there is a command to move."""
+        """Whether the wheels are at rest, and stay at rest until there is a motion command."""
 
     @property
     def uncertainty(self) -> Uncertainty:
         """The Uncertainty of the odometry."""
 
     def travel(self, linear: float, angular: float, duration: float) -> tuple[float, float]:
-        """(left, right) travel in m that the encoders count while `linear` (m/s) and `angular` (rad/s) are in force for
-        `duration` (s)."""
+        """Return the (left, right) travel in m that the encoders count in `duration` (s).
+
+        linear (m/s), angular (rad/s): the command in force during this time.
+        """
 
     def velocity(self, linear: float, angular: float) -> tuple[float, float]:
-        """The speeds that the encoders report meanwhile, m/s and rad/s."""
+        """Return the speeds that the encoders report while this command is in force, m/s and rad/s."""
 
     def true_velocity(self, linear: float, angular: float) -> tuple[float, float]:
-        """The speeds of the robot itself, m/s and rad/s."""
+        """Return the speeds of the robot itself, m/s and rad/s."""
 
     def reset(self) -> None:
         """Put the robot back at the origin, at rest."""
 
 
 class IdealWheels:
-    """Wheels that follow every command at once and exactly: no inertia, no slip."""
+    """Wheels without inertia and slip, which follow every command immediately and exactly."""
 
     at_rest = True
     uncertainty = Uncertainty(MEASURED, MEASURED, MEASURED, MEASURED)
@@ -51,7 +53,7 @@ class IdealWheels:
         self.truth = Odometry(base_width)
 
     def velocity(self, linear: float, angular: float) -> tuple[float, float]:
-        """The commanded speeds."""
+        """Return the commanded speeds."""
         return linear, angular
 
     true_velocity = velocity
@@ -67,10 +69,10 @@ class IdealWheels:
 
 
 class Wheels:
-    """Two wheels with delay, inertia, drag and slip on a floor that is not even, and encoders that count whole ticks.
+    """Two wheels with delay, inertia, drag and slip on a nonuniform floor, and encoders that count whole ticks.
 
-    Both motors are alike, so their common motion (straight) and their opposite motion (turning) are independent; each
-    has its own drag and slip.
+    The two motors are identical, so their common motion (straight) and their opposite motion (turning) are independent.
+    Each of these motions has its own drag and slip.
     """
 
     _rolling: bool                      # whether anything moved in the last step
@@ -119,15 +121,18 @@ class Wheels:
         return left, right
 
     def velocity(self, *_: float) -> tuple[float, float]:
-        """The speeds by the encoders' latest counts, whatever is commanded."""
+        """Return the speeds from the encoders' latest counts, whatever is commanded."""
         return self._velocity
 
     def true_velocity(self, *_: float) -> tuple[float, float]:
-        """The motors' speeds less slip, whatever is commanded."""
+        """Return the motors' speeds minus slip, whatever is commanded."""
         return self._on_the_floor(self.straight.speed, 2 * self.turning.speed / self.base_width)
 
     def _on_the_floor(self, straight: float, turn: float) -> tuple[float, float]:
-        """What the robot makes of its wheels' travel, or speeds, without noise."""
+        """Return the robot's distance and angle for the travel of its wheels, or its speeds for the wheels' speeds.
+
+        Noise is not included.
+        """
         surface, run = self.surface, self.run
         distance = straight * (1 - run.slip_straight)
         if surface.turning_loss:
@@ -143,7 +148,7 @@ class Wheels:
         self._distance += (left + right) / 2
         self._angle += (right - left) / self.base_width
         self._time += duration
-        if self._time > 0.75 * self.window:     # steps differ a little from their nominal length
+        if self._time > 0.75 * self.window:     # steps differ slightly from their nominal length
             self._velocity = self._distance / self._time, self._angle / self._time
             self._path += abs(self._distance)
             self._turned += abs(self._angle)
@@ -151,11 +156,12 @@ class Wheels:
 
     @property
     def uncertainty(self) -> Uncertainty:
-        """Uncertainty of the odometry.
+        """The Uncertainty of the odometry.
 
-        Of the pose: the sum of all slip, an upper bound, since the way back may undo it. Of the speeds: rounding to
-        whole ticks over the window, with a variance of 1/6 tick^2 as the difference of two roundings (1/12 each), and
-        the floor's noise. The speeds of a standing robot are known.
+        The variances of the pose come from the sum of all slip. This is an upper bound, because the return path may
+        cancel slip. The variances of the speeds come from the rounding to whole ticks over the window and from the
+        floor's noise. The rounding has a variance of 1/6 tick^2, because it is the difference of two rounding errors
+        (1/12 each). The speeds of a stationary robot are known.
         """
         surface = self.surface
         yaw = hypot(surface.slip_turning, surface.slip_turning_spread) * self._turned
@@ -173,7 +179,10 @@ class Wheels:
                            MEASURED + 2 * wheel / self.base_width ** 2 + heading / self.window)
 
     def _noise(self, path: float, turned: float) -> tuple[float, float]:
-        """Variances of the length (m^2) and the heading (rad^2) after a path (m) and turns (rad), by the noise."""
+        """Return the variances that noise adds to the length (m^2) and the heading (rad^2).
+
+        path: m; turned: rad.
+        """
         surface = self.surface
         return (surface.distance_noise ** 2 * path,
                 surface.heading_noise_turning ** 2 * turned + surface.heading_noise_straight ** 2 * path)

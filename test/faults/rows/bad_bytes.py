@@ -1,4 +1,4 @@
-"""Connections that do not speak ROS, to the ports of the nodes: the nodes go on, and so does the run."""
+"""Connections that do not speak ROS, to the ports of the nodes: the nodes keep running, and the run finishes."""
 import contextlib
 import os
 import socket
@@ -13,7 +13,8 @@ import rospy
 import support
 
 FAULT = 'random, truncated and silent connections to the TCPROS and XML-RPC ports of base, script and filter'
-PROMISE = 'the nodes go on, the run ends where it should, no thread or file descriptor is left, new peers can connect'
+PROMISE = ('the nodes keep running, the run finishes where it should, no thread or file descriptor leaks, new peers '
+           'can connect')
 FULL, SHORT = 600, 60
 ROOT = ALONE = False
 
@@ -82,7 +83,7 @@ class Node:
     @property
     def leak(self):
         """What a node that does not close its connections holds."""
-        return f'{self.name} to close its connections: {self.held()} threads and file descriptors, before {self.before}'
+        return f'{self.name} to close its connections: {self.held()} threads and file descriptors, {self.before} before'
 
     def random_ports(self, random, count):
         """So many of its ports."""

@@ -1,4 +1,4 @@
-"""Commands that no driver should send: the base goes on, reports finite numbers, and then obeys an ordinary command."""
+"""Commands that no driver should send: the base keeps running, reports finite values, then obeys normal commands."""
 import itertools
 import math
 import os
@@ -10,10 +10,10 @@ from geometry_msgs.msg import Twist
 
 import support
 
-FAULT = 'Twists with NaN, infinities, 1e308, denormals, lateral and vertical parts; random ones; 5,000 a second for ' \
-        '10 s; two publishers that contradict each other'
-PROMISE = '/odom stays finite, the base then obeys exactly; its memory does not grow, it logs at most 2 lines a ' \
-          'second; it names the two publishers, in a warning and in /diagnostics'
+FAULT = ('Twists with NaN, infinities, 1e308, denormals, lateral and vertical components; random Twists; 5,000 Twists '
+         'per second for 10 s; two publishers whose commands contradict each other')
+PROMISE = ('/odom stays finite, and the base obeys exactly afterwards; its memory does not grow, and it logs at most 2 '
+           'lines per second; it names the two publishers in a warning and in /diagnostics')
 FULL, SHORT = 10000, 500       # random Twists
 ROOT = ALONE = False
 
@@ -49,11 +49,11 @@ def run(row):
                 odom.wait_for_twist(speed)
             limit = LINES * (time.monotonic() - start) + 3      # and one of each kind at once
             assert len(base.lines) - lines <= limit, '\n'.join(base.lines[lines:])
-            row.figure('growth of the memory, KB', rss(pid) - memory)
-            assert rss(pid) <= memory + MEMORY_LIMIT, 'the memory grew by %d KB' % (rss(pid) - memory)
+            row.figure('memory growth (KB)', rss(pid) - memory)
+            assert rss(pid) <= memory + MEMORY_LIMIT, 'the memory has grown by %d KB' % (rss(pid) - memory)
             for message in odom.messages:
                 values = numbers(message)
-                assert all(map(math.isfinite, values)), f'odometry that is not finite: {values[:7]}'
+                assert all(map(math.isfinite, values)), f'non-finite odometry: {values[:7]}'
             del odom.messages[:-1]
             commander.publisher.unregister()
             row.reset()
@@ -101,7 +101,7 @@ def flood(row, commander, *_):
     for count in range(round(FLOOD * 10 * row.times / FULL)):
         commander.send(0.2 if count % 2 else -0.2)
         time.sleep(max(0, start + count / FLOOD - time.monotonic()))
-    row.figure('commands a second in the flood', (count + 1) / (time.monotonic() - start))
+    row.figure('commands per second in the flood', (count + 1) / (time.monotonic() - start))
 
 
 def two_publishers(row, commander, base, _):

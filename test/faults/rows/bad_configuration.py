@@ -1,4 +1,4 @@
-"""Configurations that make no sense, against everything that reads one."""
+"""Invalid configurations, passed to everything that reads one."""
 from functools import lru_cache
 import math
 import os
@@ -16,7 +16,7 @@ from rbx1_nav.simulation.surfaces import load_surface, read_seed, read_surface
 from rbx1_nav.units import SECOND
 
 FAULT = 'generated configurations of robot, surface, seed, filter and scripts'
-PROMISE = 'one line that names the key, or finite numbers at least once an hour'
+PROMISE = 'a one-line error that names the key, or finite values with a period of at most one hour'
 FULL, SHORT = 10000, 2000
 ROOT = ALONE = False
 

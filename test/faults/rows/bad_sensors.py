@@ -1,4 +1,4 @@
-"""Sensor messages that make no sense, to the filter."""
+"""Invalid sensor messages, sent to the filter."""
 import math
 import time
 
@@ -12,10 +12,10 @@ from tf2_msgs.msg import TFMessage
 import support
 from sensors import Sensors, turn
 
-FAULT = 'the filter gets NaN, bad covariances and stamps, gaps, jumps, resets, two senders, a robot that is held'
-PROMISE = 'never a number that is not finite; at most 2 lines of log a second, and 4 when sensors time out and ' \
-          'recover; ' \
-          'a pose again afterwards'
+FAULT = ('the filter receives NaN, invalid covariances and stamps, gaps, jumps, resets, messages from two senders, '
+         'and wheel motion while the robot is held')
+PROMISE = ('all published values are finite; at most 2 log lines per second, plus 4 when sensors time out and '
+           'recover; poses are published again afterwards')
 FULL, SHORT = 130, 7
 ROOT = ALONE = False
 
@@ -56,15 +56,15 @@ def faults(row):
     kind('random stamps', lambda o, i: shift(o, uniform(-2, 2)), lambda o, i: shift(i, uniform(-2, 2)))
     kind('stamps of 0', lambda o, i: [setattr(m.header, 'stamp', rospy.Time()) for m in (o, i)])
     start = rospy.Time.now()
-    kind('one stamp for all', lambda o, i: [setattr(m.header, 'stamp', start) for m in (o, i)])
+    kind('the same stamp on all messages', lambda o, i: [setattr(m.header, 'stamp', start) for m in (o, i)])
     kind('jumps', lambda o, i: setattr(o.pose.pose.position, 'x', uniform(-100, 100)))
     kind('wheels that turn while the robot is held', lambda o, i: setattr(i.angular_velocity, 'z', 0.0))
-    kind('a robot that is turned while its wheels stand', lambda o, i: setattr(o, 'pose', Odometry().pose),
+    kind('a robot that is turned while its wheels are stationary', lambda o, i: setattr(o, 'pose', Odometry().pose),
          lambda o, i: turn(o, 0.0), lambda o, i: setattr(o.pose, 'covariance', [1e-6] * 36))
     kind('no frames', lambda o, i: setattr(o.header, 'frame_id', ''))
     kinds += [('no odometry', lambda o, i: (None, i)), ('no gyro', lambda o, i: (o, None)),
               ('no message', lambda o, i: (None, None)),
-              ('odometry now and then', lambda o, i: (o if uniform(0, 1) < 0.02 else None, i))]
+              ('occasional odometry', lambda o, i: (o if uniform(0, 1) < 0.02 else None, i))]
     return kinds
 
 
@@ -109,9 +109,9 @@ def run(row):
             count = len(poses.messages)
             support.wait_for(lambda: len(poses.messages) > count + 3, 'a pose after the fault')
             lines = [m.msg for m in log.messages if m.name == '/robot_pose_ekf']
-            row.figure('lines of log per second', len(lines) / (time.monotonic() - start))
+            row.figure('log lines per second', len(lines) / (time.monotonic() - start))
             most = 2 * (time.monotonic() - start) + CHANGES
             assert len(lines) <= most, '%d lines: %s' % (len(lines), '\n'.join(lines[:8]))
             messages = poses.messages + transforms.messages
-            assert all(map(math.isfinite, (n for m in messages for n in numbers(m)))), 'a number that is not finite'
+            assert all(map(math.isfinite, (n for m in messages for n in numbers(m)))), 'a value that is not finite'
             assert ekf.process.poll() is None and 'Traceback' not in ekf.output, ekf.output[-1500:]

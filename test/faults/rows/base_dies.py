@@ -1,4 +1,4 @@
-"""The base dies while the robot moves: no driving script reports success from a place that is not its end."""
+"""The base dies while the robot moves: no driving script reports success without having reached its end pose."""
 from itertools import product
 import os
 import signal
@@ -8,8 +8,8 @@ from geometry_msgs.msg import Twist
 
 import support
 
-FAULT = 'SIGKILL to the base in mid-motion; each with and without respawn, a second listener, and simulated time, ' \
-        'for both scripts'
+FAULT = ('SIGKILL to the base during a motion; with and without respawn, a second subscriber, and simulated time, for '
+         'both scripts')
 PROMISE = 'the script does not exit with 0; its last command is a stop'
 FULL, SHORT = 32, 3
 ROOT = ALONE = False
@@ -38,7 +38,7 @@ def run(row):
         script, listener, respawn, simulated = CASES[count % len(CASES)]
         moment = row.random.uniform(0, LONGEST[simulated])
         with row.fault('%s, base killed %.3f s after the start of the motion, %s, %s, %s' % (
-                script, moment, 'a second listener' if listener else 'no other listener',
+                script, moment, 'a second subscriber' if listener else 'no other subscriber',
                 'respawned' if respawn else 'not respawned', 'simulated time' if simulated else 'real time')):
             kill_base(row, script, moment, listener, dict(respawn=respawn, simulated=simulated, factor=FACTOR))
 

@@ -11,11 +11,10 @@ import support
 sys.path.append(os.path.join(os.path.dirname(__file__), '..', '..', 'create'))
 from driven import CHI_SQUARE, DrivenRobot
 
-FAULT = "`stty` sets a Create's port to another rate at a random moment of a motion; half of the nodes get SIGTERM " \
-        "at once"
-PROMISE = ('the rate is set back and the change is named; the robot stops with the node, which exits with 0; the '
-           'odometry '
-           'counts what moved meanwhile')
+FAULT = ("`stty` changes the baud rate of a Create's port at a random moment of a motion; half of the nodes receive "
+         "SIGTERM immediately afterwards")
+PROMISE = ('the rate is restored and the change is reported; the node stops the robot and exits with 0; the odometry '
+           'includes the motion in between')
 FULL, SHORT = 20, 2
 ROOT = ALONE = False
 
@@ -33,11 +32,11 @@ def change(row, case, robot_type, seconds, rate, at_once):
     changed = time.monotonic()
     if not at_once:
         robot.node.wait_for_line('another process has changed the rate to %d baud' % rate)
-        row.figure('set back after, s', time.monotonic() - changed)
+        row.figure('restored after (s)', time.monotonic() - changed)
         robot.commander.send(0.0, 0.0)
-        robot.wait_for_status('Standing')
+        robot.wait_for_status('Stationary')
         error = robot.normalized_error()
-        row.figure('squared error, normalized', error)
+        row.figure('normalized squared error', error)
         assert error < CHI_SQUARE, f'squared error {error:.1f} of {robot.error()}'
         robot.wait_for_motion()
         count = len(robot.received())

@@ -8,10 +8,9 @@ import support
 sys.path.append(os.path.join(os.path.dirname(__file__), '..', '..', 'create'))
 from driven import CHI_SQUARE, DrivenRobot
 
-FAULT = '1 % of the bytes from a Create 2, or from a Create, flipped, lost or doubled during the exercise'
-PROMISE = ('Create 2: corrupted frames are counted and dropped, and the odometry ends within 5 cm of the truth. '
-           'Create, '
-           'which has no checksum: the covariance holds the error')
+FAULT = '1 % of the bytes from a Create 2 or a Create are flipped, dropped or duplicated during the exercise'
+PROMISE = ('Create 2: corrupted frames are counted and dropped, and the final odometry is within 5 cm of the truth. '
+           'Create, which has no checksum: the covariance covers the error')
 FULL, SHORT = 10, 0
 ROOT = ALONE = False
 
@@ -21,7 +20,7 @@ LIMIT = 0.05        # m
 def check_create_2(row, robot):
     """Every corrupted frame is noticed."""
     x, y, _ = robot.error()
-    row.figure('Create 2: error, m', (x * x + y * y) ** 0.5)
+    row.figure('Create 2: error (m)', (x * x + y * y) ** 0.5)
     row.figure('Create 2: corrupted frames', robot.value('Serial line', 'Corrupted readings'))
     row.figure('Create 2: implausible readings', robot.value('Serial line', 'Implausible readings'))
     assert (x * x + y * y) ** 0.5 < LIMIT, (x, y)
@@ -32,8 +31,8 @@ def check_create(row, robot):
     """Some corrupted replies are not noticed."""
     x, y, _ = robot.error()
     error = robot.normalized_error()
-    row.figure('Create: error, m', (x * x + y * y) ** 0.5)
-    row.figure('Create: squared error, normalized', error)
+    row.figure('Create: error (m)', (x * x + y * y) ** 0.5)
+    row.figure('Create: normalized squared error', error)
     assert error < CHI_SQUARE, f'squared error {error:.1f} of {robot.error()}'
     assert int(robot.value('Serial line', 'Lost replies')) > 10
 

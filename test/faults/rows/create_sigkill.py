@@ -12,10 +12,9 @@ import support
 sys.path.append(os.path.join(os.path.dirname(__file__), '..', '..', 'create'))
 from driven import STOP, DrivenRobot, guardian_of
 
-FAULT = ("SIGKILL to a Create's base node, or to its process group, at a random moment of a motion; in a third of "
-         "them to "
-         'its guardian 2 to 60 ms before')
-PROMISE = 'a stop is on the line within 0.2 s'
+FAULT = ("SIGKILL to a Create's base node, or to its process group, at a random moment of a motion; in a third of the "
+         "cases, also to its guardian 2 to 60 ms earlier")
+PROMISE = 'a stop reaches the robot within 0.2 s'
 FULL, SHORT = 30, 3
 ROOT = False
 ALONE = True    # it measures a duration
@@ -41,7 +40,7 @@ def kill(row, robot, seconds, group, gap):
         robot.wait_for_stop(count)
     robot.wait_for_standstill()
     delay = next(stamp for stamp, data in robot.received()[count:] if data == STOP and stamp > killed) - killed
-    row.figure('stop after, s', delay)
+    row.figure('stop after (s)', delay)
     assert delay < LIMIT, f'{delay:.3f} s'
     robot.node.wait()
     robot.node = robot.start_node()

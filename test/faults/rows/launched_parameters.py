@@ -1,12 +1,12 @@
-"""Files and parameters that make no sense, through real processes."""
+"""Invalid files and parameters, passed to real processes."""
 import os
 import re
 
 import rospy
 import yaml
 
-FAULT = 'a file or parameter that makes no sense, for a real base, filter, script or simulation'
-PROMISE = 'one line that names the key, and a non-zero exit status'
+FAULT = 'the actual base, filter, script or simulation is started with an invalid file or parameter'
+PROMISE = 'a one-line error that names the key, and a non-zero exit status'
 FULL, SHORT = 20, 8
 ROOT = ALONE = False
 

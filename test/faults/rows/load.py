@@ -2,8 +2,8 @@
 import support
 from geometry_msgs.msg import Twist
 
-FAULT = 'four busy loops beside the exercise in real time; one run without them for comparison'
-PROMISE = '500 and 314 commands arrive, and the base neither times out nor stops in between'
+FAULT = 'the exercise in real time while four busy loops run; one run without them for comparison'
+PROMISE = '500 forward commands and 314 turn commands arrive, and the base neither times out nor stops in between'
 FULL, SHORT = 5, 1
 ROOT = False
 ALONE = True
@@ -43,8 +43,8 @@ def run(row):
     support.init_node('faults')
     odom, commands = support.OdomWatch(), support.Watch('/cmd_vel', Twist)
     if row.times > 1:
-        row.figure('duration without load, s', drive(row, odom, commands, 0))
+        row.figure('duration without load (s)', drive(row, odom, commands, 0))
     for number in range(row.times):
         with row.fault('run %d' % (number + 1)):
-            row.figure('duration with load, s', drive(row, odom, commands, LOOPS))
+            row.figure('duration with load (s)', drive(row, odom, commands, LOOPS))
             assert 'no command for' not in base.output, base.output

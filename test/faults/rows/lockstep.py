@@ -16,10 +16,9 @@ from ports import free_port
 from row import Row
 import support
 
-FAULT = 'the exercise at real_time_factor 20, three masters side by side with a busy loop each; in a quarter of the ' \
-        'runs, ' \
-        'script or base is stopped for 10 to 500 ms'
-PROMISE = 'the exact end, to a micrometre'
+FAULT = ('the exercise at real_time_factor 20, on three masters side by side with a busy loop each; in a quarter of '
+         'the runs, the script or the base is suspended for 10 to 500 ms')
+PROMISE = 'the exact end pose, to within a micrometer'
 FULL, SHORT = 200, 3
 ROOT, ALONE = False, True
 
@@ -61,7 +60,7 @@ def station(seed, count):
         if number % 4 == 0:
             who, delay, length = (generator.choice(('script', 'base')),
                                   generator.uniform(0, 3), generator.uniform(0.01, 0.5))
-            text += f', {who} stopped after {delay:.2f} s for {1000 * length:.0f} ms'
+            text += f', {who} suspended after {delay:.2f} s for {1000 * length:.0f} ms'
             time.sleep(delay)
             suspend(driver.process.pid if who == 'script' else base, length)
         driver.process.wait()
@@ -79,7 +78,7 @@ def station(seed, count):
 
 
 def suspend(pid, length):
-    """Stop a process for a while."""
+    """Suspend a process for a while."""
     try:
         os.kill(pid, signal.SIGSTOP)
         time.sleep(length)

@@ -11,10 +11,9 @@ sys.path.append(os.path.join(os.path.dirname(__file__), '..', '..', 'create'))
 from driven import DrivenRobot
 from rbx1_nav.create.protocol import MODE_NAMES, PASSIVE
 
-FAULT = ('robots that report their mode plus one, or not, driven in each mode; two thirds of those in safe mode '
-         'start with '
-         'a wheel dropped, or on the dock')
-PROMISE = 'a robot in safe or full mode obeys, and one in passive mode is never said to be in another'
+FAULT = ('robots that report their mode plus one, and robots that do not, driven in each mode; two thirds of those in '
+         'safe mode start with a wheel dropped or on the dock')
+PROMISE = 'a robot in safe or full mode obeys, and a robot in passive mode is never reported to be in another mode'
 FULL, SHORT = 36, 4
 ROOT = ALONE = False
 
@@ -40,7 +39,7 @@ def check(case, robot_type, plus_one, mode, obstacle):
     robot = DrivenRobot(case, robot_type, dict(mode_plus_one=plus_one), obstacle, operation_mode=mode)
     if obstacle:
         robot.wait_for_status('Not driven')
-        assert not try_to_drive(robot, 1), 'it moves'
+        assert not try_to_drive(robot, 1), 'the robot moves'
         robot.wait_for_mode('passive')
         robot.switch(obstacle, False)
     robot.wait_for_mode(MODE_NAMES[mode])

@@ -1,4 +1,4 @@
-"""The cable of an emulated Create is pulled in motion, and put back."""
+"""The cable of an emulated Create is pulled during a motion, and plugged in again."""
 import os
 import sys
 import time
@@ -9,8 +9,9 @@ import support
 sys.path.append(os.path.join(os.path.dirname(__file__), '..', '..', 'create'))
 from driven import CHI_SQUARE, STOP, DrivenRobot
 
-FAULT = "a Create's cable pulled at a random moment of a motion, and put back"
-PROMISE = 'a stop comes first; the odometry counts what moved meanwhile, and knows how uncertain that is'
+FAULT = "a Create's cable is pulled at a random moment of a motion, and plugged in again"
+PROMISE = ('the node first sends a stop; the odometry includes the motion in between, and its covariance is '
+           'consistent with the error')
 FULL, SHORT = 50, 2
 ROOT = ALONE = False
 
@@ -25,9 +26,9 @@ def pull(row, robot, seconds, gap, velocity):
     robot.switch('pull_cable', False)
     robot.wait_for_standstill()
     assert robot.commands_since(count)[0] == STOP, robot.commands_since(count)
-    robot.wait_for_status('Standing')
+    robot.wait_for_status('Stationary')
     error = robot.normalized_error()
-    row.figure('squared error, normalized', error)
+    row.figure('normalized squared error', error)
     assert error < CHI_SQUARE, f'squared error {error:.1f} of {robot.error()}'
 
 
@@ -49,7 +50,7 @@ def run(row):
                 pull(row, robot, seconds, gap, velocity)
             finally:
                 case.doCleanups()
-    errors = row.figures.get('squared error, normalized', [])
+    errors = row.figures.get('normalized squared error', [])
     if len(errors) > 10:
         with row.fault('the mean of the squared errors'):
             assert 0.5 < sum(errors) / len(errors) < 6, sum(errors) / len(errors)

@@ -1,4 +1,4 @@
-"""roscore dies and is started again while the robot drives: the run in progress ends where it should."""
+"""roscore dies and is restarted while the robot drives: the run in progress finishes where it should."""
 import os
 import signal
 import time
@@ -8,8 +8,9 @@ import rospy
 
 import support
 
-FAULT = 'SIGKILL to roscore and its children in mid-run; started again at the same port after 0 to 2 s'
-PROMISE = 'the run in progress ends with 0 and exactly where it should; a base and a script that are started again work'
+FAULT = 'SIGKILL to roscore and its children during a run; roscore is restarted on the same port after 0 to 2 s'
+PROMISE = ('the run in progress finishes with status 0, exactly where it should; a base and a script that are '
+           'restarted work')
 FULL, SHORT = 16, 2
 ROOT = ALONE = False
 
@@ -24,7 +25,7 @@ def run(row):
     for count in range(row.times):
         script = SCRIPTS[count % 2]
         moment, pause = row.random.uniform(0, 18), row.random.uniform(0, 2)
-        with row.fault('%s, roscore killed %.3f s after the start of the motion, started again after %.3f s' % (
+        with row.fault('%s, roscore killed %.3f s after the start of the motion, restarted after %.3f s' % (
                 script, moment, pause)):
             # what the page says is to be started again: the base, and whatever talks to it
             base = row.base('real_time_factor:=%d' % FACTOR)
@@ -36,11 +37,11 @@ def run(row):
             time.sleep(pause)
             core = row.roscore()
             row.check_home(driver, odom)
-            assert base.process.poll() is None, f'roslaunch ended:\n{base.output}'
+            assert base.process.poll() is None, f'roslaunch exited:\n{base.output}'
             # the new master knows neither the base nor its topics
             state = rosgraph.Master('/faults').getSystemState()
             known = {node for kind in state for _, nodes in kind for node in nodes}
-            row.figure('nodes of before that the new master knows', len(known - {'/rosout'}))
+            row.figure('old nodes known to the new master', len(known - {'/rosout'}))
             row.end(driver, base)
             odom.subscriber.unregister()
 

@@ -1,4 +1,4 @@
-"""What strangers reach, what foreign files can do, and what is left behind."""
+"""What others can reach, what external files can do, and what is left behind."""
 import ast
 import glob
 import os
@@ -11,9 +11,11 @@ import rospkg
 import processes
 import support
 
-FAULT = 'sockets, temporary files, YAML with code in it, and killed parents of all kinds'
-PROMISE = ('our nodes listen on loopback only; temporary files are private; no code from outside runs; '
-           'no child outlives its parent by 1 s, except nodes of a roslaunch that is killed by SIGKILL')
+FAULT = ('sockets, temporary files, YAML that contains code, and parent processes that are stopped by each kind of '
+         'signal')
+PROMISE = ('the nodes of this package listen on loopback only; temporary files are private; no external code runs; '
+           'child processes exit within 1 s of their parent, except the nodes of a roslaunch that is killed by '
+           'SIGKILL')
 FULL, SHORT = 30, 3
 ROOT = ALONE = False
 
@@ -51,9 +53,9 @@ def sockets(row):
                     f'{protocol} {address}: {processes.commands([pid])}')
         assert driver.wait() == 0, driver.output
     row.end(base, ekf)
-    row.figure('open sockets of ours on loopback', len(found.get((True, True), ())))
+    row.figure('open Python sockets on loopback', len(found.get((True, True), ())))
     # its XML-RPC server: roscpp asks ROS_IP for its name only
-    row.figure('open sockets of roscpp on all interfaces', len(found.get((False, False), ())))
+    row.figure('open roscpp sockets on all interfaces', len(found.get((False, False), ())))
     assert (True, False) not in found, '\n'.join(found[True, False])
     assert len(found.get((True, True), ())) >= 10, 'only these: %s' % {k: sorted(v) for k, v in found.items()}
 
@@ -126,7 +128,7 @@ def orphans(row):
         for pid in find():
             os.kill(pid, signal.SIGKILL)
     else:
-        row.figure('last child after the end of roslaunch, s', processes.wait_for_end(find, 1.0))
+        row.figure('last child of roslaunch exited after (s)', processes.wait_for_end(find, 1.0))
 
 
 def run(row):

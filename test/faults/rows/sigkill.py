@@ -4,7 +4,7 @@ import math
 import support
 
 FAULT = 'SIGKILL to the script at a random moment of a motion'
-PROMISE = 'the robot goes on for at most the timeout of 1 s and one period'
+PROMISE = 'the robot keeps moving for at most the timeout of 1 s plus one period'
 FULL, SHORT = 40, 2
 ROOT = ALONE = False
 
@@ -27,6 +27,6 @@ def run(row):
             killed = odom.position()
             odom.wait_for_twist(0.0)
             way = math.dist(killed, odom.position())
-            row.figure('way after the end, m', way)
+            row.figure('distance after SIGKILL (m)', way)
             # odometry that was under way when it was killed may be a period old
-            assert way <= SPEED * (TIMEOUT + 2 * PERIOD), f'it went on for {way:.4f} m'
+            assert way <= SPEED * (TIMEOUT + 2 * PERIOD), f'the robot kept moving for {way:.4f} m'

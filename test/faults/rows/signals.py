@@ -1,4 +1,4 @@
-"""SIGINT, SIGTERM and SIGHUP to the driving scripts: the last command is a stop, and the process ends in time."""
+"""SIGINT, SIGTERM and SIGHUP to the driving scripts: the last command is a stop, and the process exits in time."""
 from contextlib import contextmanager
 import math
 import os
@@ -10,10 +10,10 @@ from geometry_msgs.msg import Twist
 
 import support
 
-FAULT = 'SIGINT, SIGTERM or SIGHUP to a driving script at a random moment, a third each with a frozen master and ' \
-        'with a stopped /clock'
-PROMISE = 'if a command was sent, the last one is a stop; the robot stands within 0.1 s of simulated time; the ' \
-          'process has gone within 1.5 s of wall time'
+FAULT = ('SIGINT, SIGTERM or SIGHUP to a driving script at a random moment; a third of the time with a frozen master, '
+         'and a third of the time with a stopped /clock')
+PROMISE = ('if a command was sent, the last one is a stop; the robot is stationary within 0.1 s of simulated time; '
+           'the process exits within 1.5 s of wall time')
 FULL, SHORT = 120, 6
 ROOT = ALONE = False
 
@@ -80,7 +80,7 @@ def try_signal(row, script, number, moments, watches, python_start):
         driver.signal(number)
         duration = seconds(driver)
         allowed = max(DEADLINE, DEADLINE - 0.1 + seconds(control))
-    row.figure('process gone after, s', duration)
+    row.figure('process exited after (s)', duration)
     assert duration <= allowed, f'the process had gone after {duration:.3f} s\n{driver.output}'
     assert driver.process.returncode in (0, 1, -number), driver.output
     assert 'Traceback' not in driver.output or moment < python_start or EARLY in driver.output, driver.output
@@ -98,7 +98,7 @@ def try_signal(row, script, number, moments, watches, python_start):
     poses = [support.pose(message) for message in odom.messages]
     last = next(index for index, pose in enumerate(poses) if pose == poses[-1])
     standing = (odom.messages[max(last, before - 1)].header.stamp - odom.messages[before - 1].header.stamp).to_sec()
-    row.figure('standstill after, s of simulated time', standing)
+    row.figure('stationary after (s of simulated time)', standing)
     # odometry that was under way when the signal was sent may be a period old
-    assert standing <= STANDSTILL + 2 * PERIOD, 'it stood after %.2f s, %.3f m' % (
+    assert standing <= STANDSTILL + 2 * PERIOD, 'stationary after %.2f s, %.3f m' % (
         standing, math.dist(poses[before - 1][:2], poses[-1][:2]))

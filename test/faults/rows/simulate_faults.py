@@ -11,8 +11,8 @@ from matplotlib.figure import Figure
 import processes
 import support
 
-FAULT = 'simulate.py: a worker killed, a full disk for each kind of picture, signals, a pipe that closes'
-PROMISE = 'at most one line, a status that is not 0, no process left after 1 s, and no half picture'
+FAULT = 'simulate.py: a killed worker, a full disk for each picture format, signals, a closed pipe'
+PROMISE = 'at most one line, a non-zero exit status, no process left after 1 s, and no incomplete picture'
 FULL, SHORT = 100, 8
 ROOT = ALONE = False
 
@@ -54,18 +54,18 @@ class Simulation:
         return [pid for pid in self.pids() if pid != self.process.pid]
 
     def check_end(self, *statuses):
-        """It ends with one of these statuses, one line at most, and leaves no process behind."""
+        """It exits with one of these statuses and at most one line, and leaves no process behind."""
         try:
             _, errors = self.process.communicate(timeout=HANGS)
         except subprocess.TimeoutExpired:
             self.kill()
-            raise AssertionError('it, or a process of its, does not end')
+            raise AssertionError('simulate.py, or one of its processes, does not exit')
         try:
             assert self.process.returncode in statuses, 'status %d: %s' % (self.process.returncode, errors[-1500:])
             lines = [line for line in errors.splitlines() if 'PostScript' not in line]     # matplotlib's own warning
             # unless Python was not yet as far as our first line
             assert EARLY in errors or len(lines) <= 1 and 'Traceback' not in errors, errors[-1500:]
-            self.row.figure('last process after the end, s', processes.wait_for_end(self.pids, 1.0))
+            self.row.figure('last child process exited after (s)', processes.wait_for_end(self.pids, 1.0))
         finally:
             self.kill()
         return errors

@@ -8,10 +8,11 @@ from geometry_msgs.msg import Twist
 from slow_subscriber import SlowSubscriber
 import support
 
-FAULT = '3 subscribers to /cmd_vel with small buffers that never read, or read a byte a second, connected before the ' \
-        'start or in mid-run'
-PROMISE = "another subscriber's command period: its p99 within 5 ms of that of a run beside it; memory and threads " \
-          'of the script do not grow; it names those that listened at its start'
+FAULT = ('3 subscribers to /cmd_vel with small buffers that never read, or read one byte per second, connected before '
+         'the start or during the run')
+PROMISE = ("the 99th percentile of another subscriber's command period is within 5 ms of a simultaneous control run; "
+           "memory and threads of the script do not grow; the script names the subscribers that were connected at its "
+           "start")
 FULL, SHORT = 8, 1
 ROOT, ALONE = False, True
 
@@ -28,7 +29,8 @@ def run(row):
     for count in range(row.times):
         before, reads = CASES[count % 4]
         with row.fault('subscribers that %s, connected %s' % (
-                'read a byte a second' if reads else 'never read', 'before the start' if before else 'in mid-run')):
+                'read one byte per second' if reads else 'never read',
+                'before the start' if before else 'during the run')):
             slow_subscribers(row, before, reads)
 
 
@@ -58,16 +60,16 @@ def slow_subscribers(row, before, reads):
             time.sleep(0.1)
         status = driver.process.poll()
         (period, longest), (control_period, control_longest) = probe.periods(), control_probe.periods()
-        row.figure('p99 of the period, ms', 1000 * period)
-        row.figure('p99 of the control, ms', 1000 * control_period)
-        assert period <= control_period + P99_LIMIT, 'the p99 of the period is %.4f s, of the control %.4f s' % (
+        row.figure('p99 of the period (ms)', 1000 * period)
+        row.figure('p99 of the control run (ms)', 1000 * control_period)
+        assert period <= control_period + P99_LIMIT, 'the p99 of the period is %.4f s, in the control run %.4f s' % (
             period, control_period)
-        assert longest <= control_longest + LONGEST_LIMIT, 'the longest period is %.3f s, of the control %.3f s' % (
+        assert longest <= control_longest + LONGEST_LIMIT, 'the longest period is %.3f s, in the control run %.3f s' % (
             longest, control_longest)
         grown, control_grown = (end[0] - start[0] for start, end in zip(first, last))
-        row.figure('growth of the memory, KB', grown)
-        assert grown <= max(control_grown, 0) + MEMORY_LIMIT, 'the memory grew by %d KB' % grown
-        assert last[0][1] <= first[0][1], 'the threads grew from %d to %d' % (first[0][1], last[0][1])
+        row.figure('memory growth (KB)', grown)
+        assert grown <= max(control_grown, 0) + MEMORY_LIMIT, 'the memory has grown by %d KB' % grown
+        assert last[0][1] <= first[0][1], 'the number of threads has grown from %d to %d' % (first[0][1], last[0][1])
         assert status == 0, driver.output
         assert ('/slow_' in driver.output) == before, driver.output     # those of its start are named
     finally:

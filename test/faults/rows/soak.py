@@ -8,8 +8,9 @@ from nav_msgs.msg import Odometry
 
 import support
 
-FAULT = 'minutes of simulated time, out and back over and over, at up to 30 times real time'
-PROMISE = 'memory, threads and file descriptors of the base stay; /odom is within 1 mm and 1 mrad of the exact integral'
+FAULT = 'minutes of simulated time, driving out and back repeatedly, at up to 30 times real time'
+PROMISE = ('memory, threads and file descriptors of the base do not grow; /odom is within 1 mm and 1 mrad of the '
+           'exact integral')
 FULL, SHORT = 60, 0
 ROOT = ALONE = False
 
@@ -52,8 +53,8 @@ def run(row):
             odom = rospy.wait_for_message('/odom', Odometry)
             x, y, heading = support.pose(odom)
             away, turned = math.hypot(x - pose[0], y - pose[1]), abs(support.wrapped(heading - pose[2]))
-            row.figure('distance from the exact pose, m', away)
-            row.figure('turned from the exact heading, rad', turned)
+            row.figure('distance from the exact pose (m)', away)
+            row.figure('deviation from the exact heading (rad)', turned)
             assert away < 1e-3 and turned < 1e-3, f'{away:.6f} m and {turned:.6f} rad from the exact pose'
         elapsed = odom.header.stamp.to_sec() - first
         samples = []
@@ -62,12 +63,12 @@ def run(row):
             samples.append(usage(pid))
         usages.append([min(column) for column in zip(*samples)])
     row.figure('simulated hours', elapsed / 3600)
-    with row.fault('what grows'):
+    with row.fault('growth'):
         assert len(usages) >= WARM_UP + 4, f'only {len(usages)} runs in this time'
         early, late = usages[WARM_UP:WARM_UP + 2], usages[-2:]
-        row.figure('memory after warm-up and at the end, MB', min(u[0] for u in early) / 1024)
-        row.figure('memory after warm-up and at the end, MB', min(u[0] for u in late) / 1024)
+        row.figure('memory after warm-up and at the end (MB)', min(u[0] for u in early) / 1024)
+        row.figure('memory after warm-up and at the end (MB)', min(u[0] for u in late) / 1024)
         growth = [min(column) - min(before) for column, before in zip(zip(*late), zip(*early))]
         assert growth[0] <= GROWTH and growth[1] <= 0 and growth[2] <= 0, \
-            'grown by %d kB, %d threads, %d file descriptors: %s' % (*growth, usages)
+            'growth by %d kB, %d threads, %d file descriptors: %s' % (*growth, usages)
     row.faults = row.times

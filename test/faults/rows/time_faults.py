@@ -10,8 +10,8 @@ import support
 from sensors import Sensors
 from unsteady_time import PACKAGE, Time
 
-FAULT = 'the system clock of one node steps by an hour; simulated time jumps, stands still for 2 s, or leaps'
-PROMISE = 'at most 0.2 m of travel for a jump, finite numbers, no wrong success, and no hang'
+FAULT = 'the system clock of one node steps by an hour; simulated time jumps forward or backward, or stops for 2 s'
+PROMISE = 'at most 0.2 m of travel after a jump, finite values, no false success, and no hang'
 FULL, SHORT = 21, 2
 ROOT = ALONE = False
 
@@ -40,9 +40,9 @@ def base_in_motion(row, clock, jump):
         jump()
         odom.wait_for_twist(0.0)
         travel = odom.last.pose.pose.position.x - start
-        row.figure('travel after a jump, m', travel)
-        assert -1e-9 <= travel <= JUMP, f'it travelled {travel:.4f} m'
-    assert all(math.isfinite(n) for m in odom.messages for n in support.pose(m)), 'a number that is not finite'
+        row.figure('travel after a jump (m)', travel)
+        assert -1e-9 <= travel <= JUMP, f'the robot traveled {travel:.4f} m'
+    assert all(math.isfinite(n) for m in odom.messages for n in support.pose(m)), 'a value that is not finite'
 
 
 def script_in_motion(row, clock, jump, script):
@@ -58,10 +58,10 @@ def script_in_motion(row, clock, jump, script):
     off = math.hypot(x - 0.3 * (1 + math.cos(3.14)), y - 0.3 * math.sin(3.14))
     assert 'Traceback' not in driver.output, driver.output[-1500:]
     velocity = odom.next().twist.twist
-    assert (velocity.linear.x, velocity.angular.z) == (0, 0), 'it still moves after the end'
-    row.figure('status of a script', status)
+    assert (velocity.linear.x, velocity.angular.z) == (0, 0), 'the robot still moves after the script has exited'
+    row.figure('exit status of the script', status)
     if status == 0:
-        row.figure('distance from the exact end with status 0, m', off)
+        row.figure('distance from the exact end pose with status 0 (m)', off)
         turned = abs(support.wrapped(heading))
         assert off < NEAR and turned < NEAR, f'status 0, but {off:.3f} m and {turned:.3f} rad off'
 
@@ -80,7 +80,7 @@ def filter_in_use(row, clock, jump):
     count = len(poses.messages)
     support.wait_for(lambda: len(poses.messages) > count + 3, 'a pose after the clock is right again')
     assert all(math.isfinite(n) for m in poses.messages for n in [*support.pose(m), *m.pose.covariance]), \
-        'a number that is not finite'
+        'a value that is not finite'
 
 
 def run(row):

@@ -1,4 +1,4 @@
-"""Two hosts joined by a cable: the script on one, base and roscore on the other. The cable is pulled in mid-leg."""
+"""Two hosts joined by a cable: the script on one, base and roscore on the other. The cable is pulled during a leg."""
 import contextlib
 import os
 import subprocess
@@ -6,9 +6,10 @@ import time
 
 import support
 
-FAULT = 'script on one host, base and roscore on another; the link goes down in mid-leg for 0.3 s, for 3 s, or for good'
-PROMISE = '0.3 s: exit status 0; longer: named within 2 s, exit status 1, and the robot goes on for at most its ' \
-          'timeout of 1 s'
+FAULT = ('script on one host, base and roscore on another; the link goes down during a leg for 0.3 s, for 3 s, or '
+         'permanently')
+PROMISE = ('0.3 s: exit status 0; longer: reported within 2 s, exit status 1, and the robot keeps moving for at most '
+           'its timeout of 1 s')
 FULL, SHORT = 24, 2
 ROOT, ALONE = True, True
 
@@ -82,18 +83,18 @@ def try_one(row, start, poses, names, cables, outage, delay):
         return
     support.wait_for(lambda: 'Stopping the robot...' in driver.output, f"the script to notice:\n{driver.output}")
     noticed = time.monotonic() - pulled
-    row.figure('noticed after, s', noticed)
+    row.figure('detected after (s)', noticed)
     time.sleep(max(0, TIMEOUT + 0.5 - noticed))
     way = position(poses) - x
-    row.figure('way without a link, m', way)
+    row.figure('distance without a link (m)', way)
     if outage is not None:
         time.sleep(max(0, pulled + outage - time.monotonic()))
         ip('-n', names[0], 'link', 'set', cables[0], 'up')
     status = driver.wait()
     assert status == 1 and '/arbotix' in driver.output and 'Traceback' not in driver.output, driver.output
-    assert noticed <= NOTICE, f'noticed after {noticed:.2f} s'
+    assert noticed <= NOTICE, f'detected after {noticed:.2f} s'
     # a command may be on its way, and the last line of odometry be a period old
-    assert way <= SPEED * (TIMEOUT + 3 * PERIOD), f'it went on for {way:.3f} m'
+    assert way <= SPEED * (TIMEOUT + 3 * PERIOD), f'the robot kept moving for {way:.3f} m'
 
 
 def position(poses):

@@ -1,4 +1,4 @@
-"""A base node meets a robot whose type and rate it does not know, and may be killed before it does."""
+"""A base node is connected to a robot of unknown type and baud rate, and may be killed during its search."""
 import itertools
 import os
 import signal
@@ -14,10 +14,10 @@ from driven import STOP
 from emulated import EmulatedRobot
 from rbx1_nav.create.protocol import command
 
-FAULT = ('a base node for each robot_type meets each kind of robot at each rate; half of the nodes are killed by '
-         'SIGKILL '
-         'while they search')
-PROMISE = 'the robot gets nothing but starts and queries until it is known: no motion, and no program of its own'
+FAULT = ('a base node with each robot_type is connected to each kind of robot at each baud rate; half of the nodes '
+         'are killed by SIGKILL during the search')
+PROMISE = ('the robot receives only start commands and queries until it is identified: it does not move, and none of '
+           'its programs starts')
 FULL, SHORT = 36, 6
 ROOT = ALONE = False
 

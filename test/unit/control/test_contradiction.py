@@ -1,4 +1,4 @@
-"""Which commands of several senders contradict each other."""
+"""Commands of several senders contradict each other if they alternate and differ."""
 from rbx1_nav.control.contradiction import Senders
 from rbx1_nav.units import SECOND
 
@@ -6,7 +6,7 @@ TICK = SECOND // 50
 
 
 class Base:
-    """Receives commands of the senders a, b, ..."""
+    """A base that receives commands from the senders a, b, ..."""
 
     def __init__(self):
         self.senders = Senders()
@@ -14,7 +14,7 @@ class Base:
         self.now = 0
 
     def send(self, name, *command, after=TICK):
-        """The contradiction that a command causes."""
+        """Send a command, and return the contradiction that it causes."""
         self.now += after
         return self.senders.contradiction(self.now, self.live[name], name, command, self.live.values)
 

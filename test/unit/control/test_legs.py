@@ -1,4 +1,4 @@
-"""The exercise by odometry: legs that end when the pose says so."""
+"""The odometry-based exercise: each leg stops when the pose has reached its goal."""
 from collections import deque
 from math import cos, hypot, inf, pi, remainder, sin
 
@@ -12,11 +12,11 @@ from rbx1_nav.simulation.motors import Motor
 
 LEGS = dict(linear_speed=0.2, goal_distance=1.0, angular_speed=1.0, goal_angle=pi, rate=50, min_linear_speed=0.05,
             min_angular_speed=0.2)
-HALF_WIDTH = 0.13   # m, of the TurtleBot
+HALF_WIDTH = 0.13   # m, half of the TurtleBot's base width
 
 
 def drive(leg, pose, fraction=1.0):
-    """Drive a leg with a robot that moves by a fraction of each command; returns its last Pose and all speeds."""
+    """Drive a leg with a robot that moves by a fraction of each command; return its last Pose and all speeds."""
     speeds = []
     while True:
         speed = leg.next_speed(pose._replace(yaw=remainder(pose.yaw, 2 * pi)))
@@ -53,7 +53,7 @@ def test_a_leg_slows_down_to_its_lowest_speed_before_the_goal():
 def test_a_trial_stop_comes_just_before_the_goal_and_then_the_lowest_speed():
     for leg in out_and_back_by_odometry(**LEGS)[:2]:
         _, speeds = drive(leg, ORIGIN)
-        # for the half second that was left
+        # for the remaining half second
         assert speeds.count(0.0) == 1 and speeds[speeds.index(0.0) + 1:] == [leg.min_speed] * 25
 
 
@@ -64,7 +64,7 @@ def test_a_leg_that_has_ended_stays_so():
 
 
 def roll(leg, lag, drag, delay):
-    """Drive a leg with motors to their standstill. Returns how far the robot went, m or rad."""
+    """Drive a leg with motors until they are stationary; return how far the robot went, m or rad."""
     straight, turning = Motor(lag, 1.0, drag), Motor(lag, 1.0, drag)
     pending, pose = deque([(0.0, 0.0)] * delay), ORIGIN
 
@@ -73,7 +73,7 @@ def roll(leg, lag, drag, delay):
         linear, angular = pending.popleft()
         return arc(pose, straight.travel(linear, 0.02), turning.travel(angular * HALF_WIDTH, 0.02) / HALF_WIDTH)
 
-    for rest in 25, 100:    # ticks: of the trial stop, and until it stands still in any case
+    for rest in 25, 100:    # ticks of the trial stop, and ticks until the robot is certainly stationary
         speed = leg.next_speed(pose)
         while speed:
             pose = tick(speed)
@@ -89,7 +89,7 @@ def roll(leg, lag, drag, delay):
 def test_the_robot_comes_to_a_standstill_at_the_goal_however_far_it_rolls_on(lag, drag, delay):
     """lag: s; drag: m/s; delay: ticks from a command to the motors."""
     forward, turn, *_ = out_and_back_by_odometry(**LEGS)
-    # half of a tick's travel, 0.5 mm and 0.11 degrees, and a fifth of the roll-out, up to 7 mm and 1.6 degrees
+    # half of the travel per tick, 0.5 mm and 0.11 degrees, and a fifth of the coasting, up to 7 mm and 1.6 degrees
     assert roll(forward, lag, drag, delay) == pytest.approx(1.0, abs=0.002)
     assert roll(turn, lag, drag, delay) == pytest.approx(pi, abs=0.008)
 
@@ -101,7 +101,7 @@ def test_a_robot_that_rolls_past_its_goal_in_the_trial_stop_has_arrived():
 def test_a_fast_leg_slows_down_early_enough_to_brake():
     pose, speeds = drive(out_and_back_by_odometry(**dict(LEGS, linear_speed=2.0, goal_distance=5.0))[0], ORIGIN)
     assert pose.x == pytest.approx(5.0, abs=0.5001 * 0.001)
-    # 0.4 m/s^2 at 50 Hz; up to twice that in the tick in which the travel time becomes the lower limit
+    # 0.4 m/s^2 at 50 Hz; up to twice this value in the tick in which the travel time becomes the lower limit
     braking = speeds[:speeds.index(0.0)]
     assert all(before - after < 2.1 * 0.4 / 50 for before, after in zip(braking, braking[1:])) and speeds[0] == 2.0
     assert braking[-1] == pytest.approx(0.05, abs=0.005)
@@ -141,16 +141,16 @@ def test_a_leg_without_progress_ends_with_an_error(fraction):
 
 @pytest.mark.parametrize('before, after, elapsed, reachable', [
     ((0.0, 0.0, 0.0), (0.004, 0.0, 0.0), 0.02, True), ((0.5, 0.0, 0.0), (0.0, 0.0, 0.0), 0.02, False),
-    # the whole speed for the time, half as fast again, and 0.1 m
+    # full speed for this time, half of it in addition, and 0.1 m
     ((0.5, 0.0, 0.0), (0.89, 0.0, 0.0), 1.0, True), ((0.5, 0.0, 0.0), (0.91, 0.0, 0.0), 1.0, False),
-    # a pose that was lost for long: the robot was stopped
+    # no pose for a long time: the robot was stopped
     ((0.5, 0.0, 0.0), (0.91, 0.0, 0.0), 100.0, False), ((0.5, 0.0, 0.0), (0.5, 0.0, 0.0), 100.0, True),
     # a clock that jumped back gives it no time
     ((0.5, 0.0, 0.0), (0.59, 0.0, 0.0), -5.0, True), ((0.5, 0.0, 0.0), (0.61, 0.0, 0.0), -5.0, False),
-    # forward is where it looks
+    # forward is the direction of the heading
     ((1.0, 0.0, pi), (0.7, 0.0, pi), 1.0, True), ((0.7, 0.0, pi), (1.0, 0.0, pi), 1.0, False),
     ((0.0, 0.0, 0.0), (0.0, 0.15, 0.0), 0.1, False),
-    # it turns left, across pi too
+    # it turns left, also across pi
     ((0.0, 0.0, 3.0), (0.0, 0.0, -2.5), 1.0, True), ((0.0, 0.0, -2.5), (0.0, 0.0, 3.0), 1.0, False),
     ((1.0, 0.0, 2.0), (1.0, 0.0, 0.0), 0.02, False), ((1.0, 0.0, 0.0), (1.0, 0.0, -0.19), 0.02, True)])
 def test_a_pose_that_jumps_is_not_reachable(before, after, elapsed, reachable):
@@ -159,7 +159,7 @@ def test_a_pose_that_jumps_is_not_reachable(before, after, elapsed, reachable):
 
 @pytest.mark.parametrize('yaw', [0.0, 0.5, pi / 4, 2.0, -2.5])
 @pytest.mark.parametrize('forward, left, reachable', [
-    # in 0.1 s at 0.2 m/s, half as fast again: 0.03 m, and 0.1 m in every direction
+    # 0.1 s at 0.2 m/s, and half of it in addition: 0.03 m, and 0.1 m in every direction
     (0.12, 0.0, True), (0.14, 0.0, False), (-0.09, 0.0, True), (-0.11, 0.0, False),
     (0.0, 0.12, True), (0.0, 0.14, False), (0.0, -0.12, True), (0.0, -0.14, False)])
 def test_what_is_reachable_depends_on_the_heading_of_the_robot(yaw, forward, left, reachable):

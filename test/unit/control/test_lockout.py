@@ -1,14 +1,14 @@
-"""A sender that has not noticed that the robot was stopped does not drive it on."""
+"""A sender that has not noticed that the robot was stopped cannot drive it."""
 import pytest
 
 from rbx1_nav.control.lockout import Lockout
 
-SILENCE = 600       # as ns as any
+SILENCE = 600       # ns; any value works
 
 
 @pytest.fixture(name='locked')
 def make_locked():
-    """A Lockout that was locked at 100, while a sender drove."""
+    """Return a Lockout that was locked at 100 while a sender was driving."""
     lockout = Lockout(SILENCE)
     assert not lockout.refuses(90, 'driver', True)
     lockout.lock('a wheel dropped')

@@ -1,4 +1,4 @@
-"""The exercise by time: four motions and their numbers of ticks."""
+"""The timed exercise: four motions and their numbers of ticks."""
 from math import inf, pi
 
 import pytest

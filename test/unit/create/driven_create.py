@@ -1,4 +1,4 @@
-"""A driver and an emulated robot on one clock, without a serial port: what the unit tests share."""
+"""A driver and an emulated robot on one clock, without a serial port, shared by the unit tests."""
 import os
 
 from rbx1_nav.control.gate import CommandGate, RefusedCommand
@@ -15,17 +15,17 @@ STEP = SECOND // 500
 
 
 class DrivenCreate:
-    """Both ends of a line whose cable can be pulled."""
+    """A driver and an emulated robot on a line whose cable can be unplugged."""
 
-    is_same = True      # whether the line is on the same adapter as the one before
+    is_same = True      # whether the line uses the same adapter as the previous line
 
     def __init__(self, robot_type, surface=None, seed=0, robot=None, quirks=Quirks(), **params):
-        """robot_type: auto, create or create2; surface, seed, quirks: of the Body; robot: its true type, if that is
-        another one; params: of the node."""
+        """robot_type: auto, create or create2; surface, seed, quirks: see Body; robot: the true type, if it differs;
+        params: parameters of the node."""
         self.settings, base = read_settings(dict(params, robot_type=robot_type))
         self.gate = CommandGate(base.limits, base.timeout)
         self.log = []
-        self.errors = []        # the lines of the log that are errors
+        self.errors = []        # log lines that are errors
         self.driver = Driver(self.settings, self.gate, self.log.append, self.log.append, self.log_error)
         self.now = SECOND
         model = MODELS[robot or robot_type]
@@ -38,7 +38,7 @@ class DrivenCreate:
         self.states = []
         self.found = None       # a Found
         self.refusals = []      # texts
-        self.velocity = None    # m/s and rad/s: the command that is repeated, or None
+        self.velocity = None    # m/s and rad/s: command to repeat, or None
 
     def log_error(self, text):
         """Log an error."""
@@ -46,11 +46,11 @@ class DrivenCreate:
         self.errors.append(text)
 
     def connect(self):
-        """Put the cable in."""
+        """Plug the cable in."""
         self.connected = True
         self.driver.attach(self.now, self)
 
-    # what a Link does for the driver
+    # the interface of a Link for the driver
 
     def write(self, data):
         """Send bytes."""
@@ -66,16 +66,16 @@ class DrivenCreate:
         self.line.host_baud = baud
 
     def confirm(self, found):
-        """Remember what the guardian would be told."""
+        """Record the robot that the guardian may stop."""
         self.found = found
 
     def pull(self):
-        """Pull the cable. What is on the way is lost."""
+        """Unplug the cable. Bytes in transit are lost."""
         self.connected = False
         self.driver.detach()
 
     def run(self, seconds):
-        """Let both run, with a step of the driver every 2 ms."""
+        """Run both, with a step of the driver every 2 ms."""
         end = self.now + round(seconds * SECOND)
         while self.now < end:
             self.now += STEP
@@ -91,29 +91,29 @@ class DrivenCreate:
                 self.states.append(state)
 
     def command(self, linear, angular, sender='driver'):
-        """Send a command, and keep the text if it is refused."""
+        """Send a command, and store the text if it is refused."""
         try:
             self.driver.command(self.now, linear, angular, sender=sender)
         except RefusedCommand as error:
             self.refusals.append(str(error))
 
     def stall(self, seconds):
-        """The computer pauses: the robot moves on, and what it sends waits."""
+        """Pause the computer: the robot continues, and the bytes that it sends wait."""
         self.now += round(seconds * SECOND)
 
     def drive(self, linear, angular, seconds):
-        """Repeat a command for a while."""
+        """Repeat a command for some seconds."""
         self.velocity = linear, angular
         self.run(seconds)
         self.velocity = None
 
     def command_zero(self):
-        """Stop by a command."""
+        """Stop the robot with a zero command."""
         self.command(0, 0)
 
     @property
     def truth(self):
-        """The Pose of the robot itself."""
+        """The true Pose of the robot."""
         return self.body.wheels.truth.pose
 
     @property
@@ -123,12 +123,12 @@ class DrivenCreate:
 
     @property
     def speeds(self):
-        """(left, right) in mm/s that the robot drives."""
+        """The wheel speeds of the robot, (left, right) in mm/s."""
         return self.body.left, self.body.right
 
 
 def started(robot_type, seconds=2.0, **params):
-    """A DrivenCreate after it has connected."""
+    """Return a DrivenCreate after it has connected."""
     driven = DrivenCreate(robot_type, **params)
     driven.connect()
     driven.run(seconds)

@@ -1,17 +1,17 @@
-"""An emulated robot for these tests, and what they do with it."""
+"""An emulated robot for the unit tests."""
 from rbx1_nav.create.emulator.body import Body, BodyErrors
 from rbx1_nav.create.emulator.emulator import EmulatedCreate
 from rbx1_nav.create.emulator.serial_line import SerialLine
 from rbx1_nav.create.protocol import FULL, OFF, PASSIVE, SAFE, command, packets_format, single_packets
 from rbx1_nav.units import SECOND
 
-# from off to each mode
+# commands from off to each mode
 ENTER = {OFF: b'', PASSIVE: command('start'), SAFE: command('start') + command('safe'),
          FULL: command('start') + command('full')}
 
 
 class Robot:
-    """An EmulatedCreate with a host that reads all it sends."""
+    """An EmulatedCreate with a host that reads everything that the robot sends."""
 
     def __init__(self, model, surface=None, errors=BodyErrors(), baud=None, **options):
         self.body = Body(model, surface, 1, errors, **options)
@@ -22,17 +22,17 @@ class Robot:
                                     lambda time, data: self.commands.append((time, data)))
 
     def run(self, seconds):
-        """Let time pass. Returns the bytes that have arrived at the host."""
+        """Advance the time. Returns the bytes that have arrived at the host."""
         self.now += round(seconds * SECOND)
         return self.robot.advance(self.now)
 
     def send(self, *commands):
-        """Send commands, and wait until they were executed. Returns the bytes that have arrived meanwhile."""
+        """Send commands, and wait until they have been executed. Returns the bytes that have arrived by then."""
         self.robot.receive(b''.join(commands), self.now)
         return self.run(0.05)
 
     def read(self, number):
-        """The values of a packet or group, by the names of the packets."""
+        """Return the values of a packet or group, by packet name."""
         packets = single_packets(self.model, [number])
         data = self.send(command('sensors', number))
         return dict(zip((packet.name for packet in packets), packets_format(packets).unpack(data)))
@@ -43,12 +43,12 @@ class Robot:
 
     @property
     def pose(self):
-        """Where the robot really is."""
+        """The true pose of the robot."""
         return self.body.wheels.truth.pose
 
 
 def robot_in(mode, model, **options):
-    """A Robot of this Model in a mode."""
+    """Return a Robot of this Model in a mode."""
     robot = Robot(model, **options)
     robot.send(ENTER[mode])
     assert robot.mode == mode

@@ -1,4 +1,4 @@
-"""A TurtleBot's gyro that breaks, at rest and in motion: it is noticed, and one that works is not taken for broken."""
+"""A fault of a TurtleBot's gyro, at rest or in motion, is detected, and a working gyro is never reported as faulty."""
 from math import degrees, pi, radians
 
 import pytest
@@ -10,24 +10,24 @@ from rbx1_nav.simulation.surfaces import load_surface
 from driven_create import SURFACES, DrivenCreate, started
 
 PERIOD = 1 / 30     # s between two readings
-PROOF, PROOF_AT_REST = (FEW + 2) * PERIOD, (FEW_AT_REST + 2) * PERIOD     # s until so many readings have arrived
+PROOF, PROOF_AT_REST = (FEW + 2) * PERIOD, (FEW_AT_REST + 2) * PERIOD     # s until enough readings have arrived
 
 
 def calibrated(seconds=4.0, **params):
-    """A robot whose gyro has an offset."""
+    """Return a robot whose gyro has an offset."""
     driven = started('create', seconds, gyro_scale_correction=1.0, **params)
     assert driven.states[-1].gyro
     return driven
 
 
 def lines(driven):
-    """What was logged of the gyro."""
+    """Return the log lines about the gyro."""
     return [line for line in driven.log if line.startswith('Gyro')]
 
 
 def read(driven, seconds, count):
-    """Let the analog input read a count for a while. Returns the rates that were reported, degrees/s, and the times at
-    which a problem was first seen and last seen, s, None for never."""
+    """Hold the analog input at a count. Returns the reported rates (degrees/s), and the times (s) at which a problem
+    was first and last detected, or None."""
     driven.body.gyro_stuck = count
     first, start = len(driven.states), driven.now
     seen = []
@@ -35,14 +35,14 @@ def read(driven, seconds, count):
         driven.run(0.01)
         if driven.driver.gyro.check.problem:
             seen.append((driven.now - start) / 1e9)
-    # the reading that had been made when the input changed
+    # this reading was made before the input changed
     states = driven.states[first + 1:]
     rates = [degrees(state.gyro.rate) for state in states if state.gyro]
     return (rates, seen[0], seen[-1]) if seen else (rates, None, None)
 
 
 def turn(driven, rate, angle):
-    """Turn by an angle (rad) at a rate (rad/s), and rest."""
+    """Turn by an angle (rad) at a rate (rad/s), then rest."""
     driven.drive(0, rate, angle / abs(rate))
     driven.command_zero()
     driven.run(2)
@@ -59,8 +59,8 @@ def test_a_gyro_without_power_is_noticed_at_once_moving_or_not(velocity, count):
     rates, first, _ = read(driven, 1, count)
     assert rates == [] and first < PROOF
     assert lines(driven) == driven.errors == [
-        f'Gyro: {count} counts: expected at least 100: does it have power?; the heading is measured by the wheels '
-        'alone']
+        f'Gyro: {count} counts: expected at least 100: does it have power?; using the wheels alone for the '
+        'heading']
     assert driven.driver.gyro.yaw == pytest.approx(driven.truth.yaw, abs=0.05)
 
 
@@ -83,7 +83,7 @@ def test_a_fast_turn_is_not_a_gyro_without_power():
 
 def test_a_rate_beyond_the_range_is_not_reported():
     driven = calibrated()
-    turn(driven, -3.5, 8 * pi)      # 200 degrees/s: the end of the scale
+    turn(driven, -3.5, 8 * pi)      # 200 degrees/s: full scale
     assert not lines(driven) and driven.driver.gyro.yaw == pytest.approx(driven.truth.yaw, abs=0.1)
 
 
@@ -118,7 +118,7 @@ def test_a_gyro_that_jumps_at_rest_is_noticed_at_once_however_long_it_was_right(
     rates, first, _ = read(driven, 2, count)
     assert rates == [] and first < PROOF_AT_REST
     assert lines(driven) == driven.errors == [
-        'Gyro: %d counts at rest: expected 425 to 575; the heading is measured by the wheels alone' % count]
+        'Gyro: %d counts at rest: expected 425 to 575; using the wheels alone for the heading' % count]
     assert driven.driver.gyro.yaw == pytest.approx(0, abs=0.001)
 
 
@@ -135,7 +135,7 @@ def test_an_offset_that_jumps_at_rest_is_measured_again():
     driven = calibrated(40)
     rates, first, _ = read(driven, 2, 560)
     assert not first and not lines(driven)
-    # within a second and a half the new offset is in force
+    # the new offset is in use within 1.5 s
     assert len(rates) > 40 and set(rates[-10:]) == {0}
 
 
@@ -165,7 +165,7 @@ def test_a_gyro_that_is_stuck_while_the_wheels_turn_is_noticed():
     states = len(driven.states)
     turn(driven, 0.5, pi)
     assert lines(driven) == driven.errors == [
-        'Gyro: stuck at 512 counts while the wheels turn the robot; the heading is measured by the wheels alone']
+        'Gyro: stuck at 512 counts while the wheels turn the robot; using the wheels alone for the heading']
     assert not any(state.gyro for state in driven.states[states:])
 
 
@@ -185,10 +185,10 @@ def test_a_steady_turn_that_the_wheels_do_not_make(speed, count, seconds):
     driven.run(1)
     _, first, _ = read(driven, 4, count)
     assert first < seconds and lines(driven) == driven.errors == [
-        'Gyro: stuck at %d counts: it shows a turn that the wheels do not make; the heading is measured by the '
-        'wheels alone'
+        'Gyro: stuck at %d counts: it shows a turn that the wheels do not make; using the wheels alone for the '
+        'heading'
         % count]
-    # what it showed before the problem was found does not count
+    # the turn that it showed before the problem was detected does not count
     assert driven.driver.gyro.yaw == pytest.approx(driven.truth.yaw, abs=0.02)
 
 
@@ -252,8 +252,8 @@ def test_it_works_again_after_a_second_at_rest_with_a_new_offset(rest, broken, r
     assert driven.driver.gyro.check.problem
     rates, _, last = read(driven, 5, repaired)
     assert 0.9 < last < 1.2
-    # 0 from the first reading on: no broken reading is in the offset
-    assert lines(driven)[1:] == ['Gyro: works again'] and rates == [0] * len(rates) and len(rates) > 100
+    # 0 from the first reading on: the offset does not include any faulty reading
+    assert lines(driven)[1:] == ['Gyro: working again'] and rates == [0] * len(rates) and len(rates) > 100
     assert driven.driver.gyro.offset == (512 if repaired < 0 else repaired)
     assert driven.driver.gyro.yaw == pytest.approx(0, abs=0.001)
 
@@ -265,7 +265,7 @@ def test_from_one_fault_to_another_it_does_not_work_again():
         assert '12 counts' in driven.driver.gyro.check.problem
         read(driven, 4, 900)
         assert '900 counts' in driven.driver.gyro.check.problem
-    # once each
+    # each is logged once
     assert len(lines(driven)) == len(driven.errors) == 2
 
 
@@ -278,7 +278,7 @@ def test_in_motion_it_does_not_work_again():
     driven.velocity = None
     driven.command_zero()
     driven.run(2.5)
-    assert lines(driven)[-1] == 'Gyro: works again' and driven.states[-1].gyro
+    assert lines(driven)[-1] == 'Gyro: working again' and driven.states[-1].gyro
 
 
 def test_a_gyro_that_was_stuck_is_used_again_after_it_has_moved_and_rested():
@@ -289,6 +289,6 @@ def test_a_gyro_that_was_stuck_is_used_again_after_it_has_moved_and_rested():
     driven.run(5)
     assert driven.driver.gyro.check.problem     # it may still be stuck
     turn(driven, 0.5, pi)
-    assert not driven.driver.gyro.check.problem and driven.states[-1].gyro and driven.log[-1] == 'Gyro: works again'
-    # what it did not measure was measured by the wheels
+    assert not driven.driver.gyro.check.problem and driven.states[-1].gyro and driven.log[-1] == 'Gyro: working again'
+    # the wheels measured the turn that the gyro did not measure
     assert driven.driver.gyro.yaw == pytest.approx(driven.truth.yaw, abs=0.1)

@@ -1,4 +1,4 @@
-"""The emulated robot's body: true errors, and surfaces."""
+"""The body of the emulated robot: true errors, and surfaces."""
 from math import pi, radians
 
 import pytest
@@ -14,7 +14,7 @@ factors = st.floats(0.5, 2)
 
 
 def driven(model, right, left, seconds, **options):
-    """A robot in full mode after it was driven, at a standstill."""
+    """Return a robot in full mode that has been driven and is stationary again."""
     robot = Robot(model, **options)
     robot.send(command('start'), command('full'), drive_direct(right, left))
     robot.run(seconds)
@@ -27,7 +27,7 @@ def driven(model, right, left, seconds, **options):
 @given(factors)
 def test_wheel_travel_is_what_the_encoders_count_of_the_true_travel(factor):
     robot = driven(CREATE_2, 200, 200, 2, errors=BodyErrors(wheel_travel=factor))
-    # the firmware keeps the commanded speed by its encoders, so that the robot is what goes wrong
+    # the firmware controls the speed by its encoders, so the encoders match the command and the true travel does not
     assert robot.pose.x * factor == pytest.approx(0.4, abs=0.02)
     values = robot.read(101)
     assert values['left_encoder'] == values['right_encoder'] == pytest.approx(

@@ -1,4 +1,4 @@
-"""The files in config/create/: what turtlebot_node.py makes of them."""
+"""turtlebot_node.py accepts the files in config/create/, which match its defaults."""
 import glob
 import os
 
@@ -12,7 +12,7 @@ CALIBRATIONS = sorted(glob.glob(os.path.join(FOLDER, 'calibration', '*.yaml')))
 
 
 def load(*path):
-    """The content of a file."""
+    """Return the content of a file."""
     with open(os.path.join(FOLDER, *path), encoding='utf-8') as file:
         return yaml.safe_load(file)
 

@@ -1,4 +1,4 @@
-"""The parameters of the base node: create_node's names and defaults, and one line for what makes no sense."""
+"""Parameters of the base node: create_node's names and defaults, and a one-line message for each invalid value."""
 import pytest
 
 from rbx1_nav.config import ConfigError
@@ -34,7 +34,7 @@ def test_own_names_of_the_wheels():
     ({'operation_mode': True}, 'operation_mode: True: expected 1 (passive), 2 (safe) or 3 (full)'),
     ({'drive_mode': 'turtle'}, "drive_mode: 'turtle': expected one of twist"),
     ({'robot_type': 'create2', 'has_gyro': True},
-     'has_gyro: True: expected false, a create2 has no analog input for a gyro'),
+     'has_gyro: True: expected false, because a create2 has no analog input for a gyro'),
     ({'cmd_vel_timeout': 0}, 'cmd_vel_timeout: 0: expected a time from 0.05 to 10 in s'),
     ({'update_rate': float('nan')}, 'update_rate: nan: expected a rate from 5 to 60 in Hz'),
     ({'min_abs_yaw_vel': 2.0, 'max_abs_yaw_vel': 1.0}, 'min_abs_yaw_vel: 2.0: expected at most max_abs_yaw_vel, 1.0'),

@@ -1,4 +1,4 @@
-"""What /diagnostics says of a robot, whatever robot it is."""
+"""/diagnostics reports the status of each type of robot."""
 from types import SimpleNamespace
 
 from diagnostic_updater import DiagnosticStatusWrapper
@@ -9,7 +9,7 @@ from rbx1_nav.ros.base.create_status import CreateStatus
 
 
 def statuses(driven):
-    """{title: DiagnosticStatus} of a DrivenCreate."""
+    """Return {title: DiagnosticStatus} of a DrivenCreate."""
     functions = {}
     updater = SimpleNamespace(setHardwareID=lambda _: None, add=functions.__setitem__, force_update=lambda: None)
     link = SimpleNamespace(path='/dev/ttyUSB0', problem='', adapter='', baud=driven.driver.baud, changes=0)
@@ -26,6 +26,6 @@ def test_each_robot_has_a_status_at_each_rate(robot, baud):
     driven.run(3)
     found = statuses(driven)
     values = {each.key: each.value for each in found['Base'].values}
-    assert found['Base'].message == 'Standing' and values['Robot type'] == robot
+    assert found['Base'].message == 'Stationary' and values['Robot type'] == robot
     # only a Create may lose fractions of a degree
     assert ('Fractions of a degree' in values) == ('Gyro' in found) == (robot == 'create')

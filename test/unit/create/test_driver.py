@@ -1,4 +1,4 @@
-"""The driver with an emulated robot: it connects, drives, stops, and reports where it is."""
+"""The driver connects to an emulated robot, drives and stops it, and reports its pose."""
 from math import pi
 
 import pytest
@@ -10,7 +10,7 @@ from rbx1_nav.units import SECOND
 from driven_create import DrivenCreate, started
 
 BOTH = pytest.mark.parametrize('robot_type', ['create', 'create2'])
-# rounding of the encoders; of the Create's angle, 1 degree over 1 m to the side
+# rounding of the encoders; rounding of the Create's angle: 1 degree, which shifts the end of 1 m sideways
 POSITION, ANGLE = {'create': 0.02, 'create2': 0.001}, {'create': 0.02, 'create2': 0.002}
 
 
@@ -62,7 +62,7 @@ def test_a_command_times_out(robot_type):
     driven.command(0.2, 0)
     driven.run(0.29)
     assert driven.speeds == (200, 200)
-    driven.run(0.02)    # a step and the bytes
+    driven.run(0.02)    # a step, and the transmission of the bytes
     assert driven.speeds == (0, 0)
 
 
@@ -82,7 +82,7 @@ def test_the_mean_speed_is_what_was_asked_for(robot_type):
     driven.drive(0.1234, 0.0, 1)
     start, time = driven.truth.x, driven.now
     driven.drive(0.1234, 0.0, 5)
-    # 1 mm/s less would be 5 mm
+    # an error of 1 mm/s would be 5 mm
     assert driven.truth.x - start == pytest.approx(0.1234 * (driven.now - time) / SECOND, abs=0.0005)
 
 

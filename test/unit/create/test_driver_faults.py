@@ -1,4 +1,4 @@
-"""The driver with an emulated robot to which something happens."""
+"""The driver handles faults of an emulated robot and its line."""
 import random
 
 import numpy
@@ -13,25 +13,25 @@ from driven_create import SURFACES, DrivenCreate, started
 BOTH = pytest.mark.parametrize('robot_type', ['create', 'create2'])
 STOP = protocol.drive_direct(0, 0)
 NO_ERRORS = {'odom_linear_error': 0.0, 'odom_angular_error': 0.0, 'odom_heading_error': 0.0}
-CHI_SQUARE = 16.3       # 99.9 % of 3 degrees of freedom
+CHI_SQUARE = 16.3       # 99.9 % quantile for 3 degrees of freedom
 
 
 def normalized_error(driven):
-    """The squared error of the odometry, normalized by its covariance."""
+    """Return the squared error of the odometry, normalized by its covariance."""
     error = numpy.array(driven.pose) - driven.truth
     error[2] = wrap_angle(error[2])
     return error @ numpy.linalg.solve(driven.driver.motion.odometry.covariance, error)
 
 
 def pull_cable(robot_type, seed, surface, **params):
-    """The normalized squared error after a gap at a random moment of a random motion; checks the stop."""
+    """Return the normalized squared error after a gap at a random moment of a random motion, and check the stop."""
     choose = random.Random(seed)
     driven = started(robot_type, surface=surface, seed=seed, **params)
     driven.drive(choose.uniform(-0.3, 0.3), choose.choice([0, choose.uniform(-1, 1)]), choose.uniform(0.5, 3))
     driven.run(0.002 * choose.randrange(17))
     driven.pull()
     driven.run(choose.uniform(0.05, 4))
-    assert driven.body.moving       # nothing stops it
+    assert driven.body.moving       # nothing stops the robot
     count = len(driven.commands)
     driven.connect()
     driven.run(0.5)
@@ -102,7 +102,7 @@ def test_the_position_of_a_robot_that_was_reset_while_disconnected_is_as_uncerta
     driven.run(5)
     grown = driven.driver.motion.odometry.covariance - covariance
     assert driven.robot.mode == protocol.SAFE and driven.pose == before
-    # uniform from 0 to 0.2 m/s for 4 s, and for the 20 ms of a reading that was not complete, 1 % in variance
+    # uniform from 0 to the travel at 0.2 m/s in 4 s; 1 % in variance for the 20 ms of an incomplete reading
     assert grown[0, 0] == pytest.approx(0.8 ** 2 / 3, rel=0.02)
 
 
@@ -131,7 +131,7 @@ def test_control_comes_back_when_the_cause_is_gone(robot_type, fault):
     assert driven.robot.mode == protocol.PASSIVE    # held for a second
     driven.drive(0.2, 0, 0.5)
     assert driven.robot.mode == protocol.SAFE
-    # the sender has not noticed: with a hand on the robot, it must not drive on
+    # the sender has not noticed the stop: with a hand on the robot, the robot must not continue
     assert driven.speeds == (0, 0) and 'expected a zero command, or none for 0.6 s' in driven.refusals[-1]
     driven.command_zero()
     driven.drive(0.2, 0, 0.1)
@@ -144,12 +144,12 @@ def test_each_cause_is_reported_once(robot_type):
     driven.log.clear()
     driven.body.wheel_dropped = True
     driven.run(3)
-    # the mode and the cause
+    # one line for the mode, and one for the cause
     assert len(driven.log) == 2 and 'passive' in driven.log[0] and 'a wheel dropped' in driven.log[1]
     driven.body.cliff = True
     driven.run(3)
     assert len(driven.log) == 3 and 'a cliff' in driven.log[2]
-    # no cause is not reported: the mode is, when it is safe again
+    # the removal of the cause is not reported, but the return to safe mode is
     driven.body.wheel_dropped = driven.body.cliff = False
     driven.run(0.9)
     assert len(driven.log) == 3
@@ -197,7 +197,7 @@ def test_a_corrupted_line_leaves_the_odometry_as_it_is(seed):
     driven.run(1)
     driven.line.corruption = 0.0
     driven.run(1)
-    # as without corruption: rounding over the path
+    # as large as without corruption: rounding along the path
     for value, truth in zip(driven.pose, driven.truth):
         assert value == pytest.approx(truth, abs=0.003)
     assert driven.driver.reader.rejected > 100 and driven.driver.contact.dropouts == 0
@@ -231,7 +231,7 @@ def test_the_covariance_holds_what_a_line_without_a_checksum_corrupts(corruption
 def test_a_clock_that_went_on_while_the_computer_was_suspended_stops_the_robot():
     driven = started('create2')
     driven.drive(0.2, 0, 1)
-    driven.connected = False    # the processes sleep, the robot goes on
+    driven.connected = False    # the processes are suspended, the robot continues
     driven.run(20)
     driven.connected = True
     driven.run(0.1)

@@ -1,4 +1,4 @@
-"""The emulated robot's interface: modes, commands, and what it sends."""
+"""The interface of the emulated robot: modes, commands, and replies."""
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -13,7 +13,7 @@ COMMANDS = [pytest.param(model, each, id=f'{model.name}-{each.name}')
 
 
 def sample(each):
-    """The bytes of a command, with data bytes that are 0, or one item of 0."""
+    """Return the bytes of a command whose data bytes are 0, or are one item of 0."""
     size = {'counted': 2, 'notes': 4}.get(each.size, each.size)
     return bytes((each.opcode,)) + (bytes((1, 0)) if each.size == 'counted' else
                                     bytes((0, 1, 60, 32)) if each.size == 'notes' else bytes(size))
@@ -36,7 +36,7 @@ def test_each_command_takes_its_data_bytes_also_where_it_is_ignored(model, each,
     robot.commands.clear()
     robot.send(sample(each), command('sensors', 35))
     if robot.mode != OFF:
-        # one that waits keeps the next one waiting
+        # a wait delays the next command
         assert [data for _, data in robot.commands] in ([sample(each), command('sensors', 35)], [sample(each)])
         assert len(robot.commands) == 2 or each.name.startswith('wait')
 
@@ -58,7 +58,7 @@ def test_start_stops_a_moving_robot(model):
     robot.send(command('start'))
     stopped = robot.pose
     robot.run(1)
-    assert robot.pose == stopped and stopped.x == pytest.approx(0.2, abs=1e-3)     # less than 5 ms of the line
+    assert robot.pose == stopped and stopped.x == pytest.approx(0.2, abs=1e-3)     # less than 5 ms of transmission
     assert robot.read(41)['requested_right_velocity'] == 0
 
 
@@ -74,7 +74,7 @@ def test_safe_mode_ends_when_something_happens_and_full_mode_does_not(model, fau
         stopped = robot.pose
         robot.run(1)
         assert (robot.pose == stopped) == (after == PASSIVE)
-        # while the cause lasts, safe mode does not
+        # safe mode stops again while the cause lasts
         if after == PASSIVE and fault != 'cliff':
             robot.send(command('safe'))
             assert robot.mode == PASSIVE
@@ -189,7 +189,7 @@ def test_speeds_beyond_the_limit_are_clamped():
 
 def test_the_outer_wheel_of_an_arc_does_not_exceed_the_limit():
     robot = robot_in(FULL, CREATE)
-    robot.send(command('drive', 1, 244, 0, 130))    # 500 mm/s with a radius of 130 mm: the left wheel stands
+    robot.send(command('drive', 1, 244, 0, 130))    # 500 mm/s with a radius of 130 mm: the left wheel is stationary
     assert (robot.body.right, robot.body.left) == (500, 0)
 
 

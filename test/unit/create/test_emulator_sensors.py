@@ -1,4 +1,4 @@
-"""The emulated Create: what it measures and reports, its buttons, battery and sound."""
+"""The emulated Create: its sensors and their packets, its buttons, battery and songs."""
 from math import pi, radians
 
 import pytest
@@ -86,7 +86,7 @@ def test_a_frame_of_the_stream_reads_distance_too(model):
     received = robot.run(1)
     frames = [received[index:index + 6] for index in range(0, len(received) - 5, 6)]
     total = sum(int.from_bytes(frame[3:5], 'big') for frame in frames)
-    assert total == pytest.approx(100, abs=2)       # 15 ms at each end
+    assert total == pytest.approx(100, abs=2)       # 15 ms at the start and at the end
 
 
 def test_distance_is_capped():
@@ -117,7 +117,7 @@ def test_the_gyro_on_the_analog_input_of_a_create():
     assert robot.read(33) == {'analog_input': 512}
     robot.send(drive_direct(130, -130))      # 1 rad/s
     adc = robot.read(33)['analog_input']
-    # create_node's law
+    # the formula of create_node
     assert radians(-(adc - 512) / 512 * 150) == pytest.approx(1, abs=radians(150 / 512 / 2))
     assert robot_in(PASSIVE, CREATE_2).read(33) == {'analog_input': 0}
 
@@ -133,7 +133,7 @@ def test_a_song_plays_for_its_duration_and_no_other_meanwhile(model):
     assert robot.read(36) == {'song_number': 1} and robot.read(37) == {'song_playing': 1}
     robot.run(1.5)
     assert robot.read(37) == {'song_playing': 0}
-    robot.send(command('play_song', model.songs))       # there is none
+    robot.send(command('play_song', model.songs))       # no such song
     assert robot.read(37) == {'song_playing': 0}
 
 
@@ -195,7 +195,7 @@ def test_an_empty_battery_switches_the_robot_off(model):
     robot.body.charge = 3000
     robot.send(command('start'))
     assert robot.mode == PASSIVE and robot.read(19) == {'distance': 0}
-    assert robot.run(1) == b''      # it has forgotten the stream
+    assert robot.run(1) == b''      # the stream is no longer requested
 
 
 @both

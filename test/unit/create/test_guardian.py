@@ -1,4 +1,4 @@
-"""The guardian stops the robot when the guarded process is gone or hangs. Real processes on a pseudo-terminal."""
+"""The guardian stops the robot when the guarded process has died or hangs. Real processes on a pseudo-terminal."""
 import fcntl
 import os
 import signal
@@ -17,7 +17,7 @@ from rbx1_nav.create.emulator.pseudo_terminal import PseudoTerminal
 STOP = b'\0\0\x91\0\0\0\0\x80'
 LIMIT = 30      # s after which a wait fails
 
-# a process that opens the port, starts a guardian, and gives signs of life; it prints both process ids
+# a process that opens the port, starts a guardian, and sends heartbeats; it prints both process ids
 GUARDED = '''
 import sys, time
 sys.path.insert(0, sys.argv[1])
@@ -48,7 +48,7 @@ def make_terminal(tmp_path):
 
 
 def read_until(terminal, end):
-    """What arrives at the robot, up to the bytes `end`."""
+    """Return the bytes that arrive at the robot, up to the bytes `end`."""
     data, give_up = b'', time.monotonic() + LIMIT
     while not data.endswith(end):
         assert time.monotonic() < give_up, data
@@ -58,7 +58,7 @@ def read_until(terminal, end):
 
 
 def start(terminal, command=b'\x91'):
-    """(the guarded process, the process id of its guardian)."""
+    """Return (the guarded process, the process id of its guardian)."""
     process = subprocess.Popen([sys.executable, '-c', GUARDED, SOURCE, terminal.link, STOP.hex(), command.hex()],
                                stdout=subprocess.PIPE, start_new_session=True)
     terminal.processes.append(process)
@@ -68,7 +68,7 @@ def start(terminal, command=b'\x91'):
 
 
 def unread_bytes(pipe):
-    """How many bytes of a pipe its reader has not read yet."""
+    """Return the number of bytes in a pipe that its reader has not read yet."""
     count = bytearray(4)
     fcntl.ioctl(pipe, termios.FIONREAD, count)
     return int.from_bytes(count, sys.byteorder)
@@ -135,7 +135,7 @@ def test_a_guardian_that_is_gone_is_noticed(terminal):
 
 
 def test_a_process_that_dies_while_its_guardian_starts_is_stopped_too(terminal):
-    """The pipe on which the guardian says that it has started is broken by then."""
+    """The pipe on which the guardian reports its start is broken by then."""
     with open_port(terminal.link, 115200) as port:
         read_end, write_end = os.pipe()
         os.close(read_end)
@@ -154,7 +154,7 @@ def test_a_known_robot_gets_another_stop_at_the_rate_that_it_had(terminal):
         give_up = time.monotonic() + LIMIT
         while unread_bytes(watcher.process.stdin.fileno()) and time.monotonic() < give_up:
             time.sleep(0.001)
-        time.sleep(0.1)         # from reading that to looking at the port
+        time.sleep(0.1)         # time for the guardian to read the settings of the port
         subprocess.run(['stty', '-F', terminal.link, '9600'], check=True)
         watcher.release()
         assert read_until(terminal, STOP) == STOP

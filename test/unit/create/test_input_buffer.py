@@ -1,4 +1,4 @@
-"""The bytes that the robot has received and not yet executed: the longest command fits, and their number is limited."""
+"""The buffer for bytes that the robot has not executed yet: the longest command fits, and its size is limited."""
 import pytest
 
 from rbx1_nav.create.emulator.emulator import INPUT_SIZE
@@ -31,7 +31,7 @@ def test_the_longest_command_behind_a_wait(count):
     robot.robot.receive(data + bytes(count - len(data)), robot.now)
     robot.run(2)
     assert robot.mode == SAFE
-    robot.robot.receive(bytes(513), robot.now)      # completes it
+    robot.robot.receive(bytes(513), robot.now)      # completes the command
     robot.run(1)
     assert robot.read(35) == {'mode': SAFE}
 
@@ -44,7 +44,7 @@ def test_what_waits_is_limited():
         robot.run(0.1)
     assert len(robot.robot._input) == INPUT_SIZE
     robot.run(10)
-    robot.send(bytes(3))    # completes the last one
+    robot.send(bytes(3))    # completes the last command
     assert len(robot.robot._input) == 0 and robot.read(35) == {'mode': PASSIVE}
 
 

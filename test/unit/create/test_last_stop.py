@@ -1,4 +1,4 @@
-"""The last stop: when the robot must confirm it."""
+"""The robot must confirm the last stop if it may still move."""
 import pytest
 
 from rbx1_nav.create import protocol

@@ -1,4 +1,4 @@
-"""The line, at a pseudo-terminal that nobody reads, at one that has disconnected, and with others who use it too."""
+"""The line on a pseudo-terminal: without a reader, disconnected, and shared with other processes."""
 import os
 import pty
 import select
@@ -20,14 +20,14 @@ LIMIT = 30      # s after which a wait fails
 
 
 def make_link(path):
-    """(a Link with the robot at 115200 baud, the lines that it logs)."""
+    """Return (a Link with the robot at 115200 baud, the lines that it logs)."""
     log = []
     return Link(SimpleNamespace(model=protocol.CREATE_2, baud=None, port=path), log.append), log
 
 
 @pytest.fixture(name='line')
 def make_line():
-    """(the robot's end of a line, the open Link at the other, its log)."""
+    """Return (the robot's side of a line, the open Link on the other side, its log)."""
     robot, host = pty.openpty()
     path = os.ttyname(host)
     os.close(host)
@@ -40,7 +40,7 @@ def make_line():
 
 
 def test_a_line_that_takes_no_bytes_is_lost(line):
-    """It neither blocks nor drops them silently."""
+    """A write neither blocks nor drops bytes silently."""
     _, link, _ = line
     with pytest.raises(LineLost, match='write timed out|temporarily unavailable'):
         for _ in range(10 ** 5):
@@ -48,7 +48,7 @@ def test_a_line_that_takes_no_bytes_is_lost(line):
 
 
 def test_a_line_whose_other_end_is_closed_is_lost(line):
-    """As if the cable were pulled."""
+    """This has the effect of an unplugged cable."""
     robot, link, _ = line
     os.close(robot)
     with pytest.raises(LineLost, match=link.path):
@@ -56,7 +56,7 @@ def test_a_line_whose_other_end_is_closed_is_lost(line):
 
 
 def test_the_death_of_the_guardian_ends_the_wait_for_bytes(line):
-    """Until the node notices, nobody stops a robot whose node is killed."""
+    """Until the node notices the death, a robot whose node is killed is not stopped."""
     robot, link, _ = line
     for reader in (None, SimpleNamespace(missing=0)):
         assert link.is_guarded(BEAT)
@@ -72,7 +72,7 @@ def test_a_rate_that_another_process_has_set_is_set_back(line):
     _, link, log = line
     subprocess.run(['stty', '-F', link.path, '9600'], check=True)
     assert link.is_guarded(BEAT)
-    assert log == [f'{link.path}: another process has changed the rate to 9600 baud: expected 115200; set back']
+    assert log == [f'{link.path}: another process has changed the rate to 9600 baud: expected 115200; restored']
     assert link.port.baudrate == 115200 and link.changes == 1
     assert '115200' in subprocess.run(['stty', '-F', link.path, 'speed'], stdout=subprocess.PIPE, check=True,
                                       text=True).stdout
@@ -89,11 +89,11 @@ def test_no_byte_is_sent_at_a_rate_that_another_process_has_set(line):
 
 
 def test_an_echo_that_another_process_has_set_is_cleared(line):
-    """The robot would execute its own readings."""
+    """With echo, the robot would execute its own readings."""
     robot, link, log = line
     subprocess.run(['stty', '-F', link.path, 'sane'], check=True)
     link.write(b'\x91')
-    assert log == [f'{link.path}: another process has changed the settings; set back']
+    assert log == [f'{link.path}: another process has changed the settings; restored']
     os.read(robot, 1)
     os.write(robot, b'\x85')
     assert link.read(LIMIT, SimpleNamespace(missing=1)) == b'\x85'
@@ -112,7 +112,7 @@ def test_a_line_without_rts_and_dtr_is_searched_without_waking(line):
     search.begin(0, link)
     count = 0
     for now in range(0, 4 * SECOND, SECOND // 10):
-        search.tick(now)        # raises no LineLost
+        search.tick(now)        # does not raise LineLost
         count += len(os.read(robot, 4096)) if select.select([robot], [], [], 0)[0] else 0
     assert search.rounds > 5 and count > 200
     assert log == ['wake_robot:=true: %s has no RTS and DTR: expected an adapter that has these lines; searching '
@@ -143,7 +143,7 @@ def test_another_device_is_reported(tmp_path, monkeypatch):
         if link.open(attempt * 10 ** 9):
             break
     guardians.append(link.guardian.process)
-    assert log == ['%s is now %s, before it was %s: check that the same robot is connected'
+    assert log == ['%s is now %s (previously %s): check that the same robot is connected'
                    % (link.path, terminals[0].device, terminals[1].device)]
     assert not link.is_same
     link.close()

@@ -13,7 +13,7 @@ from driven_create import SURFACES, started
 
 
 def turn(driven, rate, angle):
-    """Turn by an angle (rad) at a rate (rad/s). Returns what the odometry reports and what the wheels did, degrees."""
+    """Turn by an angle (rad) at a rate (rad/s). Returns the turns (degrees) of the odometry and of the wheels."""
     before = driven.pose.yaw, driven.body.angle.total
     driven.drive(0, rate, angle / abs(rate))
     driven.command_zero()
@@ -30,7 +30,7 @@ def test_a_turn_is_reported_whatever_the_robot_does_with_fractions(surface, lost
     assert reported == pytest.approx(true, rel=0.03)
     kind = driven.driver.counter.fractions.kind
     assert kind == LOST if lost else kind in (AUTO, KEPT)
-    # the next turn is one of a robot that is known
+    # at the next turn, the handling of fractions is known
     reported, true = turn(driven, -rate, pi)
     assert reported == pytest.approx(true, rel=0.03)
 
@@ -56,8 +56,8 @@ def test_the_base_logs_once_that_fractions_are_lost(drops):
     for _ in range(3):
         turn(driven, 0.5, 2 * pi)
     lines = [line for line in driven.log if 'fractions' in line]
-    assert lines == ['The robot loses fractions of a degree: the odometry is corrected. angle_fractions:=lost corrects '
-                     'it from the start'] * drops
+    assert lines == ['The robot loses fractions of a degree: correcting the odometry. Set angle_fractions:=lost to '
+                     'correct it from the start'] * drops
 
 
 def test_what_is_known_of_fractions_is_not_logged():

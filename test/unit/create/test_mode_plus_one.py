@@ -30,7 +30,7 @@ def test_the_offset_of_the_mode_is_found(robot_type, mode, plus_one):
 def test_a_given_offset_is_not_questioned(robot_type, workaround):
     driven = started(robot_type, quirks=PLUS_ONE, oi_mode_workaround=workaround)
     assert driven.driver.supervisor.in_control
-    # without the correction, safe mode is passive mode: that is how it was
+    # without the correction, passive mode is taken for safe mode
     driven.drive(0.2, 0, 0.2)
     assert driven.body.moving == workaround
 
@@ -84,8 +84,8 @@ def test_a_wrong_workaround_is_named_with_the_mode_that_was_expected(robot_type,
     driven = started(robot_type, 5, oi_mode_workaround=True, operation_mode=mode)
     name = protocol.MODE_NAMES[mode]
     assert driven.log[1:] == [
-        'The robot is not driven: it reports mode %d after it was asked for %s mode: expected %d with '
-        'oi_mode_workaround:=true; without this parameter the base finds out' % (mode, name, mode + 1)]
+        'The robot cannot be driven: it reports mode %d after it was asked for %s mode: expected %d with '
+        'oi_mode_workaround:=true; without this parameter the base detects it' % (mode, name, mode + 1)]
     # the node subscribes to commands, and refuses them with the reason
     assert driven.driver.is_ready
     driven.drive(0.2, 0, 1)

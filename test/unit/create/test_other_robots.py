@@ -1,4 +1,4 @@
-"""Senders that go on as if nothing had happened, and robots that are exchanged, disturbed or blocked."""
+"""Senders that have not noticed a stop, and robots that are exchanged, disturbed or blocked."""
 import pytest
 
 from rbx1_nav.create import protocol
@@ -43,7 +43,7 @@ def test_a_sender_that_has_not_noticed_does_not_drive_the_robot_on(robot_type, m
     driven.drive(0.2, 0, 1)
     assert driven.speeds == (200, 200) and not driven.refusals
     event(driven)
-    driven.drive(0.2, 0, 0.1)       # as long as nothing has reached the robot, it goes on
+    driven.drive(0.2, 0, 0.1)       # until a byte reaches the robot, it continues
     for _ in range(50):
         driven.drive(0.2, 0, 0.1)
         assert driven.speeds == (0, 0)
@@ -103,7 +103,7 @@ def test_another_robot_at_another_adapter_gets_no_command_before_it_is_known():
     driven.run(2)
     assert {data for _, data in other.commands} <= {sequences.START, b'\x8e\x03', b'\x8e\x2b', b'\x8e\x08', b'\x96\x00'}
     assert not other.robot.programs.started
-    assert driven.log[-1] == 'A create2 answers at 115200 baud, in place of a create: restart this node to drive it'
+    assert driven.log[-1] == 'A create2 answers at 115200 baud instead of a create: restart this node to drive it'
 
 
 def test_a_stop_is_not_sent_to_another_robot_before_it_is_known():
@@ -144,13 +144,13 @@ def test_a_robot_whose_settings_were_restored_drives_on(robot_type):
 
 @BOTH
 def test_a_command_is_refused_if_the_wheels_do_not_turn(robot_type):
-    # safe mode is reported, passive mode is meant
+    # the robot reports safe mode, but is in passive mode
     driven = started(robot_type, quirks=PLUS_ONE, oi_mode_workaround=False)
     driven.drive(0.2, 0, 0.4)
     assert not driven.refusals
     driven.drive(0.2, 0, 0.4)
     assert driven.refusals[0].startswith(
-        'its wheels do not turn: expected wheels that are free, and oi_mode_workaround: auto')
+        'its wheels do not turn: expected wheels that can turn freely, and oi_mode_workaround: auto')
 
 
 @BOTH

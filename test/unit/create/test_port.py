@@ -1,4 +1,4 @@
-"""A port that cannot be opened: one line that says why. On a pseudo-terminal."""
+"""A port that cannot be opened: a one-line message gives the reason. On a pseudo-terminal."""
 import os
 import subprocess
 import sys
@@ -31,7 +31,7 @@ def test_a_port_is_opened_by_its_link(terminal):
 
 def test_no_device(tmp_path):
     path = tmp_path / 'none'
-    assert refusal(path) == f'{path}: no such device: expected the adapter of the robot to be plugged in'
+    assert refusal(path) == f"{path}: no such device: expected the robot's adapter to be plugged in"
 
 
 def test_not_a_serial_port(tmp_path):
@@ -46,7 +46,7 @@ def test_not_permitted(terminal):
     os.chmod(terminal.device, 0o600)
     read_end, write_end = os.pipe()
     child = os.fork()
-    if not child:       # as another user, whom root can become
+    if not child:       # run as another user, which requires root
         if os.getuid() == 0:
             os.setgroups([])
             os.setuid(65534)
@@ -55,20 +55,21 @@ def test_not_permitted(terminal):
         try:
             open_port(terminal.device, 115200)
         except PortError as error:
-            # such a user may not even see the device
+            # this user may not even see the device
             os.write(write_end, (f'{group_of(terminal.device)}\n{error}').encode())
         os._exit(0)
     os.waitpid(child, 0)
     os.close(write_end)
     with open(read_end, encoding='utf-8') as pipe:
         group, text = pipe.read().splitlines()
-    assert text == ('{0}: not permitted: expected a user of the group {1}; `sudo adduser $USER {1}`, and log in again'
-                    .format(terminal.device, group))
+    assert text == ('{0}: not permitted: expected a member of the group {1}; run `sudo adduser $USER {1}`, then log in '
+                    'again'.format(terminal.device, group))
 
 
 def test_what_a_user_without_permission_reads(tmp_path):
-    text = reason(str(tmp_path / 'none'), 13, None)     # also where the group is unknown
-    assert text == 'not permitted: expected a user of the group dialout; `sudo adduser $USER dialout`, and log in again'
+    text = reason(str(tmp_path / 'none'), 13, None)     # also if the group is unknown
+    assert text == ('not permitted: expected a member of the group dialout; run `sudo adduser $USER dialout`, then log '
+                    'in again')
 
 
 def test_another_process_has_it(terminal):
@@ -78,6 +79,6 @@ def test_another_process_has_it(terminal):
         assert other.stdout.readline() == b'open\n'
         text = refusal(terminal.link)
         other.communicate(b'\n')
-    assert text == '%s: in use by %s (process %d): expected a port that nobody uses' % (
+    assert text == '%s: in use by %s (process %d): expected a port that is not in use' % (
         terminal.link, os.path.basename(sys.executable), other.pid)
     open_port(terminal.link, 57600).close()

@@ -1,4 +1,4 @@
-"""Power off, reset, and the baud rate that the robot starts with."""
+"""Power-off, reset, and the initial baud rate of the robot."""
 import pytest
 
 from rbx1_nav.create.protocol import BAUD_RATES, CREATE, MODELS, OFF, PASSIVE, command, drive_direct
@@ -8,7 +8,7 @@ both = pytest.mark.parametrize('model', list(MODELS.values()), ids=list(MODELS))
 
 
 def driving(model, **options):
-    """A robot that drives and streams."""
+    """Return a robot that drives and streams."""
     robot = Robot(model, **options)
     robot.robot.line.host_baud = robot.robot.line.baud
     robot.send(command('start'), command('full'), command('stream', 1, 7), drive_direct(200, 200))
@@ -17,7 +17,7 @@ def driving(model, **options):
 
 
 def check_it_is_off(robot):
-    """Nothing that is sent has an effect."""
+    """Check that no command has an effect."""
     robot.commands.clear()
     stopped = robot.pose
     for data in (command('start') + command('full') + drive_direct(200, 200), command('cover'), command('reset'),

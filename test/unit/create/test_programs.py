@@ -15,7 +15,7 @@ SPIN, STANDING = (6, 7), (5, 8, 9)      # demos that turn in place, and that do 
 
 
 def running(model, *commands):
-    """A robot after `start` and these commands."""
+    """Return a robot after `start` and these commands."""
     robot = Robot(model)
     robot.send(command('start'), *commands)
     return robot
@@ -26,13 +26,13 @@ def demo(number):
 
 
 def radius(robot):
-    """The radius that the robot drives with, m; positive to the left, infinite straight ahead."""
+    """Return the radius of the robot's path, m; positive to the left, infinite straight ahead."""
     linear, angular = robot.body.velocity
     return linear / angular if angular else inf
 
 
 def check_it_is_over(robot):
-    """It is stationary, and stays so."""
+    """Check that the robot is stationary and remains so."""
     stopped = robot.pose
     robot.run(5)
     assert not robot.robot.programs.running and not robot.body.moving and robot.pose == stopped
@@ -44,7 +44,7 @@ def test_a_cleaning_program_drives_the_robot_in_passive_mode(model, name):
     robot.run(5)
     assert robot.mode == PASSIVE and robot.body.moving and robot.robot.programs.started == 1
     assert hypot(robot.pose.x, robot.pose.y) > 0.1
-    assert robot.read(39) == {'requested_velocity': 0}      # nobody requested this
+    assert robot.read(39) == {'requested_velocity': 0}      # the motion was not requested
     # 5 s at 0.2 m/s, from the first update on, read within 50 ms of the next
     assert robot.read(19)['distance'] == pytest.approx(1000, abs=25) or name == 'dock'
 

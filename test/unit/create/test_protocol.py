@@ -1,4 +1,4 @@
-"""The tables of the Open Interface, against the documents and in both directions."""
+"""The tables of the Open Interface match the documents, and encode and decode values."""
 from struct import Struct
 
 import pytest
@@ -16,7 +16,7 @@ PACKETS = [pytest.param(packet, id='%s-%d' % (model.name, packet.number))
 
 @st.composite
 def frames(draw):
-    """(model, numbers of packets and groups, values by the names of the packets)"""
+    """Draw (model, numbers of packets and groups, values by packet name)."""
     model = draw(models)
     numbers = draw(st.lists(st.sampled_from(list(model.packets) + list(model.groups)), min_size=1, max_size=5))
     values = {packet.name: draw(st.integers(packet.low, packet.high)) for packet in single_packets(model, numbers)}
@@ -35,7 +35,7 @@ def test_values_are_big_endian():
     assert packets_format([CREATE.packets[25]]).pack(0x0102) == b'\x01\x02'
 
 
-# number of bytes: Create p. 17, Create 2 p. 23
+# sizes in bytes: Create p. 17, Create 2 p. 23
 @pytest.mark.parametrize('model, group, size', [
     (CREATE, 0, 26), (CREATE, 1, 10), (CREATE, 2, 6), (CREATE, 3, 10), (CREATE, 4, 14), (CREATE, 5, 12),
     (CREATE, 6, 52),
@@ -45,7 +45,7 @@ def test_the_size_of_a_group(model, group, size):
     assert packets_format(single_packets(model, [group])).size == size
 
 
-# data bytes by opcode: Create p. 7 to 16, Create 2 p. 8 to 22; n: counted by the first byte, p: pairs, by the second
+# data bytes by opcode: Create p. 7 to 16, Create 2 p. 8 to 22; n: the first byte is a count; p: the second counts pairs
 @pytest.mark.parametrize('model, sizes', [
     (CREATE, '7:0 128:0 129:1 130:0 131:0 132:0 133:0 134:0 135:0 136:1 137:4 138:1 139:3 140:p 141:1 142:1 143:0 '
              '144:3 145:4 147:1 148:n 149:n 150:1 151:1 152:n 153:0 154:0 155:1 156:2 157:2 158:1'),
@@ -59,8 +59,8 @@ def test_the_size_of_a_command(model, sizes):
 
 @pytest.mark.parametrize('packet', PACKETS)
 def test_the_range_of_a_packet(packet):
-    """A signed one is as large both ways, or all that its bytes hold; an unsigned one begins at 0 and ends with ones,
-    but for modes, charging states, stream packets and songs."""
+    """The range of a signed packet is symmetric, or covers all values of its bytes. The range of an unsigned packet is
+    from 0 to a number whose bits are all 1, except for modes, charging states, stream packets and songs."""
     assert packet.low in ((-packet.high, -packet.high - 1) if packet.format in 'bh' else (0,))
     assert packet.format in 'bh' or packet.high in (4, 5, 43, 108) or (packet.high & packet.high + 1) == 0
 

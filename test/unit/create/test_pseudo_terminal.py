@@ -1,4 +1,4 @@
-"""A real pseudo-terminal, opened by pyserial as by a driver."""
+"""A real pseudo-terminal, which pyserial opens like a driver."""
 import os
 import stat
 
@@ -17,7 +17,7 @@ def fixture_terminal(tmp_path):
 
 
 def received(terminal, count):
-    """The next `count` bytes from the client."""
+    """Return the next `count` bytes from the client."""
     data = b''
     for _ in range(1000):
         data += terminal.read()

@@ -1,4 +1,4 @@
-"""How some robots differ from the documents: the mode, fractions of the angle, a gyro that is stuck."""
+"""Differences between some robots and the documents: the mode, fractions of the angle, a stuck gyro."""
 import pytest
 
 from rbx1_nav.create.emulator.body import Quirks
@@ -19,7 +19,7 @@ def test_a_robot_that_reports_its_mode_plus_one(model):
         assert robot.mode == mode
     robot.send(command('stream', 1, 35))
     assert bytes((19, 2, 35, FULL + 1)) in robot.run(0.1)
-    # 4 is a value that the packet may have
+    # 4 is an allowed value of the packet
     assert FULL + 1 <= model.packets[35].high
 
 
@@ -34,7 +34,7 @@ def test_a_script_waits_for_the_mode_itself():
 
 
 def streamed(robot, number, right, left, seconds=1.5):
-    """The values of a packet with 2 bytes, of each frame while the robot drives."""
+    """Return the values of a 2-byte packet in each frame while the robot drives."""
     robot.send(command('start'), command('full'), drive_direct(right, left))
     robot.read(number)
     robot.send(command('stream', 1, number))
@@ -42,7 +42,7 @@ def streamed(robot, number, right, left, seconds=1.5):
     return [int.from_bytes(data[index + 3:index + 5], 'big', signed=True) for index in range(0, len(data) - 5, 6)]
 
 
-# mm/s of the right wheel while the left one goes backwards at this speed: 30 and 100 degrees/s, 0.45 and 1.5 per frame
+# mm/s of the right wheel; the left wheel turns backward at this speed: 30 and 100 degrees/s, 0.45 and 1.5 per frame
 @pytest.mark.parametrize('speed, expected', [(68, 0), (-68, 0), (227, 1), (-227, -1)])
 def test_an_angle_whose_fractions_are_lost(speed, expected):
     values = streamed(Robot(CREATE, quirks=DROPPING), 20, speed, -speed)
@@ -52,7 +52,7 @@ def test_an_angle_whose_fractions_are_lost(speed, expected):
 @pytest.mark.parametrize('speed, rate', [(68, 30), (-68, -30), (227, 100), (-227, -100)])
 def test_an_angle_whose_fractions_are_kept(speed, rate):
     values = streamed(Robot(CREATE), 20, speed, -speed)
-    assert sum(values) == pytest.approx(1.5 * rate, abs=2)      # a degree at each end
+    assert sum(values) == pytest.approx(1.5 * rate, abs=2)      # a degree at the start and at the end
 
 
 @both

@@ -1,4 +1,4 @@
-"""Readings are found in what arrives, in whatever pieces, and corrupted ones are counted and dropped."""
+"""Readings are found in bytes that arrive in arbitrary pieces, and corrupted readings are counted and dropped."""
 import random
 
 from hypothesis import given, strategies
@@ -13,7 +13,7 @@ PACKETS = protocol.single_packets(MODEL, NUMBERS)
 
 
 def values(seed):
-    """Values that the packets may have, by name."""
+    """Return random valid values of the packets, by name."""
     choose = random.Random(seed)
     return {packet.name: choose.randint(packet.low, packet.high) for packet in PACKETS}
 
@@ -23,7 +23,7 @@ def frame(seed):
 
 
 def feed(reader, data, size):
-    """All readings of data that arrives in pieces."""
+    """Return all readings in data that arrives in pieces."""
     return [reading for start in range(0, len(data), size) for reading in reader.feed(data[start:start + size])]
 
 
@@ -37,7 +37,7 @@ def test_frames_in_pieces(seeds, size):
 @given(strategies.binary(max_size=60), strategies.integers(1, 100))
 def test_garbage_before_a_frame(garbage, size):
     reader = FrameReader(MODEL, NUMBERS)
-    # the garbage may look like the beginning of one frame, which takes in the first
+    # the garbage may look like the beginning of a frame, which then includes the first frame
     readings = feed(reader, garbage + 3 * frame(1), size)
     assert readings and all(reading == values(1) for reading in readings)
 
@@ -48,7 +48,7 @@ def test_a_changed_byte_costs_one_frame(index, change):
     bad[index] ^= change
     reader = FrameReader(MODEL, NUMBERS)
     assert reader.feed(frame(1) + bytes(bad) + frame(3)) == [values(1), values(3)]
-    # part of it may look like the beginning of another frame
+    # a part of the frame may look like the beginning of another frame
     assert reader.rejected >= 1 and reader.skipped == len(bad)
 
 
@@ -58,7 +58,7 @@ def test_a_lost_or_doubled_byte_costs_one_frame(index, lost):
     bad = good[:index] + good[index + 1:] if lost else good[:index + 1] + good[index:]
     reader = FrameReader(MODEL, NUMBERS)
     readings = reader.feed(frame(1) + bad + frame(3))
-    # a doubled header is no loss
+    # a doubled header loses no frame
     assert readings in ([values(1), values(3)], [values(1), values(2), values(3)])
     assert reader.rejected >= 1
 

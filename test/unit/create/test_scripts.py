@@ -1,4 +1,4 @@
-"""Scripts of the Create: the examples of the document (Create p. 15), and what they wait for."""
+"""Scripts of the Create: the examples in the document (Create p. 15), and the conditions that scripts wait for."""
 import pytest
 
 from rbx1_nav.create.protocol import CREATE, PASSIVE, SAFE, command, drive_direct
@@ -15,7 +15,7 @@ def fixture_robot():
 
 
 def play(robot, *commands):
-    """Play a script. Returns what the robot answers at once."""
+    """Play a script. Returns the immediate reply of the robot."""
     script = b''.join(commands)
     return robot.send(command('script', len(script), *script), command('play_script'))
 

@@ -1,5 +1,4 @@
-"""The search for a robot: it finds any, at any rate, and never moves one or starts a program, whatever it takes us
-for."""
+"""The search finds any robot at any rate, and never moves a robot or starts a program."""
 from itertools import permutations
 
 import pytest
@@ -14,24 +13,24 @@ from driven_create import DrivenCreate
 
 ROBOTS = pytest.mark.parametrize('robot', protocol.MODELS)
 AT_RATES = pytest.mark.parametrize('baud', RATES)
-# whatever moves a robot, starts one of its programs, changes its rate, or makes it deaf
+# the commands that do not move a robot, start one of its programs, change its rate, or make it deaf
 ALLOWED = {'start', 'sensors', 'pause_resume_stream'}
 HARMLESS = {protocol.OPCODES[name] for name in ALLOWED}
 OPCODES = {opcode for model in protocol.MODELS.values() for opcode in model.commands} | {protocol.OPCODES['reset']}
 
 
 def searching(robot, rate=None, robot_type='auto', **params):
-    """A driver that has just connected to a robot at a rate."""
+    """Return a driver that has just connected to a robot at a rate."""
     driven = DrivenCreate(robot_type, robot=robot, **params)
     if rate:
         driven.line.baud = rate
-    driven.run(0.05)        # the robot has been on for a while
+    driven.run(0.05)        # the robot is on before the driver connects
     driven.connect()
     return driven
 
 
 def names(driven):
-    """The commands that the robot has received, by name."""
+    """Return the names of the commands that the robot has received."""
     return [driven.body.model.commands[data[0]].name for _, data in driven.commands]
 
 
@@ -54,7 +53,7 @@ def test_nothing_moves_while_the_robot_is_not_known(robot, baud, robot_type):
     while not driven.found and driven.now < 20 * SECOND:
         driven.run(0.002)
         assert not driven.body.moving and not driven.robot.programs.started
-    # all that it has received, also as garbage
+    # all commands that it has received, including those in garbage
     assert set(names(driven)) <= ALLOWED
     assert bool(driven.found) == (robot == robot_type)
 
@@ -98,16 +97,15 @@ def test_a_robot_that_waits_for_the_rest_of_garbage_is_found(robot, garbage):
     assert driven.found and driven.speeds == (0, 0)
 
 
-# the line model of the emulated robot, and one of another kind: bits are sampled at any ratio of the clocks, and after
-# a
-# byte whose stop bit is missing, a receiver either goes on at once or waits for the line to rest
+# a second line model, different from the emulated robot's: it samples bits at any ratio of the clocks, and after a byte
+# without a stop bit, the receiver either continues at once or waits until the line is idle
 
 def levels(data):
     return [level for byte in data for level in [0] + [byte >> bit & 1 for bit in range(8)] + [1]]
 
 
 def received(data, ratio, patient):
-    """What a receiver reads. ratio: bits that are sent while one is read; patient: whether it waits."""
+    """Return the bytes that a receiver reads. ratio: bits sent per bit read; patient: whether it waits."""
     line, result, time = levels(data), [], 0.0
 
     def level(moment):
@@ -136,7 +134,8 @@ def test_no_byte_of_the_search_is_a_command_at_another_rate(sent_at, read_at):
 
 
 def test_the_other_receiver_finds_what_the_line_model_does_not():
-    """A query of the mode, read at twice its rate: the line model sees no command in it, this one spot cleaning."""
+    """In a mode query read at twice its rate, the line model finds no command, but this receiver finds spot cleaning.
+    """
     query = protocol.command('sensors', 35)
     assert not set(misread(query, 57600, 115200)) & OPCODES
     assert protocol.OPCODES['spot'] in {byte for error in range(-50, 51) for patient in (False, True)
@@ -144,7 +143,7 @@ def test_the_other_receiver_finds_what_the_line_model_does_not():
 
 
 class Line:
-    """Records what a Search does to a line at which nobody answers."""
+    """Records the actions of a Search on a line without a robot."""
 
     def __init__(self):
         self.now = 0
@@ -169,7 +168,7 @@ def test_a_robot_that_sleeps_is_woken_only_if_that_is_wanted(wake):
     for line.now in range(0, 10 * SECOND, SECOND // 500):
         search.tick(line.now)
     assert bool(line.wake_lines) == wake
-    # first all rates; then both levels are long: three pulses of less than 500 ms change the rate of a robot
+    # first all rates are tried; both levels then last long, since three pulses below 500 ms change the robot's rate
     times = [time for time, _ in line.wake_lines]
     assert all(time > SECOND // 3 for time in times[:1])
     assert all(after - before >= WAKE_TIME > SECOND // 2 for before, after in zip(times, times[1:]))

@@ -1,4 +1,4 @@
-"""A stop holds whatever part of a command was sent before it."""
+"""A stop takes effect after any incomplete command."""
 import pytest
 
 from rbx1_nav.create import protocol
@@ -29,7 +29,7 @@ def test_the_robot_stands_after_any_beginning_of_a_command(robot_type, stop):
 
 @pytest.mark.parametrize('model', protocol.MODELS.values(), ids=protocol.MODELS)
 def test_nothing_that_is_sent_to_a_robot_that_is_off_resets_it(model):
-    # such a robot takes each byte for a command
+    # a robot that is off takes each byte for a command
     reset = protocol.OPCODES['reset']
     for data in (sequences.STOP, sequences.FLUSH, sequences.start(model, True),
                  sequences.start(model, False), sequences.leave(model),

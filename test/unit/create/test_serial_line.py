@@ -17,7 +17,7 @@ def test_at_the_same_baud_rate_everything_arrives(data, baud):
 
 @given(st.binary(), st.floats(0.965, 1.035))
 def test_a_receiver_tolerates_a_clock_that_is_a_little_off(data, ratio):
-    # half a bit in 9.5 is 5 %, and the bit before it must be over
+    # half a bit in 9.5 bits is 5 %, and the previous bit must be over
     assert misread(data, 57600 * ratio, 57600) == data
 
 
@@ -50,7 +50,7 @@ def test_bytes_take_their_time(data, baud):
 def test_bytes_to_the_robot_take_their_time(data):
     line = SerialLine(57600)
     line.from_host(data[:1], 0)
-    line.from_host(data[1:], 0)     # it has to wait for the first one
+    line.from_host(data[1:], 0)     # these bytes must wait for the first byte
     times = []
     for byte in data:
         times.append(line.next_to_robot)
@@ -91,7 +91,7 @@ def test_what_waits_when_the_rate_changes_leaves_at_the_new_one():
     line.host_baud = 1200
     line.from_host(b'\x00\x01\x02\x03', 0)
     line.host_baud = 57600
-    line.from_host(b'\x04', 3 * slow // 2)         # the second byte has begun
+    line.from_host(b'\x04', 3 * slow // 2)         # the second byte is being sent
     arrived = []
     while line.next_to_robot is not None:
         arrived.append((line.next_to_robot, line.receive_byte()))

@@ -1,4 +1,4 @@
-"""The computer of a Create stalls in a turn: the wheels count on, and the gyro is not read."""
+"""The computer of a Create stalls in a turn: the wheels keep counting, and the gyro is not read."""
 from math import degrees, pi, sqrt
 import random
 
@@ -11,12 +11,12 @@ from rbx1_nav.estimation.inputs import Imu, Odom
 from rbx1_nav.simulation.surfaces import load_surface
 from rbx1_nav.units import SECOND, wrap_angle
 
-STALL = 0.35    # s; the driver itself regards 0.5 s as silence
+STALL = 0.35    # s; after 0.5 s, the driver would detect a silent robot
 RATE = 1.0      # rad/s
 
 
 def half_turn(floor, seed, starts):
-    """A DrivenCreate after half a turn with stalls that begin at `starts` (s)."""
+    """Return a DrivenCreate after half a turn with stalls that begin at `starts` (s)."""
     driven = DrivenCreate('create', load_surface(floor, SURFACES), seed, gyro_scale_correction=1.0)
     driven.connect()
     driven.run(3.0)
@@ -34,7 +34,8 @@ def half_turn(floor, seed, starts):
 
 
 def estimate(driven, delay=0):
-    """The filter's Estimate from the messages of a run, in which those of the gyro arrive so many States late."""
+    """Return the filter's Estimate from the messages of a run. delay: number of States by which gyro messages are late.
+    """
     combined = CombinedOdometry(UNKNOWN_FLOOR, SECOND)
     readings = []
     for state in driven.states:
@@ -53,8 +54,8 @@ def add_reading(combined, state, now):
 
 
 def errors(floor, seeds):
-    """RMS errors of the heading by the filter and by the wheels (degrees) after three stalls at random times, and the
-    mean of the filter's squared errors divided by their variances."""
+    """Return the RMS heading errors of the filter and of the wheels (degrees) after three stalls at random times, and
+    the mean of the filter's squared errors divided by their variances."""
     filters, wheels, ratios = [], [], []
     for seed in seeds:
         generator = random.Random(seed)
@@ -74,7 +75,7 @@ def test_on_a_hard_floor_the_filter_is_as_good_as_the_wheels():
 
 
 def test_without_slip_the_filter_does_not_find_any():
-    # three gaps, each of two roundings to 1 degree and of 15 ms between two updates of the robot: together 1 degree
+    # three gaps, each with two roundings to 1 degree and 15 ms between two updates of the robot: in total 1 degree
     assert errors('ideal', range(12))[0] < 1.2
 
 
@@ -93,6 +94,6 @@ def test_readings_that_come_late_change_nothing():
 
 def test_the_heading_of_the_gyro_bridges_a_stall_by_the_wheels():
     driven = half_turn('hard_floor', 1, [0.02])
-    # the robot gains speed in the gap: the rate after it is 0.1 rad too much for all of it. The wheels are rounded to
-    # 0.017 rad, and slip by 0.002 rad
+    # the robot accelerates in the gap: using the rate after the gap for all of it adds 0.1 rad. The wheels are rounded
+    # to 0.017 rad, and slip by 0.002 rad
     assert driven.driver.gyro.yaw == pytest.approx(driven.truth.yaw, abs=0.05)

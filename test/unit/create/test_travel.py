@@ -1,4 +1,4 @@
-"""What the robot counts becomes travel, and what cannot be true does not."""
+"""The robot's counters are converted to travel, and implausible readings are rejected."""
 from math import radians
 
 from hypothesis import given, strategies
@@ -27,7 +27,7 @@ def encoder_travel(left, right):
 
 def counter_travel():
     counter = CounterTravel(protocol.CREATE, Fractions(KEPT))
-    assert counter.update(counters(500, 90), 0.0, STILL) == NOWHERE     # from before
+    assert counter.update(counters(500, 90), 0.0, STILL) == NOWHERE     # counted before
     return counter
 
 
@@ -43,7 +43,7 @@ def test_after_a_long_gap_the_command_says_how_often_they_wrapped():
     counts = round(20 / COUNT)      # 20 m, more than half of 29 m
     travel = encoder_travel(0, 0).update(encoders(counts, counts), 60.0, Expected(19.0, 19.0))
     assert travel.distance == pytest.approx(20, abs=0.001)
-    # or it stood at once
+    # or the robot was stationary
     assert travel.distance_variance > 10 ** 2
 
 
@@ -83,19 +83,19 @@ def test_a_lost_reply_is_bridged_by_the_command():
     # wheels that do not follow the command
     counter.miss(True, 0.1, Expected(-0.03, -0.03))
     assert counter.update(counters(20, 0), 0.2, Expected(0.02, 0.02)).distance_variance > 100 * sure
-    # only once
+    # the loss counts only once
     assert counter.update(counters(20, 0), 0.1, Expected(0.02, 0.02)).distance_variance < 1e-6
 
 
 def test_where_no_byte_arrived_the_query_may_be_lost():
     counter = counter_travel()
     counter.miss(False, 0.1, Expected(0.02, 0.02))
-    # with what was read before the query: it was lost
+    # the reading includes the travel before the query: the query was lost
     assert counter.update(counters(40, 0), 0.2, Expected(0.02, 0.02)).distance == pytest.approx(0.04)
     counter.miss(False, 0.1, Expected(0.02, 0.02))
-    # without: the reply was lost
+    # the reading does not include it: the reply was lost
     assert counter.update(counters(20, 0), 0.2, Expected(0.02, 0.02)).distance == pytest.approx(0.04)
-    # over a long gap nobody can tell
+    # after a long gap, this cannot be determined
     counter.miss(False, 0.1, Expected(0.02, 0.02))
     travel = counter.update(counters(800, 0), 4.0, Expected(0.8, 0.8))
     assert travel.distance == pytest.approx(0.81) and travel.distance_variance == pytest.approx(0.01 ** 2, rel=0.5)
@@ -106,6 +106,6 @@ def test_the_first_reading_after_a_silence_is_not_doubted():
     counter.update(counters(7, 0), 0.033, Expected(0.0066, 0.0066))
     for _ in range(3):
         counter.miss(False, 0.2, Expected(0.04, 0.04))
-    # the robot drove on for 2 s with its last command, which the stop that was sent meanwhile did not end
+    # the robot continued for 2 s with its last command, which the stop sent during the silence did not stop
     travel = counter.update(counters(400, 0), 2.0, STILL)
     assert travel.distance == pytest.approx(0.4)

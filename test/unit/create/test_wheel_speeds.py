@@ -1,4 +1,4 @@
-"""Speeds of the wheels: within the limit on the same curve, and in the mean what was asked for."""
+"""Wheel speeds: a limit preserves the curvature, and the mean over time is the requested speed."""
 from hypothesis import given, strategies
 import pytest
 
@@ -12,7 +12,7 @@ def test_the_limit_does_not_bend_the_curve(linear, angular):
     left, right = wheel_speeds(linear, angular, 0.26)
     assert max(abs(left), abs(right)) <= 500.001
     assert is_too_fast(linear, angular, 0.26) == (abs(linear) + 0.13 * abs(angular) > 0.5)
-    # the ratio of the speeds is the curve
+    # the ratio of the speeds determines the curvature
     asked_left, asked_right = linear - 0.13 * angular, linear + 0.13 * angular
     assert left * asked_right == pytest.approx(right * asked_left, abs=1e-6)
 
@@ -30,7 +30,7 @@ def test_the_mean_is_what_was_asked_for(asked, durations):
         assert abs(sent - asked) <= 1
         travel += sent * duration
         sent = rounding.next(asked, duration)
-    # never more than 1 mm/s of the longest duration, either way
+    # at most 1 mm/s for the longest duration, in both directions
     assert travel == pytest.approx(asked * sum(durations), abs=0.11)
 
 

@@ -1,4 +1,4 @@
-"""The priors that the filter's tests begin with."""
+"""The priors that the tests of the filter use."""
 import os
 
 from rbx1_nav.estimation.priors import priors

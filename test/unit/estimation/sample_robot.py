@@ -21,7 +21,7 @@ class Robot:
         self.pose = Pose(0.0, 0.0, 0.0)
 
     def send(self, ticks=1, linear=0.0, angular=0.0, odom=True, imu=True, bias=0.0):
-        """Move for a number of ticks, and send what both sensors measure; returns the last Estimate."""
+        """Move for a number of ticks, and send what both sensors measure; return the last Estimate."""
         for _ in range(ticks):
             self.now += STEP
             self.pose = arc(self.pose, linear * 0.02, angular * 0.02)
@@ -32,10 +32,10 @@ class Robot:
         return self.combined.estimate
 
     def odom(self):
-        """The odometry of now."""
+        """Return the present odometry."""
         return Odom(self.now, self.pose, 1e-6, 1e-6)
 
 
 def exact(estimate, pose, abs=1e-9):
-    """Whether an Estimate is at a Pose."""
+    """Return whether an Estimate is at a Pose."""
     return estimate.pose == pytest.approx(pose, abs=abs)

@@ -33,7 +33,7 @@ def test_the_bias_is_estimated_at_standstill():
     robot.send(100, bias=0.01)
     state = robot.combined.filter.state
     assert state[BIAS] == pytest.approx(0.01, abs=1e-4)
-    # it turned as little as the wheels report, not by the 0.02 rad of the gyro
+    # it turned as little as the wheels report, not by the gyro's 0.02 rad
     assert abs(state[YAW]) < 1e-4
 
 
@@ -48,11 +48,11 @@ def test_a_gyro_may_be_later_than_the_odometry():
         late.pose = arc(late.pose, 0.004, 0.01)
         late.combined.add_odom(late.now, late.odom(), VARIANCES)
         stamps.append(late.now)
-        if len(stamps) == 10:     # by 0.2 s
+        if len(stamps) == 10:     # 0.2 s late
             for stamp in stamps:
                 late.combined.add_imu(late.now, Imu(stamp, 0.5, 3e-6))
             stamps.clear()
-    # apart from the first reading, whose start is unknown
+    # except for the first reading, whose start is unknown
     assert exact(late.combined.estimate, in_step.combined.estimate.pose, abs=1e-4)
 
 
@@ -82,7 +82,7 @@ def test_messages_from_before_a_reset_do_not_count():
     robot = Robot()
     robot.send(100, 0.2)
     late = [(robot.now - STEP, robot.odom()), (robot.now, robot.odom())]
-    robot.combined.arrivals.last_stamp['odom'] -= 2 * STEP       # as if they were still on their way
+    robot.combined.arrivals.last_stamp['odom'] -= 2 * STEP       # as if they had not arrived yet
     robot.combined.reset(robot.now - 10 * STEP)
     for stamp, odom in late:
         robot.combined.add_odom(robot.now, odom._replace(stamp=stamp - 1), VARIANCES)
@@ -174,7 +174,7 @@ def test_set_pose_while_the_odometry_has_timed_out():
     late = Odom(robot.now - 9 * STEP, Pose(robot.pose.x - 9 * 0.004, 0.0, 0.0), 1e-6, 1e-6)
     robot.combined.add_odom(robot.now, late, VARIANCES)
     assert exact(robot.combined.estimate, Pose(0.0, 0.0, pi / 2), abs=1e-6)
-    # the first 1 of 10 ticks was before the new pose
+    # the first of 10 ticks was before the new pose
     assert exact(robot.send(1, 0.2), Pose(0.0, 9 * 0.004, pi / 2), abs=1e-6)
 
 

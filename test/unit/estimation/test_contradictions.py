@@ -1,4 +1,4 @@
-"""Wheels and gyro that contradict each other, or the floor."""
+"""Wheels and gyro that contradict each other, or the floor, are reported."""
 from math import sqrt
 
 import pytest
@@ -12,7 +12,7 @@ from test_inputs import VARIANCES
 
 
 def turn_with_wheels(robot, ticks, factor, linear=0.0, angular=1.0, bias=0.0):
-    """Drive a robot whose odometry reports a multiple of each turn; returns the last Estimate."""
+    """Drive a robot whose odometry reports a multiple of each turn; return the last Estimate."""
     wheels = robot.pose
     for _ in range(ticks):
         robot.send(1, linear, angular, odom=False, bias=bias)
@@ -27,7 +27,7 @@ def test_wheels_and_gyro_that_contradict_each_other_are_reported_and_make_the_he
     robot.send(100)
     estimate = turn_with_wheels(robot, 500, -1.0)
     assert robot.combined.contradicts and len(robot.warnings) == 1
-    # they differ by 20 rad. The last turn, of 2 rad at most, may not be significant yet; the wrong slip that is learned
+    # they differ by 20 rad. The last turn, at most 2 rad, may not be significant yet; the wrong slip that is learned
     # may add a tenth
     assert 15.0 < sqrt(estimate.covariance[2, 2]) < 22.0
 
@@ -40,7 +40,7 @@ def test_a_contradiction_is_shown_for_5_seconds():
     assert not robot.combined.contradicts
     turn_with_wheels(robot, 10, -1.0)
     assert robot.combined.contradicts
-    # 5 s, less up to 10 ticks since the contradiction was noticed
+    # 5 s, minus up to 10 ticks since the contradiction was noticed
     robot.send(239)
     assert robot.combined.contradicts
     robot.send(11)

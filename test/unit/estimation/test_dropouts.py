@@ -1,4 +1,4 @@
-"""Sensors that fall silent, or are late."""
+"""Sensors that become silent time out and recover, and late sensors are waited for."""
 from itertools import count
 
 import pytest
@@ -17,7 +17,7 @@ def test_a_gyro_times_out_and_recovers():
     robot.send(50, 0.2, 0.5)
     robot.send(40, 0.2, 0.5, imu=False)
     behind = robot.combined.estimate
-    assert not robot.warnings and not exact(behind, robot.pose)     # it waits: the gyro may only be late
+    assert not robot.warnings and not exact(behind, robot.pose)     # the filter waits: the gyro may only be late
     robot.send(60, 0.2, 0.5, imu=False)
     assert exact(robot.combined.estimate, robot.pose) and robot.combined.timed_out['imu_data']
     robot.send(60, 0.2, 0.5)
@@ -44,7 +44,7 @@ def test_without_a_gyro_the_heading_is_as_uncertain_as_the_odometry_reports():
     for _ in range(10):
         robot.now += STEP
         robot.combined.add_odom(robot.now, Odom(robot.now, robot.pose, 1e-2, 1e-3), VARIANCES)
-    # variance of an angular velocity, times the square of 0.02 s, in each step
+    # in each step, the variance of an angular velocity times the square of 0.02 s
     assert robot.combined.estimate.covariance[2, 2] - before.covariance[2, 2] == pytest.approx(10 * 1e-3 * 0.02 ** 2)
 
 
@@ -54,13 +54,13 @@ def test_odometry_times_out_and_its_travel_meanwhile_counts_when_it_recovers():
     last = robot.pose
     robot.send(100, 0.0, 0.5, odom=False)
     estimate = robot.combined.estimate
-    # meanwhile the gyro measures the turn
+    # during the dropout, the gyro measures the turn
     assert robot.combined.timed_out['odom'] and exact(estimate, last._replace(yaw=robot.pose.yaw))
-    # and no sensor the travel: 0.5 m/s for 2 s
+    # and no sensor measures the travel: 0.5 m/s for 2 s
     assert estimate.covariance[X, X] > 0.9 and estimate.covariance[Y, Y] > 0.9
     robot.send(100, 0.2, 0.0, odom=False)
     robot.send(1, 0.2, 0.0)
-    # the wheels report a straight displacement since the dropout, the gyro has reported the turn
+    # the wheels report a straight displacement since the dropout, and the gyro has reported the turn
     assert exact(robot.combined.estimate, robot.pose) and not robot.combined.timed_out['odom']
     assert robot.combined.estimate.covariance[X, X] < 1e-3
 
@@ -81,7 +81,7 @@ def test_odometry_that_waits_for_a_late_gyro_has_not_timed_out():
     robot = Robot(IDEAL)
     last = robot.send(50).stamp
     pending = last + 3 * SECOND
-    for stamp in range(last + STEP, pending + 1, STEP):     # readings come 2.5 s late
+    for stamp in range(last + STEP, pending + 1, STEP):     # readings arrive 2.5 s late
         if robot.now == pending:
             robot.combined.add_odom(robot.now, robot.odom(), VARIANCES)
         assert robot.combined.estimate.stamp == last
@@ -100,13 +100,13 @@ def test_a_turn_while_both_sensors_are_silent_is_as_uncertain_as_the_odometry_ov
     robot.combined.add_imu(robot.now, Imu(robot.now, 0.0, 3e-6))
     after = robot.combined.estimate
     assert after.stamp == robot.now and exact(after, robot.pose)
-    # the wheels have had less noise than they claim
+    # the wheels have had less noise than they report
     assert after.covariance[2, 2] - before.covariance[2, 2] == pytest.approx(1e-3 * 3.5 ** 2, rel=0.2)
 
 
 @pytest.mark.parametrize('odom_first', [True, False])
 def test_odometry_that_recovers_in_a_turn_does_not_count_it_again(odom_first):
-    robot = Robot()     # its wheels slip by the 3 % that the filter expects, and it turns at 0.5 rad/s
+    robot = Robot()     # its wheels slip by 3 %, as the filter expects, and it turns at 0.5 rad/s
     for tick in range(300):
         robot.now += STEP
         wheels = Odom(robot.now, Pose(0.0, 0.0, 0.5 * 0.02 * tick / 0.97), 1e-6, 1e-5)
@@ -138,7 +138,7 @@ def test_readings_at_the_limit_of_the_measurement_range_are_not_used():
 
 
 def send_late(odom_lag, imu_lag):
-    """Ten seconds of a robot whose messages come late (s); it, and where it was at the stamp of the last estimate."""
+    """Run a robot whose messages are late (s) for 10 s; return it, and its pose at the stamp of the last estimate."""
     robot, poses = Robot(IDEAL), {}
     for _ in range(500):
         robot.now += STEP
@@ -160,7 +160,7 @@ def test_a_sensor_that_is_always_late_is_waited_for(odom_lag, imu_lag):
 
 def test_a_gyro_that_is_too_late_times_out_once():
     robot, pose = send_late(0.0, 6.0)
-    assert robot.warnings == ['imu_data has timed out: its messages come more than 5 s late; '
+    assert robot.warnings == ['imu_data has timed out: its messages arrive more than 5 s late; '
                               'not used until it recovers']
     assert robot.combined.estimate.stamp == robot.now and exact(robot.combined.estimate, pose)
 
@@ -169,7 +169,7 @@ def test_odometry_that_is_later_after_a_dropout_counts_again():
     robot = Robot(IDEAL)
     robot.send(50, 0.2)
     poses = {}
-    for tick in range(600):     # nothing for 4 s, then all of it, and 1.1 s late from then on
+    for tick in range(600):     # no odometry for 4 s, then odometry that is 1.1 s late
         robot.send(1, 0.2, 0.3, odom=False)
         poses[robot.now] = robot.pose
         stamp = robot.now - round(1.1 * SECOND)
@@ -183,7 +183,7 @@ def test_odometry_that_is_later_after_a_dropout_counts_again():
 def test_simulated_time_that_runs_fast_is_no_dropout():
     arrival = 0
     robot = Robot(IDEAL, clock=lambda: arrival)
-    for _ in range(20):         # each sensor's messages come in bursts of 3 s, every 0.15 s of the wall
+    for _ in range(20):         # each sensor's messages arrive in bursts of 3 s, every 0.15 s of wall time
         stamps = [robot.now + STEP * (number + 1) for number in range(150)]
         odoms = []
         for robot.now in stamps:

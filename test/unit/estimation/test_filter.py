@@ -1,4 +1,4 @@
-"""The arithmetic of the filter: derivatives, covariances and means are right."""
+"""The filter calculates derivatives, covariances and means correctly."""
 from math import cos, pi, sin, sqrt
 from unittest.mock import patch
 
@@ -16,13 +16,13 @@ from sample_priors import IDEAL, PRIORS
 angles = st.floats(-3, 3)
 small = st.floats(-0.1, 0.1)
 variances = st.floats(1e-9, 1e-3)
-LONG = 2.0      # s: a step so long is compared by itself
+LONG = 2.0      # s: a step of this length is compared by itself
 any_variance = st.floats(-12, 12).map(lambda exponent: 10 ** exponent)
 durations = st.floats(-3, 7).map(lambda exponent: 10 ** exponent)
 
 
 def with_state(state, prior=PRIORS):
-    """A filter with this state, and 1 mm, mrad ... of uncertainty."""
+    """Return a filter with this state, and an uncertainty of 1 mm, 1 mrad, ..."""
     ekf = Filter(prior, ORIGIN)
     ekf.state = list(state)
     ekf.P.root[:, :7] = 1e-3 * numpy.eye(7)
@@ -30,12 +30,12 @@ def with_state(state, prior=PRIORS):
 
 
 def whole_covariance(ekf):
-    """Of the whole state."""
+    """Return the covariance of the whole state."""
     return ekf.P.root @ ekf.P.root.T
 
 
 def after_step(state, wheels, gyro, forward, left, variance):
-    """A filter, one step of 0.02 s after it had this state."""
+    """Return a filter, one step of 0.02 s after it had this state."""
     ekf = with_state(state, IDEAL)
     turn = ekf.update(0.02, wheels, gyro)
     ekf.predict(0.02, turn, 0.1, forward, left, variance)
@@ -54,8 +54,8 @@ def test_the_covariance_follows_from_the_derivatives_of_a_step(state, angle, var
                     for s in (h, -h))
         derivatives[:, i] = (numpy.array(up) - down) / (2 * h)
     expected = derivatives @ (1e-6 * numpy.eye(7)) @ derivatives.T
-    # and the noise of the turn, which moves x and y by half of what a change of heading would
-    # (of the robot's own heading half way, whatever frame the displacement is in)
+    # and the noise of the turn, which moves x and y by half as much as a change of the heading does
+    # (the robot's own heading halfway through the turn, whatever the frame of the displacement)
     grip = 1 - state[STRAIGHT]
     middle = state[YAW] + (ekf.state[YAW] - state[YAW]) / 2 + 0.1
     by_turn = numpy.zeros(7)
@@ -76,7 +76,7 @@ def test_a_comparison_changes_state_and_covariance_as_in_the_textbook(state, tur
     ekf.update(LONG, (turned, wheel_noise), (gyro, gyro_noise))
     row = numpy.zeros(7)
     row[BIAS] = LONG / scale
-    if turned:      # wheels that stand tell nothing of slip and scale
+    if turned:      # stationary wheels give no information about slip and scale
         row[SCALE], row[TURNING] = (turned * grip + 1e-4) / scale, -(turned * grip + 1e-4) / grip
     before = 1e-6 * numpy.eye(7)
     gain = before @ row / (row @ before @ row + wheel_noise * grip ** 2 + gyro_noise / scale ** 2)
@@ -93,14 +93,14 @@ def test_a_step_with_both_sensors_is_as_certain_as_the_least_squares_of_both(tur
     turn = ekf.update(duration, (turned / grip, wheel_noise), (turned * scale + bias * duration, gyro_noise))
     ekf.predict(duration, turn)
     assert ekf.state[YAW] == pytest.approx(turned, abs=1e-9)
-    # derivatives of both measurements by the turn, the bias, the scale error and the slip. Least squares adds up the
-    # information, the inverse of the covariance; there is none about the turn before
+    # derivatives of both measurements with respect to the turn, the bias, the scale error and the slip. Least squares
+    # adds the information, the inverse of the covariance; there is no prior information about the turn
     by_wheels = numpy.array([1.0, 0.0, 0.0, turned / grip])
     by_gyro = numpy.array([1.0, duration / scale, turned / scale, 0.0])
     information = (numpy.diag([0.0, 1e6, 1e6, 1e6]) + numpy.outer(by_wheels, by_wheels) / (wheel_noise * grip ** 2)
                    + numpy.outer(by_gyro, by_gyro) / (gyro_noise / scale ** 2))
     expected = numpy.linalg.inv(information)
-    expected[0, 0] += 1e-6      # of the yaw before
+    expected[0, 0] += 1e-6      # variance of the previous yaw
     which = [YAW, BIAS, SCALE, TURNING]
     # rounding errors of the inverse, whose elements are at most 1e-3, at a condition number of up to 1e6
     numpy.testing.assert_allclose(whole_covariance(ekf)[numpy.ix_(which, which)], expected, atol=1e-12, rtol=1e-6)
@@ -124,9 +124,9 @@ def test_a_rounded_turn_of_the_wheels_is_no_slip(rate):
     counted = [round(rate * step / 30 / degree) for step in range(steps + 1)]
     for before, after in zip(counted, counted[1:]):
         wheels = (after - before) * degree
-        # a Create's: two roundings, and the floor's noise in what was counted
+        # a Create's variance: two rounding errors, and the floor's noise in the counted turn
         ekf.update(1 / 30, (wheels, degree ** 2 / 6 + 0.09 ** 2 * wheels), (rate / 30, 5e-8))
-    # of the 0.05 that it was uncertain by
+    # compared with an initial uncertainty of 0.05
     assert abs(ekf.state[TURNING]) < 0.01
 
 
@@ -139,7 +139,7 @@ def test_a_gap_in_which_the_rate_was_steady_is_measured_by_wheels_and_gyro():
 def test_a_gap_in_which_the_rate_changed_is_measured_by_the_wheels():
     ekf = with_state([0.0] * 7)
     turn = ekf.update(0.4, (0.1, 0.002), (0.4, 1e-6), missing=0.1)
-    # the weight of the gyro is at most that of a turn which is wrong by the difference
+    # the weight of the gyro is at most the weight of a turn whose error is the difference
     assert turn.angle - 0.1 < 0.3 * 0.002 / 0.3 ** 2 and 0.0015 < turn.variance < 0.002
 
 
@@ -154,7 +154,7 @@ def test_slip_and_bias_walk():
     for _ in range(1000):
         ekf.predict(0.02, ekf.update(0.02, (0.01, 1e-6)), 0.0, 0.004, 0.0, 1e-8)
     grown = numpy.diagonal(whole_covariance(ekf)) - 1e-6
-    # of 4 m and 10 rad, all but the last steps
+    # 4 m and 10 rad, except for the last steps
     assert grown[STRAIGHT] == pytest.approx(4 * SLIP_WALK ** 2, rel=0.05)
     assert grown[TURNING] == pytest.approx(10 * SLIP_WALK ** 2, rel=0.05)
     assert 0 < grown[BIAS] < 1e-6
@@ -195,19 +195,19 @@ def test_the_covariance_stays_symmetric_and_positive(steps):
 @given(angles, angles, variances, variances)
 def test_the_turn_is_the_mean_of_wheels_and_gyro_by_their_variances(by_wheels, by_gyro, wheel_noise, gyro_noise):
     ekf = Filter(IDEAL, ORIGIN)
-    ekf.P.root[BIAS:] = 0.0       # no errors but the noise
+    ekf.P.root[BIAS:] = 0.0       # no errors except the noise
     angle, noise, *_ = ekf.update(0.02, (by_wheels, wheel_noise), (by_gyro, gyro_noise))
     if (by_wheels - by_gyro) ** 2 > 25 * (wheel_noise + gyro_noise):
         assert (angle, noise) == (by_gyro, gyro_noise)
     else:
-        # the inverse of a variance is the information, and that of both adds up
+        # the inverse of a variance is the information, and the information of both sensors adds up
         assert 1 / noise == pytest.approx(1 / wheel_noise + 1 / gyro_noise)
         assert angle == pytest.approx((by_wheels / wheel_noise + by_gyro / gyro_noise) * noise, abs=1e-12)
 
 
 def drive(prior, slip, gyro_factor=1.0, turned=6.0):
-    """A filter after a rest, and so much of turning with wheels that slip, and a gyro that measures a multiple of the
-    turn; whether it has noticed another floor, and the sum of contradictions (rad)."""
+    """Return a filter after a rest and a turn with slipping wheels and a gyro that measures a multiple of the turn;
+    whether it has noticed another floor; and the sum of contradictions (rad)."""
     ekf, floor, contradiction = Filter(prior, ORIGIN), False, 0.0
     for _ in range(100):
         ekf.predict(0.02, ekf.update(0.02, (0.0, 1e-9), (0.0, 1e-9)))
@@ -226,14 +226,14 @@ def test_another_floor_is_noticed():
     assert not noticed
     other, noticed, contradiction = drive(floor, 0.08)
     assert noticed and not contradiction
-    # its straight slip is less certain then, and its turn still the gyro's
+    # then its straight slip is less certain, and its turn is still the gyro's turn
     assert other.P.variance(STRAIGHT) > 2 * same.P.variance(STRAIGHT)
     assert other.state[YAW] == pytest.approx(6.0, abs=0.02)
 
 
 @pytest.mark.parametrize('slip, factor', [(0.0, -1.0), (0.9, 1.0), (0.0, 1.5)])
 def test_a_contradiction_makes_the_heading_as_uncertain_as_wheels_and_gyro_differ(slip, factor):
-    # when it is noticed: after a turn of 1.5 rad, or more for a difference that the slip of a floor nearly explains
+    # it is noticed after a turn of 1.5 rad, or later if the slip of a floor nearly explains the difference
     differ = abs(1 / (1 - slip) - factor) / max(1 / (1 - slip), abs(factor))
     for turned in numpy.arange(0.1, 4.0, 0.02):
         ekf, _, contradiction = drive(UNKNOWN_FLOOR, slip, factor, turned)
@@ -248,7 +248,7 @@ def test_a_doubt_shrinks_when_wheels_and_gyro_agree_again():
     # wheels that always slip by half agree with the gyro as soon as that is known
     later, _, same = drive(UNKNOWN_FLOOR, 0.5, turned=10.0)
     assert same == contradiction > 0.5 and sqrt(doubtful.covariance[YAW, YAW]) > 0.5
-    # the least that the heading is uncertain by: 1.5 % scale error of the gyro
+    # the minimum uncertainty of the heading: 1.5 % scale error of the gyro
     assert 0.05 < sqrt(later.covariance[YAW, YAW]) < 0.2
 
 
@@ -267,7 +267,7 @@ def test_wheels_that_agree_with_the_gyro_leave_little_scale_error_and_little_noi
     agree.place(ORIGIN, 1e-9 * numpy.eye(3))
     for _ in range(100):
         agree.predict(0.02, agree.update(0.02, (0.0, 1e-8), (0.0, 1e-9), 0.01), 0.0, 0.01)
-    # after 1 m, by the noise of an unknown floor alone: 0.044 m; by a slip of 5 %: 0.05 m
+    # after 1 m, with only the noise of an unknown floor: 0.044 m; with a slip of 5 %: 0.05 m
     noise = agree.covariance[X, X] - agree.P.variance(STRAIGHT)
     assert noise < 0.03 ** 2
 

@@ -1,4 +1,4 @@
-"""The rate of turn from an IMU that is mounted in any way, and from one that sends an orientation only."""
+"""The turn rate comes from an IMU with any mounting, or from an IMU that sends an orientation only."""
 from math import cos, inf, nan, pi, radians, sin
 
 from hypothesis import assume, given, strategies
@@ -16,7 +16,7 @@ MARGIN = 1e-9       # far above rounding
 
 
 def about(axis, angle):
-    """The rotation by an angle (rad) about 'x', 'y' or 'z'."""
+    """Return the rotation by an angle (rad) about 'x', 'y' or 'z'."""
     return tuple(sin(angle / 2) * (each == axis) for each in 'xyz') + (cos(angle / 2),)
 
 
@@ -27,14 +27,14 @@ mountings = strategies.builds(lambda roll, pitch, yaw: multiply(about('z', yaw),
 
 
 def data(rate=0.0, mounting=about('z', 0), variances=VARIANCES, heading=None, stamp=0, yaw_variance=1e-6):
-    """The ImuData of an IMU on a robot that turns at a rate; with an orientation if the robot's heading is given."""
+    """Return the ImuData of an IMU on a robot that turns at a rate, with an orientation if `heading` is given."""
     axis = vertical_axis(mounting)
     orientation = None if heading is None else multiply(about('z', heading), mounting)
     return ImuData(round(stamp * SECOND), tuple(rate * share for share in axis), variances, orientation, yaw_variance)
 
 
 def orientations_only(*messages):
-    """What a GyroInput makes of ImuDatas without an angular velocity."""
+    """Return the Imus that a GyroInput makes of ImuDatas without an angular velocity."""
     gyro, read = GyroInput(), []
     for message, vertical in messages:
         message = message._replace(rates=None)
@@ -86,7 +86,7 @@ def test_rates_without_a_covariance_get_the_one_of_robot_pose_ekf():
     gyro = GyroInput(notes.append)
     for _ in range(3):
         assert gyro.read(data(0.5, variances=(0.0, 0.0, 0.0))) == Imu(0, 0.5, DEFAULT_VARIANCE)
-    assert notes == ['no covariance of the angular velocity: 0.00017 rad/s assumed']
+    assert notes == ['no angular velocity covariance: assuming 0.00017 rad/s']
 
 
 def test_an_axis_without_a_variance_is_left_out_if_another_has_one():

@@ -1,4 +1,4 @@
-"""Invalid odometry and gyro readings are rejected by the name of the field."""
+"""Invalid odometry and gyro readings are rejected with the name of the field."""
 from math import inf, nan
 
 import pytest
@@ -8,9 +8,9 @@ from rbx1_nav.robot.kinematics import ORIGIN
 from rbx1_nav.robot.readings import MIN_VARIANCE
 
 ODOM = Odom(0, ORIGIN, 1e-6, 1e-6)
-VARIANCES = (1e-6, 1e-6, 1e-6)      # of a pose, m^2 and rad^2
+VARIANCES = (1e-6, 1e-6, 1e-6)      # variances of a pose, m^2 and rad^2
 
-# where the fields of an Odometry message are in an Odom, and in the variances of its pose
+# the fields of an Odometry message in an Odom, and in the variances of its pose
 POSE = {'pose.pose.position.x': 'x', 'pose.pose.position.y': 'y', 'pose.pose.orientation': 'yaw'}
 SPEED = {'twist.covariance[0]': 'linear_variance', 'twist.covariance[35]': 'angular_variance'}
 COVARIANCE = {'pose.covariance[0]': 0, 'pose.covariance[7]': 1, 'pose.covariance[35]': 2}
@@ -25,7 +25,7 @@ BAD_READINGS = [('angular_velocity.z', nan, 1e-6), ('angular_velocity.z', inf, 1
 
 
 def with_field(odom, variances, field, value):
-    """The Odom and the variances of its pose, with one field of the message set to a value."""
+    """Return the Odom and the variances of its pose, with one field of the message set to a value."""
     if field in POSE:
         return odom._replace(pose=odom.pose._replace(**{POSE[field]: value})), variances
     if field in SPEED:
@@ -35,7 +35,7 @@ def with_field(odom, variances, field, value):
 
 
 def rejection(function, *arguments):
-    """The text of the RejectedMessage that a call raises."""
+    """Return the text of the RejectedMessage that a call raises."""
     with pytest.raises(RejectedMessage) as error:
         function(*arguments)
     assert '\n' not in str(error.value)

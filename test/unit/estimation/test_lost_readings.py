@@ -1,4 +1,4 @@
-"""Readings of the gyro that are lost, and gyros that are slow."""
+"""Lost gyro readings and slow gyros make the heading uncertain."""
 import pytest
 
 from rbx1_nav.estimation.inputs import Imu
@@ -14,7 +14,7 @@ def test_readings_of_the_gyro_that_are_lost_make_the_heading_uncertain(lost, odo
     robot.send(100)
     robot.send(50, angular=1.0)
     before = robot.combined.estimate.covariance[2, 2]
-    robot.send(lost // 2, angular=1.0, odom=odom, imu=False)    # it stops in the middle
+    robot.send(lost // 2, angular=1.0, odom=odom, imu=False)    # the robot stops in the middle
     robot.send(lost // 2, odom=odom, imu=False)
     estimate = robot.send(10)
     error = abs(estimate.pose.yaw - robot.pose.yaw)
@@ -45,7 +45,7 @@ def test_a_rate_that_is_a_mean_counts_for_the_whole_gap(lost):
 
 
 def robot_with_a_slow_gyro(every, ticks):
-    """A robot that turns and stands by turns, and whose gyro reports the present rate every so many ticks."""
+    """Return a robot that turns and rests alternately, and whose gyro reports its rate every `every` ticks."""
     robot = Robot()
     robot.send(100)
     rate = 0.0

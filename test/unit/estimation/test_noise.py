@@ -1,4 +1,4 @@
-"""Noise and drift that are learned."""
+"""Noise and drift are learned from measurements."""
 import numpy
 import pytest
 
@@ -6,7 +6,7 @@ from rbx1_nav.estimation.noise import Drift, NoiseFactor
 
 
 def factor(deviation, share=1.0, number=400):
-    """The NoiseFactor after normal differences with this deviation, relative to the assumed one."""
+    """Return the NoiseFactor after normal differences with this deviation, relative to the assumed deviation."""
     noise = NoiseFactor()
     for value in numpy.random.default_rng(0).normal(0, deviation, number):
         noise.add(value ** 2 / (share * noise.value + 1 - share), share)
@@ -14,7 +14,7 @@ def factor(deviation, share=1.0, number=400):
 
 
 def test_the_factor_is_that_of_the_variances_and_at_most_1():
-    # 400 squares: 1 sigma of their mean is 0.07 of it
+    # 400 squares: 1 sigma of their mean is 0.07 of the mean
     assert factor(0.5).value == pytest.approx(0.25, rel=0.28)
     assert factor(2.0).value == 1.0
 
@@ -27,7 +27,7 @@ def test_a_single_outlier_counts_little():
     noise = factor(0.5)
     before = noise.value
     noise.add(1e6, 1.0)
-    # 400 differences: 9 / 400 of it
+    # 400 differences: the outlier counts 9 / 400
     assert noise.value < 1.03 * before
 
 

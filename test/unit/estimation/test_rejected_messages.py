@@ -1,4 +1,4 @@
-"""Messages that the filter rejects leave no trace."""
+"""Messages that the filter rejects have no effect."""
 import numpy
 import pytest
 from hypothesis import given
@@ -12,10 +12,10 @@ from test_inputs import BAD_ODOMETRY, BAD_READINGS, VARIANCES, with_field
 
 
 def check_rejected(make_message, text, same_time=False):
-    """A message is rejected with a text that contains this one, and leaves no trace.
+    """Check that a message is rejected with an error that contains `text`, and has no effect.
 
-    make_message(robot): the arguments of add_odom() or add_imu(); same_time: whether it comes after the valid messages
-    of its time, and not before them.
+    make_message(robot): returns the arguments of add_odom() or add_imu(); same_time: whether the message is sent after
+    the valid messages of its time, and not before them.
     """
     robot, undisturbed = Robot(), Robot()
     for each in (robot, undisturbed):

@@ -11,7 +11,7 @@ from rbx1_nav.robot.kinematics import ORIGIN, arc
 from rbx1_nav.units import SECOND
 
 ODOM_STEP, IMU_STEP = SECOND // 25, SECOND // 50
-CONSTANT = 0.03         # rad^2/s^2: variance of the odometry, as of many drivers also at rest
+CONSTANT = 0.03         # rad^2/s^2: variance of the odometry, also at rest, as in many drivers
 NOISE = radians(0.1)    # rad/s, of a reading
 
 
@@ -25,11 +25,13 @@ class Robot:
         self.imu_variance = imu_variance
         self.now = 1000 * SECOND
         self.wheels, self.yaw, self.bias = ORIGIN, 0.0, 0.0
-        self.stuck = False          # whether the gyro measures nothing
+        self.stuck = False          # whether the gyro reports no motion
 
     def go(self, time, linear=0.0, angular=0.0, carried=0.0, ratio=1.0):
-        """Drive for a time (s), while a hand turns the robot at `carried` rad/s; ratio: of the turn that the wheels
-        report and the true one. Returns the error of the heading and its sigma, degrees."""
+        """Drive for a time (s), and return the error of the heading and its sigma, degrees.
+
+        carried: rad/s, by which a hand turns the robot; ratio: turn that the wheels report / true turn.
+        """
         end = self.now + round(time * SECOND)
         while self.now < end:
             self.now += IMU_STEP
@@ -54,7 +56,7 @@ def test_standstill_any_bias_is_learned_in_3_seconds(bias):
     robot.bias = radians(bias)
     robot.go(3.0)
     assert robot.case == 'standstill'
-    # 0.1 degrees/s at 50 Hz, averaged over the last 2.5 s less the parts that are not used yet: 0.01 degrees/s, 4 sigma
+    # 0.1 degrees/s at 50 Hz, averaged over the last 2.5 s without the parts not used yet: 0.01 degrees/s, 4 sigma
     assert degrees(robot.combined.filter.bias) == pytest.approx(bias, abs=0.04)
     error, sigma = robot.go(20.0, 0.2, 0.3)
     # 20 s of 0.01 degrees/s
@@ -75,7 +77,7 @@ def test_standstill_a_claimed_variance_that_is_far_too_large_is_not_believed():
     robot = Robot(imu_variance=0.005)
     robot.go(3.0)
     _, sigma = robot.go(20.0, 0.2)
-    # by what is claimed: 0.01 rad/s * sqrt(1 s) in each second, and a bias as uncertain: 7 degrees
+    # by the reported variance: 0.01 rad/s * sqrt(1 s) in each second, and an equally uncertain bias: 7 degrees
     assert sigma < 1.5
 
 
@@ -114,7 +116,7 @@ def test_a_drifting_bias_makes_the_heading_as_uncertain_as_it_is_wrong():
             error, sigma = robot.go(1.0, 0.2)
         squares.append((error / sigma) ** 2)
         robot.go(2.0)
-    # 1.7 degrees in each leg; the drift is known from the first standstill after one
+    # 1.7 degrees in each leg; the drift is known from the first standstill after a leg
     assert max(squares[1:]) < 9.0
 
 
@@ -125,7 +127,7 @@ def test_carried_the_heading_turns_with_the_gyro_and_is_uncertain():
     robot.go(1.5, carried=1.0)
     assert robot.case == 'carried'
     error, sigma = robot.go(2.0)
-    # the wheels have reported nothing of 86 degrees
+    # the wheels have reported none of the 86 degrees
     assert abs(error) < 2.0 and sigma > 45.0 and robot.case == 'standstill'
     assert degrees(robot.combined.filter.bias) == pytest.approx(1.0, abs=0.1)
 
@@ -136,7 +138,7 @@ def test_carried_before_the_bias_is_known():
     for _ in range(20):
         robot.go(0.12, carried=radians(2))
         error, sigma = robot.go(0.12, carried=radians(8))
-    # 24 degrees; less than a tenth is not decided yet
+    # 24 degrees, of which less than a tenth is not decided yet
     assert robot.case == 'carried' and abs(error) < 2.4 and sigma > 20.0
 
 
@@ -160,7 +162,7 @@ def test_carried_the_position_is_uncertain():
 
 
 def test_carried_shaking_teaches_no_bias():
-    robot = Robot(imu_variance=0.02)        # claims more than it has
+    robot = Robot(imu_variance=0.02)        # reports more noise than it has
     robot.go(5.0)
     for _ in range(20):
         robot.go(0.1, carried=1.0)
@@ -214,7 +216,7 @@ def test_contradiction_of_a_skid_steer_follows_the_gyro(ratio):
         robot.go(1.0)
     assert 'contradiction' in [case for _, _, case in errors] and len(robot.warnings) <= 2
     assert max(abs(error) for error, _, _ in errors) < 2.0
-    # the doubt has shrunk: less than a tenth of what one turn contradicted by, and never too certain
+    # the doubt has shrunk to less than a tenth of the contradiction in one turn, and the filter is never too certain
     assert errors[-1][1] < 6.0 and all(abs(error) < 4 * sigma for error, sigma, _ in errors)
 
 
@@ -240,7 +242,7 @@ def test_contradiction_of_a_gyro_upside_down_is_noticed_in_the_first_turn():
 def test_a_fast_turn_is_measured_by_the_gyro():
     robot = Robot()
     robot.go(3.0)
-    # faster than the 150 degrees/s of a Create's gyro, with wheels that report half as much again
+    # faster than the 150 degrees/s of a Create's gyro, with wheels that report half of the turn in addition
     error, sigma = robot.go(2.0, 0.0, 3.0, ratio=1.5)
     assert abs(error) < 10.0 and abs(error) < 3 * sigma
 

@@ -24,7 +24,7 @@ DRIVE = (REST, FORWARD, LEFT, *ARCS, REST, RIGHT, FORWARD, RIGHT, *ARCS, REST)
 
 
 def record(motions, seed=0, surface=FLOOR, name='run'):
-    """The Recording of a run, with everything but an end measured by hand."""
+    """Return the Recording of a run, with everything except an end pose measured by hand."""
     base = make_base(ROBOT, surface, seed)
     base.read_gyro()
     now, commands, odometry, truth, gyro = 0, [], [(0.0, 0, 0, 0)], [(0.0, 0, 0, 0)], []
@@ -42,5 +42,5 @@ def record(motions, seed=0, surface=FLOOR, name='run'):
 
 
 def wrapped(yaw):
-    """The equivalent angle between -pi and pi, rad."""
+    """Return the equivalent angle between -pi and pi, rad."""
     return (yaw + pi) % (2 * pi) - pi

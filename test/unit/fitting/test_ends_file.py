@@ -1,4 +1,4 @@
-"""The file with ends that were measured by hand."""
+"""The file with end poses that were measured by hand."""
 from math import radians
 
 import pytest
@@ -8,7 +8,7 @@ from rbx1_nav.fitting.ends_file import read_ends
 
 
 def read(tmp_path, text, bags=('/runs/run1.bag', 'run2.bag')):
-    """What read_ends() makes of a text."""
+    """Return the result of read_ends() for a text."""
     path = tmp_path / 'ends.yaml'
     path.write_text(text)
     return read_ends(str(path), list(bags))
@@ -42,5 +42,5 @@ def test_one_line_for_a_mistake(tmp_path, text, expected):
 
 
 def test_two_bags_of_one_name(tmp_path):
-    with pytest.raises(ConfigError, match='run1.bag: two bags of this name'):
+    with pytest.raises(ConfigError, match='run1.bag: two bags have this name'):
         read(tmp_path, 'run1.bag: [0, 0, 0]', ['a/run1.bag', 'b/run1.bag'])

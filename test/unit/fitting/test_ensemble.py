@@ -1,4 +1,4 @@
-"""Ends in arrays, and covariances to first order: those of the simulated robot."""
+"""End poses in arrays, and covariances to first order, match the simulated robot."""
 import random
 
 import numpy
@@ -25,7 +25,7 @@ RUNS = 800
 
 
 def predict(surface, sequence):
-    """The Prediction for one window that holds all of a sequence."""
+    """Return the Prediction for one window that contains a whole sequence."""
     times = numpy.cumsum([0.0] + [duration for _, _, duration in sequence])
     linear, angular = ([*values, 0.0] for values in list(zip(*sequence))[:2])
     commands = Commands(times, numpy.array(linear), numpy.array(angular))
@@ -34,7 +34,7 @@ def predict(surface, sequence):
 
 
 def drive(surface, sequence, seed):
-    """The true poses of a simulated robot after each step."""
+    """Return the true poses of a simulated robot after each step."""
     wheels = Wheels(WIDTH, surface, draw_run(surface, seed), 0.02, make_roughness(surface, seed))
     for linear, angular, duration in sequence:
         for _ in range(round(duration / STEP)):
@@ -43,14 +43,15 @@ def drive(surface, sequence, seed):
 
 
 def simulated(surface):
-    """The true ends of RUNS simulated robots."""
+    """Return the true end poses of RUNS simulated robots."""
     return numpy.array([list(drive(surface, SEQUENCE, seed))[-1] for seed in range(RUNS)])
 
 
 def spreads_agree(some, others):
-    """Whether two covariances are alike: along no axis do the variances differ by more than 30 %.
+    """Return whether the variances of two covariances differ by at most 30 % along every axis.
 
-    1 sigma of a variance of RUNS ends is sqrt((kurtosis - 1) / RUNS) of it, 5 to 6 %; the worst of three axes.
+    The relative 1 sigma error of a variance from RUNS end poses is sqrt((kurtosis - 1) / RUNS), 5 to 6 %, and the worst
+    of three axes counts.
     """
     ratios = numpy.linalg.eigvals(numpy.linalg.solve(some, others)).real
     return 1 / 1.3 < ratios.min() and ratios.max() < 1.3
@@ -103,7 +104,7 @@ def test_the_covariance_to_first_order_is_that_of_the_ensemble(keys):
     surface = FLOOR._replace(**dict.fromkeys(keys, 0.02))
     prediction = predict(surface, SEQUENCE)
     ensemble = simulate_ends(surface, prediction, 0, 10 * RUNS, numpy.random.default_rng(2))
-    # errors of a measurement of 3 mm: more than what is beyond the first order
+    # a measurement error of 3 mm, which is larger than the effects beyond the first order
     measured = ensemble - ensemble.mean(axis=0) + 0.003 * numpy.random.default_rng(3).standard_normal(ensemble.shape)
     covariance = Covariance(surface, prediction.sensitivities(), 0.003 ** 2 * numpy.eye(3))
     white = numpy.array([covariance.whitened(error[None]) for error in measured[:3000]])
@@ -116,7 +117,7 @@ def test_the_noise_in_arrays_has_the_sum_of_its_steps_at_any_cut(seed, path, cel
     whole = cell_noise(numpy.random.default_rng(seed), 4, numpy.array([sum(path)]), cell)
     parts = cell_noise(numpy.random.default_rng(seed), 4, numpy.array(path), cell)
     assert whole.shape == (4, 1) and parts.shape == (4, len(path))
-    # the last border may be in another cell by rounding, and then the draws differ in their number
+    # rounding may move the last border to another cell, which changes the number of draws
     borders = numpy.random.default_rng(seed).random((4, 1)) + sum(path) / cell
     if (abs(borders - numpy.round(borders)) > 1e-9).all():
         assert parts.sum(axis=1) == pytest.approx(whole[:, 0], abs=1e-9)
@@ -129,7 +130,7 @@ def test_the_noise_in_arrays_has_variance_and_tails_of_the_noise_of_a_run():
     single = numpy.array([[noise.over(step) for step in path] for noise in noises])
     for values in arrays, single:
         assert (values[:, 3] == 0).all()
-        # sqrt((kurtosis - 1) / count) is below 4 %: five of those
+        # sqrt((kurtosis - 1) / count) is below 4 %: five times this
         assert values.sum(axis=1).var() == pytest.approx(2.0 - cell / 3, rel=0.15)
         # shorter than a cell: path ** 2 / cell * (1 - path / cell / 3)
         assert values[:, 0].var() == pytest.approx(0.01 / cell * (1 - 0.1 / cell / 3), rel=0.2)
@@ -141,7 +142,7 @@ def test_the_inner_share_of_an_end_is_that_of_the_simulated_ends_nearer_to_the_m
     ends = numpy.random.default_rng(3).standard_normal((4000, 2)) * [0.5, 0.02] + [1.0, 2.0]
     assert inner_share(ends, ends.mean(axis=0)) == 0
     assert inner_share(ends, numpy.array([9.0, 2.0])) == 1
-    # two dimensions: 1 - exp(-d^2 / 2) of a normal distribution is inside; both are one standard deviation away
+    # in two dimensions, 1 - exp(-d^2 / 2) of a normal distribution is inside; both are one standard deviation away
     for end in [1.5, 2.0], [1.0, 2.02]:
         assert inner_share(ends, numpy.array(end)) == pytest.approx(1 - numpy.exp(-0.5), abs=0.04)
     assert mahalanobis(ends, numpy.array([[1.5, 2.02]])) == pytest.approx(2, rel=0.2)
@@ -154,5 +155,5 @@ def test_the_energy_score_is_the_smaller_the_better_the_prediction():
         energy_score(generator.standard_normal((200, 2)) * width + shift, point) for point in points])
         for width, shift in ((1, 0), (1, 1), (3, 0), (0.2, 0)))
     assert good < min(shifted, timid, bold)
-    # an ensemble without spread: the distance
+    # without spread, the score is the distance
     assert energy_score(numpy.zeros((10, 2)), numpy.array([3.0, 4.0])) == 5

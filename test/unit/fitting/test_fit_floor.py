@@ -1,4 +1,4 @@
-"""The covariance of the floor's noise, and what windows tell of it."""
+"""The covariance of the floor's noise, and the values that windows determine."""
 from hypothesis import given, strategies as st
 import numpy
 import pytest
@@ -17,7 +17,7 @@ def test_the_variance_after_a_path_does_not_depend_on_its_steps(steps, cell, par
     finer = numpy.repeat(numpy.array(steps) / parts, parts)
     variances = [cell_covariance(numpy.array(path), cell).sum() for path in (steps, [sum(steps)], finer)]
     assert variances == pytest.approx(3 * variances[:1], abs=1e-9)
-    # never more than white noise, and a third of a cell less on a path of many cells
+    # never more than white noise, and smaller by a third of a cell on a path of many cells
     assert variances[0] <= sum(steps) + 1e-9
     assert variances[0] >= sum(steps) - cell / 3 - 1e-9
 
@@ -37,7 +37,7 @@ def test_ends_have_the_predicted_covariance():
     spreads = [prediction.sensitivities()[key][0] * getattr(FLOOR, key)
                for key in ('slip_straight_spread', 'slip_turning_spread')]
     expected = roots @ roots.T + sum(numpy.outer(one, one) for one in spreads)
-    # the first order: errors of 0.1 rad change the path by a few percent
+    # first order only: errors of 0.1 rad change the path by a few percent
     assert numpy.diag(numpy.cov(ends.T)) == pytest.approx(numpy.diag(expected), rel=0.1)
 
 
@@ -51,7 +51,7 @@ def test_what_the_runs_do_not_tell_has_a_large_standard_error():
 
 def test_two_values_of_which_only_the_sum_is_told_are_both_unknown():
     run = PreparedRun(record((REST, FORWARD, REST, FORWARD, REST))._replace(odometry=None), 0.26)
-    # without turns, a curvature looks like nothing else; delay and lag are told apart only at starts and stops
+    # without turns, a curvature looks like nothing else; delay and lag can be distinguished only at starts and stops
     windows = run.windows(3.0)
     _, covariance = Fitter([run], [Windows(windows.first[1:2], windows.length, windows.ends[1:2])], QUIET).fit_means(
         FLOOR, ['delay', 'lag', 'slip_straight'])

@@ -1,4 +1,4 @@
-"""Delay, lag, limit and drag from commands and odometry."""
+"""Delay, lag, acceleration limit and drag are fitted to commands and odometry."""
 from hypothesis import Phase, given, settings, strategies as st
 import numpy
 import pytest
@@ -16,7 +16,7 @@ def test_motors_are_found(delay, lag, limit, straight, turning):
     fit = fit_motors(START, 0.26, [record(DRIVE, surface=surface)])
     for key in KEYS:
         if key not in fit.unused:
-            # rounding to ticks is no normal noise: hence 5 standard errors; a lag of 0.03 s may hide behind a limit
+            # 5 standard errors, since rounding to ticks is not normal noise; a limit may hide a lag of 0.03 s
             assert fit.values[key] == pytest.approx(getattr(surface, key), abs=5 * fit.errors[key]), key
             assert fit.errors[key] < max(0.02 * getattr(surface, key), 5e-3), key
     assert not {'delay', 'lag', 'drag_straight', 'drag_turning'} & set(fit.unused)
@@ -46,7 +46,7 @@ def test_a_limit_that_is_hardly_reached_is_right_or_not_told(limit):
 
 @pytest.mark.parametrize('limit', [1.9, 3.0])
 def test_a_limit_just_above_what_the_motors_need_is_not_told(limit):
-    # 0.3 m/s with this lag needs 1.6 m/s^2: there the fit stops, and rounding to ticks makes a slope
+    # 0.3 m/s with this lag requires 1.6 m/s^2: the fit stops there, where rounding to ticks makes a slope
     surface = FLOOR._replace(accel_limit=limit, lag=0.186, drag_straight=0.002)
     fit = fit_motors(START, 0.26, [record(DRIVE, surface=surface)])
     assert fit.values['accel_limit'] < 1.7 and 'accel_limit' in fit.unused
@@ -54,12 +54,12 @@ def test_a_limit_just_above_what_the_motors_need_is_not_told(limit):
 
 def test_standard_errors_allow_for_residuals_that_are_larger_where_the_slope_is():
     generator = numpy.random.default_rng(4)
-    # one interval in ten is a start: all of the slope, and nearly all of the error
+    # one interval in ten is a start, with all of the slope and nearly all of the error
     slopes, sigma = (numpy.tile([value] + 9 * [rest], 200) for value, rest in ((1.0, 0.0), (1.0, 0.01)))
     left = generator.normal(0.0, sigma)
-    left -= slopes * (slopes @ left) / (slopes @ slopes)        # what a fit leaves
+    left -= slopes * (slopes @ left) / (slopes @ slopes)        # the residuals of a fit
     error, = standard_errors(slopes[:, None], left, numpy.array([2000]))
-    # 1 sigma of it is 5 %; by the variance of all residuals it would be a third
+    # its 1 sigma error is 5 %; the variance of all residuals would yield a third of it
     assert error >= 0.85 / 200 ** 0.5
 
 
@@ -74,6 +74,6 @@ def test_travel_is_compared_between_stamps_of_the_odometry():
     intervals = Intervals(run, 0.26)
     assert set(intervals.times) <= set(run.odometry.time)
     assert numpy.diff(intervals.times).min() > INTERVAL - 0.021      # stamps are 0.02 s apart
-    # all that was turned, as travel of a wheel
+    # the whole turn, as travel of a wheel
     half = len(intervals.travel) // 2
     assert intervals.travel[half:].sum() == pytest.approx(run.odometry.yaw[-1] * 0.13, abs=1e-3)

@@ -1,4 +1,4 @@
-"""The errors of a gyro from recorded runs."""
+"""The errors of a gyro are fitted to recorded runs."""
 from math import radians
 
 import pytest
@@ -15,7 +15,7 @@ def test_noise_bias_and_scale():
     found = fit_gyro(runs, delay=1.0)
     value, error = found['gyro_noise']
     assert abs(value - FLOOR.gyro_noise) < 4 * error and error < 0.1 * value
-    # the errors that these runs had; 100 readings at rest and more tell the bias within a tenth of the noise
+    # the true errors of these runs; 100 readings at rest or more determine the bias to a tenth of the noise
     for key, tolerance in ('gyro_bias', 5e-4), ('gyro_scale_error', 2e-3):
         rms = (sum(getattr(run, key) ** 2 for run in drawn) / 4) ** 0.5
         assert found[key][0] == pytest.approx(rms, abs=tolerance), key
@@ -52,5 +52,5 @@ def test_a_robot_that_may_still_roll_does_not_stand():
 
 def test_the_error_of_few_values_is_large():
     assert root_mean_square([1.0, -1.0], [0.0, 0.0])[1] > root_mean_square([1.0, -1.0] * 50, [0.0] * 100)[1] > 0
-    # what the measurement alone explains is no error of the gyro
+    # an error that the measurement alone explains is not an error of the gyro
     assert root_mean_square([0.1, -0.1], [0.1, 0.1])[0] == 0.0

@@ -1,4 +1,4 @@
-"""The files of the UTIAS dataset: read, and rejected with one line."""
+"""Files of the UTIAS dataset are read, and bad files are rejected with a one-line message."""
 import numpy
 import pytest
 
@@ -25,7 +25,7 @@ def test_the_robots_of_a_set_are_read(tmp_path):
     assert [recording.name for recording in recordings] == ['D6R1', 'D6R2']
     assert recordings[0].commands.angular.tolist() == [0.0, 0.5, 0.0]
     assert recordings[0].truth.x.tolist() == [1.0, 1.1, 1.2]
-    # the heading is not wrapped any more
+    # the heading is unwrapped
     assert recordings[0].truth.yaw == pytest.approx(numpy.array([3.1, 2 * numpy.pi - 3.1, 2 * numpy.pi - 3.0]))
     assert recordings[0].odometry is None
 
@@ -44,8 +44,8 @@ def test_the_robots_of_a_set_are_read(tmp_path):
     ('1 nan 0\n', TRUTH, 'D6R1: commands: linear of message 1: nan: expected a finite number'),
     (COMMANDS, f"{TRUTH}12 0 0 inf\n", 'D6R1: truth: yaw of message 4: inf: expected a finite number'),
     (COMMANDS, f"{TRUTH}12 1e999 0 0\n", 'D6R1: truth: x of message 4: inf: expected a finite number'),
-    (f"{COMMANDS}10.5 0 0\n", TRUTH, 'D6R1: commands: stamp of message 4: 0.500 s before that of message 3'),
-    (COMMANDS, f"{TRUTH}10.9 0 0 0\n", 'D6R1: truth: stamp of message 4: 0.100 s before that of message 3'),
+    (f"{COMMANDS}10.5 0 0\n", TRUTH, 'D6R1: commands: stamp of message 4: 0.500 s before message 3'),
+    (COMMANDS, f"{TRUTH}10.9 0 0 0\n", 'D6R1: truth: stamp of message 4: 0.100 s before message 3'),
     ('10 0 0\n11 0 0\n', TRUTH, 'D6R1: no motion: expected commands other than 0'),
 ])
 @pytest.mark.filterwarnings('error')

@@ -1,4 +1,4 @@
-"""Recordings that are none, each with one line."""
+"""Invalid recordings are rejected with a one-line message."""
 from math import inf, nan
 
 from hypothesis import given, strategies as st
@@ -15,7 +15,7 @@ SERIES = st.sampled_from(['commands', 'odometry', 'gyro', 'truth'])
 
 
 def changed(name, field, index, value):
-    """The run with one value changed, and the field's name."""
+    """Return the run with one value changed, and the name of the field."""
     series = getattr(RUN, name)
     field = series._fields[field % len(series)]
     values = getattr(series, field).copy()
@@ -41,7 +41,7 @@ def test_stamps_never_go_back(name, index, by):
     time = getattr(RUN, name).time
     index = 1 + index % (len(time) - 1)
     run, _, _ = changed(name, 0, index, time[index - 1] - by)
-    with pytest.raises(ConfigError, match='run: %s: stamp of message %d: .* s before that of message %d'
+    with pytest.raises(ConfigError, match='run: %s: stamp of message %d: .* s before message %d'
                        % (name, index + 1, index)):
         check_recording(run)
 
@@ -55,7 +55,7 @@ def test_no_commands():
 @pytest.mark.parametrize('name', ['odometry', 'truth'])
 def test_no_motion(name):
     time = getattr(RUN, name).time
-    with pytest.raises(ConfigError, match=f'^run: {name}: no motion, although'):
+    with pytest.raises(ConfigError, match=f'^run: {name}: the robot did not move, although'):
         check_recording(RUN._replace(**{name: Track(time, 0 * time, 0 * time, 0 * time)}))
     zero = 0 * RUN.commands.linear
     with pytest.raises(ConfigError, match='^run: no motion: expected commands other than 0'):
@@ -65,7 +65,7 @@ def test_no_motion(name):
 @pytest.mark.parametrize('name', ['odometry', 'gyro', 'truth'])
 def test_all_stamps_are_of_one_clock(name):
     series = getattr(RUN, name)
-    with pytest.raises(ConfigError, match=f'^run: {name} from 1000.0 to .*: expected the same time, by one clock'):
+    with pytest.raises(ConfigError, match=f'^run: {name} from 1000.0 to .*: expected the same time span, on one clock'):
         check_recording(RUN._replace(**{name: series._replace(time=series.time + 1000)}))
 
 

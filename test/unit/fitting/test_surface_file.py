@@ -1,4 +1,4 @@
-"""A fitted surface as a file: complete, readable, and within what a surface file may have."""
+"""A fitted surface as a file is complete and readable, and its values are within the ranges of surface files."""
 from math import isclose
 
 from hypothesis import given, settings, strategies as st
@@ -12,12 +12,12 @@ ALL = [*KEYS, *OPTIONAL_KEYS]
 
 
 VALUES = {key: st.floats(*limits_of(key)) | st.sampled_from(limits_of(key)) for key in ALL}      # in SI units
-ERRORS = st.none() | st.floats(1e-9, 1e4)       # as a part of the value
+ERRORS = st.none() | st.floats(1e-9, 1e4)       # as a fraction of the value
 
 
 @st.composite
 def results(draw):
-    """A FitResult with any values, some of them fitted."""
+    """Draw a FitResult with arbitrary values, some of them fitted."""
     values = []
     for key in ALL:
         value, part = draw(VALUES[key]), draw(ERRORS)
@@ -33,7 +33,7 @@ def test_it_can_be_read_again(result):
     text = surface_text(result, 'low_ply_carpet', ['run1.bag', 'run\n2: x.bag'])
     surface = read_surface(yaml.safe_load(text), 'x')
     for value in result.values:
-        # two digits of the error are kept, six of a value without one
+        # the file keeps two digits of the error, or six digits of a value without an error
         allowed = in_file_units(value.key, value.error) / 10 if value.error else 0.0
         assert isclose(in_file_units(value.key, getattr(surface, value.key)), in_file_units(value.key, value.value),
                        rel_tol=1e-5, abs_tol=max(allowed, 1e-9)), value
@@ -46,7 +46,7 @@ def test_each_value_is_explained(result):
     lines = surface_text(result, 'low_ply_carpet', ['run1.bag']).splitlines()
     for value in result.values:
         line, = (each for each in lines if each.startswith(f'{value.key}:'))
-        assert ('fitted, +- ' in line) == (value.error is not None) == ('left as it was: no gyro' not in line)
+        assert ('fitted, +- ' in line) == (value.error is not None) == ('not fitted: no gyro' not in line)
     assert any('too far off' in line for line in lines) == bool(result.warnings)
     printed = table(result, 'low_ply_carpet')
     assert sum(line.split()[0] in ALL for line in printed if line.split()) == len(ALL)

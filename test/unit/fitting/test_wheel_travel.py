@@ -1,4 +1,4 @@
-"""From commands, or from odometry, to the travel of the wheels: as the simulated wheels travel."""
+"""The wheel travel from commands or odometry matches the simulated wheels."""
 import numpy
 import pytest
 from hypothesis import given
@@ -15,7 +15,7 @@ commands = st.lists(st.tuples(st.floats(-0.5, 0.5), st.floats(-2, 2), st.floats(
 
 
 def series(parts, start=0.0):
-    """The Commands of (linear, angular, duration) one after the other, and a last 0; and their end, s."""
+    """Return (Commands for a sequence of (linear, angular, duration) and a final 0, time of the final 0 in s)."""
     times = start + numpy.append(0.0, numpy.cumsum([duration for _, _, duration in parts]))
     linear, angular = ([*values, 0.0] for values in list(zip(*parts))[:2])
     return Commands(times, numpy.array(linear), numpy.array(angular)), times[-1]
@@ -66,7 +66,7 @@ def test_a_command_that_is_repeated_changes_nothing():
     assert steps[0].turn == pytest.approx(steps[1].turn, abs=1e-12)
 
 
-# below a full turn in a step, whose arc has no chord
+# less than a full turn per step, because the arc of a full turn has no chord
 @given(st.lists(st.tuples(st.floats(-1, 1), st.floats(-3, 3)), min_size=1, max_size=30),
        st.tuples(st.floats(-5, 5), st.floats(-5, 5), st.floats(-10, 10)))
 def test_the_travel_of_odometry_inverts_its_arcs(arcs, start):

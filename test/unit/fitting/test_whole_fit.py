@@ -1,4 +1,4 @@
-"""From recordings to a surface: what is found, and what is named because the recordings do not tell it."""
+"""A fit to recordings: the values that are found, and the reasons for values that cannot be determined."""
 from math import radians
 
 import numpy
@@ -19,13 +19,13 @@ TAPE = 0.01, 0.01, radians(2)   # m, m, rad
 
 
 def fit(recordings, **options):
-    """(Result, {key: Value})."""
+    """Return (FitResult, {key: Value})."""
     result = WholeFit(recordings, 0.26, START, **options).result()
     return result, {value.key: value for value in result.values}
 
 
 def with_end(recording):
-    """A Recording of which only the end is known."""
+    """Return a Recording of which only the end pose is known."""
     end = Pose(recording.truth.x[-1], recording.truth.y[-1], wrapped(recording.truth.yaw[-1]))
     return recording._replace(truth=None, end=end)
 
@@ -34,9 +34,9 @@ def test_a_floor_is_found():
     result, values = fit([record(DRIVE, seed) for seed in range(4)])
     for key in ('slip_straight', 'slip_turning', 'curvature', 'turning_loss', 'heading_noise_turning',
                 'heading_noise_straight', 'distance_noise', 'slip_straight_spread', 'slip_turning_spread'):
-        # five standard errors: these four runs always are the same
+        # five standard errors: these four runs never change
         assert abs(values[key].value - getattr(FLOOR, key)) < 5 * values[key].error, key
-    # known well enough to be of use
+    # accurate enough to be useful
     assert values['turning_loss'].error < 0.01 and values['heading_noise_turning'].error < 0.02
     assert {key for key, value in values.items() if value.error is None} <= {'ticks_meter', 'gyro_measurement_range',
                                                                             'gyro_scale_error'}
@@ -63,7 +63,7 @@ def test_one_run_tells_no_spread():
 
 def test_runs_without_a_turn():
     _, values = fit([record((REST, FORWARD, REST, FORWARD, REST), seed) for seed in range(3)])
-    assert values['drag_turning'] == ('drag_turning', START.drag_turning, None, 'it makes no difference in these runs')
+    assert values['drag_turning'] == ('drag_turning', START.drag_turning, None, 'no measurable effect in these runs')
     for key in 'slip_turning', 'turning_loss', 'gyro_scale_error':
         assert values[key].error is None and values[key].value == getattr(START, key), key
     assert values['slip_straight'].error
@@ -74,7 +74,7 @@ def test_runs_without_gyro_or_truth():
     for key in 'gyro_noise', 'gyro_bias', 'gyro_scale_error':
         assert values[key] == (key, getattr(START, key), None, 'no gyro')
     for key in 'slip_straight', 'heading_noise_turning':
-        assert values[key] == (key, getattr(START, key), None, 'the recordings do not tell it')
+        assert values[key] == (key, getattr(START, key), None, 'not determined by these runs')
     assert values['drag_turning'].error
 
 
@@ -84,14 +84,15 @@ def test_neither_odometry_nor_truth_is_nothing_to_fit_to():
 
 
 def test_all_runs_are_alike():
-    with pytest.raises(ConfigError, match='^other: no odometry, but run has it: expected all runs alike$'):
+    with pytest.raises(ConfigError,
+                       match='^other: no odometry, although run has it: expected the same data in all runs$'):
         fit([record(EXERCISE), record(EXERCISE, name='other')._replace(odometry=None)])
 
 
 def test_ends_tell_slips_and_one_factor():
     result, values = fit([with_end(record(EXERCISE, seed)) for seed in range(3)], end_errors=TAPE)
     assert abs(values['slip_turning'].value - FLOOR.slip_turning) < 3 * values['slip_turning'].error
-    # the spread contains what three runs leave open of the mean
+    # the spread contains the uncertainty of the mean after three runs
     assert values['slip_turning_spread'].value > values['slip_turning'].error
     assert values['heading_noise_turning'].error and values['curvature'].error is None
     assert "Student's t distribution" in result.notes[0]
@@ -115,7 +116,7 @@ def test_a_robot_that_was_pushed_is_warned_of():
     x = runs[1].truth.x + 1.0 * (runs[1].truth.time > 11.0)
     runs[1] = runs[1]._replace(truth=runs[1].truth._replace(x=x))
     result, _ = fit(runs)
-    assert any(text.startswith('run1: ') and 'the first 10 s after' in text or 'the first 9 s' in text
+    assert any(text.startswith('run1: ') and 'begins 10 s after' in text or 'begins 9 s after' in text
                for text in result.warnings), result.warnings
 
 
@@ -130,7 +131,7 @@ def test_a_truth_that_is_worse_in_motion_is_not_taken_for_noise_of_the_floor():
     for key in 'heading_noise_turning', 'heading_noise_straight', 'distance_noise':
         assert abs(values[key].value - getattr(FLOOR, key)) < 3 * values[key].error, key
         assert values[key].error < 0.03, key
-    assert len(result.notes) == 1 and result.notes[0].startswith('The ends of the windows have errors of ')
+    assert len(result.notes) == 1 and result.notes[0].startswith('The end poses of the windows have ')
     exact, _ = fit([record(DRIVE, seed) for seed in range(4)])
     assert exact.notes == []
 

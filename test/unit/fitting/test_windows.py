@@ -1,4 +1,4 @@
-"""The parts of a recorded run whose end is known."""
+"""The parts of a recorded run with a known end pose."""
 import numpy
 import pytest
 
@@ -10,7 +10,7 @@ COMMANDS = Commands(numpy.array([0.0, 40.0]), numpy.array([0.2, 0.2]), numpy.arr
 
 
 def make_run(gaps=(), rate=100.0):
-    """A PreparedRun of 40 s on a circle of 2 m; its truth is missing between the pairs of `gaps` (s)."""
+    """Return a PreparedRun of 40 s on a circle of radius 2 m, without truth between the pairs of `gaps` (s)."""
     times = numpy.arange(round(40 * rate) + 1) / rate
     for start, end in gaps:
         times = times[(times <= start) | (times >= end)]
@@ -32,7 +32,7 @@ def test_windows_follow_each_other_or_begin_a_stride_apart():
 
 def test_the_end_of_a_window_is_in_the_frame_of_its_start():
     windows = make_run().windows(10)
-    # an arc of 2 m about the left side
+    # an arc with a radius of 2 m to the left
     assert windows.ends == pytest.approx(numpy.array([[2 * numpy.sin(1), 2 - 2 * numpy.cos(1), 1.0]] * 4), abs=1e-4)
 
 
@@ -43,7 +43,7 @@ def test_a_window_with_a_gap_of_the_truth_is_left_out(gap):
         expected = [start for start in starts(run, make_run().windows(length, stride))
                     if start + length < gap[0] + 1e-6 or start > gap[1] - 1e-6]
         found = starts(run, run.windows(length, stride))
-        # no window has a gap; and none is lost that has none, but for those that touch it
+        # no window has a gap, and every window without a gap is kept, except those that touch it
         assert set(found) <= set(expected)
         assert len(found) >= len(expected) - 2
         assert found

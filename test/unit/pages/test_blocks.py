@@ -100,7 +100,7 @@ def test_steps():
     ('<!-- output -->\n```text\nls\n```\n', '2: output without a command before'),
     ('<!-- run -->\n```sh\nls\n```\n<!-- output of base -->\n```text\nls\n```\n', "6: no terminal 'base' before"),
     ('```\nls\n```\n', '1: a block without a language'),
-    ('```sh\nls\n', '1: this fence has no end'),
+    ('```sh\nls\n', '1: this fence is not closed'),
     ('Text\n\n    ls\n', '3: an indented code block'),
     ('<!-- terminals: a, b -->\n```sh\nls\n```\n', '2: 2 names for 1 commands'),
     ('<!-- terminals: a, a -->\n```sh\nls\nls\n```\n', "2: a command runs in terminal 'a' already"),

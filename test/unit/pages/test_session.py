@@ -81,8 +81,8 @@ def test_output_is_of_this_block(tmp_path):
 def test_hangs(tmp_path):
     """The message contains the output so far."""
     trouble = failure(tmp_path, run('echo so far; cat'), limit=1)
-    assert 'echo so far; cat does not end after 1 s' in trouble and '\nso far\n' in trouble
-    assert 'Ctrl-C does not end it' in failure(tmp_path, run('''trap '' INT; echo up; sleep 60''', 'terminal: a') +
+    assert 'echo so far; cat does not exit after 1 s' in trouble and '\nso far\n' in trouble
+    assert 'Ctrl-C does not stop it' in failure(tmp_path, run('''trap '' INT; echo up; sleep 60''', 'terminal: a') +
                                               shows('up'), limit=1)
 
 
@@ -112,7 +112,7 @@ def test_alarm(tmp_path, line):
 def test_left_behind(tmp_path):
     """A process that left its terminal is reported and killed."""
     trouble = failure(tmp_path, run('setsid -f sleep 1000 </dev/null >/dev/null 2>&1'), limit=1)
-    assert 'processes left at the end' in trouble and 'sleep 1000' in trouble
+    assert 'processes left after the last step' in trouble and 'sleep 1000' in trouble
 
 
 def test_others_live_on(tmp_path):

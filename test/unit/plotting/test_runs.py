@@ -1,4 +1,4 @@
-"""The picture of simulated runs: one scale for what is to be compared, and none where there is nothing to see."""
+"""The plot of simulated runs: one scale for all methods, and no color scale without visible differences."""
 from contextlib import contextmanager
 from math import pi, radians
 import resource
@@ -16,7 +16,7 @@ from rbx1_nav.simulation.exercise import SimulationResult, Snapshot
 
 
 def result(*poses):
-    """A SimulationResult with this path, the last pose of which is its end."""
+    """Return a SimulationResult with this path, whose last pose is the end pose."""
     snapshots = [Snapshot(0.02 * number, Pose(*pose), Pose(*pose), None) for number, pose in enumerate(poses)]
     return SimulationResult(snapshots[-1], 1.0, None, snapshots)
 
@@ -52,7 +52,7 @@ def test_no_colour_scale_for_headings_that_are_all_right():
 
 @pytest.fixture
 def drawn(monkeypatch, tmp_path):
-    """draw(results) returns the Figure that it saves."""
+    """Provide a function that calls draw(results) and returns the saved Figure."""
     figures = []
     monkeypatch.setattr(Figure, 'savefig', lambda figure, *_, **__: figures.append(figure))
 
@@ -74,7 +74,7 @@ def test_the_lower_row_has_one_scale_and_one_colour_bar(drawn):
 def test_without_a_colour_scale_there_is_no_colour_bar(drawn):
     figure = drawn({'timed': EQUAL})
     assert len(figure.axes) == 2
-    assert figure.axes[1].get_title() == 'all end at (0.0 mm, 1.6 mm)'
+    assert figure.axes[1].get_title() == 'all end poses at (0.0 mm, 1.6 mm)'
 
 
 @pytest.mark.parametrize('results, insets', [(FAR, 0), (NEAR, 1), (EQUAL, 0)])
@@ -92,9 +92,9 @@ def test_a_title_names_surface_runs_and_seeds(drawn):
 
 @contextmanager
 def full_disk():
-    """Files cannot have more than 1000 bytes: pytest's output neither, so not for a whole test.
+    """Limit the size of files to 1000 bytes. The limit also applies to pytest's output, so use it for part of a test.
 
-    Needs no root, unlike a small file system, and is an OSError too.
+    Unlike a small file system, this does not require root. It also raises OSError.
     """
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
     handler = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
@@ -135,7 +135,7 @@ def test_a_picture_takes_the_place_of_an_older_one(tmp_path, kind, start):
     assert len(list(tmp_path.iterdir())) == 2
 
 
-# whether a picture can be written is known before the runs
+# check_picture() checks before the runs that a plot can be written
 
 @pytest.mark.parametrize('name', ['a.png', 'a.PNG', 'a.svg', 'a.pdf', 'a.b.jpg'])
 def test_a_good_path_is_left_as_it_was(tmp_path, name):
@@ -148,7 +148,7 @@ def test_a_good_path_is_left_as_it_was(tmp_path, name):
 
 @pytest.mark.parametrize('name', ['', 'a', 'png', '.png', 'a.doc', 'a.png.txt', 'a.pgf'])
 def test_a_name_that_says_no_format(tmp_path, name):
-    with pytest.raises(ConfigError, match=r'expected a name that ends in one of .*\.pdf, \.png, '):
+    with pytest.raises(ConfigError, match=r'expected a file name with one of the extensions .*\.pdf, \.png, '):
         check_picture(f'{tmp_path!s}/{name}')
 
 
@@ -164,6 +164,6 @@ def test_a_folder_in_place_of_a_file(tmp_path):
 
 
 def test_a_folder_in_which_nobody_can_write():
-    # where not even root can, whom permissions do not stop
+    # a folder where not even root can write, whom permissions do not stop
     with pytest.raises(ConfigError, match='expected a file that can be written: '):
         check_picture('/proc/a.png')

@@ -1,4 +1,4 @@
-"""Correction factors, from what a sensor reported and what was measured."""
+"""Correction factors are calculated from the reported and the measured values."""
 from math import inf, nan, pi
 
 from hypothesis import given, strategies as st
@@ -9,7 +9,7 @@ from rbx1_nav.robot.calibration import MAX_GAP, corrected, read_measured, turn_b
 
 
 def rejection(function, *arguments):
-    """The text of the ConfigError that a call raises."""
+    """Return the text of the ConfigError that a call raises."""
     with pytest.raises(ConfigError) as error:
         function(*arguments)
     assert str(error.value).isprintable()
@@ -17,7 +17,7 @@ def rejection(function, *arguments):
 
 
 def measured(value):
-    """A measured result of a drive of 1 m."""
+    """Return the measured result of a drive of 1 m."""
     return read_measured('measured', value, 1.0, 'a distance', 'm')
 
 
@@ -65,14 +65,14 @@ def test_a_sensor_that_reports_something_else_has_no_factor(reported):
 
 
 def readings(bias, scale, rest=2.0, period=0.02):
-    """Those of a gyro that rests, turns by 2 pi rad in 10 s, and rests for 1 s."""
+    """Return the readings of a gyro that rests, turns by 2 pi rad in 10 s, and rests for 1 s."""
     steps = [(rest, 0.0), (10.0, 2 * pi / 10), (1.0, 0.0)]
     rates = [rate * scale + bias for duration, rate in steps for _ in range(round(duration / period))]
     return [(100 + index * period, rate) for index, rate in enumerate([bias] + rates)]
 
 
 def by_gyro(every, start):
-    """The turn of a robot that turns once."""
+    """Return the measured turn of a robot that turns once."""
     return turn_by_gyro(every, start, every[-1][0] if every else start, 2 * pi)
 
 
@@ -83,7 +83,7 @@ def test_the_bias_of_a_gyro_is_no_turn(bias, scale, period):
 
 def test_the_period_of_the_readings_may_vary():
     every = readings(0.01, 1.0)
-    # of a sensor that reports the mean since its last reading, two at rest and two in the turn are missing
+    # the sensor reports the mean since its last reading; two readings at rest and two in the turn are missing
     assert by_gyro([each for index, each in enumerate(every) if index not in (7, 8, 300, 301)],
                    102.001) == pytest.approx(2 * pi)
 
@@ -102,11 +102,11 @@ def test_a_clock_that_jumped_back_has_no_turn():
 
 @pytest.mark.parametrize('rest, start', [(0.5, 100.501), (2.0, 99.0)])
 def test_a_gyro_that_was_not_at_rest_has_no_bias(rest, start):
-    assert 'expected 1 s of them' in rejection(by_gyro, readings(0.0, 1.0, rest), start)
+    assert 'expected at least 1 s of readings' in rejection(by_gyro, readings(0.0, 1.0, rest), start)
 
 
 def test_no_gyro():
-    assert rejection(by_gyro, [], 102.0) == '0 readings at rest: expected 1 s of them'
+    assert rejection(by_gyro, [], 102.0) == '0 readings at rest: expected at least 1 s of readings'
 
 
 @pytest.mark.parametrize('rate', [nan, inf])
@@ -122,4 +122,4 @@ def test_a_gyro_that_fell_silent_to_the_end_has_no_turn():
 
 @pytest.mark.parametrize('scale', [0.0, 0.05, -0.09])
 def test_a_gyro_that_reports_no_turn(scale):
-    assert rejection(by_gyro, readings(0.01, scale), 102.001).startswith('it reports no turn (')
+    assert rejection(by_gyro, readings(0.01, scale), 102.001).startswith('the gyro reports no turn (')

@@ -1,4 +1,4 @@
-"""The YAML files of ArbotiX users: read as they are, and rejected with one line if a value is invalid."""
+"""YAML files in the ArbotiX format are read unchanged, and rejected with one line if a value is invalid."""
 import copy
 import glob
 import os
@@ -22,7 +22,7 @@ def load(name):
 def test_turtlebot():
     robot = read_robot(load('turtlebot.yaml'))
     assert (robot.name, robot.odom_frame_id, robot.base_frame_id) == ('base_controller', 'odom', 'base_footprint')
-    # the rate of the driver is for its hardware; that of the controller is the rate of the odometry
+    # the driver's rate is for its hardware; the controller's rate is the rate of the odometry
     assert (robot.base_width, robot.rate, robot.timeout) == (0.26, 50, SECOND)
     assert robot.limits == (inf, inf) and robot.publish_tf is True
     assert robot.joints == [] and robot.unknown == []
@@ -119,7 +119,7 @@ def test_wheels_have_the_names_of_the_urdf_file():
     params = load('pi_robot.yaml')
     assert read_robot(params).wheel_joints == ('base_l_wheel_joint', 'base_r_wheel_joint')
     params['controllers']['base_controller'].update(left_wheel='wheel-left.joint', right_wheel='base/right_wheel')
-    params['joints']['base_l_wheel_joint'] = {}     # free, as the wheels have other names
+    params['joints']['base_l_wheel_joint'] = {}     # this name is free, because the wheels have other names
     robot = read_robot(params)
     assert robot.wheel_joints == ('wheel-left.joint', 'base/right_wheel') and robot.unknown == []
 
@@ -128,7 +128,7 @@ def test_wheels_have_the_names_of_the_urdf_file():
 def test_a_wheel_is_no_servo(key):
     params = load('pi_robot.yaml')
     params['controllers']['base_controller'][key] = 'head_pan_joint'
-    with pytest.raises(ConfigError, match=f"/base_controller/{key}: 'head_pan_joint': expected .* not one of joints"):
+    with pytest.raises(ConfigError, match=f"/base_controller/{key}: 'head_pan_joint': expected .* not a servo"):
         read_robot(params)
 
 

@@ -43,7 +43,7 @@ def test_a_joint_starts_within_its_limits():
 
 
 def make_group():
-    """Two joints of different speeds on their way to 1 rad."""
+    """Return a group of two joints that move to 1 rad at different speeds."""
     joints = [Joint('pan', -2.0, 2.0, 0.5), Joint('tilt', -2.0, 2.0, 0.25)]
     for joint in joints:
         joint.command(1.0)
@@ -56,7 +56,7 @@ def positions(group):
 
 def test_a_group_moves_its_joints_by_the_elapsed_time():
     group = make_group()
-    group.advance(1000 * SECOND)    # the first call has nothing to count from
+    group.advance(1000 * SECOND)    # the first call has no previous time
     assert positions(group) == [0.0, 0.0]
     group.advance(1001 * SECOND)
     assert positions(group) == [0.5, 0.25]

@@ -1,4 +1,4 @@
-"""Odometry: exact arcs, in any number of steps."""
+"""Odometry integrates exact arcs, in any number of steps."""
 from math import cos, hypot, pi, sin
 
 from hypothesis import given
@@ -11,7 +11,7 @@ from rbx1_nav.simulation.wheels import IdealWheels
 speeds = st.floats(-2, 2)
 durations = st.floats(0, 10)
 fractions = st.floats(0, 1)
-# a float has 16 digits; poses are a few metres, and each sum loses about one digit
+# a float has 16 digits; poses are a few meters, and each sum loses about one digit
 CLOSE = dict(abs=1e-12)
 
 

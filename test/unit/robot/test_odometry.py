@@ -25,9 +25,9 @@ travels = st.lists(st.builds(Travel, st.floats(-0.5, 0.5), st.floats(-1, 1), st.
 
 
 def aside(travel):
-    """The variance of the displacement to the side, as the docstring of _variances() has it."""
+    """Return the variance of the sideways displacement, as in the docstring of _variances()."""
     distance, angle = abs(travel.distance), abs(travel.angle)
-    unit = 12 ** 0.5 * ROUNDING[1]      # of which ROUNDING is the standard deviation
+    unit = 12 ** 0.5 * ROUNDING[1]      # the unit whose rounding has the standard deviation ROUNDING
     path = min(HELD, unit * distance / angle) if angle else HELD
     return ROUNDING[1] ** 2 * distance * max(path, distance / 2)
 

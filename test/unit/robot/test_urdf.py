@@ -1,4 +1,4 @@
-"""The visuals of a URDF file."""
+"""The visuals of a URDF file are read, and other text is rejected."""
 import os
 
 import pytest

@@ -1,4 +1,4 @@
-"""The messages on set_pose: what the filter gets of them, and which are rejected."""
+"""Messages on set_pose are converted for the filter, and invalid ones are rejected."""
 from math import cos, inf, nan, sin
 
 from geometry_msgs.msg import PoseWithCovarianceStamped
@@ -9,7 +9,7 @@ from rbx1_nav.ros.messages import from_set_pose
 
 
 def make(frame_id='odom_combined', **changes):
-    """A message at (1 m, 2 m, 0.5 rad). changes: elements of the covariance, as c0=..., or fields of the pose."""
+    """Return a message at (1 m, 2 m, 0.5 rad). changes: covariance elements, as c0=..., or fields of the pose."""
     message = PoseWithCovarianceStamped()
     message.header.frame_id = frame_id
     point, rotation = message.pose.pose.position, message.pose.pose.orientation
@@ -46,7 +46,7 @@ def test_pose_and_covariance(frame_id):
     (make(c1=0.03), r'pose.covariance: \[\[0.04, 0.03, .*: expected a covariance: symmetric'),
     (make(c5=nan, c30=nan), 'pose.covariance: .*nan.*: expected a covariance'),
     (make(c5=inf, c30=inf), 'pose.covariance: .*inf.*: expected a covariance'),
-    # each pair may be correlated like this, but not all three
+    # each pair may have this correlation, but not all three
     (make(c1=-0.054, c6=-0.054, c5=-0.018, c30=-0.018, c11=-0.027, c31=-0.027), 'pose.covariance: .*expected a '
                                                                                 'covariance')])
 @pytest.mark.filterwarnings('error')

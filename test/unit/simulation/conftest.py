@@ -1,4 +1,4 @@
-"""A clock, and nodes that drive by it."""
+"""Provides a clock, and nodes that drive by it."""
 import pytest
 
 from lockstep_world import World

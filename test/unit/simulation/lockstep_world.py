@@ -1,4 +1,4 @@
-"""Nodes that drive by a clock, and the clock that is kept in step with them."""
+"""Nodes that drive by a clock, and the clock that stays in step with them."""
 from rbx1_nav.simulation import lockstep
 from rbx1_nav.simulation.lockstep import Lockstep
 
@@ -6,18 +6,18 @@ MOVE, FASTER, STOP = (0.2, 0.0), (0.3, 0.0), (0.0, 0.0)
 
 
 class Nodes:
-    """Drivers `a` and `b`, whose processes can be seen: they sleep as soon as `work` is empty."""
+    """Drivers `a` and `b`, whose processes can be observed; they sleep as soon as `work` is empty."""
 
     def __init__(self):
         self.drivers = {'a', 'b'}
-        self.work = []          # functions, called one for each look: each time something is awake
+        self.work = []          # functions, one called at each check; while there are any, a node is awake
         self.never_sleeps = None
         self.looks = 0
         self.driver_looks = 0
-        self.woken = set()      # names of those that have woken by themselves
+        self.woken = set()      # names of the drivers that have woken by themselves
         self.new_upstream = False
         self.off_clock = set()
-        self.poll = []          # what is returned to still_polling()
+        self.poll = []          # functions, one called at each call of still_polling()
 
     def update(self):
         pass
@@ -69,7 +69,7 @@ class Nodes:
 
 
 class World:
-    """A Lockstep; commands with the tick at which they took effect."""
+    """A Lockstep, and the commands with the ticks at which they took effect."""
 
     def __init__(self, report=None):
         self.applied = []
@@ -82,12 +82,12 @@ class World:
         self.lockstep.receive(name, name, command)
 
     def send_unprompted(self):
-        """Commands between two ticks, so many that they prove something."""
+        """Send enough commands between two ticks to release the driver."""
         for _ in range(lockstep.UNPROMPTED):
             self.send('a', MOVE)
 
     def tick(self, *commands):
-        """A tick with these commands in answer, (name, command) each."""
+        """Make a tick that is answered with these commands, each (name, command)."""
         self.lockstep.begin_tick()
         self.nodes.work += [lambda each=each: self.send(*each) for each in commands]
         self.lockstep.end_tick()

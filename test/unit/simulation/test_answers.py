@@ -1,4 +1,4 @@
-"""A driver whose process cannot be seen: each tick waits for its command, as long as it drives by the clock."""
+"""Each tick waits for the command of a driver whose process cannot be observed, if it drives by the clock."""
 import threading
 import time
 
@@ -9,7 +9,7 @@ MOVE, STOP = (0.2, 0.0), (0.0, 0.0)
 
 
 class Nodes:
-    """Processes that cannot be seen."""
+    """Processes that cannot be observed."""
 
     drivers = set()
 
@@ -46,7 +46,7 @@ class Nodes:
 
 
 class Recorder:
-    """A Lockstep, and the commands and warnings that came out of it."""
+    """A Lockstep, and the commands and warnings that it produced."""
 
     def __init__(self):
         self.applied = []
@@ -58,7 +58,7 @@ class Recorder:
                                  self.nodes, self.ended.is_set)
 
     def collect(self):
-        """A tick."""
+        """Make a tick."""
         self.lockstep.begin_tick()
         self.lockstep.end_tick()
 
@@ -146,7 +146,7 @@ def test_each_connection_has_its_own_queue():
 
 
 def answer_ticks(recorder, ticks):
-    """Let a driver answer so many ticks, one command each."""
+    """Let a driver answer a number of ticks, with one command each."""
     for _ in range(ticks):
         recorder.send(MOVE)
         recorder.collect()
@@ -184,7 +184,7 @@ def test_commands_of_a_closed_connection_are_not_lost():
 
 
 def test_a_burst_that_is_received_late_is_not_lost():
-    """The first command of a burst is received; then the thread that receives starves for longer than a pause."""
+    """The receiving thread receives the first command of a burst, and then starves for longer than a pause."""
     recorder = Recorder()
     for _ in range(40):
         recorder.collect()     # the clock runs freely
@@ -220,7 +220,7 @@ def test_a_command_that_is_not_finite_is_no_motion():
 
 
 def test_a_driver_that_sends_far_more_than_the_clock_has_ticked_is_released():
-    """Its last command counts: a stop must not wait behind a flood."""
+    """The last command counts, because a stop must not wait behind a flood of commands."""
     recorder = Recorder()
     recorder.send(*[MOVE] * 500, STOP)
     recorder.collect()

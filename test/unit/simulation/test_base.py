@@ -1,4 +1,4 @@
-"""The base on the ideal surface: each command counts for exactly as long as it is in force."""
+"""On the ideal surface, each command counts for exactly as long as it is in force."""
 from math import cos, inf, nan, sin
 
 import pytest

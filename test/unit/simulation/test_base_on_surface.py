@@ -1,4 +1,4 @@
-"""The base on a surface: it slips, rolls on after its last command, and reports what its encoders count."""
+"""On a surface, the base slips, coasts after its last command, and reports what its encoders count."""
 from math import pi
 
 import pytest
@@ -23,7 +23,7 @@ def make_base(timeout=1.0):
 
 
 def drive(base, linear, angular, seconds):
-    """Drive at 50 Hz, and roll to a standstill."""
+    """Drive at 50 Hz, and coast to a standstill."""
     step = SECOND // 50
     end = base.now + round(seconds * SECOND)
     while base.now < end:
@@ -91,7 +91,7 @@ def test_a_clock_that_jumps_back_lets_the_robot_roll_to_a_standstill():
     base.advance(5 * SECOND)
     base.advance(60 * SECOND)
     base.advance(61 * SECOND)
-    # no farther than with the acceleration limit all the way, and the lag after it
+    # no farther than when braking at the acceleration limit throughout, plus the lag
     assert base.at_rest and 0 < base.wheels.truth.pose.x - x < 0.2 ** 2 / 2 / SURFACE.accel_limit + 0.2 * SURFACE.lag
 
 

@@ -1,4 +1,4 @@
-"""Commands that reach the motors later: nothing of them is lost, whatever the steps."""
+"""Delayed commands reach the motors completely, whatever the steps."""
 from itertools import accumulate
 
 import pytest
@@ -17,7 +17,10 @@ inputs = st.lists(st.tuples(speeds, speeds, st.floats(0, 1)), min_size=1, max_si
 
 
 def command_at(parts, time):
-    """What is in force at a time, of (linear, angular, duration) one after the other; None within 1 ns of a change."""
+    """Return the command in force at a time, or None within 1 ns of a change.
+
+    parts: successive (linear, angular, duration).
+    """
     ends = list(accumulate(duration for _, _, duration in parts))
     if any(abs(time - end) < 1e-9 for end in ends):
         return None
@@ -25,7 +28,7 @@ def command_at(parts, time):
 
 
 def middles(parts):
-    """A time in the middle of each part."""
+    """Return a time in the middle of each part."""
     ends = list(accumulate(duration for _, _, duration in parts))
     return [end - duration / 2 for (_, _, duration), end in zip(parts, ends) if duration > 1e-8]
 
@@ -89,6 +92,6 @@ def test_reset_forgets_the_commands_under_way():
     assert wheels.at_rest
     wheels.travel(0.0, 0.0, 1.0)
     assert wheels.truth.pose == (0.0, 0.0, 0.0) and wheels.at_rest
-    # and the full delay again, but for the rounding of times
+    # and then the full delay again, except for the rounding of times
     wheels.travel(0.2, 1.0, DELAY - 1e-9)
     assert wheels.truth.pose == (0.0, 0.0, 0.0)

@@ -1,4 +1,4 @@
-"""The exercise without ROS: the distances that each method misses by, over twenty seeds."""
+"""The exercise without ROS: the distances by which each method misses, over twenty seeds."""
 import os
 from math import cos, degrees, hypot, pi, remainder, sin
 from statistics import median
@@ -22,12 +22,12 @@ with open(os.path.join(CONFIG, 'turtlebot.yaml')) as robot:
 
 
 def angle(pose):
-    """Between the heading at the start and that of a pose, degrees."""
+    """Return the angle between the heading at the start and the heading of a pose, degrees."""
     return abs(degrees(remainder(pose.yaw, 2 * pi)))
 
 
 def distance(pose, other=(0.0, 0.0)):
-    """From the start, or from another pose, m."""
+    """Return the distance of a pose from the start, or from another pose, m."""
     return hypot(pose[0] - other[0], pose[1] - other[1])
 
 
@@ -40,7 +40,7 @@ def test_by_time_it_misses_as_in_the_picture_of_the_tutorial():
         assert 0 < truth.y < 1 and truth.yaw < 2 * pi
     assert median(run.end.truth.y for run in runs) == pytest.approx(0.47, abs=0.1)
     assert median(angle(run.end.truth) for run in runs) == pytest.approx(63, abs=10)
-    # most of the error is known to the odometry
+    # the odometry measures most of the error
     assert median(distance(run.end.truth, run.end.odometry) for run in runs) < 0.20
     assert median(degrees(abs(run.end.truth.yaw - run.end.odometry.yaw)) for run in runs) > 3
 
@@ -54,7 +54,7 @@ def test_odometry_brings_it_nearer_to_the_start_and_the_gyro_still_nearer():
 
 
 def test_on_a_hard_floor_the_gyro_makes_it_no_worse():
-    # 40 seeds, for the time they take; the means of 200 are 1.4 and 0.8 cm, 1.7 and 0.9 degrees
+    # 40 seeds, to save time; the means of 200 are 1.4 and 0.8 cm, 1.7 and 0.9 degrees
     by_odometry, with_gyro = (numpy.array([(distance(run.end.truth), angle(run.end.truth))
                                            for run in simulate_many(method, TURTLEBOT, FLOOR, range(40))])
                               for method in ('odom', 'ekf'))
@@ -66,7 +66,7 @@ def test_on_a_hard_floor_the_gyro_makes_it_no_worse():
 def test_on_a_hard_floor_it_does_not_roll_past_its_goals_by_its_own_pose(method):
     run = simulate(method, TURTLEBOT, FLOOR, 0, keep=True)
     measured = [snapshot.odometry if method == 'odom' else snapshot.estimate for snapshot in run.path]
-    # half of a tick's travel, a fifth of the roll-out of 4 mm and 0.7 degrees, and what the filter corrects meanwhile
+    # half of the travel per tick, a fifth of the coasting of 4 mm and 0.7 degrees, and the filter's corrections
     assert max(pose.x for pose in measured) == pytest.approx(1.0, abs=0.0025)
     assert measured[-1].yaw == pytest.approx(2 * pi, abs=2 * 0.008)
 
@@ -95,7 +95,7 @@ def test_the_estimate_has_a_smaller_error_than_the_odometry_and_an_honest_covari
         ends.append(error @ numpy.linalg.solve(run.covariance, error))
     heading_odom, heading, position_odom, position = squares ** 0.5
     assert heading < heading_odom / 3 and position < position_odom
-    # chi-square with 3 degrees of freedom; 1 sigma of the mean of 40 is 0.39. bench/surfaces.py has it over 200 seeds
+    # chi-square with 3 degrees of freedom; 1 sigma of the mean of 40 is 0.39. bench/surfaces.py tests 200 seeds
     assert 1.5 < numpy.mean(ends) < 5
 
 

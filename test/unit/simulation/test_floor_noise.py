@@ -1,5 +1,4 @@
-"""The errors that are drawn again and again on the way: their variance, their tails, and that they depend on the path
-and the seed only."""
+"""The motion errors that vary along the path have the right variance and tails, and depend only on path and seed."""
 import random
 from statistics import mean
 
@@ -16,7 +15,7 @@ steps = st.floats(0, 2)
 
 
 def total(noise, parts):
-    """The error after a path in parts."""
+    """Return the error after a path in parts."""
     return sum(map(noise.over, parts))
 
 
@@ -46,16 +45,16 @@ def test_the_variance_grows_by_the_square_of_the_strength_with_each_unit(step):
         halves.append([total(noise, [step] * round(6 / step)) for _ in range(2)])
     wholes = [sum(errors) for errors in halves]
     for path, errors in (6, [first for first, _ in halves]), (6, [second for _, second in halves]), (12, wholes):
-        # the cells at both ends are not whole: that takes a third of a cell, however long the path
+        # the first and the last cell are not complete: this costs a third of a cell, whatever the length of the path
         expected = strength ** 2 * (path - cell / 3)
-        # 1 sigma of the variance is sqrt(2 / count) of it, or 3.2 %; of the mean sqrt(1 / count): five of each
+        # 1 sigma of the variance is sqrt(2 / count) of its value, or 3.2 %; of the mean sqrt(1 / count): five of each
         assert mean(error ** 2 for error in errors) == pytest.approx(expected, rel=0.16)
         assert abs(mean(errors)) < 5 * (expected / count) ** 0.5
 
 
 def test_large_errors_are_more_frequent_than_in_a_normal_distribution():
     noise = Noise(1.0, 0.25, random.Random(0))
-    noise.over(noise.left)      # to a border
+    noise.over(noise.left)      # to the next cell
     errors = [noise.over(0.25) for _ in range(20000)]
     variance = mean(error ** 2 for error in errors)
     # 1 for the sum of four cells; the kurtosis of a Laplace distribution is 6, of a normal one 3
@@ -79,7 +78,7 @@ def test_a_surface_without_noise_has_no_roughness():
 def test_each_key_acts_on_its_own_error_by_its_own_motion(key, straight, turn, index):
     roughness = Roughness(SURFACE._replace(**{key: 0.05}), 3)
     assert roughness.over(turn, straight) == (0.0, 0.0)     # the other motion
-    errors = roughness.over(-straight, -turn)               # backwards like forwards
+    errors = roughness.over(-straight, -turn)               # backward like forward
     assert errors[index] != 0.0 and errors[1 - index] == 0.0
 
 

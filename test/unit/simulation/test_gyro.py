@@ -1,4 +1,4 @@
-"""The gyro: its errors are those of its surface."""
+"""The gyro has the errors of its surface."""
 from math import radians
 from statistics import mean, pstdev
 
@@ -29,7 +29,7 @@ def test_an_ideal_gyro_has_no_errors():
 def test_readings_have_bias_scale_error_and_noise():
     measured = readings(Gyro(SURFACE, RUN, 1), 1.0, 5000)
     rates = [reading.rate for reading in measured]
-    # 1 sigma of the mean of 5000 is noise / 70, of their spread 1 %: five of those
+    # 1 sigma of the mean of 5000 is noise / 70, of their spread 1 %: the limits are 5 sigma
     assert mean(rates) == pytest.approx(1.01 + radians(0.5), abs=SURFACE.gyro_noise / 14)
     assert pstdev(rates) == pytest.approx(SURFACE.gyro_noise, rel=0.05)
     assert measured[0].rate_variance == pytest.approx(SURFACE.gyro_noise ** 2)
@@ -52,7 +52,7 @@ def test_the_heading_is_calibrated_at_standstill_before_the_first_motion_only():
     at_rest = readings(gyro, 0.0, 200, at_rest=True)
     assert {reading.yaw for reading in at_rest} == {0.0}
     moved = readings(gyro, 1.0, 100)[-1]
-    # 2 s at 1 rad/s, 1 % too much; the noise of calibration and of 100 readings amounts to 0.6 mrad
+    # 2 s at 1 rad/s, 1 % too much; the noise of the calibration and of 100 readings is 0.6 mrad
     assert moved.yaw == pytest.approx(2.02, abs=0.003)
     at_rest_again = readings(gyro, 0.0, 100, at_rest=True, start=2.0)
     assert at_rest_again[-1].yaw != at_rest_again[0].yaw

@@ -1,4 +1,4 @@
-"""A clock in step with the nodes that drive by it."""
+"""The clock stays in step with the nodes that drive by it."""
 import pytest
 
 from rbx1_nav.simulation import lockstep
@@ -42,7 +42,7 @@ def test_the_clock_waits_while_a_node_is_awake(world):
     world.nodes.work = [lambda: awake.append(world.lockstep.tick)] * 20 + [lambda: world.send('a', MOVE)]
     world.lockstep.end_tick()
     assert awake == [1] * 20 and world.applied == [(1, MOVE)]
-    # something else may wake a node after that: the next tick begins only when it sleeps again
+    # another event may wake a node after that: the next tick begins only when it sleeps again
     world.lockstep.over_since = -1.0
     world.nodes.work = [lambda: awake.append(world.lockstep.tick)] * 20
     world.lockstep.begin_tick()
@@ -69,9 +69,9 @@ def test_a_node_that_never_sleeps_is_waited_for_once(world, monkeypatch):
     world.nodes.never_sleeps = 'a'
     for _ in range(3):
         world.tick()
-    assert [name for name, _ in world.reports] == ['a'] and 'did not come to rest' in world.reports[0][1]
+    assert [name for name, _ in world.reports] == ['a'] and 'did not become idle' in world.reports[0][1]
     world.send('a', FASTER)
-    assert world.applied[-1] == (4, FASTER)     # at once
+    assert world.applied[-1] == (4, FASTER)     # immediately
 
 
 def test_a_node_that_is_no_driver_is_given_up_alone(world, monkeypatch):
@@ -105,7 +105,7 @@ def test_a_driver_that_no_tick_has_prompted_is_released(world):
     world.tick()
     assert world.reports == [('a', 'sends commands that no tick of /clock has prompted')]
     world.send('a', FASTER)
-    assert world.applied[-1] == (3, FASTER)     # at once
+    assert world.applied[-1] == (3, FASTER)     # immediately
 
 
 def test_the_first_command_and_a_stop_at_rest_need_no_tick(world):

@@ -1,4 +1,4 @@
-"""A surface without the keys that a file may leave out: the same path as before there were such keys."""
+"""On a surface without the optional keys, the path is the same as before these keys were introduced."""
 import os
 
 import pytest
@@ -24,7 +24,7 @@ with open(os.path.join(os.path.dirname(__file__), '..', '..', '..', 'config', 't
     TURTLEBOT = read_robot(yaml.safe_load(file))
 WIDTH = TURTLEBOT.base_width
 
-# true x and y (m), yaw (rad) at the end of the exercise, for the seeds 0 to 3
+# true x and y (m), yaw (rad) after the exercise, for the seeds 0 to 3
 ENDS = {
     ('carpet', 'timed'): [
         (0.11902644653999885, 0.45056345246081747, 5.250096050971226),
@@ -51,7 +51,7 @@ ENDS = {
 @pytest.mark.parametrize('surface, method', ENDS)
 def test_the_exercise_ends_where_it_ended(surface, method):
     for seed, end in enumerate(ENDS[surface, method]):
-        # equal to the last bit on one machine; elsewhere exp(), sin() and numpy may round the other way
+        # equal to the last bit on one machine; on others, exp(), sin() and numpy may round differently
         assert simulate(method, TURTLEBOT, SURFACES[surface], seed).end.truth == pytest.approx(end, abs=1e-9)
 
 

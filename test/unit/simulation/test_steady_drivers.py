@@ -1,4 +1,4 @@
-"""Drivers that have sent a command at each tick, and first commands that are late."""
+"""Steady drivers, which have sent a command at each tick, and first commands that are late."""
 from rbx1_nav.simulation import lockstep
 from lockstep_world import World
 
@@ -15,7 +15,7 @@ def test_a_driver_at_every_tick_spares_the_look(world, monkeypatch):
         world.send('a', MOVE)
         world.lockstep.end_tick()
     assert world.nodes.looks == before
-    # it stops to send: that is seen by a look
+    # the driver stops sending: a check of the nodes shows this
     for _ in range(10):
         world.tick()
     assert world.nodes.looks > before and not world.reports
@@ -81,11 +81,11 @@ def test_a_steady_driver_is_not_waited_for_at_the_end(world, monkeypatch):
 
 def test_a_stream_whose_first_command_was_late_ends_a_tick_later(world):
     world.nodes.woken = {'a'}
-    begin = world.drive(1, *range(3, 40, 3))    # of a driver that woke at tick 0
-    world.tick(('a', STOP))     # not at a time of its rate, as at the end of a timer
+    begin = world.drive(1, *range(3, 40, 3))    # the driver woke at tick 0
+    world.tick(('a', STOP))     # not at a time of its rate, as when a timer expires
     world.tick()
     assert world.applied[0] == (begin + 1, MOVE) and world.applied[-1] == (begin + 41, STOP)
-    # the next stream is on its own
+    # the next stream is independent
     world.tick(('a', MOVE))
     world.tick(('a', STOP))
     assert world.applied[-1] == (begin + 43, STOP)
@@ -106,7 +106,7 @@ def test_a_command_that_is_delayed_takes_effect_before_those_of_its_tick(world):
 
 
 def test_a_first_command_that_no_tick_has_prompted_is_not_late(world):
-    """It took effect at the tick before: nothing is missing."""
+    """The command took effect at the previous tick, so nothing is missing."""
     world.nodes.woken = {'a'}
     world.drive()
     world.send('a', MOVE)
@@ -116,7 +116,7 @@ def test_a_first_command_that_no_tick_has_prompted_is_not_late(world):
 
 
 def test_a_driver_that_comes_while_another_is_looked_for_is_seen():
-    """Its first command arrives while nodes.sees() searches for the process of the other."""
+    """The first command arrives while nodes.sees() searches for the process of the other driver."""
     world = World()
     sees = world.nodes.sees
 
@@ -147,7 +147,7 @@ def test_a_node_that_connects_beside_a_steady_driver_is_looked_at():
 
 
 def test_a_driver_that_stops_sending_is_not_steady_any_more(monkeypatch):
-    """Or each further tick waits ANSWER_TIME for it."""
+    """Otherwise each later tick would wait ANSWER_TIME for it."""
     world = World()
     world.nodes.drivers = {'a'}
     world.drive(*range(40))

@@ -1,4 +1,4 @@
-"""Which rates send at which ticks, and whether a first command came late."""
+"""The ticks of a stream show its rate, and whether its first command was late."""
 from math import ceil
 
 import pytest
@@ -13,7 +13,7 @@ MOVE, STOP = (0.2, 0.0), (0.0, 0.0)
 
 
 def rate(hertz, count, first=0):
-    """Ticks of rospy.Rate, which rounds its period down to whole ns.
+    """Return the ticks of rospy.Rate, which rounds its period down to whole ns.
 
     first: periods from tick 0 to the first command.
     """
@@ -22,7 +22,7 @@ def rate(hertz, count, first=0):
 
 
 def sleeps(hertz, count):
-    """Ticks of a loop that sleeps for a period."""
+    """Return the ticks of a loop that sleeps for a period."""
     return [number * ceil(round(1e9 / hertz) / STEP) for number in range(count)]
 
 
@@ -32,7 +32,7 @@ def test_a_first_command_that_is_late(hertz, count):
     for ticks in (rate(hertz, count), sleeps(hertz, count)):
         assert not is_late(ticks)
         assert is_late([ticks[0] + 1] + ticks[1:])
-    assert not is_late(rate(hertz, count, first=1))     # as of rospy.Timer
+    assert not is_late(rate(hertz, count, first=1))     # like rospy.Timer
 
 
 PERIODS = st.integers(STEP, 10 * STEP)
@@ -41,14 +41,14 @@ COUNTS = st.integers(12, LENGTH)
 
 @given(PERIODS, COUNTS, st.integers(0, STEP))
 def test_every_rate_is_one_that_fits(period, count, begin):
-    """At any time between two ticks it may begin: period (ns), begin (ns)."""
+    """The rate may begin at any time between two ticks; period, begin: ns."""
     ticks = [-(-(begin + number * period) // STEP) for number in range(count)]
     assert possible_periods(ticks) > 0
 
 
 @given(PERIODS, COUNTS, st.integers(0, 1))
 def test_a_punctual_command_is_never_late(period, count, first):
-    """At any rate, for rospy.Rate (first: 0) and rospy.Timer (1)."""
+    """This holds at any rate, for rospy.Rate (first: 0) and rospy.Timer (first: 1)."""
     assert not is_late([-(-(first + number) * period // STEP) for number in range(count)])
 
 
@@ -60,7 +60,7 @@ def test_a_late_command_is_found_at_any_whole_number_of_ticks(period, count):
 
 @given(st.lists(st.integers(0, 5), min_size=12, max_size=LENGTH - 1))
 def test_what_has_no_rate_has_no_lag_that_helps(gaps):
-    """Commands at any ticks: one tick of lag only if that makes them a rate."""
+    """Commands at any ticks have a lag of one tick only if the lag turns them into a rate."""
     ticks = [sum(gaps[:number]) for number in range(len(gaps) + 1)]
     if is_late(ticks):
         assert possible_periods([ticks[0] - 1] + ticks[1:]) > 0
@@ -81,7 +81,7 @@ def test_the_periods_that_fit():
 
 
 def lag_at_stop(ticks, stop, uncertain=True):
-    """The lag of a stream with MOVE at these ticks, and STOP at `stop`."""
+    """Return the lag of a stream with MOVE at these ticks, and STOP at `stop`."""
     stream = Stream(ticks[0], MOVE, uncertain)
     for tick in ticks[1:]:
         assert stream.lag_of(tick, MOVE) == 0
@@ -100,7 +100,7 @@ def test_the_lag_of_a_stream(hertz, count):
 
 
 def test_a_stop_need_not_be_at_the_rate():
-    """As at the end of a motion whose duration is no whole number of periods."""
+    """This happens after a motion whose duration is not a whole number of periods."""
     for hertz in RATES:
         ticks = rate(hertz, 12)
         for stop in range(ticks[-1], ticks[-1] + 10):
@@ -137,6 +137,6 @@ def test_ticks_in_a_row():
     for tick in range(8, 12):
         stream.lag_of(tick, MOVE)
     assert stream.in_a_row == 5
-    for tick in (11, 13):       # two at one tick, one left out
+    for tick in (11, 13):       # two commands at one tick, and one tick skipped
         stream.lag_of(tick, MOVE)
         assert stream.in_a_row < 2

@@ -1,4 +1,4 @@
-"""Surface files: read in SI units, and rejected with one line if a value is invalid."""
+"""Surface files are read in SI units, and rejected with one line if a value is invalid."""
 import os
 from math import nan, radians
 from statistics import mean, stdev
@@ -107,7 +107,7 @@ def test_the_range_of_a_key(key, low, high):
     for value in (low, high, (low + 3 * high) / 4):
         surface = read_surface(dict(without_optional_keys(), **{key: value}), 'x')
         assert getattr(surface, key) == value
-        # the others as in the file
+        # the other values are as in the file
         assert surface == read_surface(without_optional_keys(), 'x')._replace(**{key: value})
     for value in (low - 0.01, high + 0.01):
         with pytest.raises(ConfigError, match=f'^surface x/{key}: '):
@@ -127,7 +127,7 @@ def test_a_seed_that_is_no_integer_in_its_range_is_rejected(seed):
 
 def test_random_draws_a_seed_each_time():
     seeds = {read_seed('random') for _ in range(20)}
-    # twenty equal ones out of a million are as good as impossible
+    # twenty equal seeds out of a million are practically impossible
     assert len(seeds) > 1
     assert all(read_seed(seed) == read_seed(str(seed)) == seed for seed in seeds)
 
@@ -144,7 +144,7 @@ def test_the_errors_of_a_run_depend_on_the_seed_only():
 def test_the_errors_of_runs_have_mean_and_spread_of_the_file():
     surface = load_surface('hard_floor', FOLDER)
     columns = list(zip(*[draw_run(surface, seed) for seed in range(2000)]))
-    # over 2000 runs, 1 sigma of the mean is 0.022 spreads, of the spread 1.6 %: five of those
+    # over 2000 runs, 1 sigma of the mean is 0.022 spreads, of the spread 1.6 %: the limits are 5 sigma
     for values, middle, spread in zip(columns, (0.002, 0.005, 0, 0), (0.001, 0.002, radians(0.5), 0.003)):
         assert abs(mean(values) - middle) < 0.11 * spread
         assert stdev(values) == pytest.approx(spread, rel=0.08)

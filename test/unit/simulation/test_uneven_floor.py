@@ -1,4 +1,4 @@
-"""Wheels on a floor that is not even: curvature, the loss of speed in a turn, and noise."""
+"""Wheels on a nonuniform floor: curvature, the loss of speed in a turn, and noise."""
 from math import cos, hypot, sin
 from statistics import mean
 
@@ -16,7 +16,7 @@ WIDTH = 0.26
 NO_SLIP = RandomErrors(0.0, 0.0, 0.0, 0.0)
 EVEN = SURFACE._replace(slip_straight=0.0, slip_straight_spread=0.0, slip_turning=0.0, slip_turning_spread=0.0,
                         ticks_meter=1e6)
-# motors without drag, far from their limit: both modes follow their commands alike, so a motion is one arc
+# motors without drag, far from their limit: both modes follow their commands equally, so a motion is one arc
 LINEAR = EVEN._replace(drag_straight=0.0, drag_turning=0.0, accel_limit=1e3, delay=0.23, curvature=-0.04,
                        turning_loss=0.1)
 SEEDS = range(600)
@@ -29,7 +29,7 @@ def make_wheels(surface, seed=0):
 
 
 def counted(wheels):
-    """(straight in m, turn in rad) by the wheels' travel, not rounded."""
+    """Return (straight in m, turn in rad) from the wheels' travel, not rounded."""
     return (wheels.left.total + wheels.right.total) / 2, (wheels.right.total - wheels.left.total) / WIDTH
 
 
@@ -49,7 +49,7 @@ def test_the_end_does_not_depend_on_the_length_of_the_steps(steps):
             step = min(duration, next(steps, duration))
             parts.travel(linear, angular, step)
             duration -= step
-    # the speed that is left after a stop of 4 s is below 1e-15 m/s
+    # the remaining speed after a stop of 4 s is below 1e-15 m/s
     assert parts.truth.pose == pytest.approx(whole.truth.pose, abs=1e-9)
     assert hypot(*whole.truth.pose[:2]) > 0.1
 
@@ -68,7 +68,7 @@ def test_turning_loss_shortens_the_way_by_each_radian():
     wheels, lossless = make_wheels(LINEAR), make_wheels(LINEAR._replace(turning_loss=0.0))
     for each in (wheels, lossless):
         each.travel(0.2, -0.5, 10)
-    # 0.2 m/s less 0.1 m * 0.5 rad/s; what the encoders count stays
+    # 0.2 m/s minus 0.1 m * 0.5 rad/s; the encoder counts do not change
     assert wheels.true_velocity() == pytest.approx((0.15, -0.5 - 0.04 * 0.2), abs=1e-9)
     assert lossless.true_velocity() == pytest.approx((0.2, -0.5 - 0.04 * 0.2), abs=1e-9)
     assert counted(wheels) == counted(lossless)
@@ -84,7 +84,7 @@ def test_turning_loss_never_drives_the_robot_against_its_wheels(commands, loss):
         straight, (linear, _) = counted(wheels)[0] - before, wheels.true_velocity()
         x, y, yaw = wheels.truth.pose
         middle = (yaw + pose.yaw) / 2
-        # the chord of an arc of 1 rad at the most points forward if the arc does
+        # the chord of an arc of at most 1 rad points forward if the arc does
         forward = (x - pose.x) * cos(middle) + (y - pose.y) * sin(middle)
         assert forward * straight >= -1e-12 and abs(forward) <= abs(straight) + 1e-9
         assert linear * wheels.straight.speed >= 0
@@ -97,7 +97,7 @@ def test_a_turn_on_the_spot_loses_nothing():
 
 
 def ends(surface, linear, angular, duration):
-    """The Wheels of all SEEDS after a motion."""
+    """Return the Wheels of all SEEDS after a motion."""
     runs = []
     for seed in SEEDS:
         runs.append(make_wheels(surface, seed))
@@ -114,7 +114,7 @@ def variance(values):
 def test_the_uncertainty_of_the_heading_is_the_spread_of_many_runs(key, linear, angular):
     runs = ends(EVEN._replace(**{key: 0.1}), linear, angular, 10)
     true = variance(wheels.truth.pose.yaw - counted(wheels)[1] for wheels in runs)
-    # 1 sigma of a variance of 600 is 5.8 %; the reported one has 4 % more, for the cells at both ends
+    # 1 sigma of a variance of 600 is 5.8 %; the reported variance is 4 % larger, due to the first and the last cell
     assert 0.7 < true / runs[0].uncertainty.yaw < 1.25
 
 
@@ -127,7 +127,7 @@ def test_the_uncertainty_of_the_distance_is_the_spread_of_many_runs():
 
 def test_the_uncertainty_of_the_position_is_an_upper_bound():
     runs = ends(EVEN._replace(heading_noise_straight=0.1), 0.2, 0.0, 10)
-    # an error of the heading shifts only the path after it: on a straight line, a third of the bound
+    # a heading error only shifts the path after it: on a straight line, this is a third of the bound
     assert 0.22 < variance(wheels.truth.pose.y for wheels in runs) / runs[0].uncertainty.position < 0.44
 
 
@@ -137,7 +137,7 @@ def test_the_uncertainty_of_the_speeds_is_that_of_white_noise():
     for each in (wheels, smooth):
         drive(each, 0.2, 0.5, 5)
     linear, angular = each.velocity()
-    # summed up over the windows of a second: the variance that a second adds to the pose
+    # the sum over the windows of one second is the variance that one second adds to the pose
     more, less = wheels.uncertainty, smooth.uncertainty
     assert (more.linear - less.linear) * 0.05 == pytest.approx(0.05 ** 2 * linear)
     assert (more.angular - less.angular) * 0.05 == pytest.approx(0.1 ** 2 * angular + 0.08 ** 2 * linear)

@@ -13,21 +13,21 @@ motors = st.builds(Motor, st.floats(0.01, 1), st.floats(0.1, 5), st.floats(1e-3,
 
 
 def twin(motor):
-    """Another motor, in the same state."""
+    """Return another motor in the same state."""
     other = Motor(motor.lag, motor.accel_limit, motor.drag)
     other.speed = motor.speed
     return other
 
 
 @given(motors, speeds, speeds, st.floats(0, 3), st.floats(0, 1))
-@example(Motor(1.0, 1.0, 0.0625), 1.0, 0.0625, 1.0, 0.5)    # a command of exactly the drag
+@example(Motor(1.0, 1.0, 0.0625), 1.0, 0.0625, 1.0, 0.5)    # a command equal to the drag
 def test_the_travel_of_a_motor_does_not_depend_on_the_number_of_steps(motor, speed, command, duration, fraction):
     motor.speed = speed
     split = twin(motor)
     whole = motor.travel(command, duration)
     parts = split.travel(command, duration * fraction) + split.travel(command, duration - duration * fraction)
     assert parts == pytest.approx(whole, abs=1e-9)
-    # a motor that has just stopped may have a speed of exactly 0 in one, and a rounding error in the other
+    # after a stop, the speed of one motor may be exactly 0, and the speed of the other a rounding error
     assert split.speed == pytest.approx(motor.speed, abs=1e-9)
 
 
@@ -92,7 +92,7 @@ def test_an_encoder_counts_whole_ticks_and_loses_none(travels, ticks_meter):
         count = encoder.count(travel)
         counted += count
         assert count * ticks_meter == pytest.approx(round(count * ticks_meter), abs=1e-6)
-    # half a tick, and the rounding of sums of up to 30 m
+    # half a tick, and rounding errors of sums of up to 30 m
     assert abs(counted - sum(travels)) <= 0.5 / ticks_meter + 1e-12
 
 
@@ -101,5 +101,5 @@ def test_a_shorter_window_makes_the_reported_speed_less_certain():
     for wheels in (short, long):
         for _ in range(10):
             wheels.travel(0.2, 0.0, 0.005)
-    # apart from the variance of (1 mm/s)^2 that both have
+    # except for the variance of (1 mm/s)^2 that both have
     assert short.uncertainty.linear - 1e-6 == pytest.approx(16 * (long.uncertainty.linear - 1e-6))

@@ -1,1 +1,1 @@
-"""Drives an iRobot Create: from commands to bytes, from bytes to odometry."""
+"""Driver of the iRobot Create: converts commands to bytes, and bytes to odometry."""

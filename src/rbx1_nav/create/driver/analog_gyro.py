@@ -1,4 +1,4 @@
-"""The TurtleBot's gyro, which the Create reads with its analog input."""
+"""The TurtleBot's gyro, which the Create reads through its analog input."""
 from __future__ import annotations
 
 from collections import deque
@@ -8,42 +8,43 @@ from typing import Callable
 from rbx1_nav.create.driver.gyro_check import GyroCheck, Step
 from rbx1_nav.robot.readings import MEASURED, Reading
 
-MAX_REST = 1000         # readings at rest that the offset is the mean of: half a minute, as in create_node
-MIN_REST = 10           # and at least so many: before, no angular velocity is reported
-JUMP, JUMP_TIME = 15, 1.0   # counts (4 degrees/s) and s at rest: an offset that is so far off has jumped, not drifted
-COUNT_VARIANCE = 1.0    # of a reading, counts^2: rounding and the noise of the analog input
-SCALE_ERROR = 0.01      # 1 sigma of the calibrated scale, a fraction
+MAX_REST = 1000         # maximum number of readings at rest in the offset: half a minute, as in create_node
+MIN_REST = 10           # minimum number; with fewer readings, no angular velocity is reported
+JUMP, JUMP_TIME = 15, 1.0   # counts (4 degrees/s) and s at rest beyond which the offset has jumped, not drifted
+COUNT_VARIANCE = 1.0    # counts^2, variance of a reading: rounding and the noise of the analog input
+SCALE_ERROR = 0.01      # 1 sigma of the calibrated scale, as a fraction
 
 
 class AnalogGyro:
     """Converts counts to an angular velocity, as create_node does: -(count - offset) / offset * range * correction.
 
-    The offset is the mean of the good readings while the robot stands, so it follows the temperature. After the gyro
-    broke, a new offset is measured.
+    The offset is the mean of the good readings while the robot is stationary, so it follows the temperature. After a
+    fault of the gyro, a new offset is measured.
     """
 
     def __init__(self, measurement_range: float, correction: float, error: Callable[[str], None],
                  info: Callable[[str], None]) -> None:
-        """measurement_range: degrees/s, of the chip; correction: factor; error, info: log a line."""
+        """measurement_range: measurement range of the chip, degrees/s; correction: factor; error, info: log a line."""
         self.full_scale = radians(measurement_range) * correction
         self.check = GyroCheck(self.full_scale, error, info)
         self.rest: deque[int] = deque(maxlen=MAX_REST)
-        self.total = 0          # of the readings in `rest`
-        self.jumped = 0.0       # s of readings at rest in a row that are far from the offset
-        self.rate = 0.0         # rad/s, the last one
-        self.yaw = 0.0          # rad, the integrated rate
-        self.turned = 0.0       # rad, both directions counted positive
-        self.variance = MEASURED    # rad^2, of the yaw, except for the scale's
+        self.total = 0          # sum of the readings in `rest`
+        self.jumped = 0.0       # s of consecutive readings at rest that are far from the offset
+        self.rate = 0.0         # rad/s, last rate
+        self.yaw = 0.0          # rad, integrated rate
+        self.turned = 0.0       # rad, integrated absolute rate
+        self.variance = MEASURED    # rad^2, variance of the yaw without the scale error
 
     @property
     def offset(self) -> float | None:
-        """The reading at rest, counts; None before there is one."""
+        """The offset in counts; None while there are too few readings at rest."""
         return self.total / len(self.rest) if len(self.rest) >= MIN_REST else None
 
     def update(self, count: int, step: Step) -> Reading | None:
-        """The Reading of a count after a Step; None while there is no offset, or the count shows no angular velocity.
+        """Return the Reading for a count after a Step; None without an offset, or if the count shows no angular
+        velocity.
 
-        The rate is always the present one. The heading is the wheels' where the gyro does not measure it.
+        The rate is always the current rate. The heading follows the wheels where the gyro does not measure it.
         """
         self._calibrate(count, step)
         offset, before, reading = self.offset, self.yaw, None
@@ -71,7 +72,7 @@ class AnalogGyro:
         return Reading(rate, variance, self.yaw, self.variance + (SCALE_ERROR * self.turned) ** 2)
 
     def _calibrate(self, count: int, step: Step) -> None:
-        """Add a count to the offset if it is good, and forget an offset that has become wrong."""
+        """Add a count to the offset if it is good, and discard an offset that has become wrong."""
         good = step.at_rest and self.check.accepts(count, True)
         offset = self.offset
         far = good and offset is not None and abs(count - offset) > JUMP
@@ -86,10 +87,13 @@ class AnalogGyro:
             self.total += count
 
     def _bridge(self, steady: float, turn: float, variance: float) -> None:
-        """Add the turn of a gap: the weighted mean of the turn at a steady rate and the turn by the odometry, which has
-        this variance. If the rate was not steady, the two differ: see estimation/filter.py."""
+        """Add the turn during a gap: the weighted mean of the turn at a steady rate and the turn from the odometry.
+
+        variance: variance of the odometry's turn, rad^2. If the rate was not steady, the two turns differ: see
+        estimation/filter.py.
+        """
         difference = turn - steady
         wrong = variance / 2 + difference ** 2
-        share = wrong / (wrong + variance)      # of the odometry
+        share = wrong / (wrong + variance)      # weight of the odometry
         self.yaw += steady + share * difference
         self.variance += share * variance

@@ -1,4 +1,4 @@
-"""Finds the robot, starts it, notices when it falls silent, and gets it back. All times are in ns."""
+"""Finds and starts the robot, detects when it stops responding, and reconnects to it. All times are in ns."""
 from __future__ import annotations
 
 from typing import Callable, Protocol
@@ -11,45 +11,45 @@ from rbx1_nav.create.driver.search import RATES, Found, Search, SearchedLine
 from rbx1_nav.create.driver.sender import Sender
 from rbx1_nav.units import SECOND
 
-SILENCE = SECOND // 2           # without a reading: the robot does not answer
-FLUSH_WAIT = SECOND // 10       # without an answer to a stop, after which garbage may have swallowed it
-FIRST_WAIT = 3 * SECOND // 10   # that a robot that is on may need to answer, before it is started
-START_WAIT = SECOND             # that a robot may need to start, before it is searched for
+SILENCE = SECOND // 2           # time without a reading after which the robot counts as not answering
+FLUSH_WAIT = SECOND // 10       # time without an answer after which garbage may have swallowed the stop
+FIRST_WAIT = 3 * SECOND // 10   # time that a robot that is on may need to answer; after it, the robot is started
+START_WAIT = SECOND             # time that a robot may need to start; after it, the search begins
 ROUNDS_BEFORE_WARNING = 2       # rounds of the search before the first warning
 
 
 class Line(SearchedLine, Protocol):
-    """What leads to the robot."""
+    """The line to the robot."""
 
     @property
     def is_same(self) -> bool:
-        """Whether it is on the same adapter as the line before."""
+        """Whether the line uses the same adapter as the previous line."""
 
     def confirm(self, found: Found) -> None:
-        """A robot was found: from now on its guardian may stop it."""
+        """Allow the guardian to stop the robot that was found."""
 
 
 class Asker(Protocol):
-    """The driver, as Contact needs it."""
+    """The part of the driver that Contact uses."""
 
     sender: Sender
 
     @property
     def polled(self) -> bool:
-        """Whether the robot sends a reading only if it is asked."""
+        """Whether the robot sends readings only in reply to queries."""
 
     def use(self, model: protocol.Model) -> None:
         """Drive a robot of this Model."""
 
     def ask(self, now: int, start: bool = False) -> None:
-        """Ask for a reading. start: of a robot that is started first."""
+        """Ask for a reading. start: whether to start the robot first."""
 
     def lost_robot(self) -> None:
-        """The robot no longer answers."""
+        """Handle a robot that no longer answers."""
 
 
 class Contact:
-    """Whether the robot at the other end of the line answers, and what is tried to make it answer."""
+    """Monitors whether the robot answers, and tries to restore contact when it does not."""
 
     def __init__(self, settings: Settings, driver: Asker, warn: Callable[[str], None]) -> None:
         """warn: logs a line."""
@@ -57,20 +57,20 @@ class Contact:
         self.driver = driver
         self.warn = warn
         self.line: Line | None = None
-        self.found: Found | None = None         # the robot of this line, also while it does not answer
+        self.found: Found | None = None         # the robot on this line, kept while it does not answer
         self.answers = False        # whether readings arrive
         self.started = False        # whether the robot was started since it last answered
-        self.dropouts = 0           # times that the robot fell silent
+        self.dropouts = 0           # number of times that the robot stopped answering
         self.search = Search((settings.baud,) if settings.baud else RATES, settings.wake)
         self.searching = False
         self._flushed = False
-        self._baud = settings.model.baud        # of the robot that was found last, or is expected
-        self._attempt = 0           # when the robot was last asked to answer
-        self._refused: Found | None = None      # of the wrong type
-        self._warned = False        # that no robot answers
+        self._baud = settings.model.baud        # rate of the robot that was found last, or is expected
+        self._attempt = 0           # time of the last attempt to get an answer
+        self._refused: Found | None = None      # robot of the wrong type
+        self._warned = False        # whether the warning that no robot answers was logged
 
     def attach(self, now: int, line: Line) -> None:
-        """A line was opened. Its first bytes are a stop if the robot is known, or the beginning of the search."""
+        """Start using a line that was opened. Sends a stop if the robot is known; otherwise begins the search."""
         self.line = line
         self.answers = False
         if not (self.found and line.is_same):
@@ -81,12 +81,12 @@ class Contact:
         self._begin_asking(now, line)
 
     def detach(self) -> None:
-        """The line is lost."""
+        """Handle the loss of the line."""
         self.line = None
         self._lose()
 
     def receive(self, now: int, data: bytes) -> None:
-        """Process bytes of a robot that is searched for."""
+        """Process bytes that arrive during the search."""
         self.search.receive(now, data)
 
     def tick(self, now: int, reading_time: int | None) -> None:
@@ -112,11 +112,11 @@ class Contact:
 
     @property
     def may_ask(self) -> bool:
-        """Whether there is a line to a robot whose rate is known: then any command may be sent."""
+        """Whether there is a line to a robot whose rate is known, so that any command may be sent."""
         return self.line is not None and self.found is not None and not self.searching
 
     def hear(self) -> bool:
-        """A reading has arrived. Returns whether the robot did not answer before."""
+        """Record that a reading has arrived. Returns whether the robot did not answer before."""
         before, self.answers, self.started = self.answers, True, False
         return not before
 
@@ -132,7 +132,7 @@ class Contact:
         if self.driver.polled:
             self.driver.ask(now)
         else:
-            self._flush(now, line)      # a robot that sends a stream need not hear anything
+            self._flush(now, line)      # a stream alone does not show that the robot receives commands
 
     def _flush(self, now: int, line: Line) -> None:
         self._flushed = True
@@ -174,7 +174,7 @@ class Contact:
             return
         self._refused = found
         if self.found:
-            self.warn(f'A {found.model.name} answers at {found.baud} baud, in place of a {before}: restart this node '
+            self.warn(f'A {found.model.name} answers at {found.baud} baud instead of a {before}: restart this node '
                       'to drive it')
         else:
             self.warn(f'robot_type: {before}: a {found.model.name} answers at {found.baud} baud: expected '

@@ -1,6 +1,6 @@
-"""Drives a Create: commands to bytes, bytes to odometry, on a clock in ns that the caller passes.
+"""Driver of a Create: converts commands to bytes, and bytes to odometry, on a clock in ns that the caller passes.
 
-The clock must go on while the computer is suspended, and must never be set.
+The clock must keep running while the computer is suspended, and must never be set.
 """
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ from rbx1_nav.robot.readings import Reading
 from rbx1_nav.schedule import Schedule
 from rbx1_nav.units import SECOND
 
-INSIST_WAIT = SECOND // 10      # ns without a confirmation of the last stop, after which it is repeated
-STREAM_BAUD = 57600             # bits per second that a stream needs
-GAP = 3                         # periods without a reading after which the gyro's rate does not stand for all of them
+INSIST_WAIT = SECOND // 10      # ns without confirmation after which the last stop is repeated
+STREAM_BAUD = 57600             # bits per second that a stream requires
+GAP = 3                         # periods without a reading after which one gyro rate no longer represents all of them
 
 
 class Driver:
-    """The state of one robot, whatever happens to its line."""
+    """The state of one robot, which survives the loss of its line."""
 
     def __init__(self, settings: Settings, gate: CommandGate, info: Callable[[str], None],
                  warn: Callable[[str], None], error: Callable[[str], None]) -> None:
@@ -50,26 +50,26 @@ class Driver:
         self.supervisor = Supervisor(settings.mode, settings.mode_plus_one, info, warn)
         self.acceptance = Acceptance(settings, gate, self.contact, self.supervisor)
         self.schedule = Schedule(settings.update_rate)
-        self.due: int | None = None     # ns: a State of a reading that arrives after this is to be reported
+        self.due: int | None = None     # ns: report the State of the first reading that arrives after this
         # the robot
-        self.reading: Mapping[str, int] | None = None   # the last one
+        self.reading: Mapping[str, int] | None = None   # the last reading
         self.reading_time: int | None = None            # ns, when the robot made it
         self.received = 0           # ns, when it arrived
-        self.gyro_reading: Reading | None = None        # that was not reported yet
-        self.leaving: int | None = None     # ns, since when the robot is to stop for good
-        self.left = False           # whether it has confirmed that
-        self.told = 0               # ns, when it was told so last
-        # what /diagnostics counts
+        self.gyro_reading: Reading | None = None        # not reported yet
+        self.leaving: int | None = None     # ns, when the final stop was requested
+        self.left = False           # whether the robot has confirmed the final stop
+        self.told = 0               # ns, when the final stop was last sent
+        # counters for /diagnostics
         self.saturated = 0          # commands
         self.implausible = 0        # readings
         self.use(settings.model)
 
     def use(self, model: protocol.Model) -> None:
-        """Drive a robot of this Model. It cannot change any more once there was a reading."""
+        """Drive a robot of this Model. The Model can no longer change after the first reading."""
         self.model = model
         self.baud = (self.contact.found or model).baud
         self.sender.byte = 10 * SECOND // self.baud
-        # a Create has no stream, and that of a Create 2, a frame every 15 ms, needs a fast line
+        # a Create is always polled; the stream of a Create 2, with a frame every 15 ms, needs a fast line
         self.polled = model is protocol.CREATE or self.baud < STREAM_BAUD
         if self.reading is None:
             self.counter = travel_of(model, Fractions(self.settings.angle_fractions, self.warn))
@@ -82,13 +82,13 @@ class Driver:
     # the line
 
     def attach(self, now: int, line: Line) -> None:
-        """A line was opened: see Contact. Raises OSError."""
+        """Start using a line that was opened: see Contact. Raises OSError."""
         self.sender.open(line.write)
         self.reader.clear()
         self.contact.attach(now, line)
 
     def detach(self) -> None:
-        """The line is lost, and with it the control of the robot, which keeps executing the last command."""
+        """Handle the loss of the line. The robot is out of control: it keeps executing the last command."""
         self.contact.detach()
         self.lost_robot()
         self.sender.close()
@@ -96,23 +96,23 @@ class Driver:
             self.queries.give_up()
 
     def stop(self, now: int) -> None:
-        """Stop the robot, until the next command."""
+        """Stop the robot until the next command."""
         self.gate.halt()
         if self.contact.may_ask:
             self.sender.stop(now)
 
     def restore(self, now: int) -> None:
-        """End whatever the robot may have begun when another process changed the settings of the port."""
+        """Stop anything that the robot may have started when another process changed the settings of the port."""
         if self.leaving is None and self.contact.may_ask:
             mode = (sequences.take_control(self.model, self.settings.mode) if self.supervisor.in_control
                     else sequences.START)
             self.sender.stop(now, after=sequences.STOP + mode)
 
     def leave(self, now: int) -> None:
-        """Stop the robot, and leave it in passive mode. `left` shows whether it has confirmed that, if it can. Raises
-        OSError."""
+        """Stop the robot and leave it in passive mode. `left` becomes true once the robot has confirmed this, if it
+        can. Raises OSError."""
         self.gate.halt()
-        if not self.contact.found:      # it was sent nothing that moves it
+        if not self.contact.found:      # nothing that moves the robot was sent
             self.left = True
             return
         self.leaving = self.told = now
@@ -126,14 +126,14 @@ class Driver:
         self.ask(now)
 
     def _insist(self, now: int) -> None:
-        """Say again that the robot is to stop, after what may have swallowed it before."""
+        """Repeat the final stop, after bytes that complete whatever may have swallowed the previous one."""
         if not self.left and now - self.told > INSIST_WAIT:
             self._leave(now, sequences.FLUSH)
 
     # queries
 
     def ask(self, now: int, start: bool = False) -> None:
-        """Ask for a reading. start: of a robot that is started first."""
+        """Ask for a reading. start: whether to start the robot first."""
         data = self.queries.begin(now, start) if self.polled else sequences.RESUME_STREAM
         if start:
             self.supervisor.restart()
@@ -143,9 +143,9 @@ class Driver:
     # commands
 
     def command(self, now: int, linear: float, angular: float, others: Sequence[float] = (), sender: str = '') -> bool:
-        """Put a command in force, and send it at once; arguments, result and errors as of CommandGate.command().
+        """Put a command in force, and send it at once; for arguments, result and errors see CommandGate.command().
 
-        sender: the name of the node that it comes from. Raises RefusedCommand if the robot does not follow it now.
+        sender: the name of the node that sent it. Raises RefusedCommand if the robot does not follow the command now.
         """
         self.acceptance.check_sender(now, sender, bool(linear or angular))
         try:
@@ -168,20 +168,20 @@ class Driver:
 
     @property
     def is_ready(self) -> bool:
-        """Whether a robot has answered, and can be driven, or has a reason not to."""
+        """Whether a robot has answered, and either can be driven or has a known reason why not."""
         return self.reading is not None and bool(self.supervisor.in_control or self.supervisor.reason)
 
     # time
 
     def tick(self, now: int) -> bool:
-        """Do what is due: to be called after each receive(), and at least at the update rate. Returns whether the
-        command in force has timed out. Raises OSError."""
+        """Do what is due. Call it after each receive(), and at least at the update rate. Returns whether the command in
+        force has timed out. Raises OSError."""
         gate = self.gate
         timed_out = gate.moving and now >= gate.expiry
         if timed_out:
             gate.halt()
         if self.leaving is not None:
-            if self.contact.searching:      # its starts end any motion
+            if self.contact.searching:      # the Start bytes of the search stop any motion
                 self.contact.tick(now, self.reading_time)
             else:
                 self._insist(now)
@@ -197,7 +197,7 @@ class Driver:
         return timed_out
 
     def until_tick(self, now: int) -> float:
-        """How long it is until tick() has something to do, s."""
+        """Return the time (s) until tick() has something to do."""
         time = self.schedule.next
         if self.contact.searching:
             time = min(time, self.contact.search.next_time)
@@ -205,7 +205,7 @@ class Driver:
 
     @property
     def awaited(self) -> Search | ReplyReader | FrameReader | None:
-        """The reader of what is due now; None before the next tick."""
+        """The reader for the data that is due now; None before the next tick."""
         if self.contact.searching:
             return self.contact.search
         return None if self.due is None and self.leaving is None else self.reader
@@ -213,7 +213,7 @@ class Driver:
     # readings
 
     def receive(self, now: int, data: bytes) -> None:
-        """Process bytes of the robot."""
+        """Process bytes from the robot."""
         if self.contact.searching:
             self.contact.receive(now, data)
             return
@@ -221,7 +221,7 @@ class Driver:
             self.queries.byte_time = now
         rejected = self.reader.rejected
         for reading in self.reader.feed(data):
-            # the robot made a frame before it was on the line, and a reply when it received the query
+            # the robot samples a frame before sending it, and a reply when it receives the query
             time = self.commanded.asked_time if self.polled else now - len(data) * self.sender.byte
             self.commanded.advance(now)
             self.received = now
@@ -233,7 +233,7 @@ class Driver:
         commanded = self.commanded
         elapsed = (time - self.reading_time) / SECOND if self.reading_time is not None else 0.0
         part = commanded.asked if self.polled else commanded.counted
-        # a robot that was just switched on is in passive mode, since it was started, and counts from 0
+        # a robot that was just switched on and started is in passive mode, and counts from 0
         reset = (self.contact.started and self.reading is not None
                  and self.supervisor.is_passive(reading) and self.counter.is_reset(reading))
         if reset:
@@ -262,11 +262,11 @@ class Driver:
             self.left = True
 
     def _step(self, elapsed: float, travel: Travel, expected: Expected, reading: Mapping[str, int]) -> Step:
-        """The Step of the gyro. expected: by the commands."""
+        """Return the Step for the gyro. expected: travel according to the commands."""
         bits = reading['bumps_and_wheel_drops']
         variance = travel.angle_variance + self.settings.errors.variances(travel)[1] + self.counter.rounding[1] ** 2
         return Step(elapsed, travel.angle, variance, (expected.right - expected.left) / self.model.wheel_separation,
-                    self.motion.stands and not bits & WHEEL_DROPS,      # who lifts a robot may turn it
+                    self.motion.stands and not bits & WHEEL_DROPS,      # a lifted robot may be turned by hand
                     self.supervisor.in_control and self.settings.mode != protocol.PASSIVE, bool(bits),
                     elapsed * self.settings.update_rate > GAP)
 
@@ -287,12 +287,12 @@ class Driver:
             self.acceptance.lock(what)
 
     def lost_robot(self) -> None:
-        """The robot no longer answers."""
+        """Handle a robot that no longer answers."""
         self.supervisor.forget()
         self.acceptance.lose_robot()
 
     def state(self) -> State | None:
-        """The State, if one is due and there is a new reading for it; else None."""
+        """Return the State if one is due and there is a new reading for it; else None."""
         if not self.contact.answers or self.due is None or self.received <= self.due or not self.motion.is_new:
             return None
         self.due = None

@@ -1,10 +1,11 @@
-"""A process of its own that stops the robot when the node cannot: after kill -9, or while it hangs.
+"""A separate process that stops the robot when the node cannot: after kill -9, or while the node hangs.
 
-The robot has no watchdog: it keeps executing its last command. The guardian holds the line open, and waits at a pipe
-from the node. When the pipe closes, the node has died, however that happened. When no line comes for a while, the node
-hangs. It runs in a session of its own, so that a signal to the node's process group does not reach it.
+The robot has no watchdog: it keeps executing its last command. The guardian holds the line open and waits on a pipe
+from the node. When the pipe closes, the node has died, for whatever reason. When no heartbeat arrives for HANG, the
+node hangs. The guardian runs in its own session, so that a signal to the node's process group does not reach it.
 
-This file is the program too. It imports nothing of the package, so that it starts fast and whatever is installed.
+This file is also the program of that process. It imports nothing from the package, so that it starts fast and does not
+depend on what is installed.
 """
 from __future__ import annotations
 
@@ -16,33 +17,33 @@ import sys
 import termios
 import time
 
-HANG = 1.0              # s without a sign of life, after which the node hangs
-START_TIMEOUT = 3.0     # s for the process to start, on a busy machine
-WRITE_TIMEOUT = 1.0     # s in which a line must accept the stop
+HANG = 1.0              # s without a heartbeat after which the node counts as hanging
+START_TIMEOUT = 3.0     # s for the process to start on a busy machine
+WRITE_TIMEOUT = 1.0     # s within which a line must accept the stop
 
 
 class Guardian:
-    """The node's end."""
+    """The node's interface to the guardian process."""
 
     def __init__(self, line: int, stop: bytes) -> None:
-        """line: file descriptor of the port; stop: the bytes to send, until confirm() names others. Raises OSError if
-        the process does not start."""
+        """line: file descriptor of the port; stop: the bytes to send until confirm() sets others. Raises OSError if the
+        process does not start."""
         self.process = subprocess.Popen(
             [sys.executable, '-E', '-S', os.path.abspath(__file__), str(line), stop.hex()],
             stdin=subprocess.PIPE, stdout=subprocess.PIPE, pass_fds=(line,), start_new_session=True, cwd='/')
         assert self.process.stdin and self.process.stdout
-        self.beats = self.process.stdin     # a pipe that carries the signs of life
-        self.alive = self.process.stdout    # a pipe that closes when the process dies
+        self.beats = self.process.stdin     # pipe that carries the heartbeats
+        self.alive = self.process.stdout    # pipe that closes when the process dies
         if not (select.select([self.alive], [], [], START_TIMEOUT)[0] and os.read(self.alive.fileno(), 1)):
             self.process.kill()
-            raise OSError('the guardian process does not start')
+            raise OSError('the guardian process did not start')
 
     def beat(self) -> bool:
-        """Give a sign of life. Returns whether the guardian is alive."""
+        """Send a heartbeat. Returns whether the guardian is alive."""
         return self._send('')
 
     def confirm(self, stop: bytes) -> None:
-        """The robot is known: from now on, stop it with these bytes, at the rate that the port has now."""
+        """Set the bytes that stop the robot, which is now known, at the current rate of the port."""
         self._send(stop.hex())
 
     def _send(self, text: str) -> bool:
@@ -53,15 +54,16 @@ class Guardian:
             return False
 
     def release(self) -> None:
-        """Let the guardian stop the robot and exit. It is not waited for."""
+        """Let the guardian stop the robot and exit, without waiting for it."""
         self.beats.close()
         self.alive.close()
 
 
 def send(line: int, data: bytes, settings: list[int | list[bytes | int]] | None) -> None:
-    """Write bytes to a port, ahead of what is still waiting there. A port that has disconnected is no error.
+    """Write bytes to a port, discarding what is still waiting there. A disconnected port is not an error.
 
-    settings: its attributes, as tcgetattr() returns them, which another process may have changed; None: leave them.
+    settings: attributes of the port to restore, as tcgetattr() returns them, since another process may have changed
+    them; None: leave the attributes alone.
     """
     try:
         termios.tcflush(line, termios.TCOFLUSH)
@@ -81,7 +83,7 @@ def send(line: int, data: bytes, settings: list[int | list[bytes | int]] | None)
 
 
 def read_settings(line: int) -> list[int | list[bytes | int]] | None:
-    """The attributes of a port, None if it has disconnected."""
+    """Return the attributes of a port; None if it has disconnected."""
     try:
         return termios.tcgetattr(line)
     except termios.error:
@@ -89,7 +91,7 @@ def read_settings(line: int) -> list[int | list[bytes | int]] | None:
 
 
 def main(line: int, stop: bytes) -> None:
-    """Wait for the end of the node. line, stop: see Guardian."""
+    """Wait until the node exits or hangs, and stop the robot. line, stop: see Guardian."""
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGTSTP):
         signal.signal(number, signal.SIG_IGN)
     try:
@@ -97,7 +99,7 @@ def main(line: int, stop: bytes) -> None:
     except OSError:     # the node has died already
         pass
     received, settings = b'', None
-    timeout: float | None = None    # none before the first sign of life, and while the node hangs
+    timeout: float | None = None    # None before the first heartbeat, and while the node hangs
     while True:
         if select.select([0], [], [], timeout)[0]:
             timeout = HANG

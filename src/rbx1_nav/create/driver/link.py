@@ -1,4 +1,4 @@
-"""The open line to the robot, with its guardian: opened again whenever it is lost."""
+"""The open line to the robot, with its guardian process. It is reopened whenever it disconnects."""
 from __future__ import annotations
 
 import errno
@@ -20,18 +20,18 @@ from rbx1_nav.create.line_settings import rate_in, read_settings
 from rbx1_nav.units import SECOND
 
 RETRY = SECOND // 5     # ns between two attempts to open the port
-PORT_WARN_TIME = SECOND       # ns that a port may be unavailable before it is logged: an old guardian needs a moment
-BEAT = SECOND // 10     # ns between two signs of life to the guardian
+PORT_WARN_TIME = SECOND       # ns that a port may be unavailable before a warning: an old guardian may still be exiting
+BEAT = SECOND // 10     # ns between two heartbeats to the guardian
 
 
 class LineLost(OSError):
-    """The line broke. The text says how."""
+    """The line disconnected. The text gives the reason."""
 
 
 class Link:
-    """A serial port that may come and go. Times are in ns.
+    """A serial port that may disconnect and reconnect. Times are in ns.
 
-    pyserial opens it. Its read() and write() are not used: they need three times as many system calls.
+    pyserial opens the port. Its read() and write() are not used, because they need three times as many system calls.
     """
 
     def __init__(self, settings: Settings, warn: Callable[[str], None]) -> None:
@@ -41,27 +41,27 @@ class Link:
         self.baud = settings.baud or settings.model.baud
         self.port: serial.Serial = None     # None while it is not open
         self.guardian: Guardian | None = None
-        self.guarded = True         # whether the guardian lives
+        self.guarded = True         # whether the guardian is alive
         self.problem = ''           # why the port is not open
-        self.lost_at: int | None = None     # since when
+        self.lost_at: int | None = None     # when the port became unavailable
         self.logged = ''            # the problem that was logged
-        self.adapter = ''           # the last one, as text
-        self.is_same = True         # whether it is that of the line before
+        self.adapter = ''           # description of the last adapter
+        self.is_same = True         # whether the previous line had the same adapter
         self.attempt: int | None = None
         self.beat_time = 0
         self.settings: bytes | None = None  # of the port, as read_settings() returns them
-        self.changes = 0            # times that another process has changed them
-        self.disturbed = False      # whether that has happened since a caller has cleared this
+        self.changes = 0            # number of changes of the settings by other processes
+        self.disturbed = False      # whether there was a change since a caller cleared this
 
     def open(self, now: int) -> bool:
-        """Try to open the port, if it is time to. Returns whether it is open."""
+        """Try to open the port if a retry is due. Returns whether it is open."""
         if self.attempt is not None and now - self.attempt < RETRY:
             return False
         self.attempt = now
         try:
             self.port = open_port(self.path, self.baud)
             self.settings = read_settings(self.port.fd)
-            # until the robot is known, only a start is harmless at any rate
+            # until the robot is known, Start is the only command that is harmless at any baud rate
             self.guardian = Guardian(self.port.fd, sequences.START)
         except OSError as error:
             self.close()
@@ -81,11 +81,11 @@ class Link:
         before, self.adapter = self.adapter, describe_adapter(self.path)
         self.is_same = before in ('', self.adapter)
         if not self.is_same:
-            self.warn(f'{self.path} is now {self.adapter}, before it was {before}: check that the same robot is '
+            self.warn(f'{self.path} is now {self.adapter} (previously {before}): check that the same robot is '
                       'connected')
 
     def close(self) -> None:
-        """Close the port. The guardian sends a last stop, if there still is a line."""
+        """Close the port. The guardian sends a final stop if the line is still connected."""
         if self.guardian:
             self.guardian.release()
         if self.port:
@@ -93,7 +93,7 @@ class Link:
         self.guardian, self.port = None, None
 
     def set_rate(self, baud: int) -> None:
-        """Set the rate (bits per second), and all that belongs to a raw line. Raises LineLost."""
+        """Set the rate (bits per second) and the other settings of a raw line. Raises LineLost."""
         self.baud = baud
         try:
             self.port.baudrate = baud
@@ -102,7 +102,7 @@ class Link:
         self.settings = read_settings(self.port.fd)
 
     def set_wake_lines(self, on: bool) -> None:
-        """Set RTS and DTR, or clear them. Raises NoWakeLines, and LineLost."""
+        """Set or clear RTS and DTR. Raises NoWakeLines and LineLost."""
         try:
             self.port.rts = self.port.dtr = on
         except OSError as error:
@@ -113,12 +113,12 @@ class Link:
             raise NoWakeLines(error.errno, error.strerror) from None
 
     def confirm(self, found: Found) -> None:
-        """The robot is known: the guardian may stop it."""
+        """Allow the guardian to stop the robot, which is now known."""
         assert self.guardian
         self.guardian.confirm(sequences.guardian_stop(found.model))
 
     def is_guarded(self, now: int) -> bool:
-        """Look after the guardian and the settings, if it is time to. Returns whether the guardian is alive."""
+        """Check the guardian and the settings if a heartbeat is due. Returns whether the guardian is alive."""
         if self.guarded and now - self.beat_time >= BEAT:
             self.beat_time = now
             self._keep_settings()
@@ -126,7 +126,7 @@ class Link:
         return self.guarded
 
     def _keep_settings(self) -> None:
-        """Set back what another process has changed. With an echo, say, the robot would execute its own readings."""
+        """Restore settings that another process has changed. With echo, the robot would execute its own readings."""
         settings = read_settings(self.port.fd)
         if settings is None or settings == self.settings:
             return
@@ -134,12 +134,12 @@ class Link:
         self.disturbed = True
         rate = rate_in(settings)
         changed = 'settings' if rate == self.baud else f'rate to {rate} baud: expected {self.baud}'
-        self.warn(f'{self.path}: another process has changed the {changed}; set back')
+        self.warn(f'{self.path}: another process has changed the {changed}; restored')
         self.set_rate(self.baud)
 
     def write(self, data: bytes) -> None:
-        """Send bytes, at the right rate. Raises LineLost, also if the port has no room for them: then none have left it
-        for seconds."""
+        """Send bytes at the right rate. Raises LineLost, also if the port's buffer is full, which means that no bytes
+        have left it for seconds."""
         self._keep_settings()
         try:
             written = os.write(self.port.fd, data)
@@ -155,10 +155,10 @@ class Link:
             time.sleep(sequences.PAUSE / SECOND)
 
     def read(self, duration: float, reader: FrameReader | ReplyReader | Search | None) -> bytes:
-        """The bytes that arrive. Returns at once if the guardian has died. Raises LineLost.
+        """Return the bytes that arrive. Returns at once if the guardian has died. Raises LineLost.
 
         duration: s until the next tick; reader: if it is set, return when its next reading is complete. Waiting for all
-        of its bytes saves waking up for each.
+        of its bytes avoids waking up for each one.
         """
         if reader is None:
             self._wait((), duration)
@@ -170,14 +170,14 @@ class Link:
         return data
 
     def _wait(self, descriptors: Iterable[int], duration: float) -> bool:
-        """Whether one of the descriptors can be read within a time (s), in which the guardian lives."""
+        """Wait (s) for one of the descriptors, or the death of the guardian. Returns whether one can be read."""
         assert self.guardian
         ready = select.select((*descriptors, self.guardian.alive), (), (), duration)[0]
         self.guarded = self.guardian.alive not in ready
         return any(each in ready for each in descriptors)
 
     def _read(self, timeout: float) -> bytes:
-        # a process that changes the settings may discard what has arrived; a line that is lost stays readable
+        # a process that changes the settings may discard input; a disconnected line stays readable without data
         for wait in timeout, 0.0:
             if not self._wait((self.port.fd,), wait):
                 return b''

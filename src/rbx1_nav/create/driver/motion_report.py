@@ -1,4 +1,4 @@
-"""What the base reports of the robot's motion: pose, velocity, travel of the wheels, each with its uncertainty."""
+"""The robot's motion as the base reports it: pose, velocity and wheel travel, with uncertainties."""
 from __future__ import annotations
 
 from typing import NamedTuple
@@ -12,23 +12,23 @@ from rbx1_nav.robot.odometry import UncertainOdometry
 from rbx1_nav.robot.readings import MEASURED, Reading
 from rbx1_nav.units import SECOND
 
-STANDSTILL = SECOND // 2    # ns without travel and without a command to move: the robot stands
+STANDSTILL = SECOND // 2    # ns without travel or a command to move, after which the robot is stationary
 
 
 class State(NamedTuple):
-    """What is reported at once."""
+    """A report of the robot's motion."""
 
-    time: int                       # ns, of the last reading
+    time: int                       # ns, time of the last reading
     pose: Pose
     covariance: Array               # 3x3
     velocity: tuple[float, float]   # m/s and rad/s, the mean since the last State
-    variances: tuple[float, float]  # of these
-    travel: tuple[float, float]     # of both wheels, m
+    variances: tuple[float, float]  # of both velocities
+    travel: tuple[float, float]     # m, left and right wheel
     gyro: Reading | None
 
 
 class MotionReport:
-    """Adds up Travel. Times are in ns."""
+    """Accumulates Travel. Times are in ns."""
 
     def __init__(self, settings: Settings, model: Model, rounding: tuple[float, float]) -> None:
         """rounding: see travel.py."""
@@ -38,17 +38,17 @@ class MotionReport:
         self.moving_yaw_variance = settings.moving_yaw_variance
         self.odometry = UncertainOdometry(self.width, settings.errors, rounding)
         self.left = self.right = 0.0    # m, total travel of the wheels as the robot counts it
-        self.time: int | None = None        # of the last Travel
-        self.moved_time: int | None = None  # of the last travel that was not 0, or command to move
+        self.time: int | None = None        # time of the last Travel
+        self.moved_time: int | None = None  # time of the last nonzero travel or command to move
         self.reported: int | None = None    # time of the last State
-        self.since = NOWHERE                # Travel since then
+        self.since = NOWHERE                # Travel since the last State
 
     def command(self, now: int) -> None:
-        """The wheels were commanded to move."""
+        """Note that the wheels were commanded to move."""
         self.moved_time = now
 
     def add(self, time: int, travel: Travel) -> Travel:
-        """Add a Travel, which has ended at `time`. Returns it with the corrections."""
+        """Add a Travel that finished at `time`. Returns the corrected Travel."""
         linear, angular = self.corrections
         corrected = Travel(travel.distance * linear, travel.angle * angular,
                            travel.distance_variance * linear ** 2, travel.angle_variance * angular ** 2)
@@ -64,7 +64,7 @@ class MotionReport:
 
     @property
     def stands(self) -> bool:
-        """Whether the robot was not commanded to move, and has not moved, for a while."""
+        """Whether the robot has neither moved nor been commanded to move for STANDSTILL."""
         return self.time is not None and self.moved_time is not None and self.time - self.moved_time >= STANDSTILL
 
     @property
@@ -73,13 +73,13 @@ class MotionReport:
         return self.time != self.reported
 
     def state(self, gyro: Reading | None) -> State:
-        """The State, with the gyro's last Reading or None. To be called after a Travel was added."""
+        """Return the State, with the gyro's last Reading or None. Call it after add()."""
         assert self.time is not None
         elapsed = (self.time - self.reported) / SECOND if self.reported is not None else 0.0
         velocity, variances = (0.0, 0.0), (MEASURED, MEASURED)
         if elapsed > 0 and (any(self.since) or not self.stands):
             velocity = self.since.distance / elapsed, self.since.angle / elapsed
-            # a difference of two roundings
+            # the error is the difference of two rounding errors
             errors = self.odometry.errors.variances(self.since)
             linear, angular = ((variance + error + 2 * rounding ** 2) / elapsed ** 2 + MEASURED
                                for variance, error, rounding in zip(self.since[2:], errors, self.rounding))

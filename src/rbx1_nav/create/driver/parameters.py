@@ -1,4 +1,4 @@
-"""The parameters of the base node, with the names and the meaning of create_node's."""
+"""Parameters of the base node. Their names and meanings match create_node."""
 from __future__ import annotations
 
 from math import inf
@@ -13,7 +13,7 @@ from rbx1_nav.robot.odometry import OdometryErrors
 from rbx1_nav.units import SECOND
 
 GYRO_CORRECTION = 1.35  # create_node's default
-WHEEL_RADIUS = 0.033    # m, of the wheels that RViz shows
+WHEEL_RADIUS = 0.033    # m, radius of the wheels in RViz
 
 
 def _check_port(port: YamlValue) -> str:
@@ -29,60 +29,62 @@ def _check_mode(mode: YamlValue) -> int:
     return int(mode)
 
 
-_CALIBRATED = 'see [calibration files](#calibration-files)'
+_CALIBRATED = 'see [calibration files](files.md#calibration-files)'
 
 PARAMETERS = (
-    custom('port', '/dev/ttyUSB0', 'the serial port, or a link to it', _check_port),
-    choice('robot_type', (AUTO, *protocol.MODELS), AUTO, 'which robot; auto: whichever answers'),
-    choice('baud', (AUTO, *protocol.BAUD_RATES), AUTO, 'rate of the line', 'bits per second',
+    custom('port', '/dev/ttyUSB0', 'serial port, or a link to it', _check_port),
+    choice('robot_type', (AUTO, *protocol.MODELS), AUTO, 'robot model; auto: detect it'),
+    choice('baud', (AUTO, *protocol.BAUD_RATES), AUTO, 'rate of the serial port', 'bits per second',
            note='auto tries 57600, 115200 and 19200'),
-    number('update_rate', 30.0, 'Hz', 'of sensors, odometry and repeated commands', 5, 60, 'a rate'),
+    number('update_rate', 30.0, 'Hz', 'rate of sensor readings, odometry and repeated commands', 5, 60, 'a rate'),
     custom('operation_mode', protocol.SAFE,
-           '1: passive, the robot is not driven; 2: safe; 3: full, where neither cliff nor wheel drop stops the robot',
-           _check_mode, range='1, 2, 3'),
+           'mode in which the robot is driven; 1: passive, the robot is not driven; 2: safe; 3: full, where neither a '
+           'cliff nor a wheel drop stops the robot', _check_mode, range='1, 2, 3'),
     choice('oi_mode_workaround', (AUTO, True, False), AUTO,
-           'whether the robot reports its mode plus one, as some Roombas do; auto: find out'),
-    flag('wake_robot', False, 'whether to wake a robot that does not answer, by RTS and DTR',
-         note='on a line without them the node warns once, and searches without waking'),
-    number('cmd_vel_timeout', 0.6, 's', 'a command of this age stops the robot', 0.05, 10, 'a time'),
+           'whether the robot reports its mode plus one, as some Roombas do; auto: detect it'),
+    flag('wake_robot', False, 'whether to wake a robot that does not answer, using RTS and DTR',
+         note='if the port has no RTS and DTR, the node warns once and searches without waking the robot'),
+    number('cmd_vel_timeout', 0.6, 's', 'age at which a command expires and the robot stops', 0.05, 10, 'a time'),
     flag('stop_motors_on_bump', True, 'whether the bumper stops forward motion'),
-    number('min_abs_yaw_vel', 0.0, 'rad/s', 'slower turns are commanded at this speed', 0, 10, 'a speed'),
-    number('max_abs_yaw_vel', 0.0, 'rad/s', 'faster turns are limited to this speed; 0: no limit', 0, 10, 'a speed'),
-    flag('has_gyro', None, 'whether there is a gyro at the analog input', shown='true; create2: false'),
-    number('gyro_measurement_range', 150.0, 'degrees/s', "of the gyro's chip", 1, 1000, 'a rate', note=_CALIBRATED),
-    number('gyro_scale_correction', GYRO_CORRECTION, '', "factor for the gyro's angular velocity", 0.01, 100,
+    number('min_abs_yaw_vel', 0.0, 'rad/s', 'minimum turning speed; slower turns are raised to it', 0, 10, 'a speed'),
+    number('max_abs_yaw_vel', 0.0, 'rad/s', 'maximum turning speed; 0: no limit', 0, 10, 'a speed'),
+    flag('has_gyro', None, 'whether a gyro is connected to the analog input', shown='true; create2: false'),
+    number('gyro_measurement_range', 150.0, 'degrees/s', 'measurement range of the gyro chip', 1, 1000, 'a rate',
+           note=_CALIBRATED),
+    number('gyro_scale_correction', GYRO_CORRECTION, '', 'factor for the angular velocity of the gyro', 0.01, 100,
            'a factor', note=_CALIBRATED),
     number('odom_linear_scale_correction', 1.0, '', 'factor for the distance that the robot reports', 0.01, 100,
            'a factor', note=_CALIBRATED),
-    number('odom_angular_scale_correction', 1.0, '', 'factor for the angle', 0.01, 100, 'a factor', note=_CALIBRATED),
-    choice('angle_fractions', KINDS, AUTO, 'what the robot does with fractions of a degree; auto: find out'),
+    number('odom_angular_scale_correction', 1.0, '', 'factor for the angle that the robot reports', 0.01, 100,
+           'a factor', note=_CALIBRATED),
+    choice('angle_fractions', KINDS, AUTO, 'handling of fractions of a degree by the robot; auto: detect it'),
     number('odom_linear_error', 0.05, 'm', 'error of the calibrated distance, 1 sigma after 1 m', 0, 1, 'a distance'),
     number('odom_angular_error', 0.09, 'rad', 'error of the calibrated angle, 1 sigma after 1 rad', 0, 1, 'an angle'),
     number('odom_heading_error', 0.07, 'rad', 'error of the heading, 1 sigma after 1 m', 0, 1, 'an angle'),
     number('moving_yaw_variance', 0.0, 'rad^2',
-           'variance of the heading while the robot moves, in place of the calculated one (create_node: 1000); 0: none',
+           'variance of the heading while the robot moves (create_node: 1000); 0: use the calculated variance',
            0, 1e6, 'a variance'),
     frame('odom_frame', 'odom', 'frame of the odometry'),
     frame('base_frame', 'base_footprint', 'frame of the robot'),
-    elsewhere('left_wheel', 'joint of the left wheel in joint_states, as the URDF file names it',
-              WHEEL_JOINTS['left_wheel']),
+    elsewhere('left_wheel', 'joint of the left wheel in joint_states and in the URDF', WHEEL_JOINTS['left_wheel']),
     elsewhere('right_wheel', 'joint of the right wheel', WHEEL_JOINTS['right_wheel']),
-    flag('publish_tf', True, 'whether to publish the transform to the base frame', note='false if another node does'),
-    choice('drive_mode', ('twist',), 'twist', 'the only one'),
-    elsewhere('diagnostic_period', 'accepted, and ignored: /diagnostics has 1 Hz'))
+    flag('publish_tf', True, 'whether to publish the transform from odom_frame to base_frame',
+         note='set to false if another node publishes it'),
+    choice('drive_mode', ('twist',), 'twist', 'drive mode; twist is the only one supported'),
+    elsewhere('diagnostic_period', 'accepted for compatibility and ignored; /diagnostics is published at 1 Hz'))
 
 
 class Settings(NamedTuple):
-    """What the driver depends on."""
+    """The settings of the driver."""
 
-    robot_type: str             # the name of a Model, or AUTO
-    model: protocol.Model       # that is expected
+    robot_type: str             # name of a Model, or AUTO
+    model: protocol.Model       # expected model
     port: str
-    baud: int | None            # bits per second, None to find out
-    wake: bool                  # whether to wake a robot by RTS and DTR
+    baud: int | None            # bits per second; None: detect it
+    wake: bool                  # whether to wake the robot using RTS and DTR
     update_rate: float          # Hz
-    mode: int                   # that in which the robot is driven
-    mode_plus_one: bool | None  # whether it reports its mode plus one, None to find out
+    mode: int                   # mode in which the robot is driven
+    mode_plus_one: bool | None  # whether the robot reports its mode plus one; None: detect it
     has_gyro: bool
     gyro_range: float           # degrees/s
     gyro_correction: float
@@ -96,14 +98,14 @@ class Settings(NamedTuple):
 
 
 def read_settings(params: YamlValue) -> tuple[Settings, Robot]:
-    """(Settings, Robot) from a dictionary of private parameters. Raises ConfigError."""
+    """Return (Settings, Robot) for a dictionary of private parameters. Raises ConfigError."""
     section = Section(params)
     values = read(PARAMETERS, section)
     name = values['robot_type']
     model = protocol.MODELS.get(name, protocol.CREATE)
     has_gyro = model is protocol.CREATE if values['has_gyro'] is None else values['has_gyro']
     if has_gyro and model is not protocol.CREATE:
-        raise ConfigError(f'has_gyro: True: expected false, a {name} has no analog input for a gyro')
+        raise ConfigError(f'has_gyro: True: expected false, because a {name} has no analog input for a gyro')
     settings = Settings(
         robot_type=name, model=model, port=values['port'], baud=None if values['baud'] == AUTO else values['baud'],
         wake=values['wake_robot'], update_rate=values['update_rate'], mode=values['operation_mode'],
@@ -114,7 +116,7 @@ def read_settings(params: YamlValue) -> tuple[Settings, Robot]:
         errors=OdometryErrors(values['odom_linear_error'], values['odom_angular_error'], values['odom_heading_error']),
         moving_yaw_variance=values['moving_yaw_variance'], stop_on_bump=values['stop_motors_on_bump'],
         min_yaw_speed=values['min_abs_yaw_vel'])
-    max_yaw_speed = values['max_abs_yaw_vel'] or inf    # 0 is no limit, as in create_node
+    max_yaw_speed = values['max_abs_yaw_vel'] or inf    # 0 means no limit, as in create_node
     if settings.min_yaw_speed > max_yaw_speed:
         raise ConfigError(f'min_abs_yaw_vel: {settings.min_yaw_speed!r}: expected at most max_abs_yaw_vel, '
                           f'{max_yaw_speed!r}')

@@ -1,4 +1,4 @@
-"""The serial port: opened for one process at a time, with one clear line for each reason why it cannot be."""
+"""Opens the serial port for one process at a time, with a one-line message for each reason why it cannot be opened."""
 from __future__ import annotations
 
 import errno
@@ -10,19 +10,19 @@ import termios
 
 import serial
 
-PSEUDO_TERMINALS = range(136, 144)      # major numbers of devices (admin-guide/devices.txt of Linux)
+PSEUDO_TERMINALS = range(136, 144)      # major device numbers (Linux kernel, admin-guide/devices.txt)
 
 
 class PortError(OSError):
-    """A port that cannot be opened. The text names the port, the reason, and what to do."""
+    """The port cannot be opened. The text names the port, the reason, and the remedy."""
 
 
 def open_port(path: str, baud: int) -> serial.Serial:
-    """An open serial.Serial, whose file descriptor does not block. Raises PortError.
+    """Open a port as a serial.Serial with a non-blocking file descriptor. Raises PortError.
 
-    flock(2) keeps other drivers away. It also holds for a process that inherits the file descriptor. TIOCEXCL keeps
-    away whatever does not look for a lock, such as stty, except for root. A pseudo-terminal would keep that setting
-    after the death of all processes that have it open, so it does not get it.
+    flock(2) keeps other drivers away. A process that inherits the file descriptor shares the lock. TIOCEXCL keeps away
+    programs that do not check for a lock, such as stty, unless they run as the superuser. TIOCEXCL is not set on a
+    pseudo-terminal, which would keep the setting after all processes that have it open have died.
     """
     try:
         port = serial.Serial(path, baud, timeout=0, exclusive=True)
@@ -30,28 +30,29 @@ def open_port(path: str, baud: int) -> serial.Serial:
             fcntl.ioctl(port.fd, termios.TIOCEXCL)
         return port
     except (OSError, ValueError) as error:
-        cause = error.__context__       # of an error in termios, pyserial passes on the text only
+        cause = error.__context__       # for a termios error, pyserial passes on only the text
         number = getattr(error, 'errno', None) or (cause.args[0] if isinstance(cause, termios.error) else None)
         raise PortError(f'{path}: {reason(path, number, error)}') from None
 
 
 def reason(path: str, number: int | None, error: Exception) -> str:
-    """Why a port could not be opened. number: errno, or None; error: of pyserial."""
+    """Return why a port could not be opened. number: errno, or None; error: exception from pyserial."""
     if number in (errno.EAGAIN, errno.EBUSY):
-        return f"in use by {user_of(path) or 'another process'}: expected a port that nobody uses"
+        return f"in use by {user_of(path) or 'another process'}: expected a port that is not in use"
     if number in (errno.EACCES, errno.EPERM):
         group = group_of(path)
-        return f'not permitted: expected a user of the group {group}; `sudo adduser $USER {group}`, and log in again'
+        return (f'not permitted: expected a member of the group {group}; run `sudo adduser $USER {group}`, then log in '
+                'again')
     if number in (errno.ENOENT, errno.ENXIO, errno.ENODEV):
-        return 'no such device: expected the adapter of the robot to be plugged in'
+        return "no such device: expected the robot's adapter to be plugged in"
     if number in (errno.ENOTTY, errno.EINVAL, errno.EISDIR):
         return 'not a serial port: expected the device of an adapter, such as /dev/ttyUSB0'
     return str(error)
 
 
 def describe_adapter(path: str) -> str:
-    """What identifies the adapter of a port: maker, product and serial number of a USB device, else the device's name.
-    A pseudo-terminal has another one after each time that its other end was closed, so all count as the same."""
+    """Return text that identifies the adapter of a port: manufacturer, product and serial number of a USB device, or
+    else the device name. All pseudo-terminals have one text, because each gets a new name when it is reopened."""
     name = os.path.realpath(path)
     if name.startswith('/dev/pts/'):
         return 'a pseudo-terminal'
@@ -73,7 +74,7 @@ def _read_text(path: str) -> str:
 
 
 def group_of(path: str) -> str:
-    """The name of the group that may use a device."""
+    """Return the name of the group that may use a device."""
     try:
         return grp.getgrgid(os.stat(path).st_gid).gr_name
     except (OSError, KeyError):
@@ -81,10 +82,10 @@ def group_of(path: str) -> str:
 
 
 def user_of(path: str) -> str:
-    """The process that has locked a device, as 'NAME (process NUMBER)'; '' if /proc does not show it."""
+    """Return the process that has locked a device, as 'NAME (process NUMBER)'; '' if /proc does not show it."""
     for link in glob.glob('/proc/[0-9]*/fd/*'):
         try:
-            # not by its name: in a container, another device may have the same one
+            # do not compare names: in a container, another device may have this name
             if not os.path.samefile(link, path):
                 continue
             with open(link.replace('/fd/', '/fdinfo/'), encoding='ascii') as file:
@@ -92,13 +93,13 @@ def user_of(path: str) -> str:
             pid = link.split('/')[2]
             if locked and int(pid) != os.getpid():
                 return f'{command_of(pid)} (process {pid})'
-        except OSError:     # it has ended, or belongs to another user
+        except OSError:     # the process has exited, or belongs to another user
             continue
     return ''
 
 
 def command_of(pid: str) -> str:
-    """The file name of a process's program; of a script, the script's."""
+    """Return the file name of a process's program, or of its script."""
     with open(f'/proc/{pid}/cmdline', 'rb') as file:
         words = [os.path.basename(os.fsdecode(word)) for word in file.read().split(b'\0') if word]
     return next((word for word in words if word.endswith('.py')), words[0] if words else '?')

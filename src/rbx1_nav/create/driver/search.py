@@ -1,8 +1,8 @@
-"""Finds the robot on a line: which one answers, at which rate.
+"""Finds the robot on a line: its model and its baud rate.
 
-Until a robot has answered, its rate is not known, and at a wrong rate almost any command may be read as another one: a
-stop at 57600 baud is read at 115200 as 0x86, which starts spot cleaning. So the search sends only bytes that no
-receiver takes for a command: Start, and a query of the battery. At the right rate, Start ends every motion.
+Until a robot has answered, its rate is unknown, and at a wrong rate almost any command may be read as another command:
+a stop sent at 57600 baud is read at 115200 as 0x86, which starts spot cleaning. So the search sends only bytes that no
+receiver can mistake for another command: Start, and a battery query. At the right rate, Start stops every motion.
 """
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from rbx1_nav.create import protocol
 from rbx1_nav.create.driver import sequences
 from rbx1_nav.units import SECOND
 
-RATES = (57600, 115200, 19200)      # of a Create, of a Create 2, and of both after their buttons were held
-REPLY_TIME = SECOND * 12 // 100     # ns after the last byte of a query
-QUIET_TIME = SECOND // 20           # ns in which a stream that was paused ends
-SETTLE_TIME = SECOND // 50          # ns without another byte after a reply, which shows that it is one
-AGREEING = 2                        # replies in a row that are plausible
-TRIES = 4                           # of the question which robot it is
-STARTS, MANY_STARTS = 8, 64         # bytes before a query; many complete what garbage may have begun, within seconds
-FEW_ROUNDS = 2                      # rounds before there are many
+RATES = (57600, 115200, 19200)      # of a Create, of a Create 2, and of either after its buttons were held
+REPLY_TIME = SECOND * 12 // 100     # ns after the last byte of a query within which the reply arrives
+QUIET_TIME = SECOND // 20           # ns within which a paused stream stops
+SETTLE_TIME = SECOND // 50          # ns without another byte that confirm a complete reply
+AGREEING = 2                        # consecutive plausible replies that are required
+TRIES = 4                           # number of queries for the model
+STARTS, MANY_STARTS = 8, 64         # Start bytes before a query; many soon complete a command begun by garbage
+FEW_ROUNDS = 2                      # number of rounds with few Start bytes
 MAX_BUFFER = 4096                   # bytes
-WAKE_TIME = SECOND * 3 // 4         # ns, of both levels: 0.5 s wake a robot, three shorter pulses change its rate
+WAKE_TIME = SECOND * 3 // 4         # ns at each level: 0.5 s wakes a robot, three shorter pulses change its rate
 
 _BATTERY = protocol.single_packets(protocol.CREATE, [sequences.BATTERY])
 _HEADER = bytes((protocol.FRAME_HEADER,))
@@ -32,11 +32,11 @@ class Found(NamedTuple):
     """A robot that answers."""
 
     model: protocol.Model
-    baud: int       # rate of the line, bits per second
+    baud: int       # bits per second
 
 
 def is_battery(data: bytes) -> bool:
-    """Whether bytes are the reply to a query of the battery: plausible values, and as many as there should be."""
+    """Return whether bytes are the reply to a battery query: the right number of bytes, with plausible values."""
     if len(data) != _BATTERY_FORMAT.size:
         return False
     values = dict(zip((packet.name for packet in _BATTERY), _BATTERY_FORMAT.unpack(data)))
@@ -45,7 +45,7 @@ def is_battery(data: bytes) -> bool:
 
 
 def has_frames(data: bytes) -> bool:
-    """Whether bytes contain two frames of a stream, one right after the other: an earlier driver has left it on."""
+    """Return whether bytes contain two consecutive frames of a stream, which an earlier driver left on."""
     def end_of_frame(start: int) -> int | None:
         if data[start:start + 1] != _HEADER or start + 1 == len(data):
             return None
@@ -55,7 +55,7 @@ def has_frames(data: bytes) -> bool:
     return any(end_of_frame(end) for end in ends if end)
 
 
-# what is to be done at a time (ns); returns the robot once it is known
+# the action due at a time (ns); returns the robot once it is known
 Step = Callable[[int], Optional[Found]]
 
 
@@ -64,13 +64,13 @@ class NoWakeLines(OSError):
 
 
 class SearchedLine(Protocol):
-    """What leads to a robot. All methods may raise OSError."""
+    """The line on which to search. All methods may raise OSError."""
 
     def set_rate(self, baud: int) -> None:
         """Set the rate, bits per second."""
 
     def set_wake_lines(self, on: bool) -> None:
-        """Set RTS and DTR, or clear them. Raises NoWakeLines if the line has none."""
+        """Set or clear RTS and DTR. Raises NoWakeLines if the line has none."""
 
     def write(self, data: bytes) -> None:
         """Send bytes."""
@@ -80,47 +80,47 @@ class SearchedLine(Protocol):
 
 
 class Search:
-    """Asks at one rate after the other. All times are in ns."""
+    """Queries one rate after another. All times are in ns."""
 
     def __init__(self, rates: Sequence[int], wake: bool = False) -> None:
-        """rates: to be tried, bits per second, the likeliest first; wake: whether to wake a robot that sleeps."""
+        """rates: rates to try in bits per second, most likely first; wake: whether to wake a sleeping robot."""
         self.rates = rates
         self.wake = wake
-        self.rounds = 0         # complete ones without an answer
-        self.baud = rates[0]    # that is being tried
+        self.rounds = 0         # completed rounds without an answer
+        self.baud = rates[0]    # rate being tried
         self._line: SearchedLine
-        self._order: list[int] = []         # rates of the round that are still to be tried
+        self._order: list[int] = []         # rates still to be tried in this round
         self._buffer = bytearray()
-        self._sizes: Sequence[int] = ()     # of the replies that are expected, bytes; the largest last
-        self._then: Step                    # what to do at the deadline
+        self._sizes: Sequence[int] = ()     # possible sizes of the reply in bytes, the largest last
+        self._then: Step                    # action at the deadline
         self._deadline = 0
-        self._agreed = 0        # replies in a row
-        # which robot it is, by the replies so far; None for one that does not say
+        self._agreed = 0        # consecutive plausible replies
+        # the model according to each reply so far; None for an inconclusive reply
         self._models: list[protocol.Model | None] = []
 
     def begin(self, now: int, line: SearchedLine, baud: int | None = None) -> None:
-        """Begin to search on a line. baud: the rate to be tried first, one of those above."""
+        """Begin to search on a line. baud: the rate to try first, one of `rates`."""
         self._line = line
         self.rates = tuple(sorted(self.rates, key=lambda rate: rate != baud))
         self.rounds, self._order = 0, list(self.rates)
         self._next_rate(now)
 
     def begin_later(self, now: int, duration: int) -> None:
-        """Try the next rate after a time."""
+        """Try the next rate after `duration`."""
         self._plan(now + duration, self._next_rate)
 
     @property
     def next_time(self) -> int:
-        """When tick() has something to do next."""
+        """The time at which tick() next has something to do."""
         return self._deadline
 
     @property
     def missing(self) -> int:
-        """How many bytes complete the reply."""
+        """The number of bytes that complete the reply."""
         return max(0, self._sizes[-1] - len(self._buffer)) if self._sizes else 0
 
     def receive(self, now: int, data: bytes) -> None:
-        """Process bytes of the robot."""
+        """Process bytes from the robot."""
         self._buffer += data
         del self._buffer[:-MAX_BUFFER]
         if self._then == self._judge_battery and has_frames(self._buffer):
@@ -129,7 +129,7 @@ class Search:
             self._deadline = min(self._deadline, now + SETTLE_TIME)
 
     def tick(self, now: int) -> Found | None:
-        """Do what is due. Returns Found as soon as it is known, else None."""
+        """Do what is due. Returns Found once the robot is known, else None."""
         return self._then(now) if now >= self._deadline else None
 
     def _plan(self, deadline: int, then: Step, sizes: Sequence[int] = ()) -> None:
@@ -148,7 +148,7 @@ class Search:
         self._ask_battery(now)
 
     def _begin_wake(self, now: int) -> bool:
-        """Begin to wake a robot, if that is wanted and possible. Returns whether it was begun."""
+        """Begin to wake the robot, if this is enabled and possible. Returns whether waking has begun."""
         if self.wake:
             try:
                 self._line.set_wake_lines(False)
@@ -181,7 +181,7 @@ class Search:
         else:
             self._pause_stream(now)
 
-    # the rate is right: now a command is what it is
+    # from here on the rate is right, so the robot reads each command correctly
 
     def _pause_stream(self, now: int) -> None:
         self._models = []
@@ -189,7 +189,7 @@ class Search:
         self._deadline = now + QUIET_TIME
 
     def _ask_model(self, now: int) -> None:
-        # a Create has no encoders, and answers the second question only
+        # a Create has no encoders, and answers only the second query
         self._send(now, sequences.ASK_ENCODER + sequences.ASK_WALL, self._identify, 1, 3)
 
     def _identify(self, now: int) -> Found | None:
@@ -202,5 +202,5 @@ class Search:
         elif any(self._models):
             return Found(protocol.CREATE_2 if self.baud == protocol.CREATE_2.baud else protocol.CREATE, self.baud)
         else:
-            self._next_rate(now)    # it no longer answers
+            self._next_rate(now)    # the robot no longer answers
         return None

@@ -1,4 +1,4 @@
-"""The sequences of bytes that the driver and its guardian send."""
+"""Sequences of bytes that the driver and its guardian send."""
 from __future__ import annotations
 
 from typing import Sequence
@@ -10,8 +10,8 @@ from rbx1_nav.units import SECOND
 # bumps, wheel drops and cliffs; charging state to capacity; then single packets
 _NUMBERS = (1, 3, 34, 35)
 STREAMED = _NUMBERS + (43, 44)      # of the Create 2
-# of the Create: sending distance and angle sets them to 0. Both are in group 2, so that there are not seven numbers: a
-# robot that is off would take that byte for a reset
+# of the Create, which resets distance and angle to 0 when it sends them. Group 2 contains both, which keeps the count
+# of numbers below seven: a robot that is off would take the byte 7 for a reset
 QUERIED = _NUMBERS + (2, 33)
 QUERIED_WITHOUT_ANGLE = _NUMBERS + (19, 33)
 START_STREAM = command('stream', len(STREAMED), *STREAMED)
@@ -23,44 +23,48 @@ MODES = {protocol.PASSIVE: START, protocol.SAFE: command('safe'), protocol.FULL:
 BATTERY = 3                         # a group of 10 bytes
 ASK_BATTERY = START + command('sensors', BATTERY)
 ASK_ENCODER, ASK_WALL = command('sensors', 43), command('sensors', 8)
-PAUSE = SECOND // 500               # ns between two bytes that a receiver must not take for one
+PAUSE = SECOND // 500               # ns between two bytes that a receiver must not merge into one
 
 
 def query(numbers: Sequence[int]) -> bytes:
-    """Asks for packets and groups, all in one reply."""
+    """Return the query for packets and groups, all in one reply."""
     return command('query_list', len(numbers), *numbers)
 
 
-# What was sent last may be the beginning of any command of ours. Zeros complete it: no data of a command is a motion of
-# more than a moment, and 0 is no command.
+# The last bytes sent may be the beginning of any of the driver's commands. Zeros complete it: with zeros as data no
+# command causes a lasting motion, and 0 is not a command.
 _PADDING = bytes(max(len(query(QUERIED)), len(START_STREAM)) - 1)
 STOP = _PADDING + protocol.drive_direct(0, 0)
-# The longest command has 513 bytes: a song of 255 notes. What garbage has begun, this many zeros complete.
+# The longest command has 513 bytes: a song of 255 notes. This many zeros complete any command that garbage has begun.
 FLUSH = bytes(512)
 
 
 def queried(model: protocol.Model) -> tuple[tuple[int, ...], ...]:
-    """What a robot that is polled is asked for: all of it, and for a Create also without the angle."""
+    """Return the numbers for the queries to a polled robot: all packets, and for a Create also without the angle."""
     return (QUERIED, QUERIED_WITHOUT_ANGLE) if model is protocol.CREATE else (STREAMED,)
 
 
 def start(model: protocol.Model, polled: bool) -> bytes:
-    """Starts the interface of a robot that was switched off, and asks for a reading. It leads to passive mode."""
+    """Return the bytes that start the interface of a robot that was switched off, and ask for a reading. The robot is
+    then in passive mode."""
     return STOP + START + (query(queried(model)[0]) if polled else START_STREAM)
 
 
 def take_control(model: protocol.Model, mode: int) -> bytes:
-    """Changes to a mode. On the TurtleBot, digital output 0 of a Create switches the power of the sensors."""
+    """Return the bytes that change to a mode. On a TurtleBot with a Create, digital output 0 switches the power of the
+    sensors."""
     outputs = model is protocol.CREATE and mode != protocol.PASSIVE
     return MODES[mode] + (command('digital_outputs', 1) if outputs else b'')
 
 
 def leave(model: protocol.Model) -> bytes:
-    """Stops the robot after any beginning of a command, and leaves it in passive mode, where it can be charged."""
+    """Return the bytes that stop the robot, even after an incomplete command, and leave it in passive mode, where it
+    can be charged."""
     return STOP + (command('digital_outputs', 0) if model is protocol.CREATE else b'') + START
 
 
 def guardian_stop(model: protocol.Model) -> bytes:
-    """What a guardian sends: the same, again after what garbage may have begun, and an end of the stream."""
+    """Return the bytes that a guardian sends: leave() and a pause of the stream, and both again after completing any
+    command that garbage has begun."""
     stop = leave(model) + (b'' if model is protocol.CREATE else PAUSE_STREAM)
     return stop + FLUSH + stop

@@ -1,4 +1,4 @@
-"""From the bytes of the robot to readings."""
+"""Decodes bytes from the robot to readings."""
 from __future__ import annotations
 
 from operator import le
@@ -11,7 +11,7 @@ Numbers = Tuple[int, ...]       # of packets and groups
 
 
 class Ranges:
-    """The values that Packets may have."""
+    """The ranges of the values of Packets."""
 
     def __init__(self, packets: Iterable[protocol.Packet]) -> None:
         packets = list(packets)
@@ -19,19 +19,19 @@ class Ranges:
         self.high = [packet.high for packet in packets]
 
     def contain(self, values: Sequence[int]) -> bool:
-        """Whether each value is one that its Packet may have."""
+        """Return whether each value is within the range of its Packet."""
         return all(map(le, self.low, values)) and all(map(le, values, self.high))
 
 
 class FrameReader:
-    """Finds the frames of the stream. Where the checksum fails, it searches for the next frame byte by byte."""
+    """Finds the frames of the stream. After a failed checksum, it searches for the next frame byte by byte."""
 
     def __init__(self, model: protocol.Model, numbers: Numbers) -> None:
-        """numbers: of what was requested."""
+        """numbers: requested packets and groups."""
         self.format = protocol.frame_format(model, numbers)
         packets: list[protocol.Packet] = []
-        self.indices: list[int] = []                # of the values in a frame
-        self.markers: list[tuple[int, int]] = []    # where each number is
+        self.indices: list[int] = []                # indices of the values in a frame
+        self.markers: list[tuple[int, int]] = []    # (index, packet or group number) in a frame
         index = 2
         for number in numbers:
             self.markers.append((index, number))
@@ -44,22 +44,22 @@ class FrameReader:
         self.ranges = Ranges(packets)
         self.start = bytes((protocol.FRAME_HEADER, self.format.size - 3))
         self.buffer = bytearray()
-        self.in_step = False    # whether the bytes before the buffer's were a good frame
-        self.rejected = 0       # corrupted frames
-        self.skipped = 0        # bytes in no good frame
+        self.in_step = False    # whether the bytes before the buffer were a good frame
+        self.rejected = 0       # number of corrupted frames
+        self.skipped = 0        # number of bytes outside good frames
 
     def clear(self) -> None:
-        """Forget an incomplete frame."""
+        """Discard an incomplete frame."""
         self.buffer.clear()
         self.in_step = False
 
     @property
     def missing(self) -> int:
-        """How many bytes complete the next frame."""
+        """The number of bytes that complete the next frame."""
         return self.format.size - len(self.buffer)
 
     def feed(self, data: bytes) -> list[Reading]:
-        """The readings that are complete with these bytes."""
+        """Return the readings that these bytes complete."""
         buffer = self.buffer
         readings: list[Reading] = []
         buffer += data
@@ -72,7 +72,7 @@ class FrameReader:
                 return readings
             reading = self.decode(bytes(buffer[:self.format.size]))
             if reading is None:
-                self.in_step = True     # this one counts
+                self.in_step = True     # count this frame as corrupted
                 self._skip(1)
             else:
                 readings.append(reading)
@@ -80,7 +80,7 @@ class FrameReader:
                 self.in_step = True
 
     def _skip(self, count: int) -> None:
-        """Drop bytes. They count as one corrupted frame, up to the next good one or the next header."""
+        """Drop bytes. Up to the next good frame or the next header, they count as one corrupted frame."""
         if count:
             if self.in_step:
                 self.rejected += 1
@@ -89,7 +89,7 @@ class FrameReader:
             del self.buffer[:count]
 
     def decode(self, frame: bytes) -> Reading | None:
-        """The reading in a frame; None if it is corrupted."""
+        """Return the reading in a frame; None if the frame is corrupted."""
         fields = self.format.unpack(frame)
         values = [fields[index] for index in self.indices]
         if sum(frame) & 0xff or any(fields[index] != number for index, number in self.markers) or (
@@ -99,7 +99,7 @@ class FrameReader:
 
 
 class Layout:
-    """What the reply to a query consists of."""
+    """The layout of the reply to a query."""
 
     def __init__(self, model: protocol.Model, numbers: Numbers) -> None:
         packets = protocol.single_packets(model, numbers)
@@ -109,37 +109,39 @@ class Layout:
 
 
 class ReplyReader:
-    """Takes the reply to a query, which has neither header nor checksum: only its length and the ranges of its values
-    show that it is not corrupted."""
+    """Decodes the reply to a query.
+
+    A reply has neither header nor checksum. It is checked only by its length and the ranges of its values.
+    """
 
     def __init__(self, model: protocol.Model, *queries: Numbers) -> None:
-        """queries: what is requested together."""
+        """queries: the packets and groups of each possible query."""
         self.layouts = {numbers: Layout(model, numbers) for numbers in queries}
-        self.layout = self.layouts[queries[0]]  # of the reply that is expected
+        self.layout = self.layouts[queries[0]]  # layout of the expected reply
         self.buffer = bytearray()
-        self.waiting = False    # for a reply
-        self.rejected = 0       # replies
-        self.skipped = 0        # bytes in no reply
+        self.waiting = False    # whether a reply is expected
+        self.rejected = 0       # number of rejected replies
+        self.skipped = 0        # number of bytes outside replies
 
     def clear(self) -> None:
-        """Forget an incomplete reply, and expect none."""
+        """Discard an incomplete reply, and stop expecting one."""
         self.skipped += len(self.buffer)
         self.buffer.clear()
         self.waiting = False
 
     def expect(self, numbers: Numbers) -> None:
-        """A query was sent: the next bytes are the reply. numbers: one of `queries`."""
+        """Expect the reply to a query that was sent: the next bytes. numbers: one of `queries`."""
         self.clear()
         self.layout = self.layouts[numbers]
         self.waiting = True
 
     @property
     def missing(self) -> int:
-        """How many bytes complete the reply."""
+        """The number of bytes that complete the reply."""
         return self.layout.format.size - len(self.buffer) if self.waiting else 0
 
     def feed(self, data: bytes) -> list[Reading]:
-        """The readings, at most one, that are complete with these bytes."""
+        """Return the readings, at most one, that these bytes complete."""
         self.buffer += data
         layout = self.layout
         if not self.waiting or len(self.buffer) < layout.format.size:

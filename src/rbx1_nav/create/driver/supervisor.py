@@ -1,4 +1,4 @@
-"""Who controls the robot: it falls back to passive mode when a wheel drops, at a cliff, and at its charger."""
+"""Keeps control of the robot, which falls back to passive mode when a wheel drops, at a cliff, and at its charger."""
 from __future__ import annotations
 
 from typing import Callable, Mapping
@@ -6,10 +6,10 @@ from typing import Callable, Mapping
 from rbx1_nav.create import protocol
 from rbx1_nav.units import SECOND
 
-HOLD = SECOND           # ns that the cause must be gone before the driver takes control again
+HOLD = SECOND           # ns without the cause before the driver takes control again
 RETRY = SECOND // 2     # ns between two attempts
-SETTLE = SECOND // 10   # ns after which a reading shows the mode that was asked for
-ATTEMPTS_BEFORE_LOG = 3            # attempts without a cause for their failure, after which it is logged
+SETTLE = SECOND // 10   # ns after which a reading shows the requested mode
+ATTEMPTS_BEFORE_LOG = 3            # number of attempts that fail without a known cause before the failure is logged
 CLIFFS = ('cliff_left', 'cliff_front_left', 'cliff_front_right', 'cliff_right')
 WHEEL_DROPS = protocol.WHEEL_DROP_LEFT | protocol.WHEEL_DROP_RIGHT | protocol.WHEEL_DROP_CASTOR
 BUMPS = protocol.BUMP_LEFT | protocol.BUMP_RIGHT
@@ -17,7 +17,7 @@ CHARGER, DOCK = 1, 2    # bits of packet 34
 
 
 def causes(reading: Mapping[str, int]) -> list[str]:
-    """Why a robot with this reading gives up safe mode."""
+    """Return the reasons why a robot with this reading leaves safe mode."""
     found = []
     if reading['bumps_and_wheel_drops'] & WHEEL_DROPS:
         found.append('a wheel dropped')
@@ -29,28 +29,28 @@ def causes(reading: Mapping[str, int]) -> list[str]:
 
 
 class Offset:
-    """By how much a robot reports its mode too high: Roombas with Wi-Fi report it plus one (create_robot, issue 64)."""
+    """The offset of the reported mode: Roombas with Wi-Fi report their mode plus one (create_robot, issue 64)."""
 
     def __init__(self, wanted: int, value: int | None = None) -> None:
-        """wanted: the mode that is asked for; value: 0 or 1, or None to find out."""
+        """wanted: the mode that is requested; value: 0 or 1, or None to detect it."""
         self.wanted = wanted
         self.value = value
-        self._reported: set[int | None] = set()     # so far
+        self._reported: set[int | None] = set()     # modes reported so far
         self._attempts = 0
 
     def ask(self, reported: int) -> None:
-        """The wanted mode is asked for. reported: the mode before."""
+        """Record that the wanted mode is requested. reported: the mode reported before."""
         self._reported.add(reported)
         self._attempts += 1
 
     def judge(self, reported: int, obstructed: bool) -> None:
-        """Find out from the mode that is reported after it was asked for. obstructed: whether the robot has had a
-        reason not to leave passive mode."""
+        """Determine the offset from the mode that is reported after the request. obstructed: whether the robot has had
+        a reason not to leave passive mode."""
         self._reported.add(reported)
         if reported == self.wanted + 1:
             self.value = 1
         elif reported == self.wanted == protocol.SAFE:
-            # passive mode plus one looks the same, but also before it was asked for
+            # passive mode plus one looks the same, but it is also reported before the request
             if not obstructed and (protocol.PASSIVE in self._reported or self._attempts >= 2):
                 self.value = 0
         elif reported in (self.wanted, protocol.PASSIVE):
@@ -58,17 +58,17 @@ class Offset:
 
 
 class Supervisor:
-    """Decides when to ask the robot for the mode in which it is driven."""
+    """Decides when to request the mode in which the robot is driven."""
 
     def __init__(self, mode: int, plus_one: bool | None, info: Callable[[str], None],
                  warn: Callable[[str], None]) -> None:
-        """mode: the wanted one, of packet 35; plus_one: whether the robot reports its mode plus one, None to find out;
+        """mode: wanted value of packet 35; plus_one: whether the robot reports its mode plus one, None to detect it;
         info(text), warn(text): log a line."""
         self.wanted = mode
         self.plus_one = plus_one
         self.info = info
         self.warn = warn
-        self.mode: int | None = None    # of the last two readings
+        self.mode: int | None = None    # mode in the last two readings
         self.reason = ''            # why the robot is not in the wanted mode
         self.had_control = False
         self.offset_logged = False
@@ -80,36 +80,37 @@ class Supervisor:
         return self.mode == self.wanted
 
     def restart(self) -> None:
-        """The robot is started: it may be another one."""
+        """Handle a start of the robot, which may be a different robot."""
         self.offset = Offset(self.wanted, None if self.plus_one is None else int(self.plus_one))
         self.forget()
 
     def forget(self) -> None:
-        """There are no readings any more."""
+        """Handle a robot that sends no more readings."""
         self.mode = None
-        self.latest: int | None = None          # mode of the last reading
-        self.clear_since: int | None = None     # ns, since when nothing keeps the robot from being driven
-        self.attempt: int | None = None         # ns, the last one
+        self.latest: int | None = None          # mode in the last reading
+        self.clear_since: int | None = None     # ns, since when nothing prevents the robot from being driven
+        self.attempt: int | None = None         # ns, time of the last attempt
         self.obstructed = False     # since the last attempt
-        self.failures = 0           # attempts in a row for whose failure there is no cause
+        self.failures = 0           # consecutive attempts that failed without a known cause
 
     def is_passive(self, reading: Mapping[str, int]) -> bool:
-        """Whether a robot that was asked for passive mode may be in it."""
+        """Return whether a robot from which passive mode was requested may be in passive mode."""
         offsets = (0, 1) if self.offset.value is None else (self.offset.value,)
         return reading['mode'] - protocol.PASSIVE in offsets
 
     def update(self, now: int, reading: Mapping[str, int], wants_motion: bool) -> bool:
-        """Whether to ask for the wanted mode at `now` (ns). wants_motion: whether a command to move is in force."""
+        """Return whether to request the wanted mode at `now` (ns). wants_motion: whether a motion command is in force.
+        """
         reported, before = reading['mode'], self.latest
         self.latest = reported
-        if reported != before:      # one reading may be corrupted, the second one counts
+        if reported != before:      # one reading may be corrupted, so the second one counts
             return False
         found = causes(reading)
         docked = bool(reading['charging_sources'] & DOCK)
         obstructed = bool(found or docked)
         self.obstructed |= obstructed
         if self.offset.value is None:
-            if self.attempt is None:        # once, whatever is reported
+            if self.attempt is None:        # request it once, whatever mode is reported
                 return self._ask(now, reported, obstructed)
             if now - self.attempt < SETTLE:
                 return False
@@ -126,7 +127,7 @@ class Supervisor:
             self.failures = 0
         reasons = list(found)
         if docked:
-            reasons.append('on the dock: carry it off if a command does not move it')
+            reasons.append('on the dock: lift it off if it does not follow a command')
         if self.failures > ATTEMPTS_BEFORE_LOG:
             reasons.append(self._contradiction(reported))
         self._explain(', '.join(reasons))
@@ -148,9 +149,9 @@ class Supervisor:
         return True
 
     def _contradiction(self, reported: int) -> str:
-        """Why a robot that has no reason to disobey may seem to. reported: the mode."""
+        """Return the reason for a robot that seems to disobey without a cause. reported: the reported mode."""
         workaround = '' if self.plus_one is None else (
-            f' with oi_mode_workaround:={str(self.plus_one).lower()}; without this parameter the base finds out')
+            f' with oi_mode_workaround:={str(self.plus_one).lower()}; without this parameter the base detects it')
         return (f'it reports mode {reported} after it was asked for {protocol.MODE_NAMES[self.wanted]} mode: expected '
                 f'{self.wanted + (self.offset.value or 0)}{workaround}')
 
@@ -161,10 +162,10 @@ class Supervisor:
             self.info(f'The robot is in {protocol.MODE_NAMES[mode]} mode')
         elif before == self.wanted and mode != before:
             self.reason = ''
-            self.warn(f'The robot is no longer driven: it changed from {protocol.MODE_NAMES[self.wanted]} to '
+            self.warn(f'Lost control of the robot: it changed from {protocol.MODE_NAMES[self.wanted]} to '
                       f'{protocol.MODE_NAMES[mode]} mode')
 
     def _explain(self, reason: str) -> None:
         before, self.reason = self.reason, reason
         if reason and reason != before:
-            self.warn(f'The robot is not driven: {reason}')
+            self.warn(f'The robot cannot be driven: {reason}')

@@ -1,4 +1,4 @@
-"""From what the robot counts to travel: wraps, gaps, and readings that cannot be true."""
+"""Converts the robot's counters to travel, and handles wraps, gaps and implausible readings."""
 from __future__ import annotations
 
 from math import degrees, radians
@@ -8,19 +8,19 @@ from rbx1_nav.create.driver.fractions import LOST, Fractions
 from rbx1_nav.create.protocol import MAX_SPEED, Model
 
 WHEEL_LIMIT = 1.3 * MAX_SPEED / 1000    # m/s: faster than any wheel
-MARGIN = 0.015          # m: the wheels' travel between two readings may be late by so much
-AGREED = 3              # implausible readings in a row that agree: the robot was reset
-LOST_SHARE = 0.1        # 1 sigma of an expected travel that was never read, a fraction of it
-MEMORY = 0.02           # weight of the last reply in the share of those that were lost: some 50 replies count
-BAD_LINE = 0.015        # such a share, of one lost reply: others may be corrupted without a sign of it
-DOUBT = 0.005           # m: a wheel's travel that differs more from what is expected is doubtful on a bad line
+MARGIN = 0.015          # m of wheel travel that one reading may miss and the next one include
+AGREED = 3              # consecutive implausible readings that agree, which show that the robot was reset
+LOST_SHARE = 0.1        # 1 sigma of an expected travel that was never read, as a fraction of it
+MEMORY = 0.02           # weight of the last reply in the share of lost replies, which covers about 50 replies
+BAD_LINE = 0.015        # share of lost replies, reached after one loss: other replies may be corrupted undetected
+DOUBT = 0.005           # m: on a bad line, a larger difference between read and expected wheel travel is doubtful
 REPLY_SIZE = 30         # bytes
-LONG = 0.3              # s without a reading, after which there is nothing that the next one could be compared with
+LONG = 0.3              # s without a reading after which the next reading cannot be compared with the previous one
 ROUND = 1 / 12 ** 0.5   # 1 sigma of rounding to a whole number
 
 
 class Travel(NamedTuple):
-    """An arc, and the variances of its length and angle beyond rounding and slip."""
+    """An arc, with the variances of its length and angle excluding rounding and slip."""
 
     distance: float             # m
     angle: float                # rad
@@ -29,17 +29,17 @@ class Travel(NamedTuple):
 
 
 class Expected(NamedTuple):
-    """The travel of the wheels by the commands that were sent, m."""
+    """The wheel travel (m) expected from the commands that were sent."""
 
     left: float
     right: float
 
     def plus(self, other: Expected) -> Expected:
-        """Both, one after the other."""
+        """Return the sum of both."""
         return Expected(self.left + other.left, self.right + other.right)
 
     def largest(self) -> float:
-        """That of the wheel that travels farther."""
+        """Return the travel of the wheel that travels farther, as an absolute value."""
         return max(abs(self.left), abs(self.right))
 
 
@@ -48,42 +48,42 @@ STILL = Expected(0.0, 0.0)
 
 
 class Implausible(ValueError):
-    """A reading that no robot could produce: corrupted, or of a robot that was reset meanwhile."""
+    """A reading that no robot could produce: it is corrupted, or the robot has been reset."""
 
 
 class Counter(Protocol):
-    """What the robot counts. elapsed: s since the last good reading; expected: by the commands in the same time."""
+    """Converts counts to Travel. elapsed: s since the last good reading; expected: commanded travel in this time."""
 
     @property
     def rounding(self) -> tuple[float, float]:
         """1 sigma (m, rad) of a position and a heading that are counted in whole units."""
 
     def update(self, reading: Mapping[str, int], elapsed: float, expected: Expected) -> Travel:
-        """The Travel since the last good reading. Raises Implausible."""
+        """Return the Travel since the last good reading. Raises Implausible."""
 
     def miss(self, begun: bool, elapsed: float, expected: Expected) -> None:
-        """A reading was lost on the line. begun: whether a part of it arrived."""
+        """Handle a reading that was lost on the line. begun: whether a part of it arrived."""
 
     def restart(self) -> None:
-        """The robot counts from 0 again: the next reading is no travel."""
+        """Handle a robot that counts from 0 again: the next reading yields no travel."""
 
     def is_reset(self, reading: Mapping[str, int]) -> bool:
-        """Whether this may be the reading of a robot that counts from 0 again."""
+        """Return whether this may be the reading of a robot that counts from 0 again."""
 
 
 def is_possible(left: float, right: float, elapsed: float) -> bool:
-    """Whether wheels can travel so far (m) in `elapsed` seconds."""
+    """Return whether wheels can travel these distances (m) in `elapsed` seconds."""
     return max(abs(left), abs(right)) <= WHEEL_LIMIT * elapsed + MARGIN
 
 
 def _distance(one: Expected, other: Expected) -> float:
-    """How far two travels are apart: the larger difference of a wheel, m."""
+    """Return the larger of the two wheels' differences, m."""
     return max(abs(one.left - other.left), abs(one.right - other.right))
 
 
 def bridged(expected: Expected, measured: Expected, width: float) -> Travel:
-    """The Travel that was not read: as the commands would have it. measured: by the speeds of the last
-    reading; where the two differ, the wheels do not follow the commands, and who knows which is closer."""
+    """Return the Travel that was not read, as expected from the commands. measured: travel at the speeds of the last
+    reading; where the two differ, the wheels do not follow the commands, and either may be closer to the truth."""
     left, right = expected
     deviations = [abs(one - other) + LOST_SHARE * abs(one) for one, other in zip(expected, measured)]
     variance = sum(deviation ** 2 for deviation in deviations)
@@ -91,13 +91,13 @@ def bridged(expected: Expected, measured: Expected, width: float) -> Travel:
 
 
 def unknown(expected: Expected, width: float) -> Travel:
-    """The Travel of a robot that moved as commanded for some of the time, or not at all: uniform in between, from 0."""
+    """Return the Travel of a robot that moved as commanded for an unknown part of the time, uniformly distributed."""
     left, right = expected
     return Travel(0.0, 0.0, ((left + right) / 2) ** 2 / 3, ((right - left) / width) ** 2 / 3)
 
 
 class EncoderTravel:
-    """Of the Create 2: encoders of 16 bits that wrap."""
+    """Travel of the Create 2, from 16-bit encoders that wrap."""
 
     WRAP = 1 << 16
 
@@ -111,8 +111,8 @@ class EncoderTravel:
 
     def restart(self) -> None:
         self.counts: tuple[int, int] | None = None
-        self.suspect: tuple[int, int] | None = None     # counts that were implausible
-        self.suspected = 0      # how often in a row
+        self.suspect: tuple[int, int] | None = None     # implausible counts
+        self.suspected = 0      # number of consecutive implausible counts that agree
 
     def update(self, reading: Mapping[str, int], elapsed: float, expected: Expected) -> Travel:
         counts = reading['left_encoder'], reading['right_encoder']
@@ -125,7 +125,7 @@ class EncoderTravel:
             self.check_reset(counts)
             raise Implausible(f'encoders: {counts[0]} and {counts[1]} after {before[0]} and {before[1]}')
         self.counts, self.suspected = counts, 0
-        # beyond half a wrap, the commands decide how many there were, and they may not have been followed
+        # beyond half a wrap, the number of wraps follows from commands that the robot may not have followed
         unsure = sum((self.WRAP * self.scale) ** 2 for travel in expected if abs(travel) > self.WRAP / 2 * self.scale)
         return Travel((left + right) / 2, (right - left) / self.width, unsure / 4, unsure / self.width ** 2)
 
@@ -135,13 +135,13 @@ class EncoderTravel:
                 and not all(abs(self.difference(count, 0, 0.0)) < MARGIN for count in self.counts or (0, 0)))
 
     def difference(self, new: int, old: int, expected: float) -> float:
-        """The travel (m) between two counts: of all that wrap to the same, the closest to that expected or to none."""
+        """Return the travel (m) between two counts: of all travels that fit these counts, the closest to `expected`."""
         low = (new - old + self.WRAP // 2) % self.WRAP - self.WRAP // 2
         wraps = round((expected / self.scale - low) / self.WRAP)
         return (low + self.WRAP * wraps) * self.scale
 
     def check_reset(self, counts: tuple[int, int]) -> None:
-        """Readings that are implausible but agree with each other come from a robot that counts from 0 again."""
+        """Restart if implausible readings agree with each other: they come from a robot that counts from 0 again."""
         agrees = self.suspect and all(abs(self.difference(new, old, 0.0)) <= 2 * MARGIN
                                       for new, old in zip(counts, self.suspect))
         self.suspected = self.suspected + 1 if agrees else 1
@@ -151,16 +151,16 @@ class EncoderTravel:
             self.counts = counts
 
     def miss(self, begun: bool, elapsed: float, expected: Expected) -> None:
-        """The encoders go on counting, nothing is lost."""
+        """Do nothing: the encoders keep counting, so no travel is lost."""
 
 
 class CounterTravel:
-    """Of the Create: distance and angle since the last reply. If a reply is lost, so is the travel that it reported.
+    """Travel of the Create, from distance and angle since the last reply. A lost reply loses the travel it reported.
 
-    Between two readings of the angle of a robot that may lose fractions of a degree, the turn is that by the commands.
+    If the robot may lose fractions of a degree, the turn between two readings of the angle follows the commands.
     """
 
-    CAP = 32767     # mm or degrees, where the robot stops to count
+    CAP = 32767     # mm or degrees at which the robot stops counting
 
     def __init__(self, model: Model, fractions: Fractions) -> None:
         """model: one without encoders."""
@@ -171,22 +171,22 @@ class CounterTravel:
 
     def restart(self) -> None:
         self.first = True
-        self.lost: list[Travel] = []    # by replies that were lost
-        self.doubtful = STILL   # by the commands, before queries of which nobody knows if they arrived
-        self.speed = STILL      # m/s, of the wheels by the last reading
+        self.lost: list[Travel] = []    # travel of lost replies
+        self.doubtful = STILL   # commanded travel before queries that may or may not have reached the robot
+        self.speed = STILL      # m/s, wheel speeds in the last reading
         self.bad = 0.0          # share of the last replies that were lost
-        self.asks_angle = True  # whether the last query does
+        self.asks_angle = True  # whether the last query asks for the angle
         self._begin_angle()
 
     def _begin_angle(self) -> None:
-        # since the angle was last read: s, and rad by the commands and as returned by update()
+        # since the last reading of the angle: time (s), commanded turn (rad), turn returned by update() (rad)
         self.angle_time = self.commanded_turn = self.returned_turn = 0.0
 
     def _turn(self, expected: Expected) -> float:
         return (expected.right - expected.left) / self.width
 
     def wants_angle(self, expected: Expected) -> bool:
-        """Whether the next query is to ask for the angle. expected: since the last query."""
+        """Return whether the next query is to ask for the angle. expected: commanded travel since the last query."""
         turn = degrees(self.commanded_turn + self._turn(expected))
         self.asks_angle = self.fractions.is_due(turn, self.angle_time)
         return self.asks_angle
@@ -198,7 +198,7 @@ class CounterTravel:
             self.first = False
             return NOWHERE
         time, turn = self.angle_time + elapsed, self._turn(expected)
-        # of the last interval, if the angle has not been read for longer
+        # the share of the last interval, if the angle covers a longer time
         angle = radians(reading['angle']) * (elapsed / time if time else 1.0) if self.asks_angle else turn
         wheels = Expected(distance - angle * self.width / 2, distance + angle * self.width / 2)
         if not is_possible(*wheels, elapsed):
@@ -209,7 +209,7 @@ class CounterTravel:
         angle, variance = self._read_angle(reading, time, turn)
         doubtful = self._doubt(wheels, expected, elapsed)
         resolved = self._resolve(wheels, expected)
-        if self.fractions.coarse:       # the robot goes on counting the angle
+        if self.fractions.coarse:       # the robot keeps counting the angle
             resolved = resolved._replace(angle=0.0)
         parts = [Travel(distance, angle, cap_variance, cap_variance + variance), resolved, *self.lost, doubtful]
         if elapsed > 0 and not self.lost and not any(resolved):
@@ -219,10 +219,10 @@ class CounterTravel:
         return Travel(*map(sum, zip(*parts)))
 
     def _doubt(self, wheels: Expected, expected: Expected, elapsed: float) -> Travel:
-        """The Travel by which a reading is to be corrected. wheels: what was read.
+        """Return the Travel by which to correct a reading. wheels: travel that was read.
 
-        A reply has no checksum. Where others are corrupted, some are without a sign of it: those that differ from what
-        is expected are met halfway.
+        A reply has no checksum, so on a bad line some corrupted replies are not detected. A reply that differs from
+        the expected travel is corrected: by half of the difference, or by all of it if the expectations agree.
         """
         self.bad *= 1 - MEMORY
         if self.bad < BAD_LINE or elapsed > LONG:
@@ -232,20 +232,20 @@ class CounterTravel:
         far = DOUBT + LOST_SHARE * expected.largest()
         closest = min((expected, with_doubtful, by_speed), key=lambda each: _distance(wheels, each))
         if _distance(wheels, closest) > far:
-            # corrupted, if the robot does what it did before; else it may be a change
+            # if the robot keeps its speed, the reading is corrupted; otherwise the speed may have changed
             share = 1.0 if _distance(expected, by_speed) < far else 0.5
             less = Expected(*(share * (one - other) for one, other in zip(closest, wheels)))
             unsure = Expected(*((1 - share) * abs(each) + DOUBT for each in less))
             return bridged(less, less, self.width)._replace(
                 distance_variance=sum(each ** 2 for each in unsure) / 4,
                 angle_variance=sum(each ** 2 for each in unsure) / self.width ** 2)
-        # one bit of the two low bytes
+        # an undetected error of one bit in the two low bytes
         variance = 2 * self.bad / REPLY_SIZE * DOUBT ** 2
         return Travel(0.0, 0.0, variance / 4, variance / self.width ** 2)
 
     def _read_angle(self, reading: Mapping[str, int], time: float, turn: float) -> tuple[float, float]:
-        """The turn since the last update (rad), and its variance beyond rounding. time: s since the angle was read
-        before; turn: by the commands since the last update."""
+        """Return (turn since the last update in rad, its variance excluding rounding). time: s since the previous
+        reading of the angle; turn: commanded turn since the last update, rad."""
         self.commanded_turn += turn
         if self.asks_angle:
             whole = self.fractions.add(degrees(self.commanded_turn), reading['angle'], time)
@@ -256,14 +256,15 @@ class CounterTravel:
             angle, coarse, self.angle_time = turn, True, time
             self.returned_turn += turn
         angle += radians(self.fractions.make_up())
-        # what was returned so far was off by as much as the angle is now
+        # the turn returned before was wrong by about as much as the angle differs now
         variance = (angle - turn) ** 2 / 4 + (self.rounding[1] ** 2 if self.asks_angle else 0.0)
         return angle, variance if coarse else 0.0
 
     def _resolve(self, wheels: Expected, expected: Expected) -> Travel:
-        """The Travel that doubtful queries cost. wheels: the travel that was read at last.
+        """Return the Travel lost by doubtful queries. wheels: the travel that was read afterwards.
 
-        If they did not arrive, this includes the travel before them. If that cannot be seen: half, give or take half.
+        If they did not arrive, `wheels` includes the travel before them. If this is unclear, the result is half of that
+        travel, plus or minus half.
         """
         doubtful = self.doubtful
         size = doubtful.largest()
@@ -296,5 +297,5 @@ class CounterTravel:
 
 
 def travel_of(model: Model, fractions: Fractions) -> EncoderTravel | CounterTravel:
-    """What a robot of this Model counts. fractions: of a robot without encoders."""
+    """Return the Counter for a robot of this Model. fractions: used for a robot without encoders."""
     return EncoderTravel(model) if model.counts_per_metre else CounterTravel(model, fractions)

@@ -1,1 +1,1 @@
-"""An emulated iRobot Create at the other end of a serial line."""
+"""An emulated iRobot Create on a serial line."""

@@ -1,4 +1,4 @@
-"""The body of an emulated Create: wheels, gyro, switches and battery, and what the robot's sensors say of them."""
+"""The body of an emulated Create: wheels, gyro, switches and battery, with the sensor values that result."""
 from __future__ import annotations
 
 from math import degrees, floor, trunc
@@ -13,13 +13,13 @@ from rbx1_nav.units import SECOND
 class BodyErrors(NamedTuple):
     """True errors of a robot, as factors."""
 
-    gyro_sensitivity: float = 1.0   # what the gyro's signal shows, of its nominal value
-    wheel_travel: float = 1.0       # what the encoders count, of the wheels' true travel
-    wheel_base: float = 1.0         # the true distance of the wheels, of its nominal value
+    gyro_sensitivity: float = 1.0   # gyro signal relative to its nominal value
+    wheel_travel: float = 1.0       # travel counted by the encoders relative to the true wheel travel
+    wheel_base: float = 1.0         # true wheel separation relative to its nominal value
 
 
 class Quirks(NamedTuple):
-    """How some robots differ from the documents."""
+    """Differences between some robots and the documents."""
 
     mode_plus_one: bool = False     # packet 35 is the mode plus one, as on a Roomba 642 (create_robot issue 64)
     # each reading of the angle starts at 0 and loses the fraction of a degree, as on a Create (libcreate issue 22,
@@ -27,14 +27,14 @@ class Quirks(NamedTuple):
     drops_fractions: bool = False
 
 
-FINE = 1e6              # ticks per metre: the wheels travel without steps, and the encoders here count
-ADC_ZERO = 512          # the gyro's signal at rest, of 0 to 1023
+FINE = 1e6              # ticks per meter of the simulated wheels: practically no rounding, since this file counts
+ADC_ZERO = 512          # gyro signal at rest, in the range 0 to 1023
 CAPACITY = 3000         # mAh
 EMPTY, FULL = 13.0, 16.5    # V
 CHARGING, RESTING, MOVING = 1500, -300, -1000     # mA: current of the battery
 FLOOR, NO_FLOOR = 1500, 20  # signals of a cliff sensor
 
-# values of packets that are not 0 and never change
+# packet values that are not 0 and never change
 CONSTANT = {'temperature': 25, 'capacity': CAPACITY, **dict.fromkeys(
     ('cliff_left_signal', 'cliff_front_left_signal', 'cliff_front_right_signal', 'cliff_right_signal'), FLOOR)}
 # nothing received; weak pull-ups on the digital inputs
@@ -42,7 +42,7 @@ CONSTANT_1 = {'infrared': 255, 'digital_inputs': 15}
 
 
 class Tally:
-    """A sum that is read in whole units. What is left over counts for the next reading."""
+    """A sum that is read in whole units. The remainder is kept for the next reading."""
 
     def __init__(self) -> None:
         self.total = 0.0
@@ -50,17 +50,17 @@ class Tally:
 
     @property
     def pending(self) -> int:
-        """What take() will return."""
+        """The value that take() will return."""
         return max(-32768, min(32767, floor(self.total + 0.5) - round(self._read)))
 
     def take(self) -> int:
-        """The whole units since the last call, at most what 16 bits hold."""
+        """Return the whole units since the last call, limited to 16 bits."""
         value, self._read = self.pending, floor(self.total + 0.5)
         return value
 
 
 class DroppingTally(Tally):
-    """A sum whose readings each start at 0: what is left over is lost."""
+    """A sum whose readings each start at 0, so that the remainder is lost."""
 
     @property
     def pending(self) -> int:
@@ -76,12 +76,12 @@ class Body:
 
     def __init__(self, model: Model, surface: Surface | None = None, seed: int = 0, errors: BodyErrors = BodyErrors(),
                  gyro_range: float = 150.0, quirks: Quirks = Quirks()) -> None:
-        """model: a protocol.Model; surface, seed: see simulation/base.py, make_base(); gyro_range: degrees/s."""
+        """model: a protocol.Model; surface, seed: see make_base() in simulation/base.py; gyro_range: degrees/s."""
         self.model = model
         self.errors = errors
         self.gyro_range = gyro_range
         self.quirks = quirks
-        self.gyro_stuck = -1                # 0 to 1023: the analog input has this value whatever the gyro measures
+        self.gyro_stuck = -1                # 0 to 1023: fixed value of the analog input; negative: the gyro works
         self.wheels, self.gyro = make_wheels_and_gyro(
             model.wheel_separation * errors.wheel_base, surface._replace(ticks_meter=FINE) if surface else None, seed,
             UPDATE_PERIOD)
@@ -92,14 +92,14 @@ class Body:
         self.reset_counters()
 
     def reset_counters(self) -> None:
-        """Everything that the robot counts starts at 0."""
+        """Reset all counters of the robot to 0."""
         self._counted_left = self._counted_right = 0.0  # m
         self.distance = Tally()     # mm
         self.angle = DroppingTally() if self.quirks.drops_fractions else Tally()    # degrees
         self.values: dict[str, int] = dict.fromkeys((packet.name for packet in self.model.packets.values()), 0)
 
     def drive(self, left: float, right: float) -> None:
-        """Set the speeds of the wheels, mm/s by their encoders."""
+        """Set the wheel speeds, mm/s as counted by the encoders."""
         self.left, self.right = left, right
 
     @property
@@ -109,7 +109,7 @@ class Body:
 
     @property
     def velocity(self) -> tuple[float, float]:
-        """The commanded speeds as those of the true robot without slip, m/s and rad/s."""
+        """The true velocity at the commanded speeds without slip, m/s and rad/s."""
         left, right = (speed / 1000 / self.errors.wheel_travel for speed in (self.left, self.right))
         return (left + right) / 2, (right - left) / self.wheels.base_width
 
@@ -123,10 +123,10 @@ class Body:
         self._counted_right += right * self.errors.wheel_travel
 
     def sample(self, duration: float, charging: bool) -> None:
-        """Sense, `duration` (s) after the last time: afterwards `values` has what the packets say, by their names.
+        """Update `values`, the packet values by name, `duration` (s) after the previous call.
 
-        Distance and angle are not among them, since they change as they are read. charging: whether a charger would
-        charge the battery.
+        Distance and angle are not included, since reading them changes them. charging: whether a charger would charge
+        the battery.
         """
         left, right = self._counted_left, self._counted_right
         self.distance.total = 1000 * (left + right) / 2
@@ -147,7 +147,7 @@ class Body:
         if self.cliff:
             self.values.update(cliff_front_left_signal=NO_FLOOR, cliff_front_right_signal=NO_FLOOR)
         if self.model is CREATE:
-            # the TurtleBot's board with the gyro is on this robot only
+            # only this robot has the TurtleBot's board with the gyro
             signal = max(0, min(1023, round(ADC_ZERO * (1 - rate / self.gyro_range))))
             self.values.update(CONSTANT_1, analog_input=signal if self.gyro_stuck < 0 else self.gyro_stuck)
         else:
@@ -160,7 +160,7 @@ class Body:
         return floor(travel * (self.model.counts_per_metre or 0) + 0.5) & 0xffff
 
     def _use_battery(self, duration: float, charging: bool) -> int:
-        """Charge or discharge the battery for `duration` (s); returns the current in mA."""
+        """Charge or discharge the battery for `duration` (s). Returns the current in mA."""
         if charging:
             current = CHARGING if self.charge < CAPACITY else 0
         else:

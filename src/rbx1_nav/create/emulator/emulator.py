@@ -1,4 +1,4 @@
-"""An emulated Create: what the robot's electronics do with the bytes on its serial line. All times are in ns."""
+"""An emulated Create: the robot's electronics, which execute the bytes on its serial line. All times are in ns."""
 from __future__ import annotations
 
 from math import inf
@@ -15,12 +15,12 @@ from rbx1_nav.create.protocol import (
 from rbx1_nav.units import SECOND, clamp
 
 TICK = round(UPDATE_PERIOD * SECOND)
-BOOT_TIME = SECOND      # the robot hears nothing for so long after it was switched on
-CREATE_RESET_TIME = 3 * SECOND      # the same after a reset of a Create, whose boot loader takes 3 s (Create p. 10)
-# the Create 2 names its firmware
+BOOT_TIME = SECOND      # time after power-on during which the robot receives nothing
+CREATE_RESET_TIME = 3 * SECOND      # this time after a reset of a Create: its boot loader takes 3 s (Create p. 10)
+# text with the firmware version, which the Create 2 sends at power-on
 BOOT_TEXT = b'bl-start\r\nSTR730\r\nRoomba by iRobot!\r\nr3_robot/tags/release-3.5.4\r\n'
-INPUT_SIZE = 3 + 2 * 255    # bytes that wait while a script does; a song of 255 notes, the longest command, must fit
-MAX_NOTES = 16          # of a song (Create p. 11, Create 2 p. 20)
+INPUT_SIZE = 3 + 2 * 255    # bytes that are buffered while a script waits; the longest command, 255 notes, must fit
+MAX_NOTES = 16          # in a song (Create p. 11, Create 2 p. 20)
 MAX_FRAME = 255         # data bytes in a frame of the stream
 MAX_PWM = 255
 ROBOT_RADIUS = 0.165    # m
@@ -29,7 +29,8 @@ PAIR = Struct('>hh')
 
 
 def command_size(model: Model, data: bytes | bytearray) -> int | None:
-    """How many bytes the command has with which data begins; None as long as there are too few to know."""
+    """Return the size in bytes of the command at the start of `data`; None if there are too few bytes to determine it.
+    """
     size = model.commands[data[0]].size
     if isinstance(size, int):
         return 1 + size
@@ -39,19 +40,19 @@ def command_size(model: Model, data: bytes | bytearray) -> int | None:
 
 
 class EmulatedCreate:
-    """The robot at the end of a SerialLine."""
+    """The robot on a SerialLine."""
 
     def __init__(self, model: Model, body: Body, line: SerialLine, now: int,
                  on_command: Callable[[int, bytes], None] | None = None) -> None:
-        """line: at the baud rate that the robot starts with.
+        """line: at the robot's initial baud rate.
 
-        on_command(time, data): called with the bytes of each command that arrives, also of those that are ignored.
+        on_command(time, data): called with the bytes of each command that arrives, even if the robot ignores it.
         """
         self.model = model
         self.body = body
         self.line = line
         self.on_command = on_command or (lambda time, data: None)
-        # data bytes of the latest command to LEDs, drivers and the like, by its name
+        # data bytes of the latest command to each output (LEDs, drivers, ...), by the name of the command
         self.outputs: dict[str, bytes] = {}
         self.programs = Programs(body)
         self._baud = line.baud
@@ -59,7 +60,7 @@ class EmulatedCreate:
         self._start(now)
 
     def switch_on(self, now: int) -> None:
-        """Start again, as after the battery was put in."""
+        """Restart, as after inserting the battery."""
         self._start(now)
         self._deaf_until = now + BOOT_TIME
         if self.model is not CREATE:
@@ -87,18 +88,18 @@ class EmulatedCreate:
     # time
 
     def receive(self, data: bytes, now: int) -> None:
-        """The host sends bytes."""
+        """Receive bytes that the host sends."""
         self._run(now)
         self.line.from_host(data, now)
 
     def advance(self, now: int) -> bytes:
-        """Go on to `now`. Returns the bytes that have arrived at the host."""
+        """Advance to `now`. Returns the bytes that have arrived at the host."""
         self._run(now)
         return self.line.received(now)
 
     @property
     def next_time(self) -> int:
-        """When advance() has something to do next."""
+        """The time at which advance() next has something to do."""
         times = (self._next_update, self.line.next_to_robot, self.line.next_to_host)
         return min(time for time in times if time is not None)
 
@@ -120,10 +121,10 @@ class EmulatedCreate:
         self.now = max(time, self.now)
         self.body.advance(self.now)
 
-    # what happens every 15 ms
+    # the update every 15 ms
 
     def _update(self) -> None:
-        # in the other modes it does not charge (Create 2 p. 7)
+        # the robot charges only in these modes (Create 2 p. 7)
         self.body.sample(UPDATE_PERIOD, self.mode in (OFF, PASSIVE))
         if not self.body.charge:
             self._start(self.now)
@@ -133,13 +134,13 @@ class EmulatedCreate:
         if self.programs.running:
             self._drive_curve(*self.programs.update(self.now))
         self._input[:0] = self._scripts.update(self.now)
-        del self._input[INPUT_SIZE + MAX_SCRIPT:]   # a script may play itself again and again before its last command
+        del self._input[INPUT_SIZE + MAX_SCRIPT:]   # a script may play itself repeatedly before its last command
         self._execute()
         if self._streaming:
             self.line.from_robot(encode_frame(self.model, self._stream, self._values(self._stream)), self.now)
 
     def _unsafe(self) -> bool:
-        """Whether something has happened that ends safe mode (Create p. 6, Create 2 p. 7)."""
+        """Return whether something has happened that stops safe mode (Create p. 6, Create 2 p. 7)."""
         body = self.body
         linear, angular = body.velocity
         small_radius = abs(linear) < abs(angular) * ROBOT_RADIUS
@@ -162,11 +163,11 @@ class EmulatedCreate:
         self._execute()
 
     def _execute(self) -> None:
-        """Execute the commands that are complete, up to one that waits."""
+        """Execute the complete commands, up to one that waits."""
         while self._input and not self._scripts.waiting:
             command = self.model.commands.get(self._input[0])
             if command is None or (self.mode == OFF and OFF not in command.modes):
-                del self._input[0]      # an interface that is off does not count data bytes
+                del self._input[0]      # while the interface is off, data bytes are not skipped
                 continue
             size = command_size(self.model, self._input)
             if size is None or size > len(self._input):
@@ -197,7 +198,7 @@ class EmulatedCreate:
 
     def _do_power(self, _: bytes) -> None:
         self._start(self.now)
-        self._deaf_until = inf      # until it is switched on
+        self._deaf_until = inf      # until power-on
 
     def _do_stop(self, _: bytes) -> None:
         self._streaming = False
@@ -218,13 +219,13 @@ class EmulatedCreate:
         self._drive_curve(velocity, radius)
 
     def _drive_curve(self, velocity: float, radius: float) -> None:
-        """velocity: mm/s; radius: mm, with the special values of the command Drive."""
+        """Drive in a curve. velocity: mm/s; radius: mm, or a special value of the Drive command."""
         if radius in STRAIGHT:
             self._drive(velocity, velocity)
         elif radius in (IN_PLACE_LEFT, IN_PLACE_RIGHT):
             self._drive(-velocity * radius, velocity * radius)
         else:
-            # a radius of 0 has no meaning in the documents
+            # the documents do not define a radius of 0
             half = 500 * self.model.wheel_separation / radius if radius else 0
             self._drive(velocity * (1 - half), velocity * (1 + half))
 
@@ -240,9 +241,9 @@ class EmulatedCreate:
     # sensors
 
     def _values(self, numbers: Sequence[int]) -> dict[str, int]:
-        """The values of all packets, by name. Those that are requested are read, which starts a new distance and angle.
+        """Return the values of all packets, by name. Reading a requested distance or angle restarts its count.
 
-        numbers: of packets and groups.
+        numbers: requested packets and groups.
         """
         body = self.body
         names = {packet.name for packet in single_packets(self.model, numbers)}

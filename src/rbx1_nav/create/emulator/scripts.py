@@ -1,4 +1,4 @@
-"""Scripts of the Create: one that is stored, when it is played, and what it waits for."""
+"""Scripts of the Create: storing a script, playing it, and waiting for conditions."""
 from __future__ import annotations
 
 from functools import partial
@@ -17,11 +17,11 @@ Condition = Callable[[Mapping[str, int]], bool]     # of the packets' values by 
 
 
 def _bits(mask: int, *names: str) -> Condition:
-    """Whether a bit is set in a packet."""
+    """Return the Condition that a bit of the mask is set in one of the packets."""
     return lambda values: any(values[name] & mask for name in names)
 
 
-# by their numbers, from 1 on (Create p. 16)
+# in the order of their numbers, which start at 1 (Create p. 16)
 EVENTS = (
     _bits(28, BUMPS), _bits(16, BUMPS), _bits(8, BUMPS), _bits(4, BUMPS),   # wheel drops: any, front, left, right
     _bits(3, BUMPS), _bits(2, BUMPS), _bits(1, BUMPS),                      # bumps: any, left, right
@@ -35,9 +35,9 @@ EVENTS = (
 
 
 def event(byte: int) -> Condition | None:
-    """The condition that a data byte of Wait Event stands for.
+    """Return the Condition for a data byte of Wait Event; None for an undefined number.
 
-    A negative number is the inverse of an event. None for a number without a meaning.
+    A negative number is the inverse of an event.
     """
     number = byte - 256 if byte > 127 else byte
     if not 1 <= abs(number) <= len(EVENTS):
@@ -47,24 +47,24 @@ def event(byte: int) -> Condition | None:
 
 
 class Scripts:
-    """The script of a robot. do_...() are commands, and get their data bytes."""
+    """The script of a robot. The do_...() methods execute commands, whose data bytes they receive."""
 
     def __init__(self, body: Body, values: Callable[[], Mapping[str, int]]) -> None:
-        """values(): the values of all packets, by name."""
+        """values(): returns the values of all packets, by name."""
         self.body = body
         self.values = values
         self.stored = b''
         self._now = 0
         self._due = False
-        self._wait: Callable[[int], bool] | None = None     # whether a wait is over, at a time in ns
+        self._wait: Callable[[int], bool] | None = None     # returns whether the wait is over at a time (ns)
 
     @property
     def waiting(self) -> bool:
-        """Whether a command keeps the next ones waiting."""
+        """Whether a command delays the commands that follow it."""
         return self._wait is not None
 
     def update(self, now: int) -> bytes:
-        """To be called every 15 ms: returns the commands that are now to be executed next."""
+        """Return the commands to be executed next. Call it every 15 ms."""
         self._now = now
         if self._wait and self._wait(now):
             self._wait = None
@@ -79,7 +79,7 @@ class Scripts:
             self.stored = data[1:]
 
     def do_play_script(self, _: bytes) -> None:
-        """Play it at the next update, so that one that plays itself leaves time for other commands."""
+        """Play the script at the next update, so that a script that plays itself leaves time for other commands."""
         self._due = True
 
     def do_wait_time(self, data: bytes) -> None:
@@ -88,11 +88,11 @@ class Scripts:
         self._wait = lambda now: now >= end
 
     def do_wait_distance(self, data: bytes) -> None:
-        """Wait for mm."""
+        """Wait for a distance in mm."""
         self._wait_for(self.body.distance, *WORD.unpack(data))
 
     def do_wait_angle(self, data: bytes) -> None:
-        """Wait for degrees."""
+        """Wait for an angle in degrees."""
         self._wait_for(self.body.angle, *WORD.unpack(data))
 
     def do_wait_event(self, data: bytes) -> None:
@@ -105,5 +105,5 @@ class Scripts:
         return condition(self.values())
 
     def _wait_for(self, tally: Tally, goal: int) -> None:
-        tally.take()        # the packets start anew too
+        tally.take()        # this also restarts the count in the packet
         self._wait = lambda _: tally.pending >= goal if goal > 0 else tally.pending <= goal

@@ -1,4 +1,4 @@
-"""The serial line of an emulated robot: bytes arrive at the line's rate, and at the wrong baud rate as garbage.
+"""The serial line of an emulated robot. Bytes arrive at the rate of the line, and as garbage at the wrong baud rate.
 
 All times are in ns.
 """
@@ -10,14 +10,14 @@ from typing import Deque, Tuple
 
 from rbx1_nav.units import SECOND
 
-BITS = 10           # of a byte on the line: start bit, 8 data bits, stop bit
-BUFFER_SIZE = 1024  # bytes that wait to be sent; those beyond are lost, which corrupts a stream that is too long
+BITS = 10           # bits per byte on the line: start bit, 8 data bits, stop bit
+BUFFER_SIZE = 1024  # bytes that wait to be sent; further bytes are lost, which corrupts a stream that is too long
 
 
 def misread(data: bytes, sent_at: int, read_at: int) -> bytes:
-    """The bytes that a receiver at the baud rate `read_at` reads of data that was sent at `sent_at`.
+    """Return the bytes that a receiver at the baud rate `read_at` reads when `data` is sent at `sent_at`.
 
-    It waits for a start bit, and then looks at the line in the middle of what it takes for each bit.
+    The receiver waits for a start bit, and then samples the line in the middle of each bit at its own rate.
     """
     if sent_at == read_at:
         return bytes(data)
@@ -42,20 +42,20 @@ class SerialLine:
     """Both directions of a serial line between a host and the robot."""
 
     def __init__(self, baud: int, seed: int = 0) -> None:
-        """baud: of the robot, bits per second; seed: of the corruption."""
+        """baud: baud rate of the robot, bits per second; seed: seed of the random corruption."""
         self.baud = baud
         self.host_baud = baud
         self.corruption = 0.0   # fraction of the bytes to the host that are flipped, lost or doubled
-        self.silent = False     # whether nothing comes through, either way
+        self.silent = False     # whether the line is dead in both directions
         self._random = random.Random(f'line {seed}')
-        self._to_robot: TimedBytes = deque()    # with the time at which each has arrived
+        self._to_robot: TimedBytes = deque()    # with the arrival time of each byte
         self._to_host: TimedBytes = deque()
         self._last_to_robot = self._last_to_host = 0
-        self._waiting: TimedBytes = deque()     # with the time at which each leaves the host
-        self._rate = baud           # at which they would leave
+        self._waiting: TimedBytes = deque()     # with the time at which each byte leaves the host
+        self._rate = baud           # host baud rate for which the waiting bytes were scheduled
 
     def from_host(self, data: bytes, now: int) -> None:
-        """The host sends bytes."""
+        """Send bytes from the host."""
         if self.silent:
             return
         data = self._recall(now) + data
@@ -68,7 +68,7 @@ class SerialLine:
                            for index, byte in enumerate(received, 1)]
 
     def _recall(self, now: int) -> bytes:
-        """The bytes that still wait at the host, if its rate has changed: they leave at the new one."""
+        """Return the bytes that still wait at the host if its rate has changed; they are sent at the new rate."""
         while self._waiting and self._waiting[0][0] <= now:
             self._waiting.popleft()
         if self._rate == self.host_baud:
@@ -83,7 +83,7 @@ class SerialLine:
         return data
 
     def from_robot(self, data: bytes, now: int) -> None:
-        """The robot sends bytes."""
+        """Send bytes from the robot."""
         period = BITS * SECOND // self.baud
         time = max(now, self._last_to_host)
         for byte in data[:max(0, BUFFER_SIZE - (time - now) // period)]:
@@ -93,20 +93,20 @@ class SerialLine:
 
     @property
     def next_to_robot(self) -> int | None:
-        """When the next byte has arrived at the robot, or None."""
+        """The time at which the next byte arrives at the robot, or None."""
         return self._to_robot[0][0] if self._to_robot else None
 
     @property
     def next_to_host(self) -> int | None:
-        """When the next byte has arrived at the host, or None."""
+        """The time at which the next byte arrives at the host, or None."""
         return self._to_host[0][0] if self._to_host else None
 
     def receive_byte(self) -> int:
-        """The next byte that arrives at the robot."""
+        """Return the next byte that arrives at the robot."""
         return self._to_robot.popleft()[1]
 
     def received(self, now: int) -> bytes:
-        """The bytes that have arrived at the host since the last call."""
+        """Return the bytes that have arrived at the host since the last call."""
         data = bytearray()
         while self._to_host and self._to_host[0][0] <= now:
             data.append(self._to_host.popleft()[1])

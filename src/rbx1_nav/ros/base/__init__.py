@@ -1,1 +1,1 @@
-"""What bases use."""
+"""Building blocks of base nodes."""

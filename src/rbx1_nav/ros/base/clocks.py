@@ -1,4 +1,4 @@
-"""The clocks that a base may run on."""
+"""The clocks that a base can run on."""
 from __future__ import annotations
 
 import time
@@ -14,7 +14,7 @@ from rbx1_nav.schedule import Schedule
 
 
 def wait_for_beat(beat: float, period: float) -> float:
-    """Wait until `period` after `beat` (s of the monotonic clock); returns that time, or the present one if it is
+    """Wait until `period` after `beat` (s of the monotonic clock); return that time, or the current time if it is
     later."""
     beat = max(beat + period, time.monotonic())
     while time.monotonic() < beat and not life.end_requested.is_set():
@@ -23,35 +23,38 @@ def wait_for_beat(beat: float, period: float) -> float:
 
 
 class Clock:
-    """What all clocks have. Here, a command takes effect as it arrives."""
+    """Interface of all clocks. In this class, a command takes effect when it arrives."""
 
     def now(self) -> int:
-        """ns on the clock that motion is measured by."""
+        """Return the time of the clock that measures motion, ns."""
         raise NotImplementedError
 
     def stamp(self) -> rospy.Time:
-        """The same moment as a rospy.Time, for message headers."""
+        """Return the current time as a rospy.Time, for message headers."""
         raise NotImplementedError
 
     def run(self, step: Callable[[], None]) -> None:
-        """Call step() at the rate of the odometry until the node is to end."""
+        """Call step() at the rate of the odometry until shutdown is requested."""
         raise NotImplementedError
 
-    # Any: the clock passes on commands and connections of rospy, and looks into neither
+    # Any: the clock passes on commands and rospy's connections without using their contents
     def set_driver(self, apply: Callable[[Any], None], connections: Callable[[], Any]) -> None:
-        """apply(command): puts a command in force; connections(): to publishers of cmd_vel."""
+        """Set the functions of the driver.
+
+        apply(command): puts a command in force; connections(): returns the connections to publishers of cmd_vel.
+        """
         self.apply, self.connections = apply, connections
 
     def command(self, _: Twist, command: Any) -> None:
-        """Call apply(command) when a received command is to take effect. The Twist is the message that brought it."""
+        """Call apply(command) when a received command takes effect. The Twist is the message with the command."""
         self.apply(command)
 
     def diagnose(self, status: DiagnosticStatus) -> None:
-        """Add to a DiagnosticStatus."""
+        """Add the state of the clock to a DiagnosticStatus."""
 
 
 class RealTimeClock(Clock):
-    """Motion on the monotonic clock, which nobody can set; stamps in ROS time."""
+    """Measures motion on the monotonic clock, which cannot be set; stamps are in ROS time."""
 
     def __init__(self, rate: float) -> None:
         self.rate = rate
@@ -70,7 +73,7 @@ class RealTimeClock(Clock):
 
 
 class HardwareClock(RealTimeClock):
-    """For a real robot: it moves on while the computer is suspended, and so does this clock."""
+    """Clock for a real robot, which keeps moving while the computer is suspended; this clock keeps running, too."""
 
     def now(self) -> int:
         return time.clock_gettime_ns(time.CLOCK_BOOTTIME)

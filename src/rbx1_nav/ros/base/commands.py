@@ -1,4 +1,4 @@
-"""The commands that a base subscribes to, on their way through its gate."""
+"""Receives the commands of a base and passes them through its gate."""
 from __future__ import annotations
 
 from threading import Lock
@@ -18,26 +18,25 @@ from rbx1_nav.ros.base.clocks import Clock
 from rbx1_nav.ros.network.refusals import Refusals
 from rbx1_nav.units import SECOND
 
-RECENT = SECOND * 3 // 2    # ns: a node whose last command is older than that does not drive; rests last 1 s
+RECENT = SECOND * 3 // 2    # ns: a node whose last command is older is not driving; rests last 1 s
 
-# linear in m/s, angular in rad/s, the velocities that the base cannot follow, the name of its sender
+# linear velocity (m/s), angular velocity (rad/s), velocities that the base cannot follow, name of the sender
 Command = Tuple[float, float, Tuple[float, float, float, float], str]
 
 
 class Base(Protocol):
-    """What follows commands."""
+    """Interface of a base that follows commands."""
 
     def command(self, now: int, linear: float, angular: float, others: Sequence[float], sender: str) -> bool:
-        """Put a command in force at `now` (ns). Returns whether it was clamped. Raises RejectedCommand,
+        """Put a command in force at `now` (ns); return whether it was clamped. Raises RejectedCommand,
         RefusedCommand."""
 
 
 class VelocityCommands:
-    """The subscription to cmd_vel: logs what the gate does to a command, and tells a sender that the base refuses
-    it."""
+    """Subscribes to cmd_vel, logs what the gate does with a command, and informs the sender of a refused command."""
 
     def __init__(self, base: Base, gate: CommandGate, clock: Clock, lock: Lock) -> None:
-        """gate, lock: of the base."""
+        """gate, lock: the CommandGate and the lock of the base."""
         self.base = base
         self.gate = gate
         self.clock = clock
@@ -56,17 +55,17 @@ class VelocityCommands:
 
     # Any: rospy has no types
     def connections(self) -> list[Any]:
-        """rospy's present connections to publishers of cmd_vel."""
+        """Return rospy's current connections to publishers of cmd_vel."""
         return self.subscriber.impl.connections if self.subscriber else []
 
     def on_twist(self, twist: Twist) -> None:
-        """A command arrives: the clock decides when it is put in force."""
+        """Process a command; the clock determines when it takes effect."""
         self.sender = header = twist._connection_header
         command = messages.from_twist(twist)
         text = self.senders.contradiction(self.clock.now(), header, header['callerid'], command[:2],
                                           lambda: [connection.header for connection in self.connections()])
         if text:
-            rospy.logwarn_throttle(5, f'{self.topic}: {text}: expected one node that drives')
+            rospy.logwarn_throttle(5, f'{self.topic}: contradictory commands: {text}: expected only one driving node')
         self.clock.command(twist, command + (header['callerid'],))
 
     def apply(self, command: Command) -> None:
@@ -76,11 +75,11 @@ class VelocityCommands:
             with self.lock:
                 clamped = self.base.command(self.clock.now(), *command)
         except RejectedCommand as error:
-            rospy.logerr_throttle(1, f'{self.topic}: {error}; rejected, and the base stopped')
+            rospy.logerr_throttle(1, f'{self.topic}: {error}; rejected, base stopped')
             self.refusals.add(sender, str(error))
             return
         except RefusedCommand as error:
-            rospy.logwarn_throttle(5, f'{self.topic}: refused a command of {sender}: {error}')
+            rospy.logwarn_throttle(5, f'{self.topic}: refused a command from {sender}: {error}')
             self.refusals.add(sender, str(error))
             return
         if clamped:
@@ -92,7 +91,7 @@ class VelocityCommands:
                                       'differential drive cannot follow these, expected 0; ignored')
 
     def driver(self) -> str | None:
-        """The name of the node that drives the base now, also while it rests between two motions; None if none does."""
+        """Return the name of the node that is driving the base, also while it rests between two motions, or None."""
         last = self.gate.command_time
         if last is None or self.clock.now() - last > RECENT:
             return None
@@ -100,11 +99,11 @@ class VelocityCommands:
                      if connection.header is self.sender), None)
 
     def log_timeout(self) -> None:
-        """Log that the command in force timed out."""
+        """Log that the current command has timed out."""
         rospy.logwarn_throttle(10, f'{self.topic}: no command for {self.gate.timeout / SECOND:g} s: stopped')
 
     def diagnose(self, status: DiagnosticStatusWrapper) -> None:
-        """Add the gate's values."""
+        """Add the values of the gate to a DiagnosticStatus."""
         gate, now = self.gate, self.clock.now()
         age = 'never' if gate.command_time is None else f'{(now - gate.command_time) / SECOND:.3f}'
         text = self.senders.recent(now, RECENT)

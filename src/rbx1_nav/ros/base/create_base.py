@@ -1,4 +1,4 @@
-"""The base of a Create: connects a Driver with its line and with ROS."""
+"""Connects the Driver of a Create with its serial line and with ROS."""
 from __future__ import annotations
 
 import threading
@@ -27,7 +27,7 @@ LEAVE_TIME = 0.6    # s in which the robot must confirm that it has stopped
 
 
 class CreateBase:
-    """Drives a robot until the node is to end."""
+    """Drives a robot until shutdown is requested."""
 
     def __init__(self, settings: Settings, robot: Robot) -> None:
         gate = CommandGate(robot.limits, robot.timeout)
@@ -42,7 +42,7 @@ class CreateBase:
         self.diagnostics = CreateStatus(Updater(), self.driver, self.link, self.commands)
 
     def run(self) -> bool:
-        """Drive the robot until the node is to end. Returns whether it stands then, as far as is known."""
+        """Drive the robot until shutdown is requested; return whether it is known to be stationary afterwards."""
         while not life.end_requested.is_set():
             self.guarded(self.step)
             if self.diagnostics_schedule.due(self.clock.now()):
@@ -50,7 +50,7 @@ class CreateBase:
         return self.leave()
 
     def guarded(self, step: Callable[[], object]) -> None:
-        """Do a step, and give up the line if it is lost."""
+        """Do a step, and close the line if it is disconnected."""
         try:
             step()
         except OSError as error:
@@ -59,7 +59,7 @@ class CreateBase:
             self.disconnect()
 
     def step(self) -> None:
-        """Process what has arrived, or try to open the line. Raises OSError if it is lost."""
+        """Process the received data, or try to open the line. Raises OSError if the line is disconnected."""
         if not self.link.port:
             if not self.link.open(self.clock.now()):
                 life.sleep(RETRY)
@@ -87,8 +87,8 @@ class CreateBase:
             self.commands.subscribe()
 
     def exchange(self) -> tuple[bool, State | None]:
-        """Receive, and do what is due. Returns whether the command has timed out, and what is to be published. Raises
-        OSError."""
+        """Receive data and advance the driver; return whether the command has timed out, and the State to publish.
+        Raises OSError."""
         data = self.link.read(self.driver.until_tick(self.clock.now()), self.driver.awaited)
         with self.lock:
             now = self.clock.now()
@@ -102,7 +102,7 @@ class CreateBase:
     def publish(self, now: int, state: State) -> None:
         """Publish a State."""
         width = self.driver.model.wheel_separation
-        if self.publisher.robot.base_width != width:    # another robot than expected has answered
+        if self.publisher.robot.base_width != width:    # a different robot than expected has answered
             self.publisher.robot = self.publisher.robot._replace(base_width=width)
         stamp = self.clock.stamp() - rospy.Duration(0, self.clock.now() - state.time)
         self.publisher.publish_odometry(stamp, state.pose, state.velocity, Uncertainty(0.0, 0.0, *state.variances),
@@ -113,13 +113,13 @@ class CreateBase:
             self.publisher.publish_joints(stamp, state.travel, state.velocity)
 
     def disconnect(self) -> None:
-        """Give up the line. Another one will be opened."""
+        """Close the line; the next step opens it again."""
         with self.lock:
             self.driver.detach()
         self.link.close()
 
     def leave(self) -> bool:
-        """Stop the robot for good. Returns whether it has confirmed that, or cannot move."""
+        """Stop the robot for good; return whether it has confirmed the stop, or cannot move."""
         def stop() -> None:
             with self.lock:
                 self.driver.leave(self.clock.now())

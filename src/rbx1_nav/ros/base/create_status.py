@@ -1,4 +1,4 @@
-"""What /diagnostics says of a Create: the base, its battery, its sensors, its gyro and the serial line."""
+"""Reports the state of a Create on /diagnostics: base, battery, sensors, gyro and serial line."""
 from __future__ import annotations
 
 from typing import Mapping
@@ -14,13 +14,13 @@ from rbx1_nav.create.driver.supervisor import BUMPS, CLIFFS, WHEEL_DROPS
 from rbx1_nav.create.driver.travel import CounterTravel
 from rbx1_nav.ros.base.commands import VelocityCommands
 
-LOW, EMPTY = 0.2, 0.05      # of the battery's charge, fractions of its capacity
+LOW, EMPTY = 0.2, 0.05      # levels of the battery's charge, fractions of its capacity
 CHARGING_STATES = ('not charging', 'reconditioning', 'charging', 'trickle charging', 'waiting', 'charging fault')
 OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR
 
 
 def charge_of(reading: Mapping[str, int]) -> float | None:
-    """The charge of the battery, a fraction; None if the robot does not know its capacity."""
+    """Return the charge of the battery as a fraction; None if the robot reports no capacity."""
     return reading['charge'] / reading['capacity'] if reading['capacity'] else None
 
 
@@ -31,7 +31,7 @@ class CreateStatus:
         self.driver, self.link, self.commands = driver, link, commands
         self.battery_level = OK     # the last one
         self.updater = updater
-        self.shows_gyro = False     # not before a robot with one was found
+        self.shows_gyro = False     # True as soon as a robot with a gyro has been found
         updater.setHardwareID(link.path)
         for title, function in (('Base', self.base), ('Battery', self.battery), ('Sensors', self.sensors),
                                 ('Serial line', self.line)):
@@ -45,7 +45,7 @@ class CreateStatus:
         self.updater.force_update()
 
     def base(self, status: DiagnosticStatusWrapper) -> DiagnosticStatusWrapper:
-        """Mode and commands."""
+        """Fill in the status of mode and commands."""
         driver, supervisor = self.driver, self.driver.supervisor
         if self.link.problem:
             status.summary(ERROR, self.link.problem)
@@ -54,7 +54,7 @@ class CreateStatus:
         elif not supervisor.in_control:
             status.summary(WARN, f"Not driven: {supervisor.reason or 'changing the mode'}")
         else:
-            status.summary(OK, 'Standing' if driver.motion.stands else 'Moving')
+            status.summary(OK, 'Stationary' if driver.motion.stands else 'Moving')
         found = driver.contact.found
         status.add('Robot type', found.model.name if found else 'unknown')
         if driver.polled and isinstance(driver.counter, CounterTravel):
@@ -64,11 +64,11 @@ class CreateStatus:
         status.add('Speed of the left wheel (mm/s)', driver.commanded.speeds[0])
         status.add('Speed of the right wheel (mm/s)', driver.commanded.speeds[1])
         self.commands.diagnose(status)
-        status.add('Commands above the speed of a wheel', driver.saturated)
+        status.add('Commands above the wheel speed limit', driver.saturated)
         return status
 
     def battery(self, status: DiagnosticStatusWrapper) -> DiagnosticStatusWrapper:
-        """Charge, voltage and the rest."""
+        """Fill in the status of the battery."""
         reading = self._reading(status)
         if not reading:
             return status
@@ -92,14 +92,14 @@ class CreateStatus:
         return status
 
     def sensors(self, status: DiagnosticStatusWrapper) -> DiagnosticStatusWrapper:
-        """Bumpers, wheel drops and cliffs."""
+        """Fill in the status of bumpers, wheel drops and cliff sensors."""
         reading = self._reading(status)
         if not reading:
             return status
         bits = reading['bumps_and_wheel_drops']
         cliffs = [name for name in CLIFFS if reading[name]]
         found = [name for name, mask in (('bumper', BUMPS), ('wheel drop', WHEEL_DROPS)) if bits & mask] + cliffs
-        status.summary(WARN if found else OK, ', '.join(found).replace('_', ' ') or 'Nothing touched')
+        status.summary(WARN if found else OK, ', '.join(found).replace('_', ' ') or 'No bump, wheel drop or cliff')
         for name, bit in (('Bumper left', protocol.BUMP_LEFT), ('Bumper right', protocol.BUMP_RIGHT),
                           ('Wheel drop left', protocol.WHEEL_DROP_LEFT),
                           ('Wheel drop right', protocol.WHEEL_DROP_RIGHT),
@@ -111,7 +111,7 @@ class CreateStatus:
         return status
 
     def gyro(self, status: DiagnosticStatusWrapper) -> DiagnosticStatusWrapper:
-        """The gyro's present reading and its offset."""
+        """Fill in the status of the gyro: its current reading and its offset."""
         gyro = self.driver.gyro
         if not gyro:
             return status
@@ -130,7 +130,7 @@ class CreateStatus:
         return status
 
     def line(self, status: DiagnosticStatusWrapper) -> DiagnosticStatusWrapper:
-        """What went wrong on the line."""
+        """Fill in the status of the serial line: the errors on it."""
         driver = self.driver
         if self.link.problem:
             status.summary(ERROR, self.link.problem)
@@ -141,7 +141,7 @@ class CreateStatus:
         status.add('Rate (baud)', self.link.baud)
         status.add('Settings changed by other processes', self.link.changes)
         status.add('Corrupted readings', driver.reader.rejected)
-        status.add('Bytes in no reading', driver.reader.skipped)
+        status.add('Bytes outside readings', driver.reader.skipped)
         status.add('Implausible readings', driver.implausible)
         status.add('Lost replies', driver.queries.missed)
         status.add('Dropouts', driver.contact.dropouts)

@@ -1,4 +1,4 @@
-"""The nodes that drive a base on its own simulated clock, and whether they have done what a tick has woken them for."""
+"""Watches the nodes that drive a base on its own simulated clock: whether they have finished the work of a tick."""
 from __future__ import annotations
 
 import socket
@@ -16,42 +16,42 @@ from rbx1_nav.ros.network.processes import (
 from rbx1_nav.ros.network.tcp import unread_bytes
 
 MASTER = 'the master'
-CONNECT_TIME = 1.0      # s of wall time that a new connection of cmd_vel is waited for
-UPSTREAM_PERIOD = 1.0   # s of wall time between two looks at who publishes what
+CONNECT_TIME = 1.0      # s of wall time to wait for a new connection of cmd_vel
+UPSTREAM_PERIOD = 1.0   # s of wall time between two queries of the publishers of all topics
 
 
 class DrivingNodes:
-    """Watches the processes of the nodes that publish commands, and of those that they may wait for.
+    """Watches the processes of the nodes that publish commands, and the processes that they may wait for.
 
-    These are the publishers of what they subscribe to (a multiplexer passes on commands of others), their publishers,
-    and so on; the master, for parameters; and this node itself, where messages are sent and received. The methods
-    belong to the thread that runs the clock.
+    These are the publishers of the topics that the nodes subscribe to (a multiplexer passes on commands from others),
+    their publishers, and so on; the master, which serves parameters; and this node, which sends and receives messages.
+    The methods must be called by the thread that runs the clock.
     """
 
     # Any: rospy has no types
     def __init__(self, topic: str, connections: Callable[[], list[Any]],
                  clock_connections: Callable[[], list[Any]]) -> None:
-        """topic: the name of cmd_vel; connections(): to its publishers; clock_connections(): to subscribers of
-        /clock."""
+        """topic: the name of cmd_vel; connections(): returns the connections to its publishers; clock_connections():
+        returns the connections to the subscribers of /clock."""
         self.topic = topic
         self.connections = connections
         self.clock_connections = clock_connections
-        # both sorts of connections and `upstream` at the last update
+        # both kinds of connections and `upstream` at the last update
         self.known: tuple[list[Any], list[Any], set[str]] | None = None
-        self.drivers: set[str] = set()      # names of the publishers of commands that are watched
-        self.upstream: set[str] = set()     # names of all nodes that commands may come from
-        self.watched: set[str] = set()      # those that update() has seen
+        self.drivers: set[str] = set()      # names of the watched publishers of commands
+        self.upstream: set[str] = set()     # names of all nodes that may be a source of commands
+        self.watched: set[str] = set()      # `upstream` as update() last used it
         self.upstream_changed = threading.Event()
         self.processes: dict[str, Process] = {}     # by name
-        # sockets by name; None: not a matter of a connection
+        # sockets by name; None: forgotten independently of a connection
         self.forgotten: dict[str, socket.socket | None] = {}
-        self.own: Process | None = None     # of this node, without the thread that runs the clock
+        self.own: Process | None = None     # the process of this node, without the thread that runs the clock
         self.network = Network()
-        # by connection that is being made: s of the monotonic clock when it was first seen
+        # by incomplete connection: s of the monotonic clock when it was first seen
         self.new: dict[Any, float] = {}
 
     def update(self) -> None:
-        """Look who is connected. To be called often."""
+        """Update the set of watched processes. Call this often."""
         connections = [each for each in self.connections() if is_complete(each)]
         listeners = list(self.clock_connections())
         if (connections, listeners, self.upstream) == self.known:
@@ -74,7 +74,7 @@ class DrivingNodes:
             self.upstream_changed.set()
 
     def _can_look(self) -> bool:
-        """Whether the kernel tells what processes do."""
+        """Return whether the kernel shows what processes are doing."""
         if self.own is None:
             self.own = own_process()
             if self.own:
@@ -89,32 +89,33 @@ class DrivingNodes:
             self.processes[name] = process
 
     def sees(self, name: str) -> bool:
-        """Whether the process of a node is watched."""
+        """Return whether the process of a node is watched."""
         self.update()
         return name in self.processes
 
     def on_clock(self, name: str) -> bool:
-        """Whether a node subscribes to /clock."""
+        """Return whether a node subscribes to /clock."""
         return any(connection.endpoint_id == name for connection in list(self.clock_connections()))
 
     def mark(self, names: set[str]) -> None:
-        """Remember what the processes of these nodes do now, just before a tick."""
+        """Remember what the processes of these nodes are doing just before a tick."""
         for name in names & self.processes.keys():
             self.processes[name].mark()
 
     def woke_by_itself(self, name: str) -> bool:
-        """Whether a node may have woken by itself in the time between mark() and now."""
+        """Return whether a node may have woken by itself since mark()."""
         return name in self.processes and self.processes[name].woke_by_itself()
 
     def connecting(self) -> bool:
-        """Whether a publisher of commands is being connected. It may take itself for connected a little earlier."""
+        """Return whether a publisher of commands is connecting. The publisher may consider itself connected a little
+        earlier."""
         now = monotonic()
         connections = [each for each in self.connections() if not is_complete(each)]
         self.new = {each: self.new.get(each, now) for each in connections}
         return any(now - begin < CONNECT_TIME for begin in self.new.values())
 
     def awake(self) -> str | None:
-        """The name of a node that is awake; None if all sleep."""
+        """Return the name of a node that is awake; None if all are asleep."""
         if self.connecting():
             return self.topic
         self.update()
@@ -128,23 +129,22 @@ class DrivingNodes:
         return next((name for name, each in processes.items() if each is process), None)
 
     def awake_drivers(self) -> str | None:
-        """The same of the publishers of commands alone."""
+        """Return the name of a publisher of commands that is awake; None if all are asleep."""
         names = sorted(self.drivers)
         process = awake([self.processes[name] for name in names])
         return next((name for name in names if self.processes[name] is process), None)
 
     def polling(self) -> list[PollingThread]:
-        """The threads that look at the time every moment, rather than wait for a tick: an object for
-        still_polling()."""
+        """Return the threads that poll the time instead of waiting for a tick, as an argument for still_polling()."""
         return [each for name in self.drivers & self.processes.keys() for each in self.processes[name].polling()]
 
     @staticmethod
     def still_polling(threads: list[PollingThread]) -> bool:
-        """Whether one of these has not looked since."""
+        """Return whether one of these threads has not polled since."""
         return still_polling(threads)
 
     def forget(self, name: str) -> None:
-        """Do not look at a node any more, as long as its connection lasts."""
+        """Stop watching a node for as long as its connection lasts."""
         process = self.processes.pop(name, None)
         if process:
             self.forgotten[name] = process.socket
@@ -155,21 +155,22 @@ class DrivingNodes:
         self.known = None
 
     def update_upstream(self) -> bool:
-        """Ask the master who publishes what. Returns whether there are nodes that commands may come from, and that were
-        not known before."""
+        """Query the publishers of all topics from the master; return whether there are new nodes that may be a source
+        of commands."""
         try:
             publishers, subscribers, _ = call(rosgraph.get_master_uri(), 'getSystemState')
-        except Exception:       # whatever is wrong with the master, this thread must go on
+        except Exception:       # this thread must continue after any error of the master
             return False
         self.upstream = upstream = upstream_of(self.topic, publishers, subscribers) - {rospy.get_name()}
         return not upstream <= self.watched
 
     def connected(self, header: object) -> bool:
-        """Whether a connection to a publisher of cmd_vel still exists. header: its own, one object for each."""
+        """Return whether a connection to a publisher of cmd_vel still exists. header: the header object of the
+        connection."""
         return any(connection.header is header for connection in self.connections())
 
     def unread(self, header: object) -> bool:
-        """Whether bytes have arrived by a connection that were not read yet."""
+        """Return whether a connection has received bytes that have not been read yet."""
         return any(unread_bytes(connection.socket) for connection in self.connections() if connection.header is header)
 
     def _look_upstream(self) -> None:
@@ -180,14 +181,14 @@ class DrivingNodes:
 
 
 def is_complete(connection: Any) -> bool:
-    """Whether a publisher has accepted a connection. The header of one that it refuses has an error only."""
+    """Return whether a publisher has accepted a connection. The header of a refused connection has only an error."""
     return bool(connection.header) and 'callerid' in connection.header
 
 
 def upstream_of(topic: str, publishers: Iterable[tuple[str, Sequence[str]]],
                 subscribers: Iterable[tuple[str, Sequence[str]]]) -> set[str]:
-    """Names of all nodes whose messages may lead to one on a topic. publishers, subscribers: each topic with the
-    names of nodes, as of the master's getSystemState."""
+    """Return the names of all nodes whose messages may cause a message on a topic. publishers, subscribers: each topic
+    with the names of its nodes, as returned by the master's getSystemState."""
     names_of = dict(publishers)
     found: set[str] = set()
     new = set(names_of.get(topic, ()))

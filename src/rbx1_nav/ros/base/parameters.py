@@ -16,13 +16,13 @@ def _surface_names() -> str:
 
 
 SURFACE = custom(
-    'surface', 'ideal', 'the floor, or the absolute path of a surface file',
+    'surface', 'ideal', 'name of the floor, or absolute path of a surface file',
     lambda name: load_surface(name, resources.surfaces()), range=_surface_names,
-    note='see [surface files](#surface-files)')
+    note='see [surface files](files.md#surface-files)')
 
 
 def _seed(text: str) -> Parameter:
-    return custom('seed', RANDOM, f'integer that {text} are drawn from, or random', read_seed, range=f'0 to {MAX_SEED}',
+    return custom('seed', RANDOM, f'seed of {text}, or random', read_seed, range=f'0 to {MAX_SEED}',
                   note='the log shows it')
 
 
@@ -30,12 +30,12 @@ FAKE_BASE = (
     *ROBOT,
     SURFACE,
     _seed('slip and gyro errors'),
-    number('real_time_factor', None, '', 'simulated time, at most so many times as fast as real time', 0.01, 1000,
-           shown='real time', note='see [Simulated time](#simulated-time)'),
+    number('real_time_factor', None, '', 'highest speed of simulated time, relative to real time', 0.01, 1000,
+           shown='real time', note='see [Simulated time](frames_and_time.md#simulated-time)'),
     number('clock_step', CLOCK_STEP, 's', 'step of simulated time', 0.001, 0.1, 'a time'),
-    flag('strict', False, 'whether a driver that is not in step with simulated time ends this node',
-         note='see [Simulated time](#simulated-time)'),
-    *(elsewhere(name, 'accepted, as in ArbotiX files, and ignored')
+    flag('strict', False, 'whether this node exits if a driver is not in step with simulated time',
+         note='see [Simulated time](frames_and_time.md#simulated-time)'),
+    *(elsewhere(name, 'ArbotiX parameter, accepted and ignored')
       for name in sorted({'diagnostic_period', *DRIVER_KEYS})))
 
 
@@ -46,24 +46,24 @@ def _check_link(link: YamlValue) -> str:
 
 
 _BODY = {
-    'gyro_sensitivity': "what the gyro's signal shows / its nominal value",
-    'wheel_travel': 'what the encoders count / what the wheels travel',
-    'wheel_base': 'true distance of the wheels / its nominal value'}
+    'gyro_sensitivity': "ratio of the gyro's sensitivity to its nominal value",
+    'wheel_travel': 'ratio of the distance counted by the encoders to the distance traveled by the wheels',
+    'wheel_base': 'ratio of the true wheel separation to its nominal value'}
 _QUIRKS = {
-    'mode_plus_one': 'whether the robot reports its mode plus one, as a Roomba 642 and other models with Wi-Fi do',
+    'mode_plus_one': 'whether the robot reports its mode plus one, like a Roomba 642 and other models with Wi-Fi',
     'drops_fractions': 'whether each reading of the angle starts at 0 and loses the fraction of a degree'}
 
 FAKE_CREATE = (
-    choice('robot_type', tuple(MODELS), CREATE.name, 'which robot'),
-    choice('baud', BAUD_RATES, None, 'when the robot is switched on; 19200 is a robot whose power button was held',
+    choice('robot_type', tuple(MODELS), CREATE.name, 'model of the robot'),
+    choice('baud', BAUD_RATES, None, 'rate after the robot is switched on; 19200: its power button was held',
            'bits per second', shown=f'{CREATE.baud}; {CREATE_2.name}: {CREATE_2.baud}'),
     custom('link', '', 'path of a symbolic link to the device', _check_link, shown='none',
            note="the log shows the device's name"),
     SURFACE,
     _seed('slip, gyro errors and corruption'),
-    number('charge', 1.0, '', 'of the battery', 0, 1),
+    number('charge', 1.0, '', "charge of the battery, a fraction of its capacity", 0, 1),
     number('corruption', 0.0, '', 'fraction of the bytes to the host that are flipped, lost or doubled', 0, 1),
-    number('gyro_measurement_range', 150.0, 'degrees/s', "at the end of the gyro's scale", 1, 1e5),
+    number('gyro_measurement_range', 150.0, 'degrees/s', 'full-scale turn rate of the gyro', 1, 1e5),
     *(number(name, 1.0, '', _BODY[name], 0.1, 10, 'a factor') for name in BodyErrors._fields),
     number('gyro_stuck', -1.0, '', 'count at which the analog input is stuck; -1: it is not stuck', -1, 1023,
            'a count'),

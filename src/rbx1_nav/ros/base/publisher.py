@@ -1,4 +1,4 @@
-"""What every base publishes: odometry and its transform, the gyro, and joint states."""
+"""Publishes the outputs of every base: odometry and its transform, gyro readings, and joint states."""
 from __future__ import annotations
 
 import rospy
@@ -14,20 +14,21 @@ from rbx1_nav.ros import messages
 
 
 class BasePublisher:
-    """The publishers of a base. To make a message costs more than to send it: none is made without a subscriber."""
+    """The publishers of a base. Creating a message costs more than sending it, so none is created without a
+    subscriber."""
 
     def __init__(self, robot: Robot) -> None:
         self.robot = robot
-        # simulated time may make many messages at once
+        # simulated time may produce many messages at once
         self.odom = rospy.Publisher('odom', Odometry, queue_size=100, tcp_nodelay=True)
         self.imu = rospy.Publisher('imu/data', Imu, queue_size=100, tcp_nodelay=True)
-        # tf2_ros' broadcaster does just this, and needs 5 MB more
+        # the broadcaster of tf2_ros does only this, and needs 5 MB more
         self.tf = rospy.Publisher('/tf', TFMessage, queue_size=100, tcp_nodelay=True)
         self.joint_states = rospy.Publisher('joint_states', JointState, queue_size=10)
 
     def publish_odometry(self, stamp: rospy.Time, pose: Pose, velocity: tuple[float, float], uncertainty: Uncertainty,
                          covariance: Array | None = None) -> None:
-        """Publish odometry, and its pose as a transform; arguments as of messages.odometry()."""
+        """Publish odometry, and its pose as a transform; for the arguments, see messages.odometry()."""
         if self.odom.get_num_connections():
             self.odom.publish(messages.odometry(stamp, self.robot, pose, velocity, uncertainty, covariance))
         if self.robot.publish_tf and self.tf.get_num_connections():
@@ -39,7 +40,8 @@ class BasePublisher:
             self.imu.publish(messages.imu(stamp, self.robot.base_frame_id, reading))
 
     def publish_joints(self, stamp: rospy.Time, travel: tuple[float, float], velocity: tuple[float, float]) -> None:
-        """Publish the joints, and the wheels' angles from their travel (left, right; m) and velocity (m/s, rad/s)."""
+        """Publish the joints, and the angles of the wheels from their travel (left, right; m) and velocity (m/s,
+        rad/s)."""
         linear, angular = velocity
         difference = angular * self.robot.base_width / 2
         wheels = [(name, distance / self.robot.wheel_radius, speed / self.robot.wheel_radius) for name, distance, speed

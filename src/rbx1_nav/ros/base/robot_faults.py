@@ -1,4 +1,4 @@
-"""What can happen to an emulated robot, as services and topics: it loses its cable, a wheel drops, and the like."""
+"""Services and topics that trigger events on an emulated robot, such as a pulled cable or a dropped wheel."""
 from __future__ import annotations
 
 from concurrent.futures import Future
@@ -18,10 +18,10 @@ from rbx1_nav.ros.node import life
 
 
 class RobotFaults:
-    """The services and topics. They do nothing by themselves: the thread that owns the robot calls apply()."""
+    """The services and topics. Requests take effect when the thread that owns the robot calls apply()."""
 
     def __init__(self, robot: EmulatedCreate, terminal: PseudoTerminal) -> None:
-        # functions to be called, and where their result goes: a text that says what went wrong
+        # functions to be called, each with a Future for its result: an error text, or ''
         self.requests: queue.Queue[tuple[Callable[[], object], Future[str]]] = queue.Queue()
         body, line = robot.body, robot.line
         for name, switch in [('pull_cable', lambda on: terminal.unplug() if on else terminal.plug()),
@@ -38,13 +38,13 @@ class RobotFaults:
         self._offer_number('gyro_stuck', lambda value: setattr(body, 'gyro_stuck', floor(value)), -1, 1023)
 
     def apply(self) -> None:
-        """Do what was asked for."""
+        """Execute all pending requests."""
         while not self.requests.empty():
             function, done = self.requests.get()
             try:
                 function()
                 done.set_result('')
-            except ConfigError as error:    # the link cannot be made any more
+            except ConfigError as error:    # the link cannot be created any more
                 done.set_result(str(error))
 
     def _offer_switch(self, name: str, switch: Callable[[bool], None]) -> None:
@@ -61,12 +61,12 @@ class RobotFaults:
         rospy.Subscriber(topic, Float64, on_message)
 
     def _request(self, text: str, function: Callable[[], object]) -> tuple[bool, str]:
-        """Have a function called, and wait until it was. Returns whether it succeeded, and the text that is logged."""
+        """Request a call of a function and wait for it; return whether it succeeded, and the text that is logged."""
         done: Future[str] = Future()
         self.requests.put((function, done))
         while not done.done():
             if life.end_requested.is_set():
-                return False, f'{text}: the node ends'
+                return False, f'{text}: the node is shutting down'
             life.sleep(0.001)
         if done.result():
             rospy.logerr('%s: %s', text, done.result())

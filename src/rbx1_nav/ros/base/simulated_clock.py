@@ -1,4 +1,4 @@
-"""The clock of a simulated base: simulated time that it advances itself, in step with its drivers."""
+"""The clock of a simulated base, which advances simulated time itself, in step with its drivers."""
 from __future__ import annotations
 
 import time
@@ -20,9 +20,9 @@ from rbx1_nav.units import SECOND
 
 
 def read_clock(rate: float) -> Clock:
-    """The clock that the private parameters real_time_factor, clock_step and strict, and /use_sim_time ask for.
+    """Return the clock selected by the private parameters real_time_factor, clock_step and strict, and /use_sim_time.
 
-    rate: of the odometry, Hz. Raises ConfigError.
+    rate: odometry rate, Hz. Raises ConfigError.
     """
     factor, step, strict = param('real_time_factor'), param('clock_step'), param('strict')
     if factor is not None:
@@ -39,16 +39,16 @@ class OwnClock(FollowedClock):
     """Simulated time that this node advances: at most `factor` times as fast as real time, in step with the drivers."""
 
     def __init__(self, factor: float, rate: float, period: int, strict: bool) -> None:
-        """factor, rate: see read_clock(); period: of the clock, ns; strict: whether a driver that is not in step is an
+        """factor, rate: see read_clock(); period: clock period, ns; strict: whether a driver that is not in step is an
         error."""
         super().__init__(rate)
         self.factor = factor
         self.period = period
         self.strict = strict
         self.publisher = rospy.Publisher('/clock', ClockMessage, queue_size=10, tcp_nodelay=True)
-        # rospy subscribes each node to /clock. This one knows the time, and receiving it would take a sixth of a tick
+        # rospy subscribes each node to /clock. This node sets the time, and receiving it would take a sixth of a tick.
         simtime._clock_sub.unregister()
-        self.lockstep: Lockstep     # from set_driver() on
+        self.lockstep: Lockstep     # set by set_driver()
         self.not_in_step: dict[str, str] = {}   # reasons, by the name of the node
 
     def set_driver(self, apply: Callable[[Any], None], connections: Callable[[], Any]) -> None:    # see Clock
@@ -57,16 +57,16 @@ class OwnClock(FollowedClock):
         self.lockstep = Lockstep(apply, self.report, nodes, life.end_requested.is_set)
 
     def report(self, name: str, reason: str) -> None:
-        """A node is not in step. Raises ROSException if that is an error."""
+        """Report that a node is not in step. Raises ROSException if that is an error."""
         if self.strict:
             raise rospy.ROSException(f'strict: {name} {reason}: expected nodes that are in step with /clock')
         self.not_in_step[name] = reason
-        rospy.logwarn('%s %s: not in step with /clock. The clock no longer waits for it, and where the robot ends '
+        rospy.logwarn('%s %s: not in step with /clock. The clock no longer waits for it, and the end pose of the robot '
                       'depends on the speed of the machine. Expected a node that sleeps on simulated time, as '
                       'rospy.Rate does', name, reason)
 
     def command(self, twist: Twist, command: Any) -> None:
-        """At the tick at which it was sent."""
+        """Call apply(command) at the tick at which the command was sent."""
         header = twist._connection_header       # one object per connection
         self.lockstep.receive(header, header['callerid'], command)
 

@@ -1,1 +1,1 @@
-"""What a driving script uses."""
+"""Building blocks of driving scripts."""

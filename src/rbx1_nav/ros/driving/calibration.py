@@ -1,4 +1,4 @@
-"""What the calibration scripts read from the master, and keep there: the base's factors, and the last run."""
+"""Data that the calibration scripts read from the master and store there: the base's factors and the last run."""
 from __future__ import annotations
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
@@ -11,13 +11,13 @@ from rbx1_nav.robot.calibration import MAX_FACTOR
 
 
 def check_node_name(value: YamlValue) -> str:
-    """The value of ~base_node, the name of a node. Raises ConfigError."""
+    """Return the value of ~base_node, the name of a node. Raises ConfigError."""
     if not (isinstance(value, str) and value and is_legal_name(value)):
         raise ConfigError(f'base_node: {show(value)}: expected the name of a node')
     return value
 
 
-# of both scripts
+# parameters of both scripts
 PARAMETERS = (
     number('rate', 50, 'Hz', 'commands per second', 2, 1000),
     frame('odom_frame', 'odom', 'frame of the odometry'),
@@ -26,38 +26,37 @@ PARAMETERS = (
 
 
 class Diagnosis:
-    """Listens for what a base says of one of its parts in /diagnostics."""
+    """Keeps the latest status that a base reports for one of its parts on /diagnostics."""
 
     def __init__(self, base_node: str, part: str) -> None:
-        """base_node: the name of a node; part: Base, Gyro, or the like."""
+        """base_node: the name of a node; part: the name of a part, such as Base or Gyro."""
         self.name = f"{rospy.resolve_name(base_node).lstrip('/')}: {part}"
-        self.last: DiagnosticStatus | None = None       # None before there is one
+        self.last: DiagnosticStatus | None = None       # None before the first status
         rospy.Subscriber('/diagnostics', DiagnosticArray, self._on_diagnostics)
 
     def _on_diagnostics(self, message: DiagnosticArray) -> None:
         self.last = next((status for status in message.status if status.name == self.name), self.last)
 
     def value(self, key: str) -> str | None:
-        """The last value with this key, a text; None if there is none."""
+        """Return the last value with this key, a text; None if there is none."""
         return next((each.value for each in self.last.values if each.key == key), None) if self.last else None
 
     @property
     def error(self) -> str:
-        """The message of the last status if that is an error, else ''."""
+        """The message of the last status if it is an error, else ''."""
         return self.last.message if self.last and self.last.level == DiagnosticStatus.ERROR else ''
 
 
 def factor_in_force(base_node: str, key: str, default: float | None = 1.0) -> float | None:
-    """The correction factor `key` among the parameters of the base's node; its default if it is not set.
+    """Return the correction factor `key` from the parameters of the base node; the default if it is not set.
 
-    Raises ROSException if it is no such factor.
+    Raises ROSException if the value is not a valid factor.
     """
     name = rospy.resolve_name(base_node)
     values = rospy.get_param(name, None)
     if not isinstance(values, dict):
-        rospy.logwarn('%s has no parameters: the default is assumed for %s. _base_node:=NAME names the node of '
-                      'another base',
-                      name, key)
+        rospy.logwarn('%s has no parameters: assuming the default for %s. Set _base_node:=NAME if your base node has '
+                      'another name', name, key)
         return default
     if key not in values:
         return default
@@ -65,32 +64,31 @@ def factor_in_force(base_node: str, key: str, default: float | None = 1.0) -> fl
 
 
 def save_run(name: str, run: dict[str, float]) -> None:
-    """Keep what a run reported, a mapping: the result may be measured later, or told from another terminal."""
+    """Store the result of a run, a mapping: the true value may be measured later, or entered in another terminal."""
     try:
         rospy.set_param(_stored(name), run)
     except OSError as error:
-        rospy.logwarn('The master does not answer, and does not keep this run: %s', error)
+        rospy.logwarn('Could not store this run on the parameter server: %s', error)
 
 
 def forget_run(name: str) -> None:
-    """Forget the last run: another one begins, and may be interrupted."""
+    """Delete the last run, because a new one begins and may be interrupted."""
     if rospy.has_param(_stored(name)):
         rospy.delete_param(_stored(name))
 
 
 def load_run(name: str, *keys: str) -> dict[str, float]:
-    """What the last run reported: a mapping with at least these keys. Raises ROSException if there is none."""
+    """Return the result of the last run, a mapping with at least these keys. Raises ROSException if there is none."""
     run = rospy.get_param(_stored(name), None)
     if not isinstance(run, dict):
-        raise rospy.ROSException(f'{rospy.resolve_name(_stored(name))}: missing: expected a run before this one, '
-                                 'without '
-                                 '_measured:=, that was not interrupted')
+        raise rospy.ROSException(f'{rospy.resolve_name(_stored(name))}: missing: expected a run before this one that '
+                                 'had no _measured:= and was not interrupted')
     section = Section(run, rospy.resolve_name(_stored(name)))
     return {key: _number(section, key, -1e6, 1e6) for key in {*keys, *run}}
 
 
 def take_measured() -> object:
-    """The parameter ~measured, or None. It is removed from the master: the next run has another result."""
+    """Return the parameter ~measured, or None, and delete it from the master, because it is valid for one run only."""
     measured = rospy.get_param('~measured', None)
     if measured is not None:
         rospy.delete_param('~measured')
@@ -98,7 +96,7 @@ def take_measured() -> object:
 
 
 def _stored(name: str) -> str:
-    # not private: the master would then list it among the parameters that an earlier command has left
+    # not private: otherwise it would be reported as a parameter that an earlier command has left on the master
     return 'last_calibration/' + name
 
 

@@ -1,5 +1,4 @@
-"""What a driving script leaves to others: it waits for the base, watches it, shows the progress, and stops the
-robot."""
+"""Everything in a driving script except the maneuver: waiting for the base, monitoring it, progress, stopping."""
 from __future__ import annotations
 
 from types import TracebackType
@@ -18,16 +17,17 @@ Self = TypeVar('Self', bound='Drive')
 
 
 class Drive:
-    """A `with` block in which a script may drive: the base listens, and the robot is stopped at the end.
+    """A `with` block in which a script may drive: the base is connected, and the robot is stopped on exit.
 
-    Raises ROSException if the base does not come within ~wait_timeout s, or is lost on the way, ROSInterruptException
-    as soon as the node is to end. All methods belong into the block.
+    Raises ROSException if the base does not appear within ~wait_timeout s or disconnects during the run, and
+    ROSInterruptException as soon as shutdown is requested. All methods must be called inside the block.
     """
 
     listeners: Listeners
 
     def __init__(self, cmd_vel: rospy.Publisher, rate: float, stop: Callable[[], None]) -> None:
-        """cmd_vel: of Twist messages; rate: of the commands, Hz; stop(): stops the robot, however the block ends."""
+        """cmd_vel: publisher of Twist messages; rate: command rate, Hz; stop(): stops the robot, however the block is
+        left."""
         self.cmd_vel = cmd_vel
         self.rate = rate
         self.stop = stop
@@ -49,19 +49,19 @@ class Drive:
             self.finish()
 
     def begin(self) -> None:
-        """Wait for the base. What is published before anyone subscribes is lost."""
+        """Wait for the base. Messages published before it subscribes would be lost."""
         self.listeners = wait_for_subscribers(self.cmd_vel, self.wait_timeout)
 
     def finish(self) -> None:
-        """Called when the robot has been stopped and nothing has gone wrong."""
+        """Report the result; called when the robot has been stopped without an error."""
 
     def Rate(self) -> Rate:
-        """A Rate, as rospy.Rate(rate), for one motion."""
+        """Return a Rate for one motion, like rospy.Rate(rate)."""
         self.current_rate = Rate(self.rate, self.listeners)
         return self.current_rate
 
     def restart_rate(self) -> None:
-        """The motion begins now, however long its log line and its progress bar took."""
+        """Let the motion begin now, independently of the time that its log line and its progress bar took."""
         if self.current_rate:
             self.current_rate.restart()
 
@@ -76,7 +76,7 @@ class TimedDrive(Drive):
     distance = angle = 0.0      # m and rad, commanded so far
 
     def progress(self, name: str, ticks: int, command: Twist) -> Iterator[int]:
-        """As range(ticks), for a motion of one command, and shows its progress."""
+        """Yield the elements of range(ticks), for a motion with one command, and show its progress."""
         speed, unit = (command.linear.x, 'm') if command.linear.x else (command.angular.z, 'rad')
         rospy.loginfo('%s: %.2f %s at %g %s/s', name, ticks * speed / self.rate, unit, speed, unit)
         # with disable=None, tqdm shows its progress bar only in a terminal

@@ -1,4 +1,4 @@
-"""Drives by the robot's pose, for scripts that measure their way."""
+"""Drives until the robot's pose has reached a goal, for odometry-based scripts."""
 from __future__ import annotations
 
 from math import degrees, hypot
@@ -15,17 +15,18 @@ from rbx1_nav.ros.driving.drive import Drive
 from rbx1_nav.ros.driving.pose_listener import LostTransform, PoseListener
 from rbx1_nav.units import wrap_angle
 
-TRIAL_REST = 0.5    # s: the robot rolls out before a leg goes on
+TRIAL_REST = 0.5    # s: the robot coasts to rest before a leg continues
 
 
 class PoseDrive(Drive):
-    """Drives until the pose says that the robot has arrived."""
+    """Drives until the pose shows that the robot has arrived."""
 
     start: Pose
 
     def __init__(self, cmd_vel: rospy.Publisher, rate: float, stop: Callable[[], None], poses: PoseListener,
                  transform_timeout: Optional[float] = None) -> None:
-        """transform_timeout: how long the robot stands and waits if its pose is lost, s; None: that is an error."""
+        """transform_timeout: time for which the stopped robot waits for a missing pose, s; None: a missing pose is an
+        error."""
         super().__init__(cmd_vel, rate, stop)
         self.poses = poses
         self.transform_timeout = transform_timeout
@@ -35,7 +36,7 @@ class PoseDrive(Drive):
         self.start = self.poses.wait(self.wait_timeout)
 
     def speeds(self, leg: Leg) -> Iterator[float]:
-        """The speed for each tick, m/s or rad/s, until the robot has arrived; shows the progress.
+        """Yield the speed for each tick, m/s or rad/s, until the robot has arrived, and show the progress.
 
         A leg stops twice: just before its goal, to measure the stopping distance, and at its goal. Raises StuckError.
         """
@@ -48,7 +49,8 @@ class PoseDrive(Drive):
             yield from self._speeds(leg, bar)
 
     def drive(self, leg: Leg) -> None:
-        """Drive a leg to its end, and come to rest there: leg.done() and leg.last are then where the robot stands."""
+        """Drive a leg to its goal and come to rest; leg.done() and leg.last are then valid for the stationary
+        robot."""
         command, rate = Twist(), self.Rate()
         for speed in self.speeds(leg):
             command.linear.x, command.angular.z = leg.velocity(speed)
@@ -71,7 +73,7 @@ class PoseDrive(Drive):
             bar.update(max(0, min(leg.done(), leg.goal) - bar.n))
 
     def _pose(self) -> Pose:
-        """The robot's pose. If it is lost, the robot stands and waits for it."""
+        """Return the robot's pose. If it is missing, stop the robot and wait for a new one."""
         try:
             return self.poses.pose()
         except LostTransform as error:
@@ -79,12 +81,12 @@ class PoseDrive(Drive):
                 raise rospy.ROSException(f'The base no longer reports odometry ({error}): expected a base that is '
                                          'connected to its robot; see /diagnostics') from None
             self.cmd_vel.publish(Twist())
-            rospy.logwarn('%s: the robot waits for a new one', error)
+            rospy.logwarn('%s: stopping the robot until there is a new one', error)
             return self.poses.wait(self.transform_timeout, self.listeners.check)
 
 
 class OdomDrive(PoseDrive):
-    """The same, and reports how far from its start the robot ends."""
+    """A PoseDrive that reports the distance between the start pose and the end pose."""
 
     def begin(self) -> None:
         super().begin()
@@ -93,19 +95,19 @@ class OdomDrive(PoseDrive):
     def finish(self) -> None:
         self.listeners.check_delivery()
         start, end = self.start, self.poses.wait(self.transform_timeout or self.wait_timeout)
-        rospy.loginfo('Done: measured in %s, the robot is %.3f m from its start and %.1f degrees off its first heading',
-                      self.poses.odom_frame, hypot(end.x - start.x, end.y - start.y),
+        rospy.loginfo('Done: measured in %s, the robot is %.3f m from its start and %.1f degrees off its initial '
+                      'heading', self.poses.odom_frame, hypot(end.x - start.x, end.y - start.y),
                       degrees(abs(wrap_angle(end.yaw - start.yaw))))
 
 
 class CalibrationDrive(PoseDrive):
-    """The same, for a script that has nothing else to do with the robot's base."""
+    """A PoseDrive with its own publisher and shutdown function, for the calibration scripts."""
 
     def __init__(self, rate: float, poses: PoseListener) -> None:
         super().__init__(rospy.Publisher('/cmd_vel', Twist, queue_size=5), rate, self.shutdown, poses)
 
     def shutdown(self) -> None:
-        """Stop the robot, and give it the time to do so."""
+        """Stop the robot, and give it time to stop."""
         self.cmd_vel.publish(Twist())
         rospy.loginfo('Stopping the robot...')
-        time.sleep(1)   # of wall time: a simulated clock may have stopped
+        time.sleep(1)   # wall time, since a simulated clock may have stopped

@@ -1,6 +1,6 @@
 """Keeps time for a driving script, on the wall clock or on simulated time.
 
-A driving script publishes from its main thread only. A request to end the node reaches it as an exception from its next
+A driving script publishes from its main thread only. A shutdown request reaches it as an exception from its next
 sleep() or pause(), and the script itself stops the robot.
 """
 from __future__ import annotations
@@ -15,20 +15,21 @@ from rbx1_nav.simulation.lockstep import NODE_TIMEOUT
 from rbx1_nav.units import SECOND
 
 MAX_DELAY = SECOND      # ns
-FREE_TICKS = 25     # at the start of a motion, the base's clock may run ahead until the base has seen that it begins
+FREE_TICKS = 25     # at the start of a motion, the base's clock may run ahead until the base has noticed the motion
 
 
 def now() -> int:
-    """ns of simulated time, or of the monotonic clock."""
+    """Return simulated time, or the time of the monotonic clock, in ns."""
     return time.monotonic_ns() if rospy.rostime.is_wallclock() else rospy.get_rostime().to_nsec()
 
 
 def _wait_until(end: int, longest: int, listeners: Listeners, last_look: float) -> None:
     """Wait until now() is `end` (ns), but no longer than `longest` (ns) on a clock that jumped back.
 
-    last_look: when the script is known to have run, s of the monotonic clock.
-    Raises ROSInterruptException as soon as the node is to end, and ROSException as Listeners.check(): a clock that
-    stands still may have ended with the base. ROSException also if the base's clock no longer waits for this script.
+    last_look: last time at which the script is known to have run, s of the monotonic clock.
+    Raises ROSInterruptException as soon as shutdown is requested, and ROSException like Listeners.check(): a clock
+    may have stopped because its base has exited. Also raises ROSException if the base's clock no longer waits
+    for this script.
     """
     listeners.wait_for_room()
     warn_time = time.monotonic() + 5
@@ -57,29 +58,30 @@ def _wait_until(end: int, longest: int, listeners: Listeners, last_look: float) 
             last, warn_time = time_now, time.monotonic() + 5
         elif time.monotonic() > warn_time:
             warn_time += 5
-            rospy.logwarn('/use_sim_time is true, but the time on /clock stands still')
+            rospy.logwarn('/use_sim_time is true, but the time on /clock is not advancing')
 
 
 def pause(seconds: float, listeners: Listeners) -> None:
     """Wait for `seconds` of ROS time. listeners: see wait_for_subscribers().
 
-    Raises ROSInterruptException as soon as the node is to end, and ROSException if a listener no longer takes commands.
+    Raises ROSInterruptException as soon as shutdown is requested, and ROSException if a listener no longer accepts
+    commands.
     """
     duration = round(seconds * SECOND)
     _wait_until(now() + duration, duration, listeners, time.monotonic())
 
 
 class Rate:
-    """rospy.Rate for commands: ends as soon as the node is to end, and never lets two ticks follow at once.
+    """rospy.Rate for commands: a shutdown request interrupts it, and two ticks never follow each other immediately.
 
     A delay is made up for over the next ticks, each at least 0.6 periods long: otherwise a base could receive two
-    commands in one step. A delay of more than MAX_DELAY is an error: the base has stopped meanwhile.
+    commands in one step. A delay of more than MAX_DELAY is an error, because the base has stopped by then.
     """
 
     def __init__(self, hz: float, listeners: Listeners) -> None:
         """hz: ticks per second of ROS time, the first one a period from now; listeners: see wait_for_subscribers().
 
-        Raises ROSException if simulated time does not tick as often.
+        Raises ROSException if simulated time ticks less often.
         """
         if not rospy.rostime.is_wallclock():
             step = listeners.clock_step
@@ -91,13 +93,13 @@ class Rate:
         self.restart()
 
     def restart(self) -> None:
-        """Begin anew, after a pause: the next tick is a period from now."""
+        """Start again after a pause; the next tick is a period from now."""
         self.last_look = time.monotonic()
-        self.due = self.next = now() + self.period      # without delays, and with them
+        self.due = self.next = now() + self.period      # times of the next tick without and with delays
         self.free_ticks = FREE_TICKS if self.listeners.clock else 0
 
     def sleep(self) -> None:
-        """Wait for the next tick. Raises as pause(), and ROSException for a delay that is too long."""
+        """Wait for the next tick. Raises like pause(), and ROSException if the delay is too long."""
         _wait_until(self.next, self.period, self.listeners, self.last_look)
         self.last_look = time.monotonic()
         time_now = now()

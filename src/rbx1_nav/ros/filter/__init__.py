@@ -1,1 +1,1 @@
-"""What the filter's node uses."""
+"""Building blocks of the filter node."""

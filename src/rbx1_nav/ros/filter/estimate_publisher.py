@@ -1,4 +1,4 @@
-"""Publishes the combined odometry as a pose, as odometry and as a transform."""
+"""Publishes the combined odometry as a pose, as an odometry message and as a transform."""
 from __future__ import annotations
 
 import time
@@ -19,12 +19,12 @@ from rbx1_nav.ros.filter.parameters import FilterParameters
 from rbx1_nav.schedule import Schedule
 from rbx1_nav.units import SECOND
 
-TRANSFORM_TIME = 2 * SECOND   # ns after the first estimate, in which a transform to the robot's frame may arrive
-MIN_WAIT = 1.0          # s of wall time for the same: a connection takes time, however fast simulated time passes
+TRANSFORM_TIME = 2 * SECOND   # ns after the first estimate to wait for a transform to the robot's frame
+MIN_WAIT = 1.0          # minimum wall time (s) to wait for it: connecting takes time, however fast simulated time is
 
 
 def odometry_message(pose: PoseWithCovarianceStamped, child_frame_id: str, twist: EstimatedTwist | None) -> Odometry:
-    """An Odometry message of a pose and a twist in the frame of the robot; None: not known."""
+    """Return an Odometry message with a pose and a twist in the frame of the robot; twist None: unknown."""
     message = Odometry()
     message.header = pose.header
     message.child_frame_id = child_frame_id
@@ -43,8 +43,8 @@ def odometry_message(pose: PoseWithCovarianceStamped, child_frame_id: str, twist
 class EstimatePublisher:
     """Publishes Estimates at a given rate.
 
-    The transform leads from the output frame to the robot's, as in robot_pose_ekf. A frame has one parent: if another
-    node publishes a transform to the robot's frame, ours leads to the frame of the odometry instead.
+    The transform is from the output frame to the robot's frame, as in robot_pose_ekf. A frame has only one parent: if
+    another node publishes a transform to the robot's frame, this transform is to the odometry frame instead.
     """
 
     def __init__(self, parameters: FilterParameters, tree: FrameTree, log: Callable[[str], None]) -> None:
@@ -57,23 +57,23 @@ class EstimatePublisher:
         self.pose_pub = rospy.Publisher('~odom_combined', PoseWithCovarianceStamped, queue_size=10)
         self.odometry_pub = rospy.Publisher('~odometry', Odometry, queue_size=10)
         self.tf_pub = rospy.Publisher('/tf', TFMessage, queue_size=100, tcp_nodelay=True)
-        self.frames = '', ''        # of the odometry and of the robot; '': not known yet
-        self.published = 0          # poses
-        self.last: Estimate | None = None       # the latest one
-        self.before: Estimate | None = None     # the one that it follows without a jump
-        self.filter: Filter | None = None       # of `last`
-        self.placed = False                     # whether the next Estimate may be at another place, by set_pose
+        self.frames = '', ''        # frames of the odometry and of the robot; '': not known yet
+        self.published = 0          # number of poses
+        self.last: Estimate | None = None       # the latest Estimate
+        self.before: Estimate | None = None     # the Estimate before it, if there was no jump in between
+        self.filter: Filter | None = None       # the Filter of `last`
+        self.placed = False                     # whether set_pose may move the next Estimate to another pose
         self.restart()
 
     def restart(self) -> None:
-        """Look anew who publishes the transform to the robot's frame."""
+        """Determine again which node publishes the transform to the robot's frame."""
         self.tree.forget(self.frames[1])
-        self.child = ''                         # frame that the transform leads to, '' until that is known
-        self.settled = not self.publish_tf      # whether no transform of other nodes can make a difference
+        self.child = ''                         # child frame of the transform; '' until it is known
+        self.settled = not self.publish_tf      # whether transforms of other nodes are no longer needed
         self.first: tuple[int, float] | None = None     # (ns, s of wall time) of the first estimate
 
     def update(self, combined: CombinedOdometry, odom_frame: str, base_frame: str) -> None:
-        """Publish the estimate if it is due. The frames are those of its odometry."""
+        """Publish the estimate if it is due. odom_frame, base_frame: the frames of its odometry."""
         estimate = combined.estimate
         if not estimate:
             return
@@ -87,7 +87,7 @@ class EstimatePublisher:
         pose = messages.planar_pose(stamp, self.output_frame, estimate.pose, estimate.covariance)
         self.pose_pub.publish(pose)
         self.published += 1
-        if self.odometry_pub.get_num_connections():     # the message takes longer to make than the pose
+        if self.odometry_pub.get_num_connections():     # this message takes longer to create than the pose
             twist = estimate_twist(combined, self.before) if self.before else None
             self.odometry_pub.publish(odometry_message(pose, base_frame, twist))
         if not self.publish_tf:
@@ -104,12 +104,12 @@ class EstimatePublisher:
         """Set `child`. now: ns."""
         other = self.tree.publisher(base_frame)
         if self.output_frame == odom_frame:
-            self._set_child(base_frame, 'as the odometry has the same frame')
+            self._set_child(base_frame, 'the odometry is in the same frame')
             self.settled = True
         elif other:
             self._set_child(odom_frame, f'{other[1]} publishes the one from {other[0]} to {base_frame}')
             self.settled = True
-        elif self.first is None or now < self.first[0]:     # also after a clock that has jumped back
+        elif self.first is None or now < self.first[0]:     # also after the clock has jumped back
             self.first = now, time.monotonic()
         elif now - self.first[0] >= TRANSFORM_TIME and time.monotonic() - self.first[1] >= MIN_WAIT:
             self._set_child(base_frame, f'no other node publishes one to {base_frame}')

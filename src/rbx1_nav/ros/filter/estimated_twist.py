@@ -1,4 +1,4 @@
-"""The robot's velocity from two consecutive estimates."""
+"""Calculates the robot's velocity from two consecutive estimates."""
 from __future__ import annotations
 
 from math import cos, sin
@@ -24,19 +24,20 @@ class EstimatedTwist(NamedTuple):
 
 
 def _of_floor(noise: float, speed: float, elapsed: float, cell: float) -> float:
-    """The variance of a speed by a floor's noise: it is constant within a cell, and averages out over several cells."""
+    """Return the variance of a speed due to the noise of a floor, which is constant within a cell and averages out over
+    several cells."""
     return noise ** 2 * speed ** 2 / max(cell, speed * elapsed)
 
 
 def estimate_twist(combined: CombinedOdometry, before: Estimate) -> EstimatedTwist | None:
-    """The EstimatedTwist from the Estimate `before` to the latest one; None if their stamps are equal.
+    """Return the EstimatedTwist from the Estimate `before` to the latest one; None if their stamps are equal.
 
-    The displacement is the odometry's, reduced by the estimated slip, and the turn is the filter's. An odometry dropout
-    leaves the displacement unknown: then it is 0, with the uncertainty that the filter assumes for a dropout. So does a
-    robot that is carried, because its wheels do not measure its motion.
+    The displacement comes from the odometry, reduced by the estimated slip, and the turn comes from the filter. During
+    an odometry dropout the displacement is unknown: it is set to 0, with the uncertainty that the filter assumes for a
+    dropout. The uncertainty is the same while the robot is carried, because its wheels do not measure its motion.
     """
     last, ekf = combined.estimate, combined.filter
-    assert last is not None and ekf is not None     # as there is a `before`
+    assert last is not None and ekf is not None     # because there is a `before`
     elapsed = (last.stamp - before.stamp) / SECOND
     if elapsed <= 0:
         return None
@@ -62,10 +63,10 @@ def estimate_twist(combined: CombinedOdometry, before: Estimate) -> EstimatedTwi
     imu = combined.readings.last if combined.gyro_used and not combined.timed_out[IMU] else None
     if imu:
         step = last.stamp - before.stamp
-        # over the readings of the step
+        # the noise averages out over the readings of the step
         averaged = imu.variance * min(1.0, (combined.readings.period or step) / step)
         turn_variance = averaged + variance(BIAS) + variance(SCALE) * turn ** 2
-        if combined.case == 'contradiction':    # one of them is wrong
+        if combined.case == 'contradiction':    # either wheels or gyro are wrong
             turn_variance += (by_wheels * (1 - state[TURNING]) - turn) ** 2
     else:
         floor = (_of_floor(ekf.prior.heading_noise_turning, abs(by_wheels), elapsed, CELL_TURNED)

@@ -1,4 +1,4 @@
-"""The tree of frames as other nodes publish it: who is the parent of a frame, and how one is turned against another."""
+"""The tree of frames that other nodes publish: the parents of frames, and the rotations between frames."""
 from __future__ import annotations
 
 from typing import Tuple
@@ -13,13 +13,13 @@ Rotation = Tuple[float, float, float, float]    # quaternion (x, y, z, w)
 
 
 class FrameTree:
-    """Listens to /tf and /tf_static while somebody wants to know. The node's own transforms do not count.
+    """Listens to /tf and /tf_static while the tree is needed. The node's own transforms are ignored.
 
-    Keeps rotations only, the latest of each frame, and needs no tf2_ros, which would take 5 MB.
+    It keeps only the latest rotation of each frame, and does not need tf2_ros, which would take 5 MB.
     """
 
     def __init__(self) -> None:
-        # by child: (parent, node that publishes it, rotation of the child in the parent)
+        # by child: (parent, publishing node, rotation of the child in the parent)
         self.frames: dict[str, tuple[str, str, Rotation]] = {}
         self.subscribers: list[rospy.Subscriber] = []
 
@@ -32,24 +32,24 @@ class FrameTree:
             self.subscribers.pop().unregister()
 
     def publisher(self, child: str) -> tuple[str, str] | None:
-        """(parent, node) of the transform that leads to a frame, or None."""
+        """Return (parent, publishing node) of the transform to a frame, or None."""
         return self.frames[child][:2] if child in self.frames else None
 
     def forget(self, child: str) -> None:
-        """Forget the transform that leads to a frame."""
+        """Forget the transform to a frame."""
         self.frames.pop(child, None)
 
     def rotation(self, frame: str, other: str) -> Rotation | None:
-        """The rotation of `other` in `frame`, a quaternion (x, y, z, w); None if they are not connected yet."""
+        """Return the rotation of `other` in `frame`, a quaternion (x, y, z, w); None if they are not connected yet."""
         path = self._path(frame)
         return next((multiply(inverse(path[ancestor]), rotation)
                      for ancestor, rotation in self._path(other).items() if ancestor in path), None)
 
     def _path(self, frame: str) -> dict[str, Rotation]:
-        """Rotations of a frame in itself and in all its ancestors."""
+        """Return the rotations of a frame in itself and in all its ancestors."""
         rotation: Rotation = (0.0, 0.0, 0.0, 1.0)
         path: dict[str, Rotation] = {}
-        while frame not in path:    # a circle is an error of others
+        while frame not in path:    # stops at a loop, which is an error of other nodes
             path[frame] = rotation
             if frame in self.frames:
                 frame, _, turn = self.frames[frame]

@@ -1,4 +1,4 @@
-"""Reads an IMU that may be mounted upside down or askew, and may send an orientation only."""
+"""Reads an IMU that may be mounted upside down or tilted, and may send only an orientation."""
 from __future__ import annotations
 
 from math import acos, degrees
@@ -14,11 +14,11 @@ from rbx1_nav.estimation.inputs import Imu, check
 from rbx1_nav.ros import messages
 from rbx1_nav.ros.filter.frame_tree import FrameTree
 
-TRANSFORM_WARN_TIME = 1.0      # s of wall time for a transform to arrive before a line is logged
+TRANSFORM_WARN_TIME = 1.0      # s of wall time to wait for a transform before a line is logged
 
 
 class ImuInput:
-    """Turns the readings of an IMU to the robot's vertical axis, by a transform that is looked up once."""
+    """Rotates the readings of an IMU to the robot's vertical axis, with a transform that is looked up once."""
 
     def __init__(self, topic: str, tree: FrameTree, log: Callable[[str], None]) -> None:
         """log(text): logs a line."""
@@ -26,17 +26,17 @@ class ImuInput:
         self.tree = tree
         self.log = log
         self.gyro = GyroInput(lambda text: log(f'{self.topic}: {text}'))
-        self.frames: tuple[str, str] | None = None      # of the robot and of the IMU
-        self.vertical: Vector | None = None             # vertical_axis() for them
+        self.frames: tuple[str, str] | None = None      # frames of the robot and of the IMU
+        self.vertical: Vector | None = None             # vertical_axis() for these frames
         self.deadline = 0.0                             # s of the monotonic clock
 
     @property
     def settled(self) -> bool:
-        """Whether no transform is needed now."""
+        """Whether no transform is needed."""
         return self.frames is None or self.vertical is not None
 
     def read(self, message: ImuMessage, base_frame: str, accept: Callable[[Imu], None]) -> None:
-        """Call accept(imu) with an Imu. base_frame: of the robot. Raises RejectedMessage, as accept() may."""
+        """Call accept(imu) with an Imu. base_frame: the robot's frame. Raises RejectedMessage, as accept() may."""
         frames = base_frame, message.header.frame_id.lstrip('/') or base_frame
         if frames != self.frames:
             self.frames, self.vertical, self.deadline = frames, None, time.monotonic() + TRANSFORM_WARN_TIME
@@ -58,5 +58,6 @@ class ImuInput:
             return None
         vertical = vertical_axis(rotation)
         tilt = degrees(acos(max(-1.0, min(1.0, vertical[2]))))
-        self.log(f'{self.topic}: turned from {frame} to {base_frame}, its vertical axis by {tilt:.0f} degrees')
+        self.log(f'{self.topic}: rotating readings from {frame} to {base_frame}, vertical axis tilted by {tilt:.0f} '
+                 'degrees')
         return vertical

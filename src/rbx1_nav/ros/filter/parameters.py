@@ -1,4 +1,4 @@
-"""The parameters of the filter node, and the floor that it starts with."""
+"""The parameters of the filter node, and the floor that it assumes initially."""
 from __future__ import annotations
 
 from math import degrees, radians
@@ -23,15 +23,15 @@ from rbx1_nav.ros.node.params import stored_params
 from rbx1_nav.simulation.surfaces import load_surface
 from rbx1_nav.units import SECOND
 
-AUTO = 'auto'       # the surface of the simulated base, or else
+AUTO = 'auto'       # the surface of a simulated base, otherwise ANY
 ANY = 'unknown'     # any floor
 DEFAULT = Limits()
 
 
-# as robot_pose_ekf has them; a line for each says that it has no effect
+# parameters of robot_pose_ekf, each with a log line that explains why it has no effect
 UNSUPPORTED = {
-    'vo_used': 'visual odometry is not supported, and not used',
-    'gps_used': 'GPS is not supported, and not used',
+    'vo_used': 'visual odometry is not supported and not used',
+    'gps_used': 'GPS is not supported and not used',
     'debug': 'no files are written; record the topics with rosbag',
     'self_diagnose': 'see /diagnostics'}
 
@@ -50,40 +50,42 @@ def _check_prefix(prefix: YamlValue) -> str:
 
 
 PARAMETERS = (
-    number('freq', 30.0, 'Hz', 'of ~odom_combined and its transform', 0.1, 1000, 'a rate',
+    number('freq', 30.0, 'Hz', 'publish rate of ~odom_combined and its transform', 0.1, 1000, 'a rate',
            note='`odom_ekf.launch` sets 10'),
     number('sensor_timeout', 1.0, 's',
-           'a sensor that is silent for longer, while the other is not, is not used until it recovers',
+           'silence after which a sensor is ignored until it recovers, unless the other sensor is silent too',
            0.01, 1e6, 'a time'),
     flag('publish_tf', True, 'whether to publish the transform'),
     flag('imu_used', True, 'whether to use the gyro'),
-    flag('odom_used', True, 'only true is accepted: nothing else measures the distance'),
+    flag('odom_used', True, 'robot_pose_ekf parameter; only true is accepted, because nothing else measures distance'),
     frame('output_frame', 'odom_combined', 'frame of the estimated pose'),
     frame('base_footprint_frame', None, 'frame of the robot',
           shown='child_frame_id of odom, or base_footprint if that is empty'),
-    custom('tf_prefix', '', 'before both names, unless they begin with a slash', _check_prefix, shown='none',
-           note='also from a namespace around the node, as in tf'),
+    custom('tf_prefix', '', 'prefix of both frame names, unless they begin with a slash', _check_prefix, shown='none',
+           note='may also be set in a namespace around the node, as in tf'),
     custom('surface', AUTO,
-           f'the floor that the filter starts with: a name or path, {ANY}, or {AUTO}: that of a simulated base',
-           _check_surface, note='see [surface files](#surface-files)'),
-    number('max_speed', DEFAULT.max_speed, 'm/s', 'odometry that moves faster has jumped', 0.01, 1000, 'a speed'),
-    number('max_turn_rate', DEFAULT.max_turn_rate, 'rad/s', 'odometry that turns faster has jumped', 0.01, 1000,
-           'a turn rate', note='on an `unknown` floor faster readings of the gyro are not used'),
+           f'initially assumed floor: a name or path, {ANY}, or {AUTO}, the surface of a simulated base',
+           _check_surface, note='see [surface files](files.md#surface-files)'),
+    number('max_speed', DEFAULT.max_speed, 'm/s', 'highest speed of the odometry; above it, the odometry has jumped',
+           0.01, 1000, 'a speed'),
+    number('max_turn_rate', DEFAULT.max_turn_rate, 'rad/s',
+           'highest turn rate of the odometry; above it, the odometry has jumped', 0.01, 1000, 'a turn rate',
+           note='on an `unknown` floor, gyro readings above it are not used'),
     number('max_angular_acceleration', DEFAULT.max_angular_acceleration, 'rad/s^2',
-           'largest change of the turn rate while gyro readings are lost', 0.01, 1e4, 'an angular acceleration',
+           'highest angular acceleration while gyro readings are missing', 0.01, 1e4, 'an angular acceleration',
            note='see [messages that are not as expected](#messages-that-are-not-as-expected)'),
-    number('gyro_bias', degrees(DEFAULT.gyro_bias), 'degrees/s', 'largest gyro bias, either sign', 0.01, 1000, 'a bias',
-           note='a higher rate at rest is not learned as bias. Also the standard deviation of the bias before the '
-           'first standstill'),
+    number('gyro_bias', degrees(DEFAULT.gyro_bias), 'degrees/s', 'largest gyro bias in either direction', 0.01, 1000,
+           'a bias', note='a higher rate at rest is not learned as bias. Also the standard deviation of the bias '
+           'before the first standstill'),
     number('gyro_scale_error', DEFAULT.gyro_scale_error, '',
            "standard deviation of the gyro's scale error on an unknown floor", 0, 0.5, 'a fraction',
-           note='a surface file has its own'),
-    number('diagnostic_period', 1.0, 's', 'of /diagnostics', 0.1, 1e6, 'a time'),
-    *(flag(name, False, 'true is accepted, and has no effect') for name in UNSUPPORTED))
+           note='a surface file contains its own value'),
+    number('diagnostic_period', 1.0, 's', 'publish period of /diagnostics', 0.1, 1e6, 'a time'),
+    *(flag(name, False, 'robot_pose_ekf parameter; true is accepted and has no effect') for name in UNSUPPORTED))
 
 
 class FilterParameters(NamedTuple):
-    """All parameters, with the names of robot_pose_ekf."""
+    """All parameters of the node, with the names of robot_pose_ekf."""
 
     freq: float                 # Hz
     sensor_timeout: float       # s
@@ -95,14 +97,14 @@ class FilterParameters(NamedTuple):
     base_footprint_frame: str   # '' unless it is set
     default_base_frame: str
     surface: str
-    unsupported: list[str]      # a line for each that asks for what the filter does not do
+    unsupported: list[str]      # a log line for each parameter that requests an unsupported feature
 
 
 def read_parameters(params: dict[str, YamlValue]) -> FilterParameters:
-    """The FilterParameters from those that are set. Raises ConfigError."""
+    """Return the FilterParameters for the parameters that are set. Raises ConfigError."""
     given = read(PARAMETERS, Section(params))
     if not given['odom_used']:
-        raise ConfigError('odom_used: False: expected true, nothing else measures the distance')
+        raise ConfigError('odom_used: False: expected true, because nothing else measures the distance')
     base_frame = _resolve(given['tf_prefix'], given['base_footprint_frame'] or 'base_footprint',
                           params.get('base_footprint_frame'))
     values = FilterParameters(
@@ -120,9 +122,9 @@ def read_parameters(params: dict[str, YamlValue]) -> FilterParameters:
 
 
 def load_parameters() -> FilterParameters:
-    """read_parameters() of this node. As in tf, tf_prefix may also be set in a namespace around it.
+    """Read the parameters of this node. As in tf, tf_prefix may also be set in a namespace around it.
 
-    Logs what is asked for and not supported. Raises ROSException with one line.
+    Logs requests for unsupported features. Raises ROSException with one line.
     """
     params = stored_params()
     prefix = search_value('tf_prefix', rospy.get_name(), rospy.get_param)
@@ -136,9 +138,9 @@ def load_parameters() -> FilterParameters:
 
 
 def frames_of(message: Odometry, parameters: FilterParameters) -> tuple[str, str]:
-    """The frames of an Odometry message and of the robot, without leading slashes. Raises RejectedMessage.
+    """Return the frames of an Odometry message and of the robot, without leading slashes. Raises RejectedMessage.
 
-    The output_frame cannot be the robot's own.
+    The frame of the robot must differ from output_frame.
     """
     base_frame = parameters.base_footprint_frame or message.child_frame_id.lstrip('/') or (
         parameters.default_base_frame)
@@ -149,11 +151,11 @@ def frames_of(message: Odometry, parameters: FilterParameters) -> tuple[str, str
     return frames
 
 
-# Any: whatever the parameter is
+# Any: the type depends on the parameter
 def search_value(key: str, node: str, get: Callable[[str, None], Any]) -> Any:
-    """The value of a parameter of a node or of the nearest namespace around it, None if there is none.
+    """Return the value of a parameter of a node or of the nearest namespace around it; None if there is none.
 
-    Unlike rospy.search_param(), it passes over a namespace that has the name of the parameter. get: rospy.get_param.
+    Unlike rospy.search_param(), it skips a namespace that has the name of the parameter. get: rospy.get_param.
     """
     while node:
         value = get(rosgraph.names.ns_join(node, key), None)
@@ -164,7 +166,7 @@ def search_value(key: str, node: str, get: Callable[[str, None], Any]) -> Any:
 
 
 def _resolve(prefix: str, frame: str, given: YamlValue) -> str:
-    """A frame with the prefix. given: as in the parameter, where a leading slash means that it has none."""
+    """Return a frame with the prefix. given: the value of the parameter; a leading slash means no prefix."""
     return f'{prefix}/{frame}' if prefix and not str(given).startswith('/') else frame
 
 
@@ -172,23 +174,26 @@ Log = Callable[[Callable[..., None], str], None]     # a function of rospy, such
 
 
 def find_prior(name: str, base: str, log: Log) -> Priors:
-    """The Priors of the surface of this name, UNKNOWN_FLOOR for ANY; for AUTO, those of the surface of the node
-    `base`, which has a parameter `surface` if it is simulated, or else UNKNOWN_FLOOR."""
+    """Return the Priors of the surface with this name, or UNKNOWN_FLOOR for ANY.
+
+    AUTO selects the surface of the node `base`, which has a parameter `surface` if it is simulated; otherwise the
+    result is UNKNOWN_FLOOR.
+    """
     try:
         if name == AUTO:
             key, master = f'{base}/surface', rosgraph.get_master_uri()
-            # not by rospy, which waits for a frozen master for ever
+            # not with rospy, which waits for a frozen master indefinitely
             name = call(master, 'getParam', key) if call(master, 'hasParam', key) else ANY
         prior = UNKNOWN_FLOOR if name == ANY else priors(load_surface(name, resources.surfaces()))
     except (ConfigError, OSError, xmlrpc.client.Error) as error:     # or no answer from the master
         log(rospy.logwarn, f'{base}/{error}; using {ANY} instead')
         name, prior = ANY, UNKNOWN_FLOOR
-    log(rospy.loginfo, f'Floor that the filter starts with: {name}')
+    log(rospy.loginfo, f'Initially assumed floor: {name}')
     return prior
 
 
 def make_filter(parameters: FilterParameters, base: str, log: Log, warn: Callable[[str], None]) -> CombinedOdometry:
-    """The CombinedOdometry for the odometry of the node `base`. warn(text): logs a warning."""
+    """Return the CombinedOdometry for the odometry of the node `base`. warn(text): logs a warning."""
     return CombinedOdometry(find_prior(parameters.surface, base, log), round(SECOND * parameters.sensor_timeout),
                             parameters.imu_used, warn, time.monotonic_ns,
                             MAX_LEAD if rospy.rostime.is_wallclock() else MAX_AGE, parameters.limits)

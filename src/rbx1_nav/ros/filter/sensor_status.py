@@ -1,4 +1,4 @@
-"""The states of the filter and of its sensors, for /diagnostics."""
+"""Reports the states of the filter and of its sensors on /diagnostics."""
 from __future__ import annotations
 
 from functools import partial
@@ -22,18 +22,18 @@ SUMMARIES = {'standstill': (OK, 'Standstill'), 'agreement': (OK, 'Wheels and gyr
 
 
 class Diagnostics:
-    """Counts the messages to the filter, and publishes a DiagnosticStatus of it and one of each sensor."""
+    """Counts the messages to the filter, and publishes a DiagnosticStatus of the filter and of each sensor."""
 
     def __init__(self, sensors: Sequence[str], timeout: float, lock: Lock,
                  get_filter: Callable[[], tuple[CombinedOdometry | None, int]]) -> None:
-        """sensors: names; timeout: age of the last message from which on a sensor has timed out, s; lock: to be held
-        while the filter is read; get_filter(): the filter, and the number of poses published."""
+        """sensors: names; timeout: age of the last message above which a sensor has timed out, s; lock: held while the
+        filter is read; get_filter(): returns the filter and the number of published poses."""
         self.timeout = timeout
         self.lock = lock
         self.get_filter = get_filter
-        # when the last message of each arrived
+        # arrival time of the last message of each sensor
         self.received: dict[str, rospy.Time | None] = dict.fromkeys(sensors)
-        self.rejected = dict.fromkeys([*sensors, 'set_pose'], 0)    # messages
+        self.rejected = dict.fromkeys([*sensors, 'set_pose'], 0)    # number of messages
         self.filter: Filter | None = None
         self.case: str | None = None
         self.starts = 0
@@ -45,7 +45,7 @@ class Diagnostics:
             self.updater.add(sensor, partial(self._diagnose_sensor, sensor))
 
     def count(self, topic: str, now: rospy.Time, combined: CombinedOdometry) -> None:
-        """To be called after each message on a topic that the filter has accepted at `now`."""
+        """Count a message; to be called after each message on a topic that the filter has accepted at `now`."""
         self.received[topic] = now
         if combined.filter is not self.filter:
             self.filter = combined.filter
@@ -58,7 +58,7 @@ class Diagnostics:
                 self.counts[case] += 1
 
     def publish(self) -> None:
-        """Publish all of them."""
+        """Publish /diagnostics."""
         self.updater.force_update()
 
     def _diagnose_filter(self, status: DiagnosticStatusWrapper) -> DiagnosticStatusWrapper:
@@ -96,7 +96,7 @@ class Diagnostics:
             age = None if received is None else (rospy.Time.now() - received).to_sec()
             if age is None or not combined:
                 status.summary(WARN, 'No message yet')
-            # below 0: the clock has jumped back since
+            # below 0: the clock has jumped back since the message
             elif not -1 <= age <= self.timeout or combined.timed_out[sensor]:
                 status.summary(WARN, 'Timed out, not used')
             elif sensor == 'odom' and combined.suspect:

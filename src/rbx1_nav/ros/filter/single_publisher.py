@@ -1,4 +1,4 @@
-"""Listens to one of several nodes that publish the same topic."""
+"""Selects one of several nodes that publish the same topic."""
 from __future__ import annotations
 
 from typing import Callable, Iterable
@@ -8,25 +8,26 @@ from rospy.impl.tcpros_base import TCPROSTransport
 
 
 class OneSender:
-    """Decides whose messages count: those of the first node, until it has gone or fallen silent."""
+    """Accepts the messages of the first node only, until it disconnects or falls silent."""
 
     def __init__(self, topic: str, silence: float, warn: Callable[[str], None],
                  restart: Callable[[str], None]) -> None:
-        """topic: name; silence: s, after which another node may follow; warn(text): logs a warning; restart(name):
-        called before the first message of a node counts."""
+        """topic: name; silence: time after which another node is accepted, s; warn(text): logs a warning;
+        restart(name): called before the first message of a node is accepted."""
         self.topic = rospy.resolve_name(topic)
         self.silence = silence
         self.warn = warn
         self.restart = restart
-        self.header: dict[str, str] | None = None   # the header of its connection
-        self.heard: rospy.Time | None = None        # rospy.Time when its last message arrived
+        self.header: dict[str, str] | None = None   # the header of the connection of the accepted node
+        self.heard: rospy.Time | None = None        # arrival time of its last message
 
     def accepts(self, header: dict[str, str], connections: Iterable[TCPROSTransport], now: rospy.Time) -> bool:
-        """Whether a message counts that came by the connection with this header, among rospy's present connections."""
+        """Return whether to accept a message that arrived on the connection with this header. connections: rospy's
+        current connections."""
         if self.header is not None and header is not self.header and any(
                 connection.header is self.header for connection in connections) and (
                 0 <= (now - self.heard).to_sec() <= self.silence):
-            self.warn('%s: messages of %s ignored: %s publishes it too'
+            self.warn('%s: messages from %s ignored: %s also publishes this topic'
                       % (self.topic, header['callerid'], self.header['callerid']))
             return False
         if header is not self.header:

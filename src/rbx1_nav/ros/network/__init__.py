@@ -1,1 +1,1 @@
-"""What the master, other nodes, their connections and their processes do."""
+"""Access to the master and to other nodes, and monitoring of their connections and processes."""

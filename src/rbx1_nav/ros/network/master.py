@@ -1,4 +1,4 @@
-"""Calls to the master and to other nodes that give up after a while, where rospy's own would wait for ever."""
+"""Calls to the master and to other nodes with a timeout; rospy's own calls would wait indefinitely."""
 from __future__ import annotations
 
 from http.client import HTTPConnection
@@ -12,12 +12,12 @@ import xmlrpc.client
 import rosgraph
 import rospy
 
-TIMEOUT = 2.0       # s of wall time in which the master, or a live node, answers a call
-PERIOD = 0.2        # s between two calls to a master that is not running yet; rospy has the same
+TIMEOUT = 2.0       # s of wall time for the master, or a live node, to answer a call
+PERIOD = 0.2        # s between two calls to a master that is not running yet, as in rospy
 
 
 class _TimeoutTransport(Transport):
-    """XML-RPC with a timeout."""
+    """XML-RPC transport with a timeout."""
 
     def __init__(self, timeout: float) -> None:
         super().__init__()
@@ -30,7 +30,7 @@ class _TimeoutTransport(Transport):
 
 
 class Server:
-    """The master or a node. Keeps its connection from call to call, and makes a new one if a call fails."""
+    """The master or a node. The connection is kept between calls, and replaced after a call that failed."""
 
     def __init__(self, uri: str, timeout: float = TIMEOUT) -> None:
         """timeout: s."""
@@ -44,18 +44,18 @@ class Server:
 
     # Any: what a call returns depends on its method
     def call(self, method: str, *args: str) -> Any:
-        """The result of a call. Raises OSError, http.client.HTTPException or xmlrpc.client.Error if it fails."""
+        """Return the result of a call. Raises OSError, http.client.HTTPException or xmlrpc.client.Error if it fails."""
         return getattr(self._proxy, method)(rospy.get_name(), *args)[2]
 
 
 def call(uri: str, method: str, *args: str, timeout: float = TIMEOUT) -> Any:
-    """The result of one call, as of Server.call()."""
+    """Return the result of one call, like Server.call()."""
     with Server(uri, timeout) as server:
         return server.call(method, *args)
 
 
 def require_master() -> None:
-    """Raises ROSException if the master does not answer."""
+    """Raise ROSException if the master does not answer."""
     try:
         call(rosgraph.get_master_uri(), 'getPid')
     except (OSError, xmlrpc.client.Error) as error:
@@ -64,7 +64,7 @@ def require_master() -> None:
 
 
 class _MasterProbe(threading.Thread):
-    """Calls the master until it answers: in a thread, so that a host that drops packets delays no Ctrl-C."""
+    """Calls the master until it answers, in a thread, so that a host that drops packets does not delay Ctrl-C."""
 
     def __init__(self) -> None:
         super().__init__(daemon=True)
@@ -79,16 +79,16 @@ class _MasterProbe(threading.Thread):
                 self.answered.set()
                 return
             except Exception:
-                self.failed.set()       # another server at this port raises errors of its own
+                self.failed.set()       # another server at this port causes other errors
             time.sleep(PERIOD)
 
 
 def wait_for_master(name: str, read_limit: Callable[[], float | None], is_ended: Callable[[], bool],
                     sleep: Callable[[float], None]) -> None:
-    """Wait until the master answers, or is_ended(), and log one line if it does not answer at once.
+    """Wait until the master answers, or is_ended(), and log one line if it does not answer immediately.
 
-    name: of the node, for the log; sleep(seconds): sleeps for a moment; read_limit(): how long to wait, s of wall time,
-    None for no limit; it is called only if there is something to wait for. Raises ROSException after this time.
+    name: name of the node, for the log; sleep(seconds): sleeps briefly; read_limit(): returns how long to wait, s of
+    wall time, None for no limit, and is called only if the node has to wait. Raises ROSException after this time.
     """
     uri = rosgraph.get_master_uri()
     if urlsplit(uri).scheme != 'http':      # rospy reports it
@@ -101,7 +101,7 @@ def wait_for_master(name: str, read_limit: Callable[[], float | None], is_ended:
             sleep(0.002)
         if probe.answered.is_set() or is_ended():
             return
-        rospy.core.configure_logging(name)      # as init_node() would, for the line to look like any other
+        rospy.core.configure_logging(name)      # as init_node() would, so that the line has the usual format
         limit = read_limit()
         rospy.loginfo('Waiting for the master at %s', uri)
         while not (probe.answered.is_set() or is_ended()):

@@ -1,8 +1,9 @@
-"""Whether processes of this machine sleep: then they have done all that they were woken for.
+"""Checks whether processes of this machine are asleep, and so have done the work for which they were woken.
 
-On one machine, a message wakes its receiver before the sender goes on (loopback TCP delivers in the sender's own call),
-and so do a notified condition and a released lock. So while anything is under way between processes, at least one of
-their threads runs or is about to. Sources: proc(5) and, for the clocks of other processes, clock_getcpuclockid(3).
+On one machine, a message wakes its receiver before the sender continues (loopback TCP delivers within the sender's
+call), and so do a notified condition and a released lock. So while anything is in transit between processes, at least
+one of their threads is running or runnable. Sources: proc(5) and, for the clocks of other processes,
+clock_getcpuclockid(3).
 """
 from __future__ import annotations
 
@@ -14,15 +15,15 @@ import time
 from typing import Callable, Iterable, Optional, Tuple
 
 POLL = 0.005    # s: a thread that sleeps for less than this polls, as ros::Rate does on simulated time
-ENDED = b'X', b'Z'      # states of a thread that has ended
+ENDED = b'X', b'Z'      # states of a thread that has exited
 LISTEN = '0A'           # state of a socket in /proc/net/tcp
-TIMED = b'sleep', b'poll', b'select'    # in the names of the kernel's functions that wait for a time
-# how the names of those begin that most threads wait in, and that always wait in state S
+TIMED = b'sleep', b'poll', b'select'    # parts of the names of kernel functions that wait with a timeout
+# first parts of the names of the kernel functions in which most threads wait, always in state S
 INTERRUPTIBLE = b'futex_', b'poll_schedule_timeout', b'wait_woken', b'inet_csk_accept', b'hrtimer_nanosleep'
 
 
 def _cpu_clock(number: int, of_thread: bool) -> int:
-    """The clock of the CPU time of a process or thread, for clock_gettime(2): its number is part of it."""
+    """Return the id of the CPU time clock of a process or thread, for clock_gettime(2); it contains the number."""
     return ~number << 3 | (6 if of_thread else 2)
 
 
@@ -30,7 +31,7 @@ class Thread:
     """One thread of a process."""
 
     def __init__(self, folder: str, number: int) -> None:
-        """folder: of the thread, below /proc. Raises OSError if it has ended or must not be looked at."""
+        """folder: folder of the thread below /proc. Raises OSError if it has exited or must not be inspected."""
         self.clock = _cpu_clock(number, True)
         self.files: list[int] = []
         try:
@@ -40,39 +41,39 @@ class Thread:
             self.close()
             raise
         self.ran: bytes | None = None       # how long and how often it has run
-        self.changed = 0.0      # s of the monotonic clock: when `ran` was last seen to change
+        self.changed = 0.0      # s of the monotonic clock: when a change of `ran` was last detected
         self.marked: bytes | None = None    # `ran` when mark() was called; None if it may have woken by itself before
-        self.timed = False      # needs_no_message() then
+        self.timed = False      # needs_no_message() when mark() was called
         self.look()
 
     def close(self) -> None:
-        """Close its files."""
+        """Close the files of the thread."""
         for file in self.files:
             os.close(file)
         self.files = []
 
     def look(self) -> bytes:
-        """Update `ran`, and return it."""
+        """Update `ran` and return it."""
         ran = os.pread(self.files[2], 64, 0)
         if ran != self.ran:
             self.ran, self.changed = ran, time.monotonic()
         return ran
 
     def waits_in(self) -> bytes:
-        """The name of the kernel's function in which it waits; 0 if it runs, or is about to."""
+        """Return the name of the kernel function in which the thread waits; 0 if it is running or runnable."""
         return os.pread(self.files[1], 64, 0)
 
     def sleeps(self) -> bool:
-        """Whether it waits, or has ended."""
+        """Return whether the thread is waiting or has exited."""
         if self.waits_in().startswith(INTERRUPTIBLE):
             return True
-        # a state of S alone may belong to a thread that is about to wait, and may still find out that it need not;
-        # the name in parentheses may hold anything
+        # state S alone may belong to a thread that is about to wait and may still find that it need not wait;
+        # the name in parentheses may contain any characters
         state = os.pread(self.files[0], 512, 0).rpartition(b') ')[2][:1]
         return self.waits_in() != b'0' if state == b'S' else state in ENDED
 
     def needs_no_message(self) -> bool:
-        """Whether it runs, is about to, or will wake by itself."""
+        """Return whether the thread is running, runnable, or will wake by itself."""
         name = self.waits_in()
         return name == b'0' or any(part in name for part in TIMED)
 
@@ -87,24 +88,24 @@ class Thread:
         return self.marked is None or (self.timed and self.look() != self.marked)
 
     def polls(self) -> bool:
-        """Whether it sleeps for a moment only, as far as can be known, or runs."""
+        """Return whether the thread is running, or apparently sleeps only briefly."""
         self.look()
         return time.monotonic() - self.changed < POLL and self.needs_no_message()
 
 
-PollingThread = Tuple[Thread, Optional[bytes]]      # with what it has run so far
+PollingThread = Tuple[Thread, Optional[bytes]]      # a Thread and its `ran`
 
 
 class Process:
     """A process of this machine."""
 
     def __init__(self, pid: int, without: int | None = None) -> None:
-        """pid: its number; without: the number of a thread of this process that does not count. Raises OSError if it
-        has ended or must not be looked at."""
+        """pid: number of the process; without: number of a thread to ignore. Raises OSError if the process has exited
+        or must not be inspected."""
         self.folder = f'/proc/{pid}/task/'
         self.clock = _cpu_clock(pid, False)
         self.without = without
-        self.socket: socket.socket | None = None    # by which it was found
+        self.socket: socket.socket | None = None    # the connection by which it was found
         self.threads: dict[int, Thread] = {}       # by number
         self._update()
         if not self.threads:
@@ -117,43 +118,43 @@ class Process:
         self.threads = {}
 
     def cpu_time(self) -> int:
-        """What the threads have run so far, ns; up to date only for those that wait."""
+        """Return the CPU time of the threads so far, ns; it is up to date only for waiting threads."""
         if self.without is None:
             return time.clock_gettime_ns(self.clock)
         return sum(time.clock_gettime_ns(thread.clock) for thread in self.threads.values())
 
     def sleeps(self) -> bool:
-        """Whether all threads sleep."""
+        """Return whether all threads are asleep."""
         if os.stat(self.folder).st_nlink != len(self.threads) + 2 + (self.without is not None):
             self._update()
             return False
         return all(thread.sleeps() for thread in self.threads.values())
 
     def mark(self) -> None:
-        """Remember what the threads do now, and have done since they were last looked at."""
+        """Remember what the threads are doing, and what they have done since the last look."""
         self._each(Thread.mark)
 
     def polling(self) -> list[PollingThread]:
-        """The threads that sleep for a moment only."""
+        """Return the threads that sleep only briefly."""
         return [(thread, thread.ran) for thread in self._each(Thread.polls)]
 
     def woke_by_itself(self) -> bool:
-        """Whether a thread has run since mark() that slept for a time then, or had just run."""
+        """Return whether a thread has run since mark() that was in a timed sleep then, or had just run."""
         return bool(self._each(Thread.woke_by_itself))
 
     def ended(self) -> bool:
-        """A thread has ended, or all of them: look again which there are."""
+        """Update the list of threads after one has exited; return whether all have exited."""
         self._update()
         return not self.threads
 
     def _each(self, function: Callable[[Thread], bool | None]) -> list[Thread]:
-        """Call a function with each thread; returns those for which it is true."""
+        """Call a function with each thread; return the threads for which it is true."""
         found = []
         for thread in self.threads.values():
             try:
                 if function(thread):
                     found.append(thread)
-            except OSError:     # it has ended
+            except OSError:     # it has exited
                 pass
         return found
 
@@ -161,7 +162,7 @@ class Process:
         try:
             numbers = set(map(int, os.listdir(self.folder))) - {self.without}
         except FileNotFoundError:
-            numbers = set()     # it has ended
+            numbers = set()     # it has exited
         for number in self.threads.keys() - numbers:
             self.threads.pop(number).close()
         for number in numbers - self.threads.keys():
@@ -172,10 +173,10 @@ class Process:
 
 
 class Network:
-    """The kernel's own threads that deliver messages on a busy machine, in place of the sender."""
+    """The kernel threads that deliver messages on a busy machine, instead of the sender."""
 
     def __init__(self) -> None:
-        self.files: list[int] = []      # those of a container are not to be seen
+        self.files: list[int] = []      # empty in a container, where these threads are invisible
         for pid in filter(str.isdigit, os.listdir('/proc')):
             try:
                 with open(f'/proc/{pid}/comm', encoding='ascii') as file:
@@ -185,14 +186,14 @@ class Network:
                 pass
 
     def busy(self) -> bool:
-        """Whether messages may be under way."""
+        """Return whether messages may be in transit."""
         return any(b') R' in os.pread(file, 512, 0) for file in self.files)
 
 
 def awake(processes: Iterable[Process]) -> Process | None:
-    """The first of some Process objects that does not sleep; None if all of them slept at one and the same moment."""
+    """Return the first Process that is not asleep; None if all of them were asleep at one moment."""
     processes = list(processes)
-    # of all before the first look: one that has been looked at may be woken by one that sleeps before it is looked at
+    # read for all before the first check: a checked process may be woken by another one that then sleeps when checked
     before = [_cpu_time(process) for process in processes]
     for process in processes:
         try:
@@ -208,7 +209,7 @@ def awake(processes: Iterable[Process]) -> Process | None:
 
 
 def _cpu_time(process: Process) -> int | None:
-    """As Process.cpu_time(); None if it has ended."""
+    """Return Process.cpu_time(); None if the process has exited."""
     try:
         return process.cpu_time()
     except OSError:
@@ -216,16 +217,15 @@ def _cpu_time(process: Process) -> int | None:
 
 
 def still_polling(threads: Iterable[PollingThread]) -> bool:
-    """Whether one of these threads, as of Process.polling(), still sleeps as it did then."""
+    """Return whether one of these threads, from Process.polling(), is still in the same sleep."""
     try:
         return any(thread.polls() and thread.ran == ran for thread, ran in threads)
-    except OSError:     # it has ended
+    except OSError:     # it has exited
         return False
 
 
 def own_process() -> Process | None:
-    """The Process of the caller, without the thread that calls; None if the kernel does not tell what its threads
-    do."""
+    """Return the Process of the caller without the calling thread; None if the kernel does not show its threads."""
     try:
         process = Process(os.getpid(), threading.get_native_id())
         # the others wait for messages
@@ -235,7 +235,7 @@ def own_process() -> Process | None:
 
 
 def peer_process(sock: socket.socket) -> Process | None:
-    """The Process at the other end of a TCP connection; None if it is not to be seen from here: on another machine, in
+    """Return the Process of the peer of a TCP connection; None if it is not visible from here: on another machine, in
     another container, or of another user."""
     try:
         peer, own = sock.getpeername(), sock.getsockname()
@@ -246,25 +246,25 @@ def peer_process(sock: socket.socket) -> Process | None:
 
 
 def listening_process(port: int) -> Process | None:
-    """The Process that listens on a TCP port of this machine; None if it is not to be seen from here."""
+    """Return the Process that listens on a TCP port of this machine; None if it is not visible from here."""
     return _process_with(lambda fields: fields[3] == LISTEN and fields[1].endswith(f':{port:04X}'))
 
 
 def _process_with(matches: Callable[[list[str]], bool]) -> Process | None:
-    """The Process that has a socket; matches(fields): whether a line of /proc/net/tcp is that of the socket."""
+    """Return the Process that owns a socket; matches(fields): whether a line of /proc/net/tcp describes the socket."""
     link = f'socket:[{_inode(matches)}]'
     for pid in filter(str.isdigit, os.listdir('/proc')):
         folder = f'/proc/{pid}/fd/'
         try:
             if int(pid) != os.getpid() and any(_read_link(folder + file) == link for file in os.listdir(folder)):
                 return Process(int(pid))
-        except OSError:     # it has ended, or is another user's
+        except OSError:     # it has exited, or belongs to another user
             pass
     return None
 
 
 def _inode(matches: Callable[[list[str]], bool]) -> str | None:
-    """The inode of the first socket that matches, as a text; None if there is none."""
+    """Return the inode of the first matching socket as a text; None if there is none."""
     for table in ('/proc/net/tcp', '/proc/net/tcp6'):
         try:
             with open(table, encoding='ascii') as file:
@@ -277,7 +277,7 @@ def _inode(matches: Callable[[list[str]], bool]) -> str | None:
 
 
 def _address(family: int, address: tuple[str, int]) -> str:
-    """An address as /proc/net/tcp has it: words of 32 bits in the machine's own order, and the port."""
+    """Return an address as in /proc/net/tcp: words of 32 bits in the machine's byte order, and the port."""
     host = socket.inet_pton(family, address[0])
     words = (int.from_bytes(host[i:i + 4], sys.byteorder) for i in range(0, len(host), 4))
     return '%s:%04X' % (''.join('%08X' % word for word in words), address[1])
@@ -286,5 +286,5 @@ def _address(family: int, address: tuple[str, int]) -> str:
 def _read_link(path: str) -> str | None:
     try:
         return os.readlink(path)
-    except OSError:     # closed meanwhile
+    except OSError:     # closed in between
         return None

@@ -1,8 +1,7 @@
-"""Tells a sender of commands that its base has refused some, when it looks whether the base still answers.
+"""Reports refused commands to their sender when it checks whether the base still answers.
 
-That takes no topic and no connection of its own: a driving script publishes, and nothing else. A base extends the
-slave API of its node by one method, which returns how many commands of the caller were refused, and why the last one
-was.
+This needs no additional topic or connection: a driving script only publishes. A base extends the slave API of its node
+by one method, which returns how many commands of the caller were refused, and the reason for the last refusal.
 """
 from __future__ import annotations
 
@@ -16,27 +15,27 @@ METHOD = 'getRefusals'
 
 
 class Refusals:
-    """Of a base."""
+    """The refused commands of a base."""
 
     def __init__(self) -> None:
-        # by the name of the sender: how many commands, and why the last one
+        # by the name of the sender: number of refused commands, and the reason for the last one
         self._refused: dict[str, tuple[int, str]] = {}
         setattr(ROSHandler, METHOD, lambda _, caller: (1, '', list(self._refused.get(caller, (0, '')))))
 
     @property
     def count(self) -> int:
-        """How many commands were refused."""
+        """Number of refused commands."""
         return sum(count for count, _ in self._refused.values())
 
     def add(self, sender: str, reason: str) -> None:
-        """Refuse a command. sender: the name of its node; reason: a text."""
+        """Count a refused command. sender: the name of its node; reason: a text."""
         count, _ = self._refused.get(sender, (0, ''))
         self._refused[sender] = count + 1, reason
 
 
 def ask(server: Server) -> tuple[int | None, str]:
-    """How many commands of this node another one has refused, and the reason for the last one; (None, '') if that node
-    does not report refusals. server: the Server of that node. Raises as Server.call() if it does not answer."""
+    """Return how many commands of this node another node has refused, and the reason for the last refusal; (None, '')
+    if it does not report refusals. server: the Server of that node. Raises like Server.call() if it does not answer."""
     try:
         count, reason = server.call(METHOD)
         return int(count), ''.join(filter(str.isprintable, reason))

@@ -1,4 +1,4 @@
-"""What the kernel knows of a TCP connection: whether the peer still acknowledges what it is sent."""
+"""Reads the state of a TCP connection from the kernel: whether the peer still acknowledges data."""
 from __future__ import annotations
 
 import fcntl
@@ -9,31 +9,31 @@ import termios
 from typing import NamedTuple
 
 ESTABLISHED = 1     # include/net/tcp_states.h
-CLOSED_WINDOW = 512     # bytes: a peer with less room than this does not read; a Twist takes 52
+CLOSED_WINDOW = 512     # bytes: a peer with less receive space than this does not read; a Twist takes 52
 
 # struct tcp_info of linux/tcp.h: tcpi_state at 0, tcpi_bytes_acked at 120, tcpi_snd_wnd at 228 (since Linux 5.4)
 _INFO = struct.Struct('=B119xQ100xI')
 
 
 class Connection(NamedTuple):
-    """A TCP connection."""
+    """The state of a TCP connection."""
 
-    established: bool       # at both ends
+    established: bool       # whether neither side has closed it
     unacknowledged: int     # bytes that were sent, or wait to be sent, and are not acknowledged
-    acknowledged: int       # bytes, so far
-    window: int             # bytes that the peer has room for
+    acknowledged: int       # acknowledged bytes so far
+    window: int             # receive space of the peer, bytes
 
 
 def read_connection(sock: socket.socket) -> Connection:
-    """The Connection of a socket. Raises OSError if it is closed."""
+    """Return the Connection of a socket. Raises OSError if it is closed."""
     info = sock.getsockopt(socket.IPPROTO_TCP, socket.TCP_INFO, _INFO.size)
-    # an older kernel does not tell the window: assume that it is open
+    # an older kernel does not report the window: assume that it is open
     state, acknowledged, window = _INFO.unpack(info) if len(info) == _INFO.size else (info[0], 0, CLOSED_WINDOW)
     return Connection(state == ESTABLISHED, _read_number(sock, termios.TIOCOUTQ), acknowledged, window)
 
 
 def unread_bytes(sock: socket.socket | None) -> int:
-    """How many bytes have arrived at a socket that were not read yet; 0 if it is closed."""
+    """Return the number of received bytes of a socket that have not been read yet; 0 if it is closed."""
     if sock is None:
         return 0
     try:
@@ -43,21 +43,21 @@ def unread_bytes(sock: socket.socket | None) -> int:
 
 
 def _read_number(sock: socket.socket, request: int) -> int:
-    """What the kernel answers to a request of tcp(7): SIOCOUTQ and SIOCINQ are TIOCOUTQ and FIONREAD."""
+    """Return the kernel's answer to a request of tcp(7): SIOCOUTQ and SIOCINQ are TIOCOUTQ and FIONREAD."""
     number = bytearray(4)
     fcntl.ioctl(sock, request, number)
     return int.from_bytes(number, sys.byteorder)
 
 
 class AcknowledgementTimer:
-    """How long a peer has acknowledged nothing, although there was something to acknowledge."""
+    """Measures how long a peer has not acknowledged any data although some was unacknowledged."""
 
     def __init__(self) -> None:
-        self.since: float | None = None     # s: when the present silence began; None if there is none
+        self.since: float | None = None     # s: start of the current silence; None if there is none
         self.acknowledged = 0
 
     def silence(self, now: float, connection: Connection) -> float:
-        """The duration of the silence, s. now: s."""
+        """Return the duration of the silence, s. now: s."""
         if not connection.unacknowledged or connection.acknowledged != self.acknowledged:
             self.since = None
         elif self.since is None:

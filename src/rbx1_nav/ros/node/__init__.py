@@ -1,1 +1,1 @@
-"""The life of a node: command line, parameters, logging, interrupts."""
+"""Start and shutdown of a node, and its command line, parameters, logging and interrupts."""

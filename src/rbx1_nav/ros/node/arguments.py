@@ -1,4 +1,4 @@
-"""The command line and the private parameters of a node, compared with the parameters that it has."""
+"""Checks the command line and the private parameters of a node against the parameters that it declares."""
 from __future__ import annotations
 
 import difflib
@@ -17,9 +17,9 @@ EXPECTED = 'expected _parameter:=value or topic:=new_topic'
 
 
 def check_command_line(usage: str, names: Sequence[str]) -> None:
-    """Print the usage and exit if the command line asks for it, or has arguments that this node does not know.
+    """Print the usage and exit if the command line requests it or has unknown arguments.
 
-    names: of the node's parameters.
+    names: names of the node's parameters.
     """
     arguments = sys.argv[1:]
     if '-h' in arguments or '--help' in arguments:
@@ -28,14 +28,14 @@ def check_command_line(usage: str, names: Sequence[str]) -> None:
     for argument in arguments:
         problem = find_problem(argument, names)
         if problem:
-            # last, so that it stands just above the prompt, as with argparse
+            # the error comes last, just above the prompt, as with argparse
             print('%s\n\n%s: error: %s: %s' % (usage, os.path.basename(sys.argv[0]), show_name(argument), problem),
                   file=sys.stderr)
             sys.exit(2)
 
 
 def find_problem(argument: str, names: Sequence[str]) -> str | None:
-    """What is wrong with a command-line argument, or None. names: of the node's parameters."""
+    """Return the problem with a command-line argument, or None. names: names of the node's parameters."""
     left, assigned, right = argument.partition(':=')
     if not assigned:
         left, _, right = argument.partition('=')
@@ -46,10 +46,10 @@ def find_problem(argument: str, names: Sequence[str]) -> str | None:
         if left[1:].split('/')[0] not in names:
             return f'unknown parameter{_suggestion(left, right, names, 0.6)}'
         return None if _is_value(right) else 'expected a value'
-    # a remapping: only a name very close to a parameter's is a mistake
+    # a remapping: it is a mistake only if the name is very close to the name of a parameter
     suggestion = _suggestion(left, right, names, 0.8)
     if suggestion:
-        return f'this renames a topic{suggestion}'
+        return f'this remaps a topic{suggestion}'
     return None if right and is_legal_name(right) else EXPECTED
 
 
@@ -59,31 +59,31 @@ def _suggestion(left: str, value: str, names: Sequence[str], cutoff: float) -> s
 
 
 def _is_value(text: str) -> bool:
-    """Whether rospy can read a text as YAML, and send its value to the master."""
+    """Return whether rospy can read a text as YAML and send its value to the master."""
     try:
         xmlrpc.client.dumps((yaml.safe_load(text),))
     except Exception:
-        return False    # yaml raises many kinds of errors, see config.load_yaml(); integers may have 32 bits
+        return False    # yaml raises many kinds of errors, see config.load_yaml(); integers are limited to 32 bits
     return bool(text) and ':=' not in text
 
 
 def report_parameters(stored: Mapping[str, YamlValue], names: Sequence[str]) -> None:
-    """Log the private parameters that have no effect, and those that an earlier command left on the master.
+    """Log the private parameters that have no effect, and the parameters that an earlier command left on the master.
 
-    stored: those on the master; names: of the node's parameters.
+    stored: the parameters on the master; names: names of the node's parameters.
     """
     name = rospy.get_name()
     unknown = sorted(show_name(each) + suggestion(each, names) for each in set(stored) - set(names))
     if any(argument.startswith('__log:=') for argument in sys.argv):    # by roslaunch, which sets parameters on purpose
         if unknown:
-            rospy.logwarn('Unknown parameters, without effect: %s', ', '.join(unknown))
+            rospy.logwarn('Ignoring unknown parameters: %s', ', '.join(unknown))
         return
     given = {argument.split(':=')[0][1:].split('/')[0] for argument in sys.argv[1:] if argument.startswith('_')}
     in_force = [f'{each} = {show_name(stored[each])}' for each in sorted(set(stored) & set(names) - given)]
-    # a mapping was loaded from a file, on purpose too
+    # a mapping was loaded from a file, which is also on purpose
     if in_force and not any(isinstance(value, dict) for value in stored.values()):
-        rospy.logwarn('Left by an earlier command, still in force: %s (`rosparam delete %s` removes all)',
+        rospy.logwarn('Left by an earlier command, still in force: %s (`rosparam delete %s` removes them)',
                       ', '.join(in_force), name)
     if unknown:
-        rospy.logwarn('Left by an earlier command, without effect here: %s (`rosparam delete %s` removes all)',
+        rospy.logwarn('Left by an earlier command, without effect here: %s (`rosparam delete %s` removes them)',
                       ', '.join(unknown), name)

@@ -1,4 +1,4 @@
-"""The exit status of a script."""
+"""Sets the exit status of a script."""
 from __future__ import annotations
 
 from contextlib import contextmanager
@@ -11,14 +11,17 @@ from rbx1_nav.ros.node import life
 
 @contextmanager
 def exit_status() -> Iterator[None]:
-    """A `with` block after which the process ends: with status 0, also if it was interrupted, with that of sys.exit(),
-    or, after one line that says what went wrong, with 1."""
+    """Run a `with` block and exit the process.
+
+    The exit status is 0, also after an interrupt; or the status of sys.exit(); or 1 after an error, which is logged in
+    one line.
+    """
     status = 0
     try:
         yield
     except SystemExit as error:
         status = error.code if isinstance(error.code, int) else int(error.code is not None)
-    except rospy.ROSInterruptException:     # it was to end
+    except rospy.ROSInterruptException:     # shutdown was requested
         pass
     except (rospy.ROSException, ValueError, OSError) as error:  # StuckError; the master does not answer
         rospy.logerr('%s', error)

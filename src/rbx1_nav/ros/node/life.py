@@ -1,7 +1,8 @@
-"""The life of a node: it starts and ends without hanging, neither on a lock that a signal interrupted nor on a master.
+"""Starts and stops a node without hanging on the master or on a lock that a signal has interrupted.
 
-Signals never interrupt the main thread. A thread waits for them and sets `end_requested`, as does every other way to
-end a node. The main thread checks it, does its last duty, and calls leave(). docs/design.md explains why.
+Signals never interrupt the main thread. A thread waits for them and sets `end_requested`; so does every other kind of
+shutdown request. The main thread checks it, does its final work, and calls leave().
+docs/decisions/how_a_node_stops.md explains why.
 """
 from __future__ import annotations
 
@@ -22,11 +23,11 @@ from rbx1_nav.ros.network.master import require_master, wait_for_master
 from rbx1_nav.ros.node.arguments import check_command_line, report_parameters
 from rbx1_nav.ros.node.params import check_before_start, future_name, load_params, read_wait_timeout, stored_params
 
-EXIT_DEADLINE = 1.4         # s of wall time from the request to the end of the process, whatever hangs
+EXIT_DEADLINE = 1.4         # s of wall time from the request to the exit of the process, whatever hangs
 UNREGISTER_TIMEOUT = 0.25   # s of wall time for the master to unregister the node
 MAX_SLEEP = 0.05            # s
 
-# rospy of Debian 11 calls Thread.isAlive() on shutdown, a name that Python 3.9 has removed
+# rospy of Debian 11 calls Thread.isAlive() on shutdown, which Python 3.9 has removed
 if not hasattr(threading.Thread, 'isAlive'):
     setattr(threading.Thread, 'isAlive', threading.Thread.is_alive)
 
@@ -45,7 +46,7 @@ class _Terminal:
         return getattr(self._stream, name)
 
     def write(self, text: str) -> int:
-        """Write, or drop the text."""
+        """Write the text, or drop it if that fails."""
         self._try(self._stream.write, text)
         return len(text)
 
@@ -64,18 +65,18 @@ def init_node(name: str, usage: str, parameters: Sequence[Parameter] = (), requi
               check: Callable[[dict[str, YamlValue]], object] | None = None) -> None:
     """Start the node `name`. From here on, Ctrl-C, kill, a closed terminal and `rosnode kill` set end_requested.
 
-    usage: printed, with the list of parameters, for --help and for a command line with anything else; both end the
-    process.
-    parameters: those that the node has. They are checked before the node can end an older one of the same name, and
-    are then read with params.param().
+    usage: printed with the list of parameters for --help and for an invalid command line; in both cases, the process
+    exits.
+    parameters: the parameters of the node. They are checked before the node can shut down an older one with the same
+    name, and are then read with params.param().
     requires_master: whether a master that does not answer is an error. Otherwise the node waits for it, for at most
     ~wait_timeout if it has this parameter.
-    check(params): raises ConfigError for private parameters that do not fit each other.
-    Raises ROSInterruptException if the node is to end before it is registered, ROSException if the master does not
-    answer, or for a parameter that makes no sense.
+    check(params): raises ConfigError for private parameters that are inconsistent.
+    Raises ROSInterruptException if shutdown is requested before the node is registered, and ROSException if the master
+    does not answer or a parameter is invalid.
     """
     names = [each.name for each in parameters]
-    # not a TextIO by its class: the stream has the other methods
+    # cast, because only the wrapped stream has the other methods of TextIO
     sys.stdout, sys.stderr = cast(TextIO, _Terminal(sys.stdout)), cast(TextIO, _Terminal(sys.stderr))
     check_command_line('\n\n'.join(filter(None, [usage.strip(), list_parameters(parameters)])), names)
     if requires_master:
@@ -101,8 +102,8 @@ def init_node(name: str, usage: str, parameters: Sequence[Parameter] = (), requi
                                      'expected a running roscore') from error
     if end_requested.is_set():
         raise rospy.ROSInterruptException('shutdown requested')
-    # For each line that is logged, rospy asks the master for this parameter. A frozen master would block the node, and
-    # a master that has given the name to another node would register this one again. The cached value avoids the call.
+    # For each logged line, rospy queries this parameter from the master. A frozen master would block the node, and a
+    # master that has given the name to another node would register this one again. The cached value avoids the call.
     get_param_server_cache().set('/rosout_disable_topics_generation', False)
     stored = stored_params()
     report_parameters(stored, names)
@@ -122,7 +123,7 @@ def _set_end_requested() -> None:
 
 
 def _request_end() -> None:
-    """Called by rospy on shutdown, in a thread of its own; publishers stay open until it returns."""
+    """Request shutdown; called by rospy in its own thread. Publishers stay open until this function returns."""
     _set_end_requested()
     _leaving.wait(EXIT_DEADLINE)
 
@@ -130,14 +131,14 @@ def _request_end() -> None:
 def sleep(seconds: float) -> None:
     """Sleep for `seconds` of wall time, at most MAX_SLEEP. To be called in a loop that checks end_requested.
 
-    end_requested.wait() would not do: before Python 3.11 it follows a system clock that is stepped.
+    end_requested.wait() is unsuitable: before Python 3.11 it follows steps of the system clock.
     """
     time.sleep(max(0, min(seconds, MAX_SLEEP)))
 
 
 def leave(status: int) -> NoReturn:
-    """End the process with an exit status. Unregisters the node, but does not wait for a master that hangs."""
-    time.sleep(0.02)    # for the last line to reach /rosout
+    """Unregister the node and exit with a status, without waiting for a master that hangs."""
+    time.sleep(0.02)    # lets the last line reach /rosout
     _leaving.set()
     threading.Thread(target=rospy.signal_shutdown, args=('done',), daemon=True).start()
     give_up = time.monotonic() + UNREGISTER_TIMEOUT
@@ -149,10 +150,10 @@ def leave(status: int) -> NoReturn:
 
 
 def run(main: Callable[[], int]) -> NoReturn:
-    """Run main(), which starts a node and returns an exit status, and end the process with it."""
+    """Run main(), which starts a node and returns an exit status, and exit with this status."""
     try:
         status = main()
-    except rospy.ROSInterruptException:     # before it was registered
+    except rospy.ROSInterruptException:     # before the node was registered
         status = 0
     except rospy.ROSException as error:
         rospy.logfatal('%s', error)

@@ -1,4 +1,4 @@
-"""The private parameters of a node."""
+"""Checks and reads the private parameters of a node."""
 from __future__ import annotations
 
 import sys
@@ -12,16 +12,16 @@ from rbx1_nav.config import ConfigError, Section, YamlValue, show
 from rbx1_nav.parameters import Parameter, read
 from rbx1_nav.ros.network.master import call
 
-_values: dict[str, Any] = {}        # those of this node, once it is registered
+_values: dict[str, Any] = {}        # parameters of this node, once it is registered
 
 
 def check_before_start(name: str, parameters: Sequence[Parameter],
                        check: Callable[[dict[str, YamlValue]], object] | None = None) -> None:
-    """Check the private parameters that a node of this name will have, each for itself, and all by check(params).
+    """Check the private parameters that a node of this name will have: each individually, and all with check(params).
 
-    To be called before the node is registered: at that moment the master ends an older node with the same name, which
+    To be called before the node is registered, because registration shuts down an older node with the same name, which
     may be the base of a robot. Raises ROSException with one line for the first ConfigError. Nothing is checked if the
-    master does not answer, or the command line sets a part of a mapping.
+    master does not answer, or if the command line sets a part of a mapping.
     """
     name = future_name(name)
     given = rospy.client.load_command_line_node_params(sys.argv)
@@ -37,17 +37,17 @@ def check_before_start(name: str, parameters: Sequence[Parameter],
         if check:
             check(values)
     except ConfigError as error:
-        rospy.core.configure_logging(name)      # as init_node() would, for the line to look like any other
+        rospy.core.configure_logging(name)      # as init_node() would, so that the line has the usual format
         raise rospy.ROSException(f'{name}/{error}') from None
 
 
 def future_name(name: str) -> str:
-    """The full name that a node will have after rospy.init_node(name)."""
+    """Return the full name that a node will have after rospy.init_node(name)."""
     return rosgraph.names.resolve_name(rospy.names.get_mappings().get('__name', name), rospy.get_name())
 
 
 def read_wait_timeout(name: str, parameters: Sequence[Parameter]) -> float | None:
-    """~wait_timeout as the command line sets it, or its default, s; None if it is not one of the parameters.
+    """Return ~wait_timeout from the command line, or its default, s; None if it is not one of the parameters.
 
     For a node that has no master yet. Raises ROSException with one line for an invalid value.
     """
@@ -60,7 +60,7 @@ def read_wait_timeout(name: str, parameters: Sequence[Parameter]) -> float | Non
 
 
 def stored_params() -> dict[str, YamlValue]:
-    """The private parameters of this node that are set, as the master has them. Raises ROSException with one line."""
+    """Return the private parameters of this node that are set on the master. Raises ROSException with one line."""
     stored = rospy.get_param(rospy.get_name(), {})
     if not isinstance(stored, dict):
         raise rospy.ROSException(f'{rospy.get_name()}: {show(stored)}: expected a mapping of parameters to values')
@@ -68,7 +68,7 @@ def stored_params() -> dict[str, YamlValue]:
 
 
 def load_params(parameters: Sequence[Parameter], stored: dict[str, YamlValue]) -> None:
-    """Check the private parameters of this node, for param(). Raises ROSException with one line."""
+    """Check the private parameters of this node and keep them for param(). Raises ROSException with one line."""
     try:
         _values.update(read(parameters, Section(stored)))
     except ConfigError as error:
@@ -76,5 +76,5 @@ def load_params(parameters: Sequence[Parameter], stored: dict[str, YamlValue]) -
 
 
 def param(name: str) -> Any:
-    """The value of the private parameter `name`, which was given to init_node(); its default if it is not set."""
+    """Return the private parameter `name`, which was declared in init_node(), or its default if it is not set."""
     return _values[name]

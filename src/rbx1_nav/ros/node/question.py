@@ -1,4 +1,4 @@
-"""Asks the user for something that no sensor measures."""
+"""Asks the user for a value that no sensor measures."""
 from __future__ import annotations
 
 import os
@@ -15,10 +15,10 @@ Answer = TypeVar('Answer')
 
 
 def ask(question: str, check: Callable[[str], Answer]) -> Answer | None:
-    """Ask on the terminal until check(text) accepts the answer; returns what it returns.
+    """Ask on the terminal until check(text) accepts the answer; return the result of check().
 
-    check raises ConfigError for an answer that makes no sense. Returns None if there is nobody to answer: no terminal,
-    or its end. Raises ROSInterruptException as soon as the node is to end; input() would not notice.
+    check() raises ConfigError for an invalid answer. Returns None if there can be no answer: without a terminal, or at
+    the end of its input. Raises ROSInterruptException as soon as shutdown is requested, which input() would not notice.
     """
     source, text = sys.stdin.fileno(), b''
     while True:

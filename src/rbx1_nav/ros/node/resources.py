@@ -1,4 +1,4 @@
-"""Where the package's own files are, in a source tree as in an install space."""
+"""Finds the files of this package, in a source tree and in an install space."""
 from __future__ import annotations
 
 import os
@@ -9,7 +9,7 @@ from rbx1_nav.config import ConfigError
 
 
 def path(*parts: str) -> str:
-    """The path of a file or folder of this package. Raises ConfigError."""
+    """Return the path of a file or folder of this package. Raises ConfigError."""
     try:
         return os.path.join(rospkg.RosPack().get_path('rbx1_nav'), *parts)
     except rospkg.ResourceNotFound:
@@ -18,5 +18,5 @@ def path(*parts: str) -> str:
 
 
 def surfaces() -> str:
-    """The folder of the surfaces that come with the package."""
+    """Return the folder of the surface files of this package."""
     return path('config', 'surfaces')

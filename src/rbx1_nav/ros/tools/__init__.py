@@ -1,1 +1,1 @@
-"""What other programs use: bags, markers."""
+"""Building blocks of the tools: bags and markers."""

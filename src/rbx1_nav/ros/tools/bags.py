@@ -1,4 +1,4 @@
-"""Reads a bag to a Recording."""
+"""Reads a bag into a Recording."""
 from __future__ import annotations
 
 from typing import Mapping, NamedTuple
@@ -31,7 +31,7 @@ class Topics(NamedTuple):
 TYPES: dict[str, tuple[type[Message], ...]] = {
     'cmd_vel': (Twist,), 'odom': (Odometry,), 'imu': (Imu,), 'truth': (Odometry, PoseStamped)}
 
-# otherwise rosbag generates a class, as Python code, from the definition in the bag: whoever wrote the bag wrote that
+# otherwise rosbag generates a class, as Python code, from the message definition in the bag, which may be untrusted
 for _types in TYPES.values():
     for _type in _types:
         rosbag.bag._message_types[_type._md5sum] = _type
@@ -44,19 +44,19 @@ class Series:
         self.topic = topic
         self.types = types
         self.other_types: set[str] = set()
-        # (name of a node, child frame) of those that published it
+        # (name of the node, child frame) of each publisher
         self.senders: dict[tuple[str, str | None], bool] = {}
         self.rows: list[tuple[float, ...]] = []
 
     def accepts(self, datatype: str, md5sum: str) -> bool:
-        """Whether a connection has messages of the expected type."""
+        """Return whether a connection has messages of the expected type."""
         if any((one._type, one._md5sum) == (datatype, md5sum) for one in self.types):
             return True
         self.other_types.add(datatype)
         return False
 
     def add(self, message: Message, time: float, header: Mapping[str, str | bytes]) -> None:
-        """Add a message. time: s, when it was recorded."""
+        """Add a message. time: time of recording, s."""
         name = header.get('callerid', 'an unknown node')    # rosbag leaves it undecoded
         self.senders[name.decode(errors='replace') if isinstance(name, bytes) else name,
                      getattr(message, 'child_frame_id', None)] = True
@@ -71,12 +71,12 @@ class Series:
         self.rows.append((stamp, pose.position.x, pose.position.y, yaw_of(pose.orientation)))
 
     def columns(self, width: int) -> Array:
-        """One array for each value."""
+        """Return one array for each value."""
         return numpy.array(self.rows, float).reshape(-1, width).T
 
 
 def read_bag(path: str, topics: Topics, end: Pose | None = None) -> Recording:
-    """The Recording of a bag; end: measured by hand. Raises ConfigError."""
+    """Return the Recording of a bag; end: end pose measured by hand. Raises ConfigError."""
     name = show_name(path)
     series = {field: Series(topic, TYPES[field]) for field, topic in topics._asdict().items() if topic}
     by_topic = {f"/{one.topic.lstrip('/')}": one for one in series.values()}
@@ -93,7 +93,7 @@ def read_bag(path: str, topics: Topics, end: Pose | None = None) -> Recording:
                                                                   return_connection_header=True):
                 by_topic[f"/{topic.lstrip('/')}"].add(message, time.to_sec(), header)
     except Exception as error:
-        # a damaged bag ends in whatever the first wrong byte leads to: struct.error, KeyError, MemoryError, ...
+        # a damaged bag may cause any error, depending on the first wrong byte: struct.error, KeyError, MemoryError, ...
         raise ConfigError(f"{name}: expected a bag: {' '.join(str(error).split()) or type(error).__name__}") from error
     for one in by_topic.values():
         check(name, one)
@@ -111,11 +111,11 @@ def read_bag(path: str, topics: Topics, end: Pose | None = None) -> Recording:
 
 
 def check(name: str, series: Series) -> None:
-    """Raise ConfigError for messages of another type, or of two robots."""
+    """Raise ConfigError for messages of another type, or from two robots."""
     if series.other_types and not series.rows:
         raise ConfigError(f"{name}: {series.topic}: {', '.join(sorted(series.other_types))}: expected "
                           f"{' or '.join(one._type for one in series.types)}")
-    # but a learner may steer by hand besides a script
+    # except for commands: the user may also steer by hand while a script runs
     if len(series.senders) > 1 and series.types != TYPES['cmd_vel']:
         senders = ' and '.join(f'{show_name(sender)} ({show_name(frame)})' if frame else show_name(sender)
                                for sender, frame in sorted(series.senders, key=str))
@@ -123,7 +123,7 @@ def check(name: str, series: Series) -> None:
 
 
 def track(series: Series | None) -> Track | None:
-    """The Track of a Series with poses; None without messages."""
+    """Return the Track of a Series with poses; None without messages."""
     if not (series and series.rows):
         return None
     time, x, y, yaw = series.columns(4)
@@ -131,7 +131,7 @@ def track(series: Series | None) -> Track | None:
 
 
 def check_jumps(name: str, topic: str, poses: Track | None) -> None:
-    """Raise ConfigError if the poses of a Track jump as those of no robot: there are two, or it was reset."""
+    """Raise ConfigError if the poses of a Track jump, because there are two robots or the robot was reset."""
     if poses is None:
         return
     steps = numpy.hypot(numpy.diff(poses.x), numpy.diff(poses.y))

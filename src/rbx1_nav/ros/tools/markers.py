@@ -1,4 +1,4 @@
-"""Markers in the shape of a robot, for RViz."""
+"""Creates markers in the shape of a robot, for RViz."""
 from __future__ import annotations
 
 from typing import Mapping, Sequence
@@ -16,18 +16,18 @@ from rbx1_nav.robot.urdf import Visual
 
 SHAPES = {'box': Marker.CUBE, 'cylinder': Marker.CYLINDER, 'sphere': Marker.SPHERE, 'mesh': Marker.MESH_RESOURCE}
 GREY = (0.5, 0.5, 0.5, 1.0)
-LIFETIME = 10       # s: a robot that is not updated any more disappears
+LIFETIME = 10       # s: a robot that is no longer updated disappears
 
 
 def matrix(position: Point | Vector3, rotation: Quaternion) -> Array:
-    """The 4x4 matrix of a position (m) and a rotation."""
+    """Return the 4x4 matrix of a position (m) and a rotation."""
     return concatenate_matrices(translation_matrix((position.x, position.y, position.z)),
                                 quaternion_matrix((rotation.x, rotation.y, rotation.z, rotation.w)))
 
 
 def robot_markers(odometry: Odometry, visuals: Sequence[Visual],
                   links: Mapping[str | None, Transform]) -> MarkerArray:
-    """Visuals at the pose of an Odometry. links: each in the robot's frame."""
+    """Return markers of the Visuals at the pose of an Odometry. links: transforms of the links in the robot's frame."""
     pose = odometry.pose.pose
     base = matrix(pose.position, pose.orientation)
     # stamp 0: the frame's latest transform
@@ -43,8 +43,8 @@ def robot_markers(odometry: Odometry, visuals: Sequence[Visual],
 
 
 def visual_marker(header: Header, number: int, visual: Visual, transform: Array) -> Marker:
-    """A Marker of a Visual with a transform (4x4 matrix). number: its id."""
-    # RViz shows a mesh in its own colours if the marker has none
+    """Return a Marker of a Visual with a transform (4x4 matrix). number: id of the marker."""
+    # RViz shows a mesh in its own colors if the marker has none
     color = visual.color or ((0, 0, 0, 0) if visual.mesh else GREY)
     return Marker(header=header, ns='true_robot', id=number, type=SHAPES[visual.shape],
                   pose=Pose(Point(*translation_from_matrix(transform)), Quaternion(*quaternion_from_matrix(transform))),

@@ -1,4 +1,4 @@
-"""Which nodes drive, directly or through others, and whether they are watched."""
+"""DrivingNodes finds the nodes that drive directly or through others, and watches them."""
 import socket
 import subprocess
 import time
@@ -44,7 +44,7 @@ def wait_for(condition):
 
 
 class World:
-    """DrivingNodes without a master; child processes are the nodes."""
+    """DrivingNodes without a master; child processes act as nodes."""
 
     def __init__(self):
         self.server = socket.socket()
@@ -56,7 +56,7 @@ class World:
         self.nodes = DrivingNodes('/cmd_vel', lambda: self.drivers, lambda: self.listeners)
 
     def connect(self, name, code='sys.stdin.read()'):
-        """A connection to a node of this name that runs some Python."""
+        """Return a connection to a node with this name that runs Python code."""
         code = 'import socket, sys, time; s = socket.create_connection(("127.0.0.1", %d))\n%s' % (
             self.server.getsockname()[1], code)
         self.children.append(subprocess.Popen(['/usr/bin/python3', '-c', code], stdin=subprocess.PIPE))
@@ -65,9 +65,9 @@ class World:
 
 @pytest.fixture(name='world')
 def make_world(monkeypatch):
-    monkeypatch.setenv('ROS_MASTER_URI', 'http://127.0.0.1:1')      # nobody listens there
+    monkeypatch.setenv('ROS_MASTER_URI', 'http://127.0.0.1:1')      # nothing listens there
     monkeypatch.setattr(DrivingNodes, '_look_upstream', lambda self: None)
-    # the process of pytest itself may have no thread but this one
+    # the process of pytest itself may have no other thread
     monkeypatch.setattr(driving_nodes, 'own_process', lambda: SimpleNamespace(cpu_time=lambda: 0, sleeps=lambda: True))
     world = World()
     yield world
@@ -98,11 +98,11 @@ def test_a_driver_is_watched_while_it_is_connected(world):
 
 
 def test_a_connection_that_its_publisher_refuses_is_no_driver(world):
-    # the error is all that rospy keeps until it closes the connection
+    # rospy keeps only the error until it closes the connection
     refused = type('Connection', (), dict(vars(world.connect('/driver')), header={'error': 'is not a publisher'}))()
     world.drivers = [refused]
     assert not world.nodes.sees('/driver') and not world.nodes.drivers
-    assert world.nodes.connecting()     # it may try again
+    assert world.nodes.connecting()     # the node may try again
 
 
 def test_an_unseen_driver_is_not_watched(world, monkeypatch):
@@ -158,7 +158,7 @@ def test_each_connection_has_its_own_header(world):
 
 
 def test_a_driver_that_is_forgotten_holds_the_clock_no_more(world):
-    """No update() comes between: Lockstep forgets a node while it waits for it, and then looks again."""
+    """There is no update() in between: Lockstep forgets a node while it waits for it, and then looks again."""
     world.drivers = [world.connect('/driver', 'while True: pass')]
     world.nodes.update()
     wait_for(lambda: world.nodes.awake() == '/driver')
@@ -167,7 +167,7 @@ def test_a_driver_that_is_forgotten_holds_the_clock_no_more(world):
 
 
 def test_a_driver_that_was_not_seen_may_be_seen_later(world, monkeypatch):
-    """Released while it ran on another machine, say, and started again on this one."""
+    """For example, a node was released while it ran on another machine, and then restarted on this one."""
     with monkeypatch.context() as other_machine:
         other_machine.setattr(driving_nodes, 'peer_process', lambda _: None)
         first = world.connect('/driver')

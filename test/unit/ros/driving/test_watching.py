@@ -1,4 +1,4 @@
-"""What a driving script makes of the state of its connections, without a master."""
+"""Listeners detects problems from the state of the connections, without a master."""
 from types import SimpleNamespace
 import time
 
@@ -17,14 +17,14 @@ CLOSED = OPEN._replace(established=False)
 
 @pytest.fixture(name='watch')
 def watch_one(monkeypatch):
-    """watch(essential) returns the Listeners of one connection, the state of which is their attribute `state`."""
-    monkeypatch.setenv('ROS_MASTER_URI', 'http://127.0.0.1:1/')    # nobody answers there
+    """Return watch(essential), which returns the Listeners of one connection, with its state as attribute `state`."""
+    monkeypatch.setenv('ROS_MASTER_URI', 'http://127.0.0.1:1/')    # nothing answers there
     monkeypatch.setattr(rospy.rostime, 'is_wallclock', lambda: True)
 
     def watch(essential=True):
         connection = SimpleNamespace(endpoint_id='/node', stat_num_msg=0, socket=None)
         publisher = SimpleNamespace(resolved_name='/cmd_vel', impl=SimpleNamespace(connections=[connection], seq=0))
-        # without an address it is not called
+        # without an address, the node is not called
         watched = Listeners(publisher, [Peer('/node', None, essential, False, None)])
         watched.state = OPEN
         monkeypatch.setattr(watching, 'read_connection', lambda _: watched.state)
@@ -46,9 +46,9 @@ def wait_for_problem(watched):
 
 @pytest.mark.parametrize('state, essential, expected', [
     (OPEN, True, None),
-    (SILENT, True, '/node acknowledges nothing that is sent to it'),
-    (SILENT, False, '/node acknowledges nothing that is sent to it'),
-    (FULL, True, '/node, which publishes the odometry, does not read what is sent to it'),
+    (SILENT, True, '/node does not acknowledge any data'),
+    (SILENT, False, '/node does not acknowledge any data'),
+    (FULL, True, '/node, which publishes the odometry, does not read its commands'),
     (FULL, False, None)])
 def test_silence_for_more_than_a_second(watch, state, essential, expected):
     watched = watch(essential)
@@ -67,8 +67,8 @@ def test_check_looks_and_raises(watch):
     watched.state = CLOSED
     time.sleep(watching.LOOK_PERIOD)
     watched.check()
-    assert wait_for_problem(watched) == '/node has gone'    # nobody tells that it has unregistered
-    with pytest.raises(rospy.ROSException, match='/cmd_vel: /node has gone: expected it to listen'):
+    assert wait_for_problem(watched) == '/node disconnected'    # there is no master to report that it has unregistered
+    with pytest.raises(rospy.ROSException, match='/cmd_vel: /node disconnected: expected it to receive'):
         watched.check()
 
 
@@ -76,7 +76,7 @@ def test_a_node_that_closes_after_the_last_command_is_not_taken_for_one_that_has
     watched = watch()
     watched.state = CLOSED
     assert not watched.listeners[0].has_all(0, 0.0)
-    with pytest.raises(rospy.ROSException, match='/node has gone'):
+    with pytest.raises(rospy.ROSException, match='/node disconnected'):
         watched.check_delivery()
 
 
@@ -84,9 +84,9 @@ def test_silence_while_the_script_waits_for_the_robot_to_stop_counts(watch, monk
     watched = watch()
     watched.check()
     watched.state = SILENT
-    time.sleep(watching.LOOK_PERIOD)   # so that the next check() looks
+    time.sleep(watching.LOOK_PERIOD)   # so that the next check() looks at the connections
     monkeypatch.setattr(watching, 'sleep', lambda _: pytest.fail('check_delivery() waited'))
-    with pytest.raises(rospy.ROSException, match='acknowledges nothing'):
+    with pytest.raises(rospy.ROSException, match='does not acknowledge'):
         watched.check_delivery()
 
 

@@ -1,5 +1,4 @@
-"""The velocity that is published with the estimate: by odometry and gyro, and uncertain where they do not measure
-it."""
+"""The velocity that is published with the estimate comes from odometry and gyro, with a matching uncertainty."""
 from math import pi
 
 import pytest
@@ -26,7 +25,7 @@ class Robot:
         self.before = None
 
     def drive(self, ticks, linear, wheels, gyro, odom=True, imu=True):
-        """Odometry moves by linear (m/s) and wheels (rad/s), the gyro measures `gyro` (rad/s); returns the Twist."""
+        """Move the odometry at linear (m/s) and wheels (rad/s), and the gyro at `gyro` (rad/s); return the Twist."""
         for _ in range(ticks):
             last = self.combined.estimate
             self.now += STEP
@@ -67,7 +66,7 @@ def test_the_variances_cover_noise_slip_bias_and_scale():
     # on an unknown floor 5 % of slip, and the noise of a cell of 0.1 m: 0.044 ** 2 / 0.1
     assert twist.forward_variance == pytest.approx(0.25 * (0.05 ** 2 + 0.0194), rel=0.05)
     assert twist.left_variance < 1e-5
-    # the bias of the gyro is not known before it has stood
+    # the gyro bias is unknown before the first standstill
     assert twist.turn_variance > 0.01 ** 2
     robot = Robot(UNKNOWN_FLOOR)
     robot.drive(500, 0.0, 0.0, 0.0)
@@ -91,7 +90,7 @@ def test_a_dropout_of_the_odometry_leaves_the_displacement_unknown():
     assert robot.combined.timed_out['odom']
     assert (twist.forward, twist.forward_variance, twist.left_variance) == (0.0, DROPOUT_SPEED ** 2, DROPOUT_SPEED ** 2)
     assert twist.turn == pytest.approx(0.5, abs=0.02)
-    # then it is the mean since the last odometry
+    # then the velocity is the mean since the last odometry
     assert robot.drive(1, 0.3, 0.5, 0.5).forward == pytest.approx(0.3, abs=0.02)
 
 

@@ -1,4 +1,4 @@
-"""The parameters of the filter node: its limits, their units and ranges; a prefix from a namespace around the node."""
+"""The filter node checks the units and ranges of its limits, and finds a prefix in a namespace around the node."""
 from math import degrees
 
 import pytest

@@ -12,7 +12,7 @@ from rbx1_nav.ros.network.master import Server, call
 
 
 class Node:
-    """What answers at a node's address; counts its connections."""
+    """A server at a node's address; it counts its connections."""
 
     def __init__(self):
         self.connections = []
@@ -37,7 +37,7 @@ class Node:
 
 @pytest.fixture(name='node')
 def start_node():
-    """A Node."""
+    """Return a Node."""
     node = Node()
     yield node
     node.server.shutdown()

@@ -1,4 +1,4 @@
-"""What the kernel tells of other processes, with real ones."""
+"""The information of the kernel about other processes, tested with real processes."""
 import os
 import signal
 import socket
@@ -16,7 +16,7 @@ BEGIN = 'import socket, sys, threading, time\nprint("up", flush=True)\n'
 
 
 def wait_for(condition):
-    """Wait until condition() is true, and return what it returns."""
+    """Wait until condition() is true, and return its result."""
     end = time.monotonic() + LIMIT
     while time.monotonic() < end:
         value = condition()
@@ -28,7 +28,7 @@ def wait_for(condition):
 
 @pytest.fixture(name='start')
 def make_start():
-    """start(code): a process that runs some Python, and has said that it does."""
+    """Return start(code), which starts a process that runs Python code, and waits until it is running."""
     children = []
 
     def start(code):
@@ -88,7 +88,7 @@ def test_the_first_of_several_that_is_awake(start):
 
 
 def test_what_has_been_woken_is_awake_until_it_has_answered(start):
-    """The promise that the simulated clock rests on: no answer comes from a process that slept."""
+    """The simulated clock relies on this: no answer comes from a process that was asleep."""
     with socket.socket() as server:
         server.bind(('127.0.0.1', 0))
         server.listen()
@@ -134,7 +134,7 @@ def test_a_thread_that_polls(start):
     sleeper = Process(start('time.sleep(1000)').pid)
     wait_for(lambda: not awake([sleeper]))
     wait_for(lambda: not sleeper.polling())
-    # one that waits for a message does not poll, even if it has just run
+    # a process that waits for a message does not poll, even if it has just run
     reader = start('for line in sys.stdin: print("read", flush=True)')
     process = Process(reader.pid)
     for _ in range(20):
@@ -149,7 +149,7 @@ def test_a_polling_thread_that_has_not_looked_since(start):
     child = start('while True: time.sleep(0.001)')
     process = Process(child.pid)
 
-    # at once, most often
+    # usually immediately
     wait_for(lambda: still_polling(wait_for(process.polling)))
     threads = wait_for(process.polling)
     child.kill()
@@ -165,14 +165,14 @@ def test_who_wakes_by_itself(start):
     reader = start('while sys.stdin.read(1): pass')
     process = Process(reader.pid)
     wait_for(lambda: not awake([process]))
-    assert process.woke_by_itself()     # nobody knows what it did before
+    assert process.woke_by_itself()     # its earlier activity is unknown
     process.mark()
     process.mark()      # nothing is new now
     reader.stdin.write(b'x')
     reader.stdin.flush()
     wait_for(lambda: not awake([process]))
     assert not process.woke_by_itself()
-    # it has run since the last look, for whatever reason, before the next mark
+    # it has run, for any reason, between the last look and the next mark
     process.mark()
     process.mark()
     assert not process.woke_by_itself()
@@ -193,7 +193,7 @@ def test_the_process_at_the_other_end(start):
         with connection:
             assert peer_process(connection).folder == '/proc/%d/task/' % child.pid
         assert peer_process(connection) is None     # closed
-        # this process itself is none to wait for
+        # this process itself must not be waited for
         with socket.create_connection(server.getsockname()) as own:
             accepted, _ = server.accept()
             with accepted:
@@ -225,7 +225,7 @@ def test_the_thread_that_looks_does_not_count():
 
 
 def test_a_process_that_has_run_between_two_looks_is_awake():
-    """It slept when it was looked at, but perhaps not at the same moment as the others."""
+    """A process was asleep when it was checked, but perhaps not at the same moment as the others."""
     times = iter([1, 2])
     fake = SimpleNamespace(cpu_time=lambda: next(times), sleeps=lambda: True, ended=lambda: False)
     assert awake([fake]) is fake
@@ -236,7 +236,7 @@ def test_a_process_that_has_run_between_two_looks_is_awake():
 def test_a_process_that_ran_while_another_one_was_looked_at_is_awake():
     times = [5]
     sender = SimpleNamespace(cpu_time=lambda: times[-1], sleeps=lambda: True, ended=lambda: False)
-    # it sleeps when it is looked at; then the sender wakes it, and is asleep itself when its turn comes
+    # it is asleep when it is checked; then the sender wakes it, and is itself asleep when it is checked
     woken = SimpleNamespace(cpu_time=lambda: 7, sleeps=lambda: times.append(6) is None, ended=lambda: False)
     assert awake([woken, sender]) is sender
 

@@ -1,4 +1,4 @@
-"""What the kernel says of a TCP connection, over the loopback interface."""
+"""The state of a TCP connection that the kernel reports, over the loopback interface."""
 import socket
 import time
 
@@ -9,7 +9,7 @@ from rbx1_nav.ros.network.tcp import CLOSED_WINDOW, AcknowledgementTimer, Connec
 
 @pytest.fixture(name='pair')
 def connect():
-    """Two connected sockets; the second has a small receive buffer."""
+    """Return two connected sockets; the second one has a small receive buffer."""
     with socket.socket() as server:
         server.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
         server.bind(('127.0.0.1', 0))

@@ -1,17 +1,17 @@
-"""A log of at most two lines a second: nothing is lost without being counted, and no kind hides another one."""
+"""A log of at most two lines per second counts each line that it drops, and no kind of line hides another one."""
 import re
 
 from rbx1_nav.ros.node.limited_log import LimitedLog
 
 
 class Log:
-    """A LimitedLog on a clock of its own, flushed 20 times a second."""
+    """A LimitedLog with its own clock, flushed 20 times per second."""
 
     def __init__(self):
         self.limited, self.now, self.lines = LimitedLog(), 1000.0, []
 
     def run(self, seconds, *texts):
-        """Add texts 50 times a second, each with another number."""
+        """Add texts 50 times per second, each with a different number."""
         for _ in range(round(seconds * 50)):
             for text in texts:
                 self.limited.add(lambda form, line: self.lines.append((self.now, form % line)), text % self.now)
@@ -30,7 +30,7 @@ def test_a_flood_is_one_line_a_second_that_counts_the_others():
     log = Log()
     log.run(10, 'odom: header.stamp: %.9f: expected 1e-05')
     assert 9 <= len(log.lines) <= 11
-    # 49 others in a second, or 50 with the tick that rounding adds
+    # 49 others per second, or 50 with the tick that rounding adds
     assert re.search(r' \(and (49|50) more of this kind\)$', log.lines[1][1])
 
 

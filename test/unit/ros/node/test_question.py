@@ -1,4 +1,4 @@
-"""A question on the terminal: answers that make no sense, nobody to answer, and the end of the node."""
+"""A question on the terminal handles invalid answers, a missing terminal, and a shutdown request."""
 import os
 import threading
 
@@ -10,7 +10,7 @@ from rbx1_nav.ros.node import question
 
 
 def check(text):
-    """An answer that is accepted."""
+    """Check an answer; only 'right' is accepted."""
     if text != 'right':
         raise ConfigError(f'{text}: expected right')
     return text
@@ -18,7 +18,7 @@ def check(text):
 
 @pytest.fixture(name='terminal')
 def fixture_terminal(monkeypatch):
-    """A file descriptor: what is written to it is typed."""
+    """Return a file descriptor; text written to it appears as typed input."""
     read_end, write_end = os.pipe()
     with os.fdopen(read_end) as source:
         monkeypatch.setattr(question.sys, 'stdin', source)

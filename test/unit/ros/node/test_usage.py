@@ -1,4 +1,4 @@
-"""What a node offers is in its usage text."""
+"""The usage text of a node lists everything that the node offers."""
 import ast
 import os
 import re

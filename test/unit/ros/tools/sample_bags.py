@@ -1,4 +1,4 @@
-"""Bags for tests, written by rosbag: what a base would have published in a run."""
+"""Writes bags for tests with rosbag, with the messages that a base would have published in a run."""
 from math import cos, pi, sin
 
 from geometry_msgs.msg import PoseStamped, Quaternion, Twist
@@ -12,14 +12,14 @@ MOTIONS = ((0.0, 0.0, 10), (0.2, 0.0, 30), (0.0, 1.0, 63), (0.2, 0.5, 20), (0.0,
 
 
 def twist(linear, angular):
-    """A Twist."""
+    """Return a Twist."""
     message = Twist()
     message.linear.x, message.angular.z = linear, angular
     return message
 
 
 def odometry(stamp, x, y, yaw, child='base_footprint'):
-    """An Odometry message; stamp: s."""
+    """Return an Odometry message; stamp: s."""
     message = Odometry()
     message.header.stamp = rospy.Time.from_sec(stamp)
     message.header.frame_id, message.child_frame_id = 'odom', child
@@ -29,7 +29,7 @@ def odometry(stamp, x, y, yaw, child='base_footprint'):
 
 
 def pose_stamped(stamp, x, y, yaw):
-    """A PoseStamped message; stamp: s."""
+    """Return a PoseStamped message; stamp: s."""
     message = PoseStamped()
     message.header.stamp = rospy.Time.from_sec(stamp)
     message.pose = odometry(stamp, x, y, yaw).pose.pose
@@ -37,7 +37,7 @@ def pose_stamped(stamp, x, y, yaw):
 
 
 def imu(stamp, rate):
-    """An Imu message; stamp: s, rate: rad/s."""
+    """Return an Imu message; stamp: s, rate: rad/s."""
     message = Imu()
     message.header.stamp = rospy.Time.from_sec(stamp)
     message.angular_velocity.z = rate
@@ -45,7 +45,7 @@ def imu(stamp, rate):
 
 
 def run_messages(motions=MOTIONS, start=100.0):
-    """[(topic, message, time)] of a run on the ideal floor, in which the base follows at once."""
+    """Return [(topic, message, time)] of a run on the ideal floor, on which the base follows immediately."""
     messages, now, x, y, yaw = [], start, 0.0, 0.0, 0.0
     for linear, angular, ticks in motions:
         for _ in range(ticks):
@@ -63,7 +63,7 @@ def write_bag(path, messages, senders=None):
         for number, (topic, message, time) in enumerate(messages):
             names = (senders or {}).get(topic, ['/arbotix'])
             name = names[number // 40 % len(names)]
-            # rosbag's writer has one connection per topic, the recorder one per publisher
+            # the writer of rosbag has one connection per topic, the recorder has one per publisher
             if before.setdefault(topic, name) != name:
                 bag._topic_connections.pop(topic)
                 before[topic] = name

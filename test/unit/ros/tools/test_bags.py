@@ -1,4 +1,4 @@
-"""Reading recorded runs: what a bag has to hold, and one line for each bag that is no run of one robot."""
+"""Bags are read into Recordings, and a bag that is not a run of one robot causes an error of one line."""
 from math import inf, nan
 
 import numpy
@@ -25,7 +25,7 @@ def test_a_run(path):
     count = sum(ticks for _, _, ticks in sample_bags.MOTIONS)
     for series in recording.commands, recording.odometry, recording.gyro, recording.truth:
         assert len(series.time) == count
-        # bags and headers have nanoseconds, but floats of this size resolve 14 of them
+        # bags and headers have a resolution of 1 ns, but floats of this size resolve only 14 ns
         assert numpy.allclose(series.time, 100 + numpy.arange(count) / sample_bags.RATE, rtol=0, atol=1e-6)
     assert set(recording.commands.linear) == {0.0, 0.2}
     assert set(recording.gyro.rate) == {0.0, 0.5, 1.0}
@@ -54,7 +54,7 @@ def test_two_programs_may_command_one_robot(path):
 
 
 def with_changed(topic, number, change):
-    """The messages of a run, one of which is changed: the message number `number` of a topic."""
+    """Return the messages of a run with one changed message: message `number` of a topic."""
     count = -1
     for each in run_messages():
         count += each[0] == topic
@@ -62,12 +62,12 @@ def with_changed(topic, number, change):
 
 
 def without(*topics):
-    """The messages of a run, without some topics."""
+    """Return the messages of a run without some topics."""
     return [each for each in run_messages() if each[0] not in topics]
 
 
 def shifted(topic, seconds):
-    """The messages of a run, with later header stamps on a topic."""
+    """Return the messages of a run with later header stamps on a topic."""
     return [(name, odometry(time + seconds, message.pose.pose.position.x, 0.0, 0.0) if name == topic else message, time)
             for name, message, time in run_messages()]
 
@@ -79,7 +79,8 @@ def shifted(topic, seconds):
      '/ground_truth: no messages of type nav_msgs/Odometry or geometry_msgs/PoseStamped'),
     (run_messages([(0.0, 0.0, 200)]), None, 'no motion: expected commands other than 0'),
     ([(topic, odometry(time, 0.0, 0.0, 0.0) if topic == '/odom' else message, time)
-      for topic, message, time in run_messages()], None, 'odometry: no motion, although it was commanded'),
+      for topic, message, time in run_messages()], None,
+     'odometry: the robot did not move, although it was commanded to'),
     (with_changed('/odom', 30, lambda topic, _, time: (topic, odometry(time, nan, 0.0, 0.0), time)), None,
      'odometry: x of message 31: nan: expected a finite number'),
     (with_changed('/ground_truth', 7, lambda topic, _, time: (topic, odometry(time, 0.0, inf, 0.0), time)), None,
@@ -91,7 +92,7 @@ def shifted(topic, seconds):
     (with_changed('/imu/data', 3, lambda topic, _, time: (topic, sample_bags.imu(time, nan), time)), None,
      'gyro: rate of message 4: nan: expected a finite number'),
     (with_changed('/odom', 30, lambda topic, _, time: (topic, odometry(time - 1, 0.0, 0.0, 0.0), time)), None,
-     'odometry: stamp of message 31: 0.950 s before that of message 30: expected stamps that never go back'),
+     'odometry: stamp of message 31: 0.950 s before message 30: expected stamps that never decrease'),
     ([(topic, odometry(time, 3.0, 0.0, 0.0) if topic == '/odom' and round(time * 50) % 2 else message, time)
       for topic, message, time in run_messages()], None, '/odom: jumps by '),
     (shifted('/odom', 1e6), None, 'odometry from 1000100.0 to '),

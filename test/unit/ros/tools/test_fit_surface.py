@@ -1,4 +1,4 @@
-"""fit_surface.py at the command line: a file and a picture, or one line and nothing written."""
+"""fit_surface.py on the command line writes a file and a picture, or prints one line and writes nothing."""
 import os
 import subprocess
 import sys
@@ -17,7 +17,7 @@ ENVIRONMENT = dict(os.environ, ROS_PACKAGE_PATH=ROOT, PYTHONPATH=os.pathsep.join
 
 
 def fit(folder, *arguments):
-    """Run it in a folder; returns its exit status, its output and the last line of its errors."""
+    """Run fit_surface.py in a folder; return its exit status, its output and its last error line."""
     process = subprocess.run([sys.executable, NODE, *arguments], cwd=str(folder), env=ENVIRONMENT, text=True,
                              stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     assert 'Traceback' not in process.stderr
@@ -28,7 +28,7 @@ def fit(folder, *arguments):
 def folder_with_bags(tmp_path):
     for number in (1, 2, 3):
         write_bag(tmp_path / ('run%d.bag' % number), run_messages())
-    # where the odometry of this robot ends, which follows at once and without error: after 3.65 rad
+    # end pose of the odometry, which follows immediately and without error: after 3.65 rad
     last = [message for topic, message, _ in run_messages() if topic == '/odom'][-1].pose.pose
     with open(str(tmp_path / 'ends.yaml'), 'w', encoding='utf-8') as file:
         for number in (1, 2, 3):
@@ -42,7 +42,7 @@ def test_ends_by_tape(folder):
     assert (status, error) == (0, '')
     assert output.splitlines()[-2:] == ['Surface: floor.yaml', 'Picture: fit.svg']
     surface = load_surface(str(folder / 'floor.yaml'), SURFACES)
-    # a robot without errors: a slip of less than the tape sees
+    # a robot without errors: the slip is smaller than a tape can measure
     assert abs(surface.slip_turning) < 0.02 and surface.drag_straight < 1e-3
     assert (folder / 'fit.svg').read_text(encoding='utf-8').startswith('<?xml')
 
@@ -51,9 +51,9 @@ def test_the_truth_of_a_robot_without_errors(folder):
     status, output, error = fit(folder, 'run1.bag', '--truth', '/ground_truth', '--output', 'floor.yaml')
     assert (status, error) == (0, '')
     surface = load_surface(str(folder / 'floor.yaml'), SURFACES)
-    # three windows of 2 s tell little, but more than the 0.03 of the start
+    # three windows of 2 s contain little information, but more than the 0.03 of the start surface
     assert abs(surface.slip_turning) < 0.01 and surface.drag_turning < 1e-3
-    assert 'Left as on low_ply_carpet:' in output and '1 of at least 3 runs' in output
+    assert 'Not fitted, taken from low_ply_carpet:' in output and '1 of at least 3 runs' in output
 
 
 def test_text_files_begin_with_the_floor_of_creates(tmp_path):
@@ -64,10 +64,10 @@ def test_text_files_begin_with_the_floor_of_creates(tmp_path):
     numpy.savetxt(str(tmp_path / 'D1R1_Groundtruth.dat'), numpy.transpose([time, x, 0 * time, 0 * time]))
     status, output, error = fit(tmp_path, 'D1R1_Odometry.dat', '--output', 'floor.yaml')
     assert (status, error) == (0, '')
-    assert 'Left as on create_lab_floor:' in output
+    assert 'Not fitted, taken from create_lab_floor:' in output
     assert load_surface(str(tmp_path / 'floor.yaml'), SURFACES).drag_straight < 1e-5
     status, output, _ = fit(tmp_path, 'D1R1_Odometry.dat', '--output', 'floor.yaml', '--start', 'hard_floor')
-    assert status == 0 and 'Left as on hard_floor:' in output
+    assert status == 0 and 'Not fitted, taken from hard_floor:' in output
 
 
 @pytest.mark.parametrize('arguments, status, text', [
@@ -80,13 +80,13 @@ def test_text_files_begin_with_the_floor_of_creates(tmp_path):
     (['run1.bag', '--start', 'ideal'], 1, '--start: ideal: the ideal surface: expected one with values'),
     (['run1.bag', '--config', '/nowhere.yaml'], 1, '/nowhere.yaml: expected a YAML file'),
     (['D1R1_Odometry.dat'], 1, 'D1R1_Odometry.dat: expected a text file of numbers: '),
-    (['run1.bag', '--truth', 'odom'], 2, '/odom: given twice: expected a topic of its own'),
+    (['run1.bag', '--truth', 'odom'], 2, '/odom: given twice: expected different topics'),
     (['run1.bag', '--cmd-vel', ''], 2, "--cmd-vel: '': expected a topic"),
     (['run1.bag', '--truth', '/a', '--ends', 'ends.yaml'], 2, 'not allowed with argument'),
-    (['run1.bag', 'D1R1_Odometry.dat'], 2, 'D1R1_Odometry.dat: a text file has its truth beside it'),
-    (['run1.bag', '--output', 'floor.txt'], 2, '--output: floor.txt: expected a name that ends in .yaml'),
+    (['run1.bag', 'D1R1_Odometry.dat'], 2, 'D1R1_Odometry.dat: a text file comes with its ground truth'),
+    (['run1.bag', '--output', 'floor.txt'], 2, '--output: floor.txt: expected a file name with the extension .yaml'),
     (['run1.bag', '--output', 'no/floor.yaml'], 2, '--output: no/floor.yaml: expected a folder that exists'),
-    (['run1.bag', '--plot', 'fit.doc'], 2, '--plot: fit.doc: expected a name that ends in one of '),
+    (['run1.bag', '--plot', 'fit.doc'], 2, '--plot: fit.doc: expected a file name with one of the extensions '),
 ], ids=lambda value: ' '.join(value) if isinstance(value, list) else '')
 def test_one_line_and_nothing_written(folder, arguments, status, text):
     before = sorted(os.listdir(str(folder)))
