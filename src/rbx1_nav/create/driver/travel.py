@@ -156,9 +156,7 @@ class EncoderTravel:
 
 class CounterTravel:
     """Travel of the Create, from distance and angle since the last reply. A lost reply loses the travel it reported.
-
-    If the robot may lose fractions of a degree, the turn between two readings of the angle follows the commands.
-    """
+    If the robot may lose fractions of a degree, the turn between two readings of the angle follows the commands."""
 
     CAP = 32767     # mm or degrees at which the robot stops counting
 
@@ -244,8 +242,8 @@ class CounterTravel:
         return Travel(0.0, 0.0, variance / 4, variance / self.width ** 2)
 
     def _read_angle(self, reading: Mapping[str, int], time: float, turn: float) -> tuple[float, float]:
-        """Return (turn since the last update in rad, its variance excluding rounding). time: s since the previous
-        reading of the angle; turn: commanded turn since the last update, rad."""
+        """Return (turn since the last update in rad, its variance excluding rounding). time: s since the angle was read
+        before; turn: commanded turn since the last update, rad."""
         self.commanded_turn += turn
         if self.asks_angle:
             whole = self.fractions.add(degrees(self.commanded_turn), reading['angle'], time)
