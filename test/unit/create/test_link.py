@@ -39,6 +39,16 @@ def make_line():
     guardian.wait()
 
 
+def test_a_port_that_is_missing_is_logged_once_after_a_second(tmp_path):
+    link, log = make_link(str(tmp_path / 'none'))
+    for tenth in range(40):
+        assert not link.open(tenth * SECOND // 10)
+        assert len(log) == (tenth >= 10)
+    assert log[0].endswith('; trying again')
+    link.path = str(tmp_path)       # another problem
+    assert not link.open(5 * SECOND) and len(log) == 2
+
+
 def test_a_line_that_takes_no_bytes_is_lost(line):
     """A write neither blocks nor drops bytes silently."""
     _, link, _ = line

@@ -59,10 +59,12 @@ def test_the_size_of_a_command(model, sizes):
 
 @pytest.mark.parametrize('packet', PACKETS)
 def test_the_range_of_a_packet(packet):
-    """The range of a signed packet is symmetric, or covers all values of its bytes. The range of an unsigned packet is
-    from 0 to a number whose bits are all 1, except for modes, charging states, stream packets and songs."""
-    assert packet.low in ((-packet.high, -packet.high - 1) if packet.format in 'bh' else (0,))
-    assert packet.format in 'bh' or packet.high in (4, 5, 43, 108) or (packet.high & packet.high + 1) == 0
+    """The range of a signed packet is symmetric, or covers all values of its bytes, one more below 0. The range of an
+    unsigned packet is from 0 to a number whose bits are all 1, except for modes, charging states, stream packets and
+    songs."""
+    all_bits = packet.high & packet.high + 1 == 0
+    assert packet.low == (-packet.high - all_bits if packet.format in 'bh' else 0)
+    assert packet.format in 'bh' or packet.high in (4, 5, 43, 108) or all_bits
 
 
 @given(frames())

@@ -262,8 +262,9 @@ def test_a_contradiction_changes_neither_the_bias_nor_the_scale():
 
 def test_wheels_that_agree_with_the_gyro_leave_little_scale_error_and_little_noise():
     agree, _, _ = drive(UNKNOWN_FLOOR, 0.0, turned=10.0)
-    # 1.5 % of 10 rad would be 0.15 rad
-    assert sqrt(agree.covariance[YAW, YAW]) < 0.06
+    assert sqrt(agree.covariance[YAW, YAW]) < 0.06      # 1.5 % of 10 rad would be 0.15 rad
+    # a share of 0.4 of what they differ by
+    assert sqrt(drive(UNKNOWN_FLOOR, 0.02, turned=10.0)[0].P.variance(SCALE)) == pytest.approx(0.4 * 0.02, rel=0.2)
     agree.place(ORIGIN, 1e-9 * numpy.eye(3))
     for _ in range(100):
         agree.predict(0.02, agree.update(0.02, (0.0, 1e-8), (0.0, 1e-9), 0.01), 0.0, 0.01)
