@@ -11,7 +11,10 @@ source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
 export PATH=/usr/sbin:/usr/bin:/sbin:/bin:$PATH
 
 # packages needed to build and start the package
-tool_packages=(catkin g++ make ros-core ros-environment rosbash rospack-tools)
+tool_packages=(catkin g++ make ros-environment)
+# packages of the commands that the tutorial uses; the Debian packages depend on them
+command_packages=(ros-core rosbash rospack-tools)
+tool_packages+=("${command_packages[@]}")
 # Debian 13's RViz uses Qt 6 and does not depend on the plugin that reads its icons.
 if . /etc/os-release; [ "${VERSION_ID:-0}" = 13 ]; then tool_packages+=(qt6-svg-plugins); fi
 
@@ -27,6 +30,14 @@ dependencies() {        # KIND...: print the Debian packages of these kinds of d
       esac
     done
   done
+}
+
+runtime_packages() {    # print the packages that the installed package needs
+  { dependencies exec; printf '%s\n' "${command_packages[@]}"; } | sort -u
+}
+
+build_dependencies() {  # print the packages that debian/control lists as needed to build the Debian packages
+  sed -n 's/^Build-Depends: //p' "$source_dir/debian/control" | sed 's/debhelper-compat ([^)]*)/debhelper/; s/, /\n/g'
 }
 
 missing_packages() {    # PACKAGE...: print the packages that are not installed
