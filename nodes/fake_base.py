@@ -32,11 +32,13 @@ from rbx1_nav.simulation.wheels import IdealWheels
 class FakeBase:
     """Connects a SimulatedBase with ROS."""
 
-    def __init__(self, robot, base, clock):
-        """robot: a Robot; base: a SimulatedBase; clock: see ros/base/clocks.py."""
+    def __init__(self, robot, base, clock, floor):
+        """robot: a Robot; base: a SimulatedBase; clock: see ros/base/clocks.py; floor: the names of its surface and
+        seed."""
         self.robot = robot
         self.base = base
         self.clock = clock
+        self.floor = floor
         self.lock = threading.Lock()
         self.last_stamp = None
         self.joints = JointGroup(robot.joints)
@@ -99,6 +101,8 @@ class FakeBase:
         status.summary(DiagnosticStatus.OK, 'Stationary' if self.base.at_rest else 'Moving')
         self.commands.diagnose(status)
         self.clock.diagnose(status)
+        for key, value in zip(('Surface', 'Seed'), self.floor):
+            status.add(key, value)
         return status
 
 
@@ -117,7 +121,7 @@ def main():
     if robot.unknown:
         rospy.logwarn('Ignoring unknown parameters: %s', ', '.join(robot.unknown))
     rospy.loginfo('Surface: %s', f'{surface.name}; seed:={seed} repeats this run' if surface else 'ideal')
-    base = FakeBase(robot, make_base(robot, surface, seed), clock)
+    base = FakeBase(robot, make_base(robot, surface, seed), clock, (surface.name if surface else 'ideal', seed))
     rospy.loginfo('Ready: %s is at the origin of %s', robot.base_frame_id, robot.odom_frame_id)
     base.clock.run(base.step)
     return 0

@@ -27,7 +27,8 @@ from collections import namedtuple
 from . import markdown
 
 SHELL, OUTPUT = ('sh', 'bash', 'shell', 'console'), 'text'
-NOT_RUN = ('installation', 'the two commands', 'needs root', 'needs two machines', 'needs a robot', 'takes long')
+NOT_RUN = ('installation', 'the two commands', 'needs root', 'needs two machines', 'needs a robot', 'needs a browser',
+           'takes long')
 RUN = 'run'     # name of the terminal for commands that exit
 COMMENT = re.compile(r'\s*<!-- (?P<text>.*?) -->\s*$')
 MARKERS = {kind: re.compile(pattern) for kind, pattern in {

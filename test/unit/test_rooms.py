@@ -42,6 +42,7 @@ ALLOWED = {
     'ros.base.robot_faults': {'config', 'create.emulator', 'ros', 'ros.node'},
     'ros.filter': {'arrays', 'config', 'estimation', 'parameters', 'robot', 'ros', 'ros.network', 'ros.node',
                    'schedule', 'simulation', 'units'},
+    'ros.web': {'config', 'parameters', 'ros', 'ros.network', 'ros.node', 'units'},
     'ros.tools': {'arrays', 'config', 'estimation', 'fitting', 'robot', 'ros'},
 }
 ALLOWED['nodes'] = set(ALLOWED) - {'__init__'}

@@ -62,7 +62,7 @@ class _Terminal:
 
 
 def init_node(name: str, usage: str, parameters: Sequence[Parameter] = (), requires_master: bool = False,
-              check: Callable[[dict[str, YamlValue]], object] | None = None) -> None:
+              check: Callable[[dict[str, YamlValue]], object] | None = None, wall_time: bool = False) -> None:
     """Start the node `name`. From here on, Ctrl-C, kill, a closed terminal and `rosnode kill` set end_requested.
 
     usage: printed with the list of parameters for --help and for an invalid command line; in both cases, the process
@@ -72,6 +72,7 @@ def init_node(name: str, usage: str, parameters: Sequence[Parameter] = (), requi
     requires_master: whether a master that does not answer is an error. Otherwise the node waits for it, for at most
     ~wait_timeout if it has this parameter.
     check(params): raises ConfigError for private parameters that are inconsistent.
+    wall_time: whether to use the wall clock even in simulated time; the node then does not subscribe to /clock.
     Raises ROSInterruptException if shutdown is requested before the node is registered, and ROSException if the master
     does not answer or a parameter is invalid.
     """
@@ -95,7 +96,7 @@ def init_node(name: str, usage: str, parameters: Sequence[Parameter] = (), requi
     if end_requested.is_set():
         raise rospy.ROSInterruptException('shutdown requested')
     try:
-        rospy.init_node(name, disable_signals=True)
+        rospy.init_node(name, disable_signals=True, disable_rostime=wall_time)
     except (OSError, rospy.ROSInitException) as error:
         if not end_requested.is_set():
             raise rospy.ROSException(f'The master at {rosgraph.get_master_uri()} does not answer ({error}): '

@@ -1,0 +1,134 @@
+"""The browsers that are connected: each gets frames as fast as it takes them, and may send so many messages."""
+from __future__ import annotations
+
+from asyncio import Future
+from typing import Callable, Protocol
+
+from rbx1_nav.ros.web.checks import RateLimit, same_token
+from rbx1_nav.ros.web.controls import Controls
+from rbx1_nav.ros.web.protocol import Hello, InvalidMessage, encode, parse
+from rbx1_nav.ros.web.state import State
+
+MAX_SOCKETS = 100       # of all browsers
+MAX_WATCHERS = 60       # without the token, so that there is room for one with it
+HELLO_TIMEOUT = 5.0     # s in which a browser sends its first message
+RATE, BURST = 30, 60    # messages per second, and at once; keys that are held are sent 10 times a second
+TRY_AGAIN_LATER, POLICY = 1013, 1008    # close codes, RFC 6455 and its registry
+
+
+class Socket(Protocol):
+    """A WebSocket, as of tornado."""
+
+    def write_message(self, message: bytes, binary: bool = False) -> Future[None]:
+        """Send a message. Raises an exception if the socket is closed."""
+
+    def close(self, code: int | None = None, reason: str | None = None) -> None:
+        """Close it."""
+
+
+class Browser:
+    """One of them."""
+
+    def __init__(self, socket: Socket, now: float) -> None:
+        """now: s of a monotonic clock."""
+        self.socket = socket
+        self.since = now
+        self.greeted = self.trusted = False
+        self.limit = RateLimit(RATE, BURST)
+        self.number, self.epoch = 0, -1     # up to where it has everything, see history.py
+        self.sending: Future[None] | None = None    # the frame that is under way
+
+    @property
+    def ready(self) -> bool:
+        """Whether the last frame has left this machine. A browser that sleeps loses frames."""
+        return self.greeted and (self.sending is None or self.sending.done())
+
+    def send(self, message: bytes) -> None:
+        """Send a message."""
+        try:
+            self.sending = self.socket.write_message(message)
+            # an error is noticed as the end of the connection
+            self.sending.add_done_callback(lambda future: future.cancelled() or future.exception())
+        except Exception:
+            pass    # it has gone: the end of the connection follows
+
+
+class Connections:
+    """All of them. Only the server's thread calls it."""
+
+    def __init__(self, state: State, controls: Controls, token: str, clock: Callable[[], float]) -> None:
+        """clock(): s, monotonic."""
+        self.state = state
+        self.controls = controls
+        self.token = token
+        self.clock = clock
+        self.browsers: dict[Socket, Browser] = {}
+
+    @property
+    def full(self) -> bool:
+        """Whether no further browser may connect."""
+        return len(self.browsers) >= MAX_SOCKETS
+
+    def opened(self, socket: Socket) -> None:
+        """A browser has connected."""
+        self.browsers[socket] = Browser(socket, self.clock())
+
+    def closed(self, socket: Socket) -> None:
+        """A browser has gone. If its keys drive the robot, that stops now."""
+        browser = self.browsers.pop(socket, None)
+        if browser:
+            self.controls.leave(browser)
+
+    def received(self, socket: Socket, text: object) -> None:
+        """A message of a browser."""
+        browser = self.browsers.get(socket)
+        if browser is None:
+            return
+        try:
+            if not browser.limit.allows(self.clock()):
+                raise InvalidMessage('too many messages')
+            message = parse(text)
+            if browser.greeted == isinstance(message, Hello):
+                raise InvalidMessage('expected hello first, and once')
+        except InvalidMessage as error:
+            self._close(browser, POLICY, str(error))
+            return
+        if isinstance(message, Hello):
+            self._greet(browser, message)
+            return
+        refused = self.controls.handle(browser, browser.trusted, message)
+        if refused:
+            browser.send(encode('refused', what=type(message).__name__.lower(), reason=refused))
+
+    def _greet(self, browser: Browser, hello: Hello) -> None:
+        browser.trusted = same_token(self.token, hello.token)
+        watchers = sum(each.greeted and not each.trusted for each in self.browsers.values())
+        if not browser.trusted and watchers >= MAX_WATCHERS:
+            self._close(browser, TRY_AGAIN_LATER, 'too many browsers')
+            return
+        browser.greeted = True
+        linear, angular = self.controls.speeds
+        browser.send(encode('welcome', trusted=browser.trusted, known_token=browser.trusted or not hello.token,
+                            speeds=[linear, angular]))
+
+    def _close(self, browser: Browser, code: int, reason: str) -> None:
+        self.closed(browser.socket)
+        browser.socket.close(code, reason)
+
+    def send_frames(self) -> None:
+        """To be called regularly: a frame for each browser that is ready."""
+        now = self.clock()
+        self.state.tick(now)
+        # most browsers have got the same frames, so there is one to make
+        frames: dict[tuple[int, int], tuple[int, int, bytes]] = {}
+        latest = self.state.counter.last
+        for browser in list(self.browsers.values()):
+            if not browser.greeted and now - browser.since > HELLO_TIMEOUT:
+                self._close(browser, POLICY, 'expected hello')
+            if not browser.ready or browser.number == latest:
+                continue
+            key = browser.number, browser.epoch
+            if key not in frames:
+                frames[key] = self.state.frame(*key)
+            browser.number, browser.epoch, message = frames[key]
+            browser.send(message)

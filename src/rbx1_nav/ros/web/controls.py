@@ -1,0 +1,103 @@
+"""What a browser may do to the robot, and why not."""
+from __future__ import annotations
+
+from typing import Any, Callable, Protocol
+
+from rbx1_nav.ros.web.hand_drive import HandDrive
+from rbx1_nav.ros.web.protocol import Drive, Hand, Hello, Message, Reset, Run, Stop
+from rbx1_nav.ros.web.runs import Runs
+from rbx1_nav.ros.web.state import State
+
+NO_TOKEN = 'this page only watches: open the address that the view has printed, with its token'
+NOT_CONFIRMED = 'a real robot moves only after you have confirmed that its path is free'
+
+
+class System(Protocol):
+    """What is known about the running system: system.py."""
+
+    @property
+    def simulated(self) -> bool:
+        """Whether the robot is known to be a simulated one."""
+
+    def reset(self) -> None:
+        """Put the robot back to its start. Raises an exception."""
+
+    def shut_down_drivers(self) -> None:
+        """Shut down the other nodes that drive."""
+
+
+class Controls:
+    """Does what a browser asks for."""
+
+    def __init__(self, state: State, system: System, hand: HandDrive, runs: Runs, speeds: tuple[float, float],
+                 in_background: Callable[[Callable[[], None]], Any]) -> None:
+        """speeds: of the arrow keys, m/s and rad/s; in_background(function): calls it in another thread."""
+        self.state = state
+        self.system = system
+        self.hand = hand
+        self.runs = runs
+        self.speeds = speeds
+        self.in_background = in_background
+
+    def handle(self, browser: object, trusted: bool, message: Message) -> str:
+        """Do what a browser asks for. trusted: whether it has given the token. Returns why not, '' if it was done."""
+        if isinstance(message, Stop):       # anybody who sees a robot move may stop it
+            self.stop()
+            return ''
+        if isinstance(message, Hello):
+            return ''
+        if not trusted:
+            return NO_TOKEN
+        if isinstance(message, Drive):
+            linear, angular = self.speeds
+            if self.hand.drive(browser, message.forward * linear, message.left * angular):
+                return ''
+            return 'another browser drives, or driving by hand is off'
+        if isinstance(message, Hand):
+            return self._hand(browser, message)
+        if isinstance(message, Run):
+            return self._run(message)
+        return self._reset(message)
+
+    def _hand(self, browser: object, message: Hand) -> str:
+        if not message.on:
+            self.hand.leave(browser)
+            return ''
+        if not (self.system.simulated or message.confirmed):
+            return NOT_CONFIRMED
+        if self.runs.busy:
+            return 'a run is in progress: stop it first'
+        self.hand.begin(browser)
+        return ''
+
+    def _run(self, message: Run) -> str:
+        if not (self.system.simulated or message.confirmed):
+            return NOT_CONFIRMED
+        if self.hand.drivers:
+            self.hand.stop()
+        reset = message.reset and self.system.simulated
+        if not self.runs.start(message.method, self.system.reset if reset else lambda: None):
+            return 'a run is in progress: stop it first'
+        return ''
+
+    def _reset(self, _: Reset) -> str:
+        if not self.system.simulated:
+            return 'only a simulated robot can be put back'
+
+        def reset() -> None:
+            try:
+                self.system.reset()
+            except Exception as error:
+                self.state.set_status(outcome=f'not reset: {error}')
+        self.in_background(reset)
+        return ''
+
+    def stop(self) -> None:
+        """Stop the robot, whatever drives it."""
+        self.runs.stop()
+        self.hand.stop()
+        self.system.shut_down_drivers()
+
+    def leave(self, browser: object) -> None:
+        """A browser has gone."""
+        self.hand.leave(browser)

@@ -1,0 +1,109 @@
+"""The messages between page and server, one JSON object each. docs/web_view.md lists them.
+
+What a browser sends is checked here, field by field; the rest of the server gets one of the classes below.
+"""
+from __future__ import annotations
+
+import json
+from math import isfinite
+from typing import Mapping, NamedTuple, Union
+
+MAX_MESSAGE = 1024      # bytes
+METHODS = ('timed', 'odometry', 'gyro')
+
+
+class InvalidMessage(ValueError):
+    """A message that no page of ours sends. The text says what is wrong with it."""
+
+
+class Hello(NamedTuple):
+    """The first message of a browser."""
+
+    token: str      # '' for a browser that only watches
+
+
+class Run(NamedTuple):
+    """Start a run."""
+
+    method: str         # one of METHODS
+    reset: bool         # whether to put a simulated robot back to its start first
+    confirmed: bool     # whether the user has confirmed that a real robot may move
+
+
+class Hand(NamedTuple):
+    """Begin or end driving by hand."""
+
+    on: bool
+    confirmed: bool     # as of Run
+
+
+class Drive(NamedTuple):
+    """The keys that are held."""
+
+    forward: float      # -1 to 1, of the linear speed
+    left: float         # -1 to 1, of the angular speed
+
+
+class Reset(NamedTuple):
+    """Put a simulated robot back to its start."""
+
+
+class Stop(NamedTuple):
+    """Stop the robot, whatever drives it."""
+
+
+Message = Union[Hello, Run, Hand, Drive, Reset, Stop]
+
+
+def parse(text: object) -> Message:
+    """A message from a browser. Raises InvalidMessage."""
+    if not isinstance(text, str) or len(text) > MAX_MESSAGE:
+        raise InvalidMessage('expected a short text')
+    try:
+        fields = json.loads(text)
+    except (ValueError, RecursionError):
+        raise InvalidMessage('expected JSON') from None
+    kind = fields.get('type') if isinstance(fields, dict) else None
+    if kind == 'hello':
+        return Hello(_text(fields, 'token'))
+    if kind == 'run':
+        method = _text(fields, 'method')
+        if method not in METHODS:
+            raise InvalidMessage(f'method: expected one of {", ".join(METHODS)}')
+        return Run(method, _flag(fields, 'reset'), _flag(fields, 'confirmed'))
+    if kind == 'hand':
+        return Hand(_flag(fields, 'on'), _flag(fields, 'confirmed'))
+    if kind == 'drive':
+        return Drive(_fraction(fields, 'forward'), _fraction(fields, 'left'))
+    if kind == 'reset':
+        return Reset()
+    if kind == 'stop':
+        return Stop()
+    raise InvalidMessage('type: expected hello, run, hand, drive, reset or stop')
+
+
+def _text(fields: Mapping[str, object], name: str) -> str:
+    value = fields.get(name, '')
+    if not isinstance(value, str):
+        raise InvalidMessage(f'{name}: expected text')
+    return value
+
+
+def _flag(fields: Mapping[str, object], name: str) -> bool:
+    value = fields.get(name, False)
+    if not isinstance(value, bool):
+        raise InvalidMessage(f'{name}: expected true or false')
+    return value
+
+
+def _fraction(fields: Mapping[str, object], name: str) -> float:
+    value = fields.get(name, 0)
+    # bool is a subclass of int; an integer of any size can be compared, but not converted
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not -1 <= value <= 1 or not isfinite(value):
+        raise InvalidMessage(f'{name}: expected a number from -1 to 1')
+    return float(value)
+
+
+def encode(kind: str, **fields: object) -> bytes:
+    """A message to a browser. Raises ValueError for a number that JSON does not have."""
+    return json.dumps({'type': kind, **fields}, separators=(',', ':'), allow_nan=False).encode()

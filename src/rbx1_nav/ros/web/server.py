@@ -1,0 +1,189 @@
+"""The HTTP server: the files of the page, and the WebSocket. It runs in a thread of its own."""
+from __future__ import annotations
+
+import asyncio
+import logging
+import os
+from threading import Event, Thread
+from typing import Any
+
+from tornado.httpserver import HTTPServer
+from tornado.ioloop import PeriodicCallback
+from tornado.iostream import IOStream
+from tornado.netutil import bind_sockets
+from tornado.web import Application, HTTPError, RequestHandler
+from tornado.websocket import WebSocketHandler
+
+from rbx1_nav.ros.web.checks import HostCheck
+from rbx1_nav.ros.web.connections import MAX_SOCKETS, Connections
+from rbx1_nav.ros.web.protocol import MAX_MESSAGE
+
+FRAME_PERIOD = 50       # ms
+MAX_CONNECTIONS = MAX_SOCKETS + 60      # TCP connections, also those that have sent nothing yet
+IDLE_TIMEOUT = 5.0      # s for a request to arrive, and for a connection to be used again
+PING_PERIOD = 10.0      # s: a browser that does not answer pings is disconnected after three of them
+MAX_HEADER = 8192       # bytes
+TYPES = {'.html': 'text/html; charset=utf-8', '.css': 'text/css; charset=utf-8',
+         '.js': 'text/javascript; charset=utf-8'}
+HEADERS = {
+    # nothing from other hosts, and no other page may hold this one in a frame and make the user click into it
+    'Content-Security-Policy': "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; "
+                               "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+    'X-Frame-Options': 'DENY',
+    'X-Content-Type-Options': 'nosniff',
+    'Referrer-Policy': 'no-referrer',
+    'Cross-Origin-Resource-Policy': 'same-origin',
+    'Cross-Origin-Opener-Policy': 'same-origin',
+    'Cache-Control': 'no-cache'}
+
+for logger in 'tornado.access', 'tornado.general':
+    logging.getLogger(logger).setLevel(logging.CRITICAL)    # a stranger must not fill the log
+
+
+def read_files(folder: str) -> dict[str, tuple[str, bytes]]:
+    """(content type, content) of each file of the page, by its path on the server. Raises OSError."""
+    files = {}
+    for name in sorted(os.listdir(folder)):
+        kind = TYPES.get(os.path.splitext(name)[1])
+        if kind:
+            with open(os.path.join(folder, name), 'rb') as file:
+                files[f'/{name}'] = kind, file.read()
+    files['/'] = files['/index.html']
+    return files
+
+
+class CheckedHandler(RequestHandler):
+    """A request whose Host and Origin are accepted."""
+
+    def initialize(self, hosts: HostCheck) -> None:
+        """Called by tornado."""
+        self.hosts = hosts
+
+    def set_default_headers(self) -> None:
+        """Called by tornado."""
+        self.clear_header('Server')
+        for name, value in HEADERS.items():
+            self.set_header(name, value)
+
+    def prepare(self) -> None:
+        """Called by tornado before any method."""
+        headers = self.request.headers
+        if len(headers.get_list('Host')) != 1 or len(headers.get_list('Origin')) > 1 or not self.hosts.accepts(
+                headers['Host'], headers.get('Origin')):
+            raise HTTPError(403)
+
+    def write_error(self, status_code: int, **_: Any) -> None:
+        self.set_header('Content-Type', 'text/plain; charset=utf-8')
+        self.finish(f'{status_code}\n')
+
+
+class FileHandler(CheckedHandler):
+    """A file of the page, from a table: no path on this machine is made of a request."""
+
+    def initialize(self, hosts: HostCheck, files: dict[str, tuple[str, bytes]] = {}) -> None:
+        super().initialize(hosts)
+        self.files = files
+
+    def get(self) -> None:
+        """Called by tornado, for HEAD too."""
+        if self.request.path not in self.files:
+            raise HTTPError(404)
+        kind, content = self.files[self.request.path]
+        self.set_header('Content-Type', kind)
+        self.write(content)
+
+    head = get
+
+
+class SocketHandler(WebSocketHandler, CheckedHandler):
+    """The WebSocket of a browser."""
+
+    def initialize(self, hosts: HostCheck, connections: Connections | None = None) -> None:
+        super().initialize(hosts)
+        assert connections
+        self.connections = connections
+
+    def prepare(self) -> None:
+        super().prepare()
+        if self.connections.full:
+            raise HTTPError(503)
+
+    def check_origin(self, origin: str) -> bool:
+        """Called by tornado; prepare() has checked it."""
+        return True
+
+    def open(self, *_: str, **__: str) -> None:
+        self.set_nodelay(True)
+        self.connections.opened(self)
+
+    def on_message(self, message: str | bytes) -> None:
+        self.connections.received(self, message)
+
+    def on_close(self) -> None:
+        self.connections.closed(self)
+
+
+class BoundedServer(HTTPServer):
+    """An HTTP server with a limit to its connections. WebSockets have a limit of their own."""
+
+    count = 0
+
+    def handle_stream(self, stream: IOStream, address: tuple[Any, ...]) -> None:
+        """Called by tornado for each connection."""
+        if self.count >= MAX_CONNECTIONS:
+            stream.close()
+            return
+        self.count += 1
+        super().handle_stream(stream, address)
+
+    def on_close(self, server_conn: object) -> None:
+        """Called by tornado at the end of each connection that was handled."""
+        self.count -= 1
+        super().on_close(server_conn)
+
+
+class Server:
+    """Serves the page."""
+
+    def __init__(self, folder: str, hosts: HostCheck, connections: Connections, address: str, port: int) -> None:
+        """folder: of the page's files; port: 0 for any that is free. Raises OSError."""
+        self.connections = connections
+        self.sockets = bind_sockets(port, address)
+        self.port = int(self.sockets[0].getsockname()[1])
+        self.application = Application(
+            [('/socket', SocketHandler, dict(hosts=hosts, connections=connections)),
+             ('.*', FileHandler, dict(hosts=hosts, files=read_files(folder)))],
+            websocket_ping_interval=PING_PERIOD, websocket_max_message_size=MAX_MESSAGE,
+            log_function=lambda handler: None)
+        self.loop: asyncio.AbstractEventLoop | None = None
+        self.ready = Event()
+        self.thread = Thread(target=self._run, daemon=True)
+
+    def start(self) -> None:
+        """Accept connections from now on."""
+        self.thread.start()
+        self.ready.wait()
+
+    def _run(self) -> None:
+        asyncio.run(self._serve())
+
+    async def _serve(self) -> None:
+        self.loop, self.end = asyncio.get_running_loop(), asyncio.Event()
+        server = BoundedServer(self.application, max_header_size=MAX_HEADER, max_body_size=MAX_HEADER,
+                               idle_connection_timeout=IDLE_TIMEOUT, body_timeout=IDLE_TIMEOUT)
+        server.add_sockets(self.sockets)
+        frames = PeriodicCallback(self.connections.send_frames, FRAME_PERIOD)
+        frames.start()
+        self.ready.set()
+        await self.end.wait()
+        frames.stop()
+        server.stop()
+        for socket in list(self.connections.browsers):
+            socket.close(1001, 'the view has ended')
+        await asyncio.sleep(0.05)   # for the closing frames to leave
+
+    def stop(self) -> None:
+        """End the connections, and the thread, within half a second."""
+        if self.loop:
+            self.loop.call_soon_threadsafe(self.end.set)
+        self.thread.join(0.5)

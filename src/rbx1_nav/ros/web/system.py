@@ -1,0 +1,114 @@
+"""What the master knows about the running system: the base, its floor, its reset, and the nodes that drive it."""
+from __future__ import annotations
+
+from threading import Lock, Thread
+import time
+from typing import Any
+
+import rosgraph
+import rospy
+from std_srvs.srv import Empty
+
+from rbx1_nav.ros.network.master import Server, call
+from rbx1_nav.ros.node import life
+from rbx1_nav.ros.web.state import State
+from rbx1_nav.ros.web.topics import Topics
+
+PERIOD = 2.0        # s
+RESET_TIMEOUT = 5.0  # s
+
+
+class System:
+    """Asks the master every PERIOD, and puts what it says into the status of the page."""
+
+    def __init__(self, state: State) -> None:
+        self.state = state
+        self.lock = Lock()
+        self.drawn: tuple[str, str] | None = None   # surface and seed, from /diagnostics
+        self.topics = Topics(state, self.on_seed)
+        self.reset_service = ''     # '' if there is none
+        self.thread = Thread(target=self._run, daemon=True)
+
+    def start(self) -> None:
+        """Begin."""
+        self.thread.start()
+
+    def on_seed(self, surface: str, seed: str) -> None:
+        """A simulated base names its floor, and the seed that was drawn."""
+        self.drawn = surface, seed
+        self.state.set_status(surface=surface, seed=seed)
+
+    @property
+    def simulated(self) -> bool:
+        """Whether the robot is a simulated one: only its ground truth is known. One that is silent counts as real."""
+        return 'truth' in self.state.poses
+
+    def _run(self) -> None:
+        server = Server(rosgraph.get_master_uri())
+        while not life.end_requested.is_set():
+            try:
+                self._ask(server)
+                self.state.set_status(master=True)
+            except Exception:
+                self.state.set_status(master=False)
+            end = time.monotonic() + PERIOD
+            while time.monotonic() < end and not life.end_requested.is_set():
+                life.sleep(end - time.monotonic())
+
+    def _ask(self, master: Server) -> None:
+        services = {name for name, _ in master.call('getSystemState')[2]}
+        base = self.topics.base if 'odometry' in self.state.poses else None
+        name = f'{base}/reset'
+        self.reset_service = name if base and name in services else ''
+        self.state.set_status(base=base or '', simulated=self.simulated,
+                              can_reset=bool(self.simulated and self.reset_service))
+        values: dict[str, Any] = {'surface': '', 'seed': '', 'simulated_time': False}
+        if base:
+            values['simulated_time'] = bool(_param(master, '/use_sim_time', False))
+        if self.simulated and self.topics.truth:
+            values['surface'] = str(_param(master, f'{self.topics.truth}/surface', 'ideal')).rpartition('/')[2]
+            values['seed'] = str(_param(master, f'{self.topics.truth}/seed', 'random'))
+            if self.drawn and self.topics.truth == base:    # it knows better what it has drawn
+                del values['surface'], values['seed']
+        else:
+            self.drawn = None
+        self.state.set_status(**values)
+
+    def reset(self) -> None:
+        """Put a simulated robot back to its start. Raises ROSException, or rospy.ServiceException."""
+        if not self.reset_service:
+            raise rospy.ROSException('the base has no reset')
+        rospy.wait_for_service(self.reset_service, RESET_TIMEOUT)
+        rospy.ServiceProxy(self.reset_service, Empty)()
+
+    @staticmethod
+    def forget_frame() -> None:
+        """Remove the parameter of a run that the page has started: it is not for the next one."""
+        call(rosgraph.get_master_uri(), 'deleteParam', rospy.resolve_name('out_and_back/odom_frame'))
+
+    def shut_down_drivers(self) -> None:
+        """Shut down all other nodes that publish /cmd_vel, as `rosnode kill` does, without waiting for it."""
+        Thread(target=self._shut_down_drivers, daemon=True).start()
+
+    def _shut_down_drivers(self) -> None:
+        try:
+            publishers, _, _ = call(rosgraph.get_master_uri(), 'getSystemState')
+        except Exception as error:
+            rospy.logwarn('The master does not answer, so Stop may not reach other nodes that drive: %s', error)
+            return
+        for name in dict(publishers).get('/cmd_vel', ()):
+            if name != rospy.get_name():
+                # a node that hangs must not delay the others
+                Thread(target=shut_down, args=(name,), daemon=True).start()
+
+
+def shut_down(node: str) -> None:
+    """Shut down a node."""
+    try:
+        call(call(rosgraph.get_master_uri(), 'lookupNode', node), 'shutdown', 'stopped in the browser')
+    except Exception:
+        pass    # it has exited, or does not answer
+
+
+def _param(master: Server, name: str, default: object) -> Any:
+    return master.call('getParam', name) if master.call('hasParam', name) else default

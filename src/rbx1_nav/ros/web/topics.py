@@ -1,0 +1,119 @@
+"""What the view subscribes to, and the commands that it publishes. No topic costs more than a bounded rate."""
+from __future__ import annotations
+
+import time
+from typing import Any, Callable
+
+from diagnostic_msgs.msg import DiagnosticArray
+from geometry_msgs.msg import Twist
+from nav_msgs.msg import Odometry
+from rosgraph_msgs.msg import Log
+import rospy
+from std_msgs.msg import Empty
+
+from rbx1_nav.ros import messages
+from rbx1_nav.ros.web.state import Motion, State
+
+TOPICS = {'truth': 'ground_truth', 'odometry': 'odom', 'estimate': 'odom_ekf'}
+PERIOD = 0.02       # s: of the messages that arrive in this time only the latest one is read
+COMMAND_PERIOD = 0.01   # s: a driving script notices a subscriber that does not read
+LOG_PERIOD = 0.02   # s
+BUFFER = 2 ** 20    # bytes: what arrives in PERIOD at 50 times real time, and more
+
+
+class Topics:
+    """The subscriptions."""
+
+    def __init__(self, state: State, on_seed: Callable[[str, str], None]) -> None:
+        """on_seed(surface, seed): called with what a simulated base says of its floor in /diagnostics."""
+        self.state = state
+        self.on_seed = on_seed
+        self.base: str | None = None    # the node that publishes the odometry
+        self.truth: str | None = None   # the node that publishes the ground truth
+        self.subscribers = [
+            *(subscribe(topic, Odometry, self.on_odometry, source) for source, topic in TOPICS.items()),
+            subscribe('/cmd_vel', Twist, self.on_command),
+            subscribe('reset_odometry', Empty, self.on_reset),
+            subscribe('/diagnostics', DiagnosticArray, self.on_diagnostics, queue_size=5),
+            # of all nodes, by one connection to rosout: no node sends its lines twice
+            subscribe('/rosout_agg', Log, self.on_log, queue_size=50)]
+
+    def on_odometry(self, message: Odometry, source: str) -> None:
+        """A pose and a velocity."""
+        pose, twist = message.pose.pose, message.twist.twist
+        sender = message._connection_header['callerid']
+        if source == 'odometry':
+            self.base = sender
+        elif source == 'truth':
+            self.truth = sender
+        self.state.move(source, Motion(
+            message.header.stamp.to_sec(), (pose.position.x, pose.position.y, messages.yaw_of(pose.orientation)),
+            twist.linear.x, twist.angular.z), time.monotonic())
+        time.sleep(PERIOD)
+
+    def on_command(self, twist: Twist) -> None:
+        """A command to the base."""
+        sender = twist._connection_header['callerid']
+        self.state.command(twist.linear.x, twist.angular.z, 'by hand' if sender == rospy.get_name() else sender,
+                           time.monotonic())
+        time.sleep(COMMAND_PERIOD)
+
+    def on_reset(self, _: Empty) -> None:
+        """The base was reset."""
+        self.state.reset(time.monotonic())
+
+    def on_diagnostics(self, array: DiagnosticArray) -> None:
+        """Once a second, of a base."""
+        for status in array.status:
+            values = {each.key: each.value for each in status.values}
+            if 'Surface' in values and 'Seed' in values:
+                self.on_seed(values['Surface'], values['Seed'])
+        time.sleep(PERIOD)
+
+    def on_log(self, line: Log) -> None:
+        """A line of the log."""
+        if line.level >= Log.INFO:
+            self.state.log_line(line.level, line.header.stamp.to_sec(), line.name, line.msg)
+        time.sleep(LOG_PERIOD)
+
+
+def subscribe(topic: str, kind: type, callback: Callable[..., None], args: Any = None,
+              queue_size: int = 1) -> rospy.Subscriber:
+    """Subscribe to a topic. A callback that sleeps delays its own topic only, and no publisher: rospy has a thread for
+    each connection, and drops what a subscriber does not read in time."""
+    return rospy.Subscriber(topic, kind, callback, args, queue_size=queue_size, buff_size=BUFFER, tcp_nodelay=True)
+
+
+class CommandPublisher:
+    """Publishes /cmd_vel while the robot is driven by hand. At other times nothing is published, because the clock of a
+    simulation waits for each node that is registered as a driver."""
+
+    def __init__(self) -> None:
+        self.publisher: rospy.Publisher | None = None
+
+    def open(self) -> None:
+        """Register as a driver, if that has not been done."""
+        if self.publisher is None:
+            try:
+                self.publisher = rospy.Publisher('/cmd_vel', Twist, queue_size=5, tcp_nodelay=True)
+            except Exception as error:
+                rospy.logwarn_throttle(5, f'/cmd_vel: the master does not answer: {error}')
+
+    def publish(self, linear: float, angular: float) -> None:
+        """Send a command, m/s and rad/s."""
+        publisher, command = self.publisher, Twist()
+        command.linear.x, command.angular.z = linear, angular
+        try:
+            if publisher:
+                publisher.publish(command)
+        except rospy.ROSException:
+            pass    # closed by the end of the node, which sends a stop of its own
+
+    def close(self) -> None:
+        """No longer a driver."""
+        publisher, self.publisher = self.publisher, None
+        if publisher:
+            try:
+                publisher.unregister()
+            except Exception as error:
+                rospy.logwarn_throttle(5, f'/cmd_vel: the master does not answer: {error}')

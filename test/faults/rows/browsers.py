@@ -1,0 +1,215 @@
+"""Browsers that are foreign, slow, malicious or suddenly gone."""
+import os
+import re
+import signal
+import socket
+import time
+
+import support
+from web_client import WebClient, request
+
+FAULT = ('requests and sockets of a foreign page; another user without the token; 100 connections; slow readers; '
+         'random bytes; the browser or the view killed while its keys drive')
+PROMISE = ('foreign requests are refused; without the token nothing moves; another browser gets its frames; the view '
+           'neither grows nor logs; the robot stops within 0.5 s of its browser, and within the base\'s timeout of 1 s '
+           'of the view')
+FULL, SHORT = 28, 7
+ROOT, ALONE = False, True
+
+SPEED = 0.2             # m/s
+TIMEOUT, PERIOD = 1.0, 0.02     # s, of the base
+GONE = 0.5              # s
+MEMORY_LIMIT = 20000    # KB
+ATTEMPTS = [dict(type='run', method='timed'), dict(type='hand', on=True), dict(type='drive', forward=1.0),
+            dict(type='reset')]
+
+
+class View:
+    """The node under test."""
+
+    def __init__(self, row):
+        self.process = row.node('web_view.py', '_port:=0')
+        match = self.process.wait_for_line(r'Open http://localhost:(\d+)/#(\S+)')
+        self.port, self.token = int(match.group(1)), match.group(2)
+        self.odom = support.OdomWatch()
+        # simulated, and not taken for a real robot: that takes the first message on /ground_truth
+        with_token = WebClient(self.port, self.token)
+        support.wait_for(lambda: with_token.wait_for('frame').get('status', {}).get('simulated'), 'the base')
+        with_token.close()
+
+    def drive(self):
+        """A browser whose keys drive the robot, as soon as it moves."""
+        client = WebClient(self.port, self.token)
+        client.send(type='hand', on=True)
+        end = time.monotonic() + support.LIMIT
+        while self.odom.last.twist.twist.linear.x != SPEED:
+            client.send(type='drive', forward=1.0)
+            time.sleep(0.1)
+            assert time.monotonic() < end, 'the robot does not move'
+        return client
+
+    def stop_and_reset(self, row):
+        """The robot is at rest at its start."""
+        self.odom.wait_for_twist(0.0)
+        row.reset()
+        support.wait_for(lambda: self.odom.position() == (0, 0), 'the reset')
+
+    def usage(self):
+        """(KB of memory, threads, open files) of the node."""
+        folder = f'/proc/{self.process.process.pid}'
+        with open(f'{folder}/status', encoding='ascii') as file:
+            values = dict(line.split(':', 1) for line in file)
+        return int(values['VmRSS'].split()[0]), int(values['Threads']), len(os.listdir(f'{folder}/fd'))
+
+    def check(self):
+        """A browser with the token gets frames at once."""
+        client = WebClient(self.port, self.token)
+        assert client.wait_for('welcome')['trusted']
+        client.wait_for('frame')
+        client.close()
+
+
+def foreign_page(row, view):
+    """What a page of another host makes the browser send."""
+    origin = row.random.choice(['http://evil.example', 'null', f'http://localhost:{view.port + 1}',
+                                'https://localhost'])
+    host = row.random.choice(['evil.example', f'evil.example:{view.port}', '10.0.0.1', 'localhost.evil.example'])
+    for path in '/', '/main.js', '/socket':
+        for method in 'GET', 'POST', 'OPTIONS':
+            assert request(view.port, path, method=method, Origin=origin) == 403, (path, method, origin)
+            assert request(view.port, path, host, method) == 403, (path, method, host)
+    for headers in dict(Origin=origin), dict(Host=host), dict(Host=host, Origin=f'http://{host}'):
+        try:
+            WebClient(view.port, view.token, **headers)
+        except ConnectionError as error:
+            assert str(error) == '403', error
+        else:
+            raise AssertionError(f'accepted: {headers}')
+    assert view.odom.position() == (0, 0)
+
+
+def no_token(row, view):
+    """Another user of this machine."""
+    token = row.random.choice(['', 'wrong', view.token[:-1], view.token + 'A', view.token.swapcase()])
+    client = WebClient(view.port, token)
+    assert not client.wait_for('welcome')['trusted']
+    for message in row.random.choices(ATTEMPTS, k=20):
+        client.send(**message)
+        assert 'only watches' in client.wait_for('refused')['reason']
+    client.close()
+    assert view.odom.position() == (0, 0)
+
+
+def many_connections(row, view):
+    """100 of them, half of which say nothing."""
+    silent = [socket.create_connection(('127.0.0.1', view.port)) for _ in range(50)]
+    clients = [WebClient(view.port, '') for _ in range(50)]
+    started = time.monotonic()
+    view.check()
+    row.figure('first frame beside 100 connections, s', time.monotonic() - started)
+    for each in (*silent, *clients):
+        each.close()
+
+
+def slow_readers(row, view):
+    """Browsers that are asleep, while the robot drives."""
+    asleep = [WebClient(view.port, '', small=True) for _ in range(30)]
+    before = view.usage()[0]
+    driver = row.node('timed_out_and_back.py', '_goal_distance:=0.4')
+    awake = WebClient(view.port, '')
+    awake.wait_for('frame')
+    frames, end = 0, time.monotonic() + support.LIMIT
+    while driver.process.poll() is None and time.monotonic() < end:
+        awake.wait_for('frame')
+        frames += 1
+    assert driver.wait() == 0, driver.output
+    row.figure('frames beside 30 slow readers', frames)
+    growth = view.usage()[0] - before
+    row.figure('growth of the memory, KB', growth)
+    # two motions of 2 s and two turns of 3.1 s, at 20 frames a second; half of them on a busy machine
+    assert frames > 100 and growth < MEMORY_LIMIT, (frames, growth)
+    # a script that does not get its turn loses commands to all subscribers; one that does not read loses most of them
+    lost = re.search(r'(\d+) of (\d+) commands to /web_view', driver.output)
+    assert not lost or int(lost.group(1)) < 0.05 * int(lost.group(2)), driver.output
+    for each in (*asleep, awake):
+        each.close()
+
+
+def random_bytes(row, view):
+    """Requests and frames that are none."""
+    for _ in range(20):
+        data = row.random.getrandbits(8 * 400).to_bytes(400, 'big')
+        with socket.create_connection(('127.0.0.1', view.port), 10) as connection:
+            connection.sendall(row.random.choice([data, b'GET / HTTP/1.1\r\n' + data, b'\x16\x03\x01' + data]))
+        client = WebClient(view.port, view.token)
+        try:
+            if row.random.random() < 0.5:
+                client.send_frame(row.random.choice([data, b'{"type":"drive","forward":1e999}', b'{}', 500 * b'[']),
+                                  row.random.randrange(16))
+            else:
+                client.socket.sendall(data)
+        except OSError:
+            pass
+        client.close()
+    assert view.odom.position() == (0, 0)
+
+
+def browser_gone(row, view):
+    """The browser that drives sends nothing any more: it was closed, or its machine has failed."""
+    client = view.drive()
+    time.sleep(row.random.uniform(0, 0.1))
+    client.send(type='drive', forward=1.0)
+    closed = row.random.random() < 0.5
+    if closed:
+        client.close()
+    before = view.odom.position()[0]
+    view.odom.wait_for_twist(0.0)
+    travel = view.odom.position()[0] - before
+    row.figure(f"travel after a browser that {'was closed' if closed else 'fell silent'}, m", travel)
+    # odometry that was under way may be a period old
+    assert travel <= SPEED * (GONE + 2 * PERIOD), f'{travel:.3f} m'
+    client.close()
+
+
+def view_killed(row, view):
+    """SIGKILL to the view, while keys drive."""
+    client = view.drive()
+    client.send(type='drive', forward=1.0)
+    view.process.kill()
+    before = view.odom.position()[0]
+    view.odom.wait_for_twist(0.0)
+    travel = view.odom.position()[0] - before
+    row.figure('travel after the view was killed, m', travel)
+    assert travel <= SPEED * (TIMEOUT + 2 * PERIOD), f'{travel:.3f} m'
+    client.close()
+
+
+KINDS = [foreign_page, no_token, many_connections, slow_readers, random_bytes, browser_gone, view_killed]
+
+
+def run(row):
+    """See FAULT."""
+    row.roscore()
+    row.base()
+    support.init_node('faults')
+    view = None
+    for number in range(row.times):
+        kind = KINDS[number % len(KINDS)]
+        with row.fault(f'{kind.__name__} ({number})'):
+            if view is None or view.process.process.poll() is not None:
+                view = View(row)
+            view.stop_and_reset(row)
+            view.check()
+            threads, files = view.usage()[1:]
+            kind(row, view)
+            if kind is view_killed:
+                continue
+            view.check()
+            # a connection that was closed takes a moment to be forgotten
+            support.wait_for(lambda: view.usage()[1] <= threads + 2 and view.usage()[2] <= files + 2,
+                             f'threads and files of the view to go: {threads}, {files} and now {view.usage()}')
+            errors = [line for line in view.process.lines if 'Traceback' in line or 'ERROR' in line]
+            assert not errors, view.process.output
+    if view and view.process.process.poll() is None:
+        view.process.signal(signal.SIGTERM)
+        assert view.process.wait() == 0, view.process.output

@@ -1,0 +1,260 @@
+"""Who may do what, how many browsers there may be, and how fast they get frames."""
+from asyncio import Future
+import json
+
+import pytest
+
+from rbx1_nav.ros.web.connections import BURST, HELLO_TIMEOUT, MAX_SOCKETS, MAX_WATCHERS, Connections
+from rbx1_nav.ros.web.controls import Controls
+from rbx1_nav.ros.web.state import Motion, State
+
+TOKEN = 'the token'
+
+
+class Hand:
+    """Takes the place of HandDrive."""
+
+    def __init__(self):
+        self.drivers, self.calls = set(), []
+
+    def begin(self, owner):
+        self.drivers.add(owner)
+
+    def leave(self, owner):
+        self.drivers.discard(owner)
+        self.calls.append('leave')
+
+    def drive(self, owner, linear, angular):
+        self.calls.append((linear, angular))
+        return owner in self.drivers
+
+    def stop(self):
+        self.drivers.clear()
+        self.calls.append('stop')
+
+
+class Runs:
+    """Takes the place of Runs."""
+    busy = False
+
+    def __init__(self):
+        self.calls = []
+
+    def start(self, method, before):
+        self.calls.append(method)
+        before()
+        return not self.busy
+
+    def stop(self):
+        self.calls.append('stop')
+
+
+class System:
+    """Takes the place of System."""
+    simulated = True
+
+    def __init__(self):
+        self.calls = []
+
+    def reset(self):
+        self.calls.append('reset')
+
+    def shut_down_drivers(self):
+        self.calls.append('shut down')
+
+
+class Socket:
+    """Takes the place of a WebSocket."""
+
+    def __init__(self, slow=False):
+        self.slow = slow
+        self.messages, self.closed = [], None
+
+    def write_message(self, message, binary=False):
+        self.messages.append(json.loads(message))
+        future = Future(loop=LOOP)
+        if not self.slow:
+            future.set_result(None)
+        return future
+
+    def close(self, code=None, reason=None):
+        self.closed = code, reason
+
+    @property
+    def kinds(self):
+        return [message['type'] for message in self.messages]
+
+
+class Loop:
+    """What a Future needs of an event loop."""
+
+    def get_debug(self):
+        return False
+
+    def call_soon(self, *_, **__):
+        pass
+
+
+LOOP = Loop()
+
+
+class View:
+    """The parts, connected."""
+
+    def __init__(self):
+        self.now = 100.0
+        self.state, self.system, self.hand, self.runs = State(), System(), Hand(), Runs()
+        self.controls = Controls(self.state, self.system, self.hand, self.runs, (0.2, 1.0), lambda call: call())
+        self.connections = Connections(self.state, self.controls, TOKEN, lambda: self.now)
+
+    def connect(self, token=None, slow=False):
+        socket = Socket(slow)
+        self.connections.opened(socket)
+        if token is not None:
+            self.send(socket, type='hello', token=token)
+        return socket
+
+    def send(self, socket, **fields):
+        self.connections.received(socket, json.dumps(fields))
+
+    def move(self, x):
+        self.state.move('odometry', Motion(self.now + x, (x, 0.0, 0.0), 0.2, 0.0), self.now)
+
+
+@pytest.fixture(name='view')
+def make_view():
+    return View()
+
+
+@pytest.mark.parametrize('message', [
+    dict(type='run', method='timed'), dict(type='hand', on=True), dict(type='drive', forward=1), dict(type='reset')])
+@pytest.mark.parametrize('token', ['', 'wrong'])
+def test_without_the_token_nothing_moves(view, message, token):
+    socket = view.connect(token)
+    view.send(socket, **message)
+    assert socket.kinds == ['welcome', 'refused'] and 'only watches' in socket.messages[1]['reason']
+    assert not (view.hand.calls or view.runs.calls or view.system.calls or view.hand.drivers)
+    assert socket.messages[0]['trusted'] is False and socket.messages[0]['known_token'] is (token == '')
+
+
+def test_stop_needs_no_token(view):
+    socket = view.connect('')
+    view.send(socket, type='stop')
+    assert view.runs.calls == ['stop'] and view.hand.calls == ['stop'] and view.system.calls == ['shut down']
+
+
+def test_a_run(view):
+    socket = view.connect(TOKEN)
+    view.send(socket, type='run', method='gyro', reset=True)
+    assert view.runs.calls == ['gyro'] and view.system.calls == ['reset'] and socket.kinds == ['welcome']
+
+
+def test_a_run_at_a_time(view):
+    view.runs.busy = True
+    socket = view.connect(TOKEN)
+    view.send(socket, type='run', method='timed')
+    view.send(socket, type='hand', on=True)
+    assert socket.kinds == ['welcome', 'refused', 'refused'] and not view.hand.drivers
+
+
+def test_a_real_robot_has_to_be_confirmed(view):
+    view.system.simulated = False
+    socket = view.connect(TOKEN)
+    messages = dict(type='run', method='timed'), dict(type='hand', on=True), dict(type='reset')
+    for message in messages:
+        view.send(socket, **message)
+    assert socket.kinds == ['welcome', *3 * ['refused']]
+    assert not (view.runs.calls or view.hand.drivers or view.system.calls)
+    for message in messages[:2]:
+        view.send(socket, confirmed=True, **message)
+    assert view.runs.calls == ['timed'] and len(view.hand.drivers) == 1 and socket.kinds.count('refused') == 3
+
+
+def test_keys(view):
+    socket = view.connect(TOKEN)
+    view.send(socket, type='drive', forward=1)
+    assert socket.kinds[-1] == 'refused'
+    view.send(socket, type='hand', on=True)
+    view.send(socket, type='drive', forward=-1, left=0.5)
+    assert view.hand.calls[-1] == (-0.2, 0.5) and socket.kinds.count('refused') == 1
+
+
+def test_a_browser_that_goes_away_no_longer_drives(view):
+    socket = view.connect(TOKEN)
+    view.send(socket, type='hand', on=True)
+    view.connections.closed(socket)
+    assert view.hand.calls == ['leave'] and not view.connections.browsers
+    view.connections.closed(socket)
+    view.send(socket, type='stop')
+    assert view.hand.calls == ['leave']
+
+
+@pytest.mark.parametrize('text', ['', 'x', b'\0', '{"type": "drive", "forward": 2}', '{"type": "hello", "token": ""}'])
+def test_a_malformed_message_ends_the_connection(view, text):
+    socket = view.connect(TOKEN)
+    view.send(socket, type='hand', on=True)
+    view.connections.received(socket, text)
+    assert socket.closed[0] == 1008 and not view.connections.browsers and view.hand.calls[-1] == 'leave'
+
+
+def test_hello_comes_first_and_in_time(view):
+    early, silent = view.connect(), view.connect()
+    view.send(early, type='stop')
+    assert early.closed[0] == 1008 and not view.runs.calls
+    view.connections.send_frames()
+    assert not (silent.messages or silent.closed)
+    view.now += HELLO_TIMEOUT + 0.1
+    view.connections.send_frames()
+    assert silent.closed[0] == 1008
+
+
+def test_too_many_messages_end_the_connection(view):
+    socket = view.connect(TOKEN)
+    for _ in range(BURST + 1):
+        view.send(socket, type='drive')
+    assert socket.closed[0] == 1008
+
+
+def test_watchers_leave_room_for_one_with_the_token(view):
+    sockets = [view.connect('') for _ in range(MAX_WATCHERS + 1)]
+    assert sockets[-2].closed is None and sockets[-1].closed[0] == 1013
+    assert view.connect(TOKEN).closed is None and not view.connections.full
+    while len(view.connections.browsers) < MAX_SOCKETS:
+        view.connect(TOKEN)
+    assert view.connections.full
+
+
+def test_frames(view):
+    socket = view.connect('')
+    view.move(0.1)
+    view.connections.send_frames()
+    assert socket.messages[-1]['poses'] == {'odometry': [0.1, 0, 0]} and 'status' in socket.messages[-1]
+    view.connections.send_frames()      # nothing has changed
+    assert socket.kinds == ['welcome', 'frame']
+    view.move(0.2)
+    view.connections.send_frames()
+    assert socket.kinds == ['welcome', 'frame', 'frame']
+
+
+def test_a_slow_browser_loses_frames_and_no_path(view):
+    slow, fast = view.connect('', slow=True), view.connect('')
+    for step in range(20):
+        view.move(0.1 * step)
+        view.connections.send_frames()
+    assert slow.kinds == ['welcome'] and len(fast.messages) == 21
+    view.connections.browsers[slow].sending.set_result(None)
+    view.connections.send_frames()
+    assert len(slow.messages) == 2 and len(slow.messages[1]['paths']['odometry']) == 20
+
+
+def test_a_frame_is_made_once_for_all(view):
+    for _ in range(30):
+        view.connect('')
+    view.move(0.1)
+    view.connections.send_frames()
+    made = []
+    original = view.state.frame
+    view.state.frame = lambda *key: made.append(key) or original(*key)
+    view.move(0.2)
+    view.connections.send_frames()
+    assert len(made) == 1

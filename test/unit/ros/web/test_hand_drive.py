@@ -1,0 +1,139 @@
+"""Keys that are held drive the robot, and keys that are released, or no longer repeated, stop it."""
+from threading import Event
+import time
+
+import pytest
+
+from rbx1_nav.ros.web.hand_drive import KEY_TIMEOUT, LINGER, HandDrive, Keys
+
+LIMIT = 60      # s, after which a wait fails
+
+
+class Base:
+    """Takes the place of a base, and of the publisher."""
+
+    def __init__(self):
+        self.commands = []
+        self.is_open = False
+        self.sent = Event()
+
+    def open(self):
+        self.is_open = True
+
+    def publish(self, linear, angular):
+        assert self.is_open
+        self.commands.append((linear, angular))
+        self.sent.set()
+
+    def close(self):
+        self.is_open = False
+
+
+class Clock:
+    """A clock that a test sets."""
+    now = 100.0
+
+    def __call__(self):
+        return self.now
+
+
+def wait_for(condition):
+    end = time.monotonic() + LIMIT
+    while not condition():
+        assert time.monotonic() < end
+        time.sleep(0.002)
+
+
+@pytest.fixture(name='driven')
+def start():
+    base, clock = Base(), Clock()
+    hand = HandDrive(base, clock)
+    hand.start()
+    yield hand, base, clock
+    hand.end()
+
+
+def test_keys_of_one_browser_at_a_time():
+    keys = Keys()
+    assert keys.hold('a', 0.2, 0.0, 1.0) and not keys.hold('b', 0.0, 1.0, 1.1)
+    assert keys.velocity(1.1) == (0.2, 0.0)
+    assert keys.hold('a', 0.0, 0.0, 1.2) and keys.hold('b', 0.0, 1.0, 1.2)
+
+
+def test_keys_that_are_not_repeated_are_released():
+    keys = Keys()
+    keys.hold('a', 0.2, 0.0, 1.0)
+    assert keys.velocity(1.0 + KEY_TIMEOUT - 0.01) == (0.2, 0.0)
+    assert keys.velocity(1.0 + KEY_TIMEOUT + 0.01) == (0.0, 0.0)
+    assert keys.hold('b', 0.0, 1.0, 1.5)
+
+
+def test_nothing_is_published_before_somebody_drives(driven):
+    hand, base, _ = driven
+    assert not hand.drive('a', 0.2, 0.0)
+    time.sleep(0.1)
+    assert not base.is_open and not base.commands
+    hand.begin('a')
+    wait_for(lambda: base.is_open)
+    assert not base.commands
+
+
+def test_keys_drive_and_their_release_stops(driven):
+    hand, base, _ = driven
+    hand.begin('a')
+    assert hand.drive('a', 0.2, 0.0)
+    wait_for(lambda: base.commands[-3:] == 3 * [(0.2, 0.0)])
+    assert hand.drive('a', 0.0, 0.0)
+    wait_for(lambda: base.commands[-1] == (0.0, 0.0))
+
+
+def test_a_browser_that_goes_away_stops_the_robot(driven):
+    hand, base, clock = driven
+    hand.begin('a')
+    hand.drive('a', 0.2, 0.0)
+    wait_for(lambda: base.commands)
+    hand.leave('a')
+    wait_for(lambda: base.commands[-1] == (0.0, 0.0))
+    clock.now += LINGER + 0.1
+    wait_for(lambda: not base.is_open)      # and is no driver any more
+
+
+def test_a_browser_that_falls_silent_stops_the_robot(driven):
+    hand, base, clock = driven
+    hand.begin('a')
+    hand.drive('a', 0.2, 0.0)
+    wait_for(lambda: base.commands)
+    clock.now += KEY_TIMEOUT + 0.01
+    wait_for(lambda: base.commands[-1] == (0.0, 0.0))
+
+
+def test_another_browser_that_leaves_does_not_stop_it(driven):
+    hand, base, _ = driven
+    hand.begin('a')
+    hand.begin('b')
+    hand.drive('a', 0.2, 0.0)
+    hand.leave('b')
+    count = len(base.commands)
+    wait_for(lambda: len(base.commands) > count + 2)
+    assert set(base.commands) == {(0.2, 0.0)}
+
+
+def test_stop_sends_zeros_though_nobody_drives(driven):
+    hand, base, clock = driven
+    hand.begin('a')
+    hand.stop()
+    wait_for(lambda: (0.0, 0.0) in base.commands)
+    assert not hand.drive('a', 0.2, 0.0)    # it has to begin again
+    clock.now += LINGER + 0.1
+    wait_for(lambda: not base.is_open)
+
+
+def test_the_end_stops_a_robot_that_moves():
+    base = Base()
+    hand = HandDrive(base)
+    hand.start()
+    hand.begin('a')
+    hand.drive('a', 0.2, 0.0)
+    wait_for(lambda: base.commands)
+    hand.end()
+    assert base.commands[-1] == (0.0, 0.0)

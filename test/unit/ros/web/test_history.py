@@ -1,0 +1,60 @@
+"""Paths, speeds and log lines, thinned out and bounded."""
+from rbx1_nav.ros.web.history import LOG_LINES, LOG_TEXT, PATH_POINTS, Counter, Log, Path, Speeds
+
+
+def test_a_path_has_points_at_a_distance():
+    path = Path(Counter())
+    for step in range(101):
+        path.move(0.001 * step, 0.0, 0.0)
+    # a point for each 2 cm, the first one among them
+    assert [point[0] for point in path.since(0)] == [0.0, 0.02, 0.04, 0.06, 0.08, 0.1]
+
+
+def test_a_path_has_points_in_a_turn():
+    path = Path(Counter())
+    for step in range(101):
+        path.move(0.0, 0.0, 3.1 + 0.01 * step - (6.2832 if step > 4 else 0))
+    assert len(path.since(0)) == 20 + 1     # for each 0.05 rad of 1 rad, also across pi
+
+
+def test_a_path_is_bounded():
+    path = Path(Counter())
+    for step in range(2 * PATH_POINTS):
+        path.move(0.1 * step, 0.0, 0.0)
+    assert len(path.since(0)) == PATH_POINTS
+
+
+def test_only_what_is_new():
+    counter = Counter()
+    path, log = Path(counter), Log(counter)
+    path.move(0.0, 0.0, 0.0)
+    number = counter.last
+    assert path.since(number) == [] and log.since(number) == []
+    log.line(2, 1.0, '/node', 'text')
+    path.move(1.0, 0.0, 0.0)
+    assert path.since(number) == [[1.0, 0.0, 0.0]] and log.since(number) == [[2, 1.0, '/node', 'text']]
+
+
+def test_a_steady_speed_is_thinned_out_and_its_end_kept():
+    speeds = Speeds(Counter())
+    for tick in range(26):
+        speeds.sample(0.1 * tick, 0.2, 0.0)
+    speeds.sample(2.6, 0.1, 0.0)
+    # a sample a second; and the last one before the change, for the line between the two to be right
+    assert speeds.since(0) == [[0.0, 0.2, 0.0], [1.0, 0.2, 0.0], [2.0, 0.2, 0.0], [2.5, 0.2, 0.0], [2.6, 0.1, 0.0]]
+
+
+def test_a_command_holds_until_the_next():
+    speeds = Speeds(Counter(), steps=True)
+    speeds.sample(1.0, 0.0, 0.0)
+    speeds.sample(5.0, 0.2, 0.0)
+    assert speeds.since(0) == [[1.0, 0.0, 0.0], [5.0, 0.0, 0.0], [5.0, 0.2, 0.0]]
+
+
+def test_the_log_is_bounded():
+    log = Log(Counter())
+    for number in range(2 * LOG_LINES):
+        log.line(2, number, '/node', 10 * LOG_TEXT * 'x')
+    lines = log.since(0)
+    assert len(lines) == LOG_LINES and lines[-1][1] == 2 * LOG_LINES - 1
+    assert all(len(line[3]) <= LOG_TEXT for line in lines)

@@ -1,0 +1,50 @@
+"""What a browser sends is what the page sends, or rejected."""
+import json
+
+from hypothesis import given, strategies
+import pytest
+
+from rbx1_nav.ros.web.protocol import Drive, Hand, Hello, InvalidMessage, Reset, Run, Stop, encode, parse
+
+
+@pytest.mark.parametrize('fields, message', [
+    ({'type': 'hello', 'token': 'abc'}, Hello('abc')),
+    ({'type': 'hello'}, Hello('')),
+    ({'type': 'run', 'method': 'gyro', 'reset': True}, Run('gyro', True, False)),
+    ({'type': 'hand', 'on': True, 'confirmed': True}, Hand(True, True)),
+    ({'type': 'drive', 'forward': 1, 'left': -0.5}, Drive(1.0, -0.5)),
+    ({'type': 'drive'}, Drive(0.0, 0.0)),
+    ({'type': 'reset'}, Reset()),
+    ({'type': 'stop', 'more': 1}, Stop())])
+def test_a_message(fields, message):
+    assert parse(json.dumps(fields)) == message
+
+
+@pytest.mark.parametrize('text', [
+    b'{"type": "stop"}', '', 'stop', '[]', '"stop"', '{}', '{"type": "other"}', '{"type": 1}',
+    '{"type": ["run"]}', '{"type": "hello", "token": 1}', '{"type": "run"}',
+    '{"type": "run", "method": "../square"}',
+    '{"type": "run", "method": "timed", "reset": 1}', '{"type": "drive", "forward": 1.001}',
+    '{"type": "drive", "forward": NaN}', '{"type": "drive", "left": Infinity}', '{"type": "drive", "left": true}',
+    '{"type": "drive", "left": 1' + 400 * '0' + '}', '{"type": "drive", "left": "1"}',
+    '{"type": "drive", "left": null}', 900 * '[', '{"type": "stop"}' + 2000 * ' '])
+def test_anything_else_is_rejected(text):
+    with pytest.raises(InvalidMessage):
+        parse(text)
+
+
+@given(strategies.text() | strategies.recursive(
+    strategies.none() | strategies.booleans() | strategies.floats() | strategies.integers() | strategies.text(),
+    lambda inner: strategies.lists(inner) | strategies.dictionaries(
+        strategies.sampled_from(['type', 'forward', 'left', 'method', 'on']), inner)).map(json.dumps))
+def test_no_other_error(text):
+    try:
+        parse(text)
+    except InvalidMessage:
+        pass
+
+
+def test_what_is_sent_is_json():
+    assert json.loads(encode('refused', reason='"ü"')) == {'type': 'refused', 'reason': '"ü"'}
+    with pytest.raises(ValueError):
+        encode('frame', time=float('nan'))

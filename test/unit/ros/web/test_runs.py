@@ -1,0 +1,121 @@
+"""A run is a process of its own, one at a time, and is stopped as Ctrl-C does it."""
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from rbx1_nav.ros.web import runs as module
+from rbx1_nav.ros.web.runs import Runs
+
+SOURCE = os.path.join(os.path.dirname(__file__), '..', '..', '..', '..', 'src')
+LIMIT = 60      # s, after which a wait fails
+SCRIPT = '''#!{python}
+import os, signal, sys, time
+def stop(*_):
+    sys.exit(130)
+signal.signal(signal.SIGINT, {handler})
+open(sys.argv[1], 'w').write(str(os.getpid()))
+while not os.path.exists(sys.argv[1] + '.end'):
+    time.sleep(0.01)
+sys.exit({status})
+'''
+
+
+def wait_for(condition):
+    end = time.monotonic() + LIMIT
+    while not condition():
+        assert time.monotonic() < end
+        time.sleep(0.005)
+
+
+@pytest.fixture(name='started')
+def make(tmp_path, monkeypatch):
+    """Runs, and what it reports. make(...) writes the script."""
+    changes = []
+    runs = Runs(str(tmp_path), lambda *change: changes.append(change), lambda: None)
+    pid_file = tmp_path / 'pid'
+
+    def write(handler='stop', status=0):
+        script = tmp_path / 'script.py'
+        script.write_text(SCRIPT.format(python=sys.executable, handler=handler, status=status))
+        script.chmod(0o755)
+    write()
+    monkeypatch.setattr(module, 'SCRIPTS', {'timed': ('timed', 'script.py', (str(pid_file),))})
+    yield runs, changes, pid_file, write
+    runs.stop()
+    wait_for(lambda: not runs.busy)
+
+
+def begun(pid_file):
+    return pid_file.exists() and pid_file.read_text()
+
+
+def test_a_run(started):
+    runs, changes, pid_file, _ = started
+    assert runs.start('timed', lambda: None)
+    wait_for(lambda: begun(pid_file))
+    assert runs.busy and not runs.start('timed', lambda: None)
+    (pid_file.parent / 'pid.end').touch()
+    wait_for(lambda: not runs.busy)
+    wait_for(lambda: changes == [('timed', ''), ('timed', 'finished')])
+
+
+def test_a_run_that_fails(started):
+    runs, changes, pid_file, write = started
+    write(status=1)
+    (pid_file.parent / 'pid.end').touch()
+    runs.start('timed', lambda: None)
+    wait_for(lambda: len(changes) == 2)
+    assert 'exit status 1' in changes[1][1]
+
+
+def test_stop(started):
+    runs, changes, pid_file, _ = started
+    runs.start('timed', lambda: None)
+    wait_for(lambda: begun(pid_file))
+    runs.stop()
+    wait_for(lambda: changes[1:] == [('timed', 'stopped')])
+
+
+def test_a_script_that_hangs_is_killed(started, monkeypatch):
+    runs, changes, pid_file, write = started
+    monkeypatch.setattr(module, 'STOP_TIMEOUT', 0.1)
+    write(handler='signal.SIG_IGN')
+    runs.start('timed', lambda: None)
+    wait_for(lambda: begun(pid_file))
+    runs.stop()
+    wait_for(lambda: changes[1:] == [('timed', 'stopped')])
+
+
+def test_stop_before_the_script_is_started(started):
+    runs, changes, pid_file, _ = started
+    runs.start('timed', runs.stop)      # while the robot is put back
+    wait_for(lambda: changes[1:] == [('timed', 'stopped')])
+    assert not pid_file.exists()
+
+
+def test_a_reset_that_fails(started):
+    runs, changes, pid_file, _ = started
+
+    def fail():
+        raise OSError('no such service')
+    runs.start('timed', fail)
+    wait_for(lambda: changes[1:] == [('timed', 'not started: no such service')])
+    assert not pid_file.exists()
+
+
+def test_a_run_ends_with_a_view_that_is_killed(started):
+    runs, _, pid_file, _ = started
+    code = ('import sys, time; sys.path.insert(0, sys.argv[1])\n'
+            'from rbx1_nav.ros.web import runs\n'
+            'runs.SCRIPTS = {"timed": ("timed", "script.py", (sys.argv[3],))}\n'
+            'runs.Runs(sys.argv[2], lambda *_: None, lambda: None).start("timed", lambda: None)\n'
+            'time.sleep(600)')
+    with subprocess.Popen([sys.executable, '-c', code, SOURCE, runs.folder, str(pid_file)]) as view:
+        wait_for(lambda: begun(pid_file))
+        pid = int(pid_file.read_text())
+        view.send_signal(signal.SIGKILL)
+    wait_for(lambda: not os.path.exists(f'/proc/{pid}') or b') Z ' in open(f'/proc/{pid}/stat', 'rb').read())

@@ -1,0 +1,192 @@
+"""The HTTP server: the files of the page, and nothing else; Host and Origin; limits."""
+import asyncio
+import os
+import socket
+import time
+
+import pytest
+from tornado.httpclient import HTTPClientError, HTTPRequest
+from tornado.websocket import websocket_connect
+
+from rbx1_nav.ros.web import server as module
+from rbx1_nav.ros.web.checks import HostCheck
+from rbx1_nav.ros.web.server import MAX_CONNECTIONS, Server, read_files
+
+FOLDER = os.path.join(os.path.dirname(__file__), '..', '..', '..', '..', 'web')
+LIMIT = 60      # s, after which a wait fails
+
+
+class Connections:
+    """Takes the place of Connections: keeps what arrives."""
+    full = False
+
+    def __init__(self):
+        self.browsers, self.messages = {}, []
+
+    def opened(self, browser):
+        self.browsers[browser] = True
+
+    def closed(self, browser):
+        self.browsers.pop(browser, None)
+
+    def received(self, browser, text):
+        self.messages.append(text)
+        browser.write_message('echo')
+
+    def send_frames(self):
+        pass
+
+
+@pytest.fixture(name='server')
+def start():
+    server = Server(FOLDER, HostCheck('localhost'), Connections(), 'localhost', 0)
+    server.start()
+    yield server
+    server.stop()
+    assert not server.thread.is_alive()
+
+
+def exchange(server, data, limit=LIMIT):
+    """Send bytes, and return everything that comes back until the server closes."""
+    with socket.create_connection(('127.0.0.1', server.port), timeout=limit) as connection:
+        connection.sendall(data)
+        received = b''
+        while True:
+            chunk = connection.recv(65536)
+            if not chunk:
+                return received.decode('latin-1')
+            received += chunk
+
+
+def get(server, path='/', method='GET', **headers):
+    """The answer to a request, as text."""
+    lines = {'Host': f'localhost:{server.port}', 'Connection': 'close', **headers}
+    text = ''.join(f'{name}: {value}\r\n' for name, value in lines.items())
+    return exchange(server, f'{method} {path} HTTP/1.1\r\n{text}\r\n'.encode())
+
+
+def status(answer):
+    return int(answer.split()[1]) if answer else None
+
+
+def test_each_file_is_served_with_its_type_and_the_headers(server):
+    files = read_files(FOLDER)
+    assert {'/', '/index.html', '/main.js', '/style.css'} <= set(files)
+    for path, (kind, content) in files.items():
+        head, _, body = get(server, path).partition('\r\n\r\n')
+        assert status(head) == 200 and f'Content-Type: {kind}' in head and len(body) == len(content)
+        assert "default-src 'none'" in head and 'X-Frame-Options: DENY' in head and '\r\nServer:' not in head
+
+
+def test_the_page_needs_nothing_of_other_hosts():
+    for path, (_, content) in read_files(FOLDER).items():
+        text = content.decode().replace('http://www.w3.org/', '')      # names, not addresses
+        assert '://' not in text.replace('`${protocol}://${location.host}/socket`', ''), path
+
+
+@pytest.mark.parametrize('path', ['/../setup.py', '/..%2fsetup.py', '//etc/passwd', '/web', '/.', '/socket/', '/A.js'])
+def test_nothing_else_is_served(server, path):
+    assert status(get(server, path)) == 404
+
+
+@pytest.mark.parametrize('method', ['POST', 'PUT', 'DELETE', 'OPTIONS', 'PATCH'])
+def test_no_other_method(server, method):
+    assert status(get(server, '/', method)) == 405
+
+
+@pytest.mark.parametrize('path', ['/', '/main.js', '/socket', '/other'])
+@pytest.mark.parametrize('headers', [{'Host': 'evil.example'}, {'Origin': 'http://evil.example'}, {'Origin': 'null'}])
+def test_foreign_requests_are_refused(server, path, headers):
+    assert status(get(server, path, **headers)) == 403
+
+
+def test_two_hosts_are_refused(server):
+    answer = exchange(server, f'GET / HTTP/1.1\r\nHost: localhost:{server.port}\r\nHost: evil.example\r\n'
+                              'Connection: close\r\n\r\n'.encode())
+    assert status(answer) in (400, 403)
+
+
+def connect(server, **headers):
+    """A WebSocket to the server."""
+    return websocket_connect(HTTPRequest(f'ws://localhost:{server.port}/socket', headers=headers))
+
+
+def test_a_socket(server):
+    async def talk():
+        connection = await connect(server, Origin=f'http://localhost:{server.port}')
+        await connection.write_message('text')
+        assert await connection.read_message() == 'echo'
+        connection.close()
+    asyncio.run(talk())
+    assert server.connections.messages == ['text']
+    end = time.monotonic() + LIMIT
+    while server.connections.browsers:
+        assert time.monotonic() < end
+
+
+@pytest.mark.parametrize('headers', [{'Host': 'evil.example'}, {'Origin': 'http://evil.example'}])
+def test_a_foreign_socket_is_refused(server, headers):
+    async def talk():
+        with pytest.raises(HTTPClientError, match='403'):
+            await connect(server, **headers)
+    asyncio.run(talk())
+    assert not server.connections.browsers
+
+
+def test_no_socket_when_there_are_too_many(server):
+    server.connections.full = True
+
+    async def talk():
+        with pytest.raises(HTTPClientError, match='503'):
+            await connect(server)
+    asyncio.run(talk())
+
+
+def test_a_large_message_ends_the_socket(server):
+    async def talk():
+        connection = await connect(server)
+        await connection.write_message(5000 * 'x')
+        assert await connection.read_message() is None
+    asyncio.run(talk())
+    assert not server.connections.messages
+
+
+def test_a_large_request_is_refused(server):
+    try:
+        assert status(get(server, '/', X=20000 * 'x')) in (400, 431, None)
+    except ConnectionError:
+        pass    # closed before it has read all of it
+
+
+def test_connections_are_bounded(server, monkeypatch):
+    opened = [socket.create_connection(('127.0.0.1', server.port)) for _ in range(MAX_CONNECTIONS)]
+    try:
+        # each is counted before this one is accepted; it is closed without an answer
+        try:
+            assert get(server) == ''
+        except ConnectionError:
+            pass
+    finally:
+        for each in opened:
+            each.close()
+    end = time.monotonic() + LIMIT
+    while True:
+        try:
+            if status(get(server)) == 200:
+                return
+        except ConnectionError:
+            pass
+        assert time.monotonic() < end
+
+
+def test_a_connection_that_sends_nothing_is_closed(monkeypatch):
+    monkeypatch.setattr(module, 'IDLE_TIMEOUT', 0.2)
+    server = Server(FOLDER, HostCheck('localhost'), Connections(), 'localhost', 0)
+    server.start()
+    assert exchange(server, b'') == '' and exchange(server, b'GET / HT') == ''
+    server.stop()
+
+
+def test_a_port_that_is_taken_is_an_error(server):
+    with pytest.raises(OSError):
+        Server(FOLDER, HostCheck('localhost'), Connections(), 'localhost', server.port)

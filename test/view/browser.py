@@ -1,0 +1,113 @@
+"""A headless Chromium that shows the page of the web view."""
+import json
+import os
+import re
+import signal
+
+from selenium import webdriver
+from selenium.webdriver.chrome.options import Options
+
+import support
+
+# no sandbox: Chromium has none where it is started by root, or in a container
+ARGUMENTS = ('--headless=new', '--no-sandbox', '--disable-gpu', '--disable-dev-shm-usage', '--window-size=1300,950',
+             '--disable-background-networking', '--no-first-run')
+KEYS = {'ArrowUp': 38, 'ArrowLeft': 37, 'Escape': 27}   # key codes
+
+
+def start_chromium(downloads):
+    """A WebDriver. downloads: the folder for what the page saves."""
+    options = Options()
+    options.binary_location = '/usr/bin/chromium'
+    for argument in ARGUMENTS:
+        options.add_argument(argument)
+    options.add_experimental_option('prefs', {'download.default_directory': downloads})
+    options.set_capability('goog:loggingPrefs', {'browser': 'ALL'})
+    try:
+        from selenium.webdriver.chrome.service import Service
+        driver = webdriver.Chrome(service=Service('/usr/bin/chromedriver'), options=options)
+    except TypeError:       # selenium 3, in Debian 11
+        driver = webdriver.Chrome(executable_path='/usr/bin/chromedriver', options=options)
+    driver.set_page_load_timeout(support.LIMIT)
+    return driver
+
+
+def kill_chromium(driver):
+    """SIGKILL to the browser, all of its processes, and the WebDriver."""
+    parents = {}
+    for pid in filter(str.isdigit, os.listdir('/proc')):
+        try:
+            with open(f'/proc/{pid}/stat', encoding='utf-8', errors='replace') as file:
+                parents[int(pid)] = int(file.read().rpartition(')')[2].split()[1])
+        except OSError:     # it has ended
+            pass
+    pids = [driver.service.process.pid]
+    for pid in pids:        # grows while it is read
+        pids += [child for child, parent in parents.items() if parent == pid]
+    for pid in pids:
+        try:
+            os.kill(pid, signal.SIGKILL)
+        except ProcessLookupError:
+            pass
+
+
+class Page:
+    """The page of a view in a browser."""
+
+    def __init__(self, driver, url):
+        self.driver = driver
+        driver.get('about:blank')   # where only the part behind the # differs, nothing is loaded
+        driver.get(url)
+        support.wait_for(lambda: self.text('connection').startswith('Connected'), 'a connection')
+
+    def find(self, selector):
+        """The element for a CSS selector."""
+        return self.driver.find_element('css selector', selector)
+
+    def text(self, name):
+        """The text of the element with this id."""
+        return self.find('#' + name).text
+
+    def wait_for_text(self, name, pattern):
+        """Wait until the text of an element matches a regular expression."""
+        support.wait_for(lambda: re.search(pattern, self.text(name)), f'{pattern} in #{name}: {self.text(name)}')
+
+    def click(self, selector):
+        """Click on an element, as soon as it is enabled."""
+        support.wait_for(lambda: self.find(selector).is_enabled(), f'{selector} to be enabled')
+        self.find(selector).click()
+
+    def robot(self, source):
+        """Where the page draws a robot: x, y (m), heading (degrees)."""
+        transform = self.find(f'#robot-{source}').get_attribute('transform')
+        return [float(each) for each in re.findall(r'-?\d+\.?\d*(?:e[-+]?\d+)?', transform)]
+
+    def row(self, table, source):
+        """The numbers of a row of a table: x, y (m), heading (degrees), distance from the start (m)."""
+        cells = self.driver.find_elements('css selector', f'#{table} tbody tr')
+        text = next(each.text for each in cells if each.text.startswith(source))
+        return [float(each) for each in text.split()[1:]]
+
+    def key(self, kind, key):
+        """A key goes down (keyDown) or up (keyUp), and stays so."""
+        self.driver.execute_cdp_cmd('Input.dispatchKeyEvent', {
+            'type': kind, 'key': key, 'code': key, 'windowsVirtualKeyCode': KEYS[key]})
+
+    def send(self, **message):
+        """Send a message to the node, as somebody does who types into the console."""
+        self.driver.execute_script('rbx1.drive.connection.send(arguments[0])', message)
+
+    def picture(self, path):
+        """Save a screenshot."""
+        self.driver.save_screenshot(path)
+
+    def console_errors(self):
+        """What the browser has logged as an error or a warning."""
+        return [json.dumps(entry) for entry in self.driver.get_log('browser')
+                if entry['level'] in ('SEVERE', 'WARNING')]
+
+
+def start_view(*arguments):
+    """The node as a Process, and the address that it prints."""
+    view = support.Process('rosrun', 'rbx1_nav', 'web_view.py', '_port:=0', *arguments)
+    return view, view.wait_for_line(r'Open (http://\S+)').group(1)

@@ -1,0 +1,174 @@
+#!/usr/bin/python3
+"""The page in Chromium: the robot is where /odom says, runs and keys drive it, Stop stops it, nothing is logged as an
+error.
+
+Keeps its pictures in the directory that the environment variable RBX1_PICTURE_DIR names, if it is set.
+"""
+import math
+import os
+import signal
+import tempfile
+import unittest
+import xml.etree.ElementTree as ElementTree
+
+from nav_msgs.msg import Odometry
+import rospy
+from std_srvs.srv import Empty
+
+import support
+from browser import Page, kill_chromium, start_chromium, start_view
+
+SPEED, TIMEOUT = 0.2, 1.0       # m/s of the arrow keys; s after which the base stops without a command
+
+
+class TestBrowserPage(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        support.init_node('browser_page')
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.odom = support.OdomWatch()
+        cls.truth = support.Watch('/ground_truth', Odometry)
+        # roscore starts it, a rostest does not: it collects the log of all nodes
+        cls.rosout = support.Process('rosrun', 'rosout', 'rosout')
+        cls.view, cls.url = start_view()
+        cls.driver = start_chromium(cls.folder.name)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.driver.quit()
+        cls.view.signal(signal.SIGTERM)
+        assert cls.view.wait() == 0, cls.view.output
+        cls.rosout.kill()
+        cls.folder.cleanup()
+
+    def setUp(self):
+        self.page = Page(self.driver, self.url)
+        self.page.click('#stop')
+        self.odom.wait_for_twist(0.0)
+        rospy.ServiceProxy('/arbotix/reset', Empty)()
+        support.wait_for(lambda: self.odom.position() == (0, 0), 'the reset')
+
+    def tearDown(self):
+        folder = os.environ.get('RBX1_PICTURE_DIR')
+        if folder:
+            self.page.picture(os.path.join(folder, f'{self.id().rpartition(".")[2]}.png'))
+        self.assertEqual(self.page.console_errors(), [])
+
+    def drive_ahead(self, distance):
+        """Hold the arrow key until the robot has gone that far, m."""
+        self.page.click('#hand')
+        self.page.key('keyDown', 'ArrowUp')
+        support.wait_for(lambda: self.odom.position()[0] > distance, 'the robot to drive')
+
+    def test_the_robot_is_where_odom_says(self):
+        self.drive_ahead(0.1)
+        self.page.key('keyDown', 'ArrowLeft')
+        support.wait_for(lambda: support.yaw(self.odom.last) > 0.5, 'the robot to turn')
+        self.page.key('keyUp', 'ArrowUp')
+        self.page.key('keyUp', 'ArrowLeft')
+        self.odom.wait_for_twist(0.0)
+        x, y, yaw = support.pose(self.odom.last)
+
+        def shown():
+            px, py, degrees = self.page.robot('odometry')
+            # a tenth of a millimetre and of a millirad: the resolution of a frame
+            return max(abs(px - x), abs(py - y), abs(math.radians(degrees) - yaw)) < 2e-4
+        support.wait_for(shown, f'the robot at {x}, {y}, {yaw}')
+        row = self.page.row('table-now', 'odometry')
+        self.assertAlmostEqual(row[0], x, delta=0.00051)    # three decimals
+        self.assertAlmostEqual(row[1], y, delta=0.00051)
+        self.assertTrue(self.page.find('path.path.odometry').get_attribute('d'))
+        self.assertTrue(self.page.find('path.arrow.odometry').get_attribute('d'))
+        self.assertTrue(self.page.find('#linear .reported').get_attribute('d'))
+
+    def test_a_run_and_the_run_before(self):
+        self.page.click('.run[data-method=timed]')
+        self.odom.wait_for_twist(0.0, 1.0)
+        self.page.wait_for_text('run-state', 'Running: timed')
+        self.page.wait_for_text('run-state', 'Timed: finished')
+        for source, watch in ('truth', self.truth), ('odometry', self.odom):
+            x, y, _ = support.pose(watch.last)
+            row = self.page.row('table-now', source)
+            self.assertAlmostEqual(row[0], x, delta=0.00051)    # three decimals
+            self.assertAlmostEqual(row[1], y, delta=0.00051)
+        end = self.page.row('table-now', 'odometry')
+        self.page.wait_for_text('lines', 'Done: commanded 2.00 m forward')
+        self.page.click('#reset')
+        support.wait_for(lambda: self.page.find('#table-before').is_displayed(), 'the table of the run before')
+        self.assertEqual(self.page.row('table-before', 'odometry'), end)
+        self.page.wait_for_text('tables', 'The run before: timed')
+
+    def test_stop_ends_a_run(self):
+        self.page.click('.run[data-method=odometry]')
+        support.wait_for(lambda: self.odom.position()[0] > 0.05, 'the robot to drive')
+        self.page.click('#stop')
+        self.odom.wait_for_twist(0.0)
+        self.page.wait_for_text('run-state', 'With odometry: stopped')
+        self.assertFalse(rospy.has_param('/out_and_back/odom_frame'), 'the next run in a terminal would have it')
+        self.assertLess(self.odom.position()[0], 0.9)   # not the end of the first leg
+
+    def test_escape_stops_a_script_of_a_terminal(self):
+        script = support.out_and_back()
+        self.odom.wait_for_twist(SPEED)
+        self.page.key('keyDown', 'Escape')
+        self.page.key('keyUp', 'Escape')
+        self.odom.wait_for_twist(0.0)
+        self.assertEqual(script.wait(), 0, script.output)
+        self.assertNotIn('Done', script.output)
+
+    def test_stop_ends_driving_by_hand(self):
+        self.drive_ahead(0.05)
+        self.page.click('#stop')
+        self.odom.wait_for_twist(0.0)
+        self.page.key('keyUp', 'ArrowUp')
+        self.assertEqual(self.page.find('#hand').get_attribute('aria-pressed'), 'false')
+
+    def test_a_browser_that_is_killed_stops_the_robot(self):
+        other = start_chromium(self.folder.name)
+        try:
+            self.page = Page(other, self.url)
+            self.drive_ahead(0.05)
+            kill_chromium(other)
+            before = self.odom.position()[0]
+            self.odom.wait_for_twist(0.0)
+        finally:
+            self.page = Page(self.driver, self.url)
+        # the base's own timeout would let it go on for 0.2 m
+        self.assertLess(self.odom.position()[0] - before, 0.9 * SPEED * TIMEOUT)
+
+    def test_without_the_token_nothing_moves(self):
+        self.driver.execute_script('sessionStorage.clear()')
+        self.page = Page(self.driver, self.url.partition('#')[0])
+        self.page.wait_for_text('connection', 'watching only')
+        for selector in '.run[data-method=timed]', '#reset', '#hand', '.pad button':
+            self.assertFalse(self.page.find(selector).is_enabled(), selector)
+        for message in (dict(type='run', method='timed'), dict(type='hand', on=True), dict(type='drive', forward=1)):
+            self.page.driver.execute_script('document.getElementById("notice").textContent = ""')
+            self.page.send(**message)
+            self.page.wait_for_text('notice', 'Refused: this page only watches')
+        self.assertEqual(self.odom.position(), (0, 0))
+        self.assertTrue(self.page.find('#stop').is_enabled())
+
+    def test_the_token_is_not_in_the_address_bar(self):
+        self.assertNotIn('#', self.driver.current_url)
+        self.assertNotIn(self.url.partition('#')[2], self.page.text('lines'))
+
+    def test_the_picture_is_saved(self):
+        self.drive_ahead(0.1)
+        self.page.key('keyUp', 'ArrowUp')
+        self.odom.wait_for_twist(0.0)
+
+        def saved(kind):
+            return [os.path.join(self.folder.name, name) for name in os.listdir(self.folder.name)
+                    if name.endswith(kind)]
+        self.page.click('#save-svg')
+        self.page.click('#save-png')
+        support.wait_for(lambda: saved('.svg') and saved('.png'), 'two files')
+        picture = ElementTree.parse(saved('.svg')[0])
+        self.assertTrue([each for each in picture.iter() if each.get('stroke', '').startswith('rgb')])
+        with open(saved('.png')[0], 'rb') as file:
+            self.assertEqual(file.read(8), b'\x89PNG\r\n\x1a\n')
+
+
+if __name__ == '__main__':
+    support.main('browser_page', TestBrowserPage)

@@ -1,0 +1,65 @@
+#!/usr/bin/python3
+"""A real robot moves only after its user has confirmed it, in the page and for the node."""
+import signal
+import tempfile
+import unittest
+
+import support
+from browser import Page, start_chromium, start_view
+
+SPEED = 0.2     # m/s
+
+
+class TestBrowserRealRobot(unittest.TestCase):
+    def setUp(self):
+        support.init_node('browser_real_robot')
+        self.odom = support.OdomWatch()
+        self.view, url = start_view()
+        self.addCleanup(self.view.kill)
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.driver = start_chromium(folder.name)
+        self.addCleanup(self.driver.quit)
+        self.page = Page(self.driver, url)
+        self.page.wait_for_text('facts', 'real')
+
+    def test_it_asks(self):
+        page = self.page
+        # what does not ask, is refused
+        for message in (dict(type='run', method='timed'), dict(type='hand', on=True)):
+            self.driver.execute_script('document.getElementById("notice").textContent = ""')
+            page.send(**message)
+            page.wait_for_text('notice', 'Refused: a real robot')
+        self.assertFalse(page.find('#reset').is_enabled())
+
+        # Cancel
+        page.click('.run[data-method=timed]')
+        page.wait_for_text('confirm-title', 'This robot is real')
+        page.wait_for_text('confirm-text', '1.5 m of free floor')
+        page.click('#confirm button[value=cancel]')
+        support.wait_for(lambda: not page.find('#confirm').is_displayed(), 'the end of the question')
+        self.assertEqual(page.text('run-state'), '')
+
+        # Escape
+        page.click('#hand')
+        page.wait_for_text('confirm-text', 'arrow keys')
+        page.key('keyDown', 'Escape')
+        page.key('keyUp', 'Escape')
+        support.wait_for(lambda: not page.find('#confirm').is_displayed(), 'the end of the question')
+        self.assertEqual(page.find('#hand').get_attribute('aria-pressed'), 'false')
+        self.assertEqual(self.odom.position(), (0, 0))
+
+        # Let it move
+        page.click('.run[data-method=timed]')
+        page.click('#confirm-move')
+        self.odom.wait_for_twist(SPEED)
+        page.click('#stop')
+        self.odom.wait_for_twist(0.0)
+        page.wait_for_text('run-state', 'Timed: stopped')
+        self.assertEqual(page.console_errors(), [])
+        self.view.signal(signal.SIGINT)
+        self.assertEqual(self.view.wait(), 0, self.view.output)
+
+
+if __name__ == '__main__':
+    support.main('browser_real_robot', TestBrowserRealRobot)

@@ -1,0 +1,175 @@
+// What moves the robot: runs, reset, arrow keys; and what stops it.
+
+const REPEAT = 100;     // ms: the node stops the robot if keys that are held are not repeated for 300 ms
+const KEYS = {ArrowUp: [1, 0], ArrowDown: [-1, 0], ArrowLeft: [0, 1], ArrowRight: [0, -1]};    // forward, left
+
+export class Drive {
+  // notify(text): shows a line to the user; '' removes it.
+  constructor(connection, model, notify) {
+    Object.assign(this, {connection, model, notify});
+    this.trusted = false;
+    this.hand = false;
+    this.held = new Set();
+    this.timer = null;
+    this.stop = document.getElementById('stop');
+    this.toggle = document.getElementById('hand');
+    this.pad = [...document.querySelectorAll('.pad button')];
+    this.runs = [...document.querySelectorAll('.run')];
+    this.dialog = document.getElementById('confirm');
+
+    this.stop.onclick = () => this.stopRobot();
+    // before any other reaction to the key
+    window.addEventListener('keydown', event => event.key === 'Escape' && this.stopRobot(), {capture: true});
+    for (const run of this.runs) {
+      run.onclick = () => this.startRun(run);
+    }
+    document.getElementById('reset').onclick = () => connection.send({type: 'reset'});
+    this.toggle.onclick = () => this.switchHand(!this.hand);
+    this.connectKeys();
+  }
+
+  connectKeys() {
+    document.addEventListener('keydown', event => {
+      if (this.hand && KEYS[event.key] && !event.target.closest('select, dialog')) {
+        event.preventDefault();
+        this.hold(event.key);
+      }
+    }, {capture: true});
+    document.addEventListener('keyup', event => this.release(event.key));
+    for (const button of this.pad) {
+      button.addEventListener('pointerdown', event => {
+        button.setPointerCapture(event.pointerId);
+        this.hold(button.dataset.key);
+      });
+      for (const name of ['pointerup', 'pointercancel', 'lostpointercapture']) {
+        button.addEventListener(name, () => this.release(button.dataset.key));
+      }
+      button.addEventListener('contextmenu', event => event.preventDefault());
+    }
+    // keys that are released elsewhere are not seen here
+    window.addEventListener('blur', () => this.releaseAll());
+    document.addEventListener('visibilitychange', () => document.hidden && this.releaseAll());
+    window.addEventListener('pagehide', () => this.releaseAll());
+  }
+
+  hold(key) {
+    if (this.hand && !this.held.has(key)) {
+      this.held.add(key);
+      this.sendKeys();
+      this.timer = this.timer || setInterval(() => this.sendKeys(), REPEAT);
+    }
+  }
+
+  release(key) {
+    if (this.held.delete(key)) {
+      this.sendKeys();
+    }
+  }
+
+  releaseAll() {
+    if (this.held.size) {
+      this.held.clear();
+      this.sendKeys();
+    }
+  }
+
+  sendKeys() {
+    let forward = 0, left = 0;
+    for (const key of this.held) {
+      forward += KEYS[key][0];
+      left += KEYS[key][1];
+    }
+    if (!this.connection.send({type: 'drive', forward, left})) {
+      this.held.clear();
+    }
+    if (!this.held.size) {
+      clearInterval(this.timer);
+      this.timer = null;
+    }
+    for (const button of this.pad) {
+      button.classList.toggle('held', this.held.has(button.dataset.key));
+    }
+  }
+
+  stopRobot() {
+    this.held.clear();
+    clearInterval(this.timer);
+    this.timer = null;
+    this.setHand(false);
+    if (this.dialog.open) {
+      this.dialog.close('cancel');
+    }
+    this.notify(this.connection.send({type: 'stop'}) ? '' :
+      'Not connected: Stop did not reach the robot. Stop it by hand.');
+  }
+
+  // A real robot moves only if the user has confirmed it. Resolves to whether to go on.
+  async confirm(text) {
+    if (this.model.status.simulated) {
+      return true;
+    }
+    document.getElementById('confirm-text').textContent = text;
+    this.dialog.returnValue = 'cancel';
+    this.dialog.showModal();
+    await new Promise(resolve => this.dialog.addEventListener('close', resolve, {once: true}));
+    return this.dialog.returnValue === 'move';
+  }
+
+  async startRun(button) {
+    if (await this.confirm('It will drive 1 m ahead and back. It needs 1.5 m of free floor ahead and 1 m to either side.')) {
+      this.setHand(false);
+      const reset = Boolean(this.model.status.can_reset && document.getElementById('reset-first').checked);
+      this.connection.send({type: 'run', method: button.dataset.method, reset, confirmed: !this.model.status.simulated});
+    }
+  }
+
+  async switchHand(on) {
+    if (on && !await this.confirm('It will follow the arrow keys. It stops when you release them.')) {
+      return;
+    }
+    this.connection.send({type: 'hand', on, confirmed: !this.model.status.simulated});
+    this.setHand(on);
+  }
+
+  setHand(on) {
+    this.hand = on;
+    if (!on) {
+      this.releaseAll();
+    }
+    this.toggle.setAttribute('aria-pressed', on);
+    this.pad.forEach(button => { button.disabled = !on; });
+  }
+
+  refused(message) {
+    if (message.what === 'hand') {
+      this.setHand(false);
+    }
+    if (message.what === 'drive') {     // once, not for each repetition
+      this.setHand(false);
+    }
+    this.notify(`Refused: ${message.reason}.`);
+  }
+
+  // Which buttons work now, and what runs.
+  draw() {
+    const {status} = this.model, ready = this.trusted && Boolean(status.base) && 'odometry' in this.model.poses;
+    const running = Boolean(status.started) && !status.outcome;
+    for (const run of this.runs) {
+      const missing = run.dataset.method === 'gyro' && !('estimate' in this.model.poses);
+      run.disabled = !ready || running || missing;
+      run.title = missing ? 'Needs the filter: roslaunch rbx1_bringup odom_ekf.launch' : '';
+    }
+    document.getElementById('reset').disabled = !ready || !status.can_reset;
+    document.getElementById('reset-first').disabled = !status.can_reset;
+    this.toggle.disabled = !ready || running;
+    const text = !this.trusted ? 'This page only watches; it can stop the robot. To drive, open the address with the token that the view has printed.'
+      : !ready ? 'Waiting for a base that publishes /odom.'
+      : running ? `Running: ${status.started}`
+      : this.hand ? 'Arrow keys drive the robot.'
+      : status.started ? `${status.started[0].toUpperCase()}${status.started.slice(1)}: ${status.outcome}` : '';
+    const line = document.getElementById('run-state');
+    if (line.textContent !== text) {
+      line.textContent = text;
+    }
+  }
+}

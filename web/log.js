@@ -1,0 +1,41 @@
+// The last lines of the log, of all nodes. The newest is at the end, and in view unless the user has scrolled away.
+
+const WARNING = 4, ERROR = 8;       // levels of rosgraph_msgs/Log
+
+function makeLine([level, time, node, text]) {
+  const line = document.createElement('li'), where = document.createElement('span');
+  where.className = 'where';
+  where.textContent = `${new Date(time * 1000).toLocaleTimeString([], {hour12: false})} ${node}`;
+  line.append(where, text);
+  line.className = level >= ERROR ? 'error' : level >= WARNING ? 'warning' : '';
+  return line;
+}
+
+export class LogView {
+  constructor(list) {
+    this.list = list;
+    this.shown = null;
+    this.following = true;      // whether the newest line is kept in view
+    list.addEventListener('scroll', () => {
+      this.following = list.scrollHeight - list.scrollTop - list.clientHeight < 30;
+    });
+    new ResizeObserver(() => this.follow()).observe(list);
+  }
+
+  follow() {
+    if (this.following) {
+      this.list.scrollTop = this.list.scrollHeight;
+    }
+  }
+
+  draw(lines) {
+    if (lines === this.shown) {
+      return;
+    }
+    this.shown = lines;
+    const following = this.following;
+    this.list.replaceChildren(...lines.map(makeLine));
+    this.following = following;
+    this.follow();
+  }
+}

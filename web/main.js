@@ -1,0 +1,139 @@
+// Connects the parts of the page: frames of the node go into the model, and the parts draw the model.
+
+import {Connection} from './connection.js';
+import {Drive} from './drive.js';
+import {Floor} from './floor.js';
+import {LogView} from './log.js';
+import {Model, SOURCES} from './model.js';
+import {savePng, saveSvg} from './picture.js';
+import {Plot} from './plot.js';
+import {Tables} from './tables.js';
+import {connectView} from './view_controls.js';
+
+const byId = id => document.getElementById(id);
+const LEGEND = {truth: 'truth', odometry: 'odometry', estimate: 'estimate',
+  commanded: 'commanded', reported: 'reported by the wheels', true: 'true'};
+
+function notify(text) {
+  byId('notice').textContent = text;
+  byId('notice').hidden = !text;
+}
+
+const model = new Model();
+const connection = new Connection();
+const floor = new Floor(byId('floor'));
+const tables = new Tables(byId('tables'));
+const log = new LogView(byId('lines'));
+const drive = new Drive(connection, model, notify);
+const plots = [new Plot(byId('linear'), 'forward (m/s)', 1, 0.25), new Plot(byId('angular'), 'turning (rad/s), left is up', 2, 1.2)];
+let held = null;        // the speeds at the moment at which they were held still
+let waiting = false;    // for the next time that the browser draws
+
+function facts() {
+  const {status} = model, found = [];
+  if (status.base) {
+    found.push(['Robot', status.simulated ? 'simulated' : 'real']);
+  }
+  if (status.surface) {
+    found.push(['Surface', status.surface]);
+  }
+  if (status.seed && status.surface !== 'ideal') {
+    found.push(['Seed', status.seed]);
+  }
+  if (status.base) {
+    found.push(['Time', status.simulated_time ? `simulated, ${status.factor} times real time` : 'real']);
+  }
+  return found;
+}
+
+function drawFacts() {
+  const text = JSON.stringify(facts());
+  if (byId('facts').dataset.shown !== text) {
+    byId('facts').dataset.shown = text;
+    byId('facts').replaceChildren(...facts().map(([name, value]) => {
+      const pair = document.createElement('div'), dt = document.createElement('dt'), dd = document.createElement('dd');
+      dt.textContent = name;
+      dd.textContent = value;
+      pair.append(dt, dd);
+      return pair;
+    }));
+  }
+}
+
+function draw() {
+  waiting = false;
+  floor.draw(model);
+  tables.draw(model);
+  log.draw(model.log);
+  drive.draw();
+  drawFacts();
+  const shown = held || model;
+  for (const plot of plots) {
+    plot.draw(shown.speeds, shown.time, Number(byId('window').value));
+  }
+}
+
+function redraw() {
+  if (!waiting) {
+    waiting = true;
+    requestAnimationFrame(draw);
+  }
+}
+
+function legendItem(name, parent, checkbox) {
+  const label = document.createElement(checkbox ? 'label' : 'span'), swatch = document.createElement('span');
+  swatch.className = `swatch ${name}`;
+  if (checkbox) {
+    const box = document.createElement('input');
+    box.type = 'checkbox';
+    box.checked = true;
+    box.onchange = () => {
+      floor.show(name, box.checked);
+      redraw();
+    };
+    label.append(box);
+  }
+  label.append(swatch, ` ${LEGEND[name]}`);
+  parent.append(label);
+}
+
+function hold() {
+  held = held ? null : {time: model.time, speeds: structuredClone(model.speeds)};
+  byId('hold').setAttribute('aria-pressed', Boolean(held));
+  redraw();
+}
+
+SOURCES.forEach(source => legendItem(source, byId('legend'), true));
+['commanded', 'reported', 'true'].forEach(name => legendItem(name, byId('speed-legend'), false));
+connectView(floor, model, redraw);
+byId('save-svg').onclick = () => saveSvg(floor.svg);
+byId('save-png').onclick = () => savePng(floor.svg);
+byId('window').onchange = redraw;
+byId('hold').onclick = hold;
+document.addEventListener('keydown', event => {
+  if (event.key.toLowerCase() === 'h' && !event.ctrlKey && !event.metaKey && !event.target.closest('select, dialog')) {
+    hold();
+  }
+});
+
+connection.addEventListener('welcome', ({detail}) => {
+  model.forget();
+  drive.trusted = detail.trusted;
+  drive.setHand(false);
+  byId('connection').className = 'live';
+  byId('connection').textContent = detail.trusted ? 'Connected' : 'Connected, watching only';
+  notify(detail.known_token ? '' : 'The view was started again since: open the address that it has printed now.');
+});
+connection.addEventListener('frame', ({detail}) => {
+  model.add(detail);
+  redraw();
+});
+connection.addEventListener('refused', ({detail}) => drive.refused(detail));
+connection.addEventListener('lost', ({detail}) => {
+  drive.setHand(false);
+  byId('connection').className = 'lost';
+  byId('connection').textContent = `Not connected${detail ? ` (${detail})` : ''}, trying again`;
+});
+window.matchMedia('(prefers-color-scheme: dark)').addEventListener('change', redraw);
+// for tests, and for the console of the browser
+window.rbx1 = {model, floor, drive};

@@ -1,0 +1,63 @@
+// What the page knows: the frames of the node, put together. A frame holds only what is new since the one before.
+
+export const SOURCES = ['truth', 'odometry', 'estimate'];
+export const SPEEDS = ['commanded', 'reported', 'true'];
+const MAX_POINTS = 6000, MAX_LINES = 50;
+
+function lists(names) {
+  return Object.fromEntries(names.map(name => [name, []]));
+}
+
+export class Model {
+  constructor() {
+    this.forget();
+  }
+
+  // As if nothing had been received: the node sends everything to a new connection.
+  forget() {
+    this.epoch = -1;
+    this.log = [];
+    this.status = {before: {}};
+    this.poses = {};
+    this.time = null;
+    this.run = '';
+    this.clear();
+    this.speeds = lists(SPEEDS);
+  }
+
+  clear() {
+    this.paths = lists(SOURCES);
+    this.cleared = (this.cleared || 0) + 1;     // counts, so that whoever draws them notices
+  }
+
+  add(frame) {
+    if (frame.epoch !== this.epoch) {   // another run
+      this.epoch = frame.epoch;
+      this.clear();
+      this.speeds = lists(SPEEDS);
+    }
+    this.time = frame.time;
+    this.poses = frame.poses;
+    this.run = frame.run;
+    for (const [source, points] of Object.entries(frame.paths || {})) {
+      this.paths[source].push(...points);
+      if (this.paths[source].length > MAX_POINTS) {
+        this.paths[source].splice(0, MAX_POINTS / 2);
+        this.cleared += 1;
+      }
+    }
+    for (const [name, samples] of Object.entries(frame.speeds || {})) {
+      const all = this.speeds[name];
+      all.push(...samples);
+      if (all.length > MAX_POINTS) {
+        all.splice(0, MAX_POINTS / 2);
+      }
+    }
+    if (frame.log) {
+      this.log = this.log.concat(frame.log).slice(-MAX_LINES);
+    }
+    if (frame.status) {
+      this.status = frame.status;
+    }
+  }
+}

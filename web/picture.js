@@ -1,0 +1,60 @@
+// Saves the picture of the floor as SVG or PNG.
+
+const STYLES = ['fill', 'fill-opacity', 'stroke', 'stroke-width', 'stroke-dasharray', 'stroke-linecap', 'stroke-linejoin',
+  'opacity', 'display', 'font-family', 'font-size', 'text-anchor'];
+const PNG_SCALE = 2;
+
+// The picture as it is now, with the styles that the style sheet gives it.
+function standalone(svg) {
+  const copy = svg.cloneNode(true), originals = svg.querySelectorAll('*');
+  copy.querySelectorAll('*').forEach((each, index) => {
+    const style = getComputedStyle(originals[index]);
+    for (const name of STYLES) {
+      each.setAttribute(name, style.getPropertyValue(name));
+    }
+    each.removeAttribute('style');
+    each.removeAttribute('class');
+  });
+  const width = svg.clientWidth, height = svg.clientHeight;
+  const background = document.createElementNS(svg.namespaceURI, 'rect');
+  for (const [name, value] of Object.entries({width, height, fill: getComputedStyle(svg).backgroundColor})) {
+    background.setAttribute(name, value);
+  }
+  copy.prepend(background);
+  for (const name of ['id', 'tabindex', 'role', 'aria-label']) {
+    copy.removeAttribute(name);
+  }
+  copy.setAttribute('xmlns', svg.namespaceURI);
+  copy.setAttribute('width', width);
+  copy.setAttribute('height', height);
+  copy.setAttribute('viewBox', `0 0 ${width} ${height}`);
+  return {text: new XMLSerializer().serializeToString(copy), width, height};
+}
+
+function download(blob, name) {
+  const link = document.createElement('a');
+  link.href = URL.createObjectURL(blob);
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+}
+
+function fileName(kind) {
+  return `rbx1_nav-${new Date().toISOString().slice(0, 19).replace(/[:T]/g, '-')}.${kind}`;
+}
+
+export function saveSvg(svg) {
+  download(new Blob([standalone(svg).text], {type: 'image/svg+xml'}), fileName('svg'));
+}
+
+export async function savePng(svg) {
+  const {text, width, height} = standalone(svg), image = new Image();
+  image.src = URL.createObjectURL(new Blob([text], {type: 'image/svg+xml'}));
+  await image.decode();
+  const canvas = document.createElement('canvas');
+  canvas.width = PNG_SCALE * width;
+  canvas.height = PNG_SCALE * height;
+  canvas.getContext('2d').drawImage(image, 0, 0, canvas.width, canvas.height);
+  URL.revokeObjectURL(image.src);
+  canvas.toBlob(blob => download(blob, fileName('png')), 'image/png');
+}
