@@ -202,7 +202,7 @@ class CombinedOdometry:
         self._finish(ekf, odom.stamp, odom)
 
     def _is_outlier(self, last: Odom, odom: Odom) -> bool:
-        """Return whether to ignore an Odom, a single jump. If a second one agrees with it, the filter restarts there."""
+        """Return whether to ignore an Odom, a single jump. If a second one agrees, the filter restarts there."""
         suspect, self.suspect = self.suspect, None
         if (suspect and not has_jumped(suspect, odom, self.limits)
                 and distance(suspect, odom) <= distance(last, odom)):
