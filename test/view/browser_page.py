@@ -141,7 +141,7 @@ class TestBrowserPage(unittest.TestCase):
         self.page = Page(self.driver, self.url.partition('#')[0])
         self.page.wait_for_text('connection', 'watching only')
         for selector in '.run[data-method=timed]', '#reset', '#hand', '.pad button':
-            self.assertFalse(self.page.find(selector).is_enabled(), selector)
+            support.wait_for(lambda: not self.page.find(selector).is_enabled(), f'{selector} to be disabled')
         for message in (dict(type='run', method='timed'), dict(type='hand', on=True), dict(type='drive', forward=1)):
             self.page.driver.execute_script('document.getElementById("notice").textContent = ""')
             self.page.send(**message)
