@@ -120,7 +120,7 @@ def measure(args):
     for robot_type in ROBOTS if args.commands else ():
         for what, text in measure_node(robot_type, args.seed, args.commands):
             yield robot_type, what, text
-    for what, surface, *commands in (('by time, ideal', 'ideal', BY_TIME),
+    for what, surface, *commands in (('timed, ideal', 'ideal', BY_TIME),
                                      ('combined, carpet', 'low_ply_carpet', COMBINED, FILTER)):
         for robot_type in ROBOTS:
             for seed in range(args.seed, args.seed + args.runs):

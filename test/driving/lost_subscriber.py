@@ -44,7 +44,7 @@ class TestLostSubscriber(unittest.TestCase):
         """Check that the driving script has named the lost node, sent a stop, and exited with an error."""
         self.assertEqual(driver.wait(), 1, driver.output)
         self.assertRegex(driver.output,
-                         fr'ERROR.*/cmd_vel: the last subscriber disconnected \({name}\): expected a base')
+                         fr'ERROR.*/cmd_vel: {name} disconnected, and no subscriber is left: expected a base')
         self.assertIn('Stopping the robot...', driver.output)
         self.assertNotIn('Traceback', driver.output)
 

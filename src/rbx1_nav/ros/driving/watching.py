@@ -197,7 +197,7 @@ class Listeners:
             self.look(now)
         if not self.publisher.impl.connections:
             names = ', '.join(listener.peer.name for listener in self.listeners if not listener.ended)
-            raise rospy.ROSException(f'{self.topic}: the last subscriber disconnected ({names}): expected a base')
+            raise rospy.ROSException(f'{self.topic}: {names} disconnected, and no subscriber is left: expected a base')
         for listener in self.listeners:
             if listener.refusal:
                 raise rospy.ROSException(f'{self.topic}: {listener.refusal}')

@@ -20,7 +20,7 @@ TOKEN_BYTES = 16
 
 
 def make_token() -> str:
-    """A new token, which nobody can guess."""
+    """Return a new token that cannot be guessed."""
     return secrets.token_urlsafe(TOKEN_BYTES)
 
 

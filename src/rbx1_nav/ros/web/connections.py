@@ -1,4 +1,4 @@
-"""The browsers that are connected: each gets frames as fast as it takes them, and may send so many messages."""
+"""The connected browsers: each receives frames as fast as it reads them, and may send a limited number of messages."""
 from __future__ import annotations
 
 from asyncio import Future
@@ -27,7 +27,7 @@ class Socket(Protocol):
 
 
 class Browser:
-    """One of them."""
+    """A connected browser."""
 
     def __init__(self, socket: Socket, now: float) -> None:
         """now: s of a monotonic clock."""
@@ -47,14 +47,14 @@ class Browser:
         """Send a message."""
         try:
             self.sending = self.socket.write_message(message)
-            # an error is noticed as the end of the connection
+            # after an error, the connection closes
             self.sending.add_done_callback(lambda future: future.cancelled() or future.exception())
         except Exception:
-            pass    # it has gone: the end of the connection follows
+            pass    # it has disconnected, and closed() follows
 
 
 class Connections:
-    """All of them. Only the server's thread calls it."""
+    """All connected browsers. Only the thread of the server calls the methods."""
 
     def __init__(self, state: State, controls: Controls, token: str, clock: Callable[[], float]) -> None:
         """clock(): s, monotonic."""
@@ -74,7 +74,7 @@ class Connections:
         self.browsers[socket] = Browser(socket, self.clock())
 
     def closed(self, socket: Socket) -> None:
-        """A browser has gone. If its keys drive the robot, that stops now."""
+        """A browser has disconnected. If its keys were driving the robot, stop the robot."""
         browser = self.browsers.pop(socket, None)
         if browser:
             self.controls.leave(browser)
@@ -119,7 +119,7 @@ class Connections:
         """To be called regularly: a frame for each browser that is ready."""
         now = self.clock()
         self.state.tick(now)
-        # most browsers have got the same frames, so there is one to make
+        # most browsers have received the same frames and need the same next one
         frames: dict[tuple[int, int], tuple[int, int, bytes]] = {}
         latest = self.state.counter.last
         for browser in list(self.browsers.values()):

@@ -1,4 +1,4 @@
-"""What a browser may do to the robot, and why not."""
+"""The requests that a browser may make, and the reasons for refusing them."""
 from __future__ import annotations
 
 from typing import Any, Callable, Protocol
@@ -27,7 +27,7 @@ class System(Protocol):
 
 
 class Controls:
-    """Does what a browser asks for."""
+    """Executes the requests of browsers."""
 
     def __init__(self, state: State, system: System, hand: HandDrive, runs: Runs, speeds: tuple[float, float],
                  in_background: Callable[[Callable[[], None]], Any]) -> None:
@@ -40,7 +40,7 @@ class Controls:
         self.in_background = in_background
 
     def handle(self, browser: object, trusted: bool, message: Message) -> str:
-        """Do what a browser asks for. trusted: whether it has given the token. Returns why not, '' if it was done."""
+        """Execute a request. trusted: whether the browser gave the token. Returns the reason for a refusal, or ''."""
         if isinstance(message, Stop):       # anybody who sees a robot move may stop it
             self.stop()
             return ''
@@ -99,5 +99,5 @@ class Controls:
         self.system.shut_down_drivers()
 
     def leave(self, browser: object) -> None:
-        """A browser has gone."""
+        """A browser has disconnected."""
         self.hand.leave(browser)

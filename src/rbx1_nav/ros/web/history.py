@@ -19,7 +19,7 @@ LOG_TEXT = 300  # characters
 
 
 class Counter:
-    """Numbers everything that changes. 0 is the number of a browser that has nothing yet."""
+    """Numbers all changes. A browser that has received nothing yet has the number 0."""
 
     def __init__(self) -> None:
         self.last = 0
@@ -76,7 +76,7 @@ class Speeds(Series):
     """Samples [time, linear, angular], s, m/s and rad/s, to be joined by lines. Equal ones are thinned out."""
 
     def __init__(self, counter: Counter, steps: bool = False) -> None:
-        """steps: whether a speed holds until the next one, as that of a command."""
+        """steps: whether a speed holds until the next sample, as a commanded speed does."""
         super().__init__(counter, SPEED_POINTS)
         self.steps = steps
         self.held: list[float] | None = None    # the last sample, if it is left out so far

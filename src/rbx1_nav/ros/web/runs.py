@@ -53,7 +53,7 @@ class Runs:
         try:
             self.after()
         except Exception:
-            pass    # the master has gone, and so have the parameters
+            pass    # the master has exited, and the parameters with it
         with self.lock:
             self.busy = False
         self.on_change(name, outcome)

@@ -14,7 +14,7 @@ JUMP = 0.5          # m between two messages of the odometry: the robot was put 
 BACK = 0.5          # s by which time goes back where it began again
 MOVED = 0.02, 0.05  # m, rad: a run that has never left its start is not kept as the run before
 RESET_DELAY = 0.5   # s by which the message about a reset may be later than the odometry after it, or earlier
-SILENCE = 3.0       # s after which a pose is no longer shown as that of the robot
+SILENCE = 3.0       # s without a message after which the robot is no longer shown at its last pose
 COMMAND_TIMEOUT = 1.0   # s: without a command for this time, none is in force
 
 PoseRow = Sequence[float]   # x, y, yaw: m, rad
@@ -30,7 +30,7 @@ class Motion(NamedTuple):
 
 
 class State:
-    """All of it. Threads of ROS write it, the server reads it."""
+    """The state of the page. ROS threads write it, and the server reads it."""
 
     def __init__(self) -> None:
         self.lock = Lock()
@@ -45,7 +45,7 @@ class State:
         self.run_name = ''      # what drives, or drove last
         self.epoch = 0          # counts runs: with a new one, paths and speeds begin again
         self.travelled = False      # whether this run has left its start
-        self.late: dict[str, float] = {}    # until when, by source, a pose may still be one of before the reset
+        self.late: dict[str, float] = {}    # s, by source: until then, a pose may be older than the reset
         self.away: dict[str, tuple[float, PoseRow]] = {}    # the last pose other than the origin, and when
         self.origin: float | None = None        # s: the stamp at which the page's time is 0
         self.last: tuple[float, float] | None = None    # stamp of the odometry, and the monotonic clock, s
@@ -103,7 +103,7 @@ class State:
 
     def _commanded(self, linear: float, angular: float, now: float) -> None:
         if self.last is not None and self.origin is not None:
-            # the message has no stamp, so its time follows from that of the odometry
+            # the message has no stamp: its time is derived from the last odometry message
             time = self.last[0] - self.origin + min(now - self.last[1], 1.0) * self.factor
             self.speeds['commanded'].sample(time, linear, angular)
 
@@ -179,5 +179,5 @@ class State:
 
 
 def moved(pose: PoseRow) -> bool:
-    """Whether a pose is not that of the start."""
+    """Return whether a pose differs from the start pose."""
     return hypot(pose[0], pose[1]) > MOVED[0] or abs(pose[2]) > MOVED[1]

@@ -1,4 +1,4 @@
-"""What the master knows about the running system: the base, its floor, its reset, and the nodes that drive it."""
+"""State of the running system, from the master: the base, its floor, its reset, and the nodes that drive it."""
 from __future__ import annotations
 
 from threading import Lock, Thread
@@ -19,7 +19,7 @@ RESET_TIMEOUT = 5.0  # s
 
 
 class System:
-    """Asks the master every PERIOD, and puts what it says into the status of the page."""
+    """Queries the master every PERIOD, and updates the status of the page."""
 
     def __init__(self, state: State) -> None:
         self.state = state
