@@ -11,12 +11,12 @@ LOCALHOST = 'localhost'
 
 
 def check_address(value: YamlValue) -> str:
-    """The value of ~address: localhost, an IP address, or a host name of this machine. Raises ConfigError."""
+    """Return the value of ~address: localhost, an IP address, or a host name of this machine. Raises ConfigError."""
     if isinstance(value, str):
         try:
             return str(ipaddress.ip_address(value))
         except ValueError:
-            # digits and dots alone are a mistyped IP address
+            # a name that consists only of digits and dots is a mistyped IP address
             name = re.fullmatch(r'[A-Za-z0-9]([A-Za-z0-9.-]{0,251}[A-Za-z0-9])?', value)
             if name and not re.fullmatch(r'[\d.]+', value):
                 return value.lower()
@@ -24,17 +24,16 @@ def check_address(value: YamlValue) -> str:
 
 
 def check_port(value: YamlValue) -> int:
-    """The value of ~port. Raises ConfigError."""
+    """Return the value of ~port. Raises ConfigError."""
     if isinstance(value, int) and not isinstance(value, bool) and (value == 0 or 1024 <= value <= 65535):
         return value
-    raise ConfigError(f'port: {show(value)}: expected a TCP port from 1024 to 65535, or 0 for any that is free')
+    raise ConfigError(f'port: {show(value)}: expected a TCP port from 1024 to 65535, or 0 for any free port')
 
 
 PARAMETERS = (
-    custom('address', LOCALHOST, 'address at which the page is served; with any other than localhost, other machines '
-           'reach it', check_address,
+    custom('address', LOCALHOST, 'address at which the page is served; localhost: for this machine only', check_address,
            note='0.0.0.0: all addresses of this machine; see [Security](web_view.md#security)'),
-    custom('port', 8080, 'TCP port at which the page is served; 0: any that is free', check_port,
+    custom('port', 8080, 'TCP port at which the page is served; 0: any free port', check_port,
            range='0, 1024 to 65535'),
     number('linear_speed', 0.2, 'm/s', 'speed while an arrow key drives forward or backward', 0.01, 1),
     number('angular_speed', 1.0, 'rad/s', 'speed while an arrow key turns the robot', 0.01, 4))
