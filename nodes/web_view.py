@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Shows the exercise in a browser: floor, robot, paths, speeds, log; starts runs, drives by hand, and stops.
+"""Shows the robot, its paths and speeds, and the log in a browser; starts runs, drives by hand, and stops the robot.
 
 usage: web_view.py [_parameter:=value ...] [topic:=new_topic ...]      usually started by web_view.launch, or web:=true
 
-Prints the address to open. What moves the robot needs the token in it. docs/web_view.md describes the page.
+Prints the address to open. It contains the token that is needed to move the robot. docs/web_view.md describes the page.
 """
-import rbx1_nav.ros.node.early_interrupt     # Ctrl-C ends the node quietly even while the rest is loaded
+import rbx1_nav.ros.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
 
 import os
 import sys
@@ -30,19 +30,19 @@ from rbx1_nav.ros.web.topics import CommandPublisher
 
 
 def in_background(function):
-    """Call a function in another thread: a service may take long, and the server must not wait."""
+    """Call a function in another thread, because a service call may block."""
     threading.Thread(target=function, daemon=True).start()
 
 
 def url(address, port, token):
-    """The address to open. The part behind # stays in the browser: it is in no request, and in no log of a proxy."""
+    """Return the address to open. A browser does not send the part after #, so no proxy can log the token."""
     host = LOCALHOST if is_wildcard(address) else f'[{address}]' if ':' in address else address
     return f'http://{host}:{port}/#{token}'
 
 
 def main():
-    """Serve the page until the node is to end. Returns the exit status."""
-    # the page has a time of its own, from the odometry: the node does not need each message on /clock
+    """Serve the page until the node shuts down; return the exit status."""
+    # the page takes its time from the odometry, so the node need not read /clock
     life.init_node('web_view', __doc__, PARAMETERS, wall_time=True)
     state, hand, token, address = State(), HandDrive(CommandPublisher()), make_token(), param('address')
     system = System(state)
@@ -53,13 +53,13 @@ def main():
     try:
         server = Server(resources.path('web'), HostCheck(address, machine_names()), connections, address, param('port'))
     except (ConfigError, OSError) as error:
-        rospy.logfatal('%s, %s: %s: expected an address of this machine and a port that is free', address,
+        rospy.logfatal('address %s, port %s: %s: expected an address of this machine and a free port', address,
                        param('port'), error)
         return 1
     hand.start()
     system.start()
     server.start()
-    # not in the log, which everyone who reaches the master can read
+    # printed instead of logged, because everyone who can reach the master can read the log
     print(f'[INFO] [{time.time():.6f}]: Open {url(address, server.port, token)}')
     life.end_requested.wait()
     runs.stop()

@@ -1,9 +1,9 @@
-// The WebSocket to the view's node: says hello with the token, and connects again when the connection is lost.
+// The WebSocket to the node: sends hello with the token, and reconnects when the connection is lost.
 
 const RETRY = [500, 1000, 2000, 4000];      // ms
 
-// The token stands behind the # of the printed address, which a browser sends to nobody. It is kept for this tab, and
-// removed from the address bar: a projector should not show it.
+// The token is the part of the printed address after #, which a browser does not send to the server. It is stored for
+// this tab, and removed from the address bar, so that nobody can read it on a projector.
 function readToken() {
   const given = location.hash.slice(1);
   if (given) {
@@ -19,7 +19,7 @@ export class Connection extends EventTarget {
     super();
     this.token = readToken();
     this.failures = 0;
-    // an address that is pasted into an open page changes nothing but what is behind the #
+    // pasting another printed address into an open page changes only the part after #, and does not reload the page
     window.addEventListener('hashchange', () => {
       this.token = readToken();
       this.socket.close();
@@ -44,7 +44,7 @@ export class Connection extends EventTarget {
     };
   }
 
-  // Returns whether the message could be sent.
+  // Sends a message; returns false if there is no connection.
   send(message) {
     if (this.socket.readyState !== WebSocket.OPEN) {
       return false;

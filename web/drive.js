@@ -1,10 +1,10 @@
-// What moves the robot: runs, reset, arrow keys; and what stops it.
+// Controls that move the robot (runs, reset, arrow keys), and Stop.
 
-const REPEAT = 100;     // ms: the node stops the robot if keys that are held are not repeated for 300 ms
+const REPEAT = 100;     // ms: the node stops the robot if held keys are not repeated within 300 ms
 const KEYS = {ArrowUp: [1, 0], ArrowDown: [-1, 0], ArrowLeft: [0, 1], ArrowRight: [0, -1]};    // forward, left
 
 export class Drive {
-  // notify(text): shows a line to the user; '' removes it.
+  // notify(text): shows a message to the user; '' removes it.
   constructor(connection, model, notify) {
     Object.assign(this, {connection, model, notify});
     this.trusted = false;
@@ -18,7 +18,7 @@ export class Drive {
     this.dialog = document.getElementById('confirm');
 
     this.stop.onclick = () => this.stopRobot();
-    // before any other reaction to the key
+    // capture: before any other handler of this key
     window.addEventListener('keydown', event => event.key === 'Escape' && this.stopRobot(), {capture: true});
     for (const run of this.runs) {
       run.onclick = () => this.startRun(run);
@@ -46,7 +46,7 @@ export class Drive {
       }
       button.addEventListener('contextmenu', event => event.preventDefault());
     }
-    // keys that are released elsewhere are not seen here
+    // the page does not receive the release of a key while another window or tab has the focus
     window.addEventListener('blur', () => this.releaseAll());
     document.addEventListener('visibilitychange', () => document.hidden && this.releaseAll());
     window.addEventListener('pagehide', () => this.releaseAll());
@@ -103,7 +103,7 @@ export class Drive {
       'Not connected: Stop did not reach the robot. Stop it by hand.');
   }
 
-  // A real robot moves only if the user has confirmed it. Resolves to whether to go on.
+  // Asks the user whether a real robot may move. Resolves to true if so, or if the robot is simulated.
   async confirm(text) {
     if (this.model.status.simulated) {
       return true;
@@ -116,7 +116,8 @@ export class Drive {
   }
 
   async startRun(button) {
-    if (await this.confirm('It will drive 1 m ahead and back. It needs 1.5 m of free floor ahead and 1 m to either side.')) {
+    if (await this.confirm(
+        'It will drive 1 m forward and back. It needs 1.5 m of free floor ahead and 1 m on either side.')) {
       this.setHand(false);
       const reset = Boolean(this.model.status.can_reset && document.getElementById('reset-first').checked);
       this.connection.send({type: 'run', method: button.dataset.method, reset, confirmed: !this.model.status.simulated});
@@ -124,7 +125,7 @@ export class Drive {
   }
 
   async switchHand(on) {
-    if (on && !await this.confirm('It will follow the arrow keys. It stops when you release them.')) {
+    if (on && !await this.confirm('It will follow the arrow keys, and stop when you release them.')) {
       return;
     }
     this.connection.send({type: 'hand', on, confirmed: !this.model.status.simulated});
@@ -144,13 +145,13 @@ export class Drive {
     if (message.what === 'hand') {
       this.setHand(false);
     }
-    if (message.what === 'drive') {     // once, not for each repetition
+    if (message.what === 'drive') {     // report this only once, although held keys are repeated
       this.setHand(false);
     }
     this.notify(`Refused: ${message.reason}.`);
   }
 
-  // Which buttons work now, and what runs.
+  // Enables the buttons that can be used now, and shows what is running.
   draw() {
     const {status} = this.model, ready = this.trusted && Boolean(status.base) && 'odometry' in this.model.poses;
     const running = Boolean(status.started) && !status.outcome;
@@ -162,10 +163,11 @@ export class Drive {
     document.getElementById('reset').disabled = !ready || !status.can_reset;
     document.getElementById('reset-first').disabled = !status.can_reset;
     this.toggle.disabled = !ready || running;
-    const text = !this.trusted ? 'This page only watches; it can stop the robot. To drive, open the address with the token that the view has printed.'
+    const text = !this.trusted ?
+      'This page can only watch and stop the robot. To drive, open the complete address that the web view printed.'
       : !ready ? 'Waiting for a base that publishes /odom.'
       : running ? `Running: ${status.started}`
-      : this.hand ? 'Arrow keys drive the robot.'
+      : this.hand ? 'The arrow keys drive the robot.'
       : status.started ? `${status.started[0].toUpperCase()}${status.started.slice(1)}: ${status.outcome}` : '';
     const line = document.getElementById('run-state');
     if (line.textContent !== text) {

@@ -1,14 +1,14 @@
-// The floor from above: x to the right, y up, in metres. Grid, start, paths, arrows and robots.
+// The floor from above, x to the right and y up, in meters: grid, start, paths, arrows and robots.
 
 import {SOURCES} from './model.js';
 import {element, short} from './svg.js';
 
 const CELL = 0.5;                   // m, as in RViz
-const RADIUS = 0.165;               // m, of the robot
+const RADIUS = 0.165;               // m, radius of the robot
 const ARROW = {length: 0.3, head: 0.08};                // m, as in sim.rviz
-const TOLERANCE = {distance: 0.1, angle: 0.15};         // m, rad: an arrow for each of these, as in sim.rviz
-const MIN_SCALE = 10, MAX_SCALE = 3000;                 // pixels per metre
-const SEEN = {left: -0.5, right: 1.5, bottom: -0.6, top: 1.0};     // m, before the robot has moved
+const TOLERANCE = {distance: 0.1, angle: 0.15};         // m, rad: distance between arrows, as in sim.rviz
+const MIN_SCALE = 10, MAX_SCALE = 3000;                 // pixels per meter
+const SEEN = {left: -0.5, right: 1.5, bottom: -0.6, top: 1.0};     // m, visible area before the robot has moved
 
 function wrap(angle) {
   return Math.atan2(Math.sin(angle), Math.cos(angle));
@@ -24,7 +24,7 @@ function arrowPath([x, y, yaw]) {
   return `M${x} ${y}L${end}M${side(0.4)}L${end}L${side(-0.4)}`;
 }
 
-// The path of one source, drawn point by point.
+// The path and the arrows of one source. Only new points are added.
 class Trace {
   constructor(source, lines, arrows) {
     this.line = element('path', {class: `path ${source}`, 'vector-effect': 'non-scaling-stroke'}, lines);
@@ -81,7 +81,7 @@ export class Floor {
     this.shown = Object.fromEntries(SOURCES.map(source => [source, true]));
     this.view = {x: 0.5, y: 0.2, scale: 150};
     this.following = false;
-    this.touched = false;       // whether the user has chosen a view
+    this.touched = false;       // whether the user has moved the view
     this.cleared = -1;
     new ResizeObserver(() => this.touched ? this.project() : this.fit()).observe(svg);
   }
@@ -111,7 +111,7 @@ export class Floor {
         robot.setAttribute('transform', `translate(${pose[0]} ${pose[1]}) rotate(${pose[2] * 180 / Math.PI})`);
       }
     }
-    // where the true pose is known, the odometry's robot is a ghost, as in RViz
+    // if the true pose is known, the robot at its odometry pose is transparent, as in RViz
     this.robots.odometry.classList.toggle('ghost', 'truth' in model.poses);
     const pose = model.poses.truth || model.poses.odometry;
     if (this.following && pose) {
@@ -139,7 +139,7 @@ export class Floor {
       Math.abs(y - this.view.y) < height / 2 / this.view.scale - margin;
   }
 
-  // Show the start and everything that was drawn.
+  // Show the start, all robots and all paths.
   fit() {
     const box = {...SEEN}, margin = 0.35;
     const poses = [...Object.values(this.poses || {}), ...Object.values(this.points || {}).flat()];
@@ -160,7 +160,7 @@ export class Floor {
     return Math.max(MIN_SCALE, Math.min(MAX_SCALE, scale));
   }
 
-  // Zoom by a factor; what is at (px, py), pixels from the upper left corner, stays there.
+  // Zoom by a factor about the point (px, py), in pixels from the upper left corner.
   zoom(factor, px, py) {
     const [width, height] = this.size(), before = this.view.scale;
     px = px ?? width / 2;
@@ -181,14 +181,14 @@ export class Floor {
     this.project();
   }
 
-  // Put the view into effect: grid, labels, and the transform from metres to pixels.
+  // Update grid, labels, and the transform from meters to pixels.
   project() {
     const [width, height] = this.size(), {x, y, scale} = this.view;
     this.world.setAttribute('transform', `translate(${width / 2} ${height / 2}) scale(${scale} ${-scale}) translate(${-x} ${-y})`);
     const px = value => Math.round((value - x) * scale + width / 2) + 0.5;
     const py = value => Math.round(height / 2 - (value - y) * scale) + 0.5;
     const first = (low, step) => Math.ceil(low / step) * step;
-    const every = CELL * 2 ** Math.max(0, Math.ceil(Math.log2(8 / (CELL * scale))));    // no lines closer than 8 pixels
+    const every = CELL * 2 ** Math.max(0, Math.ceil(Math.log2(8 / (CELL * scale))));    // lines at least 8 pixels apart
     const label = CELL * 2 ** Math.max(0, Math.ceil(Math.log2(45 / (CELL * scale))));
     let grid = '';
     const texts = [];

@@ -1,4 +1,4 @@
-// The last lines of the log, of all nodes. The newest is at the end, and in view unless the user has scrolled away.
+// The last log messages of all nodes, the newest at the end. The list follows it unless the user has scrolled up.
 
 const WARNING = 4, ERROR = 8;       // levels of rosgraph_msgs/Log
 
@@ -15,7 +15,7 @@ export class LogView {
   constructor(list) {
     this.list = list;
     this.shown = null;
-    this.following = true;      // whether the newest line is kept in view
+    this.following = true;      // whether to scroll to each new message
     list.addEventListener('scroll', () => {
       this.following = list.scrollHeight - list.scrollTop - list.clientHeight < 30;
     });

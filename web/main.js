@@ -1,4 +1,4 @@
-// Connects the parts of the page: frames of the node go into the model, and the parts draw the model.
+// Connects the parts of the page: frames from the node update the model, and the other parts draw it.
 
 import {Connection} from './connection.js';
 import {Drive} from './drive.js';
@@ -26,8 +26,8 @@ const tables = new Tables(byId('tables'));
 const log = new LogView(byId('lines'));
 const drive = new Drive(connection, model, notify);
 const plots = [new Plot(byId('linear'), 'forward (m/s)', 1, 0.25), new Plot(byId('angular'), 'turning (rad/s), left is up', 2, 1.2)];
-let held = null;        // the speeds at the moment at which they were held still
-let waiting = false;    // for the next time that the browser draws
+let held = null;        // the time and the speeds that were shown when Hold was pressed
+let waiting = false;    // whether a redraw has been requested
 
 function facts() {
   const {status} = model, found = [];
@@ -122,7 +122,8 @@ connection.addEventListener('welcome', ({detail}) => {
   drive.setHand(false);
   byId('connection').className = 'live';
   byId('connection').textContent = detail.trusted ? 'Connected' : 'Connected, watching only';
-  notify(detail.known_token ? '' : 'The view was started again since: open the address that it has printed now.');
+  notify(detail.known_token ? '' :
+    'This address is out of date, because the web view was restarted. Open the new address that it printed.');
 });
 connection.addEventListener('frame', ({detail}) => {
   model.add(detail);
@@ -132,8 +133,8 @@ connection.addEventListener('refused', ({detail}) => drive.refused(detail));
 connection.addEventListener('lost', ({detail}) => {
   drive.setHand(false);
   byId('connection').className = 'lost';
-  byId('connection').textContent = `Not connected${detail ? ` (${detail})` : ''}, trying again`;
+  byId('connection').textContent = `Not connected${detail ? ` (${detail})` : ''}; retrying`;
 });
 window.matchMedia('(prefers-color-scheme: dark)').addEventListener('change', redraw);
-// for tests, and for the console of the browser
+// for tests, and for use in the console of the browser
 window.rbx1 = {model, floor, drive};

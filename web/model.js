@@ -1,4 +1,4 @@
-// What the page knows: the frames of the node, put together. A frame holds only what is new since the one before.
+// The state that the page draws, assembled from the frames of the node. A frame contains only what has changed.
 
 export const SOURCES = ['truth', 'odometry', 'estimate'];
 export const SPEEDS = ['commanded', 'reported', 'true'];
@@ -13,7 +13,7 @@ export class Model {
     this.forget();
   }
 
-  // As if nothing had been received: the node sends everything to a new connection.
+  // Removes everything, because the node sends the whole state again over a new connection.
   forget() {
     this.epoch = -1;
     this.log = [];
@@ -27,11 +27,11 @@ export class Model {
 
   clear() {
     this.paths = lists(SOURCES);
-    this.cleared = (this.cleared || 0) + 1;     // counts, so that whoever draws them notices
+    this.cleared = (this.cleared || 0) + 1;     // a counter, so that the floor detects the change
   }
 
   add(frame) {
-    if (frame.epoch !== this.epoch) {   // another run
+    if (frame.epoch !== this.epoch) {   // a new run
       this.epoch = frame.epoch;
       this.clear();
       this.speeds = lists(SPEEDS);

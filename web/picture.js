@@ -4,7 +4,7 @@ const STYLES = ['fill', 'fill-opacity', 'stroke', 'stroke-width', 'stroke-dashar
   'opacity', 'display', 'font-family', 'font-size', 'text-anchor'];
 const PNG_SCALE = 2;
 
-// The picture as it is now, with the styles that the style sheet gives it.
+// A copy of the current picture, with the styles from the style sheet as attributes.
 function standalone(svg) {
   const copy = svg.cloneNode(true), originals = svg.querySelectorAll('*');
   copy.querySelectorAll('*').forEach((each, index) => {

@@ -1,4 +1,4 @@
-// A speed over time: commanded, reported by the wheels, and true.
+// Plot of the commanded, reported and true speed over time.
 
 import {SPEEDS} from './model.js';
 import {element, roundStep, short} from './svg.js';
@@ -6,7 +6,7 @@ import {element, roundStep, short} from './svg.js';
 const MARGIN = {left: 42, right: 8, top: 18, bottom: 20};      // pixels
 
 export class Plot {
-  // index: 1 for the forward speed, 2 for the turn rate, as in a sample; least: the smallest range to show.
+  // index: of the value in a sample, 1: forward speed, 2: turn rate; least: smallest range of the vertical axis.
   constructor(svg, title, index, least) {
     Object.assign(this, {svg, title, index, least});
     this.grid = element('path', {class: 'grid'}, svg);
@@ -16,7 +16,7 @@ export class Plot {
       name => [name, element('path', {class: `curve ${name}`}, svg)]));
   }
 
-  // The samples of a window of time, with the one before it.
+  // The samples since the time `from`, and the last sample before it.
   static visible(samples, from) {
     let first = samples.length;
     while (first > 0 && samples[first - 1][0] >= from) {
@@ -53,7 +53,7 @@ export class Plot {
       return '';
     }
     const points = samples.map(sample => [Math.max(from, sample[0]), sample[this.index]]);
-    // a command holds until the next one
+    // a command is in force until the next one
     if (name === 'commanded') {
       points.push([Math.max(end, points[points.length - 1][0]), points[points.length - 1][1]]);
     }

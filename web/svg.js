@@ -1,4 +1,4 @@
-// Small helpers to make SVG elements.
+// Helper functions for SVG elements and axis labels.
 
 export function element(name, attributes = {}, parent = null) {
   const made = document.createElementNS('http://www.w3.org/2000/svg', name);
@@ -11,14 +11,14 @@ export function element(name, attributes = {}, parent = null) {
   return made;
 }
 
-// A round step (1, 2 or 5 times a power of ten) that divides a range into at most `count` parts.
+// A round step (1, 2 or 5 times a power of ten) that divides the range into at most `count` parts.
 export function roundStep(range, count) {
   const rough = range / count;
   const power = 10 ** Math.floor(Math.log10(rough));
   return power * [1, 2, 5, 10].find(factor => factor * power >= rough * 0.999);
 }
 
-// A number without needless digits: 0.5, 1, -0.25.
+// A number without trailing zeros: 0.5, 1, -0.25.
 export function short(value) {
   return String(Math.round(value * 1000) / 1000 + 0);
 }

@@ -1,11 +1,11 @@
-// The table of pose.py: where the robot is, and where it was at the end of the run before.
+// The table that pose.py prints, for this run, and for the end of the previous run.
 
 import {SOURCES} from './model.js';
 
 const HEAD = ['', 'x (m)', 'y (m)', 'heading (°)', 'from start (m)'];
 const NAMES = {truth: 'truth', odometry: 'odometry', estimate: 'estimate'};
 
-// A number with so many decimals, and never -0.000.
+// A number with this many decimals, and without the sign of -0.000.
 export function fixed(value, digits) {
   const text = value.toFixed(digits);
   return Number(text) === 0 ? (0).toFixed(digits) : text;

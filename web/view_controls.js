@@ -1,4 +1,4 @@
-// How the user moves the view of the floor: buttons, keys, mouse, wheel, and fingers.
+// Controls for the view of the floor: buttons, keys, mouse and touch.
 
 const ZOOM = 1.25, PAN = 60;        // a factor; pixels
 
@@ -40,7 +40,7 @@ export function connectView(floor, model, redraw) {
   });
   const moves = {ArrowLeft: [PAN, 0], ArrowRight: [-PAN, 0], ArrowUp: [0, PAN], ArrowDown: [0, -PAN]};
   svg.addEventListener('keydown', event => {
-    // while the robot is driven by hand, the arrow keys are for it: drive.js has taken the event then
+    // while driving by hand is on, the arrow keys drive the robot, and drive.js has handled this event
     if (moves[event.key] && !event.defaultPrevented) {
       follow(false);
       floor.pan(...moves[event.key]);
@@ -54,7 +54,7 @@ export function connectView(floor, model, redraw) {
     event.preventDefault();
   }, {passive: false});
 
-  // one pointer moves the view, two zoom as well
+  // one pointer moves the view, two also zoom
   const pointers = new Map();
   const middle = () => {
     const [first, second = first] = [...pointers.values()];

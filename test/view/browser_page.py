@@ -1,8 +1,8 @@
 #!/usr/bin/python3
-"""The page in Chromium: the robot is where /odom says, runs and keys drive it, Stop stops it, nothing is logged as an
-error.
+"""Tests the page in Chromium: it shows the robot at the pose in /odom, runs and keys drive the robot, Stop stops it,
+and the browser logs no errors.
 
-Keeps its pictures in the directory that the environment variable RBX1_PICTURE_DIR names, if it is set.
+If the environment variable RBX1_PICTURE_DIR is set, the screenshots are saved in that directory.
 """
 import math
 import os
@@ -18,7 +18,7 @@ from std_srvs.srv import Empty
 import support
 from browser import Page, kill_chromium, start_chromium, start_view
 
-SPEED, TIMEOUT = 0.2, 1.0       # m/s of the arrow keys; s after which the base stops without a command
+SPEED, TIMEOUT = 0.2, 1.0       # m/s, speed of the arrow keys; s, timeout of the base
 
 
 class TestBrowserPage(unittest.TestCase):
@@ -28,7 +28,7 @@ class TestBrowserPage(unittest.TestCase):
         cls.folder = tempfile.TemporaryDirectory()
         cls.odom = support.OdomWatch()
         cls.truth = support.Watch('/ground_truth', Odometry)
-        # roscore starts it, a rostest does not: it collects the log of all nodes
+        # rosout collects the log of all nodes; roscore starts it, but rostest does not
         cls.rosout = support.Process('rosrun', 'rosout', 'rosout')
         cls.view, cls.url = start_view()
         cls.driver = start_chromium(cls.folder.name)
@@ -55,7 +55,7 @@ class TestBrowserPage(unittest.TestCase):
         self.assertEqual(self.page.console_errors(), [])
 
     def drive_ahead(self, distance):
-        """Hold the arrow key until the robot has gone that far, m."""
+        """Hold the arrow key until the robot has driven this distance, m; the key remains pressed."""
         self.page.click('#hand')
         self.page.key('keyDown', 'ArrowUp')
         support.wait_for(lambda: self.odom.position()[0] > distance, 'the robot to drive')
@@ -71,7 +71,7 @@ class TestBrowserPage(unittest.TestCase):
 
         def shown():
             px, py, degrees = self.page.robot('odometry')
-            # a tenth of a millimetre and of a millirad: the resolution of a frame
+            # the resolution of a frame is 0.1 mm and 0.1 mrad
             return max(abs(px - x), abs(py - y), abs(math.radians(degrees) - yaw)) < 2e-4
         support.wait_for(shown, f'the robot at {x}, {y}, {yaw}')
         row = self.page.row('table-now', 'odometry')
@@ -94,7 +94,7 @@ class TestBrowserPage(unittest.TestCase):
         end = self.page.row('table-now', 'odometry')
         self.page.wait_for_text('lines', 'Done: commanded 2.00 m forward')
         self.page.click('#reset')
-        # an earlier test may have left another run there
+        # the table may show the run of an earlier test
         support.wait_for(lambda: self.page.find('#table-before').is_displayed()
                          and self.page.row('table-before', 'odometry') == end, 'the table of the run before')
         self.page.wait_for_text('tables', 'The run before: timed')
@@ -105,8 +105,8 @@ class TestBrowserPage(unittest.TestCase):
         self.page.click('#stop')
         self.odom.wait_for_twist(0.0)
         self.page.wait_for_text('run-state', 'With odometry: stopped')
-        self.assertFalse(rospy.has_param('/out_and_back/odom_frame'), 'the next run in a terminal would have it')
-        self.assertLess(self.odom.position()[0], 0.9)   # not the end of the first leg
+        self.assertFalse(rospy.has_param('/out_and_back/odom_frame'), 'it would affect the next run in a terminal')
+        self.assertLess(self.odom.position()[0], 0.9)   # before the end of the first leg
 
     def test_escape_stops_a_script_of_a_terminal(self):
         script = support.out_and_back()
@@ -134,7 +134,7 @@ class TestBrowserPage(unittest.TestCase):
             self.odom.wait_for_twist(0.0)
         finally:
             self.page = Page(self.driver, self.url)
-        # the base's own timeout would let it go on for 0.2 m
+        # with the timeout of the base alone, the robot would travel 0.2 m
         self.assertLess(self.odom.position()[0] - before, 0.9 * SPEED * TIMEOUT)
 
     def test_without_the_token_nothing_moves(self):
@@ -146,7 +146,7 @@ class TestBrowserPage(unittest.TestCase):
         for message in (dict(type='run', method='timed'), dict(type='hand', on=True), dict(type='drive', forward=1)):
             self.page.driver.execute_script('document.getElementById("notice").textContent = ""')
             self.page.send(**message)
-            self.page.wait_for_text('notice', 'Refused: this page only watches')
+            self.page.wait_for_text('notice', 'Refused: this page can only watch')
         self.assertEqual(self.odom.position(), (0, 0))
         self.assertTrue(self.page.find('#stop').is_enabled())
 

@@ -1,4 +1,4 @@
-"""Browsers that are foreign, slow, malicious or suddenly gone."""
+"""Browsers that are slow, malicious or killed, and pages from other sites."""
 import os
 import re
 import signal
@@ -8,16 +8,16 @@ import time
 import support
 from web_client import WebClient, request
 
-FAULT = ('requests and sockets of a foreign page; another user without the token; 100 connections; slow readers; '
-         'random bytes; the browser or the view killed while its keys drive')
-PROMISE = ('foreign requests are refused; without the token nothing moves; another browser gets its frames; the view '
-           'neither grows nor logs; the robot stops within 0.5 s of its browser, and within the base\'s timeout of 1 s '
-           'of the view')
+FAULT = ('requests and WebSockets from a foreign page; another user without the token; 100 connections; slow readers; '
+         'random bytes; the browser or the node is killed while keys drive the robot')
+PROMISE = ('foreign requests are rejected; the robot does not move without the token; other browsers receive their '
+           'frames; the memory of the node does not grow, and it logs no errors; the robot stops within 0.5 s if the '
+           'browser is killed, and within the timeout of the base (1 s) if the node is killed')
 FULL, SHORT = 28, 7
 ROOT, ALONE = False, True
 
 SPEED = 0.2             # m/s
-TIMEOUT, PERIOD = 1.0, 0.02     # s, of the base
+TIMEOUT, PERIOD = 1.0, 0.02     # s, timeout of the base and period of its odometry
 GONE = 0.5              # s
 MEMORY_LIMIT = 20000    # KB
 ATTEMPTS = [dict(type='run', method='timed'), dict(type='hand', on=True), dict(type='drive', forward=1.0),
@@ -32,13 +32,13 @@ class View:
         match = self.process.wait_for_line(r'Open http://localhost:(\d+)/#(\S+)')
         self.port, self.token = int(match.group(1)), match.group(2)
         self.odom = support.OdomWatch()
-        # simulated, and not taken for a real robot: that takes the first message on /ground_truth
+        # until the first message on /ground_truth, the robot counts as real
         with_token = WebClient(self.port, self.token)
         support.wait_for(lambda: with_token.wait_for('frame').get('status', {}).get('simulated'), 'the base')
         with_token.close()
 
     def drive(self):
-        """A browser whose keys drive the robot, as soon as it moves."""
+        """Drive the robot with the keys of a browser; return the browser once the robot moves."""
         client = WebClient(self.port, self.token)
         client.send(type='hand', on=True)
         end = time.monotonic() + support.LIMIT
@@ -49,20 +49,20 @@ class View:
         return client
 
     def stop_and_reset(self, row):
-        """The robot is at rest at its start."""
+        """Wait until the robot is at rest, and put it back at its start."""
         self.odom.wait_for_twist(0.0)
         row.reset()
         support.wait_for(lambda: self.odom.position() == (0, 0), 'the reset')
 
     def usage(self):
-        """(KB of memory, threads, open files) of the node."""
+        """Return (memory in KB, threads, open files) of the node."""
         folder = f'/proc/{self.process.process.pid}'
         with open(f'{folder}/status', encoding='ascii') as file:
             values = dict(line.split(':', 1) for line in file)
         return int(values['VmRSS'].split()[0]), int(values['Threads']), len(os.listdir(f'{folder}/fd'))
 
     def check(self):
-        """A browser with the token gets frames at once."""
+        """Check that a browser with the token receives frames."""
         client = WebClient(self.port, self.token)
         assert client.wait_for('welcome')['trusted']
         client.wait_for('frame')
@@ -70,7 +70,7 @@ class View:
 
 
 def foreign_page(row, view):
-    """What a page of another host makes the browser send."""
+    """A page from another site sends requests to the view."""
     origin = row.random.choice(['http://evil.example', 'null', f'http://localhost:{view.port + 1}',
                                 'https://localhost'])
     host = row.random.choice(['evil.example', f'evil.example:{view.port}', '10.0.0.1', 'localhost.evil.example'])
@@ -89,19 +89,19 @@ def foreign_page(row, view):
 
 
 def no_token(row, view):
-    """Another user of this machine."""
+    """Another user of this machine connects without the token."""
     token = row.random.choice(['', 'wrong', view.token[:-1], view.token + 'A', view.token.swapcase()])
     client = WebClient(view.port, token)
     assert not client.wait_for('welcome')['trusted']
     for message in row.random.choices(ATTEMPTS, k=20):
         client.send(**message)
-        assert 'only watches' in client.wait_for('refused')['reason']
+        assert 'can only watch' in client.wait_for('refused')['reason']
     client.close()
     assert view.odom.position() == (0, 0)
 
 
 def many_connections(row, view):
-    """100 of them, half of which say nothing."""
+    """100 connections are open, half of which send nothing."""
     silent = [socket.create_connection(('127.0.0.1', view.port)) for _ in range(50)]
     clients = [WebClient(view.port, '') for _ in range(50)]
     started = time.monotonic()
@@ -112,7 +112,7 @@ def many_connections(row, view):
 
 
 def slow_readers(row, view):
-    """Browsers that are asleep, while the robot drives."""
+    """Some browsers do not read while the robot drives."""
     asleep = [WebClient(view.port, '', small=True) for _ in range(30)]
     before = view.usage()[0]
     driver = row.node('timed_out_and_back.py', '_goal_distance:=0.4')
@@ -126,9 +126,9 @@ def slow_readers(row, view):
     row.figure('frames beside 30 slow readers', frames)
     growth = view.usage()[0] - before
     row.figure('growth of the memory, KB', growth)
-    # two motions of 2 s and two turns of 3.1 s, at 20 frames a second; half of them on a busy machine
+    # 20 frames per second during two legs of 2 s and two turns of 3.1 s; half of them on a busy machine
     assert frames > 100 and growth < MEMORY_LIMIT, (frames, growth)
-    # a script that does not get its turn loses commands to all subscribers; one that does not read loses most of them
+    # a script that is starved of CPU time loses a few commands; a subscriber that does not read loses most of them
     lost = re.search(r'(\d+) of (\d+) commands to /web_view', driver.output)
     assert not lost or int(lost.group(1)) < 0.05 * int(lost.group(2)), driver.output
     for each in (*asleep, awake):
@@ -136,7 +136,7 @@ def slow_readers(row, view):
 
 
 def random_bytes(row, view):
-    """Requests and frames that are none."""
+    """A client sends random bytes instead of requests and frames."""
     for _ in range(20):
         data = row.random.getrandbits(8 * 400).to_bytes(400, 'big')
         with socket.create_connection(('127.0.0.1', view.port), 10) as connection:
@@ -155,7 +155,7 @@ def random_bytes(row, view):
 
 
 def browser_gone(row, view):
-    """The browser that drives sends nothing any more: it was closed, or its machine has failed."""
+    """The driving browser is closed, or its machine fails and it sends nothing more."""
     client = view.drive()
     time.sleep(row.random.uniform(0, 0.1))
     client.send(type='drive', forward=1.0)
@@ -166,13 +166,13 @@ def browser_gone(row, view):
     view.odom.wait_for_twist(0.0)
     travel = view.odom.position()[0] - before
     row.figure(f"travel after a browser that {'was closed' if closed else 'fell silent'}, m", travel)
-    # odometry that was under way may be a period old
+    # the last odometry may be one period old
     assert travel <= SPEED * (GONE + 2 * PERIOD), f'{travel:.3f} m'
     client.close()
 
 
 def view_killed(row, view):
-    """SIGKILL to the view, while keys drive."""
+    """The node is killed with SIGKILL while keys drive the robot."""
     client = view.drive()
     client.send(type='drive', forward=1.0)
     view.process.kill()
@@ -205,9 +205,9 @@ def run(row):
             if kind is view_killed:
                 continue
             view.check()
-            # a connection that was closed takes a moment to be forgotten
+            # the node needs a moment to close a connection
             support.wait_for(lambda: view.usage()[1] <= threads + 2 and view.usage()[2] <= files + 2,
-                             f'threads and files of the view to go: {threads}, {files} and now {view.usage()}')
+                             f'the view to release threads and files: {threads}, {files} before, {view.usage()} now')
             errors = [line for line in view.process.lines if 'Traceback' in line or 'ERROR' in line]
             assert not errors, view.process.output
     if view and view.process.process.poll() is None:

@@ -1,1 +1,1 @@
-"""What the web view uses: what the page shows, who may connect, and how a browser drives the robot."""
+"""The web view: the state that the page shows, the server and its access checks, and driving from a browser."""

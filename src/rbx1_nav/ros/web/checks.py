@@ -1,8 +1,8 @@
-"""Who may connect: the Host and Origin headers of a request, the token, and the rate of messages.
+"""Checks of who may connect: the Host and Origin headers of a request, the token, and the rate of messages.
 
-A foreign page in the same browser can send requests to this server, but not with the server's own Origin. If the page's
-host name is made to lead to 127.0.0.1 (DNS rebinding), Origin and Host agree, but the Host is that foreign name. An IP
-address cannot be rebound, so any of them is accepted where the server listens on all addresses.
+A page from another site can send requests to this server, but the browser adds the Origin of that site. If the host
+name of that site resolves to 127.0.0.1 (DNS rebinding), Origin and Host match, but the Host is the foreign name.
+Rebinding needs a host name, so any IP address is accepted if the server listens on all addresses.
 """
 from __future__ import annotations
 
@@ -25,15 +25,15 @@ def make_token() -> str:
 
 
 def same_token(token: str, given: object) -> bool:
-    """Whether a browser has given the token. Takes equally long for each wrong one."""
+    """Return whether the given token is correct. The time does not depend on where a wrong token differs."""
     return isinstance(given, str) and hmac.compare_digest(token.encode(), given.encode(errors='replace'))
 
 
 def split_host(header: str) -> str | None:
-    """The host in a Host header, in lower case, without its port; None if it is not a valid host."""
+    """Return the host in a Host header, in lower case and without the port, or None if the header is invalid."""
     try:
         parts = urlsplit(f'//{header}')
-        parts.port      # raises ValueError for one that is no number
+        parts.port      # raises ValueError if the port is not a number
     except ValueError:
         return None
     if parts.netloc != header or '@' in header or parts.path or parts.query or parts.fragment:
@@ -42,17 +42,17 @@ def split_host(header: str) -> str | None:
 
 
 class HostCheck:
-    """Which Host and Origin headers are accepted."""
+    """Checks the Host and Origin headers of requests."""
 
     def __init__(self, address: str, names: Iterable[str] = ()) -> None:
-        """address: the one that the server listens at; names: of this machine, accepted if that is a wildcard."""
+        """address: where the server listens; names: host names of this machine, accepted if address is a wildcard."""
         self.any_address = is_wildcard(address)
         self.hosts = LOOPBACK | {address} | (frozenset(names) if self.any_address else frozenset())
 
     def accepts(self, host: str | None, origin: str | None) -> bool:
-        """Whether to answer a request with these headers, None for one that is missing.
+        """Return whether to answer a request with these headers; None stands for a missing header.
 
-        Only a program that is not a browser leaves out the Origin where it matters.
+        A missing Origin is accepted, because a browser omits it only where it is not needed.
         """
         name = split_host(host) if host else None
         if name is None or not (name in self.hosts or self.any_address and is_address(name)):
@@ -61,7 +61,7 @@ class HostCheck:
 
 
 def is_address(name: str) -> bool:
-    """Whether a name is an IP address."""
+    """Return whether a name is an IP address."""
     try:
         ipaddress.ip_address(name)
     except ValueError:
@@ -70,27 +70,27 @@ def is_address(name: str) -> bool:
 
 
 def is_wildcard(address: str) -> bool:
-    """Whether an address stands for all addresses of the machine."""
+    """Return whether an address stands for all addresses of this machine: 0.0.0.0 or ::."""
     return is_address(address) and ipaddress.ip_address(address).is_unspecified
 
 
 def machine_names() -> set[str]:
-    """The names by which other machines may know this one."""
+    """Return the host names that other machines may use for this machine."""
     name = socket.gethostname().lower()
     return {name, f"{name.partition('.')[0]}.local"}
 
 
 class RateLimit:
-    """Allows a number of messages at once, and so many per second in the long run (a token bucket)."""
+    """Limits the rate of messages, but allows short bursts (a token bucket)."""
 
     def __init__(self, rate: float, burst: float) -> None:
-        """rate: messages per second; burst: messages at once."""
+        """rate: messages per second; burst: size of a burst, in messages."""
         self.rate, self.burst = rate, burst
         self.room = burst
         self.last: float | None = None
 
     def allows(self, now: float) -> bool:
-        """Whether another message is allowed at `now`, s of a monotonic clock."""
+        """Return whether another message is allowed at the time `now` (s, monotonic clock)."""
         if self.last is not None:
             self.room = min(self.burst, self.room + (now - self.last) * self.rate)
         self.last = now

@@ -1,4 +1,4 @@
-"""The connected browsers: each receives frames as fast as it reads them, and may send a limited number of messages."""
+"""The connected browsers: each receives frames as fast as it reads them, and its rate of messages is limited."""
 from __future__ import annotations
 
 from asyncio import Future
@@ -9,55 +9,55 @@ from rbx1_nav.ros.web.controls import Controls
 from rbx1_nav.ros.web.protocol import Hello, InvalidMessage, encode, parse
 from rbx1_nav.ros.web.state import State
 
-MAX_SOCKETS = 100       # of all browsers
-MAX_WATCHERS = 60       # without the token, so that there is room for one with it
-HELLO_TIMEOUT = 5.0     # s in which a browser sends its first message
-RATE, BURST = 30, 60    # messages per second, and at once; keys that are held are sent 10 times a second
-TRY_AGAIN_LATER, POLICY = 1013, 1008    # close codes, RFC 6455 and its registry
+MAX_SOCKETS = 100       # maximum number of browsers
+MAX_WATCHERS = 60       # maximum without the token, so that browsers with the token can connect
+HELLO_TIMEOUT = 5.0     # s within which a browser must send its first message
+RATE, BURST = 30, 60    # messages per second, and in a burst; held keys are sent 10 times per second
+TRY_AGAIN_LATER, POLICY = 1013, 1008    # close codes: RFC 6455 and the IANA registry
 
 
 class Socket(Protocol):
-    """A WebSocket, as of tornado."""
+    """The part of tornado's WebSocketHandler that is used here."""
 
     def write_message(self, message: bytes, binary: bool = False) -> Future[None]:
         """Send a message. Raises an exception if the socket is closed."""
 
     def close(self, code: int | None = None, reason: str | None = None) -> None:
-        """Close it."""
+        """Close the socket."""
 
 
 class Browser:
     """A connected browser."""
 
     def __init__(self, socket: Socket, now: float) -> None:
-        """now: s of a monotonic clock."""
+        """now: s, monotonic clock."""
         self.socket = socket
         self.since = now
         self.greeted = self.trusted = False
         self.limit = RateLimit(RATE, BURST)
-        self.number, self.epoch = 0, -1     # up to where it has everything, see history.py
-        self.sending: Future[None] | None = None    # the frame that is under way
+        self.number, self.epoch = 0, -1     # what this browser has received, see history.py
+        self.sending: Future[None] | None = None    # the frame that is being sent
 
     @property
     def ready(self) -> bool:
-        """Whether the last frame has left this machine. A browser that sleeps loses frames."""
+        """Whether the last frame has been sent. A browser that does not read is skipped until then."""
         return self.greeted and (self.sending is None or self.sending.done())
 
     def send(self, message: bytes) -> None:
         """Send a message."""
         try:
             self.sending = self.socket.write_message(message)
-            # after an error, the connection closes
+            # retrieve the exception: after an error, the connection closes anyway
             self.sending.add_done_callback(lambda future: future.cancelled() or future.exception())
         except Exception:
-            pass    # it has disconnected, and closed() follows
+            pass    # the browser has disconnected; closed() will be called
 
 
 class Connections:
-    """All connected browsers. Only the thread of the server calls the methods."""
+    """All connected browsers. The methods may only be called from the server thread."""
 
     def __init__(self, state: State, controls: Controls, token: str, clock: Callable[[], float]) -> None:
-        """clock(): s, monotonic."""
+        """clock(): returns the monotonic time, s."""
         self.state = state
         self.controls = controls
         self.token = token
@@ -70,17 +70,17 @@ class Connections:
         return len(self.browsers) >= MAX_SOCKETS
 
     def opened(self, socket: Socket) -> None:
-        """A browser has connected."""
+        """Add a browser that has connected."""
         self.browsers[socket] = Browser(socket, self.clock())
 
     def closed(self, socket: Socket) -> None:
-        """A browser has disconnected. If its keys were driving the robot, stop the robot."""
+        """Remove a browser that has disconnected. If its keys were driving the robot, stop the robot."""
         browser = self.browsers.pop(socket, None)
         if browser:
             self.controls.leave(browser)
 
     def received(self, socket: Socket, text: object) -> None:
-        """A message of a browser."""
+        """Process a message from a browser."""
         browser = self.browsers.get(socket)
         if browser is None:
             return
@@ -89,7 +89,7 @@ class Connections:
                 raise InvalidMessage('too many messages')
             message = parse(text)
             if browser.greeted == isinstance(message, Hello):
-                raise InvalidMessage('expected hello first, and once')
+                raise InvalidMessage('expected hello as the first message, and only once')
         except InvalidMessage as error:
             self._close(browser, POLICY, str(error))
             return
@@ -116,10 +116,10 @@ class Connections:
         browser.socket.close(code, reason)
 
     def send_frames(self) -> None:
-        """To be called regularly: a frame for each browser that is ready."""
+        """Send a frame to each browser that is ready. To be called periodically."""
         now = self.clock()
         self.state.tick(now)
-        # most browsers have received the same frames and need the same next one
+        # most browsers have received the same frames, so they need the same next frame
         frames: dict[tuple[int, int], tuple[int, int, bytes]] = {}
         latest = self.state.counter.last
         for browser in list(self.browsers.values()):

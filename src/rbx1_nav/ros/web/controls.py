@@ -1,4 +1,4 @@
-"""The requests that a browser may make, and the reasons for refusing them."""
+"""Execution of the requests of browsers, and the reasons for rejecting them."""
 from __future__ import annotations
 
 from typing import Any, Callable, Protocol
@@ -8,22 +8,22 @@ from rbx1_nav.ros.web.protocol import Drive, Hand, Hello, Message, Reset, Run, S
 from rbx1_nav.ros.web.runs import Runs
 from rbx1_nav.ros.web.state import State
 
-NO_TOKEN = 'this page only watches: open the address that the view has printed, with its token'
+NO_TOKEN = 'this page can only watch: open the complete address that the web view printed, with its token'
 NOT_CONFIRMED = 'a real robot moves only after you have confirmed that its path is free'
 
 
 class System(Protocol):
-    """What is known about the running system: system.py."""
+    """The running system; see system.py."""
 
     @property
     def simulated(self) -> bool:
-        """Whether the robot is known to be a simulated one."""
+        """Whether the robot is known to be simulated."""
 
     def reset(self) -> None:
-        """Put the robot back to its start. Raises an exception."""
+        """Put the robot back at its start. Raises an exception if this fails."""
 
     def shut_down_drivers(self) -> None:
-        """Shut down the other nodes that drive."""
+        """Shut down the other nodes that drive the robot."""
 
 
 class Controls:
@@ -31,7 +31,7 @@ class Controls:
 
     def __init__(self, state: State, system: System, hand: HandDrive, runs: Runs, speeds: tuple[float, float],
                  in_background: Callable[[Callable[[], None]], Any]) -> None:
-        """speeds: of the arrow keys, m/s and rad/s; in_background(function): calls it in another thread."""
+        """speeds: speeds of the arrow keys, m/s and rad/s; in_background(function): calls the function in a thread."""
         self.state = state
         self.system = system
         self.hand = hand
@@ -40,8 +40,8 @@ class Controls:
         self.in_background = in_background
 
     def handle(self, browser: object, trusted: bool, message: Message) -> str:
-        """Execute a request. trusted: whether the browser gave the token. Returns the reason for a refusal, or ''."""
-        if isinstance(message, Stop):       # anybody who sees a robot move may stop it
+        """Execute a request. trusted: whether the browser sent the token. Returns why it was rejected, or ''."""
+        if isinstance(message, Stop):       # anyone who sees a robot move may stop it
             self.stop()
             return ''
         if isinstance(message, Hello):
@@ -52,7 +52,7 @@ class Controls:
             linear, angular = self.speeds
             if self.hand.drive(browser, message.forward * linear, message.left * angular):
                 return ''
-            return 'another browser drives, or driving by hand is off'
+            return 'another browser is driving the robot, or driving by hand is off'
         if isinstance(message, Hand):
             return self._hand(browser, message)
         if isinstance(message, Run):
@@ -82,22 +82,22 @@ class Controls:
 
     def _reset(self, _: Reset) -> str:
         if not self.system.simulated:
-            return 'only a simulated robot can be put back'
+            return 'only a simulated robot can be reset'
 
         def reset() -> None:
             try:
                 self.system.reset()
             except Exception as error:
-                self.state.set_status(outcome=f'not reset: {error}')
+                self.state.set_status(outcome=f'reset failed: {error}')
         self.in_background(reset)
         return ''
 
     def stop(self) -> None:
-        """Stop the robot, whatever drives it."""
+        """Stop the robot, regardless of which node drives it."""
         self.runs.stop()
         self.hand.stop()
         self.system.shut_down_drivers()
 
     def leave(self, browser: object) -> None:
-        """A browser has disconnected."""
+        """End driving by hand for a browser that has disconnected."""
         self.hand.leave(browser)

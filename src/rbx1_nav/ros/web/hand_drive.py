@@ -1,6 +1,6 @@
-"""Driving by hand: the keys that one browser holds become a steady stream of commands, until they are released.
+"""Driving by hand: while keys are held in a browser, commands are published at a constant rate.
 
-A browser that goes away releases nothing, so a key counts as released if it is not repeated.
+A browser that crashes cannot send that its keys are released, so keys that are not repeated count as released.
 """
 from __future__ import annotations
 
@@ -8,34 +8,34 @@ from threading import Condition, Thread
 import time
 from typing import Callable, Protocol
 
-KEY_TIMEOUT = 0.3   # s without a message of the browser that drives; the robot has to stop within 0.5 s
-PERIOD = 0.05       # s from command to command
-LINGER = 1.0        # s for which zeros are sent after the last command, and after Stop
+KEY_TIMEOUT = 0.3   # s after the last message of the driving browser; the robot must stop within 0.5 s
+PERIOD = 0.05       # s between commands
+LINGER = 1.0        # s during which zero commands are sent after the last command, and after Stop
 
 
 class Publisher(Protocol):
-    """What sends commands to the base."""
+    """Sends commands to the base."""
 
     def open(self) -> None:
-        """Commands will follow; without effect if it is open."""
+        """Prepare for commands; no effect if already open."""
 
     def publish(self, linear: float, angular: float) -> None:
         """Send a command, m/s and rad/s."""
 
     def close(self) -> None:
-        """No command follows for now: other nodes may drive."""
+        """Stop publishing, so that other nodes can drive the robot."""
 
 
 class Keys:
-    """The keys that are held, of one browser at a time."""
+    """The held keys of the driving browser; only one browser can drive at a time."""
 
     def __init__(self) -> None:
         self.owner: object = None
         self.speed = 0.0, 0.0   # m/s, rad/s
-        self.time = 0.0         # s of a monotonic clock: when the owner repeated them
+        self.time = 0.0         # s, monotonic clock: last message of the owner
 
     def hold(self, owner: object, linear: float, angular: float, now: float) -> bool:
-        """A browser holds keys for this velocity; 0, 0 releases them. Returns False if another one drives now."""
+        """Set the velocity of the held keys; 0, 0 releases them. Returns False if another browser is driving."""
         if self.owner is not None and owner is not self.owner and now - self.time < KEY_TIMEOUT:
             return False
         self.owner = owner if linear or angular else None
@@ -43,42 +43,42 @@ class Keys:
         return True
 
     def release(self) -> None:
-        """No key is held any more."""
+        """Release all keys."""
         self.owner, self.speed = None, (0.0, 0.0)
 
     def velocity(self, now: float) -> tuple[float, float]:
-        """The velocity for now, m/s and rad/s."""
+        """Return the commanded velocity at the time `now`, m/s and rad/s; zero if the keys have timed out."""
         if now - self.time > KEY_TIMEOUT:
             self.release()
         return self.speed
 
 
 class HandDrive:
-    """Sends the commands, in a thread of its own: nothing else of the server may delay a stop."""
+    """Sends the commands in a separate thread, so that nothing else in the server can delay a stop."""
 
     def __init__(self, publisher: Publisher, clock: Callable[[], float] = time.monotonic) -> None:
-        """clock(): s."""
+        """clock(): returns the monotonic time, s."""
         self.publisher = publisher
         self.clock = clock
         self.keys = Keys()
-        self.drivers: set[object] = set()   # the browsers that drive by hand
-        self.stop_until = 0.0       # s: zeros are sent until then
+        self.drivers: set[object] = set()   # the browsers in which driving by hand is on
+        self.stop_until = 0.0       # s: zero commands are sent until then
         self.changed = Condition()
         self.ended = False
         self.thread = Thread(target=self._run, daemon=True)
 
     def start(self) -> None:
-        """Begin."""
+        """Start the thread."""
         self.thread.start()
 
     def begin(self, owner: object) -> None:
-        """A browser is going to drive by hand: the connection to the base is made now, for the first key to count."""
+        """Switch driving by hand on for a browser. This connects to the base, so that the first key takes effect."""
         with self.changed:
             self.drivers.add(owner)
             self.changed.notify()
 
     def leave(self, owner: object) -> None:
-        """A browser no longer drives by hand, or has gone."""
+        """Switch driving by hand off for a browser, or remove a browser that has disconnected."""
         with self.changed:
             if owner is self.keys.owner:
                 self._stop()
@@ -86,7 +86,7 @@ class HandDrive:
             self.changed.notify()
 
     def drive(self, owner: object, linear: float, angular: float) -> bool:
-        """A browser holds keys, m/s and rad/s. Returns False if it may not drive, or another one drives now."""
+        """Drive at this velocity, m/s and rad/s. Returns False if driving by hand is off, or another browser drives."""
         with self.changed:
             if owner not in self.drivers or not self.keys.hold(owner, linear, angular, self.clock()):
                 return False
@@ -96,7 +96,7 @@ class HandDrive:
             return True
 
     def stop(self) -> None:
-        """Send zeros, whoever drives by hand; each browser has to begin again."""
+        """Stop the robot, and switch driving by hand off for all browsers."""
         with self.changed:
             self.drivers.clear()
             self._stop()
@@ -107,7 +107,7 @@ class HandDrive:
         self.stop_until = self.clock() + LINGER
 
     def end(self) -> None:
-        """Stop the robot, if it was driven by hand, and end the thread."""
+        """Stop the robot if it is being driven by hand, and stop the thread."""
         with self.changed:
             self.ended = True
             self.keys.release()
@@ -122,7 +122,7 @@ class HandDrive:
                     break
                 now = self.clock()
                 velocity = self.keys.velocity(now)
-                if moving and not any(velocity):    # also if the keys have timed out
+                if moving and not any(velocity):    # including keys that have timed out
                     self.stop_until = now + LINGER
                 stopping = now < self.stop_until
                 wanted = bool(self.drivers) or stopping

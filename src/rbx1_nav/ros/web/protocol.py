@@ -1,6 +1,6 @@
-"""The messages between page and server, one JSON object each. docs/web_view.md lists them.
+"""The messages between page and server. Each is one JSON object; docs/web_view.md lists them.
 
-What a browser sends is checked here, field by field; the rest of the server gets one of the classes below.
+Every field that a browser sends is checked here. The rest of the server uses the classes below.
 """
 from __future__ import annotations
 
@@ -13,52 +13,52 @@ METHODS = ('timed', 'odometry', 'gyro')
 
 
 class InvalidMessage(ValueError):
-    """A message that no page of ours sends. The text says what is wrong with it."""
+    """A message that the page never sends. The text names the error."""
 
 
 class Hello(NamedTuple):
     """The first message of a browser."""
 
-    token: str      # '' for a browser that only watches
+    token: str      # '' for a browser that can only watch
 
 
 class Run(NamedTuple):
     """Start a run."""
 
     method: str         # one of METHODS
-    reset: bool         # whether to put a simulated robot back to its start first
+    reset: bool         # whether to reset a simulated robot before the run
     confirmed: bool     # whether the user has confirmed that a real robot may move
 
 
 class Hand(NamedTuple):
-    """Begin or end driving by hand."""
+    """Switch driving by hand on or off."""
 
     on: bool
-    confirmed: bool     # as of Run
+    confirmed: bool     # as in Run
 
 
 class Drive(NamedTuple):
     """The keys that are held."""
 
-    forward: float      # -1 to 1, of the linear speed
-    left: float         # -1 to 1, of the angular speed
+    forward: float      # -1 to 1, fraction of the linear speed
+    left: float         # -1 to 1, fraction of the angular speed
 
 
 class Reset(NamedTuple):
-    """Put a simulated robot back to its start."""
+    """Put a simulated robot back at its start."""
 
 
 class Stop(NamedTuple):
-    """Stop the robot, whatever drives it."""
+    """Stop the robot, regardless of which node drives it."""
 
 
 Message = Union[Hello, Run, Hand, Drive, Reset, Stop]
 
 
 def parse(text: object) -> Message:
-    """A message from a browser. Raises InvalidMessage."""
+    """Parse a message from a browser. Raises InvalidMessage."""
     if not isinstance(text, str) or len(text) > MAX_MESSAGE:
-        raise InvalidMessage('expected a short text')
+        raise InvalidMessage('expected text of at most 1 KB')
     try:
         fields = json.loads(text)
     except (ValueError, RecursionError):
@@ -98,12 +98,12 @@ def _flag(fields: Mapping[str, object], name: str) -> bool:
 
 def _fraction(fields: Mapping[str, object], name: str) -> float:
     value = fields.get(name, 0)
-    # bool is a subclass of int; an integer of any size can be compared, but not converted
+    # bool is a subclass of int; a very large integer can be compared, but not converted to float
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not -1 <= value <= 1 or not isfinite(value):
         raise InvalidMessage(f'{name}: expected a number from -1 to 1')
     return float(value)
 
 
 def encode(kind: str, **fields: object) -> bytes:
-    """A message to a browser. Raises ValueError for a number that JSON does not have."""
+    """Encode a message to a browser. Raises ValueError for NaN and infinity, which JSON does not support."""
     return json.dumps({'type': kind, **fields}, separators=(',', ':'), allow_nan=False).encode()

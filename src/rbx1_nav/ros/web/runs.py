@@ -1,4 +1,4 @@
-"""The runs that the page starts: the driving scripts, each in a process of its own."""
+"""The runs that the page starts: each is a driving script in a separate process."""
 from __future__ import annotations
 
 import os
@@ -7,20 +7,20 @@ import subprocess
 from threading import Lock, Thread
 from typing import Callable, Sequence
 
-# by method: its name for the reader, script, arguments. The master keeps the frame of a run, so it is always set
+# by method: displayed name, script, arguments. The frame is always set, because the master keeps it from earlier runs
 SCRIPTS: dict[str, tuple[str, str, Sequence[str]]] = {
     'timed': ('timed', 'timed_out_and_back.py', ()),
     'odometry': ('with odometry', 'odom_out_and_back.py', ('_odom_frame:=odom',)),
     'gyro': ('with odometry and gyro', 'odom_out_and_back.py', ('_odom_frame:=odom_combined',))}
-STOP_TIMEOUT = 3.0  # s after which a script that was to end is killed; it has 1.4 s
+STOP_TIMEOUT = 3.0  # s after which a script that does not exit is killed; a script should exit within 1.4 s
 
 
 class Runs:
     """At most one run at a time."""
 
     def __init__(self, folder: str, on_change: Callable[[str, str], None], after: Callable[[], None]) -> None:
-        """folder: of the scripts; on_change(name, outcome): called with '' when a run begins, and when it has ended;
-        after(): called before the latter."""
+        """folder: directory of the scripts; on_change(name, outcome): called with the outcome '' when a run begins, and
+        with its outcome when it has finished; after(): called before the second of these calls."""
         self.folder = folder
         self.on_change = on_change
         self.after = after
@@ -30,9 +30,9 @@ class Runs:
         self.process: subprocess.Popen[bytes] | None = None
 
     def start(self, method: str, before: Callable[[], None]) -> bool:
-        """Start a run, by a key of SCRIPTS, after a call of before(). Returns False if there is one already.
+        """Call before(), and then start a run. method: a key of SCRIPTS. Returns False if a run is in progress.
 
-        An exception of before() becomes the outcome.
+        If before() raises an exception, the run is not started, and the outcome contains the error.
         """
         with self.lock:
             if self.busy:
@@ -42,7 +42,7 @@ class Runs:
         return True
 
     def _run(self, method: str, before: Callable[[], None]) -> None:
-        # one thread for all of a run: the kernel sends pdeathsig when the thread that started the process has ended
+        # this thread must live as long as the script: pdeathsig is sent when the thread that started the script exits
         name, script, arguments = SCRIPTS[method]
         self.on_change(name, '')
         try:
@@ -53,7 +53,7 @@ class Runs:
         try:
             self.after()
         except Exception:
-            pass    # the master has exited, and the parameters with it
+            pass    # the master has exited, so the parameters are gone as well
         with self.lock:
             self.busy = False
         self.on_change(name, outcome)
@@ -62,7 +62,7 @@ class Runs:
         with self.lock:
             if self.stop_requested:
                 return 'stopped'
-            # if this process is killed, so is the only Stop button: the script then stops the robot, too
+            # pdeathsig: if this process is killed, its Stop button no longer works, so the script must stop the robot
             self.process = process = subprocess.Popen(
                 ['setpriv', '--pdeathsig', 'INT', *command], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
                 start_new_session=True)
@@ -74,7 +74,7 @@ class Runs:
         return 'finished' if status == 0 else f'failed with exit status {status}; see the log'
 
     def stop(self) -> None:
-        """Stop the run, as Ctrl-C does: the script stops the robot first."""
+        """Stop the run as Ctrl-C does: the script stops the robot before it exits."""
         with self.lock:
             if not self.busy:
                 return

@@ -1,4 +1,4 @@
-"""The HTTP server: the files of the page, and the WebSocket. It runs in a thread of its own."""
+"""The HTTP server, which serves the files of the page and the WebSocket. It runs in a separate thread."""
 from __future__ import annotations
 
 import asyncio
@@ -19,14 +19,14 @@ from rbx1_nav.ros.web.connections import MAX_SOCKETS, Connections
 from rbx1_nav.ros.web.protocol import MAX_MESSAGE
 
 FRAME_PERIOD = 50       # ms
-MAX_CONNECTIONS = MAX_SOCKETS + 60      # TCP connections, also those that have sent nothing yet
-IDLE_TIMEOUT = 5.0      # s for a request to arrive, and for a connection to be used again
-PING_PERIOD = 10.0      # s: a browser that does not answer pings is disconnected after three of them
+MAX_CONNECTIONS = MAX_SOCKETS + 60      # TCP connections that are not WebSockets yet, including idle ones
+IDLE_TIMEOUT = 5.0      # s in which a request must arrive; s after which an unused connection is closed
+PING_PERIOD = 10.0      # s: a browser that does not answer three pings is disconnected
 MAX_HEADER = 8192       # bytes
 TYPES = {'.html': 'text/html; charset=utf-8', '.css': 'text/css; charset=utf-8',
          '.js': 'text/javascript; charset=utf-8'}
 HEADERS = {
-    # nothing from other hosts, and no other page may hold this one in a frame and make the user click into it
+    # load nothing from other hosts; no other page may embed this one, which prevents clickjacking
     'Content-Security-Policy': "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; "
                                "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
     'X-Frame-Options': 'DENY',
@@ -37,11 +37,11 @@ HEADERS = {
     'Cache-Control': 'no-cache'}
 
 for logger in 'tornado.access', 'tornado.general':
-    logging.getLogger(logger).setLevel(logging.CRITICAL)    # a stranger must not fill the log
+    logging.getLogger(logger).setLevel(logging.CRITICAL)    # otherwise, any client could fill the log
 
 
 def read_files(folder: str) -> dict[str, tuple[str, bytes]]:
-    """(content type, content) of each file of the page, by its path on the server. Raises OSError."""
+    """Return {path on the server: (content type, content)} for all files of the page. Raises OSError."""
     files = {}
     for name in sorted(os.listdir(folder)):
         kind = TYPES.get(os.path.splitext(name)[1])
@@ -53,7 +53,7 @@ def read_files(folder: str) -> dict[str, tuple[str, bytes]]:
 
 
 class CheckedHandler(RequestHandler):
-    """A request whose Host and Origin are accepted."""
+    """Base class of the handlers: rejects requests with a foreign Host or Origin."""
 
     def initialize(self, hosts: HostCheck) -> None:
         """Called by tornado."""
@@ -66,7 +66,7 @@ class CheckedHandler(RequestHandler):
             self.set_header(name, value)
 
     def prepare(self) -> None:
-        """Called by tornado before any method."""
+        """Called by tornado before the method of each request."""
         headers = self.request.headers
         if len(headers.get_list('Host')) != 1 or len(headers.get_list('Origin')) > 1 or not self.hosts.accepts(
                 headers['Host'], headers.get('Origin')):
@@ -78,14 +78,14 @@ class CheckedHandler(RequestHandler):
 
 
 class FileHandler(CheckedHandler):
-    """A file of the page, from a table: no path on this machine is made of a request."""
+    """Serves a file of the page from memory. No path from a request is used to open a file."""
 
     def initialize(self, hosts: HostCheck, files: dict[str, tuple[str, bytes]] = {}) -> None:
         super().initialize(hosts)
         self.files = files
 
     def get(self) -> None:
-        """Called by tornado, for HEAD too."""
+        """Called by tornado for GET and HEAD."""
         if self.request.path not in self.files:
             raise HTTPError(404)
         kind, content = self.files[self.request.path]
@@ -109,7 +109,7 @@ class SocketHandler(WebSocketHandler, CheckedHandler):
             raise HTTPError(503)
 
     def check_origin(self, origin: str) -> bool:
-        """Called by tornado; prepare() has checked it."""
+        """Called by tornado. prepare() has already checked the Origin."""
         return True
 
     def open(self, *_: str, **__: str) -> None:
@@ -124,7 +124,7 @@ class SocketHandler(WebSocketHandler, CheckedHandler):
 
 
 class BoundedServer(HTTPServer):
-    """An HTTP server with a limit to its connections. WebSockets have a limit of their own."""
+    """An HTTP server with a limited number of connections. Connections limits the WebSockets."""
 
     count = 0
 
@@ -137,7 +137,7 @@ class BoundedServer(HTTPServer):
         super().handle_stream(stream, address)
 
     def on_close(self, server_conn: object) -> None:
-        """Called by tornado at the end of each connection that was handled."""
+        """Called by tornado when a connection is closed, or has become a WebSocket."""
         self.count -= 1
         super().on_close(server_conn)
 
@@ -146,7 +146,7 @@ class Server:
     """Serves the page."""
 
     def __init__(self, folder: str, hosts: HostCheck, connections: Connections, address: str, port: int) -> None:
-        """folder: of the page's files; port: 0 for any that is free. Raises OSError."""
+        """folder: directory of the page's files; port: 0 for any free port. Raises OSError."""
         self.connections = connections
         self.sockets = bind_sockets(port, address)
         self.port = int(self.sockets[0].getsockname()[1])
@@ -160,7 +160,7 @@ class Server:
         self.thread = Thread(target=self._run, daemon=True)
 
     def start(self) -> None:
-        """Accept connections from now on."""
+        """Start the thread, and wait until it accepts connections."""
         self.thread.start()
         self.ready.wait()
 
@@ -179,11 +179,11 @@ class Server:
         frames.stop()
         server.stop()
         for socket in list(self.connections.browsers):
-            socket.close(1001, 'the view has ended')
-        await asyncio.sleep(0.05)   # for the closing frames to leave
+            socket.close(1001, 'the web view has shut down')
+        await asyncio.sleep(0.05)   # until the close frames have been sent
 
     def stop(self) -> None:
-        """End the connections, and the thread, within half a second."""
+        """Close the connections and stop the thread; wait for at most 0.5 s."""
         if self.loop:
             self.loop.call_soon_threadsafe(self.end.set)
         self.thread.join(0.5)

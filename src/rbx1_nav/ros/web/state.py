@@ -1,4 +1,4 @@
-"""What the page shows: poses, paths, speeds, the table of this run and the one before, log lines, and a status."""
+"""The state that the page shows: poses, paths, speeds, the end poses of the previous run, log, and status."""
 from __future__ import annotations
 
 from math import hypot, isfinite
@@ -8,29 +8,29 @@ from typing import Any, Mapping, NamedTuple, Sequence
 from rbx1_nav.ros.web.history import Counter, Log, Path, Series, Speeds
 from rbx1_nav.ros.web.protocol import encode
 
-SOURCES = ('truth', 'odometry', 'estimate')     # of poses
+SOURCES = ('truth', 'odometry', 'estimate')     # sources of poses
 SPEEDS = ('commanded', 'reported', 'true')
-JUMP = 0.5          # m between two messages of the odometry: the robot was put elsewhere
-BACK = 0.5          # s by which time goes back where it began again
-MOVED = 0.02, 0.05  # m, rad: a run that has never left its start is not kept as the run before
-RESET_DELAY = 0.5   # s by which the message about a reset may be later than the odometry after it, or earlier
-SILENCE = 3.0       # s without a message after which the robot is no longer shown at its last pose
-COMMAND_TIMEOUT = 1.0   # s: without a command for this time, none is in force
+JUMP = 0.5          # m between two odometry messages: the robot was moved by hand or reset, or it is another robot
+BACK = 0.5          # s by which the stamps go back if simulated time has restarted
+MOVED = 0.02, 0.05  # m, rad: a run that never left its start is not stored as the previous run
+RESET_DELAY = 0.5   # s: largest delay between the message about a reset and the odometry after it, in either order
+SILENCE = 3.0       # s without a message after which a pose is no longer shown
+COMMAND_TIMEOUT = 1.0   # s without a command after which the commanded speed is 0
 
 PoseRow = Sequence[float]   # x, y, yaw: m, rad
 
 
 class Motion(NamedTuple):
-    """A pose and a velocity, as an Odometry message has them."""
+    """Pose and velocity from an Odometry message."""
 
-    time: float         # s, of the stamp
+    time: float         # s, stamp of the message
     pose: PoseRow
     linear: float       # m/s
     angular: float      # rad/s
 
 
 class State:
-    """The state of the page. ROS threads write it, and the server reads it."""
+    """The state that the page shows. ROS threads write it, and the server thread reads it."""
 
     def __init__(self) -> None:
         self.lock = Lock()
@@ -39,24 +39,24 @@ class State:
         self.speeds = {name: Speeds(self.counter, steps=name == 'commanded') for name in SPEEDS}
         self.log = Log(self.counter)
         self.poses: dict[str, PoseRow] = {}
-        self.heard: dict[str, float] = {}       # s of the monotonic clock, by source
-        self.before: dict[str, PoseRow] = {}    # of the run before
+        self.heard: dict[str, float] = {}       # s, monotonic clock: last message, by source
+        self.before: dict[str, PoseRow] = {}    # end poses of the previous run
         self.before_name = ''
-        self.run_name = ''      # what drives, or drove last
-        self.epoch = 0          # counts runs: with a new one, paths and speeds begin again
+        self.run_name = ''      # the run or node that drives the robot, or drove it last
+        self.epoch = 0          # number of the run; paths and speeds are cleared at the start of each run
         self.travelled = False      # whether this run has left its start
-        self.late: dict[str, float] = {}    # s, by source: until then, a pose may be older than the reset
-        self.away: dict[str, tuple[float, PoseRow]] = {}    # the last pose other than the origin, and when
-        self.origin: float | None = None        # s: the stamp at which the page's time is 0
-        self.last: tuple[float, float] | None = None    # stamp of the odometry, and the monotonic clock, s
-        self.factor = 1.0       # of simulated time, measured
-        self.mark: tuple[float, float] | None = None    # where measuring it began
-        self.last_command = 0.0     # s of the monotonic clock
+        self.late: dict[str, float] = {}    # s, by source: until then, a pose away from the start precedes the reset
+        self.away: dict[str, tuple[float, PoseRow]] = {}    # by source: time, last pose that is not the origin
+        self.origin: float | None = None        # s: stamp at which the run began
+        self.last: tuple[float, float] | None = None    # last odometry message: stamp and monotonic clock, s
+        self.factor = 1.0       # measured speed of simulated time, relative to real time
+        self.mark: tuple[float, float] | None = None    # stamp and monotonic clock at the start of this measurement, s
+        self.last_command = 0.0     # s, monotonic clock
         self.status: dict[str, Any] = {}
         self.status_number = self.counter.next()
 
     def move(self, source: str, motion: Motion, now: float) -> None:
-        """A message of a source of poses. now: s of the monotonic clock. One that is not finite is ignored."""
+        """Process a pose from a source. now: s, monotonic clock. Values that are not finite are ignored."""
         if not all(map(isfinite, (motion.time, *motion.pose, motion.linear, motion.angular))):
             return
         with self.lock:
@@ -91,7 +91,7 @@ class State:
             self.mark = self.last
 
     def command(self, linear: float, angular: float, sender: str, now: float) -> None:
-        """A Twist of a node, or of a run that the page has started."""
+        """Process a command. sender: name of the node that published it."""
         if not (isfinite(linear) and isfinite(angular)):
             return
         with self.lock:
@@ -103,12 +103,12 @@ class State:
 
     def _commanded(self, linear: float, angular: float, now: float) -> None:
         if self.last is not None and self.origin is not None:
-            # the message has no stamp: its time is derived from the last odometry message
+            # a Twist has no stamp: derive its time from the last odometry message
             time = self.last[0] - self.origin + min(now - self.last[1], 1.0) * self.factor
             self.speeds['commanded'].sample(time, linear, angular)
 
     def tick(self, now: float) -> None:
-        """To be called regularly: a command that is not repeated times out, and a source that is silent vanishes."""
+        """Time out a command that is not repeated, and remove silent sources. To be called periodically."""
         with self.lock:
             items = self.speeds['commanded'].items
             if items and any(items[-1][1][1:]) and now - self.last_command > COMMAND_TIMEOUT:
@@ -118,7 +118,7 @@ class State:
                 self.counter.next()
 
     def reset(self, now: float) -> None:
-        """The robot was put back to its start: another run begins."""
+        """Begin a new run, because the robot was put back at its start."""
         with self.lock:
             self.poses.update({source: pose for source, (time, pose) in self.away.items()
                                if source in self.poses and now - time < RESET_DELAY})
@@ -126,7 +126,7 @@ class State:
             self.late = dict.fromkeys(SOURCES, now + RESET_DELAY)
 
     def _begin(self) -> None:
-        """Another run: keep the table of the last one, and clear paths and speeds."""
+        """Begin a new run: store the end poses of the last one, and clear paths and speeds."""
         if self.travelled:
             self.before, self.before_name = dict(self.poses), self.run_name
         self.poses.clear()
@@ -141,21 +141,21 @@ class State:
             self.origin = self.last[0]
 
     def set_status(self, **values: Any) -> None:
-        """Set values of the status: those that the page shows as text, and those that enable its buttons."""
+        """Set values of the status, which the page shows as text or uses to enable its buttons."""
         with self.lock:
             if any(self.status.get(key) != value for key, value in values.items()):
                 self.status.update(values)
                 self.status_number = self.counter.next()
 
     def log_line(self, level: int, time: float, node: str, text: str) -> None:
-        """A node has logged a line."""
+        """Add a log message of a node."""
         with self.lock:
             self.log.line(level, time, node, text)
 
     def frame(self, number: int, epoch: int) -> tuple[int, int, bytes]:
-        """The frame for a browser that has everything up to a number, of an epoch.
+        """Make the frame for a browser that has received everything up to this number, in this epoch.
 
-        Returns the number and the epoch that it has afterwards, and the message.
+        Returns the number and the epoch of the browser after this frame, and the encoded message.
         """
         with self.lock:
             series: dict[str, Any] = {}

@@ -1,4 +1,4 @@
-"""State of the running system, from the master: the base, its floor, its reset, and the nodes that drive it."""
+"""The running system, as known to the master: the base, its surface and reset service, and the driving nodes."""
 from __future__ import annotations
 
 from threading import Lock, Thread
@@ -19,7 +19,7 @@ RESET_TIMEOUT = 5.0  # s
 
 
 class System:
-    """Queries the master every PERIOD, and updates the status of the page."""
+    """Queries the master once per PERIOD, and updates the status of the page."""
 
     def __init__(self, state: State) -> None:
         self.state = state
@@ -30,17 +30,17 @@ class System:
         self.thread = Thread(target=self._run, daemon=True)
 
     def start(self) -> None:
-        """Begin."""
+        """Start the thread."""
         self.thread.start()
 
     def on_seed(self, surface: str, seed: str) -> None:
-        """A simulated base names its floor, and the seed that was drawn."""
+        """Store the surface and the seed that a simulated base reports."""
         self.drawn = surface, seed
         self.state.set_status(surface=surface, seed=seed)
 
     @property
     def simulated(self) -> bool:
-        """Whether the robot is a simulated one: only its ground truth is known. One that is silent counts as real."""
+        """Whether messages arrive on ground_truth, which only a simulated robot has."""
         return 'truth' in self.state.poses
 
     def _run(self) -> None:
@@ -68,33 +68,33 @@ class System:
         if self.simulated and self.topics.truth:
             values['surface'] = str(_param(master, f'{self.topics.truth}/surface', 'ideal')).rpartition('/')[2]
             values['seed'] = str(_param(master, f'{self.topics.truth}/seed', 'random'))
-            if self.drawn and self.topics.truth == base:    # it knows better what it has drawn
+            if self.drawn and self.topics.truth == base:    # the base itself has reported them
                 del values['surface'], values['seed']
         else:
             self.drawn = None
         self.state.set_status(**values)
 
     def reset(self) -> None:
-        """Put a simulated robot back to its start. Raises ROSException, or rospy.ServiceException."""
+        """Put a simulated robot back at its start. Raises ROSException or rospy.ServiceException."""
         if not self.reset_service:
-            raise rospy.ROSException('the base has no reset')
+            raise rospy.ROSException('the base has no reset service')
         rospy.wait_for_service(self.reset_service, RESET_TIMEOUT)
         rospy.ServiceProxy(self.reset_service, Empty)()
 
     @staticmethod
     def forget_frame() -> None:
-        """Remove the parameter of a run that the page has started: it is not for the next one."""
+        """Delete the parameter of a run that the page has started, so that it does not affect later runs."""
         call(rosgraph.get_master_uri(), 'deleteParam', rospy.resolve_name('out_and_back/odom_frame'))
 
     def shut_down_drivers(self) -> None:
-        """Shut down all other nodes that publish /cmd_vel, as `rosnode kill` does, without waiting for it."""
+        """Shut down all other nodes that publish /cmd_vel, as `rosnode kill` does. Does not wait for them."""
         Thread(target=self._shut_down_drivers, daemon=True).start()
 
     def _shut_down_drivers(self) -> None:
         try:
             publishers, _, _ = call(rosgraph.get_master_uri(), 'getSystemState')
         except Exception as error:
-            rospy.logwarn('The master does not answer, so Stop may not reach other nodes that drive: %s', error)
+            rospy.logwarn('The master does not answer, so Stop may not have reached other driving nodes: %s', error)
             return
         for name in dict(publishers).get('/cmd_vel', ()):
             if name != rospy.get_name():
@@ -105,9 +105,9 @@ class System:
 def shut_down(node: str) -> None:
     """Shut down a node."""
     try:
-        call(call(rosgraph.get_master_uri(), 'lookupNode', node), 'shutdown', 'stopped in the browser')
+        call(call(rosgraph.get_master_uri(), 'lookupNode', node), 'shutdown', 'stopped from the browser')
     except Exception:
-        pass    # it has exited, or does not answer
+        pass    # the node has exited, or does not answer
 
 
 def _param(master: Server, name: str, default: object) -> Any:

@@ -1,4 +1,4 @@
-"""What the view subscribes to, and the commands that it publishes. No topic costs more than a bounded rate."""
+"""The subscriptions of the web view, and its command publisher. The load from each topic is bounded."""
 from __future__ import annotations
 
 import time
@@ -15,17 +15,17 @@ from rbx1_nav.ros import messages
 from rbx1_nav.ros.web.state import Motion, State
 
 TOPICS = {'truth': 'ground_truth', 'odometry': 'odom', 'estimate': 'odom_ekf'}
-PERIOD = 0.02       # s: of the messages that arrive in this time only the latest one is read
-COMMAND_PERIOD = 0.01   # s: a driving script notices a subscriber that does not read
+PERIOD = 0.02       # s: only the latest of the messages that arrive in this time is read
+COMMAND_PERIOD = 0.01   # s; short, because a driving script detects a subscriber that does not read
 LOG_PERIOD = 0.02   # s
-BUFFER = 2 ** 20    # bytes: what arrives in PERIOD at 50 times real time, and more
+BUFFER = 2 ** 20    # bytes: more than arrives in PERIOD at 50 times real time
 
 
 class Topics:
     """The subscriptions."""
 
     def __init__(self, state: State, on_seed: Callable[[str, str], None]) -> None:
-        """on_seed(surface, seed): called with what a simulated base says of its floor in /diagnostics."""
+        """on_seed(surface, seed): called with the values that a simulated base publishes in /diagnostics."""
         self.state = state
         self.on_seed = on_seed
         self.base: str | None = None    # the node that publishes the odometry
@@ -35,11 +35,11 @@ class Topics:
             subscribe('/cmd_vel', Twist, self.on_command),
             subscribe('reset_odometry', Empty, self.on_reset),
             subscribe('/diagnostics', DiagnosticArray, self.on_diagnostics, queue_size=5),
-            # of all nodes, by one connection to rosout: no node sends its lines twice
+            # the log of all nodes, over one connection to rosout instead of one to each node
             subscribe('/rosout_agg', Log, self.on_log, queue_size=50)]
 
     def on_odometry(self, message: Odometry, source: str) -> None:
-        """A pose and a velocity."""
+        """Process a pose and a velocity."""
         pose, twist = message.pose.pose, message.twist.twist
         sender = message._connection_header['callerid']
         if source == 'odometry':
@@ -52,18 +52,18 @@ class Topics:
         time.sleep(PERIOD)
 
     def on_command(self, twist: Twist) -> None:
-        """A command to the base."""
+        """Process a command to the base."""
         sender = twist._connection_header['callerid']
         self.state.command(twist.linear.x, twist.angular.z, 'by hand' if sender == rospy.get_name() else sender,
                            time.monotonic())
         time.sleep(COMMAND_PERIOD)
 
     def on_reset(self, _: Empty) -> None:
-        """The base was reset."""
+        """Process a reset of the base."""
         self.state.reset(time.monotonic())
 
     def on_diagnostics(self, array: DiagnosticArray) -> None:
-        """Once a second, of a base."""
+        """Process the diagnostics of a base, which arrive once per second."""
         for status in array.status:
             values = {each.key: each.value for each in status.values}
             if 'Surface' in values and 'Seed' in values:
@@ -71,7 +71,7 @@ class Topics:
         time.sleep(PERIOD)
 
     def on_log(self, line: Log) -> None:
-        """A line of the log."""
+        """Process a log message."""
         if line.level >= Log.INFO:
             self.state.log_line(line.level, line.header.stamp.to_sec(), line.name, line.msg)
         time.sleep(LOG_PERIOD)
@@ -79,20 +79,20 @@ class Topics:
 
 def subscribe(topic: str, kind: type, callback: Callable[..., None], args: Any = None,
               queue_size: int = 1) -> rospy.Subscriber:
-    """Subscribe to a topic. A callback that sleeps delays its own topic only, and no publisher: rospy has a thread for
-    each connection, and drops what a subscriber does not read in time."""
+    """Subscribe to a topic. The callbacks may sleep: rospy has one thread for each connection, and drops messages
+    that are not read in time, so neither other topics nor the publishers are delayed."""
     return rospy.Subscriber(topic, kind, callback, args, queue_size=queue_size, buff_size=BUFFER, tcp_nodelay=True)
 
 
 class CommandPublisher:
-    """Publishes /cmd_vel while the robot is driven by hand. At other times nothing is published, because the clock of a
-    simulation waits for each node that is registered as a driver."""
+    """Publishes /cmd_vel. The topic is registered only while it is needed, because simulated time waits for each
+    registered publisher."""
 
     def __init__(self) -> None:
         self.publisher: rospy.Publisher | None = None
 
     def open(self) -> None:
-        """Register as a driver, if that has not been done."""
+        """Register as a publisher, unless already registered."""
         if self.publisher is None:
             try:
                 self.publisher = rospy.Publisher('/cmd_vel', Twist, queue_size=5, tcp_nodelay=True)
@@ -107,10 +107,10 @@ class CommandPublisher:
             if publisher:
                 publisher.publish(command)
         except rospy.ROSException:
-            pass    # closed by the end of the node, which sends a stop of its own
+            pass    # closed by the shutdown of the node, which sends its own stop
 
     def close(self) -> None:
-        """No longer a driver."""
+        """Unregister as a publisher."""
         publisher, self.publisher = self.publisher, None
         if publisher:
             try:
