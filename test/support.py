@@ -137,14 +137,14 @@ class OwnClock:
 
 
 def without_rosrun(command):
-    """The command with the path of the node instead of `rosrun PACKAGE NODE`. rosrun takes longer to find a node than
-    the node takes to start. test/documents.py types rosrun."""
+    """Return the command with the path of the node instead of `rosrun PACKAGE NODE`. rosrun takes longer to find a node
+    than the node takes to start. test/documents.py uses rosrun itself."""
     if 'rosrun' not in command:
         return command
     index = command.index('rosrun')
     try:
         path, *_ = find_node(*command[index + 1:index + 3])
-    except rospkg.ResourceNotFound:     # Debian's topic_tools has no package.xml, but rosrun finds its nodes
+    except rospkg.ResourceNotFound:     # Debian's topic_tools has no package.xml, but rosrun can find its nodes
         return command
     return [*command[:index], path, *command[index + 3:]]
 
@@ -203,12 +203,12 @@ class Process:
 
 
 def out_and_back(*arguments):
-    """The timed exercise, as a Process."""
+    """Start the timed script; return its Process."""
     return Process('rosrun', 'rbx1_nav', 'timed_out_and_back.py', *arguments)
 
 
 def by_odometry(*arguments):
-    """The odometry-based exercise, as a Process."""
+    """Start the odometry-based script; return its Process."""
     return Process('rosrun', 'rbx1_nav', 'odom_out_and_back.py', *arguments)
 
 

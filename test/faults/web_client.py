@@ -1,4 +1,4 @@
-"""A browser without a window: HTTP requests and a WebSocket by hand, right ones and wrong ones."""
+"""An HTTP and WebSocket client that can also send invalid requests and frames."""
 import base64
 import json
 import os
@@ -9,7 +9,7 @@ TEXT, CLOSE = 1, 8      # opcodes, RFC 6455
 
 
 def request(port, path='/', host=None, method='GET', **headers):
-    """The status of a request; None if the server has closed the connection without an answer."""
+    """Return the status of a request, or None if the server closed the connection without a reply."""
     lines = ''.join(f'{name}: {value}\r\n' for name, value in headers.items())
     with socket.create_connection(('127.0.0.1', port), 10) as connection:
         try:
@@ -25,8 +25,8 @@ class WebClient:
     """A WebSocket to the view."""
 
     def __init__(self, port, token=None, small=False, **headers):
-        """token: sent with hello, if it is not None; small: whether to have a small receive buffer. Raises
-        ConnectionError with the status if the server refuses it."""
+        """token: sent with hello, unless None; small: whether to use a small receive buffer. Raises ConnectionError
+        with the HTTP status if the server rejects the request."""
         self.socket = socket.socket()
         if small:
             self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 2048)
@@ -48,7 +48,7 @@ class WebClient:
             self.send(type='hello', token=token)
 
     def receive(self):
-        """Wait for some bytes. Raises ConnectionError at the end of the connection."""
+        """Wait for data. Raises ConnectionError if the connection is closed."""
         data = self.socket.recv(65536)
         if not data:
             raise ConnectionError('closed')
@@ -59,12 +59,12 @@ class WebClient:
         self.send_frame(json.dumps(fields).encode())
 
     def send_frame(self, data, opcode=TEXT):
-        """Send a frame, masked with zeros, as all of a browser are masked."""
+        """Send a frame. Frames from a client must be masked; the mask is zero."""
         size = bytes([0x80 | len(data)]) if len(data) < 126 else bytes([0x80 | 126]) + struct.pack('!H', len(data))
         self.socket.sendall(bytes([0x80 | opcode]) + size + 4 * b'\0' + data)
 
     def next(self):
-        """The next message. Raises ConnectionError with the reason if the server closes, or TimeoutError."""
+        """Return the next message. Raises ConnectionError with the reason if the server closes, or TimeoutError."""
         while True:
             opcode, data = self.next_frame()
             if opcode == TEXT:
@@ -73,7 +73,7 @@ class WebClient:
                 raise ConnectionError(data[2:].decode() or 'closed')
 
     def next_frame(self):
-        """(opcode, data) of the next frame."""
+        """Return (opcode, data) of the next frame."""
         while True:
             if len(self.received) >= 2:
                 size, start = self.received[1] & 127, 2
@@ -87,12 +87,12 @@ class WebClient:
             self.receive()
 
     def wait_for(self, kind):
-        """The next message of a kind."""
+        """Return the next message of a kind; skip all others."""
         while True:
             message = self.next()
             if message['type'] == kind:
                 return message
 
     def close(self):
-        """Close the connection, without a word."""
+        """Close the connection without a close frame."""
         self.socket.close()

@@ -1,4 +1,4 @@
-"""A headless Chromium that shows the page of the web view."""
+"""Drives a headless Chromium that shows the page of the web view."""
 import json
 import os
 import re
@@ -9,14 +9,14 @@ from selenium.webdriver.chrome.options import Options
 
 import support
 
-# no sandbox: Chromium has none where it is started by root, or in a container
+# no sandbox: it does not work as root or in a container
 ARGUMENTS = ('--headless=new', '--no-sandbox', '--disable-gpu', '--disable-dev-shm-usage', '--window-size=1300,950',
              '--disable-background-networking', '--no-first-run')
 KEYS = {'ArrowUp': 38, 'ArrowLeft': 37, 'Escape': 27}   # key codes
 
 
 def start_chromium(downloads):
-    """A WebDriver. downloads: the folder for what the page saves."""
+    """Start Chromium; return its WebDriver. downloads: the directory for files that the page saves."""
     options = Options()
     options.binary_location = '/usr/bin/chromium'
     for argument in ARGUMENTS:
@@ -33,16 +33,16 @@ def start_chromium(downloads):
 
 
 def kill_chromium(driver):
-    """SIGKILL to the browser, all of its processes, and the WebDriver."""
+    """Send SIGKILL to the WebDriver and all processes of the browser."""
     parents = {}
     for pid in filter(str.isdigit, os.listdir('/proc')):
         try:
             with open(f'/proc/{pid}/stat', encoding='utf-8', errors='replace') as file:
                 parents[int(pid)] = int(file.read().rpartition(')')[2].split()[1])
-        except OSError:     # it has ended
+        except OSError:     # the process has exited
             pass
     pids = [driver.service.process.pid]
-    for pid in pids:        # grows while it is read
+    for pid in pids:        # the list grows during the loop
         pids += [child for child, parent in parents.items() if parent == pid]
     for pid in pids:
         try:
@@ -52,20 +52,20 @@ def kill_chromium(driver):
 
 
 class Page:
-    """The page of a view in a browser."""
+    """The page of the web view in a browser."""
 
     def __init__(self, driver, url):
         self.driver = driver
-        driver.get('about:blank')   # where only the part behind the # differs, nothing is loaded
+        driver.get('about:blank')   # a URL that differs only after the # would not be loaded
         driver.get(url)
         support.wait_for(lambda: self.text('connection').startswith('Connected'), 'a connection')
 
     def find(self, selector):
-        """The element for a CSS selector."""
+        """Return the element for a CSS selector."""
         return self.driver.find_element('css selector', selector)
 
     def text(self, name):
-        """The text of the element with this id."""
+        """Return the text of the element with this id."""
         return self.find('#' + name).text
 
     def wait_for_text(self, name, pattern):
@@ -78,23 +78,23 @@ class Page:
         self.find(selector).click()
 
     def robot(self, source):
-        """Where the page draws a robot: x, y (m), heading (degrees)."""
+        """Return where the page draws a robot: x, y (m), heading (degrees)."""
         transform = self.find(f'#robot-{source}').get_attribute('transform')
         return [float(each) for each in re.findall(r'-?\d+\.?\d*(?:e[-+]?\d+)?', transform)]
 
     def row(self, table, source):
-        """The numbers of a row of a table: x, y (m), heading (degrees), distance from the start (m)."""
+        """Return the numbers in a row of a table: x, y (m), heading (degrees), distance from the start (m)."""
         cells = self.driver.find_elements('css selector', f'#{table} tbody tr')
         text = next(each.text for each in cells if each.text.startswith(source))
         return [float(each) for each in text.split()[1:]]
 
     def key(self, kind, key):
-        """A key goes down (keyDown) or up (keyUp), and stays so."""
+        """Press a key (keyDown), which remains pressed, or release it (keyUp)."""
         self.driver.execute_cdp_cmd('Input.dispatchKeyEvent', {
             'type': kind, 'key': key, 'code': key, 'windowsVirtualKeyCode': KEYS[key]})
 
     def send(self, **message):
-        """Send a message to the node, as somebody does who types into the console."""
+        """Send a message to the node, as a user can do from the console of the browser."""
         self.driver.execute_script('rbx1.drive.connection.send(arguments[0])', message)
 
     def picture(self, path):
@@ -102,12 +102,12 @@ class Page:
         self.driver.save_screenshot(path)
 
     def console_errors(self):
-        """What the browser has logged as an error or a warning."""
+        """Return the errors and warnings that the browser has logged."""
         return [json.dumps(entry) for entry in self.driver.get_log('browser')
                 if entry['level'] in ('SEVERE', 'WARNING')]
 
 
 def start_view(*arguments):
-    """The node as a Process, and the address that it prints."""
+    """Start the node; return its Process and the address that it prints."""
     view = support.Process('rosrun', 'rbx1_nav', 'web_view.py', '_port:=0', *arguments)
     return view, view.wait_for_line(r'Open (http://\S+)').group(1)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A real robot moves only after its user has confirmed it, in the page and for the node."""
+"""Tests that a real robot moves only after confirmation, which both the page and the node require."""
 import signal
 import tempfile
 import unittest
@@ -25,7 +25,7 @@ class TestBrowserRealRobot(unittest.TestCase):
 
     def test_it_asks(self):
         page = self.page
-        # what does not ask, is refused
+        # requests without confirmation are rejected
         for message in (dict(type='run', method='timed'), dict(type='hand', on=True)):
             self.driver.execute_script('document.getElementById("notice").textContent = ""')
             page.send(**message)
@@ -37,7 +37,7 @@ class TestBrowserRealRobot(unittest.TestCase):
         page.wait_for_text('confirm-title', 'This robot is real')
         page.wait_for_text('confirm-text', '1.5 m of free floor')
         page.click('#confirm button[value=cancel]')
-        support.wait_for(lambda: not page.find('#confirm').is_displayed(), 'the end of the question')
+        support.wait_for(lambda: not page.find('#confirm').is_displayed(), 'the dialog to close')
         self.assertEqual(page.text('run-state'), '')
 
         # Escape
@@ -45,7 +45,7 @@ class TestBrowserRealRobot(unittest.TestCase):
         page.wait_for_text('confirm-text', 'arrow keys')
         page.key('keyDown', 'Escape')
         page.key('keyUp', 'Escape')
-        support.wait_for(lambda: not page.find('#confirm').is_displayed(), 'the end of the question')
+        support.wait_for(lambda: not page.find('#confirm').is_displayed(), 'the dialog to close')
         self.assertEqual(page.find('#hand').get_attribute('aria-pressed'), 'false')
         self.assertEqual(self.odom.position(), (0, 0))
 

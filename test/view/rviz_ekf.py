@@ -1,8 +1,8 @@
 #!/usr/bin/python3
-"""nav_ekf.rviz on carpet: odometry, estimate and ground truth in their colours, the true robot solid, the other a
-ghost.
+"""Tests nav_ekf.rviz on carpet: the arrows have the right colors, the robot at the true pose is solid, and the robot at
+the odometry pose is transparent.
 
-Keeps its pictures in the directory that the environment variable RBX1_PICTURE_DIR names, if it is set.
+If the environment variable RBX1_PICTURE_DIR is set, the screenshots are saved in that directory.
 """
 import os
 import subprocess
@@ -16,16 +16,16 @@ import support
 from rviz_smoke import ARROW, PACKAGE, WAIT, RvizTest
 
 ARROWS = ('Odometry (red)', 'Odometry EKF (green)', 'Ground truth (blue)')
-RADIUS = 0.165      # m, of the robot's disc
+RADIUS = 0.165      # m, radius of the robot
 
 
 def arrow_pixels(picture, name, where):
-    """How many pixels an odometry's arrows have there."""
+    """Return the number of pixels of these arrows within a mask."""
     return int((picture.arrows[name] & where).sum())
 
 
 def distance(picture, odom):
-    """Of each pixel from the position in an Odometry message, m."""
+    """Return the distance of each pixel from the position in an Odometry message, m."""
     return numpy.hypot(picture.x - odom.pose.pose.position.x, picture.y - odom.pose.pose.position.y)
 
 
@@ -41,7 +41,7 @@ class RvizEkf(RvizTest):
             self.assertEqual(arrow_pixels(before, name, ahead), 0, f'arrows before the run: {name}')
 
         subprocess.run(['rosrun', PACKAGE, 'timed_out_and_back.py'], check=True, timeout=WAIT)
-        # out to 0.92 m and a half-star there; back to the left of the start, where the robot hides some of the arrows
+        # a half-star at 0.92 m, and one to the left of the start, where the robot hides some of the arrows
         star = (before.x > 0.6) & (before.y > 0.05)
         home = (before.x < 0.4) & (before.y > 0.15)
         after = self.wait_for('ekf_after', lambda picture: all(
@@ -50,13 +50,13 @@ class RvizEkf(RvizTest):
         for name in ARROWS:
             self.assertFalse(arrow_pixels(after, name, before.y < -0.05), f'arrows to the right: {name}')
 
-        # the solid robot is white on its rim; the ghost is seen where the other one does not cover it
+        # the solid robot is white on its rim; the transparent one is visible where the other does not cover it
         from_truth, from_odometry = distance(after, truth.last), distance(after, reported.last)
         rim = (from_truth > 0.6 * RADIUS) & (from_truth < 0.95 * RADIUS)
         self.assertGreater((after.white & rim).sum(), 0.4 * rim.sum(), 'the true robot is not solid')
         crescent = (from_odometry < 0.95 * RADIUS) & (from_truth > 1.2 * RADIUS)
-        self.assertGreater(crescent.sum(), 500, 'odometry and truth are too near each other to tell the robots apart')
-        self.assertGreater((after.ghost & crescent).sum(), 0.8 * crescent.sum(), 'the robot by odometry is no ghost')
+        self.assertGreater(crescent.sum(), 500, 'odometry and truth are too close to distinguish the robots')
+        self.assertGreater((after.ghost & crescent).sum(), 0.8 * crescent.sum(), 'no transparent robot')
         self.assertEqual(self.console_errors(), [])
         self.assertEqual(self.rosout, [])
 

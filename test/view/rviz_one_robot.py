@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""nav_ekf.rviz where there is no surface: one solid robot, and nothing in trouble.
+"""Tests nav_ekf.rviz without a surface: RViz shows one solid robot and no errors.
 
-Keeps its pictures in the directory that the environment variable RBX1_PICTURE_DIR names, if it is set.
+If the environment variable RBX1_PICTURE_DIR is set, the screenshots are saved in that directory.
 """
 import os
 import subprocess
@@ -22,11 +22,10 @@ class RvizOneRobot(RvizTest):
         before = self.wait_for(f'{NAME}_before', lambda picture: picture.ready)
         subprocess.run(['rosrun', PACKAGE, 'timed_out_and_back.py'], check=True, timeout=WAIT)
         star = (before.x > 0.6) & (before.y > 0.05)
-        # where all poses are the same, the arrows of one may cover those of another
+        # if all poses are equal, the arrows of one topic may cover the arrows of another
         after = self.wait_for(f'{NAME}_after', lambda picture: picture.ready and sum(
             arrow_pixels(picture, name, star) for name in ARROWS) > 5 * ARROW)
-        # all of its marks are where it is ready: another robot would double them; the edges of arrows count as marks
-        # too
+        # a second robot would double the number of orange pixels; the edges of arrows are counted as well
         self.assertLess(after.marks.sum(), 1.75 * after.robot())
         self.assertFalse(after.errors, after.status)
         self.assertEqual(self.console_errors(), [])

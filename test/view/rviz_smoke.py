@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""What a reader sees: starts RViz with sim.rviz on a virtual display, runs the exercise, and reads the screen.
+"""Tests what a reader sees: starts RViz with sim.rviz on a virtual display, runs the exercise, and checks screenshots.
 
-Keeps its pictures where the environment variable RBX1_PICTURE_DIR says, if it is set.
+If the environment variable RBX1_PICTURE_DIR is set, the screenshots are saved in that directory.
 """
 import copy
 import os
@@ -20,52 +20,53 @@ from PIL import ImageGrab
 from rosgraph_msgs.msg import Log
 
 PACKAGE = 'rbx1_nav'
-WAIT = 120      # s that a machine under load may take for what takes 5; nothing here measures speed
+WAIT = 120      # s; usually 5 s are enough, but the machine may be busy
 
-# as RViz 1.14 paints the names of its displays in the Displays panel
+# colors of the display names in the Displays panel of RViz 1.14
 NAME_OK, NAME_WARN, NAME_ERROR = (40, 120, 197), (192, 128, 0), (192, 32, 32)
-MARKS = (255, 128, 13)      # the robot's orange marks, from its URDF
+MARKS = (255, 128, 13)      # color of the orange marks in the URDF of the robot
 
-# An arrow's shaft, 0.02 m wide, covers 620 pixels of the 0.16 m between the circles of a sector, and 390 of each 0.1 m
-# of the line. Less than half of one arrow is not an arrow.
+# The shaft of an arrow is 0.02 m wide. It covers 620 pixels in a sector, which is 0.16 m long, and 390 pixels of each
+# 0.1 m of the line. Fewer than 260 pixels do not count as an arrow.
 ARROW = 260
 
 
 def load(path):
-    """A .rviz file, as dictionaries."""
+    """Return the content of a .rviz file."""
     with open(path) as file:
         return yaml.safe_load(file)
 
 
 def display(config, name):
-    """The display of that name."""
+    """Return the display with this name."""
     return next(each for each in config['Visualization Manager']['Displays'] if each['Name'] == name)
 
 
 def colour(text):
-    """'255; 25; 0' as numbers."""
+    """Convert a color such as '255; 25; 0' to numbers."""
     return tuple(int(each) for each in text.split(';'))
 
 
 def painted(pixels, wanted):
-    """Where the pixels have exactly this colour."""
+    """Return where the pixels have exactly this color."""
     return (pixels == wanted).all(axis=-1)
 
 
 def lit(pixels, wanted):
-    """Where the pixels have this colour in more or less light. The arrows' red and the marks' orange are 100 apart."""
+    """Return where the pixels have this color at any brightness. The red of the arrows and the orange of the marks
+    differ by 100 in green."""
     light = pixels.max(axis=-1, keepdims=True)
     return (abs(pixels - numpy.array(wanted) * light / 255) < 30).all(axis=-1) & (light[..., 0] > 100)
 
 
 class Picture:
-    """A screenshot of RViz, and what is on it."""
+    """A screenshot of RViz, and its analysis."""
 
     def __init__(self, screenshot, config):
         manager = config['Visualization Manager']
         pixels = numpy.asarray(screenshot).astype(int)
 
-        # the 3D view is where the background is; what lies left of it is the Displays panel
+        # the 3D view has the background color; the Displays panel is to the left of it
         ground = painted(pixels, colour(manager['Global Options']['Background Color']))
         columns, rows = numpy.flatnonzero(ground.mean(axis=0) > 0.3), numpy.flatnonzero(ground.mean(axis=1) > 0.3)
         self.opened = bool(columns.size and rows.size)
@@ -76,7 +77,7 @@ class Picture:
 
         self.fine, self.warnings, self.errors = (int(painted(panel, each).sum())
                                                  for each in (NAME_OK, NAME_WARN, NAME_ERROR))
-        # the odom frame's metres at the middle of every pixel; TopDownOrtho's Scale is in pixels per metre
+        # coordinates in odom of the center of each pixel, m; the Scale of TopDownOrtho is in pixels per meter
         look = manager['Views']['Current']
         row, column = numpy.indices(view.shape[:2]) + 0.5
         self.x = look['X'] + (column - view.shape[1] / 2) / look['Scale']
@@ -85,32 +86,32 @@ class Picture:
         self.arrows = {each['Name']: lit(view, colour(each['Shape']['Color']))
                        for each in manager['Displays'] if each['Class'] == 'rviz/Odometry'}
         self.red = self.arrows['Odometry (red)']
-        # a solid base is white; a ghost lets the background (48) and the arrows (0 in some channel) shine through
+        # a solid base is white; a transparent one shows the background (48) and the arrows (0 in some channel)
         self.white = view.min(axis=-1) > 200
         self.ghost = (view.min(axis=-1) > 54) & ~self.white
 
     @property
     def status(self):
-        """In words, for people."""
+        """Describe the screenshot for an error message."""
         if not self.opened:
-            return 'RViz has no window yet'
-        return ('pixels in the Displays panel: %d of names in order, %d of warnings, %d of errors; %d of the robot'
+            return 'RViz has not opened its window'
+        return ('pixels in the Displays panel: %d without problems, %d warnings, %d errors; pixels of the robot: %d'
                 % (self.fine, self.warnings, self.errors, self.robot()))
 
     @property
     def ready(self):
-        """All is well, and the robot stands at the origin, facing x."""
-        # of 1460 pixels that should be there, a robot that faces the other way shows 510
+        """Whether there are no warnings or errors, and the robot is at the origin, facing x."""
+        # a robot that faces x shows 1460 pixels there; a robot that faces -x shows 510
         return self.opened and self.fine > 0 and not self.warnings and not self.errors and self.robot() > 1000
 
     def robot(self):
-        """Pixels of the marks on the robot's front half, where it is at home; they reach 0.18 m ahead of its middle."""
+        """Return the orange pixels on the front half of a robot at the origin. Its marks extend to x = 0.18 m."""
         return int((self.marks & (numpy.hypot(self.x, self.y) < 0.2) & (self.x > -0.05)).sum())
 
     def star(self, centre, start):
-        """Arrow pixels in eight sectors of 20 degrees of a half-star about (centre, 0), from start (degrees) on.
+        """Return the arrow pixels in each of eight sectors of 20 degrees around (centre, 0), the first at start (degrees).
 
-        Between circles of 0.20 m, just outside the robot, and 0.36 m, just short of the tips.
+        The sectors extend from 0.20 m, just outside the robot, to 0.36 m, just inside the tips of the arrows.
         """
         distance = numpy.hypot(self.x - centre, self.y)
         direction = numpy.degrees(numpy.arctan2(self.y, self.x - centre)) % 360
@@ -119,21 +120,21 @@ class Picture:
                 for each in range(start, start + 160, 20)]
 
     def line(self):
-        """Arrow pixels in five pieces of 0.1 m between the stars, from 0.4 m, the tip of the very first arrow, on."""
+        """Return the arrow pixels in each of five pieces of 0.1 m, from 0.4 m, the tip of the first arrow, to 0.9 m."""
         red = self.red & (abs(self.y) < 0.03)
         return [int((red & (self.x >= each / 10) & (self.x < (each + 1) / 10)).sum()) for each in range(4, 9)]
 
     def drawn(self):
-        """Arrow pixels of all that the exercise draws: two turns to the left, and the way between."""
+        """Return the arrow pixels where the exercise draws arrows: two left turns, and the line between them."""
         return {'half-star at 1 m': self.star(1, 10), 'half-star at the start': self.star(0, 190), 'line': self.line()}
 
     def blank(self):
-        """Arrow pixels where it draws nothing: the other halves."""
+        """Return the arrow pixels where the exercise draws nothing: the other half of each star."""
         return {'right of 1 m': self.star(1, 190), 'left of the start': self.star(0, 10)}
 
 
 class RvizTest(unittest.TestCase):
-    """Each test gets a display and an RViz of its own."""
+    """Each test starts its own X server and RViz."""
 
     FILE = 'sim.rviz'
 
@@ -151,12 +152,12 @@ class RvizTest(unittest.TestCase):
         self.start_display()
 
     def on_log(self, message):
-        """Collect what RViz reports."""
+        """Store the errors that RViz logs."""
         if message.name.startswith('/rviz') and message.level >= Log.ERROR:
             self.rosout.append(message.msg)
 
     def start(self, command, **options):
-        """A process that ends with the test."""
+        """Start a process that is stopped at the end of the test."""
         process = subprocess.Popen(command, stdin=subprocess.DEVNULL, **options)
 
         def end():
@@ -170,20 +171,20 @@ class RvizTest(unittest.TestCase):
         return process
 
     def start_display(self):
-        """An X server on a display number that it finds free itself."""
+        """Start an X server, which chooses a free display number."""
         ours, its = os.pipe()
         log = open(os.path.join(self.scratch, 'xvfb'), 'w')
         self.addCleanup(log.close)
-        # noreset: or it would start anew whenever a screenshot is its last client
+        # without noreset, the server would restart when its last client, a screenshot, disconnects
         self.start(['Xvfb', '-displayfd', str(its), '-screen', '0', '1280x800x24', '+extension', 'GLX',
                     '-nolisten', 'tcp', '-noreset'], pass_fds=[its], stdout=log, stderr=log)
         os.close(its)
         with open(ours) as answer:
             self.display = f':{answer.readline().strip()}'
-        self.assertNotEqual(self.display, ':', 'Xvfb does not start')
+        self.assertNotEqual(self.display, ':', 'Xvfb did not start')
 
     def start_rviz(self, path):
-        """RViz as the tutorial starts it, in a home of its own, so that nobody's settings matter."""
+        """Start RViz as in the tutorial, with an empty home directory, so that no user settings apply."""
         self.console = os.path.join(self.scratch, 'console')
         log = open(self.console, 'w')
         self.addCleanup(log.close)
@@ -192,15 +193,15 @@ class RvizTest(unittest.TestCase):
         self.rviz = self.start(['rosrun', 'rviz', 'rviz', '-d', path], env=env, stdout=log, stderr=log)
 
     def console_errors(self):
-        """Lines that rosconsole marks so; what libraries of RViz print besides is not its report."""
+        """Return the lines that rosconsole marks as errors, without the other output of libraries."""
         with open(self.console, errors='replace') as file:
             return [line for line in file if re.search(r'\[\s*(ERROR|FATAL)\]', line)]
 
     def wait_for(self, what, condition):
-        """Look at the screen until the condition on the Picture holds. Returns the Picture."""
+        """Take screenshots until the condition is true for a Picture; return that Picture."""
         deadline = time.monotonic() + WAIT
         while True:
-            self.assertIsNone(self.rviz.poll(), 'RViz has ended')
+            self.assertIsNone(self.rviz.poll(), 'RViz has exited')
             screenshot = ImageGrab.grab(xdisplay=self.display)
             picture = Picture(screenshot, self.config)
             if picture.opened and condition(picture):
@@ -215,10 +216,10 @@ class RvizTest(unittest.TestCase):
 
 
 class RvizSmoke(RvizTest):
-    """The picture of the ideal run."""
+    """The arrows after a run on the ideal floor."""
 
     def test_arrows_of_the_exercise(self):
-        """No display in trouble, no error reported; no arrows before the run, and two half-stars and a line after."""
+        """No display has an error; there are no arrows before the run, and two half-stars and a line after it."""
         self.start_rviz(os.path.join(self.path, 'sim.rviz'))
         before = self.wait_for('before', lambda picture: picture.ready)
         for where, pixels in before.drawn().items():
@@ -234,7 +235,7 @@ class RvizSmoke(RvizTest):
         self.assertEqual(self.rosout, [])
 
     def test_trouble_is_seen(self):
-        """The other test can fail: a copy of the file with two mistakes in it shows up in all three places."""
+        """The other test can fail: two errors in a copy of the file appear on screen, on the console and in the log."""
         config = copy.deepcopy(self.config)
         display(config, 'Robot by odometry')['Robot Description'] = 'no_such_parameter'
         config['Visualization Manager']['Displays'].append({'Class': 'rviz/NoSuchDisplay', 'Name': 'No such display'})
@@ -243,7 +244,7 @@ class RvizSmoke(RvizTest):
             yaml.safe_dump(config, file)
 
         self.start_rviz(path)
-        # red names, and blue ones besides
+        # some names are red, and others blue
         seen = self.wait_for('trouble', lambda picture: picture.errors and picture.fine and self.rosout)
         self.assertFalse(seen.ready)
         self.assertNotEqual(self.console_errors(), [])
