@@ -109,7 +109,7 @@ class Picture:
         return int((self.marks & (numpy.hypot(self.x, self.y) < 0.2) & (self.x > -0.05)).sum())
 
     def star(self, centre, start):
-        """Return the arrow pixels in each of eight sectors of 20 degrees around (centre, 0), the first at start (degrees).
+        """Return the arrow pixels in eight sectors of 20 degrees around (centre, 0), the first at start (degrees).
 
         The sectors extend from 0.20 m, just outside the robot, to 0.36 m, just inside the tips of the arrows.
         """

@@ -1,6 +1,6 @@
 """Driving by hand: while keys are held in a browser, commands are published at a constant rate.
 
-A browser that crashes cannot send that its keys are released, so keys that are not repeated count as released.
+A browser that crashes cannot report a released key, so keys that are not repeated count as released.
 """
 from __future__ import annotations
 
