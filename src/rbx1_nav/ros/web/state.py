@@ -40,6 +40,7 @@ class State:
         self.log = Log(self.counter)
         self.poses: dict[str, PoseRow] = {}
         self.heard: dict[str, float] = {}       # s, monotonic clock: last message, by source
+        self.silent: dict[str, PoseRow] = {}    # last poses of sources that have become silent in this run
         self.before: dict[str, PoseRow] = {}    # end poses of the previous run
         self.before_name = ''
         self.run_name = ''      # the run or node that drives the robot, or drove it last
@@ -114,7 +115,8 @@ class State:
             if items and any(items[-1][1][1:]) and now - self.last_command > COMMAND_TIMEOUT:
                 self._commanded(0.0, 0.0, now)
             for source in [each for each, heard in self.heard.items() if now - heard > SILENCE]:
-                del self.heard[source], self.poses[source]
+                del self.heard[source]
+                self.silent[source] = self.poses.pop(source)
                 self.counter.next()
 
     def reset(self, now: float) -> None:
@@ -125,11 +127,19 @@ class State:
             self._begin()
             self.late = dict.fromkeys(SOURCES, now + RESET_DELAY)
 
+    def connected(self) -> None:
+        """Begin a new run, because the odometry comes from another base, or from one that was started again."""
+        with self.lock:
+            if self.last is not None:
+                self._begin()
+                self.last = None
+
     def _begin(self) -> None:
         """Begin a new run: store the end poses of the last one, and clear paths and speeds."""
         if self.travelled:
-            self.before, self.before_name = dict(self.poses), self.run_name
+            self.before, self.before_name = {**self.silent, **self.poses}, self.run_name
         self.poses.clear()
+        self.silent.clear()
         self.away.clear()
         self.travelled = False
         self.run_name = ''

@@ -1,6 +1,7 @@
 """The subscriptions of the web view, and its command publisher. The load from each topic is bounded."""
 from __future__ import annotations
 
+from collections import deque
 import time
 from typing import Any, Callable
 
@@ -29,6 +30,7 @@ class Topics:
         self.state = state
         self.on_seed = on_seed
         self.base: str | None = None    # the node that publishes the odometry
+        self.connections: deque[object] = deque(maxlen=10)  # the latest ones to publishers of odometry
         self.truth: str | None = None   # the node that publishes the ground truth
         self.subscribers = [
             *(subscribe(topic, Odometry, self.on_odometry, source) for source, topic in TOPICS.items()),
@@ -44,6 +46,10 @@ class Topics:
         sender = message._connection_header['callerid']
         if source == 'odometry':
             self.base = sender
+            connection = message._connection_header     # one object per connection
+            if all(connection is not each for each in self.connections):
+                self.connections.append(connection)
+                self.state.connected()
         elif source == 'truth':
             self.truth = sender
         self.state.move(source, Motion(

@@ -118,6 +118,18 @@ def test_another_base_begins_another_run(state, first):
     assert state.epoch == epoch + 1 and Browser(state).frame()['status']['before']['odometry'] == [0.2, 0, 0]
 
 
+def test_a_base_that_is_started_again_begins_another_run(state):
+    state.connected()   # the first base
+    drive(state)
+    epoch = state.epoch
+    state.tick(101.0 + SILENCE + 0.1)   # it has ended
+    state.connected()
+    assert state.epoch == epoch + 1 and Browser(state).frame()['status']['before']['odometry'] == [0.2, 0, 0]
+    state.move('odometry', motion(110.0), 110.0)
+    frame = Browser(state).frame()
+    assert frame['epoch'] == epoch + 1 and frame['time'] == 0 and frame['paths'] == {'odometry': [[0, 0, 0]]}
+
+
 def test_a_run_of_the_page_has_its_name(state):
     state.set_status(started='timed', outcome='')
     drive(state)

@@ -1,0 +1,37 @@
+"""What the messages of the topics change on the page."""
+from nav_msgs.msg import Odometry
+import pytest
+
+from rbx1_nav.ros.web import topics
+from rbx1_nav.ros.web.state import State
+
+
+@pytest.fixture(name='view')
+def make_view(monkeypatch):
+    monkeypatch.setattr(topics, 'subscribe', lambda *_, **__: None)
+    monkeypatch.setattr(topics, 'PERIOD', 0)
+    return topics.Topics(State(), lambda surface, seed: None)
+
+
+def receive(view, connection):
+    """Receive the odometry of a robot at rest."""
+    message = Odometry()
+    message.pose.pose.orientation.w = 1.0
+    message._connection_header = connection
+    view.on_odometry(message, 'odometry')
+
+
+def test_a_new_connection_to_a_base_begins_another_run(view):
+    old, new = {'callerid': '/arbotix'}, {'callerid': '/arbotix'}
+    receive(view, old)
+    receive(view, old)
+    assert view.state.epoch == 0
+    receive(view, new)
+    assert view.state.epoch == 1
+
+
+def test_two_bases_at_once_do_not_begin_a_run_with_each_message(view):
+    first, second = {'callerid': '/arbotix'}, {'callerid': '/turtlebot_node'}
+    for connection in first, second, first, second:
+        receive(view, connection)
+    assert view.state.epoch == 1
