@@ -82,6 +82,11 @@ export class Drive {
     if (!this.connection.send({type: 'drive', forward, left})) {
       this.held.clear();
     }
+    this.showHeld();
+  }
+
+  // Highlights the held keys; without any, nothing is repeated.
+  showHeld() {
     if (!this.held.size) {
       clearInterval(this.timer);
       this.timer = null;
@@ -93,8 +98,7 @@ export class Drive {
 
   stopRobot() {
     this.held.clear();
-    clearInterval(this.timer);
-    this.timer = null;
+    this.showHeld();
     this.setHand(false);
     if (this.dialog.open) {
       this.dialog.close('cancel');
