@@ -49,7 +49,8 @@ class Session:
         # nothing is inherited: the page must set up what its commands need
         self.env = {
             'HOME': home, 'PATH': '/usr/sbin:/usr/bin:/sbin:/bin', 'TERM': 'xterm-256color', 'LANG': 'C.UTF-8',
-            'ROS_MASTER_URI': uri, 'ROS_IP': '127.0.0.1', 'PYTHONDONTWRITEBYTECODE': '1', 'DISPLAY': display,
+            'ROS_MASTER_URI': uri, 'ROS_IP': '127.0.0.1', 'DISPLAY': display,
+            'PYTHONPYCACHEPREFIX': os.environ.get('PYTHONPYCACHEPREFIX', home),     # not in the source tree
             'LIBGL_ALWAYS_SOFTWARE': '1', 'QT_X11_NO_MITSHM': '1', 'QT_QPA_PLATFORM': 'xcb', 'XDG_RUNTIME_DIR': home}
 
     def __enter__(self):
