@@ -16,7 +16,7 @@ from rbx1_nav.ros.network.processes import (
 from rbx1_nav.ros.network.tcp import unread_bytes
 
 MASTER = 'the master'
-CONNECT_TIME = 1.0      # s of wall time to wait for a new connection of cmd_vel
+CONNECT_TIME = 5.0      # s of wall time to wait for a new connection of cmd_vel; a busy machine takes more than 1 s
 UPSTREAM_PERIOD = 1.0   # s of wall time between two queries of the publishers of all topics
 
 
