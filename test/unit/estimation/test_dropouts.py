@@ -119,6 +119,19 @@ def test_odometry_that_recovers_in_a_turn_does_not_count_it_again(odom_first):
     assert len(robot.warnings) == 2
 
 
+def test_wheels_that_slip_measure_the_rest_of_a_turn_when_the_gyro_fails_too():
+    robot = Robot()     # its wheels slip by 3 %, as the filter expects
+    yaw = 0.0
+    for tick in range(300):
+        robot.now += STEP
+        yaw = 0.5 * 0.02 * max(0, tick - 50)
+        if tick <= 150:
+            robot.combined.add_imu(robot.now, Imu(robot.now, 0.5 if tick > 50 else 0.0, 3e-6))
+        if tick <= 50 or tick > 250:
+            robot.combined.add_odom(robot.now, Odom(robot.now, Pose(0.0, 0.0, yaw / 0.97), 1e-6, 1e-5), VARIANCES)
+    assert robot.combined.filter.state[YAW] == pytest.approx(yaw, abs=1e-3)
+
+
 def test_readings_without_any_odometry_are_not_stored():
     robot = Robot()
     robot.send(1000, odom=False)

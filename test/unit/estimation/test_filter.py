@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rbx1_nav.estimation.filter import SLIP_WALK, Filter
-from rbx1_nav.estimation.model import BIAS, SCALE, STRAIGHT, TURNING, X, YAW
+from rbx1_nav.estimation.filter import CARRY_SPEED, SLIP_WALK, Filter
+from rbx1_nav.estimation.model import BIAS, SCALE, STRAIGHT, TURNING, X, Y, YAW
 from rbx1_nav.estimation.priors import UNKNOWN_FLOOR
 from rbx1_nav.robot.kinematics import ORIGIN, Pose
 from sample_priors import IDEAL, PRIORS
@@ -278,6 +278,24 @@ def test_the_straight_slip_stays_possible_however_far_the_robot_drives():
     for _ in range(2000):
         ekf.predict(1.0, ekf.update(1.0, (0.0, 1e-8), (0.0, 1e-9), 1.0), 0.0, 1.0)
     assert 0.05 < sqrt(ekf.P.variance(STRAIGHT)) < 0.11
+
+
+@pytest.mark.parametrize('gyro, outlier', [(0.57, False), (0.54, True)])
+def test_an_outlier_is_beyond_noise_and_errors_of_the_state_together(gyro, outlier):
+    ekf = Filter(UNKNOWN_FLOOR, ORIGIN)
+    ekf.learn_bias(0.0, 1e-8)
+    # 5 standard deviations for the noise of 1 rad: 0.42 rad; together with the slip and the scale error: 0.445 rad
+    turn = ekf.update(LONG, (1.0, 1e-6), (gyro, 1e-6))
+    assert (ekf.state[TURNING] == 0) == outlier and turn.angle == pytest.approx(gyro, abs=1e-3)
+
+
+def test_a_carried_robot_may_be_anywhere_within_reach():
+    ekf = Filter(IDEAL, ORIGIN)
+    ekf.place(ORIGIN, 1e-9 * numpy.eye(3))
+    ekf.carry(0.5, 2.0)
+    assert ekf.state[YAW] == 0.5
+    assert ekf.covariance[X, X] == ekf.covariance[Y, Y] == pytest.approx((CARRY_SPEED * 2.0) ** 2)
+    assert ekf.covariance[X, Y] == 0
 
 
 def test_place_leaves_no_doubt():

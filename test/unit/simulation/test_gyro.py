@@ -4,6 +4,7 @@ from statistics import mean, pstdev
 
 import pytest
 
+from rbx1_nav.robot.readings import MEASURED
 from rbx1_nav.simulation.gyro import Gyro, IdealGyro
 from rbx1_nav.simulation.surfaces import RandomErrors
 from sample_surface import SURFACE
@@ -62,3 +63,15 @@ def test_the_heading_is_calibrated_at_standstill_before_the_first_motion_only():
 def test_the_noise_depends_on_the_seed_only():
     one, same, other = ([reading.rate for reading in readings(Gyro(SURFACE, RUN, seed), 0.0, 5)] for seed in (1, 1, 2))
     assert one == same != other
+
+
+@pytest.mark.parametrize('rest', [0, 100])
+def test_the_variance_of_the_heading_is_the_sum_of_noise_bias_and_scale_error(rest):
+    gyro = Gyro(SURFACE, RUN, 1)
+    readings(gyro, 0.0, rest, at_rest=True)
+    moved = readings(gyro, 1.0, 100)
+    time, turned = 100 * STEP, abs(moved[-1].yaw)
+    density = SURFACE.gyro_noise ** 2 * STEP     # rad^2/s: white noise, one reading per step
+    bias = min(density / (rest * STEP), SURFACE.gyro_bias ** 2) if rest else SURFACE.gyro_bias ** 2
+    expected = density * time + bias * time ** 2 + (SURFACE.gyro_scale_error * turned) ** 2 + MEASURED
+    assert moved[-1].yaw_variance == pytest.approx(expected, rel=1e-4)

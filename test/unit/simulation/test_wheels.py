@@ -103,3 +103,10 @@ def test_a_shorter_window_makes_the_reported_speed_less_certain():
             wheels.travel(0.2, 0.0, 0.005)
     # except for the variance of (1 mm/s)^2 that both have
     assert short.uncertainty.linear - 1e-6 == pytest.approx(16 * (long.uncertainty.linear - 1e-6))
+
+
+def test_the_uncertainty_of_the_position_grows_with_the_slip_of_the_path():
+    wheels = Wheels(0.26, SURFACE, RUN, 0.02)
+    path, tick = sum(wheels.travel(0.2, 0.0, 0.02)[0] for _ in range(500)), 1 / SURFACE.ticks_meter
+    slip = SURFACE.slip_straight ** 2 + SURFACE.slip_straight_spread ** 2
+    assert wheels.uncertainty.position == pytest.approx(slip * path ** 2 + tick ** 2, rel=0.02)
