@@ -108,6 +108,12 @@ def test_the_distance_has_the_noise_of_the_wheels_or_of_the_floor():
         assert ekf.state[:3] == pytest.approx([0.4, -0.3, 0.0])
 
 
+def test_a_floor_may_have_noise_of_the_distance_only():
+    ekf = sure(IDEAL._replace(distance_noise=0.1))
+    ekf.predict(0.02, ekf.update(0.02, (0.0, 1e-4), None, 1.0), 0.0, 1.0)
+    assert ekf.covariance[X, X] == pytest.approx(1e-9 + 0.1 ** 2)
+
+
 def test_slip_makes_the_noise_of_the_distance_smaller_with_the_distance():
     ekf = sure()
     ekf.state[STRAIGHT] = 0.25
