@@ -149,7 +149,8 @@ def test_rates_are_used_rather_than_the_orientation():
 def test_after_rates_an_orientation_is_rejected():
     gyro = GyroInput()
     gyro.accepted(data(0.5, heading=0.0))
-    with pytest.raises(RejectedMessage, match='an angular velocity, as before'):
+    expected = r'^angular_velocity_covariance\[0\]: -1: expected an angular velocity, as before'
+    with pytest.raises(RejectedMessage, match=expected):
         gyro.read(data(heading=0.1, stamp=0.1)._replace(rates=None))
 
 
