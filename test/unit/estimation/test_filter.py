@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rbx1_nav.estimation.filter import CARRY_SPEED, SLIP_WALK, Filter
+from rbx1_nav.estimation.filter import SLIP_WALK, Filter
 from rbx1_nav.estimation.model import BIAS, SCALE, STRAIGHT, TURNING, X, Y, YAW
 from rbx1_nav.estimation.priors import UNKNOWN_FLOOR
 from rbx1_nav.robot.kinematics import ORIGIN, Pose
@@ -289,15 +289,6 @@ def test_an_outlier_is_beyond_noise_and_errors_of_the_state_together(gyro, outli
     assert (ekf.state[TURNING] == 0) == outlier and turn.angle == pytest.approx(gyro, abs=1e-3)
 
 
-def test_a_carried_robot_may_be_anywhere_within_reach():
-    ekf = Filter(IDEAL, ORIGIN)
-    ekf.place(ORIGIN, 1e-9 * numpy.eye(3))
-    ekf.carry(0.5, 2.0)
-    assert ekf.state[YAW] == 0.5
-    assert ekf.covariance[X, X] == ekf.covariance[Y, Y] == pytest.approx((CARRY_SPEED * 2.0) ** 2)
-    assert ekf.covariance[X, Y] == 0
-
-
 def test_place_leaves_no_doubt():
     ekf, _, contradiction = drive(UNKNOWN_FLOOR, 0.5, turned=2.0)
     covariance = numpy.diag([0.01, 0.02, 0.03])
@@ -308,11 +299,3 @@ def test_place_leaves_no_doubt():
 @given(st.floats(-0.07, 0.07), st.floats(1.5, 60))
 def test_no_slip_of_a_known_floor_is_a_contradiction(slip, turned):
     assert drive(UNKNOWN_FLOOR, slip, turned=turned)[1:] == (False, 0.0)
-
-
-def test_the_noise_of_a_robot_that_stands_or_goes_straight_is_no_turn():
-    ekf = Filter(UNKNOWN_FLOOR, ORIGIN)
-    generator = numpy.random.default_rng(1)
-    for wheels, gyro in generator.normal(0, 1e-3, (100000, 2)):
-        ekf.agreement.add(wheels, gyro, 1e-9, 0.004, 0.02)
-    assert ekf.agreement.turned == 0.0

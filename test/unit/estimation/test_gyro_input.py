@@ -81,6 +81,30 @@ def test_invalid_rates_are_rejected_by_the_axis_that_measures(vertical, field, r
         GyroInput().read(ImuData(0, rates, variances, None, 1.0), vertical)
 
 
+def test_the_variance_of_robot_pose_ekf():
+    assert DEFAULT_VARIANCE == pytest.approx(0.00017 ** 2, rel=1e-12)
+
+
+@pytest.mark.parametrize('share, used', [(0.00101, True), (0.00099, False)])
+def test_an_axis_that_measures_less_than_a_thousandth_of_the_rate_is_not_used(share, used):
+    vertical = (share, 0.0, (1 - share ** 2) ** 0.5)
+    message = ImuData(0, (nan, 0.0, 0.5), VARIANCES, None, 1.0)
+    if used:
+        with pytest.raises(RejectedMessage, match='angular_velocity.x: nan'):
+            GyroInput().read(message, vertical)
+    else:
+        assert GyroInput().read(message, vertical).rate == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize('kept', [0, 1, 2])
+def test_an_axis_that_is_the_only_one_with_a_variance_measures_the_rate(kept):
+    # all axes measure the same share of 0.6 rad/s, but the others report nonsense
+    variances, rates, share = [0.0] * 3, [100.0] * 3, 3 ** -0.5
+    variances[kept], rates[kept] = 1e-4, 0.6 * share
+    imu = GyroInput().read(ImuData(0, rates, variances, None, 1.0), (share, share, share))
+    assert imu.rate == pytest.approx(0.6) and imu.variance == pytest.approx(3e-4)
+
+
 def test_rates_without_a_covariance_get_the_one_of_robot_pose_ekf():
     notes = []
     gyro = GyroInput(notes.append)
@@ -125,13 +149,32 @@ def test_rates_are_used_rather_than_the_orientation():
 def test_after_rates_an_orientation_is_rejected():
     gyro = GyroInput()
     gyro.accepted(data(0.5, heading=0.0))
-    with pytest.raises(RejectedMessage, match='an angular velocity, as before'):
+    expected = r'^angular_velocity_covariance\[0\]: -1: expected an angular velocity, as before'
+    with pytest.raises(RejectedMessage, match=expected):
         gyro.read(data(heading=0.1, stamp=0.1)._replace(rates=None))
 
 
 def test_an_orientation_without_a_covariance_gets_the_one_of_robot_pose_ekf():
     assert [imu.variance for imu in orientations_only(
         (data(heading=0.0, yaw_variance=0.0), (0.0, 0.0, 1.0)))] == [DEFAULT_VARIANCE]
+
+
+def test_notes_about_the_orientation_are_logged_once():
+    notes = []
+    gyro = GyroInput(notes.append)
+    assumed, used = ('no orientation covariance: assuming 0.00017 rad',
+                     'no angular velocity: using the change in orientation instead')
+    for number, noted in enumerate([[assumed], [assumed], [assumed, used], [assumed, used]]):
+        # it turns from the third message on
+        message = data(heading=0.1 * max(0, number - 1), stamp=number, yaw_variance=0.0)._replace(rates=None)
+        gyro.read(message)
+        gyro.accepted(message)
+        assert notes == noted
+
+
+def test_a_second_message_with_the_same_stamp_has_no_rate():
+    first, second = orientations_only((data(heading=0.0), (0.0, 0.0, 1.0)), (data(heading=0.1), (0.0, 0.0, 1.0)))
+    assert first.rate == second.rate == 0.0
 
 
 @pytest.mark.parametrize('variance', [-1.0, nan, inf])

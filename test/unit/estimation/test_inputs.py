@@ -4,7 +4,7 @@ from math import inf, nan
 import pytest
 
 from rbx1_nav.estimation.inputs import Imu, MAX_NUMBER, Odom, RejectedMessage, check, check_imu, check_odom
-from rbx1_nav.robot.kinematics import ORIGIN
+from rbx1_nav.robot.kinematics import ORIGIN, Pose
 from rbx1_nav.robot.readings import MIN_VARIANCE
 
 ODOM = Odom(0, ORIGIN, 1e-6, 1e-6)
@@ -58,6 +58,19 @@ def test_an_invalid_gyro_reading_is_rejected(field, rate, variance):
 def test_valid_messages_are_accepted():
     check_odom(ODOM, VARIANCES)
     check_imu(Imu(0, -0.5, MIN_VARIANCE))
+
+
+@pytest.mark.parametrize('variance', [1e-12, 1e12])
+@pytest.mark.parametrize('number', [1e6, -1e6])
+def test_numbers_and_variances_at_their_limits_are_accepted(variance, number):
+    check_odom(Odom(0, Pose(number, number, number), variance, variance), (variance,) * 3)
+    check_imu(Imu(0, number, variance))
+
+
+@pytest.mark.parametrize('field, value', [
+    (field, value) for field in [*SPEED, *COVARIANCE] for value in (0.999e-12, 1.001e12)])
+def test_variances_beyond_their_limits_are_rejected(field, value):
+    assert rejection(check_odom, *with_field(ODOM, VARIANCES, field, value)).startswith(f'{field}: {value}: expected ')
 
 
 def test_a_variance_of_0_of_a_speed_means_that_the_sender_does_not_give_it():

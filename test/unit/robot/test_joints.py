@@ -29,10 +29,21 @@ def test_a_joint_reaches_its_goal_and_stays_there():
     assert joint.position == 0.3 and joint.velocity == 0.0
 
 
+def test_a_joint_reports_the_speed_at_which_it_moves():
+    joint = Joint('pan', -1.0, 2.0, 0.5)
+    assert joint.velocity == 0.0
+    joint.command(0.3)
+    joint.advance(0.4)
+    assert joint.position == pytest.approx(0.2) and joint.velocity == pytest.approx(0.5)
+    joint.command(-5.0)
+    joint.advance(4.0)      # 1.2 rad to the lower limit in 4 s
+    assert joint.position == -1.0 and joint.velocity == pytest.approx(-0.3)
+
+
 @pytest.mark.parametrize('goal', [nan, inf])
 def test_a_goal_that_is_not_finite_is_rejected(goal):
     joint = Joint('pan', -1.0, 2.0, 0.5)
-    with pytest.raises(ValueError):
+    with pytest.raises(ValueError, match=f'^{goal}: expected a finite angle in rad'):
         joint.command(goal)
     joint.advance(1.0)
     assert joint.position == 0.0

@@ -61,3 +61,12 @@ def test_a_travel_that_was_not_read_makes_a_robot_at_rest_uncertain():
     odometry = UncertainOdometry(0.26, ERRORS, ROUNDING)
     odometry.move(Travel(0.0, 0.0, 0.01, 0.02))
     assert odometry.covariance == pytest.approx(numpy.diag([0.01 + 1e-6, 1e-6, 0.02 + 2.5e-5]))
+
+
+def test_driving_straight_a_rounded_heading_moves_the_robot_aside_by_up_to_30_cm_of_its_error():
+    odometry = UncertainOdometry(0.26, OdometryErrors(0.0, 0.0, 0.0), ROUNDING)
+    for _ in range(100):
+        odometry.move(Travel(0.01, 0.0))
+    # 1 m at an error of 0.005 rad that is another one after each 0.3 m, and the rounding of the counts
+    assert odometry.covariance[1, 1] == pytest.approx(0.005 ** 2 * 1.0 * 0.3 + 1e-6)
+    assert odometry.covariance[0, 0] == pytest.approx(1e-6) and odometry.pose.x == pytest.approx(1.0)

@@ -1,0 +1,127 @@
+"""Stamps are checked at their limits, and silent sensors are detected and reported once."""
+import pytest
+
+from rbx1_nav.estimation.arrivals import IMU, ODOM, Arrivals
+from rbx1_nav.estimation.inputs import RejectedMessage
+from rbx1_nav.units import SECOND
+from sample_robot import Robot
+from test_inputs import VARIANCES
+
+NOW = 1000 * SECOND
+
+
+def make(timeout=SECOND, clock=None, max_lead=SECOND // 4):
+    """Return an Arrivals and the list of its warnings."""
+    warnings = []
+    return Arrivals(timeout, warnings.append, clock, max_lead), warnings
+
+
+@pytest.mark.parametrize('offset, expected', [
+    (SECOND // 4, ''), (SECOND // 4 + 1, 'not later than now, 1000.000000000'),
+    (-60 * SECOND, ''), (-60 * SECOND - 1, 'not much older than now, 1000.000000000')])
+@pytest.mark.parametrize('sensor', [ODOM, IMU])
+def test_a_stamp_is_near_the_clock(offset, expected, sensor):
+    arrivals, _ = make()
+    if expected:
+        with pytest.raises(RejectedMessage) as error:
+            arrivals.add(sensor, NOW, NOW + offset)
+        assert str(error.value) == f'header.stamp: {(NOW + offset) / SECOND:.9f}: expected a stamp {expected}'
+        assert arrivals.last_stamp == {ODOM: None, IMU: None}
+    else:
+        assert arrivals.add(sensor, NOW, NOW + offset) is None
+        assert arrivals.last_stamp[sensor] == NOW + offset
+
+
+@pytest.mark.parametrize('lead, accepted', [(SECOND // 2, True), (SECOND // 2 + 1, False)])
+def test_clocks_of_computers_may_differ_by_half_a_second(lead, accepted):
+    robot = Robot()
+    odom = robot.odom()._replace(stamp=robot.now + lead)
+    if accepted:
+        robot.combined.add_odom(robot.now, odom, VARIANCES)
+    else:
+        with pytest.raises(RejectedMessage, match='expected a stamp not later than now'):
+            robot.combined.add_odom(robot.now, odom, VARIANCES)
+
+
+def test_a_stamp_is_later_than_the_last_one_of_its_sensor():
+    arrivals, _ = make()
+    assert arrivals.add(ODOM, NOW, NOW) is None
+    assert arrivals.add(IMU, NOW, NOW - 5) is None      # the sensors are independent
+    for stamp in NOW, NOW - 1:
+        with pytest.raises(RejectedMessage, match='expected a stamp later than the last, 1000.000000000'):
+            arrivals.add(ODOM, NOW + 1, stamp)
+    assert arrivals.add(ODOM, NOW + 1, NOW + 1) == NOW and arrivals.add(IMU, NOW + 1, NOW - 4) == NOW - 5
+
+
+def test_a_clock_may_jump_back_by_half_a_second():
+    arrivals, _ = make()
+    arrivals.add(ODOM, NOW, NOW)
+    arrivals.add(IMU, NOW, NOW)
+    assert arrivals.step_back(NOW - SECOND // 2) == 0 and arrivals.step_back(NOW + 5 * SECOND) == 0
+    assert arrivals.last_stamp == {ODOM: NOW, IMU: NOW}
+    assert arrivals.step_back(NOW - SECOND // 2 - 1) == SECOND // 2 + 1
+    # stamps of the new time are not compared with the ones before
+    assert arrivals.add(ODOM, NOW - SECOND, NOW - SECOND) is None
+    assert arrivals.add(IMU, NOW - SECOND, NOW - SECOND) is None
+
+
+@pytest.mark.parametrize('interval, counted', [(SECOND // 10, SECOND // 10), (SECOND // 4, SECOND // 4),
+                                               (100 * SECOND, SECOND // 4), (-SECOND, 0)])
+def test_a_pause_counts_as_at_most_a_quarter_of_the_timeout(interval, counted):
+    times = [NOW]
+    arrivals, _ = make(clock=lambda: times[-1])
+    arrivals.add(ODOM, NOW, NOW)
+    before = arrivals.time
+    times.append(NOW + interval)
+    arrivals.add(IMU, NOW, NOW)
+    assert arrivals.time - before == counted
+
+
+def test_a_sensor_is_silent_after_more_than_the_timeout():
+    times = [NOW]
+    arrivals, _ = make(clock=lambda: times[-1])
+    arrivals.add(ODOM, NOW, NOW)
+    start = arrivals.time
+    for step in range(1, 12):
+        times.append(NOW + step * SECOND // 10)
+        arrivals.add(IMU, NOW + step, NOW + step)
+        assert arrivals.is_silent(ODOM, 0) == (step > 10) and not arrivals.is_silent(IMU, 0)
+    # a sensor that has sent nothing yet is silent from a given time on
+    other, _ = make(clock=lambda: times[-1])
+    for step in range(12):
+        times.append(NOW + step * SECOND // 10)
+        other.add(IMU, NOW + step, NOW + step)
+        start = start if step else other.time
+        assert other.is_silent(ODOM, start) == (step > 10)
+
+
+def test_a_time_out_and_a_recovery_are_each_reported_once():
+    arrivals, warnings = make(timeout=SECOND // 2)
+    for _ in range(3):
+        arrivals.set_timed_out(ODOM)
+    assert arrivals.timed_out == {ODOM: True, IMU: False}
+    assert warnings == ['odom has timed out: no valid message for more than 0.5 s; not used until it recovers']
+    arrivals.add(ODOM, NOW, NOW)
+    arrivals.add(ODOM, NOW + 1, NOW + 1)
+    assert arrivals.timed_out == {ODOM: False, IMU: False} and warnings[1:] == ['odom has recovered']
+    arrivals.set_timed_out(IMU, 'it is upside down')
+    assert warnings[2:] == ['imu_data has timed out: it is upside down; not used until it recovers']
+    arrivals.restart()
+    assert arrivals.timed_out == {ODOM: False, IMU: False}
+
+
+@pytest.mark.parametrize('behind, recovers', [(5 * SECOND, True), (5 * SECOND + 1, False)])
+def test_a_gyro_recovers_when_it_is_at_most_5_seconds_late(behind, recovers):
+    arrivals, warnings = make()
+    arrivals.add(ODOM, NOW, NOW)
+    arrivals.set_timed_out(IMU)
+    arrivals.add(IMU, NOW, NOW - behind)
+    assert arrivals.timed_out[IMU] != recovers and ('imu_data has recovered' in warnings) == recovers
+
+
+def test_odometry_recovers_however_late_it_is():
+    arrivals, _ = make()
+    arrivals.add(IMU, NOW, NOW)
+    arrivals.set_timed_out(ODOM)
+    arrivals.add(ODOM, NOW, NOW - 50 * SECOND)
+    assert not arrivals.timed_out[ODOM]

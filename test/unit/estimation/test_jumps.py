@@ -1,0 +1,41 @@
+"""Odometry has jumped if no robot within the limits moves that far, plus 0.02 m and 0.02 rad."""
+from math import pi
+
+import pytest
+
+from rbx1_nav.estimation.inputs import Odom
+from rbx1_nav.estimation.jumps import distance, format_pose, has_jumped
+from rbx1_nav.estimation.limits import Limits
+from rbx1_nav.robot.kinematics import Pose
+from rbx1_nav.units import SECOND
+
+
+def odom(time, x=0.0, y=0.0, yaw=0.0):
+    """Return an Odom at a time (s)."""
+    return Odom(round(time * SECOND), Pose(x, y, yaw), 1e-6, 1e-6)
+
+
+@pytest.mark.parametrize('limits, speed, turn_rate', [
+    (Limits(), 6.0, 6.0), (Limits(max_speed=2.0), 2.0, 6.0), (Limits(max_turn_rate=0.5), 6.0, 0.5)])
+@pytest.mark.parametrize('elapsed', [0.02, 0.3])
+def test_the_limits_and_the_time_decide(limits, speed, turn_rate, elapsed):
+    before = odom(5.0, 1.0, 2.0, 0.3)
+    for beyond in -1e-6, 1e-6:
+        far, turn = speed * elapsed + 0.02 + beyond, turn_rate * elapsed + 0.02 + beyond
+        jumped = beyond > 0
+        assert has_jumped(before, odom(5.0 + elapsed, 1.0 - 0.6 * far, 2.0 + 0.8 * far, 0.3), limits) == jumped
+        assert has_jumped(before, odom(5.0 + elapsed, 1.0, 2.0, 0.3 - turn), limits) == jumped
+        assert has_jumped(before, odom(5.0 + elapsed, 1.0, 2.0, 0.3 + turn), limits) == jumped
+
+
+def test_a_whole_turn_of_the_yaw_is_no_jump():
+    assert not has_jumped(odom(0.0, yaw=pi), odom(0.02, yaw=-pi), Limits())
+    assert not has_jumped(odom(0.0, yaw=0.0), odom(0.02, yaw=4 * pi), Limits())
+
+
+def test_the_distance_of_two_messages():
+    assert distance(odom(0.0, 1.0, 2.0, 1.0), odom(1.0, 4.0, -2.0)) == 5.0
+
+
+def test_a_pose_as_text():
+    assert format_pose(odom(0.0, 1.0, -2.34567, 0.5)) == '(1.000 m, -2.346 m, 0.500 rad)'

@@ -1,0 +1,94 @@
+"""The values of an ArbotiX file have defaults and limits, and are kept in the units of the package."""
+from math import inf, radians
+
+import pytest
+
+from rbx1_nav.config import ConfigError
+from rbx1_nav.robot.description import load_robot, read_robot
+from rbx1_nav.units import SECOND
+
+
+def describe(controller=(), joint=None, **top):
+    """Return the Robot with these keys of the controller and of the joint `pan`, if there is one."""
+    joints = {} if joint is None else {'joints': {'pan': joint}}
+    return read_robot(dict(top, controllers={'base': dict({'type': 'diff_controller', 'base_width': 0.26},
+                                                          **dict(controller))}, **joints))
+
+
+def test_keys_that_are_not_given_have_defaults():
+    robot = describe(joint={})
+    joint, = robot.joints
+    assert (joint.name, joint.lower, joint.upper, joint.max_speed) == (
+        'pan', radians(-150), radians(150), radians(90))
+    assert robot._replace(joints=[]) == (
+        'base', 'odom', 'base_link', 0.26, 0.033, 50.0, SECOND, (inf, inf), True, [],
+        ('base_l_wheel_joint', 'base_r_wheel_joint'), [], [])
+
+
+def test_keys_that_are_given_replace_the_defaults():
+    robot = describe({'rate': 25, 'timeout': 0.25, 'max_linear_speed': 0.5, 'max_angular_speed': 2.0,
+                      'wheel_radius': 0.05, 'left_wheel': 'a', 'right_wheel': 'b'},
+                     {'min_angle': 10, 'max_angle': 20, 'max_speed': 5}, publish_tf=False)
+    assert (robot.rate, robot.timeout, robot.wheel_radius) == (25, SECOND // 4, 0.05)
+    assert (robot.limits.linear, robot.limits.angular) == (0.5, 2.0) and robot.publish_tf is False
+    assert robot.wheel_joints == ('a', 'b')
+    joint, = robot.joints
+    assert (joint.lower, joint.upper, joint.max_speed) == (radians(10), radians(20), radians(5))
+    assert joint.position == radians(10)
+
+
+LIMITS = [('base_width', 0.001, 100, 'm'), ('rate', 0.1, 1000, 'Hz'), ('max_linear_speed', 0.001, 1000, 'm/s'),
+          ('max_angular_speed', 0.001, 1000, 'rad/s'), ('wheel_radius', 0.001, 100, 'm')]
+
+
+@pytest.mark.parametrize('key, low, high, unit', LIMITS + [('timeout', 0, 1e6, 's')])
+def test_the_limits_of_a_controller(key, low, high, unit):
+    for value in low, high:
+        describe({key: value})
+    for value in low - 1e-4, high * 1.001:
+        with pytest.raises(ConfigError, match=f'^controllers/base/{key}: .* from {low} to .* in {unit}'):
+            describe({key: value})
+
+
+@pytest.mark.parametrize('key, low, high, unit', [
+    ('min_angle', -36000, 100, 'degrees'), ('max_angle', -100, 36000, 'degrees'),
+    ('max_speed', 0.01, 36000, 'degrees/s')])
+def test_the_limits_of_a_joint(key, low, high, unit):
+    for value in low, high:
+        describe(joint={key: value})
+    with pytest.raises(ConfigError, match=f'^joints/pan/{key}: .* in {unit}$'):
+        describe(joint={key: 36000.1})
+    with pytest.raises(ConfigError, match=f'^joints/pan/{key}: .* in {unit}$'):
+        describe(joint={key: -36000.1 if 'angle' in key else 0.0099})
+
+
+def test_a_joint_needs_a_range():
+    with pytest.raises(ConfigError, match='^joints/pan/min_angle: 20.0: expected an angle below max_angle, 20.0$'):
+        describe(joint={'min_angle': 20, 'max_angle': 20})
+
+
+@pytest.mark.parametrize('timeout, accepted', [(0, True), (0.01, True), (0.0099, False)])
+def test_a_timeout_is_0_or_at_least_10_milliseconds(timeout, accepted):
+    if accepted:
+        assert describe({'timeout': timeout}).timeout == round(timeout * SECOND)
+    else:
+        with pytest.raises(ConfigError, match=r'0.0099: expected 0 \(never\), or at least 0.01 s'):
+            describe({'timeout': timeout})
+
+
+def test_keys_of_the_hardware_and_unknown_keys_are_sorted():
+    robot = describe({'ticks_meter': 4100, 'Kp': 12, 'bell': 1}, {'neutral': 512, 'id': 1, 'colour': 'red'},
+                     port='/dev/ttyUSB0', baud=115200)
+    assert robot.hardware == ['baud', 'controllers/base/Kp', 'controllers/base/ticks_meter', 'joints/pan/id',
+                              'joints/pan/neutral', 'port']
+    assert robot.unknown == ['controllers/base/bell', 'joints/pan/colour']
+
+
+def test_a_file_is_named_in_the_error(tmp_path):
+    path = tmp_path / 'robot.yaml'
+    path.write_text('controllers: {base: {type: diff_controller, base_width: 0.3}}\n')
+    assert load_robot(str(path)).base_width == 0.3
+    path.write_text('controllers: {base: {type: diff_controller, base_width: -1}}\n')
+    with pytest.raises(ConfigError) as error:
+        load_robot(str(path))
+    assert str(error.value).startswith(f'{path}: controllers/base/base_width: -1: expected')
