@@ -166,3 +166,14 @@ def test_what_is_reachable_depends_on_the_heading_of_the_robot(yaw, forward, lef
     before = Pose(3.0, -2.0, yaw)
     after = Pose(3.0 + forward * cos(yaw) - left * sin(yaw), -2.0 + forward * sin(yaw) + left * cos(yaw), yaw)
     assert is_reachable(before, after, 0.1, 0.2, 1.0) is reachable
+
+
+@pytest.mark.parametrize('yaw', [0.0, 2.0, -3.1])
+@pytest.mark.parametrize('turned, elapsed, reachable', [
+    # 0.1 s at 1 rad/s, and half of it in addition: 0.15 rad, and 0.2 rad in both directions
+    (0.34, 0.1, True), (0.36, 0.1, False), (-0.19, 0.1, True), (-0.21, 0.1, False),
+    # without a pose for a long time: 1 s counts
+    (1.69, 100.0, True), (1.71, 100.0, False), (0.19, -5.0, True), (0.21, -5.0, False)])
+def test_how_far_a_robot_can_have_turned(yaw, turned, elapsed, reachable):
+    after = Pose(3.0, -2.0, remainder(yaw + turned, 2 * pi))
+    assert is_reachable(Pose(3.0, -2.0, yaw), after, elapsed, 0.2, 1.0) is reachable

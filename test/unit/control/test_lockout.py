@@ -1,4 +1,6 @@
 """A sender that has not noticed that the robot was stopped cannot drive it."""
+import weakref
+
 import pytest
 
 from rbx1_nav.control.lockout import Lockout
@@ -46,3 +48,28 @@ def test_the_next_event_concerns_everybody_again(locked):
     assert not locked.refuses(120, 'driver', False)
     locked.lock('the robot was reset')
     assert locked.refuses(140, 'driver', True) and locked.reason == 'the robot was reset'
+
+
+def test_there_is_no_reason_before_the_first_event():
+    assert Lockout(SILENCE).reason == ''
+
+
+def test_a_sender_is_not_forgotten_among_many_until_it_has_been_silent_for_longer(locked):
+    for number in range(30):
+        assert not locked.refuses(90 + SILENCE, f'other {number}', True)
+    assert locked.refuses(90 + SILENCE, 'driver', True)
+
+
+class Name(str):
+    """A name that shows when it has been removed from memory."""
+
+
+def test_the_names_of_silent_senders_do_not_accumulate():
+    """A node may have another name at each start."""
+    lockout, names = Lockout(SILENCE), []
+    for number in range(100):
+        name = Name(number)
+        names.append(weakref.ref(name))
+        lockout.refuses(number * (SILENCE + 1), name, True)
+        del name
+        assert sum(each() is not None for each in names) <= 20

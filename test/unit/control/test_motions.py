@@ -25,3 +25,19 @@ def test_ticks_are_rounded_down_but_float_error_costs_none(goal, speed, rate, ex
 def test_a_motion_shorter_than_a_tick_or_longer_than_a_day_is_rejected(goal, speed):
     with pytest.raises(ValueError, match='expected from 1 to 100000000'):
         ticks(goal, speed, 50)
+
+
+def test_the_longest_motion_is_accepted():
+    assert ticks(1e8, 1.0, 1) == 10 ** 8
+    with pytest.raises(ValueError):
+        ticks(1e8 + 1, 1.0, 1)
+
+
+@pytest.mark.parametrize('change, text', [
+    (dict(linear_speed=1e-9), 'goal_distance / linear_speed * rate: 1 / 1e-09 * 50: 5e+10 ticks'),
+    (dict(angular_speed=1e3), 'goal_angle / angular_speed * rate: 3 / 1000 * 50: 0.15 ticks')])
+def test_the_error_shows_the_calculation(change, text):
+    with pytest.raises(ValueError) as error:
+        out_and_back(**dict(dict(linear_speed=0.2, goal_distance=1.0, angular_speed=1.0, goal_angle=3.0, rate=50),
+                            **change))
+    assert str(error.value) == f'{text}: expected from 1 to 100000000'

@@ -67,6 +67,9 @@ class Nodes:
     def connected(self, _):
         return True
 
+    def unread(self, _):
+        return False
+
 
 class World:
     """A Lockstep, and the commands with the ticks at which they took effect."""

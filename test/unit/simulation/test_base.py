@@ -120,3 +120,64 @@ def test_the_true_pose_is_that_of_the_odometry_bit_for_bit():
     for _ in range(100):
         base.advance(base.now + step)
     assert base.wheels.truth.pose == base.odometry.pose != ORIGIN
+
+
+def test_a_command_is_not_in_force_any_more_when_its_timeout_is_over():
+    base = make_base(timeout=0.5)
+    base.command(0, 0.2, 0.0)
+    assert base.advance(SECOND // 2) and not base.gate.moving
+    assert not base.advance(SECOND // 2)
+
+
+def test_the_same_time_again_changes_nothing():
+    base = make_base()
+    base.command(SECOND, 0.2, 0.0)
+    assert not base.advance(SECOND) and base.gate.moving
+    base.advance(3 * SECOND // 2)
+    assert base.odometry.pose.x == pytest.approx(0.1)
+
+
+def test_the_total_travel_of_each_wheel():
+    base = make_base()
+    base.command(0, 0.2, 1.0)
+    base.advance(SECOND // 2)
+    base.command(base.now, -0.1, 0.0)
+    base.advance(SECOND)
+    # 0.2 m/s minus and plus 1 rad/s * 0.13 m for 0.5 s, and then 0.05 m back
+    assert (base.left, base.right) == pytest.approx((0.035 - 0.05, 0.165 - 0.05))
+
+
+def test_the_speeds_are_those_of_the_command_in_force():
+    base = make_base()
+    assert base.at_rest
+    base.command(0, 0.2, -0.5)
+    assert base.velocity == base.true_velocity == (0.2, -0.5) and not base.at_rest
+    base.advance(2 * SECOND)
+    assert base.velocity == base.true_velocity == (0.0, 0.0) and base.at_rest
+
+
+def test_the_gyro_measures_the_mean_rate_since_the_last_reading():
+    base = make_base()
+    base.command(SECOND, 0.0, 0.5)
+    assert base.read_gyro() is None
+    base.advance(SECOND + SECOND // 2)
+    assert base.read_gyro()[::2] == pytest.approx((0.5, 0.25))
+    assert base.read_gyro() is None     # no time has passed
+    base.command(base.now, 0.0, 0.0)
+    base.advance(2 * SECOND)
+    assert base.read_gyro()[::2] == pytest.approx((0.0, 0.25))
+    base.advance(SECOND)                # the clock jumped back
+    assert base.read_gyro() is None
+    base.advance(3 * SECOND)
+    assert base.read_gyro().rate == 0.0
+
+
+def test_the_heading_of_the_gyro_is_0_after_a_reset():
+    base = make_base()
+    base.read_gyro()
+    base.command(0, 0.0, 1.0)
+    base.advance(SECOND // 2)
+    assert base.read_gyro().yaw == pytest.approx(0.5)
+    base.reset()
+    base.advance(SECOND)
+    assert base.read_gyro()[::2] == (0.0, 0.0)

@@ -1,13 +1,15 @@
 """On a surface, the base slips, coasts after its last command, and reports what its encoders count."""
 from math import pi
+import os
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from rbx1_nav.control.gate import CommandGate
-from rbx1_nav.robot.description import Limits
+from rbx1_nav.robot.description import Limits, load_robot
 from rbx1_nav.robot.kinematics import ORIGIN
+from rbx1_nav.simulation import base as simulated
 from rbx1_nav.simulation.base import SimulatedBase
 from rbx1_nav.simulation.gyro import IdealGyro
 from rbx1_nav.simulation.wheels import Wheels
@@ -15,6 +17,7 @@ from rbx1_nav.units import SECOND
 from sample_surface import RUN, SURFACE
 
 WIDTH = 0.26
+TURTLEBOT = os.path.join(os.path.dirname(__file__), '..', '..', '..', 'config', 'turtlebot.yaml')
 
 
 def make_base(timeout=1.0):
@@ -116,3 +119,15 @@ def test_uncertainty_of_the_pose_grows_with_the_path_and_that_of_the_speed_ends_
     after = base.wheels.uncertainty
     assert moving.linear > after.linear == before.linear and moving.angular > after.angular == before.angular
     assert after.position > before.position and after.yaw > before.yaw
+
+
+@pytest.mark.parametrize('rate, window', [(50, 0.02), (10, 0.1), (2, 0.1)])
+def test_the_reported_speeds_are_means_over_the_time_between_messages_or_a_tenth_of_a_second(rate, window):
+    robot = load_robot(TURTLEBOT)._replace(rate=rate, timeout=0)
+    base = simulated.make_base(robot, SURFACE._replace(ticks_meter=1e6), 0)
+    base.command(0, 0.2, 0.0)
+    # three quarters of this time are enough, because steps differ slightly from their nominal length
+    base.advance(round(0.7 * window * SECOND))
+    assert base.velocity == (0.0, 0.0)
+    base.advance(round(0.8 * window * SECOND))
+    assert base.velocity[0] > 0

@@ -4,7 +4,7 @@ from statistics import mean, pstdev
 
 import pytest
 
-from rbx1_nav.robot.readings import MEASURED
+from rbx1_nav.robot.readings import MEASURED, MIN_VARIANCE
 from rbx1_nav.simulation.gyro import Gyro, IdealGyro
 from rbx1_nav.simulation.surfaces import RandomErrors
 from sample_surface import SURFACE
@@ -75,3 +75,42 @@ def test_the_variance_of_the_heading_is_the_sum_of_noise_bias_and_scale_error(re
     bias = min(density / (rest * STEP), SURFACE.gyro_bias ** 2) if rest else SURFACE.gyro_bias ** 2
     expected = density * time + bias * time ** 2 + (SURFACE.gyro_scale_error * turned) ** 2 + MEASURED
     assert moved[-1].yaw_variance == pytest.approx(expected, rel=1e-4)
+
+
+def test_the_bias_in_the_variance_is_at_most_that_of_the_surface():
+    """A calibration that is shorter than the bias is worth does not make the heading less certain."""
+    surface = SURFACE._replace(gyro_noise=0.02, gyro_scale_error=0.0)
+    # the noise has 8e-6 rad^2/s: after 0.02 s at rest, a variance of 4e-4 (rad/s)^2; the surface's bias has 1e-4
+    for rest, bias in (0, 1e-4), (1, 1e-4), (5, 8e-5):
+        gyro = Gyro(surface, RUN, 1)
+        readings(gyro, 0.0, rest, at_rest=True)
+        assert readings(gyro, 0.0, 500)[-1].yaw_variance == pytest.approx(1e-6 + 8e-6 * 10 + bias * 100)
+
+
+def test_the_scale_error_in_the_variance_grows_in_both_directions():
+    surface = SURFACE._replace(gyro_noise=1e-9, gyro_bias=0.0)
+    gyro = Gyro(surface, RandomErrors(0.0, 0.0, 0.0, 0.0), 1)
+    readings(gyro, 1.0, 100)
+    back = readings(gyro, -1.0, 100, start=2.0)[-1]
+    # 2 rad to the left and 2 rad to the right; the noise of 1e-9 rad/s adds less than 1e-8 rad
+    assert back.yaw == pytest.approx(0.0, abs=1e-7)
+    assert back.yaw_variance == pytest.approx(1e-6 + (0.003 * 4) ** 2, rel=1e-6)
+
+
+def test_a_reading_without_noise_has_the_smallest_variance():
+    gyro = Gyro(SURFACE._replace(gyro_noise=1e-7), RUN, 1)
+    assert gyro.read(0.0, STEP, False).rate_variance == MIN_VARIANCE == 1e-12
+
+
+@pytest.mark.parametrize('rest', [0, 10])
+def test_after_a_reset_a_gyro_is_like_a_new_one(rest):
+    surface = SURFACE._replace(gyro_noise=1e-9)
+    used, new = (Gyro(surface, RUN, 1) for _ in range(2))
+    readings(used, 0.0, 20, at_rest=True)
+    readings(used, 1.0, 70)
+    used.reset()
+    for gyro in used, new:
+        readings(gyro, 0.0, rest, at_rest=True)
+    # except for the noise of 1e-9 rad/s
+    for one, other in zip(readings(used, 0.5, 50), readings(new, 0.5, 50)):
+        assert one == pytest.approx(other, abs=1e-7, rel=1e-6)

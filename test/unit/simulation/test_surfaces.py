@@ -159,3 +159,29 @@ def test_whoever_lists_surfaces_lists_all(path):
     assert listed
     for line in listed:
         assert all(name in line for name in known_surfaces(FOLDER)), line
+
+
+@pytest.mark.parametrize('key, low, high, unit', [
+    ('lag', 1e-4, 60, 1), ('accel_limit', 1e-3, 1000, 1), ('drag_straight', 1e-6, 10, 1), ('drag_turning', 1e-6, 10, 1),
+    ('slip_straight_spread', 0, 0.5, 1), ('slip_turning_spread', 0, 0.5, 1), ('ticks_meter', 1, 1e6, 1),
+    ('gyro_noise', 1e-3, 1000, radians(1)), ('gyro_bias', 0, 1000, radians(1)), ('gyro_scale_error', 0, 0.5, 1),
+    ('gyro_measurement_range', 1, 1e5, radians(1))])
+def test_the_range_of_a_required_key_is_the_documented_one(key, low, high, unit):
+    for value in (low, high):
+        surface = read_surface(dict(without_optional_keys(), **{key: value}), 'x')
+        assert getattr(surface, key) == pytest.approx(value * unit)
+    for value in (0.99 * low if low else -1e-9, 1.01 * high):
+        with pytest.raises(ConfigError, match=f'^surface x/{key}: '):
+            read_surface(dict(without_optional_keys(), **{key: value}), 'x')
+
+
+def test_the_smallest_and_the_largest_seed():
+    assert [read_seed(seed) for seed in (0, '0', 2147483647, '2147483647')] == [0, 0, 2147483647, 2147483647]
+    with pytest.raises(ConfigError):
+        read_seed('2147483648')
+
+
+def test_random_seeds_hardly_repeat():
+    seeds = [read_seed('random') for _ in range(1000)]
+    # a thousand seeds out of a million have half a repetition on average
+    assert all(0 <= seed <= 2147483647 for seed in seeds) and len(set(seeds)) > 950
