@@ -127,6 +127,31 @@ def test_a_line_that_comes_back_gets_a_stop():
     assert contacted.contact.dropouts == 1      # it had not answered in between
 
 
+def test_a_line_that_comes_back_during_the_search_ends_it():
+    contacted = answering()
+    contacted.tick(2000, 0)
+    contacted.tick(2301)
+    assert contacted.tick(3302) == ['search 57600'] and contacted.contact.searching
+    contacted.contact.detach()
+    contacted.found = None
+    assert 'ask' in contacted.attach(6000) and not contacted.contact.searching and contacted.contact.may_ask
+
+
+def test_bytes_that_arrive_during_the_search_are_passed_on():
+    contacted, received = Contacted(), []
+    contacted.search.receive = lambda now, data: received.append((now, data))
+    contacted.contact.receive(7, b'x')
+    assert received == [(7, b'x')]
+
+
+def test_before_a_line_is_open_nothing_answers():
+    contacted = Contacted()
+    contact = contacted.contact
+    assert not (contact.answers or contact.started or contact.searching or contact.may_ask or contacted.tick(10 ** 6))
+    contact.detach()
+    assert contact.dropouts == 0
+
+
 def test_another_adapter_is_searched_at_the_rate_of_the_last_robot_first():
     contacted = answering(CREATE_2)
     contacted.is_same = False
@@ -160,7 +185,7 @@ def test_a_warning_after_two_rounds_without_any_robot(rounds, known, warned):
     contacted = answering() if known else Contacted()
     contacted.is_same, contacted.found = False, None
     contacted.attach(0)
-    for contacted.search.rounds in (0, rounds, 5 * (rounds > 1)):
+    for contacted.search.rounds in (0, rounds):
         contacted.tick(0)
     assert contacted.log == ['No robot answers at 57600, 19200 baud: expected a Create, Create 2 or Roomba that is '
                              'switched on and connected'] * warned

@@ -3,7 +3,7 @@ import pytest
 
 from rbx1_nav.create import protocol
 from rbx1_nav.create.driver import sequences
-from rbx1_nav.create.driver.search import Search, has_frames, is_battery
+from rbx1_nav.create.driver.search import NoWakeLines, Search, has_frames, is_battery
 from rbx1_nav.units import SECOND
 
 RATES = (57600, 115200, 19200)
@@ -203,3 +203,67 @@ def test_the_next_rate_can_wait():
     (b'\x13\x00\xed\x13\x00\xed', True), (b'\x14\x00\xec\x14\x00\xec', False)])
 def test_frames_of_a_stream(data, found):
     assert has_frames(data) == found
+
+
+class WakeLine(Line):
+    """A line with RTS and DTR, or without them."""
+
+    def __init__(self, has_lines):
+        super().__init__()
+        self.has_lines, self.levels = has_lines, []
+
+    def set_wake_lines(self, on):
+        self.levels.append(on)
+        if not self.has_lines:
+            raise NoWakeLines
+
+
+def test_before_each_further_round_a_robot_is_woken():
+    line, search = WakeLine(True), Search((57600,), wake=True)
+    search.begin(0, line)
+    for rounds in 1, 2:
+        search.tick(search.next_time)
+        assert search.rounds == rounds and line.levels[-1] is False and search.missing == 0
+        for level in False, True:
+            assert line.levels[-1] is level and len(line.rates) == rounds
+            search.tick(search.next_time)
+        assert len(line.rates) == rounds + 1 and line.sent[-1] == sequences.ASK_BATTERY
+    assert line.levels == [False, True] * 2
+
+
+def test_a_line_that_cannot_wake_a_robot_is_asked_once():
+    line, search = WakeLine(False), Search((57600,), wake=True)
+    search.begin(0, line)
+    for _ in range(5):
+        search.tick(search.next_time)
+    assert line.levels == [False] and len(line.rates) == 6 and not search.wake
+
+
+def test_the_lines_change_0_75_s_after_the_last_query_failed():
+    line, search = WakeLine(True), Search((57600,), wake=True)
+    search.begin(0, line)
+    failed = search.next_time
+    search.tick(failed)
+    assert search.next_time == failed + SECOND * 3 // 4
+    search.tick(search.next_time)
+    assert search.next_time == failed + 2 * (SECOND * 3 // 4)
+
+
+def test_the_model_is_known_20_ms_after_a_reply_of_one_or_three_bytes():
+    searching = Searching()
+    searching.find_battery()
+    assert searching.search.missing == 3
+    for size in 1, 2, 3:
+        searching.search.receive(searching.now + size, b'\0')
+        assert searching.search.missing == 3 - size
+        # the first byte may be the whole reply; the deadline does not move back
+        assert searching.search.next_time == searching.now + 1 + SECOND // 50
+
+
+def test_replies_of_an_earlier_search_do_not_count():
+    searching = Searching()
+    searching.find_battery()
+    searching.answer(b'\0')
+    searching.search.begin(searching.now, searching.line, 57600)
+    searching.find_battery()
+    assert searching.answer(b'\0') is None and searching.answer(b'\0') == (protocol.CREATE, 57600)
