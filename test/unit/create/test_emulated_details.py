@@ -278,12 +278,44 @@ def test_the_next_event_of_the_robot(model):
 
 
 @both
-@pytest.mark.parametrize('speed, mode', [(0.0, SAFE), (60, SAFE), (-61, SAFE)])
-def test_a_circle_with_a_radius_of_the_robot_is_not_small(model, speed, mode):
+def test_a_circle_with_a_radius_of_the_robot_is_not_small(model):
     robot = robot_in(SAFE, model)
     # backward with the center 0.17 m to the side, and 0.16 m: the robot has a radius of 0.165 m
-    for radius, after in (170, mode), (160, PASSIVE):
+    for radius, after in (170, SAFE), (160, PASSIVE):
         robot.send(command('drive', *pair(-100, radius)))
         robot.body.cliff = True
         robot.run(0.02)
         assert robot.mode == after
+
+
+@both
+@pytest.mark.parametrize('data', [command('song', 0, 0), command('song', 0, 1, 60, 32), command('query_list', 0),
+                                  command('stream', 0), command('stream', 1, 7)])
+def test_a_command_is_complete_with_its_last_byte(model, data):
+    robot = robot_in(PASSIVE, model)
+    robot.commands.clear()
+    robot.send(data[:-1])
+    assert robot.commands == []
+    robot.send(data[-1:])
+    assert [each for _, each in robot.commands] == [data]
+
+
+@both
+def test_a_request_is_forgotten_in_passive_mode(model):
+    robot = robot_in(FULL, model)
+    robot.send(command('drive', *pair(200, 500)), drive_direct(100, -100))
+    assert robot.read(40) == {'requested_radius': 500} and robot.read(42) == {'requested_left_velocity': -100}
+    robot.send(command('start'))
+    values = robot.read(5)
+    assert [value for name, value in values.items() if name.startswith('requested')] == [0] * 4
+
+
+@both
+def test_while_a_stream_is_paused_another_one_may_be_requested(model):
+    robot = robot_in(PASSIVE, model)
+    robot.send(command('pause_resume_stream', 1))
+    assert robot.run(0.1) == b''        # nothing was requested
+    robot.send(command('stream', 1, 35), command('pause_resume_stream', 0))
+    robot.run(0.1)
+    robot.send(command('stream', 2, 35, 7))
+    assert encode_frame(model, [35, 7], {'mode': PASSIVE, 'bumps_and_wheel_drops': 0}) in robot.run(0.1)

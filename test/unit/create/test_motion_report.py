@@ -62,8 +62,9 @@ def test_at_a_standstill_velocity_and_variances_are_those_of_a_good_measurement(
         motion.add(quarter * SECOND // 4, NOWHERE)
         state = motion.state(None)
         # half a second after the first reading, the robot is stationary
-        assert motion.stands == (quarter >= 2) and state.velocity == (0, 0)
-        assert (state.variances == (MEASURED, MEASURED)) == (quarter in (1, 2, 3))
+        assert motion.stands == (quarter >= 2)
+        # the first State has no earlier one to compare with
+        assert state.velocity == (0, 0) and state.variances == (MEASURED, MEASURED)
 
 
 @pytest.mark.parametrize('travel', [Travel(0.01, 0, 0, 0), Travel(0, 0.01, 0, 0)])
