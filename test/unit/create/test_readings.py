@@ -98,3 +98,56 @@ def test_a_corrupted_reply(data):
     reader.expect(sequences.QUERIED)
     assert reader.feed(data) == []
     assert reader.rejected == 1 and not reader.waiting
+
+
+def test_what_is_missing_of_a_frame():
+    reader, data = FrameReader(MODEL, NUMBERS), frame(1)
+    assert reader.missing == len(data)
+    reader.feed(data[:10])
+    assert reader.missing == len(data) - 10
+    reader.clear()
+    assert reader.missing == len(data) and reader.feed(frame(2)) == [values(2)]
+
+
+def test_corrupted_bytes_between_two_good_frames_are_one_corrupted_frame():
+    reader = FrameReader(MODEL, NUMBERS)
+    reader.feed(bytes(5) + frame(1))
+    assert (reader.rejected, reader.skipped) == (0, 5)      # the first frame may have begun before the first byte
+    reader.feed(bytes(7))
+    reader.feed(bytes(8) + frame(1))
+    assert (reader.rejected, reader.skipped) == (1, 20)
+    wrong = protocol.encode_frame(MODEL, NUMBERS, dict(values(1), mode=5))
+    reader.feed(wrong + wrong + frame(1))
+    assert (reader.rejected, reader.skipped) == (3, 20 + 2 * len(wrong))
+    reader.clear()
+    reader.feed(bytes(3) + frame(1))
+    assert reader.rejected == 3
+
+
+def test_a_byte_that_may_begin_a_frame_is_kept():
+    reader = FrameReader(MODEL, NUMBERS)
+    assert reader.feed(b'\0' + frame(1)[:1]) == [] and reader.skipped == 1
+    assert reader.feed(frame(1)[1:]) == [values(1)] and reader.skipped == 1
+
+
+def test_what_is_missing_of_a_reply():
+    data = reply()[1]
+    reader = ReplyReader(protocol.CREATE, sequences.QUERIED, sequences.QUERIED_WITHOUT_ANGLE)
+    assert reader.missing == 0
+    reader.expect(sequences.QUERIED)
+    assert reader.missing == len(data)
+    reader.feed(data[:4])
+    assert reader.missing == len(data) - 4
+    reader.expect(sequences.QUERIED_WITHOUT_ANGLE)
+    # instead of group 2 (6 bytes), the distance (2 bytes)
+    assert reader.missing == len(data) - 4 and reader.skipped == 4
+    reader.clear()
+    assert reader.missing == 0 and not reader.waiting and reader.skipped == 4
+
+
+@pytest.mark.parametrize('voltage, good', [(4999, False), (5000, True), (25000, True), (25001, False)])
+def test_the_voltage_of_a_reply(voltage, good):
+    reader = ReplyReader(protocol.CREATE, sequences.QUERIED)
+    reader.expect(sequences.QUERIED)
+    assert bool(reader.feed(reply(voltage=voltage)[1])) == good == (reader.rejected == 0)
+    assert reader.buffer == b'' and not reader.waiting

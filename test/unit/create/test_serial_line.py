@@ -97,3 +97,33 @@ def test_what_waits_when_the_rate_changes_leaves_at_the_new_one():
         arrived.append((line.next_to_robot, line.receive_byte()))
     assert arrived[-3:] == [(2 * slow + index * fast, byte) for index, byte in enumerate((2, 3, 4), 1)]
     assert all(time <= 2 * slow for time, _ in arrived[:-3])
+
+
+def test_1024_bytes_wait_to_be_sent_and_the_next_are_lost():
+    line, period = SerialLine(57600), 10 * SECOND // 57600
+    line.from_robot(bytes(1000), 0)
+    line.from_robot(b'a' * 30, 0)
+    line.from_robot(b'b', 0)
+    line.from_robot(b'c' * 30, 10 * period)     # ten bytes have left
+    assert line.received(SECOND) == bytes(1000) + b'a' * 24 + b'c' * 10
+    assert line.next_to_host is None
+
+
+def test_a_pause_of_the_robot_delays_no_byte():
+    line, period = SerialLine(57600), 10 * SECOND // 57600
+    line.from_robot(b'a', 0)
+    line.from_robot(b'b', SECOND)
+    assert line.received(period) == b'a' and line.next_to_host == SECOND + period
+    line.from_host(b'a', 0)
+    line.from_host(b'b', SECOND)
+    assert line.next_to_robot == period and line.receive_byte() == 0x61 and line.next_to_robot == SECOND + period
+
+
+def test_the_bytes_of_different_seeds_are_corrupted_differently():
+    received = []
+    for seed in (1, 1, 2):
+        line = SerialLine(57600, seed)
+        line.corruption = 0.5
+        line.from_robot(bytes(100), 0)
+        received.append(line.received(SECOND))
+    assert received[0] == received[1] != received[2]

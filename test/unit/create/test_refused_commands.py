@@ -1,0 +1,171 @@
+"""When a command is refused, and which speeds the wheels may have: see docs/bases.md, 'A command is refused'."""
+from types import SimpleNamespace
+
+import pytest
+
+from rbx1_nav.control.gate import CommandGate, RefusedCommand
+from rbx1_nav.create.driver.acceptance import Acceptance
+from rbx1_nav.create.driver.parameters import read_settings
+from rbx1_nav.create.driver.travel import NOWHERE, Expected, Travel
+from rbx1_nav.create.protocol import CREATE
+from rbx1_nav.units import SECOND
+
+NOW = 10 * SECOND
+
+
+class Base:
+    """An Acceptance whose robot answers and is in the requested mode."""
+
+    def __init__(self, **params):
+        settings, robot = read_settings(params)
+        self.gate = CommandGate(robot.limits, robot.timeout)
+        self.contact = SimpleNamespace(answers=True)
+        self.supervisor = SimpleNamespace(in_control=True, reason='')
+        self.acceptance = Acceptance(settings, self.gate, self.contact, self.supervisor)
+        self.feel(0, 0)
+
+    def feel(self, *bits):
+        """Feed readings with these bumps and wheel drops. Returns the result of the last one."""
+        return [self.acceptance.feel(NOW, {'bumps_and_wheel_drops': each}) for each in bits][-1]
+
+    def command(self, linear, angular, now=NOW):
+        """Put a command in force. Returns why it is refused, or ''."""
+        self.gate.command(now, linear, angular, ())
+        try:
+            self.acceptance.check_obedience(now)
+        except RefusedCommand as error:
+            return str(error)
+        return ''
+
+    def follow(self, metres, travel=NOWHERE, elapsed=0.1):
+        self.acceptance.follow(elapsed, Expected(metres, metres), travel, 0.26)
+
+    @property
+    def speeds(self):
+        return self.acceptance.speeds(CREATE)
+
+
+@pytest.mark.parametrize('bits', [1, 2, 3])
+def test_a_bump_stops_forward_motion_at_once_and_is_refused_after_two_readings(bits):
+    base = Base()
+    base.command(0.2, 0)
+    assert base.speeds == (200, 200)
+    base.feel(bits)
+    assert base.speeds == (0, 0) and base.command(0.2, 0) == ''
+    base.feel(bits)
+    assert base.command(0.2, 0) == 'a bumper is pressed'
+    assert base.command(-0.2, 0) == base.command(0, 1) == ''
+    base.feel(0)
+    assert base.command(0.2, 0) == ''
+
+
+@pytest.mark.parametrize('bits', [4, 8, 16])
+def test_two_readings_show_a_dropped_wheel(bits):
+    base = Base()
+    base.command(-0.2, 0)
+    assert not base.feel(bits) and base.speeds == (0, 0)
+    assert base.feel(bits) and not base.feel(0) and base.speeds == (-200, -200)
+    assert not base.feel(4, 8) and not base.feel(3, 3)
+
+
+def test_after_a_silence_two_more_readings_are_needed():
+    base = Base()
+    base.command(-0.2, 0)
+    base.feel(1, 1)
+    base.acceptance.lose_robot()
+    assert not base.gate.moving and base.command(0.2, 0) == ''
+
+
+@pytest.mark.parametrize('metres, refused', [(0.099, False), (0.101, True)])
+def test_wheels_that_do_not_turn_in_a_tenth_of_a_metre(metres, refused):
+    base = Base()
+    for _ in range(10):
+        base.follow(metres / 10)
+    assert ('its wheels do not turn' in base.command(0.2, 0)) == refused
+    base.gate.halt()
+    base.acceptance.check_obedience(NOW)        # nothing to refuse at rest
+    # the refusal locks out, and then the wheels have another chance
+    assert base.command(0.2, 0) == ''
+
+
+@pytest.mark.parametrize('travel, turns', [
+    (Travel(0.0011, 0, 0, 0), True), (Travel(0.0009, 0, 0, 0), False), (Travel(0, -0.0086, 0, 0), True),
+    (Travel(0, -0.0075, 0, 0), False), (Travel(-0.0006, 0.0039, 0, 0), True)])
+def test_a_tenth_of_the_commanded_travel_shows_that_the_wheels_turn(travel, turns):
+    base = Base()
+    for _ in range(11):
+        base.follow(0.01, travel)
+    assert ('its wheels do not turn' in base.command(0.2, 0)) == (not turns)
+    base = Base()
+    for _ in range(9):
+        base.acceptance.follow(0.1, Expected(-0.002, -0.01), NOWHERE, 0.26)
+    base.follow(0.0, travel)
+    base.follow(0.01, travel)       # turning wheels start the tenth of a metre again
+    base.follow(0.009)
+    assert base.command(0.2, 0) == ''
+
+
+def test_a_travel_after_an_outage_does_not_show_whether_the_wheels_turn():
+    for elapsed, refused in ((0.29, True), (0.31, False)):
+        base = Base()
+        base.follow(0.2, elapsed=elapsed)
+        assert bool(base.command(0.2, 0)) == refused
+
+
+def test_a_robot_that_does_not_answer_for_0_3_s():
+    base = Base()
+    base.contact.answers = False
+    assert base.command(0.2, 0, NOW + SECOND * 3 // 10) == '' and base.speeds == (0, 0)
+    assert base.command(0.2, 0, NOW + SECOND * 3 // 10 + 1) == 'the robot does not answer'
+    base.acceptance.reading_time = None
+    assert base.command(0.2, 0) == 'the robot does not answer'
+
+
+@pytest.mark.parametrize('reason, text', [
+    ('a cliff', 'the robot cannot be driven: a cliff'),
+    ('', 'the robot cannot be driven: it does not change to the requested mode')])
+def test_a_robot_that_is_not_in_the_requested_mode_for_0_3_s(reason, text):
+    base = Base()
+    base.supervisor.in_control, base.supervisor.reason = False, reason
+    assert base.command(0.2, 0) == base.command(0.2, 0, NOW + SECOND * 3 // 10 - 1) == '' and base.speeds == (0, 0)
+    assert base.command(0.2, 0, NOW + SECOND * 3 // 10) == text
+    # the time starts again when the robot follows
+    base.supervisor.in_control = True
+    assert base.command(0.2, 0, NOW + SECOND) == ''
+    base.supervisor.in_control = False
+    assert base.command(0.2, 0, NOW + 2 * SECOND) == ''
+
+
+def test_a_command_to_stop_is_never_refused():
+    base = Base()
+    base.supervisor.in_control = False
+    base.command(0.2, 0)
+    assert base.command(0, 0, NOW + SECOND) == '' and base.command(0.2, 0, NOW + SECOND) == ''
+
+
+def test_passive_mode_is_not_a_mode_in_which_the_robot_is_driven():
+    base = Base(operation_mode=1)
+    base.command(0.2, 0)
+    assert base.speeds == (0, 0)
+    assert base.command(0.2, 0, NOW + SECOND) == 'operation_mode: 1: the robot is not driven in passive mode'
+
+
+def test_what_locks_out_a_sender():
+    base = Base(cmd_vel_timeout=0.5)
+    base.acceptance.check_sender(NOW, 'script', True)
+    base.gate.command(NOW, 0.2, 0, ())
+    base.acceptance.lock('a cliff')
+    assert base.gate.linear == 0
+    with pytest.raises(RefusedCommand) as caught:
+        base.acceptance.check_sender(NOW + SECOND // 2, 'script', True)
+    assert str(caught.value) == ('a cliff; expected a zero command, or none for 0.5 s, before it is driven again')
+    base.acceptance.check_sender(NOW + SECOND // 2, 'script', False)
+    base.acceptance.check_sender(NOW + SECOND // 2, 'script', True)
+
+
+def test_the_minimum_turning_speed():
+    base = Base(min_abs_yaw_vel=0.5)
+    for asked, speed in ((0.1, 0.5), (-0.1, -0.5), (0.6, 0.6), (0, 0)):
+        base.command(0.1, asked)
+        # half of the track is 0.13 m
+        assert base.speeds == pytest.approx((100 - 130 * speed, 100 + 130 * speed))

@@ -1,0 +1,269 @@
+"""The steps of the search: rates in turn, two equal replies, the paused stream, and the model from its encoders."""
+import pytest
+
+from rbx1_nav.create import protocol
+from rbx1_nav.create.driver import sequences
+from rbx1_nav.create.driver.search import NoWakeLines, Search, has_frames, is_battery
+from rbx1_nav.units import SECOND
+
+RATES = (57600, 115200, 19200)
+MODEL_QUERY = bytes((142, 43, 142, 8))
+
+
+class Line:
+    """Records what a Search does."""
+
+    def __init__(self):
+        self.rates, self.sent, self.apart = [], [], []
+
+    def set_rate(self, baud):
+        self.rates.append(baud)
+
+    def write(self, data):
+        self.sent.append(data)
+
+    def write_apart(self, data):
+        self.apart.append(data)
+
+
+def battery(state=2, voltage=16000, temperature=25):
+    """Return the reply to a battery query."""
+    packets = protocol.single_packets(protocol.CREATE, [3])
+    return protocol.packets_format(packets).pack(state, voltage, -300, temperature, 2000, 3000)
+
+
+class Searching:
+    """A Search whose next step can be awaited."""
+
+    def __init__(self, rates=RATES, baud=None):
+        self.line, self.search, self.now = Line(), Search(rates), SECOND
+        self.search.begin(self.now, self.line, baud)
+
+    def answer(self, data):
+        """Let the robot answer before the next step. Returns the result of that step."""
+        self.search.receive(self.now, data)
+        return self.step()
+
+    def step(self):
+        """Wait for the next step. Returns its result."""
+        assert self.search.tick(self.search.next_time - 1) is None
+        self.now = self.search.next_time
+        return self.search.tick(self.now)
+
+    def find_battery(self):
+        """Answer two battery queries."""
+        for _ in range(2):
+            assert self.line.sent[-1] == sequences.ASK_BATTERY
+            self.answer(battery())
+        assert self.line.sent[-1] == sequences.PAUSE_STREAM
+        self.step()     # the stream has stopped
+        assert self.line.sent[-1] == MODEL_QUERY
+
+
+@pytest.mark.parametrize('changes, plausible', [
+    ({'state': 5}, True), ({'state': 6}, False), ({'voltage': 4999}, False), ({'voltage': 5000}, True),
+    ({'voltage': 25000}, True), ({'voltage': 25001}, False), ({'temperature': -41}, False),
+    ({'temperature': -40}, True), ({'temperature': 100}, True), ({'temperature': 101}, False)])
+def test_the_limits_of_a_plausible_battery(changes, plausible):
+    assert is_battery(battery(**changes)) == plausible
+
+
+@pytest.mark.parametrize('baud, order', [
+    (None, RATES), (57600, RATES), (115200, (115200, 57600, 19200)), (19200, (19200, 57600, 115200))])
+def test_the_rates_are_tried_in_turn_the_expected_one_first(baud, order):
+    searching = Searching(baud=baud)
+    for _ in range(6):
+        assert searching.search.rounds == (len(searching.line.rates) - 1) // 3
+        searching.step()
+    assert tuple(searching.line.rates) == order * 2 + order[:1] and searching.search.rounds == 2
+
+
+def test_the_number_of_start_bytes_grows_after_two_rounds():
+    """Many Start bytes soon complete a command that garbage has begun."""
+    searching = Searching()
+    for _ in range(8):
+        searching.step()
+    assert [len(each) for each in searching.line.apart] == [8] * 6 + [64] * 3
+    assert set(b''.join(searching.line.apart)) == {128}
+
+
+def test_a_reply_is_awaited_for_0_12_s_after_its_transmission():
+    searching = Searching((19200,))
+    # 8 Start bytes, 2 ms apart; a query of 3 bytes and a reply of 10 bytes of 10 bits
+    seconds = 8 * 0.002 + 13 * 10 / 19200 + 0.12
+    assert searching.search.next_time - SECOND == pytest.approx(seconds * 1e9, abs=1)
+    assert searching.search.missing == 10
+    # a complete reply counts after 20 ms without another byte
+    searching.search.receive(SECOND, battery()[:9])
+    assert searching.search.missing == 1 and searching.search.next_time > SECOND * 11 // 10
+    searching.search.receive(SECOND, battery()[9:])
+    assert searching.search.missing == 0 and searching.search.next_time == SECOND + SECOND // 50
+    searching.search.receive(SECOND, b'\0')
+    assert searching.search.missing == 0
+    searching.now = searching.search.next_time
+    searching.search.tick(searching.now)
+    assert searching.search.rounds == 1     # one byte too many
+
+
+def test_a_late_byte_does_not_extend_the_deadline():
+    searching = Searching()
+    deadline = searching.search.next_time
+    searching.search.receive(deadline - 1, battery())
+    assert searching.search.next_time == deadline
+
+
+def test_two_replies_in_a_row_are_required():
+    searching = Searching()
+    searching.answer(battery())
+    assert searching.line.rates == [57600] and searching.line.sent[-1] == sequences.ASK_BATTERY
+    searching.answer(battery(voltage=0))
+    assert searching.line.rates == [57600, 115200]
+    searching.answer(battery())     # the reply at another rate does not count
+    assert searching.line.sent[-1] == sequences.ASK_BATTERY and searching.line.rates == [57600, 115200]
+    searching.answer(battery())
+    assert searching.line.sent[-1] == sequences.PAUSE_STREAM
+    assert searching.search.next_time - searching.now == SECOND // 20
+
+
+@pytest.mark.parametrize('size, model', [(1, protocol.CREATE), (3, protocol.CREATE_2)])
+def test_two_equal_replies_show_the_model(size, model):
+    """A Create answers only the query for the wall sensor; a Create 2 also answers with two bytes of an encoder."""
+    searching = Searching()
+    searching.find_battery()
+    assert searching.answer(bytes(size)) is None and searching.line.sent[-1] == MODEL_QUERY
+    assert searching.answer(bytes(size)) == (model, 57600)
+
+
+def test_replies_that_differ_need_not_follow_each_other():
+    searching = Searching()
+    searching.find_battery()
+    assert [searching.answer(bytes(size)) for size in (1, 3, 1)] == [None, None, (protocol.CREATE, 57600)]
+
+
+@pytest.mark.parametrize('baud, model', [
+    (115200, protocol.CREATE_2), (57600, protocol.CREATE), (19200, protocol.CREATE)])
+def test_after_four_unclear_replies_the_rate_decides(baud, model):
+    searching = Searching((baud,))
+    searching.find_battery()
+    assert [searching.answer(bytes(size)) for size in (2, 1, 4)] == [None] * 3
+    assert searching.answer(bytes(3)) == (model, baud)
+
+
+def test_a_robot_that_falls_silent_is_searched_for_at_the_next_rate():
+    searching = Searching()
+    searching.find_battery()
+    assert [searching.answer(b'') for _ in range(4)] == [None] * 4
+    assert searching.line.rates == [57600, 115200] and searching.line.sent[-1] == sequences.ASK_BATTERY
+
+
+def test_a_stream_shows_the_rate():
+    frame = protocol.encode_frame(protocol.CREATE_2, (35,), {'mode': 1})
+    searching = Searching()
+    searching.search.receive(searching.now, frame + frame)
+    assert searching.line.sent[-1] == sequences.PAUSE_STREAM
+    searching.step()
+    # while the model is determined, it is no longer looked for
+    searching.search.receive(searching.now, frame + frame)
+    assert searching.line.sent[-1] == MODEL_QUERY
+
+
+def test_a_stream_is_found_in_the_last_4096_bytes():
+    frame = protocol.encode_frame(protocol.CREATE_2, (35,), {'mode': 1})
+    searching = Searching()
+    searching.search.receive(searching.now, frame + bytes(4096 - len(frame)))
+    searching.search.receive(searching.now, frame + frame)
+    assert searching.line.sent[-1] == sequences.PAUSE_STREAM
+    search = Searching().search
+    search.receive(0, bytes(5000))
+    assert len(search._buffer) == 4096
+
+
+def test_a_search_that_begins_again_starts_with_its_first_round():
+    searching = Searching()
+    for _ in range(7):
+        searching.step()
+    searching.answer(battery())
+    searching.search.begin(searching.now, searching.line, 19200)
+    assert searching.search.rounds == 0 and searching.line.rates[-1] == searching.search.baud == 19200
+    searching.answer(battery())     # the first of two
+    assert searching.line.sent[-1] == sequences.ASK_BATTERY
+
+
+def test_the_next_rate_can_wait():
+    searching = Searching()
+    searching.search.begin_later(searching.now, SECOND)
+    assert searching.search.next_time == searching.now + SECOND and searching.search.missing == 0
+    searching.step()
+    assert searching.line.rates == [57600, 115200]
+
+
+@pytest.mark.parametrize('data, found', [
+    (b'\x13\x02\x23\x01', False), (b'\x13\x02\x23\x01\xc7', False), (b'\x13\x02\x23\x01\xc7' * 2, True),
+    (b'\x13\x02\x23\x01\xc6' + b'\x13\x02\x23\x01\xc7', False), (b'\x13\x02\x23\x01\xc7\x13', False),
+    (b'\x13\x00\xed\x13\x00\xed', True), (b'\x14\x00\xec\x14\x00\xec', False)])
+def test_frames_of_a_stream(data, found):
+    assert has_frames(data) == found
+
+
+class WakeLine(Line):
+    """A line with RTS and DTR, or without them."""
+
+    def __init__(self, has_lines):
+        super().__init__()
+        self.has_lines, self.levels = has_lines, []
+
+    def set_wake_lines(self, on):
+        self.levels.append(on)
+        if not self.has_lines:
+            raise NoWakeLines
+
+
+def test_before_each_further_round_a_robot_is_woken():
+    line, search = WakeLine(True), Search((57600,), wake=True)
+    search.begin(0, line)
+    for rounds in 1, 2:
+        search.tick(search.next_time)
+        assert search.rounds == rounds and line.levels[-1] is False and search.missing == 0
+        for level in False, True:
+            assert line.levels[-1] is level and len(line.rates) == rounds
+            search.tick(search.next_time)
+        assert len(line.rates) == rounds + 1 and line.sent[-1] == sequences.ASK_BATTERY
+    assert line.levels == [False, True] * 2
+
+
+def test_a_line_that_cannot_wake_a_robot_is_asked_once():
+    line, search = WakeLine(False), Search((57600,), wake=True)
+    search.begin(0, line)
+    for _ in range(5):
+        search.tick(search.next_time)
+    assert line.levels == [False] and len(line.rates) == 6 and not search.wake
+
+
+def test_the_lines_change_0_75_s_after_the_last_query_failed():
+    line, search = WakeLine(True), Search((57600,), wake=True)
+    search.begin(0, line)
+    failed = search.next_time
+    search.tick(failed)
+    assert search.next_time == failed + SECOND * 3 // 4
+    search.tick(search.next_time)
+    assert search.next_time == failed + 2 * (SECOND * 3 // 4)
+
+
+def test_the_model_is_known_20_ms_after_a_reply_of_one_or_three_bytes():
+    searching = Searching()
+    searching.find_battery()
+    assert searching.search.missing == 3
+    for size in 1, 2, 3:
+        searching.search.receive(searching.now + size, b'\0')
+        assert searching.search.missing == 3 - size
+        # the first byte may be the whole reply; the deadline does not move back
+        assert searching.search.next_time == searching.now + 1 + SECOND // 50
+
+
+def test_replies_of_an_earlier_search_do_not_count():
+    searching = Searching()
+    searching.find_battery()
+    searching.answer(b'\0')
+    searching.search.begin(searching.now, searching.line, 57600)
+    searching.find_battery()
+    assert searching.answer(b'\0') is None and searching.answer(b'\0') == (protocol.CREATE, 57600)
