@@ -1,6 +1,7 @@
 """Wheels and gyro are compared over the robot's last turns, and judged by what a floor explains."""
 from math import exp, inf, sqrt
 
+import numpy
 import pytest
 
 from rbx1_nav.estimation.agreement import Agreement, floor_variance
@@ -124,3 +125,11 @@ def test_the_ratio_contains_how_much_the_difference_varies():
 def test_the_variation_of_a_difference_is_forgotten_with_the_turns():
     noisy = after((1.0, 0.96), (1.0, 1.0)).ratio(0.0)
     assert after((1.0, 0.96), (1.0, 1.0), *[(1.0, 1.0)] * 100).ratio(0.0) < 1e-3 * noisy
+
+
+def test_the_noise_of_a_robot_that_stands_or_goes_straight_is_no_turn():
+    agreement = Agreement()
+    generator = numpy.random.default_rng(1)
+    for wheels, gyro in generator.normal(0, 1e-3, (100000, 2)):
+        agreement.add(wheels, gyro, 1e-9, 0.004, 0.02)
+    assert agreement.turned == 0.0
