@@ -132,7 +132,8 @@ KILLED = """
 import os, signal, sys
 sys.path[:0] = sys.argv[1:]
 from test_exercise_plan import SURFACE, TURTLEBOT, simulate_many
-next(simulate_many('timed', TURTLEBOT, SURFACE, range(500), jobs=2))
+runs = simulate_many('timed', TURTLEBOT, SURFACE, range(500), jobs=2)
+next(runs)
 os.kill(os.getpid(), signal.SIGKILL)
 """
 
@@ -141,8 +142,8 @@ def test_the_processes_exit_with_a_parent_that_is_killed():
     with subprocess.Popen([sys.executable, '-c', KILLED, os.path.dirname(__file__), *sys.path], stdout=subprocess.PIPE,
                           start_new_session=True) as parent:
         try:
-            # the output is complete when its last process has exited; 60 s are enough on a busy machine
-            assert parent.communicate(timeout=60) == (b'', None) and parent.returncode == -signal.SIGKILL
+            # the output is complete when the last process has exited; 20 s are enough on a busy machine
+            assert parent.communicate(timeout=20) == (b'', None) and parent.returncode == -signal.SIGKILL
         finally:
             with suppress(ProcessLookupError):
                 os.killpg(parent.pid, signal.SIGKILL)
