@@ -8,6 +8,8 @@ export class Drive {
   constructor(connection, model, notify) {
     Object.assign(this, {connection, model, notify});
     this.trusted = false;
+    this.connected = false;
+    this.stopped = false;       // whether Stop was the last action on this page
     this.hand = false;
     this.held = new Set();
     this.timer = null;
@@ -23,14 +25,18 @@ export class Drive {
     for (const run of this.runs) {
       run.onclick = () => this.startRun(run);
     }
-    document.getElementById('reset').onclick = () => connection.send({type: 'reset'});
+    document.getElementById('reset').onclick = () => {
+      this.notify('');
+      this.setHand(false);
+      connection.send({type: 'reset'});
+    };
     this.toggle.onclick = () => this.switchHand(!this.hand);
     this.connectKeys();
   }
 
   connectKeys() {
     document.addEventListener('keydown', event => {
-      if (this.hand && KEYS[event.key] && !event.target.closest('select, dialog')) {
+      if (this.hand && KEYS[event.key] && !event.target.closest('dialog')) {
         event.preventDefault();
         this.hold(event.key);
       }
@@ -100,6 +106,7 @@ export class Drive {
     this.held.clear();
     this.showHeld();
     this.setHand(false);
+    this.stopped = true;
     if (this.dialog.open) {
       this.dialog.close('cancel');
     }
@@ -122,6 +129,8 @@ export class Drive {
   async startRun(button) {
     if (await this.confirm(
         'It will drive 1 m forward and back. It needs 1.5 m of free floor ahead and 1 m on either side.')) {
+      this.notify('');
+      this.stopped = false;
       this.setHand(false);
       const reset = Boolean(this.model.status.can_reset && document.getElementById('reset-first').checked);
       this.connection.send({type: 'run', method: button.dataset.method, reset, confirmed: !this.model.status.simulated});
@@ -132,6 +141,8 @@ export class Drive {
     if (on && !await this.confirm('It will follow the arrow keys, and stop when you release them.')) {
       return;
     }
+    this.notify('');
+    this.stopped = false;
     this.connection.send({type: 'hand', on, confirmed: !this.model.status.simulated});
     this.setHand(on);
   }
@@ -157,21 +168,31 @@ export class Drive {
 
   // Enables the buttons that can be used now, and shows what is running.
   draw() {
-    const {status} = this.model, ready = this.trusted && Boolean(status.base) && 'odometry' in this.model.poses;
-    const running = Boolean(status.started) && !status.outcome;
+    const {status} = this.model, running = Boolean(status.started) && !status.outcome;
+    const ready = this.connected && this.trusted && !status.master && Boolean(status.base) &&
+      'odometry' in this.model.poses;
+    if (running && this.hand) {     // another browser has started a run
+      this.setHand(false);
+    }
     for (const run of this.runs) {
       const missing = run.dataset.method === 'gyro' && !('estimate' in this.model.poses);
+      if (running && run === document.activeElement) {
+        this.stop.focus();      // a button that is disabled loses the focus
+      }
       run.disabled = !ready || running || missing;
       run.title = missing ? 'Needs the filter: roslaunch rbx1_bringup odom_ekf.launch' : '';
     }
-    document.getElementById('reset').disabled = !ready || !status.can_reset;
+    document.getElementById('reset').disabled = !ready || running || !status.can_reset;
     document.getElementById('reset-first').disabled = !status.can_reset;
     this.toggle.disabled = !ready || running;
-    const text = !this.trusted ?
+    const text = !this.connected ? '' : !this.trusted ?
       'This page can only watch and stop the robot. To drive, open the complete address that the web view printed.'
+      : status.master === 'silent' ? 'The ROS master does not answer. Start roscore, the base and the web view again.'
+      : status.master === 'restarted' ? 'The ROS master was restarted. Start the web view again, then reload this page.'
       : !ready ? 'Waiting for a base that publishes /odom.'
       : running ? `Running: ${status.started}`
       : this.hand ? 'The arrow keys drive the robot.'
+      : this.stopped && status.outcome !== 'stopped' ? 'Stopped.'
       : status.started ? `${status.started[0].toUpperCase()}${status.started.slice(1)}: ${status.outcome}` : '';
     const line = document.getElementById('run-state');
     if (line.textContent !== text) {

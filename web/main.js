@@ -111,7 +111,7 @@ byId('save-png').onclick = () => savePng(floor.svg);
 byId('window').onchange = redraw;
 byId('hold').onclick = hold;
 document.addEventListener('keydown', event => {
-  if (event.key.toLowerCase() === 'h' && !event.ctrlKey && !event.metaKey && !event.target.closest('select, dialog')) {
+  if (event.key.toLowerCase() === 'h' && !event.ctrlKey && !event.metaKey && !event.target.closest('dialog')) {
     hold();
   }
 });
@@ -119,11 +119,12 @@ document.addEventListener('keydown', event => {
 connection.addEventListener('welcome', ({detail}) => {
   model.forget();
   drive.trusted = detail.trusted;
+  drive.connected = true;
   drive.setHand(false);
   byId('connection').className = 'live';
   byId('connection').textContent = detail.trusted ? 'Connected' : 'Connected, watching only';
   notify(detail.known_token ? '' :
-    'This address is out of date, because the web view was restarted. Open the new address that it printed.');
+    'The token in this address is not valid. Open the complete address that the web view printed when it was last started.');
 });
 connection.addEventListener('frame', ({detail}) => {
   model.add(detail);
@@ -131,7 +132,9 @@ connection.addEventListener('frame', ({detail}) => {
 });
 connection.addEventListener('refused', ({detail}) => drive.refused(detail));
 connection.addEventListener('lost', ({detail}) => {
+  drive.connected = false;
   drive.setHand(false);
+  redraw();
   byId('connection').className = 'lost';
   byId('connection').textContent = `Not connected${detail ? ` (${detail})` : ''}; retrying`;
 });

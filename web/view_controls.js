@@ -34,7 +34,7 @@ export function connectView(floor, model, redraw) {
     '+': () => floor.zoom(ZOOM), '=': () => floor.zoom(ZOOM), '-': () => floor.zoom(1 / ZOOM), '0': all,
     'f': () => follow(!pressed('follow')), 'a': () => arrows(!pressed('arrows')), 'c': clear};
   document.addEventListener('keydown', event => {
-    if (!event.ctrlKey && !event.altKey && !event.metaKey && !event.target.closest('select, dialog')) {
+    if (!event.ctrlKey && !event.altKey && !event.metaKey && !event.target.closest('dialog')) {
       keys[event.key.toLowerCase()]?.();
     }
   });

@@ -64,6 +64,7 @@ class HandDrive:
         self.drivers: set[object] = set()   # the browsers in which driving by hand is on
         self.stop_until = 0.0       # s: zero commands are sent until then
         self.changed = Condition()
+        self.opened = False     # whether this node is registered as a driver
         self.ended = False
         self.thread = Thread(target=self._run, daemon=True)
 
@@ -75,7 +76,7 @@ class HandDrive:
         """Switch driving by hand on for a browser. This connects to the base, so that the first key takes effect."""
         with self.changed:
             self.drivers.add(owner)
-            self.changed.notify()
+            self.changed.notify_all()
 
     def leave(self, owner: object) -> None:
         """Switch driving by hand off for a browser, or remove a browser that has disconnected."""
@@ -83,7 +84,7 @@ class HandDrive:
             if owner is self.keys.owner:
                 self._stop()
             self.drivers.discard(owner)
-            self.changed.notify()
+            self.changed.notify_all()
 
     def drive(self, owner: object, linear: float, angular: float) -> bool:
         """Drive at this velocity, m/s and rad/s. Returns False if driving by hand is off, or another browser drives."""
@@ -92,7 +93,7 @@ class HandDrive:
                 return False
             if not (linear or angular):
                 self._stop()
-            self.changed.notify()
+            self.changed.notify_all()
             return True
 
     def stop(self) -> None:
@@ -100,7 +101,12 @@ class HandDrive:
         with self.changed:
             self.drivers.clear()
             self._stop()
-            self.changed.notify()
+            self.changed.notify_all()
+
+    def wait_until_closed(self) -> None:
+        """Wait until this node no longer drives: for the zero commands after a stop, but at most twice as long."""
+        with self.changed:
+            self.changed.wait_for(lambda: not self.opened, 2 * LINGER)
 
     def _stop(self) -> None:
         self.keys.release()
@@ -111,11 +117,11 @@ class HandDrive:
         with self.changed:
             self.ended = True
             self.keys.release()
-            self.changed.notify()
+            self.changed.notify_all()
         self.thread.join(0.5)
 
     def _run(self) -> None:
-        opened = moving = stopping = False
+        moving = stopping = False
         while True:
             with self.changed:
                 if self.ended:
@@ -126,7 +132,7 @@ class HandDrive:
                     self.stop_until = now + LINGER
                 stopping = now < self.stop_until
                 wanted = bool(self.drivers) or stopping
-                if not (wanted or opened):
+                if not (wanted or self.opened):
                     self.changed.wait()
                     continue
             if wanted:
@@ -135,8 +141,10 @@ class HandDrive:
                 self.publisher.close()
             if any(velocity) or stopping:
                 self.publisher.publish(*velocity)
-            opened, moving = wanted, any(velocity)
+            moving = any(velocity)
             with self.changed:
+                self.opened = wanted
+                self.changed.notify_all()
                 if not self.ended:
                     self.changed.wait(PERIOD)
         if moving or stopping:

@@ -9,12 +9,14 @@ from rbx1_nav.ros.web.history import Counter, Log, Path, Series, Speeds
 from rbx1_nav.ros.web.protocol import encode
 
 SOURCES = ('truth', 'odometry', 'estimate')     # sources of poses
+BY_HAND = 'by hand'   # sender of the commands of this node
 SPEEDS = ('commanded', 'reported', 'true')
 JUMP = 0.5          # m between two odometry messages: the robot was moved by hand or reset, or it is another robot
 BACK = 0.5          # s by which the stamps go back if simulated time has restarted
 MOVED = 0.02, 0.05  # m, rad: a run that never left its start is not stored as the previous run
 RESET_DELAY = 0.5   # s: largest delay between the message about a reset and the odometry after it, in either order
 SILENCE = 3.0       # s without a message after which a pose is no longer shown
+DRIVING_TIMEOUT = 2.0   # s without a motion after which a node no longer drives; a script rests for 1 s between motions
 COMMAND_TIMEOUT = 1.0   # s without a command after which the commanded speed is 0
 
 PoseRow = Sequence[float]   # x, y, yaw: m, rad
@@ -44,6 +46,7 @@ class State:
         self.before: dict[str, PoseRow] = {}    # end poses of the previous run
         self.before_name = ''
         self.run_name = ''      # the run or node that drives the robot, or drove it last
+        self.other: tuple[str, float] = '', -DRIVING_TIMEOUT    # node that has moved the robot, and when
         self.epoch = 0          # number of the run; paths and speeds are cleared at the start of each run
         self.travelled = False      # whether this run has left its start
         self.late: dict[str, float] = {}    # s, by source: until then, a pose away from the start precedes the reset
@@ -100,6 +103,8 @@ class State:
             if linear or angular:
                 running = self.status.get('started') and not self.status.get('outcome')
                 self.run_name = self.status['started'] if running else sender
+                if not running and sender != BY_HAND:
+                    self.other = sender, now
             self._commanded(linear, angular, now)
 
     def _commanded(self, linear: float, angular: float, now: float) -> None:
@@ -107,6 +112,15 @@ class State:
             # a Twist has no stamp: derive its time from the last odometry message
             time = self.last[0] - self.origin + min(now - self.last[1], 1.0) * self.factor
             self.speeds['commanded'].sample(time, linear, angular)
+
+    def other_driver(self, now: float) -> str:
+        """Return the name of a node that drives the robot and was not started by the page, or ''. now: s, monotonic."""
+        name, time = self.other
+        return name if now - time < DRIVING_TIMEOUT else ''
+
+    def forget_driver(self) -> None:
+        """Forget which node drove, because all of them were stopped."""
+        self.other = '', -DRIVING_TIMEOUT
 
     def tick(self, now: float) -> None:
         """Time out a command that is not repeated, and remove silent sources. To be called periodically."""

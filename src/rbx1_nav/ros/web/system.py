@@ -48,15 +48,18 @@ class System:
         while not life.end_requested.is_set():
             try:
                 self._ask(server)
-                self.state.set_status(master=True)
             except Exception:
-                self.state.set_status(master=False)
+                self.state.set_status(master='silent')
             end = time.monotonic() + PERIOD
             while time.monotonic() < end and not life.end_requested.is_set():
                 life.sleep(end - time.monotonic())
 
     def _ask(self, master: Server) -> None:
-        services = {name for name, _ in master.call('getSystemState')[2]}
+        _, subscribers, offered = master.call('getSystemState')
+        # a master that was restarted does not know the nodes of the old one, and no node can join it later
+        known = any(rospy.get_name() in names for _, names in subscribers)
+        self.state.set_status(master='' if known else 'restarted')
+        services = {name for name, _ in offered}
         base = self.topics.base if 'odometry' in self.state.poses else None
         name = f'{base}/reset'
         self.reset_service = name if base and name in services else ''

@@ -13,7 +13,7 @@ import rospy
 from std_msgs.msg import Empty
 
 from rbx1_nav.ros import messages
-from rbx1_nav.ros.web.state import Motion, State
+from rbx1_nav.ros.web.state import BY_HAND, Motion, State
 
 TOPICS = {'truth': 'ground_truth', 'odometry': 'odom', 'estimate': 'odom_ekf'}
 PERIOD = 0.02       # s: only the latest of the messages that arrive in this time is read
@@ -60,7 +60,7 @@ class Topics:
     def on_command(self, twist: Twist) -> None:
         """Process a command to the base."""
         sender = twist._connection_header['callerid']
-        self.state.command(twist.linear.x, twist.angular.z, 'by hand' if sender == rospy.get_name() else sender,
+        self.state.command(twist.linear.x, twist.angular.z, BY_HAND if sender == rospy.get_name() else sender,
                            time.monotonic())
         time.sleep(COMMAND_PERIOD)
 

@@ -32,6 +32,9 @@ class Hand:
         self.drivers.clear()
         self.calls.append('stop')
 
+    def wait_until_closed(self):
+        self.calls.append('wait')
+
 
 class Runs:
     """Takes the place of Runs."""
@@ -104,7 +107,8 @@ class View:
     def __init__(self):
         self.now = 100.0
         self.state, self.system, self.hand, self.runs = State(), System(), Hand(), Runs()
-        self.controls = Controls(self.state, self.system, self.hand, self.runs, (0.2, 1.0), lambda call: call())
+        self.controls = Controls(self.state, self.system, self.hand, self.runs, (0.2, 1.0), lambda call: call(),
+                                 lambda: self.now)
         self.connections = Connections(self.state, self.controls, TOKEN, lambda: self.now)
 
     def connect(self, token=None, slow=False):
@@ -149,12 +153,49 @@ def test_a_run(view):
     assert view.runs.calls == ['gyro'] and view.system.calls == ['reset'] and socket.kinds == ['welcome']
 
 
+@pytest.mark.parametrize('message', [dict(type='run', method='timed', reset=True), dict(type='reset')])
+def test_driving_by_hand_has_ended_before_the_robot_is_reset(view, message):
+    socket = view.connect(TOKEN)
+    view.send(socket, type='hand', on=True)
+    view.send(socket, **message)
+    assert view.hand.calls == ['stop', 'wait'] and view.system.calls == ['reset'] and not view.hand.drivers
+
+
+@pytest.mark.parametrize('message', [dict(type='run', method='timed'), dict(type='hand', on=True), dict(type='reset')])
+def test_nothing_moves_while_another_node_drives(view, message):
+    socket = view.connect(TOKEN)
+    view.state.command(0.2, 0.0, '/out_and_back', view.now)
+    view.now += 1.5     # its pause between two motions
+    view.send(socket, **message)
+    assert socket.messages[-1]['reason'] == '/out_and_back is driving the robot: stop it first'
+    assert not (view.runs.calls or view.hand.drivers or view.system.calls)
+    view.now += 1.0
+    view.send(socket, **message)
+    assert socket.kinds == ['welcome', 'refused']
+
+
+def test_stop_ends_the_wait_for_another_node(view):
+    socket = view.connect(TOKEN)
+    view.state.command(0.2, 0.0, '/out_and_back', view.now)
+    view.send(socket, type='stop')
+    view.send(socket, type='reset')
+    assert socket.kinds == ['welcome'] and view.system.calls == ['shut down', 'reset']
+
+
+@pytest.mark.parametrize('sender, started', [('by hand', ''), ('/out_and_back', 'timed')])
+def test_a_run_of_the_page_and_keys_are_no_other_driver(view, sender, started):
+    view.state.set_status(started=started, outcome='')
+    view.state.command(0.2, 0.0, sender, view.now)
+    assert view.state.other_driver(view.now) == ''
+
+
 def test_a_run_at_a_time(view):
     view.runs.busy = True
     socket = view.connect(TOKEN)
     view.send(socket, type='run', method='timed')
     view.send(socket, type='hand', on=True)
-    assert socket.kinds == ['welcome', 'refused', 'refused'] and not view.hand.drivers
+    view.send(socket, type='reset')
+    assert socket.kinds == ['welcome', *3 * ['refused']] and not view.hand.drivers
 
 
 def test_a_real_robot_has_to_be_confirmed(view):

@@ -137,3 +137,17 @@ def test_the_end_stops_a_robot_that_moves():
     wait_for(lambda: base.commands)
     hand.end()
     assert base.commands[-1] == (0.0, 0.0)
+
+
+def test_it_waits_for_the_zeros_after_a_stop(driven):
+    hand, base, clock = driven
+    hand.wait_until_closed()    # at once
+    hand.begin('a')
+    assert hand.drive('a', 0.2, 0.0)
+    wait_for(lambda: (0.2, 0.0) in base.commands)
+    hand.stop()
+    wait_for(lambda: base.commands[-1] == (0.0, 0.0))
+    assert hand.opened
+    clock.now += LINGER + 0.01
+    hand.wait_until_closed()
+    assert not base.is_open
