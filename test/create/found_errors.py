@@ -42,17 +42,27 @@ class TestFoundErrors(unittest.TestCase):
         for key, factor in expected.items():
             self.assertAlmostEqual(found[key] / factor, 1, delta=WITHIN, msg=key)
 
-    def test_a_pulled_cable(self):
+    def drive_with_pulled_cable(self):
+        """Pull the cable while a calibration drives the robot; return the output of the calibration."""
         pull_cable = rospy.ServiceProxy('/fake_create/pull_cable', SetBool)
         script = support.Process('rosrun', 'rbx1_nav', 'calibrate_linear.py')
         self.addCleanup(script.kill)
         support.wait_for(lambda: self.truth.next().twist.twist.linear.x > 0.1, 'the robot to drive')
         pull_cable(True)
-        self.assertEqual(script.wait(), 1, script.output)
-        self.assertRegex(script.output, r'\[ERROR\].* refused a command: the robot does not answer')
-        # the other tests begin with a stationary robot
-        pull_cable(False)
-        support.wait_for(lambda: self.truth.next().twist.twist.linear.x == 0, 'a stop')
+        try:
+            self.assertEqual(script.wait(), 1, script.output)
+        finally:
+            # the other tests begin with a stationary robot
+            pull_cable(False)
+            support.wait_for(lambda: self.truth.next().twist.twist.linear.x == 0, 'a stop')
+        return script.output
+
+    def test_a_pulled_cable(self):
+        for _ in range(support.ATTEMPTS):
+            output = self.drive_with_pulled_cable()
+            if support.LATE not in output:
+                break
+        self.assertRegex(output, r'\[ERROR\].* refused a command: the robot does not answer')
 
     def test_linear(self):
         found = self.calibrate('calibrate_linear.py', 'The odometry reports',
