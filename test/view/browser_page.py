@@ -129,10 +129,11 @@ class TestBrowserPage(unittest.TestCase):
     def test_a_run_ends_driving_by_hand_without_a_warning(self):
         self.drive_ahead(0.05)
         self.page.key('keyUp', 'ArrowUp')
+        warnings = self.page.text('lines').count('is not valid')    # setUp resets the robot just after Stop
         self.page.click('.run[data-method=timed]')
         self.odom.wait_for_twist(0.0, 1.0)
         self.page.wait_for_text('run-state', 'Timed: finished')
-        self.assertNotIn('is not valid', self.page.text('lines'))
+        self.assertLessEqual(self.page.text('lines').count('is not valid'), warnings)
         self.assertEqual(self.page.find('#hand').get_attribute('aria-pressed'), 'false')
         # the run began at the start: in real time, it ends a few millimeters from the exact pose
         self.assertAlmostEqual(self.odom.position()[0], support.EXACT_X, delta=0.02)

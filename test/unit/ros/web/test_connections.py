@@ -9,6 +9,7 @@ from rbx1_nav.ros.web.controls import Controls
 from rbx1_nav.ros.web.state import Motion, State
 
 TOKEN = 'the token'
+MOVES = dict(type='run', method='timed'), dict(type='hand', on=True), dict(type='reset')
 
 
 class Hand:
@@ -130,8 +131,7 @@ def make_view():
     return View()
 
 
-@pytest.mark.parametrize('message', [
-    dict(type='run', method='timed'), dict(type='hand', on=True), dict(type='drive', forward=1), dict(type='reset')])
+@pytest.mark.parametrize('message', [*MOVES, dict(type='drive', forward=1)])
 @pytest.mark.parametrize('token', ['', 'wrong'])
 def test_without_the_token_nothing_moves(view, message, token):
     socket = view.connect(token)
@@ -161,7 +161,7 @@ def test_driving_by_hand_has_ended_before_the_robot_is_reset(view, message):
     assert view.hand.calls == ['stop', 'wait'] and view.system.calls == ['reset'] and not view.hand.drivers
 
 
-@pytest.mark.parametrize('message', [dict(type='run', method='timed'), dict(type='hand', on=True), dict(type='reset')])
+@pytest.mark.parametrize('message', MOVES)
 def test_nothing_moves_while_another_node_drives(view, message):
     socket = view.connect(TOKEN)
     view.state.command(0.2, 0.0, '/out_and_back', view.now)
