@@ -56,7 +56,9 @@ class TestResetInMidRun(unittest.TestCase):
         self.check_without_a_driver()
 
     def check_without_a_driver(self):
-        self.assertEqual(self.reset(), (Log.INFO, 'Reset: base_footprint is back at the origin of odom'))
+        # on a busy machine, the base sees the end of the connection after the process has exited
+        support.wait_for(lambda: self.reset() == (Log.INFO, 'Reset: base_footprint is back at the origin of odom'),
+                         'a reset without a driver')
 
     def test_a_driver_that_rests_for_long(self):
         self.idle.send()

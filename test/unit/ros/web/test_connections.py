@@ -170,7 +170,7 @@ def test_nothing_moves_while_another_node_drives(view, message):
     assert socket.messages[-1]['reason'] == '/out_and_back is driving the robot: stop it first'
     assert not (view.runs.calls or view.hand.drivers or view.system.calls)
     view.now += 1.0
-    view.send(socket, **message)
+    view.send(socket, **message)    # it has ended
     assert socket.kinds == ['welcome', 'refused']
 
 
@@ -201,12 +201,11 @@ def test_a_run_at_a_time(view):
 def test_a_real_robot_has_to_be_confirmed(view):
     view.system.simulated = False
     socket = view.connect(TOKEN)
-    messages = dict(type='run', method='timed'), dict(type='hand', on=True), dict(type='reset')
-    for message in messages:
+    for message in MOVES:
         view.send(socket, **message)
     assert socket.kinds == ['welcome', *3 * ['refused']]
     assert not (view.runs.calls or view.hand.drivers or view.system.calls)
-    for message in messages[:2]:
+    for message in MOVES[:2]:
         view.send(socket, confirmed=True, **message)
     assert view.runs.calls == ['timed'] and len(view.hand.drivers) == 1 and socket.kinds.count('refused') == 3
 
