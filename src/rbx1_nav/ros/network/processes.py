@@ -88,9 +88,10 @@ class Thread:
         return self.marked is None or (self.timed and self.look() != self.marked)
 
     def polls(self) -> bool:
-        """Return whether the thread is running, or apparently sleeps only briefly."""
+        """Return whether the thread is running or runnable, or apparently sleeps only briefly."""
+        now = time.monotonic()      # before the look: on a busy machine, the caller may be suspended in between
         self.look()
-        return time.monotonic() - self.changed < POLL and self.needs_no_message()
+        return self.needs_no_message() if now - self.changed < POLL else self.waits_in() == b'0'
 
 
 PollingThread = Tuple[Thread, Optional[bytes]]      # a Thread and its `ran`

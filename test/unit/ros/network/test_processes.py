@@ -1,4 +1,5 @@
 """The information of the kernel about other processes, tested with real processes."""
+import itertools
 import os
 import signal
 import socket
@@ -9,6 +10,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from rbx1_nav.ros.network import processes
 from rbx1_nav.ros.network.processes import Process, awake, listening_process, own_process, peer_process, still_polling
 
 LIMIT = 60      # s
@@ -155,6 +157,24 @@ def test_a_polling_thread_that_has_not_looked_since(start):
     child.kill()
     child.wait()
     assert not still_polling(threads)
+
+
+def test_a_polling_thread_is_found_although_the_caller_is_suspended(start, monkeypatch):
+    process = Process(start('while True: time.sleep(0.001)').pid)
+    thread, = process.threads.values()
+    ran = thread.ran
+    wait_for(lambda: os.pread(thread.files[2], 64, 0) != ran)
+    times = itertools.count()       # a second between any two steps of the caller
+    monkeypatch.setattr(processes.time, 'monotonic', lambda: next(times))
+    assert thread.polls()
+
+
+def test_a_runnable_thread_polls_however_long_it_has_not_run(start):
+    process = Process(start('while True: pass').pid)
+    thread, = process.threads.values()
+    thread.look = lambda: thread.ran    # as if it had been waiting for the processor
+    thread.changed = -1000.0
+    assert wait_for(thread.polls)
 
 
 def test_who_wakes_by_itself(start):
