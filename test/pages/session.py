@@ -18,8 +18,8 @@ ERROR = re.compile(r'\[ *(ERROR|FATAL)\]|Traceback \(most|RLException|\] process
 # last line of a traceback that ROS's own tools may print on exit on Debian 11: Python 3.9 has no Thread.isAlive()
 HARMLESS = re.compile(r"AttributeError: '\w+' object has no attribute 'isAlive'")
 
-# Functions of the shells. roscore ignores the port in ROS_MASTER_URI. RViz draws 4 frames per second instead of 30, which
-# would take a third of a core without a GPU.
+# roscore ignores the port in ROS_MASTER_URI. RViz draws 4 frames per second: without a GPU, the 30 of its files would
+# take a third of a core.
 FUNCTIONS = r"""
 roscore() { command roscore -p "${ROS_MASTER_URI##*:}" "$@"; }
 rosrun() {
