@@ -130,11 +130,12 @@ def plot(folder, surface, floor, judgements):
     """Write the pictures. floor: name of the Surface in the titles. Raises OSError."""
     paths, ends = (os.path.join(folder, name) for name in PICTURES)
     draw_paths(paths, 'The same commands for %d s: real robots, and simulated ones on %s\n'
-               'The window with the median score of each robot, from the second half of its record' % (
+               'The window with the median score of each robot, from the second half of its recording' % (
                    PATH_LENGTH, floor), judgements[PATH_LENGTH], surface, ideal_surface())
     judgement = judgements[END_LENGTH]
-    draw_ends(ends, 'After %d s: real ends, and the regions of %d simulated ones on %s\n'
-              'Of all %d ends in the second halves of the records, %.0f %% are inside 50 %%, %.0f %% inside 90 %%' % (
+    draw_ends(ends, 'After %d s: real end poses, and the regions of %d simulated ones on %s\n'
+              'Of all %d end poses in the second halves of the recordings, %.0f %% are inside 50 %%, '
+              '%.0f %% inside 90 %%' % (
                   END_LENGTH, ENDS, floor, len(judgement.inside), 100 * (judgement.inside < 0.5).mean(),
                   100 * (judgement.inside < 0.9).mean()), judgement)
 
@@ -178,8 +179,9 @@ def main():
             parser.error(f'--plot: {show_name(args.plot)}: {error}')
     start = time.monotonic()
     try:
+        surfaces = resources.surfaces()     # the fit also starts from one of them
         first, second = halves(read_set(args.data, args.set))
-        given = load_surface(args.surface, resources.surfaces()) if args.surface else None
+        given = load_surface(args.surface, surfaces) if args.surface else None
     except ConfigError as error:
         sys.exit(f'real_creates: {error}')
     surface, errors = (given, {}) if args.surface else fit(first, MOTIONS, NOISES)
@@ -190,7 +192,7 @@ def main():
         'surface', 's', 'ends', 'in 50 % (90 % CI)', 'in 90 % (90 % CI)', 'm, med.', 'rad, med.'))
     judgements = judge(args.surface or 'fitted', second, surface)
     if args.plot:
-        floor = show_name(args.surface) if args.surface else 'a floor fitted to the first halves of their records'
+        floor = show_name(args.surface) if args.surface else 'a floor fitted to the first halves of their recordings'
         try:
             plot(args.plot, surface, floor, judgements)
         except OSError as error:

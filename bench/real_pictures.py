@@ -47,8 +47,8 @@ def draw_paths(file, title, judgement, surface, ideal):
         axes.grid(True, alpha=0.5)
     legend.axis('off')
     legend.legend([start, real, real_end, simulated, ends, commanded], [
-        'start', 'real robot', 'its end', '%d simulated robots' % PATHS, 'their ends', 'commands, exactly followed'],
-                  loc='center', frameon=False)
+        'start', 'real robot', 'its end pose', '%d simulated robots' % PATHS, 'their end poses',
+        'commands, followed exactly'], loc='center', frameon=False)
     save(figure, file)
 
 
@@ -66,7 +66,7 @@ def draw_ends(file, title, judgement):
             ends = judgement.ends[index][:, :2]
             draw_regions(axes, ends, label=True)
             axes.plot(*judgement.windows[index][1].ends[0, :2], 's', color='black', markerfacecolor='white', zorder=5,
-                      label='real end')
+                      label='real end pose')
             x, y = ends.mean(axis=0)
             axes.set(aspect='equal', xlim=(x - HALF, x + HALF), ylim=(y - HALF, y + HALF))
             axes.grid(True, alpha=0.5)
