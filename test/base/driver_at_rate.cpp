@@ -11,6 +11,7 @@ int main(int argc, char** argv)
   ros::Publisher publisher = node.advertise<geometry_msgs::Twist>("/cmd_vel", 10);
   while (publisher.getNumSubscribers() == 0)
     ros::WallDuration(0.02).sleep();
+  ros::Time::waitForValid();    // a Rate that begins at time 0 skips its first sleep
   ros::WallDuration(0.3).sleep();
   geometry_msgs::Twist move;
   move.linear.x = 0.2;

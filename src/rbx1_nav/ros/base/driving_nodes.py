@@ -123,10 +123,9 @@ class DrivingNodes:
             return None
         name: str = rospy.get_name()
         processes = self.processes if not self.own or name in self.forgotten else {**self.processes, name: self.own}
-        if self.network.busy():
-            return name
-        process = awake(processes.values())
-        return next((name for name, each in processes.items() if each is process), None)
+        found = awake(processes.values(), self.network)
+        # the name of this node stands for the network
+        return next((each for each, process in processes.items() if process is found), name) if found else None
 
     def awake_drivers(self) -> str | None:
         """Return the name of a publisher of commands that is awake; None if all are asleep."""

@@ -191,11 +191,15 @@ class Network:
         return any(b') R' in os.pread(file, 512, 0) for file in self.files)
 
 
-def awake(processes: Iterable[Process]) -> Process | None:
-    """Return the first Process that is not asleep; None if all of them were asleep at one moment."""
+def awake(processes: Iterable[Process], network: Network | None = None) -> Process | Network | None:
+    """Return the first Process that is not asleep, or the Network if messages may be in transit between them; None if
+    all of them were asleep at one moment, and nothing was in transit."""
     processes = list(processes)
     # read for all before the first check: a checked process may be woken by another one that then sleeps when checked
     before = [_cpu_time(process) for process in processes]
+    # not earlier: if no process has run since `before`, nothing can have been sent after this check
+    if network and network.busy():
+        return network
     for process in processes:
         try:
             if not process.sleeps():

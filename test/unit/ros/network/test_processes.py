@@ -159,6 +159,24 @@ def test_a_polling_thread_that_has_not_looked_since(start):
     assert not still_polling(threads)
 
 
+def test_messages_in_transit(start):
+    child = start('for line in sys.stdin: print("read", flush=True)')
+    process = Process(child.pid)
+
+    def run_and_sleep():
+        child.stdin.write(b'\n')
+        child.stdin.flush()
+        child.stdout.readline()
+        wait_for(lambda: not awake([process]))
+        return False
+    wait_for(lambda: not awake([process]))
+    assert not awake([process], SimpleNamespace(busy=lambda: False))
+    network = SimpleNamespace(busy=lambda: True)
+    assert awake([process], network) is network
+    # it may have sent a message after the network was checked
+    assert awake([process], SimpleNamespace(busy=run_and_sleep)) is process
+
+
 def test_a_polling_thread_is_found_although_the_caller_is_suspended(start, monkeypatch):
     process = Process(start('while True: time.sleep(0.001)').pid)
     thread, = process.threads.values()
