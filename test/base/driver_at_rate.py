@@ -43,7 +43,7 @@ def main(kind, rate, count, speed=None):
     """Drive."""
     rospy.init_node('driver', anonymous=True)
     publisher = rospy.Publisher('/cmd_vel', Twist, queue_size=10)
-    # on a busy machine, the first /clock message may arrive last, and a Rate that begins at time 0 skips its first sleep
+    # the first /clock message may arrive last on a busy machine; a Rate that begins at time 0 skips its first sleep
     while publisher.get_num_connections() == 0 or rospy.get_time() == 0:
         time.sleep(0.02)
     if speed is None:
