@@ -39,7 +39,7 @@ def wait_for(condition, what, limit=LIMIT):
         value = condition()
         if value:
             return value
-        time.sleep(0.005)
+        time.sleep(0.02)
     raise AssertionError(f'timed out after {limit:g} s waiting for {what}')
 
 

@@ -18,13 +18,13 @@ ERROR = re.compile(r'\[ *(ERROR|FATAL)\]|Traceback \(most|RLException|\] process
 # last line of a traceback that ROS's own tools may print on exit on Debian 11: Python 3.9 has no Thread.isAlive()
 HARMLESS = re.compile(r"AttributeError: '\w+' object has no attribute 'isAlive'")
 
-# roscore ignores the port in ROS_MASTER_URI. RViz draws 4 frames per second: without a GPU, the 30 of its files would
-# take a third of a core.
+# roscore ignores the port in ROS_MASTER_URI. RViz draws one frame per second in a small window: without a GPU, the size
+# and the rate of its files would take a third of a core. test/view/ checks what RViz shows.
 FUNCTIONS = r"""
 roscore() { command roscore -p "${ROS_MASTER_URI##*:}" "$@"; }
 rosrun() {
   if [ "$1 $3" = 'rviz -d' ]; then
-    sed 's/Frame Rate: .*/Frame Rate: 4/' "$4" >~/slow.rviz
+    sed 's/Frame Rate: .*/Frame Rate: 1/; s/  Width: 1200/  Width: 600/; s/  Height: 760/  Height: 400/' "$4" >~/slow.rviz
     set -- rviz rviz -d ~/slow.rviz
   fi
   command rosrun "$@"
@@ -158,7 +158,7 @@ class Session:
         while processes.find(self.home):
             if time.monotonic() > deadline:
                 raise PageFailed(f'{self.page}: processes left after the last step: {processes.find(self.home)}')
-            time.sleep(0.05)
+            time.sleep(0.2)
 
     # the terminals
 
@@ -198,7 +198,7 @@ class Session:
         while not condition():
             if time.monotonic() > deadline:
                 return False
-            time.sleep(0.05)
+            time.sleep(0.2)
         return True
 
     def check_errors(self):
