@@ -24,7 +24,7 @@ FUNCTIONS = r"""
 roscore() { command roscore -p "${ROS_MASTER_URI##*:}" "$@"; }
 rosrun() {
   if [ "$1 $3" = 'rviz -d' ]; then
-    sed 's/Frame Rate: .*/Frame Rate: 1/; s/  Width: 1200/  Width: 600/; s/  Height: 760/  Height: 400/' "$4" >~/slow.rviz
+    sed 's/Frame Rate: .*/Frame Rate: 1/; s/Width: 1200/Width: 600/; s/Height: 760/Height: 400/' "$4" >~/slow.rviz
     set -- rviz rviz -d ~/slow.rviz
   fi
   command rosrun "$@"

@@ -17,7 +17,8 @@ from rbx1_nav.simulation.answers import BURST_TIME, Answers, NotInStep, Received
 from rbx1_nav.simulation.stream import Stream
 
 NODE_TIMEOUT = 5.0      # s of wall time that a tick waits for a node
-LOOK = 2e-5         # s of wall time between two checks of the nodes
+LOOK = 2e-5         # s of wall time between two checks of the nodes, at first
+LOOK_LATER = 0.05   # of the time waited so far: later, so that a node that is starting gets the processor
 FRESH = 2e-4        # s of wall time after which a check is repeated
 # a driver is released after this number of commands that no tick has prompted: one may be the stop after Ctrl-C
 UNPROMPTED = 3
@@ -165,15 +166,17 @@ class Lockstep:
 
     def _wait_while_awake(self, look: Callable[[], str | None]) -> None:
         """Wait while a node is awake. look(): returns the name of a node that is awake, or None."""
-        deadline = monotonic() + NODE_TIMEOUT
+        begin = monotonic()
+        deadline = begin + NODE_TIMEOUT
         while not self.ended():
             name = look()
             if not name:
                 return
-            if monotonic() > deadline:
+            now = monotonic()
+            if now > deadline:
                 self._give_up(name)
                 deadline += NODE_TIMEOUT
-            sleep(LOOK)
+            sleep(max(LOOK, LOOK_LATER * (now - begin)))
 
     def _all_steady_have_sent(self) -> bool:
         """Return whether all nodes that may drive are steady and have sent their commands.

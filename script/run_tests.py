@@ -1,0 +1,209 @@
+#!/usr/bin/env python3
+"""Runs rostests and unit tests, several at a time, and prints the results. The last line: tests that passed and failed.
+
+usage: run_tests.py --results DIR [--jobs N] TESTS...
+
+TESTS: a rostest, such as test/base/reset.test, or unit tests for one process, such as test/unit/create,test/unit/robot
+
+Each rostest runs in a copy of this process: in a new process, the imports of rostest would take longer than most tests.
+"""
+import argparse
+import glob
+import multiprocessing
+from multiprocessing.connection import wait
+import os
+import subprocess
+import sys
+import time
+import xml.etree.ElementTree as ElementTree
+
+import roslaunch.parent         # noqa: F401
+import rostest.rostest_main
+import rostest.runner           # noqa: F401
+
+ROOT = os.path.realpath(os.path.join(os.path.dirname(__file__), '..'))
+PACKAGE = 'rbx1_nav'
+LIMIT = 3600        # s after which a job counts as hung, even on a busy machine
+# Rostests with the same set-up that leave nothing behind in it. Each set runs on one master, one after another.
+SETS = {
+    'set_at_10': ['base_timeout', 'ideal_sensors', 'reset', 'message_counts', 'final_pose'],
+    'set_in_step': ['in_step_at_5', 'in_step_at_20', 'in_step_at_25', 'in_step_at_30', 'in_step_at_40'],
+    'set_calibration': ['angular_calibration', 'linear_calibration', 'answered_later'],
+    'set_fake_create': ['fake_create_baud_rate', 'fake_create_cable', 'fake_create_faults', 'fake_create_line',
+                        'fake_create_parameters', 'fake_create_truth', 'independent_client'],
+    'set_create': ['create_cable', 'create_corruption', 'create_drives', 'create_gyro', 'create_port', 'create_rate'],
+    'set_create_fails': ['create_killed', 'create_refuses', 'create_safety', 'create_silence']}
+# the longest first, so that none of them is still running when the others have finished
+LONGEST = ['documents', 'unit-1', 'unit-2', 'calibration_without_gyro', 'browser_page', 'lost_listener']
+
+
+def run_rostest(results, path):
+    """Run a rostest. Exits with its status."""
+    # the name that CMake's add_rostest uses
+    name = os.path.splitext(os.path.relpath(path, ROOT if path.startswith(ROOT) else results))[0].replace(os.sep, '_')
+    sys.argv = ['rostest', f'--pkgdir={ROOT}', f'--package={PACKAGE}', f'--results-filename={name}.xml',
+                f'--results-base-dir={results}', path]
+    rostest.rostest_main.rostestmain()
+
+
+def run_unit_tests(results, name, paths):
+    """Run unit tests. Exits with their status."""
+    sys.exit(subprocess.call([sys.executable, '-m', 'pytest', '-q', '-p', 'no:cacheprovider', *paths,
+                              f'--junit-xml={results}/{PACKAGE}/pytest-{name}.xml']))
+
+
+class Job:
+    """A process that runs tests. Its output goes to a file."""
+
+    def __init__(self, name, log, target, *arguments):
+        """log: path for the output; target(*arguments): runs the tests."""
+        self.name = name
+        self.log = log
+        self.process = multiprocessing.get_context('fork').Process(target=self.run, args=(target, *arguments))
+
+    def run(self, target, *arguments):
+        """Run the tests in the new process."""
+        output = os.open(self.log, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
+        os.dup2(output, 1)
+        os.dup2(output, 2)
+        target(*arguments)
+
+    def start(self):
+        """Start the process."""
+        self.end = time.monotonic() + LIMIT
+        self.process.start()
+
+    def hangs(self):
+        """Whether the process has been running for too long; if so, it is stopped."""
+        if time.monotonic() < self.end:
+            return False
+        self.process.terminate()
+        self.process.join(10)
+        self.process.kill()
+        return True
+
+    def trouble(self):
+        """Return the end of the output if the process has failed, or ''."""
+        if self.process.exitcode == 0:
+            return ''
+        with open(self.log, encoding='utf-8', errors='replace') as file:
+            lines = file.read().splitlines()[-40:]
+        return '\n'.join([f'{self.name}: status {self.process.exitcode}', *lines])
+
+
+def read_setup(path):
+    """Return the set-up of a rostest, as text, and its test, an XML element."""
+    root = ElementTree.parse(path).getroot()
+    test = root.find('test')
+    root.remove(test)
+    return ElementTree.tostring(root, encoding='unicode'), test
+
+
+def share_setups(results, paths):
+    """Return the paths of rostests; those of a set are replaced by one that runs them together."""
+    left = {os.path.splitext(os.path.basename(path))[0]: path for path in paths}
+    for name, members in SETS.items():
+        if len(left.keys() & set(members)) < 2:
+            continue
+        scripts = []
+        for path in [left.pop(member) for member in members if member in left]:
+            setup, test = read_setup(path)
+            script = os.path.join(os.path.dirname(path), test.get('type'))
+            scripts.append(','.join([test.get('test-name'), script, *test.get('args', '').split()]))
+        left[name] = os.path.join(results, f'{name}.test')
+        root = ElementTree.fromstring(setup)
+        root.append(ElementTree.Element('test', {'test-name': name, 'pkg': PACKAGE, 'type': 'together.py',
+                                                 'args': ' '.join(scripts), 'time-limit': str(LIMIT)}))
+        ElementTree.ElementTree(root).write(left[name])
+    return list(left.values())
+
+
+def make_jobs(results, tests):
+    """Return the Jobs of these tests, in the order in which they should begin."""
+    jobs = []
+    for path in share_setups(results, [os.path.realpath(each) for each in tests if each.endswith('.test')]):
+        name = os.path.splitext(os.path.basename(path))[0]
+        jobs.append(Job(name, os.path.join(results, f'{name}.log'), run_rostest, results, path))
+    for number, each in enumerate([each for each in tests if not each.endswith('.test')], 1):
+        name = f'unit-{number}'
+        jobs.append(Job(name, os.path.join(results, f'{name}.log'), run_unit_tests, results, name, each.split(',')))
+    return sorted(jobs, key=lambda job: LONGEST.index(job.name) if job.name in LONGEST else len(LONGEST))
+
+
+def run_jobs(jobs, count):
+    """Run Jobs, `count` at a time. Returns the names of those that failed."""
+    waiting, running, failed = list(jobs), [], []
+    while waiting or running:
+        while waiting and len(running) < count:
+            running.append(waiting.pop(0))
+            running[-1].start()
+        wait([job.process.sentinel for job in running], 60)
+        for job in list(running):
+            if job.process.is_alive() and not job.hangs():
+                continue
+            job.process.join()
+            running.remove(job)
+            if job.trouble():
+                failed.append(job.name)
+                print(job.trouble())
+    return failed
+
+
+def read(path):
+    """Return the test cases of a result file; None if its test was killed at its time limit, which leaves one line."""
+    try:
+        return list(ElementTree.parse(path).iter('testcase'))
+    except ElementTree.ParseError:
+        return None
+
+
+def has_own_result(results, path):
+    """Whether the test of a rostest has left a result."""
+    # test/unit/test_rostests.py: a test has the name of its file, with the folder if two files have the same name
+    name = os.path.basename(path)[len('rostest-'):]
+    name = name[len('test_'):] if name.startswith('test_') else name
+    return any(read(own) for each in {name, name.partition('_')[2]}
+               for own in glob.glob(os.path.join(results, '**', 'rosunit-' + each), recursive=True))
+
+
+def summarize(results):
+    """Print all results in a folder. Returns the numbers of tests that passed and that failed."""
+    passed = failed = 0
+    for path in sorted(glob.glob(os.path.join(results, '**', '*.xml'), recursive=True)):
+        cases = read(path)
+        # rostest's own file counts if the test left no file because it crashed, hung, or did not start
+        if '/rosunit-' in path and cases is None or '/rostest-' in path and has_own_result(results, path):
+            continue
+        cases = cases or []
+        bad = [(case, trouble) for case in cases for trouble in [case.find('failure'), case.find('error')]
+               if trouble is not None]
+        name = os.path.splitext(os.path.basename(path))[0]
+        if name[len('rosunit-'):] in SETS and cases and not bad:    # the tests of a set have results of their own
+            continue
+        print('%-32s %d of %d' % (name, len(cases) - len(bad), len(cases)))
+        for case, trouble in bad:
+            print(f"FAILED: {name} {case.get('name')}\n{trouble.text or ''}")
+        passed += len(cases) - len(bad)
+        failed += len(bad) or not cases
+    return passed, failed
+
+
+def main():
+    """Run the tests; return the exit status."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument('tests', nargs='+', metavar='TESTS')
+    parser.add_argument('--results', required=True, metavar='DIR')
+    parser.add_argument('--jobs', type=int, default=1, metavar='N')
+    arguments = parser.parse_args()
+    results = os.path.realpath(arguments.results)
+    os.makedirs(os.path.join(results, PACKAGE), exist_ok=True)
+    troubled = run_jobs(make_jobs(results, arguments.tests), arguments.jobs)
+    passed, failed = summarize(results)
+    # a job can also fail without a result
+    failed = max(failed, len(troubled))
+    print(passed, failed)
+    return 1 if failed or not passed else 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())
