@@ -69,7 +69,7 @@ class TestFaults(unittest.TestCase):
             robot.publish('gyro_stuck', count)
             robot.wait_for(33, value)
         robot.publish('gyro_stuck', 1024)
-        robot.process.wait_for_line('gyro_stuck: 1024.0: expected a number from -1 to 1023; rejected')
+        robot.process.wait_for_line('gyro_stuck: 1024.0: expected a count from -1 to 1023; rejected')
 
     def test_the_battery(self):
         robot = self.robot('create')

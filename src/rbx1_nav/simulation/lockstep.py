@@ -17,8 +17,8 @@ from rbx1_nav.simulation.answers import BURST_TIME, Answers, NotInStep, Received
 from rbx1_nav.simulation.stream import Stream
 
 NODE_TIMEOUT = 5.0      # s of wall time that a tick waits for a node
-LOOK = 2e-5         # s of wall time between two checks of the nodes, at first
-LOOK_LATER = 0.05   # of the time waited so far: later, so that a node that is starting gets the processor
+LOOK = 2e-5, 5e-3   # s of wall time between two checks of the nodes: at least, at most
+LOOK_LATER = 0.05   # s between two checks per s of waiting so far: a node that is starting needs the processor itself
 FRESH = 2e-4        # s of wall time after which a check is repeated
 # a driver is released after this number of commands that no tick has prompted: one may be the stop after Ctrl-C
 UNPROMPTED = 3
@@ -161,7 +161,7 @@ class Lockstep:
         polling = self.nodes.polling()      # these may not have seen the tick yet
         if polling:
             while self.nodes.still_polling(polling) and not self.ended():
-                sleep(LOOK)
+                sleep(LOOK[0])
             self._wait_while_awake(self.nodes.awake)
 
     def _wait_while_awake(self, look: Callable[[], str | None]) -> None:
@@ -176,7 +176,7 @@ class Lockstep:
             if now > deadline:
                 self._give_up(name)
                 deadline += NODE_TIMEOUT
-            sleep(max(LOOK, LOOK_LATER * (now - begin)))
+            sleep(min(max(LOOK[0], LOOK_LATER * (now - begin)), LOOK[1]))
 
     def _all_steady_have_sent(self) -> bool:
         """Return whether all nodes that may drive are steady and have sent their commands.

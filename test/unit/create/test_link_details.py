@@ -1,5 +1,6 @@
 """The retries, heartbeats and settings of the line, and the texts of a port that cannot be opened."""
 import errno
+import fcntl
 import os
 import pty
 from types import SimpleNamespace
@@ -142,7 +143,9 @@ def test_why_a_port_cannot_be_opened(number, text, tmp_path):
 def test_a_port_that_nobody_uses(tmp_path):
     path = tmp_path / 'file'
     path.write_text('')
-    with open(path, encoding='utf-8'):      # open in this process, without a lock
+    with open(path, encoding='utf-8') as file:      # open in this process, without a lock and with one
+        assert user_of(str(path)) == ''
+        fcntl.flock(file, fcntl.LOCK_EX)
         assert user_of(str(path)) == ''
 
 

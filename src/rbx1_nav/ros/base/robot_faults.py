@@ -10,10 +10,12 @@ import rospy
 from std_msgs.msg import Float64
 from std_srvs.srv import SetBool, SetBoolResponse, Trigger, TriggerResponse
 
-from rbx1_nav.config import ConfigError
+from rbx1_nav.config import ConfigError, Section
 from rbx1_nav.create.emulator.body import CAPACITY
 from rbx1_nav.create.emulator.emulator import EmulatedCreate
 from rbx1_nav.create.emulator.pseudo_terminal import PseudoTerminal
+from rbx1_nav.parameters import read
+from rbx1_nav.ros.base.parameters import FAKE_CREATE
 from rbx1_nav.ros.node import life
 
 
@@ -33,9 +35,9 @@ class RobotFaults:
             self._offer_switch(name, switch)
         rospy.Service('~power_cycle', Trigger, lambda _: TriggerResponse(
             *self._request('power_cycle', lambda: robot.switch_on(robot.now))))
-        self._offer_number('charge', lambda value: setattr(body, 'charge', value * CAPACITY), 0, 1)
-        self._offer_number('corruption', lambda value: setattr(line, 'corruption', value), 0, 1)
-        self._offer_number('gyro_stuck', lambda value: setattr(body, 'gyro_stuck', floor(value)), -1, 1023)
+        self._offer_number('charge', lambda value: setattr(body, 'charge', value * CAPACITY))
+        self._offer_number('corruption', lambda value: setattr(line, 'corruption', value))
+        self._offer_number('gyro_stuck', lambda value: setattr(body, 'gyro_stuck', floor(value)))
 
     def apply(self) -> None:
         """Execute all pending requests."""
@@ -51,14 +53,18 @@ class RobotFaults:
         rospy.Service(f'~{name}', SetBool, lambda request: SetBoolResponse(
             *self._request(f'{name}: {request.data}', lambda: switch(request.data))))
 
-    def _offer_number(self, name: str, function: Callable[[float], None], low: int, high: int) -> None:
+    def _offer_number(self, name: str, function: Callable[[float], None]) -> None:
+        """Offer a topic that changes the parameter with this name."""
+        parameter = next(each for each in FAKE_CREATE if each.name == name)
+
         def on_message(message: Float64) -> None:
-            if low <= message.data <= high:
-                self._request(f'{name}: {message.data:g}', lambda: function(message.data))
+            try:
+                read([parameter], Section({name: message.data}, rospy.get_name()))
+            except ConfigError as error:
+                rospy.logerr('%s; rejected', error)
             else:
-                rospy.logerr('%s: %r: expected a number from %d to %d; rejected', topic, message.data, low, high)
-        topic = rospy.resolve_name(f'~{name}')
-        rospy.Subscriber(topic, Float64, on_message)
+                self._request(f'{name}: {message.data:g}', lambda: function(message.data))
+        rospy.Subscriber(f'~{name}', Float64, on_message)
 
     def _request(self, text: str, function: Callable[[], object]) -> tuple[bool, str]:
         """Request a call of a function and wait for it; return whether it succeeded, and the text that is logged."""
