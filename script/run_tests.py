@@ -24,6 +24,7 @@ import rostest.runner           # noqa: F401
 ROOT = os.path.realpath(os.path.join(os.path.dirname(__file__), '..'))
 PACKAGE = 'rbx1_nav'
 LIMIT = 3600        # s after which a job counts as hung, even on a busy machine
+LOOK = 60       # s between two checks for jobs that hang
 # Rostests with the same set-up that leave nothing behind in it. Each set runs on one master, one after another.
 SETS = {
     'set_at_10': ['base_timeout', 'ideal_sensors', 'reset', 'message_counts', 'final_pose'],
@@ -137,7 +138,7 @@ def run_jobs(jobs, count):
         while waiting and len(running) < count:
             running.append(waiting.pop(0))
             running[-1].start()
-        wait([job.process.sentinel for job in running], 60)
+        wait([job.process.sentinel for job in running], LOOK)
         for job in list(running):
             if job.process.is_alive() and not job.hangs():
                 continue

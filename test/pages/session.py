@@ -19,8 +19,8 @@ ERROR = re.compile(r'\[ *(ERROR|FATAL)\]|Traceback \(most|RLException|\] process
 HARMLESS = re.compile(r"AttributeError: '\w+' object has no attribute 'isAlive'")
 
 # roscore ignores the port in ROS_MASTER_URI. RViz draws one frame per second in a small window: without a GPU, the size
-# and the rate of its files would take a third of a core. test/view/ checks what RViz shows. 2000 simulated runs, of which
-# the page shows only a picture, would take 14 s of CPU time.
+# and the rate of its files would take a third of a core. test/view/ checks what RViz shows. Of 2000 simulated runs, the
+# page shows only a picture.
 FUNCTIONS = r"""
 roscore() { command roscore -p "${ROS_MASTER_URI##*:}" "$@"; }
 rosrun() {

@@ -25,6 +25,11 @@ class TestLaunchArguments(unittest.TestCase):
                                    f'{name}:={value}')
                 self.assertIn(f'/fake_create/{name}: {value}\n', params)
 
+    def test_no_model(self):
+        arguments = '--nodes', 'rbx1_nav', 'fake_turtlebot.launch', 'surface:=low_ply_carpet'
+        self.assertIn('/robot_state_publisher', roslaunch(*arguments))
+        self.assertEqual(roslaunch(*arguments, 'model:=none').split(), ['/arbotix'])
+
     def test_arguments(self):
         texts = {}
         for package, file in LAUNCH_FILES:

@@ -4,13 +4,16 @@ roslaunch runs the first script with a matching name in the package, and rostest
 with the same name.
 """
 import collections
-import importlib.util
 import os
+import sys
 import xml.etree.ElementTree as ElementTree
 
 import pytest
 
 ROOT = os.path.normpath(os.path.join(os.path.dirname(__file__), '..', '..'))
+sys.path.insert(0, os.path.join(ROOT, 'script'))
+import run_tests        # noqa: E402    found by the line above
+
 FILES = sorted(os.path.join(folder, file) for folder, _, files in os.walk(os.path.join(ROOT, 'test'))
                for file in files if file.endswith('.test'))
 NAMES = collections.Counter(map(os.path.basename, FILES))
@@ -43,17 +46,9 @@ def test_there_is_one_script_of_its_name(path):
             assert os.access(scripts[0], os.X_OK)
 
 
-def run_tests():
-    """script/run_tests.py as a module."""
-    spec = importlib.util.spec_from_file_location('run_tests', os.path.join(ROOT, 'script', 'run_tests.py'))
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-@pytest.mark.parametrize('members', run_tests().SETS.values(), ids=lambda members: members[0])
+@pytest.mark.parametrize('members', run_tests.SETS.values(), ids=lambda members: members[0])
 def test_the_tests_of_a_set_have_the_same_setup(members):
     paths = {os.path.splitext(os.path.basename(path))[0]: path for path in FILES}
-    assert len({run_tests().read_setup(paths[member])[0].strip() for member in members}) == 1
+    assert len({run_tests.read_setup(paths[member])[0].strip() for member in members}) == 1
     # together.py passes arguments, but no parameters
     assert not any(list(test) for member in members for test in elements(paths[member]))

@@ -1,0 +1,58 @@
+"""script/run_tests.py reports every test that fails, crashes, hangs, or leaves no result."""
+import os
+import signal
+import sys
+import time
+
+import pytest
+
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), '..', '..', 'script'))
+import run_tests        # noqa: E402    found by the line above
+
+PASSED = '<testcase name="a"/>'
+FAILED = '<testcase name="b"><failure>1 != 2</failure></testcase>'
+
+
+@pytest.fixture(name='make_job')
+def fixture_make_job(tmp_path):
+    return lambda name, target: run_tests.Job(name, str(tmp_path / f'{name}.log'), target)
+
+
+def test_jobs(make_job, capsys):
+    targets = {'good': lambda: None, 'bad': lambda: (os.write(1, b'why\n'), sys.exit(2)),
+               'crashed': lambda: os.kill(os.getpid(), signal.SIGKILL), 'late': lambda: time.sleep(0.2)}
+    names = run_tests.run_jobs([make_job(*each) for each in targets.items()], 2)
+    assert sorted(names) == ['bad', 'crashed']
+    output = capsys.readouterr().out
+    assert 'bad: status 2\nwhy\n' in output and 'crashed: status -9\n' in output
+
+
+def test_a_job_that_hangs(make_job, monkeypatch):
+    monkeypatch.setattr(run_tests, 'LIMIT', 0)
+    monkeypatch.setattr(run_tests, 'LOOK', 0.1)
+    assert run_tests.run_jobs([make_job('hangs', lambda: time.sleep(1000))], 1) == ['hangs']
+
+
+def test_results(tmp_path, capsys):
+    for name, text in [('rosunit-a', PASSED + PASSED), ('rostest-test_base_a', PASSED), ('rosunit-b', PASSED + FAILED),
+                       ('rostest-test_c', FAILED), ('rosunit-set_create', PASSED), ('rostest-set_create', PASSED)]:
+        (tmp_path / f'{name}.xml').write_text(f'<testsuite>{text}</testsuite>')
+    # killed at its time limit: rostest's result counts
+    (tmp_path / 'rosunit-d.xml').write_text('')
+    (tmp_path / 'rostest-test_d.xml').write_text(f'<testsuite>{FAILED}</testsuite>')
+    assert run_tests.summarize(str(tmp_path)) == (3, 3)
+    assert capsys.readouterr().out.count('FAILED: ') == 3
+
+
+def test_a_set(tmp_path):
+    for name in 'reset', 'base_timeout', 'other':
+        (tmp_path / f'{name}.test').write_text(
+            f'<launch><param name="a" value="1"/><test test-name="{name}" type="{name}.py" args="7"/></launch>')
+    paths = [str(tmp_path / f'{name}.test') for name in ('reset', 'base_timeout', 'other')]
+    other, together = run_tests.share_setups(str(tmp_path), paths)
+    assert other == paths[2]
+    setup, test = run_tests.read_setup(together)
+    assert setup.startswith('<launch><param name="a" value="1"')
+    assert test.get('args') == f'base_timeout,{tmp_path}/base_timeout.py,7 reset,{tmp_path}/reset.py,7'
+    # a single test needs no set
+    assert run_tests.share_setups(str(tmp_path), paths[1:]) == paths[1:]
