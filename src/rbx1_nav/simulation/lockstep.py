@@ -19,7 +19,6 @@ from rbx1_nav.simulation.stream import Stream
 NODE_TIMEOUT = 5.0      # s of wall time that a tick waits for a node
 LOOK = 2e-5, 5e-3   # s of wall time between two checks of the nodes: at least, at most
 LOOK_LATER = 0.05   # s between two checks per s of waiting so far: a node that is starting needs the processor itself
-FRESH = 2e-4        # s of wall time after which a check is repeated
 # a driver is released after this number of commands that no tick has prompted: one may be the stop after Ctrl-C
 UNPROMPTED = 3
 STEADY = 25         # ticks: a driver that has sent one command at each of them will also do so at the next tick
@@ -34,6 +33,7 @@ class Nodes(Protocol):
     def update(self) -> None: ...
     def sees(self, name: str) -> bool: ...
     def on_clock(self, name: str) -> bool: ...
+    def note(self, names: set[str]) -> None: ...
     def mark(self, names: set[str]) -> None: ...
     def woke_by_itself(self, name: str) -> bool: ...
     def connecting(self) -> bool: ...
@@ -86,7 +86,6 @@ class Lockstep:
         self.tick = 0           # number of the current tick
         self.ticks: Deque[float] = deque()      # s of the monotonic clock: the ticks of the last BURST_TIME
         self.over = True        # whether the current tick is over
-        self.over_since = 0.0   # s of the monotonic clock
         self.changed = Condition()
 
     def receive(self, connection: object, name: str, command: ReceivedCommand) -> None:
@@ -114,13 +113,17 @@ class Lockstep:
         A node that has woken by itself still belongs to the previous tick.
         """
         quiet = self.nodes.drivers - {driver.name for driver in self._seen_drivers() if driver.stream}
-        if self.nodes.connecting() or (quiet and monotonic() - self.over_since > FRESH):
-            self._wait_until_asleep()
-        self.nodes.mark(quiet)
+        if quiet or self.nodes.connecting():
+            self._settle(quiet)
         while not self._begin():
-            self._wait_until_asleep()
+            self._settle(quiet)
             self._apply_arrived()
-            self.nodes.mark(quiet)
+
+    def _settle(self, quiet: set[str]) -> None:
+        """Wait until everything is asleep. A quiet node that runs during this check may still be sending a command."""
+        self.nodes.note(quiet)
+        self._wait_until_asleep()
+        self.nodes.mark(quiet)
 
     def end_tick(self) -> None:
         """Wait for the outstanding commands, and put them in force; call this after each tick."""
@@ -132,7 +135,6 @@ class Lockstep:
         else:
             self._wait_until_asleep()
         self._apply_arrived()
-        self.over_since = monotonic()
         for driver in list(self.drivers.values()):
             if driver.answers:
                 self._collect(driver, driver.answers)

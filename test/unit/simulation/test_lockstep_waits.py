@@ -77,30 +77,35 @@ def test_a_node_that_a_released_driver_was_is_not_observed_any_more(world):
     assert world.nodes.drivers == {'b'}
 
 
-def test_the_nodes_are_checked_before_a_tick_if_the_last_check_is_older_than_a_fifth_of_a_millisecond(
-        world, wall, looks):
-    for pause, checks in (0.00019, []), (0.00021, [1]):
-        looks.clear()
-        world.lockstep.tick = 0
+def test_nodes_at_rest_are_checked_before_every_tick(world, looks):
+    for _ in range(2):
         world.tick()
-        looks.clear()
-        wall.now += pause
-        world.tick()
-        assert looks == checks
+    assert looks == [0, 1]
 
 
-def test_the_nodes_are_not_checked_before_a_tick_if_all_of_them_drive(world, wall, looks):
+def test_what_a_node_has_done_is_noted_before_the_check_and_compared_after_it(world, monkeypatch):
+    calls = []
+    for name in 'note', 'awake', 'mark':
+        monkeypatch.setattr(world.nodes, name, lambda *_, name=name: calls.append(name))
+    world.lockstep.begin_tick()
+    assert calls == ['note', 'awake', 'mark']
+    # a command that arrives during the check: it is applied, and the next check is made in the same order
+    calls.clear()
+    world.nodes.mark = lambda _: len(calls) < 3 and world.send('a', MOVE)
+    world.lockstep.begin_tick()
+    assert calls == ['note', 'awake', 'note', 'awake'] and world.applied == [(1, MOVE)]
+
+
+def test_the_nodes_are_not_checked_before_a_tick_if_all_of_them_drive(world, looks):
     world.tick(('a', MOVE), ('b', MOVE))
     looks.clear()
-    wall.now += 1.0
     world.tick(('a', MOVE), ('b', STOP))
     assert not looks
-    wall.now += 1.0
     world.tick(('a', MOVE))
     assert looks == [2]     # b is at rest, and may have woken by itself
 
 
-def test_the_nodes_are_checked_before_a_tick_while_one_connects(world, wall, looks):
+def test_the_nodes_are_checked_before_a_tick_while_one_connects(world, looks):
     world.tick()
     looks.clear()
     world.nodes.connecting = lambda: True

@@ -97,13 +97,18 @@ class DrivingNodes:
         """Return whether a node subscribes to /clock."""
         return any(connection.endpoint_id == name for connection in list(self.clock_connections()))
 
+    def note(self, names: set[str]) -> None:
+        """Remember what the processes of these nodes have done so far; call this before waiting until they sleep."""
+        for name in names & self.processes.keys():
+            self.processes[name].note()
+
     def mark(self, names: set[str]) -> None:
         """Remember what the processes of these nodes are doing just before a tick."""
         for name in names & self.processes.keys():
             self.processes[name].mark()
 
     def woke_by_itself(self, name: str) -> bool:
-        """Return whether a node may have woken by itself since mark()."""
+        """Return whether a node may have woken by itself since note()."""
         return name in self.processes and self.processes[name].woke_by_itself()
 
     def connecting(self) -> bool:

@@ -42,7 +42,8 @@ class Thread:
             raise
         self.ran: bytes | None = None       # how long and how often it has run
         self.changed = 0.0      # s of the monotonic clock: when a change of `ran` was last detected
-        self.marked: bytes | None = None    # `ran` when mark() was called; None if it may have woken by itself before
+        self.noted: bytes | None = None     # `ran` when note() was called
+        self.marked: bytes | None = None    # `ran` when mark() was called; None if it had run since note()
         self.timed = False      # needs_no_message() when mark() was called
         self.look()
 
@@ -77,10 +78,14 @@ class Thread:
         name = self.waits_in()
         return name == b'0' or any(part in name for part in TIMED)
 
+    def note(self) -> None:
+        """See Process.note()."""
+        self.noted = self.look()
+
     def mark(self) -> None:
         """See Process.mark()."""
-        before, now = self.ran, self.look()
-        self.marked = now if now == before else None
+        now = self.look()
+        self.marked = now if now == self.noted else None
         self.timed = self.needs_no_message()
 
     def woke_by_itself(self) -> bool:
@@ -131,8 +136,12 @@ class Process:
             return False
         return all(thread.sleeps() for thread in self.threads.values())
 
+    def note(self) -> None:
+        """Remember what the threads have done so far."""
+        self._each(Thread.note)
+
     def mark(self) -> None:
-        """Remember what the threads are doing, and what they have done since the last look."""
+        """Remember what the threads are doing, and whether they have run since note()."""
         self._each(Thread.mark)
 
     def polling(self) -> list[PollingThread]:
@@ -140,7 +149,7 @@ class Process:
         return [(thread, thread.ran) for thread in self._each(Thread.polls)]
 
     def woke_by_itself(self) -> bool:
-        """Return whether a thread has run since mark() that was in a timed sleep then, or had just run."""
+        """Return whether a thread has run since mark() that was in a timed sleep then, or between note() and mark()."""
         return bool(self._each(Thread.woke_by_itself))
 
     def ended(self) -> bool:

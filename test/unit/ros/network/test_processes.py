@@ -198,26 +198,27 @@ def test_a_runnable_thread_polls_however_long_it_has_not_run(start):
 def test_who_wakes_by_itself(start):
     sleeper = Process(start('while True: time.sleep(0.05)').pid)
     wait_for(lambda: not awake([sleeper]))
+    sleeper.note()
     sleeper.mark()
     wait_for(sleeper.woke_by_itself)
     reader = start('while sys.stdin.read(1): pass')
     process = Process(reader.pid)
+
+    def wake():
+        before = process.cpu_time()
+        reader.stdin.write(b'x')
+        reader.stdin.flush()
+        wait_for(lambda: process.cpu_time() != before and not awake([process]))
     wait_for(lambda: not awake([process]))
     assert process.woke_by_itself()     # its earlier activity is unknown
+    process.note()
     process.mark()
-    process.mark()      # nothing is new now
-    reader.stdin.write(b'x')
-    reader.stdin.flush()
-    wait_for(lambda: not awake([process]))
+    wake()
     assert not process.woke_by_itself()
-    # it has run, for any reason, between the last look and the next mark
-    process.mark()
-    process.mark()
-    assert not process.woke_by_itself()
-    before = process.cpu_time()
-    reader.stdin.write(b'x')
-    reader.stdin.flush()
-    wait_for(lambda: process.cpu_time() != before and not awake([process]))
+    # it has run, for any reason, between note() and mark(), although it was looked at in between
+    process.note()
+    wake()
+    process.polling()
     process.mark()
     assert process.woke_by_itself()
 
