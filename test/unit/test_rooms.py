@@ -39,7 +39,7 @@ ALLOWED = {
     'ros.base.parameters': {'config', 'create', 'create.emulator', 'parameters', 'robot', 'ros.base', 'ros.node',
                             'schedule', 'simulation'},
     'ros.base.simulated_clock': {'config', 'ros.base', 'ros.node', 'schedule', 'simulation', 'units'},
-    'ros.base.robot_faults': {'config', 'create.emulator', 'ros', 'ros.node'},
+    'ros.base.robot_faults': {'config', 'create.emulator', 'parameters', 'ros.base.parameters', 'ros.node'},
     'ros.filter': {'arrays', 'config', 'estimation', 'parameters', 'robot', 'ros', 'ros.network', 'ros.node',
                    'schedule', 'simulation', 'units'},
     'ros.web': {'config', 'parameters', 'ros', 'ros.network', 'ros.node', 'units'},

@@ -123,11 +123,15 @@ class Process:
             thread.close()
         self.threads = {}
 
-    def cpu_time(self) -> int:
-        """Return the CPU time of the threads so far, ns; it is up to date only for waiting threads."""
-        if self.without is None:
-            return time.clock_gettime_ns(self.clock)
-        return sum(time.clock_gettime_ns(thread.clock) for thread in self.threads.values())
+    def cpu_time(self) -> int | None:
+        """Return the CPU time of the threads so far, ns; it is up to date only for waiting threads. None if the process
+        has exited."""
+        try:
+            if self.without is None:
+                return time.clock_gettime_ns(self.clock)
+            return sum(time.clock_gettime_ns(thread.clock) for thread in self.threads.values())
+        except OSError:
+            return None
 
     def sleeps(self) -> bool:
         """Return whether all threads are asleep."""
@@ -205,7 +209,7 @@ def awake(processes: Iterable[Process], network: Network | None = None) -> Proce
     all of them were asleep at one moment, and nothing was in transit."""
     processes = list(processes)
     # read for all before the first check: a checked process may be woken by another one that then sleeps when checked
-    before = [_cpu_time(process) for process in processes]
+    before = [process.cpu_time() for process in processes]
     # not earlier: if no process has run since `before`, nothing can have been sent after this check
     if network and network.busy():
         return network
@@ -217,17 +221,9 @@ def awake(processes: Iterable[Process], network: Network | None = None) -> Proce
             if not process.ended():
                 return process
     for process, cpu_time in zip(processes, before):
-        if _cpu_time(process) != cpu_time and not process.ended():
+        if process.cpu_time() != cpu_time and not process.ended():
             return process
     return None
-
-
-def _cpu_time(process: Process) -> int | None:
-    """Return Process.cpu_time(); None if the process has exited."""
-    try:
-        return process.cpu_time()
-    except OSError:
-        return None
 
 
 def still_polling(threads: Iterable[PollingThread]) -> bool:
