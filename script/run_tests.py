@@ -28,14 +28,15 @@ LOOK = 60       # s between two checks for jobs that hang
 # Rostests with the same set-up that leave nothing behind in it. Each set runs on one master, one after another.
 SETS = {
     'set_at_10': ['base_timeout', 'ideal_sensors', 'reset', 'message_counts', 'final_pose'],
-    'set_in_step': ['in_step_at_5', 'in_step_at_20', 'in_step_at_25', 'in_step_at_30', 'in_step_at_40'],
+    'set_in_step': ['in_step_at_5', 'in_step_at_10', 'in_step_at_20', 'in_step_at_25', 'in_step_at_30',
+                    'in_step_at_40'],
     'set_calibration': ['angular_calibration', 'linear_calibration'],
     'set_fake_create': ['fake_create_baud_rate', 'fake_create_cable', 'fake_create_faults', 'fake_create_line',
                         'fake_create_parameters', 'fake_create_truth', 'independent_client'],
     'set_create': ['create_cable', 'create_corruption', 'create_drives', 'create_gyro', 'create_port', 'create_rate'],
     'set_create_fails': ['create_killed', 'create_refuses', 'create_safety', 'create_silence']}
 # the longest first, so that none of them is still running when the others have finished
-LONGEST = ['documents', 'unit-1', 'unit-2', *SETS, 'calibration_without_gyro', 'browser_page', 'lost_listener']
+LONGEST = ['documents', 'calibration_without_gyro', *SETS, 'unit-1', 'unit-2', 'unit-3', 'unit-4', 'browser_page']
 
 
 def run_rostest(results, path):

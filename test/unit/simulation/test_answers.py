@@ -26,6 +26,9 @@ class Nodes:
     def sees(self, _):
         return False
 
+    def note(self, _):
+        pass
+
     def mark(self, _):
         pass
 

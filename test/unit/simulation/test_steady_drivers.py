@@ -1,12 +1,10 @@
 """Steady drivers, which have sent a command at each tick, and first commands that are late."""
-from rbx1_nav.simulation import lockstep
 from lockstep_world import World
 
 MOVE, FASTER, STOP = (0.2, 0.0), (0.3, 0.0), (0.0, 0.0)
 
 
-def test_a_driver_at_every_tick_spares_the_look(world, monkeypatch):
-    monkeypatch.setattr(lockstep, 'FRESH', 1000)
+def test_a_driver_at_every_tick_spares_the_look(world):
     world.nodes.drivers = {'a'}
     world.drive(*range(40))
     before = world.nodes.looks
