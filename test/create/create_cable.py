@@ -16,10 +16,9 @@ class TestCreateCable(unittest.TestCase):
         robot = DrivenRobot(self, robot_type, odom_linear_error=0.0, odom_angular_error=0.0,
                             odom_heading_error=0.0)
         for _ in range(2):
-            robot.wait_for_motion(0.2, 0.3)
-            start = robot.truth.next()
-            robot.switch('pull_cable', True)
-            robot.node.wait_for_line('Lost the serial connection')
+            with robot.driving(0.2, 0.3):
+                start = robot.truth.next()
+                robot.switch('pull_cable', True)
             robot.wait_for_status('no such device')
             # the robot keeps executing its last command
             support.wait_for(lambda: abs(support.yaw(robot.truth.next()) - support.yaw(start)) > 0.3, 'it to move on')

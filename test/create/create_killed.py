@@ -47,6 +47,7 @@ class TestCreateKilled(unittest.TestCase):
         os.kill(guardian, signal.SIGKILL)
         robot.node.wait_for_line('The guardian process died: starting a new one')
         support.wait_for(lambda: guardian_of(pid) not in (guardian, None), 'another guardian')
+        robot.commander.send(0.0, 0.0)
         robot.wait_for_motion()
         count = len(robot.received())
         os.kill(pid, signal.SIGKILL)

@@ -1,7 +1,9 @@
 """The base node and an emulated robot, both as processes, for the tests in this folder."""
+import contextlib
 import glob
 import os
 import signal
+import threading
 
 import numpy
 import rospy
@@ -89,6 +91,23 @@ class DrivenRobot(EmulatedRobot):
             rospy.sleep(0.02)
             return condition()
         return support.wait_for(check, what)
+
+    @contextlib.contextmanager
+    def driving(self, linear=0.2, angular=0.0):
+        """A context in which the robot moves, because a thread repeats the command even if this one has to wait."""
+        left = threading.Event()
+
+        def send():
+            while not left.wait(0.02):
+                self.commander.send(linear, angular)
+        thread = threading.Thread(target=send)
+        thread.start()
+        try:
+            support.wait_for(lambda: self.moving, f'the robot to move: {self.node.output}')
+            yield
+        finally:
+            left.set()
+            thread.join()
 
     def wait_for_motion(self, linear=0.2, angular=0.0):
         """Drive until the robot moves."""
