@@ -39,16 +39,14 @@ class TestCreateKilled(unittest.TestCase):
         robot.wait_for_standstill()
         # the guardian has paused the stream of readings, so the node assumes that the robot has stopped responding
         robot.node.wait_for_line(r'(?s)The robot answers again.*in safe mode')
-        robot.commander.send(0.0, 0.0)
-        robot.wait_for_motion()
+        robot.drive_again()
 
         # the node needs its guardian
         guardian = guardian_of(pid)
         os.kill(guardian, signal.SIGKILL)
         robot.node.wait_for_line('The guardian process died: starting a new one')
         support.wait_for(lambda: guardian_of(pid) not in (guardian, None), 'another guardian')
-        robot.commander.send(0.0, 0.0)
-        robot.wait_for_motion()
+        robot.drive_again()
         count = len(robot.received())
         os.kill(pid, signal.SIGKILL)
         robot.wait_for_stop(count)

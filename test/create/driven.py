@@ -1,6 +1,7 @@
 """The base node and an emulated robot, both as processes, for the tests in this folder."""
 import contextlib
 import glob
+import itertools
 import os
 import signal
 import threading
@@ -112,6 +113,17 @@ class DrivenRobot(EmulatedRobot):
     def wait_for_motion(self, linear=0.2, angular=0.0):
         """Drive until the robot moves."""
         self.drive(linear, angular, lambda: self.moving, f'the robot to move: {self.node.output}')
+
+    def drive_again(self):
+        """Drive until the robot moves. Zero commands now and then end a lockout, which there may be on a busy machine.
+        """
+        commands = itertools.cycle([(0.0, 0.0), *50 * [(0.2, 0.0)]])
+
+        def moves():
+            self.commander.send(*next(commands))
+            rospy.sleep(0.02)
+            return self.moving
+        support.wait_for(moves, 'the robot to move')
 
     def wait_for_standstill(self):
         """Wait until the robot is stationary according to the ground truth."""
