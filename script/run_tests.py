@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Runs rostests and unit tests, several at a time, and prints the results. The last line: tests that passed and failed.
+"""Runs rostests and unit tests, several at a time, and prints the results.
+
+The last line has two numbers: how many tests have passed, and how many have failed.
 
 usage: run_tests.py --results DIR [--jobs N] TESTS...
 
@@ -39,10 +41,8 @@ SETS = {
 LONGEST = ['documents', 'calibration_without_gyro', *SETS, 'unit-1', 'unit-2', 'unit-3', 'unit-4', 'browser_page']
 
 
-def run_rostest(results, path):
-    """Run a rostest. Exits with its status."""
-    # the name that CMake's add_rostest uses
-    name = os.path.splitext(os.path.relpath(path, ROOT if path.startswith(ROOT) else results))[0].replace(os.sep, '_')
+def run_rostest(results, name, path):
+    """Run a rostest. name: of its result. Exits with its status."""
     sys.argv = ['rostest', f'--pkgdir={ROOT}', f'--package={PACKAGE}', f'--results-filename={name}.xml',
                 f'--results-base-dir={results}', path]
     rostest.rostest_main.rostestmain()
@@ -88,13 +88,15 @@ class Job:
         """Return the end of the output if the process has failed, or ''."""
         if self.process.exitcode == 0:
             return ''
-        with open(self.log, encoding='utf-8', errors='replace') as file:
-            lines = file.read().splitlines()[-40:]
+        lines = []
+        if os.path.exists(self.log):    # not if the process was killed at its start
+            with open(self.log, encoding='utf-8', errors='replace') as file:
+                lines = file.read().splitlines()[-40:]
         return '\n'.join([f'{self.name}: status {self.process.exitcode}', *lines])
 
 
 def read_setup(path):
-    """Return the set-up of a rostest, as text, and its test, an XML element."""
+    """Return the set-up of a rostest, as text, and its test, an XML element. Raises ParseError."""
     root = ElementTree.parse(path).getroot()
     test = root.find('test')
     root.remove(test)
@@ -105,11 +107,17 @@ def share_setups(results, paths):
     """Return the paths of rostests; those of a set are replaced by one that runs them together."""
     left = {os.path.splitext(os.path.basename(path))[0]: path for path in paths}
     for name, members in SETS.items():
-        if len(left.keys() & set(members)) < 2:
+        setups = {}
+        for member in left.keys() & set(members):
+            try:
+                setups[member] = read_setup(left[member])
+            except ElementTree.ParseError:      # rostest reports it
+                pass
+        if len(setups) < 2:
             continue
         scripts = []
-        for path in [left.pop(member) for member in members if member in left]:
-            setup, test = read_setup(path)
+        for member in [member for member in members if member in setups]:
+            path, (setup, test) = left.pop(member), setups[member]
             script = os.path.join(os.path.dirname(path), test.get('type'))
             scripts.append(','.join([test.get('test-name'), script, *test.get('args', '').split()]))
         left[name] = os.path.join(results, f'{name}.test')
@@ -125,7 +133,10 @@ def make_jobs(results, tests):
     jobs = []
     for path in share_setups(results, [os.path.realpath(each) for each in tests if each.endswith('.test')]):
         name = os.path.splitext(os.path.basename(path))[0]
-        jobs.append(Job(name, os.path.join(results, f'{name}.log'), run_rostest, results, path))
+        folder = os.path.basename(os.path.dirname(path))
+        # for a rostest of its own, as CMake's add_rostest names it
+        result = name if name in SETS else f'test_{name}' if folder == 'test' else f'test_{folder}_{name}'
+        jobs.append(Job(name, os.path.join(results, f'{name}.log'), run_rostest, results, result, path))
     for number, each in enumerate([each for each in tests if not each.endswith('.test')], 1):
         name = f'unit-{number}'
         jobs.append(Job(name, os.path.join(results, f'{name}.log'), run_unit_tests, results, name, each.split(',')))
@@ -180,8 +191,10 @@ def summarize(results):
         bad = [(case, trouble) for case in cases for trouble in [case.find('failure'), case.find('error')]
                if trouble is not None]
         name = os.path.splitext(os.path.basename(path))[0]
-        if name[len('rosunit-'):] in SETS and cases and not bad:    # the tests of a set have results of their own
-            continue
+        if name.partition('-')[2] in SETS and cases:    # the tests of a set have results of their own
+            cases = [case for case, _ in bad]
+            if not bad:
+                continue
         print('%-32s %d of %d' % (name, len(cases) - len(bad), len(cases)))
         for case, trouble in bad:
             print(f"FAILED: {name} {case.get('name')}\n{trouble.text or ''}")

@@ -19,14 +19,14 @@ RESET = '/arbotix/reset'
 
 
 def put_robot_back():
-    """Put the simulated robot back at the origin, if there is one."""
-    if rosgraph.Master('/together').is_online() and any(
-            name == RESET for name, _ in rosgraph.Master('/together').getSystemState()[2]):
+    """Put the simulated robot, if there is one, back at the origin, where each of the scripts expects it."""
+    services = rosgraph.Master('/together').getSystemState()[2]
+    if any(name == RESET for name, _ in services):
         rospy.ServiceProxy(RESET, Empty)()
 
 
 class Together(unittest.TestCase):
-    """One test for each script. It fails only if the script leaves no result; its results are counted by themselves."""
+    """One test for each script. It fails only if the script leaves no result; its results are counted separately."""
 
     @classmethod
     def add_test(cls, results, name, *command):
@@ -35,8 +35,11 @@ class Together(unittest.TestCase):
 
         def run(self):
             put_robot_back()
-            subprocess.run([*command, f'__name:={name}', RESULT + result], timeout=LIMIT, check=False)
-            self.assertTrue(os.path.isfile(result), f'{name} left no result')
+            script = subprocess.run([*command, f'__name:={name}', RESULT + result], timeout=LIMIT, check=False,
+                                    stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
+            print(script.stdout)
+            self.assertTrue(os.path.isfile(result),
+                            f'{name} left no result; status {script.returncode}, output:\n{script.stdout}')
         setattr(cls, f'test_{name}', run)
 
 
