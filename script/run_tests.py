@@ -102,7 +102,7 @@ def read_setup(path):
 
 
 def share_setups(results, paths):
-    """Return the paths of rostests; those of a set are replaced by one that runs them together."""
+    """Return the paths of rostests, with a single rostest in place of the members of each set."""
     left = {os.path.splitext(os.path.basename(path))[0]: path for path in paths}
     for name, members in SETS.items():
         setups = {}
