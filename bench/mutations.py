@@ -11,11 +11,13 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import time
 
 ROOT = os.path.realpath(os.path.join(os.path.dirname(__file__), '..'))
 SOURCE = os.path.join('src', 'rbx1_nav')
 ROOMS = 'control', 'create', 'estimation', 'robot', 'simulation'
-LIMIT = 900     # s for the tests of a room; a test that hangs counts as failed
+SLOWER = 5      # tests that take this many times as long as without a mutation, and START more, hang: they have failed
+START = 30      # s
 
 OTHER = {
     ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult, ast.Pow: ast.Mult, ast.FloorDiv: ast.Mult,
@@ -93,9 +95,9 @@ def draw(paths, generator):
     return Mutation(path, line, change(tree, node, index), ast.unparse(tree))
 
 
-def is_noticed(mutation):
-    """Whether the unit tests of the room fail with a Mutation, or hang."""
-    room = mutation.path[len(SOURCE) + 1:].split(os.sep)[0]
+def is_noticed(mutation, limit):
+    """Whether the unit tests of the room fail with a Mutation. limit: seconds after which they hang."""
+    room = room_of(mutation.path)
     with tempfile.TemporaryDirectory() as folder:
         for name in os.listdir(ROOT):
             if name != 'src' and not name.startswith('.'):
@@ -109,18 +111,31 @@ def is_noticed(mutation):
         # the tests that are named after the module first: most mutations make one of them fail
         module = os.path.splitext(os.path.basename(mutation.path))[0]
         named = sorted(glob.glob(os.path.join(ROOT, 'test', 'unit', room, f'test_*{module}*.py')))
-        return any(fails(folder, tests) for tests in ([os.path.relpath(each, ROOT) for each in named],
-                                                      [f'test/unit/{room}']) if tests)
+        return any(fails(folder, tests, limit) for tests in ([os.path.relpath(each, ROOT) for each in named],
+                                                             [f'test/unit/{room}']) if tests)
 
 
-def fails(folder, tests):
-    """Whether unit tests fail or hang in a copy of the package."""
+def fails(folder, tests, limit=None):
+    """Whether unit tests in a copy of the package fail, or take longer than `limit` seconds."""
     try:
         return subprocess.run(['/usr/bin/python3', '-m', 'pytest', '-q', '-x', '-p', 'no:cacheprovider', *tests],
                               cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-                              timeout=LIMIT).returncode != 0
+                              timeout=limit).returncode != 0
     except subprocess.TimeoutExpired:
         return True
+
+
+def room_of(path):
+    """The room that a file of the package belongs to."""
+    return os.path.relpath(path, SOURCE).split(os.sep)[0]
+
+
+def duration(room):
+    """The time in seconds that the unit tests of a room take without a mutation. Exits if they fail."""
+    begin = time.monotonic()
+    if fails(ROOT, [f'test/unit/{room}']):
+        sys.exit(f'test/unit/{room} fails without a mutation')
+    return time.monotonic() - begin
 
 
 def main():
@@ -138,12 +153,14 @@ def main():
         parser.error(f"{' '.join(arguments.rooms)}: expected folders of {SOURCE}")
     generator = random.Random(arguments.seed)
     mutations = [draw(paths, generator) for _ in range(arguments.count)]
+    rooms = sorted({room_of(mutation.path) for mutation in mutations})
     with ThreadPoolExecutor(arguments.jobs) as pool:
+        limits = {room: SLOWER * each + START for room, each in zip(rooms, pool.map(duration, rooms))}
+        results = pool.map(lambda each: is_noticed(each, limits[room_of(each.path)]), mutations)
         noticed = 0
-        for mutation, good in zip(mutations, pool.map(is_noticed, mutations)):
+        for mutation, good in zip(mutations, results):
             noticed += good
-            if not good:
-                print(f'{mutation.path}:{mutation.line}: {mutation.what}', flush=True)
+            print(f"{'noticed' if good else 'MISSED '} {mutation.path}:{mutation.line}: {mutation.what}", flush=True)
     print(f'{noticed} of {len(mutations)} mutations noticed')
     return 0
 

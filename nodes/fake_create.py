@@ -110,9 +110,11 @@ def main():
     except ConfigError as error:
         rospy.logfatal('%s/%s', rospy.get_name(), error)
         return 1
+    robot = FakeCreate(EmulatedCreate(model, body, line, time.monotonic_ns()), terminal)
+    # after its topics exist: rospy can miss a publisher that registers at the moment when it subscribes
     rospy.loginfo('Emulated %s: serial port %s%s; seed:=%d recreates this robot', model.name, terminal.device,
                   f', linked as {terminal.link}' if terminal.link else '', seed)
-    FakeCreate(EmulatedCreate(model, body, line, time.monotonic_ns()), terminal).run()
+    robot.run()
     return 0
 
 

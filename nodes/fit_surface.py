@@ -28,8 +28,6 @@ from rbx1_nav.fitting.comparison import compare, shares
 from rbx1_nav.fitting.ends_file import read_ends
 from rbx1_nav.fitting.mrclam import is_commands_file, read_robot as read_text_files, truth_file
 from rbx1_nav.fitting.recording import in_force
-from rbx1_nav.fitting.surface_file import surface_text, table
-from rbx1_nav.fitting.whole import WholeFit
 from rbx1_nav.plotting.fit import draw_fit
 from rbx1_nav.plotting.runs import check_picture, check_writable, write_file
 from rbx1_nav.robot.description import load_robot
@@ -121,6 +119,9 @@ def main():
         with tqdm(disable=None, leave=False, bar_format='{desc}...') as bar:
             bar.set_description('Reading the runs')
             recordings, end_errors = read_runs(arguments, robot)
+            # only now, because they import scipy, which takes longer than the checks
+            from rbx1_nav.fitting.surface_file import surface_text, table
+            from rbx1_nav.fitting.whole import WholeFit
             result = WholeFit(recordings, robot.base_width, start, end_errors,
                               lambda part: bar.set_description(f'Fitting the {part}')).result()
             bar.set_description('Simulating the runs on the new surface')

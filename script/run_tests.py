@@ -33,6 +33,8 @@ SETS = {
     'set_in_step': ['in_step_at_5', 'in_step_at_10', 'in_step_at_20', 'in_step_at_25', 'in_step_at_30',
                     'in_step_at_40'],
     'set_calibration': ['angular_calibration', 'linear_calibration'],
+    'set_fake_create': ['fake_create_baud_rate', 'fake_create_cable', 'fake_create_faults', 'fake_create_line',
+                        'fake_create_parameters', 'fake_create_truth', 'independent_client'],
     'set_create': ['create_cable', 'create_corruption', 'create_drives', 'create_gyro', 'create_port', 'create_rate'],
     'set_create_fails': ['create_killed', 'create_refuses', 'create_safety', 'create_silence']}
 # the longest first, so that none of them is still running when the others have finished

@@ -59,8 +59,9 @@ class TestInStep(unittest.TestCase):
         cls.ideal = Ideal(round(step * SECOND))
 
     def start(self, *command):
-        """Start a driver, a Process that is killed after the test."""
-        driver = support.Process(*map(str, command))
+        """Start a driver, a Process that is killed after the test. Like other drivers, it has the threads of OpenBLAS,
+        which script/test switches off."""
+        driver = support.Process(*map(str, command), OPENBLAS_NUM_THREADS='')
         self.addCleanup(driver.kill)
         return driver
 

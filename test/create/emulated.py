@@ -13,20 +13,6 @@ from rbx1_nav.create.protocol import MODELS, command, packets_format, single_pac
 import support
 
 
-def connected_watch(topic, kind):
-    """Return a Watch that is connected. On a busy machine, rospy sometimes does not connect to a new publisher."""
-    for attempt in range(1, support.ATTEMPTS + 1):
-        watch = support.Watch(topic, kind)
-        try:
-            support.wait_for(watch.subscriber.get_num_connections, topic, support.LIMIT / support.ATTEMPTS)
-            break
-        except AssertionError:
-            watch.subscriber.unregister()
-            if attempt == support.ATTEMPTS:
-                raise
-    return watch
-
-
 class EmulatedRobot:
     """fake_create.py, and a client on its serial port."""
 
@@ -45,8 +31,10 @@ class EmulatedRobot:
         self.ended = False
         self.process.wait_for_line('serial port')
         case.addCleanup(self.end)
-        self.truth = connected_watch('/ground_truth', Odometry)
-        self.line = connected_watch('/line', String)
+        self.truth = support.Watch('/ground_truth', Odometry)
+        self.line = support.Watch('/line', String)
+        for watch in self.truth, self.line:
+            support.wait_for(watch.subscriber.get_num_connections, watch.subscriber.name)
         self.truth.next()
         self.port = None
 

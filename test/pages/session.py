@@ -62,6 +62,7 @@ class Session:
             'HOME': home, 'PATH': '/usr/sbin:/usr/bin:/sbin:/bin', 'TERM': 'xterm-256color', 'LANG': 'C.UTF-8',
             'ROS_MASTER_URI': uri, 'ROS_IP': '127.0.0.1', 'DISPLAY': display,
             'PYTHONPYCACHEPREFIX': os.environ.get('PYTHONPYCACHEPREFIX', home),     # not in the source tree
+            'OPENBLAS_NUM_THREADS': os.environ.get('OPENBLAS_NUM_THREADS', ''),
             'LIBGL_ALWAYS_SOFTWARE': '1', 'QT_X11_NO_MITSHM': '1', 'QT_QPA_PLATFORM': 'xcb', 'XDG_RUNTIME_DIR': home}
 
     def __enter__(self):

@@ -39,13 +39,18 @@ def test_what_a_script_starts_has_the_default_action_of_sigint(start):
     assert script.communicate(timeout=LIMIT)[0] == 'default_int_handler\n'
 
 
+def obey_sighup():
+    """Restore the default action of SIGHUP: what nohup starts ignores it, and so do all its children."""
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
+
+
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_signal_ends_what_a_script_has_started(start, tmp_path, number):
     node = f'ROS_HOME={tmp_path}/ros setsid sleep 1000'
     script = start(f"""trap 'end_all {tmp_path}' EXIT
         trap 'exit 143' INT TERM HUP
         ({node} & echo $!)
-        run bash -c 'echo $$; exec sleep 1000'""")
+        run bash -c 'echo $$; exec sleep 1000'""", preexec_fn=obey_sighup)
     pids = [int(script.stdout.readline()) for _ in range(2)]
     script.send_signal(number)
     assert script.wait(LIMIT) == 143

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 NOISES = ('heading_noise_turning', 'heading_noise_straight', 'distance_noise')
 SPREADS = ('slip_straight_spread', 'slip_turning_spread')
+ROWS = 256      # rows of a matrix that are computed at a time
 
 
 class Windows(NamedTuple):
@@ -50,13 +51,22 @@ def integrate(distance: Array, angle: Array) -> tuple[Array, Array, Array]:
     return numpy.cumsum(chord * numpy.cos(middle), axis=-1), numpy.cumsum(chord * numpy.sin(middle), axis=-1), yaw
 
 
-def cell_covariance(path: Array, cell: float) -> Array:
-    """Return the covariance (m, m) of the errors in m steps of a path due to noise of strength 1 with cells."""
+def cell_covariance(derivatives: Array, path: Array, cell: float) -> Array:
+    """Return the covariance (k, k) of k values with these derivatives (k, m) with respect to the errors in m steps of a
+    path, due to noise of strength 1 with cells.
+
+    The errors between two points have the variance cell * (apart - 1/3 + near ** 3 / 3), for a random position of the
+    cells, where `apart` is the distance of the points in cells, and near = max(0, 1 - apart). The first term is that of
+    white noise, and the second one cancels out.
+    """
+    covariance: Array = derivatives * path @ derivatives.T
     position = numpy.append(0.0, numpy.cumsum(path)) / cell
-    apart = abs(position[:, None] - position)
-    # the variance of the error in a part of the path, for a random position of the cells
-    variance = cell * numpy.where(apart < 1, apart ** 2 * (1 - apart / 3), apart - 1 / 3)
-    covariance: Array = (variance[:-1, 1:] + variance[1:, :-1] - variance[:-1, :-1] - variance[1:, 1:]) / 2
+    change = numpy.diff(derivatives, prepend=0.0, append=0.0)
+    for first in range(0, len(position), ROWS):     # the whole matrix may need gigabytes
+        rows = position[first:first + ROWS]
+        low, high = numpy.searchsorted(position, (rows[0] - 1, rows[-1] + 1))
+        near = numpy.maximum(0, 1 - abs(rows[:, None] - position[low:high]))
+        covariance -= cell / 6 * change[:, first:first + ROWS] @ (near * near * near) @ change[:, low:high].T
     return covariance
 
 
@@ -88,8 +98,7 @@ class Prediction:
 
         def along(derivatives: Array, weights: Array, cell: float) -> Array:
             if by_cells:
-                return numpy.stack([one @ cell_covariance(path[0], cell) @ one.T
-                                    for one, path in zip(derivatives, weights)])
+                return numpy.stack([cell_covariance(one, path[0], cell) for one, path in zip(derivatives, weights)])
             return derivatives * weights @ derivatives.transpose(0, 2, 1)
 
         return {'heading_noise_turning': along(by_heading, turned, CELL_TURNED),

@@ -1,1 +1,4 @@
-"""Plots, drawn with matplotlib."""
+"""Plots, drawn with matplotlib.
+
+Each function imports matplotlib when it draws: programs that draw only on request would take twice as long to start.
+"""

@@ -4,18 +4,18 @@ from __future__ import annotations
 import io
 from math import cos, hypot, sin
 import os
-from typing import List, Mapping
+from typing import TYPE_CHECKING, List, Mapping
 
 from PIL import Image
-from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
 import numpy
 
 from rbx1_nav.config import ConfigError
 from rbx1_nav.plotting.runs import TITLES, check_writable, write_file
 from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.simulation.exercise import SimulationResult, Snapshot
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 FORMATS = {'.gif': 'GIF', '.png': 'PNG'}    # by file name extension
 SPEED = 4.0         # times real time
@@ -70,6 +70,8 @@ def animate(file: str, surface: str, results: Mapping[str, SimulationResult]) ->
     surface: name of the surface; results: one run of each method, with its path. The solid circle is the true pose of
     the robot. The dotted circle is the pose from the filter, or without a filter from the odometry.
     """
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
     figure = Figure(figsize=(3.2 * len(results), 3.6), constrained_layout=True)
     figure.suptitle(f'Out and back on {surface}')
     canvas = FigureCanvasAgg(figure)

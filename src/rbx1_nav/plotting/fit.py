@@ -2,17 +2,17 @@
 from __future__ import annotations
 
 from math import atan2, degrees
-from typing import Sequence
+from typing import TYPE_CHECKING, Sequence
 
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.patches import Ellipse
 import numpy
 
 from rbx1_nav.arrays import Array
 from rbx1_nav.fitting.comparison import Comparison, shares
 from rbx1_nav.fitting.ensemble import mahalanobis
 from rbx1_nav.plotting.runs import save
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 TRUTH, ODOMETRY, SIMULATED = '#0072b2', '#d55e00', '#009e73'    # as in script/report.py; safe for color-blind readers
 REGIONS = (0.9, 0.2), (0.5, 0.35)       # share of the simulated end poses, opacity
@@ -22,6 +22,7 @@ POINTS = 150        # number of simulated end poses shown per run
 
 def draw_fit(file: str, title: str, comparisons: Sequence[Comparison]) -> None:
     """Draw recorded paths, simulated paths and end poses of Comparisons side by side into a file. Raises OSError."""
+    from matplotlib.figure import Figure
     figure = Figure(figsize=(15.5, 5.9), constrained_layout=True)
     figure.suptitle(title)
     recorded, simulated, ends = figure.subplots(1, 3)
@@ -62,6 +63,7 @@ def alike(comparison: Comparison, other: Comparison) -> bool:
 def draw_regions(axes: Axes, points: Array, label: bool) -> None:
     """Draw simulated end positions, (n, 2), and the regions that contain shares of them. label: whether to add them to
     the legend."""
+    from matplotlib.patches import Ellipse
     axes.plot(*points[:POINTS].T, '.', color=SIMULATED, markersize=4, alpha=0.6, zorder=1, markeredgewidth=0,
               label='simulated' if label else None)
     covariance = numpy.cov(points.T)

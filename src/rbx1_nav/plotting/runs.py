@@ -5,12 +5,8 @@ import io
 from math import cos, sin
 import os
 import shutil
-from typing import Iterable, Mapping, Sequence, Tuple
+from typing import TYPE_CHECKING, Iterable, Mapping, Sequence, Tuple
 
-from matplotlib.axes import Axes
-from matplotlib.collections import PathCollection
-from matplotlib.colors import Normalize
-from matplotlib.figure import Figure
 import numpy
 
 from rbx1_nav.arrays import Array
@@ -18,6 +14,12 @@ from rbx1_nav.config import ConfigError
 from rbx1_nav.robot.kinematics import ORIGIN, Pose
 from rbx1_nav.simulation.exercise import SimulationResult
 from rbx1_nav.units import rounded
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.collections import PathCollection
+    from matplotlib.colors import Normalize
+    from matplotlib.figure import Figure
 
 PATHS = 20      # number of paths in a plot; more would hide each other
 TITLES = {'timed': 'timed', 'odom': 'with odometry', 'ekf': 'with odometry and gyro'}
@@ -27,6 +29,7 @@ Extent = Tuple[float, float, float, float]    # xmin, xmax, ymin, ymax, m
 
 def check_picture(path: str) -> None:
     """Check that a plot can be written to this path. Raises ConfigError."""
+    from matplotlib.figure import Figure
     formats = sorted(set(Figure().canvas.get_supported_filetypes()) - {'pgf'})      # pgf needs LaTeX
     if os.path.splitext(path)[1][1:].lower() not in formats:
         raise ConfigError(f"expected a file name with one of the extensions .{', .'.join(formats)}")
@@ -51,6 +54,7 @@ def draw(file: str, surface: str, results: Mapping[str, Sequence[SimulationResul
 
     surface: name of the surface; results: by method.
     """
+    from matplotlib.figure import Figure
     figure = Figure(figsize=(5.6 * len(results), 9.4), constrained_layout=True)
     panels = figure.subplots(2, len(results), squeeze=False)
     runs = (f'1 run (seed {seeds[0]})' if len(seeds) == 1
@@ -113,6 +117,7 @@ def common_extent(ends: Iterable[Array]) -> Extent:
 
 def common_norm(ends: Iterable[Array]) -> Normalize | None:
     """Return the color scale of heading errors, from 0 to the largest; None if they are too small to distinguish."""
+    from matplotlib.colors import Normalize
     largest = max(poses[:, 2].max() for poses in ends)
     return Normalize(0, largest) if largest > 1 else None
 

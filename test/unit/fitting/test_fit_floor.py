@@ -3,6 +3,7 @@ from hypothesis import given, strategies as st
 import numpy
 import pytest
 
+from rbx1_nav.fitting import floor
 from rbx1_nav.fitting.ensemble import cell_noise, simulate_ends
 from rbx1_nav.fitting.fit import MEANS, Fitter
 from rbx1_nav.fitting.floor import Covariance, Prediction, Windows, cell_covariance
@@ -15,7 +16,8 @@ QUIET = 1e-4, 1e-4, 1e-4    # m, m, rad
 @given(st.lists(st.floats(0.0, 2.0), min_size=1, max_size=12), st.floats(0.05, 1.0), st.integers(1, 5))
 def test_the_variance_after_a_path_does_not_depend_on_its_steps(steps, cell, parts):
     finer = numpy.repeat(numpy.array(steps) / parts, parts)
-    variances = [cell_covariance(numpy.array(path), cell).sum() for path in (steps, [sum(steps)], finer)]
+    variances = [cell_covariance(numpy.ones((1, len(path))), numpy.array(path), cell).item()
+                 for path in (steps, [sum(steps)], finer)]
     assert variances == pytest.approx(3 * variances[:1], abs=1e-9)
     # never more than white noise, and smaller by a third of a cell on a path of many cells
     assert variances[0] <= sum(steps) + 1e-9
@@ -26,7 +28,15 @@ def test_the_covariance_is_that_of_simulated_noise():
     path = numpy.array([0.02, 0.3, 0.0, 0.05, 0.2, 0.1])
     errors = cell_noise(numpy.random.default_rng(1), 100000, path, 0.25)
     # 1 sigma of an estimated variance is 0.5 % for a normal distribution, and 0.8 % for these tails
-    assert numpy.cov(errors.T) == pytest.approx(cell_covariance(path, 0.25), abs=0.01)
+    assert numpy.cov(errors.T) == pytest.approx(cell_covariance(numpy.eye(len(path)), path, 0.25), abs=0.01)
+
+
+def test_a_covariance_is_the_same_in_parts(monkeypatch):
+    generator = numpy.random.default_rng(3)
+    path, derivatives = generator.exponential(0.1, 50), generator.standard_normal((3, 50))
+    whole = cell_covariance(derivatives, path, 0.25)
+    monkeypatch.setattr(floor, 'ROWS', 7)
+    assert cell_covariance(derivatives, path, 0.25) == pytest.approx(whole)
 
 
 def test_ends_have_the_predicted_covariance():

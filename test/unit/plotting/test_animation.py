@@ -2,6 +2,7 @@
 import os
 
 from PIL import Image, ImageChops
+from matplotlib.figure import Figure
 import pytest
 import yaml
 
@@ -35,7 +36,7 @@ def test_frames_and_durations(results, tmp_path, monkeypatch, name):
 
 
 def test_the_robot_is_drawn_where_it_is(results):
-    axes = animation.Figure().subplots()
+    axes = Figure().subplots()
     panel = animation.Panel(axes, 'ekf', results['ekf'].path)
     for time in 0.0, 7.0, 1000.0:
         panel.show(time)
