@@ -59,6 +59,8 @@ class IdealWheels:
     true_velocity = velocity
 
     def travel(self, linear: float, angular: float, duration: float) -> tuple[float, float]:
+        if not (linear or angular):
+            return 0.0, 0.0
         difference = angular * self.base_width / 2
         left, right = (linear - difference) * duration, (linear + difference) * duration
         self.truth.update(left, right)

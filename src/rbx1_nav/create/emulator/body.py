@@ -85,7 +85,7 @@ class Body:
         self.wheels, self.gyro = make_wheels_and_gyro(
             model.wheel_separation * errors.wheel_base, surface._replace(ticks_meter=FINE) if surface else None, seed,
             UPDATE_PERIOD)
-        self.left = self.right = 0.0        # mm/s, as commanded
+        self.drive(0, 0)
         self.bumped = self.wheel_dropped = self.cliff = self.docked = False
         self.charge: float = CAPACITY       # mAh
         self.now: int | None = None
@@ -101,17 +101,14 @@ class Body:
     def drive(self, left: float, right: float) -> None:
         """Set the wheel speeds, mm/s as counted by the encoders."""
         self.left, self.right = left, right
+        true_left, true_right = (speed / 1000 / self.errors.wheel_travel for speed in (left, right))
+        # without slip, m/s and rad/s
+        self.velocity = (true_left + true_right) / 2, (true_right - true_left) / self.wheels.base_width
 
     @property
     def moving(self) -> bool:
         """Whether a wheel is commanded to turn."""
         return bool(self.left or self.right)
-
-    @property
-    def velocity(self) -> tuple[float, float]:
-        """The true velocity at the commanded speeds without slip, m/s and rad/s."""
-        left, right = (speed / 1000 / self.errors.wheel_travel for speed in (self.left, self.right))
-        return (left + right) / 2, (right - left) / self.wheels.base_width
 
     def advance(self, now: int) -> None:
         """Move up to `now`."""
