@@ -29,6 +29,7 @@ LIMIT = 3600        # s after which a job counts as hung, even on a busy machine
 LOOK = 60       # s between two checks for jobs that hang
 # Rostests with the same set-up that leave nothing behind in it. Each set runs on one master, one after another.
 SETS = {
+    'set_tools': ['impossible_plot', 'interrupted_start', 'launch_arguments', 'simulate_command', 'usage'],
     'set_base': ['base_timeout', 'ideal_sensors', 'reset', 'message_counts', 'final_pose'],
     'set_in_step': ['in_step_at_5', 'in_step_at_10', 'in_step_at_20', 'in_step_at_25', 'in_step_at_30',
                     'in_step_at_40'],
