@@ -172,3 +172,14 @@ def test_while_a_stream_is_paused_another_one_may_be_requested(model):
     robot.run(0.1)
     robot.send(command('stream', 2, 35, 7))
     assert encode_frame(model, [35, 7], {'mode': PASSIVE, 'bumps_and_wheel_drops': 0}) in robot.run(0.1)
+
+
+@both
+def test_a_command_is_executed_at_the_time_when_its_last_byte_arrives(model):
+    robot = Robot(model)
+    robot.robot.receive(command('start'), 0)
+    arrival = robot.robot.line.next_to_robot
+    robot.robot.advance(arrival - 1)
+    assert robot.commands == []
+    robot.robot.advance(arrival)
+    assert robot.commands == [(arrival, command('start'))]
