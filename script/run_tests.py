@@ -213,7 +213,12 @@ def main():
     arguments = parser.parse_args()
     results = os.path.realpath(arguments.results)
     os.makedirs(os.path.join(results, PACKAGE), exist_ok=True)
-    troubled = run_jobs(make_jobs(results, arguments.tests), arguments.jobs)
+    try:
+        troubled = run_jobs(make_jobs(results, arguments.tests), arguments.jobs)
+    except KeyboardInterrupt:       # rostest would take 10 s to stop its nodes; script/test kills them
+        for process in multiprocessing.active_children():
+            process.kill()
+        return 130
     passed, failed = summarize(results)
     # a job can also fail without a result
     failed = max(failed, len(troubled))

@@ -54,16 +54,23 @@ class TestBrowserPage(unittest.TestCase):
             self.page.picture(os.path.join(folder, f'{self.id().rpartition(".")[2]}.png'))
         self.assertEqual(self.page.console_errors(), [])
 
+    def hold(self, key, condition, what):
+        """Hold an arrow key until a condition holds; it remains pressed. The keyboard repeats it, and like a user, this
+        switches driving by hand on again if the connection was lost, as on a busy machine."""
+        def check():
+            if self.page.find('#hand').get_attribute('aria-pressed') == 'false':
+                self.page.click('#hand')
+            self.page.key('keyDown', key)
+            return condition()
+        support.wait_for(check, what)
+
     def drive_ahead(self, distance):
-        """Hold the arrow key until the robot has driven this distance, m; the key remains pressed."""
-        self.page.click('#hand')
-        self.page.key('keyDown', 'ArrowUp')
-        support.wait_for(lambda: self.odom.position()[0] > distance, 'the robot to drive')
+        """Hold the arrow key until the robot has driven this distance, m."""
+        self.hold('ArrowUp', lambda: self.odom.position()[0] > distance, 'the robot to drive')
 
     def test_the_robot_is_where_odom_says(self):
         self.drive_ahead(0.1)
-        self.page.key('keyDown', 'ArrowLeft')
-        support.wait_for(lambda: support.yaw(self.odom.last) > 0.5, 'the robot to turn')
+        self.hold('ArrowLeft', lambda: support.yaw(self.odom.last) > 0.5, 'the robot to turn')
         self.page.key('keyUp', 'ArrowUp')
         self.page.key('keyUp', 'ArrowLeft')
         self.odom.wait_for_twist(0.0)
