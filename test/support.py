@@ -16,6 +16,7 @@ from nav_msgs.msg import Odometry
 from roslib.packages import find_node
 from rosgraph_msgs.msg import Clock
 
+COLOR = re.compile('\x1b\\[[0-9;]*m')
 LIMIT = 150      # s of wall time after which a wait fails; no test asserts a shorter time
 
 # the exact end pose of the exercise: 157 ticks of 1/50 s at 1 rad/s turn by 3.14 rad, slightly less than pi
@@ -164,7 +165,8 @@ class Process:
 
     def _read(self):
         for line in self.process.stdout:
-            self.lines.append(line.rstrip('\n'))
+            # without the colors of roscpp, which would make the result file unreadable
+            self.lines.append(COLOR.sub('', line.rstrip('\n')))
 
     @property
     def output(self):

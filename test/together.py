@@ -7,6 +7,7 @@ import os
 import subprocess
 import sys
 import unittest
+from xml.etree import ElementTree
 
 import rosgraph
 import rospy
@@ -26,7 +27,8 @@ def put_robot_back():
 
 
 class Together(unittest.TestCase):
-    """One test for each script. It fails only if the script leaves no result; its results are counted separately."""
+    """One test for each script. It fails only if the script leaves no result that can be read; its results are counted
+    separately."""
 
     @classmethod
     def add_test(cls, results, name, *command):
@@ -38,8 +40,11 @@ class Together(unittest.TestCase):
             script = subprocess.run([*command, f'__name:={name}', RESULT + result], timeout=LIMIT, check=False,
                                     stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
             print(script.stdout)
-            self.assertTrue(os.path.isfile(result),
-                            f'{name} left no result; status {script.returncode}, output:\n{script.stdout}')
+            try:
+                ElementTree.parse(result)
+            except (FileNotFoundError, ElementTree.ParseError) as error:
+                self.fail(f'{name} left no result that can be read ({error}); status {script.returncode}, '
+                          f'output:\n{script.stdout}')
         setattr(cls, f'test_{name}', run)
 
 
