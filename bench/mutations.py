@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Change the package at random places, and check whether the unit tests of the room fail. See README.md."""
+"""Change the package at random places, and check whether the unit tests of the room fail. See bench/README.md."""
 import argparse
 import ast
 from collections import namedtuple
@@ -8,6 +8,7 @@ import glob
 import os
 import random
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -25,6 +26,8 @@ OTHER = {
     ast.Or: ast.And, ast.Lt: ast.LtE, ast.LtE: ast.Lt, ast.Gt: ast.GtE, ast.GtE: ast.Gt, ast.Eq: ast.NotEq,
     ast.NotEq: ast.Eq, ast.Is: ast.IsNot, ast.IsNot: ast.Is, ast.In: ast.NotIn, ast.NotIn: ast.In}
 STATEMENTS = ast.Assign, ast.AugAssign, ast.Expr, ast.Raise, ast.Delete
+
+RUNNING = set()     # processes of tests
 
 Mutation = namedtuple('Mutation', 'path line what source')
 Mutation.__doc__ = 'A changed file: path, line, description of the change, and the complete source.'
@@ -117,12 +120,23 @@ def is_noticed(mutation, limit):
 
 def fails(folder, tests, limit=None):
     """Whether unit tests in a copy of the package fail, or take longer than `limit` seconds."""
+    process = subprocess.Popen(['/usr/bin/python3', '-m', 'pytest', '-q', '-x', '-p', 'no:cacheprovider', *tests],
+                               cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    RUNNING.add(process)
     try:
-        return subprocess.run(['/usr/bin/python3', '-m', 'pytest', '-q', '-x', '-p', 'no:cacheprovider', *tests],
-                              cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-                              timeout=limit).returncode != 0
+        return process.wait(limit) != 0
     except subprocess.TimeoutExpired:
-        return True
+        process.kill()
+        return process.wait() != 0
+    finally:
+        RUNNING.remove(process)
+
+
+def stop(number, _):
+    """End all tests, and this program, on a signal."""
+    for process in list(RUNNING):
+        process.kill()
+    sys.exit(128 + number)
 
 
 def room_of(path):
@@ -135,7 +149,9 @@ def duration(room):
     begin = time.monotonic()
     if fails(ROOT, [f'test/unit/{room}']):
         sys.exit(f'test/unit/{room} fails without a mutation')
-    return time.monotonic() - begin
+    took = time.monotonic() - begin
+    print(f'test/unit/{room}: {took:.0f} s without a mutation', flush=True)
+    return took
 
 
 def main():
@@ -146,21 +162,34 @@ def main():
     parser.add_argument('--seed', type=int, default=0, help='default: 0')
     parser.add_argument('--jobs', type=int, default=1, metavar='N', help='mutations in parallel; default: 1')
     arguments = parser.parse_args()
+    for name in 'count', 'jobs':
+        if getattr(arguments, name) < 1:
+            parser.error(f'--{name}: {getattr(arguments, name)}: expected a number from 1')
+    rooms = [name for name in sorted(os.listdir(os.path.join(ROOT, 'test', 'unit')))
+             if os.path.isdir(os.path.join(ROOT, SOURCE, name))]
+    for room in arguments.rooms:
+        if room not in rooms:
+            parser.error(f"{room}: no such room: expected one of {', '.join(rooms)}")
+    for number in signal.SIGINT, signal.SIGTERM:
+        signal.signal(number, stop)
     paths = sorted(os.path.relpath(os.path.join(folder, name), ROOT) for room in arguments.rooms
                    for folder, _, names in os.walk(os.path.join(ROOT, SOURCE, room))
                    for name in names if name.endswith('.py') and name != '__init__.py')
-    if not paths:
-        parser.error(f"{' '.join(arguments.rooms)}: expected folders of {SOURCE}")
     generator = random.Random(arguments.seed)
     mutations = [draw(paths, generator) for _ in range(arguments.count)]
     rooms = sorted({room_of(mutation.path) for mutation in mutations})
     with ThreadPoolExecutor(arguments.jobs) as pool:
-        limits = {room: SLOWER * each + START for room, each in zip(rooms, pool.map(duration, rooms))}
-        results = pool.map(lambda each: is_noticed(each, limits[room_of(each.path)]), mutations)
-        noticed = 0
-        for mutation, good in zip(mutations, results):
-            noticed += good
-            print(f"{'noticed' if good else 'MISSED '} {mutation.path}:{mutation.line}: {mutation.what}", flush=True)
+        try:
+            limits = {room: SLOWER * each + START for room, each in zip(rooms, pool.map(duration, rooms))}
+            results = pool.map(lambda each: is_noticed(each, limits[room_of(each.path)]), mutations)
+            noticed = 0
+            for mutation, good in zip(mutations, results):
+                noticed += good
+                print(f"{'noticed' if good else 'MISSED '} {mutation.path}:{mutation.line}: {mutation.what}",
+                      flush=True)
+        except SystemExit:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
     print(f'{noticed} of {len(mutations)} mutations noticed')
     return 0
 

@@ -167,7 +167,7 @@ def read(path):
     """Return the test cases of a result file; None if its test was killed at its time limit, which leaves one line."""
     try:
         return list(ElementTree.parse(path).iter('testcase'))
-    except ElementTree.ParseError:
+    except (ElementTree.ParseError, LookupError):       # LookupError: an unknown encoding
         return None
 
 

@@ -42,7 +42,7 @@ class Together(unittest.TestCase):
             print(script.stdout)
             try:
                 ElementTree.parse(result)
-            except (FileNotFoundError, ElementTree.ParseError) as error:
+            except (FileNotFoundError, ElementTree.ParseError, LookupError) as error:
                 self.fail(f'{name} left no result that can be read ({error}); status {script.returncode}, '
                           f'output:\n{script.stdout}')
         setattr(cls, f'test_{name}', run)

@@ -194,7 +194,10 @@ def simulate_many(method: str, robot: Robot, surface: Surface | None, seeds: Seq
         results: Deque[Future[list[SimulationResult]]] = deque()
         try:
             for chunk in chunks:
+                # The first call starts the thread that writes to the processes. Without SIGPIPE, it survives their end
+                before = signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGPIPE,))
                 results.append(pool.submit(work, chunk))
+                signal.pthread_sigmask(signal.SIG_SETMASK, before)
                 if len(results) > 4 * jobs:     # enough work for all processes, but not all results in memory
                     yield from results.popleft().result()
             while results:
