@@ -37,11 +37,12 @@ def test_results(tmp_path, capsys):
     for name, text in [('rosunit-a', PASSED + PASSED), ('rostest-test_base_a', PASSED), ('rosunit-b', PASSED + FAILED),
                        ('rostest-test_c', FAILED), ('rosunit-set_create', PASSED), ('rostest-set_create', PASSED)]:
         (tmp_path / f'{name}.xml').write_text(f'<testsuite>{text}</testsuite>')
-    # killed at its time limit: rostest's result counts
-    (tmp_path / 'rosunit-d.xml').write_text('')
-    (tmp_path / 'rostest-test_d.xml').write_text(f'<testsuite>{FAILED}</testsuite>')
-    assert run_tests.summarize(str(tmp_path)) == (3, 3)
-    assert capsys.readouterr().out.count('FAILED: ') == 3
+    # killed at its time limit, or not readable: rostest's result counts
+    for name, text in ('d', ''), ('e', '<testsuite>\x1b</testsuite>'), ('f', '<?xml version="1.0" encoding="-"?><a/>'):
+        (tmp_path / f'rosunit-{name}.xml').write_text(text)
+        (tmp_path / f'rostest-test_{name}.xml').write_text(f'<testsuite>{FAILED}</testsuite>')
+    assert run_tests.summarize(str(tmp_path)) == (3, 5)
+    assert capsys.readouterr().out.count('FAILED: ') == 5
 
 
 def test_a_set(tmp_path):
