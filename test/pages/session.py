@@ -38,8 +38,8 @@ class PageFailed(AssertionError):
 
 
 def is_harmless(lines):
-    """Whether these lines begin with a traceback that is HARMLESS."""
-    end = next((line for line in lines[1:] if not line.startswith(' ')), '')
+    """Whether these lines begin with a traceback that is HARMLESS. Other nodes may log in between."""
+    end = next((line for line in lines[1:] if not line.startswith((' ', '['))), '')
     return lines[0].startswith('Traceback') and HARMLESS.match(end) is not None
 
 
