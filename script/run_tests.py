@@ -164,7 +164,7 @@ def run_jobs(jobs, count):
 
 
 def read(path):
-    """Return the test cases of a result file; None if its test was killed at its time limit, which leaves one line."""
+    """Return the test cases of a result file; None if it cannot be read, such as the file of a killed test."""
     try:
         return list(ElementTree.parse(path).iter('testcase'))
     except (ElementTree.ParseError, LookupError):       # LookupError: an unknown encoding

@@ -19,6 +19,7 @@ class TestCreateCable(unittest.TestCase):
             with robot.driving(0.2, 0.3):
                 start = robot.truth.next()
                 robot.switch('pull_cable', True)
+            robot.node.wait_for_line('Lost the serial connection')
             robot.wait_for_status('no such device')
             # the robot keeps executing its last command
             support.wait_for(lambda: abs(support.yaw(robot.truth.next()) - support.yaw(start)) > 0.3, 'it to move on')

@@ -56,8 +56,8 @@ def cell_covariance(derivatives: Array, path: Array, cell: float) -> Array:
     path, due to noise of strength 1 with cells.
 
     The errors between two points have the variance cell * (apart - 1/3 + near ** 3 / 3), for a random position of the
-    cells, where `apart` is the distance of the points in cells, and near = max(0, 1 - apart). The first term is that of
-    white noise, and the second one cancels out.
+    cells, where `apart` is the distance of the points in cells, and near = max(0, 1 - apart). White noise has the
+    first term only. The second one cancels out.
     """
     covariance: Array = derivatives * path @ derivatives.T
     position = numpy.append(0.0, numpy.cumsum(path)) / cell

@@ -194,7 +194,7 @@ def simulate_many(method: str, robot: Robot, surface: Surface | None, seeds: Seq
         results: Deque[Future[list[SimulationResult]]] = deque()
         try:
             for chunk in chunks:
-                # The first call starts the thread that writes to the processes. Without SIGPIPE, it survives their end
+                # The thread that writes to the processes inherits this mask: SIGPIPE does not reach it when they die
                 before = signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGPIPE,))
                 results.append(pool.submit(work, chunk))
                 signal.pthread_sigmask(signal.SIG_SETMASK, before)

@@ -59,7 +59,7 @@ class IdealWheels:
     true_velocity = velocity
 
     def travel(self, linear: float, angular: float, duration: float) -> tuple[float, float]:
-        if not (linear or angular):
+        if not (linear or angular):     # a robot at rest needs no arithmetic
             return 0.0, 0.0
         difference = angular * self.base_width / 2
         left, right = (linear - difference) * duration, (linear + difference) * duration

@@ -125,7 +125,7 @@ def test_the_port_is_in_use_until_the_stop_is_sent(terminal):
     assert read_until(terminal, STOP) == STOP
 
 
-def test_a_guardian_that_does_not_start_is_killed(tmp_path, monkeypatch):
+def test_a_guardian_that_does_not_start_is_killed(monkeypatch):
     class Hanging(subprocess.Popen):
         def __init__(self, _, **options):
             super().__init__(['sleep', '1000'], **options)

@@ -102,7 +102,7 @@ class Body:
         """Set the wheel speeds, mm/s as counted by the encoders."""
         self.left, self.right = left, right
         true_left, true_right = (speed / 1000 / self.errors.wheel_travel for speed in (left, right))
-        # without slip, m/s and rad/s
+        # true velocity at these speeds without slip, m/s and rad/s
         self.velocity = (true_left + true_right) / 2, (true_right - true_left) / self.wheels.base_width
 
     @property

@@ -107,12 +107,10 @@ class SerialLine:
 
     def received(self, now: int) -> bytes:
         """Return the bytes that have arrived at the host since the last call."""
-        if not self._to_host or self._to_host[0][0] > now:
-            return b''
         data = bytearray()
         while self._to_host and self._to_host[0][0] <= now:
             data.append(self._to_host.popleft()[1])
-        return b'' if self.silent else self._corrupt(misread(bytes(data), self.baud, self.host_baud))
+        return b'' if self.silent or not data else self._corrupt(misread(bytes(data), self.baud, self.host_baud))
 
     def _corrupt(self, data: bytes) -> bytes:
         if not self.corruption:
