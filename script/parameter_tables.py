@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Writes the tables of the parameters that the nodes declare into the pages in docs/.
+"""Writes the parameters that the nodes declare, and the names of the surfaces, into the files that list them.
 
-A table follows a comment: `<!-- parameters: FILE -->` for a node, `<!-- keys: NAME -->` for a part of a YAML file.
+A table in docs/ follows a comment: `<!-- parameters: FILE -->` for a node, `<!-- keys: NAME -->` for a part of a YAML
+file. Launch files and script/demo list the surfaces after `floor:`.
 """
 import glob
 import importlib.util
@@ -10,7 +11,9 @@ import re
 import sys
 
 ROOT = os.path.realpath(os.path.join(os.path.dirname(__file__), '..'))
+FILES = ['docs/*.md', 'launch/*.launch', 'rbx1_bringup/launch/*.launch*', 'script/demo']
 TABLE = re.compile(r'(?m)^<!-- (parameter|key)s: (\S+) -->\n\n(?:\|.*\n)*')
+SURFACES = re.compile(r'(?<=floor: )\w+(, \w+)*(?=;)')
 sys.path.insert(0, os.path.join(ROOT, 'src'))
 os.environ['ROS_PACKAGE_PATH'] = ROOT      # needed to find the surface files
 
@@ -29,22 +32,29 @@ def declared(kind, name):
 
 
 def filled_in(text):
-    """Return the page with up-to-date tables."""
+    """Return the text of a file with up-to-date tables and surfaces."""
     from rbx1_nav.parameters import table
+    from rbx1_nav.simulation.surfaces import known_surfaces
 
     def fill(match):
         kind, name = match.groups()
         return f'<!-- {kind}s: {name} -->\n\n' + '\n'.join(table(declared(kind, name), kind)) + '\n'
-    return TABLE.sub(fill, text)
+    surfaces = ', '.join(known_surfaces(os.path.join(ROOT, 'config', 'surfaces')))
+    return SURFACES.sub(surfaces, TABLE.sub(fill, text))
+
+
+def files():
+    """Return the paths of the files."""
+    return [path for each in FILES for path in glob.glob(os.path.join(ROOT, each))]
 
 
 def main():
-    """Update all pages."""
-    for page in glob.glob(os.path.join(ROOT, 'docs', '*.md')):
-        with open(page, encoding='utf-8') as file:
+    """Update all files."""
+    for path in files():
+        with open(path, encoding='utf-8') as file:
             text = file.read()
         if filled_in(text) != text:
-            with open(page, 'w', encoding='utf-8') as file:
+            with open(path, 'w', encoding='utf-8') as file:
                 file.write(filled_in(text))
 
 
