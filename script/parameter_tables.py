@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Writes the parameters that the nodes declare, and the names of the surfaces, into the files that list them.
 
-A table in docs/ follows a comment: `<!-- parameters: FILE -->` for a node, `<!-- keys: NAME -->` for a part of a YAML
-file. Launch files and script/demo list the surfaces after `floor:`.
+A table in docs/ follows a comment: `<!-- parameters: FILE -->` for a node, `<!-- keys: NAME -->` for a part of the
+description of a robot, `<!-- keys: SURFACE -->` for surface files. Launch files and script/demo list the surfaces after
+`floor:`.
 """
 import glob
 import importlib.util
@@ -11,6 +12,7 @@ import re
 import sys
 
 ROOT = os.path.realpath(os.path.join(os.path.dirname(__file__), '..'))
+SURFACE_FILES = os.path.join(ROOT, 'config', 'surfaces')
 FILES = ['docs/*.md', 'launch/*.launch', 'rbx1_bringup/launch/*.launch*', 'script/demo']
 TABLE = re.compile(r'(?m)^<!-- (parameter|key)s: (\S+) -->\n\n(?:\|.*\n)*')
 SURFACES = re.compile(r'(?<=floor: )\w+(, \w+)*(?=;)')
@@ -31,6 +33,19 @@ def declared(kind, name):
     return [*node.PARAMETERS, *common]
 
 
+def surface_table():
+    """Return the lines of the table of surface files, with a column for each."""
+    from rbx1_nav.config import load_yaml
+    from rbx1_nav.simulation import surfaces
+    names = [name for name in surfaces.known_surfaces(SURFACE_FILES) if name != 'ideal']
+    values = [load_yaml(os.path.join(SURFACE_FILES, f'{name}.yaml')) for name in names]
+    rows = [['key', 'unit', 'range', *names, ''], ['---'] * (len(names) + 4)]
+    for name, key in surfaces.KEYS.items():
+        columns = [f'{each[name]:.7g}' if name in each else '' for each in values]
+        rows.append([f'`{name}`', key.unit, f'{key.low:.7g} to {key.high:.7g}', *columns, key.text])
+    return [f"| {' | '.join(row)} |" for row in rows]
+
+
 def filled_in(text):
     """Return the text of a file with up-to-date tables and surfaces."""
     from rbx1_nav.parameters import table
@@ -38,8 +53,9 @@ def filled_in(text):
 
     def fill(match):
         kind, name = match.groups()
-        return f'<!-- {kind}s: {name} -->\n\n' + '\n'.join(table(declared(kind, name), kind)) + '\n'
-    surfaces = ', '.join(known_surfaces(os.path.join(ROOT, 'config', 'surfaces')))
+        lines = surface_table() if name == 'SURFACE' else table(declared(kind, name), kind)
+        return f'<!-- {kind}s: {name} -->\n\n' + '\n'.join(lines) + '\n'
+    surfaces = ', '.join(known_surfaces(SURFACE_FILES))
     return SURFACES.sub(surfaces, TABLE.sub(fill, text))
 
 

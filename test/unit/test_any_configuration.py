@@ -12,7 +12,7 @@ from rbx1_nav.robot.description import read_robot
 from rbx1_nav.ros.filter.parameters import read_parameters
 from rbx1_nav.schedule import Schedule
 from rbx1_nav.simulation.base import make_base, make_wheels_and_gyro
-from rbx1_nav.simulation.surfaces import KEYS, OPTIONAL_KEYS, draw_run, read_seed, read_surface
+from rbx1_nav.simulation.surfaces import KEYS, draw_run, read_seed, read_surface
 
 CONFIG = os.path.join(os.path.dirname(__file__), '..', '..', 'config')
 ROBOTS, SURFACES = ([yaml.safe_load(open(path)) for path in sorted(glob.glob(os.path.join(CONFIG, *pattern)))]
@@ -30,7 +30,7 @@ VALUES = st.recursive(SCALARS, lambda values: st.one_of(
     st.lists(values, max_size=3), st.dictionaries(st.one_of(TEXTS, NUMBERS), values, max_size=3)), max_leaves=8)
 
 ANY = st.one_of(NUMBERS, TEXTS, VALUES)
-OPTIONAL = st.dictionaries(st.sampled_from(sorted(OPTIONAL_KEYS)), st.floats(0, 1))
+OPTIONAL = st.dictionaries(st.sampled_from(sorted(key for key in KEYS if KEYS[key].optional)), st.floats(0, 1))
 
 
 def with_change(data, mapping):
@@ -82,7 +82,7 @@ def test_a_surface(data):
     assert surface is None or all(map(isfinite, surface[1:])) and all(map(isfinite, draw_run(surface, 0)))
     if surface is None:
         return
-    assert len(surface) == 1 + len(KEYS) + len(OPTIONAL_KEYS)
+    assert len(surface) == 1 + len(KEYS)
     wheels, _ = make_wheels_and_gyro(0.26, surface, 0, 0.02)
     for command in (0.2, 1.0), (-0.1, 0.0), (0.0, 0.0):
         wheels.travel(*command, 1.0)

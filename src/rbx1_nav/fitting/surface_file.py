@@ -1,23 +1,16 @@
 """Formats the result of a fit as text: a surface file with comments, and a table to print."""
 from __future__ import annotations
 
-from math import degrees, radians
 from typing import Sequence
 
 import numpy
 
 from rbx1_nav.config import as_yaml_number, show_name
 from rbx1_nav.fitting.whole import FitResult, Value, limits_of
-from rbx1_nav.simulation.surfaces import KEYS, OPTIONAL_KEYS
+from rbx1_nav.simulation.surfaces import KEYS
 
-UNITS = {'lag': 's', 'accel_limit': 'm/s^2', 'drag_straight': 'm/s', 'drag_turning': 'm/s at the wheel',
-         'ticks_meter': 'ticks per meter', 'gyro_noise': 'degrees/s rms, at 50 readings per second',
-         'gyro_bias': 'degrees/s', 'gyro_scale_error': 'fraction of the rate', 'gyro_measurement_range': 'degrees/s',
-         'delay': 's', 'curvature': 'rad to the left per meter', 'turning_loss': 'm per rad',
-         'heading_noise_turning': 'rad, after 1 rad', 'heading_noise_straight': 'rad, after 1 m',
-         'distance_noise': 'm, after 1 m'}
 PARTS = (
-    ('Motors: delay and lag after a command, and the speed lost by drag.',
+    ('Motors: delay and lag after a command, and the speed that a wheel loses by drag.',
      ('delay', 'lag', 'accel_limit', 'drag_straight', 'drag_turning')),
     ('Slip: the fraction of the wheel travel that is lost, and its spread from run to run.',
      ('slip_straight', 'slip_straight_spread', 'slip_turning', 'slip_turning_spread')),
@@ -30,17 +23,12 @@ PARTS = (
 WIDTH = 117     # of a line
 
 
-def in_file_units(key: str, number: float) -> float:
-    """Convert a value in SI units to the unit of surface files."""
-    return degrees(number) if {**KEYS, **OPTIONAL_KEYS}[key].convert is radians else number
-
-
 def shown(value: Value) -> tuple[str, str | None]:
     """Return (value, standard error or None) of a Value as text in the unit of the file, to two digits of the error."""
-    number = in_file_units(value.key, value.value)
+    number = KEYS[value.key].from_si(value.value)
     if value.error is None:
         return f'{number:.6g}', None
-    error = in_file_units(value.key, value.error)
+    error = KEYS[value.key].from_si(value.error)
     digits = int(numpy.clip(1 - numpy.floor(numpy.log10(error)), 0, 9)) if error > 0 else 6
     return f'{number:.{digits}f}', f'{error:.2g}'
 
@@ -48,16 +36,16 @@ def shown(value: Value) -> tuple[str, str | None]:
 def yaml_number(value: Value) -> str:
     """Return a Value as a YAML number within the range of its key."""
     text = shown(value)[0]
-    low, high = (in_file_units(value.key, limit) for limit in limits_of(value.key))
+    low, high = (KEYS[value.key].from_si(limit) for limit in limits_of(value.key))
     if not low <= float(text) <= high:      # due to rounding
-        text = repr(in_file_units(value.key, value.value))
+        text = repr(KEYS[value.key].from_si(value.value))
         text = text if low <= float(text) <= high else repr(low if float(text) < low else high)
     return as_yaml_number(text) if 'e' in text else text
 
 
 def comment(value: Value) -> str:
     """Return the comment after a Value."""
-    unit = UNITS.get(value.key)
+    unit = KEYS[value.key].unit
     error = shown(value)[1]
     text = f'not fitted: {value.reason}' if error is None else f'fitted, +- {error}'
     return f'{unit}; {text}' if unit else text
@@ -101,7 +89,7 @@ def table(result: FitResult, start_name: str) -> list[str]:
     for value in ordered:
         number, error = shown(value)
         if error is not None:
-            lines.append(f"  {value.key:<24} {number:>10} +- {error:<8} {UNITS.get(value.key, '')}".rstrip())
+            lines.append(f"  {value.key:<24} {number:>10} +- {error:<8} {KEYS[value.key].unit}".rstrip())
     left = [value for value in ordered if value.error is None]
     if left:
         lines.append(f'Not fitted, taken from {show_name(start_name)}:')

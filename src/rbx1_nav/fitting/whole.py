@@ -15,7 +15,7 @@ from rbx1_nav.fitting.motors import KEYS as MOTOR_KEYS, LIMITS, fit_motors
 from rbx1_nav.fitting.recording import Recording
 from rbx1_nav.fitting.run import PreparedRun
 from rbx1_nav.fitting.tape import TYPICAL
-from rbx1_nav.simulation.surfaces import KEYS, OPTIONAL_KEYS, Surface
+from rbx1_nav.simulation.surfaces import KEYS, Surface
 
 FLOOR = ('slip_straight', 'slip_turning', 'curvature', 'turning_loss')
 RESOLUTION = 0.0003, 0.0003, 0.001  # m, m, rad: resolution of encoders, the smallest error of an end pose
@@ -87,7 +87,7 @@ class WholeFit:
     def result(self) -> FitResult:
         """Return the FitResult."""
         values = []
-        for key in [*KEYS, *OPTIONAL_KEYS]:
+        for key in KEYS:
             error = self.errors.get(key)
             reason = None if error is not None else self.reasons.get(key, 'not determined by these runs')
             values.append(Value(key, getattr(self.surface, key), error, reason))
@@ -223,8 +223,8 @@ class WholeFit:
 
 def limits_of(key: str) -> tuple[float, float]:
     """Return the (lowest, highest) value of a key, in SI units."""
-    found = {**KEYS, **OPTIONAL_KEYS}[key]
-    return found.convert(found.low), found.convert(found.high)
+    found = KEYS[key]
+    return found.to_si(found.low), found.to_si(found.high)
 
 
 def check_alike(recordings: Sequence[Recording]) -> None:

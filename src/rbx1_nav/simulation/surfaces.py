@@ -5,11 +5,11 @@ filter takes its initial uncertainties from it.
 """
 from __future__ import annotations
 
-from math import radians
+from math import degrees, radians
 import os
 import random
 import re
-from typing import Callable, NamedTuple
+from typing import NamedTuple
 
 from rbx1_nav.config import ConfigError, Section, YamlValue, load_yaml, show, show_name
 
@@ -18,40 +18,51 @@ MAX_SEED = 2 ** 31 - 1
 
 
 class Key(NamedTuple):
-    """The range of a key in a surface file, and the conversion to SI units."""
+    """A key of a surface file."""
 
+    unit: str       # in the file; '' for a ratio
     low: float
     high: float
+    text: str
     what: str = 'a number'
-    convert: Callable[[float], float] = float
+    optional: bool = False      # default: 0
 
+    def to_si(self, number: float) -> float:
+        """Convert a number from the unit of the file to SI units."""
+        return radians(number) if self.unit == 'degrees/s' else float(number)
 
-FRACTION = Key(0.0, 0.5, 'a fraction')
-SIGNED_FRACTION = Key(-0.5, 0.5, 'a fraction')
+    def from_si(self, number: float) -> float:
+        """Convert a number from SI units to the unit of the file."""
+        return degrees(number) if self.unit == 'degrees/s' else number
+
 
 KEYS = {
-    'lag': Key(1e-4, 60),
-    'accel_limit': Key(1e-3, 1000),
-    'drag_straight': Key(1e-6, 10),
-    'drag_turning': Key(1e-6, 10),
-    'slip_straight': SIGNED_FRACTION,
-    'slip_straight_spread': FRACTION,
-    'slip_turning': SIGNED_FRACTION,
-    'slip_turning_spread': FRACTION,
-    'ticks_meter': Key(1, 1e6),
-    'gyro_noise': Key(1e-3, 1000, convert=radians),
-    'gyro_bias': Key(0, 1000, convert=radians),
-    'gyro_scale_error': FRACTION,
-    'gyro_measurement_range': Key(1, 1e5, convert=radians)}
-
-# keys that a file may omit; their default is 0
-OPTIONAL_KEYS = {
-    'delay': Key(0, 5),
-    'curvature': Key(-10, 10),
-    'turning_loss': Key(0, 1),
-    'heading_noise_turning': Key(0, 1),
-    'heading_noise_straight': Key(0, 1),
-    'distance_noise': Key(0, 1)}
+    'lag': Key('s', 1e-4, 60, 'time constant of a motor'),
+    'accel_limit': Key('m/s^2', 1e-3, 1000, 'largest acceleration of a wheel'),
+    'drag_straight': Key('m/s', 1e-6, 10, 'speed lost in straight motion'),
+    'drag_turning': Key('m/s', 1e-6, 10, 'speed lost in a turn on the spot, at the wheel'),
+    'slip_straight': Key('', -0.5, 0.5, "fraction of the wheels' travel that does not move the robot, in straight "
+                         'motion: mean', 'a fraction'),
+    'slip_straight_spread': Key('', 0, 0.5, 'standard deviation of `slip_straight` from run to run', 'a fraction'),
+    'slip_turning': Key('', -0.5, 0.5, "fraction of the wheels' travel that does not turn the robot, in turns: mean",
+                        'a fraction'),
+    'slip_turning_spread': Key('', 0, 0.5, 'standard deviation of `slip_turning` from run to run', 'a fraction'),
+    'ticks_meter': Key('1/m', 1, 1e6, 'encoder ticks per meter'),
+    'gyro_noise': Key('degrees/s', 1e-3, 1000, 'noise of a reading at 50 readings per second, rms'),
+    'gyro_bias': Key('degrees/s', 0, 1000, 'standard deviation of the bias, which is constant during a run'),
+    'gyro_scale_error': Key('', 0, 0.5, 'standard deviation of the scale error, a fraction of the rate that is '
+                            'constant during a run', 'a fraction'),
+    'gyro_measurement_range': Key('degrees/s', 1, 1e5, 'largest reading in either direction'),
+    'delay': Key('s', 0, 5, 'time from a command to its arrival at the motors', optional=True),
+    'curvature': Key('rad/m', -10, 10, 'turn to the left of a robot that is commanded to go straight', optional=True),
+    'turning_loss': Key('m/rad', 0, 1, 'forward travel lost for each radian turned while driving, at most all of it',
+                        optional=True),
+    'heading_noise_turning': Key('rad', 0, 1, 'error of the heading after 1 rad, 1 sigma; grows with the square root '
+                                 'of the angle', optional=True),
+    'heading_noise_straight': Key('rad', 0, 1, 'error of the heading after 1 m, 1 sigma; grows with the square root of '
+                                  'the distance', optional=True),
+    'distance_noise': Key('m', 0, 1, 'error of the distance after 1 m, 1 sigma; grows with the square root of the '
+                          'distance', optional=True)}
 
 
 class Surface(NamedTuple):
@@ -118,19 +129,18 @@ def load_surface(name: YamlValue, folder: str) -> Surface | None:
 
 
 def read_surface(values: YamlValue, name: str) -> Surface | None:
-    """Return the Surface of a mapping with all KEYS and some OPTIONAL_KEYS. Raises ConfigError.
+    """Return the Surface of a mapping with KEYS, of which the optional ones may be missing. Raises ConfigError.
 
     The result is None, the ideal surface, for an empty mapping.
     """
     section = Section(values, f'surface {show_name(name)}')
     if not values:
         return None
-    surface = Surface(name, *(key.convert(section.number(each, key.low, key.high, what=key.what))
-                              for each, key in KEYS.items()),
-                      *(key.convert(section.number(each, key.low, key.high, 0.0, key.what))
-                        for each, key in OPTIONAL_KEYS.items()))
+    numbers = (section.number(each, key.low, key.high, 0.0 if key.optional else None, key.what, key.unit)
+               for each, key in KEYS.items())
+    surface = Surface(name, *(key.to_si(number) for key, number in zip(KEYS.values(), numbers)))
     if section.unknown():
-        raise ConfigError(f"{section.unknown()[0]}: unknown: expected only {', '.join([*KEYS, *OPTIONAL_KEYS])}")
+        raise ConfigError(f"{section.unknown()[0]}: unknown: expected only {', '.join(KEYS)}")
     return surface
 
 

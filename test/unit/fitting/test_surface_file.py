@@ -4,14 +4,11 @@ from math import isclose
 from hypothesis import given, settings, strategies as st
 import yaml
 
-from rbx1_nav.fitting.surface_file import PARTS, in_file_units, surface_text, table
+from rbx1_nav.fitting.surface_file import PARTS, surface_text, table
 from rbx1_nav.fitting.whole import FitResult, Value, limits_of
-from rbx1_nav.simulation.surfaces import KEYS, OPTIONAL_KEYS, Surface, read_surface
+from rbx1_nav.simulation.surfaces import KEYS, Surface, read_surface
 
-ALL = [*KEYS, *OPTIONAL_KEYS]
-
-
-VALUES = {key: st.floats(*limits_of(key)) | st.sampled_from(limits_of(key)) for key in ALL}      # in SI units
+VALUES = {key: st.floats(*limits_of(key)) | st.sampled_from(limits_of(key)) for key in KEYS}      # in SI units
 ERRORS = st.none() | st.floats(1e-9, 1e4)       # as a fraction of the value
 
 
@@ -19,7 +16,7 @@ ERRORS = st.none() | st.floats(1e-9, 1e4)       # as a fraction of the value
 def results(draw):
     """Draw a FitResult with arbitrary values, some of them fitted."""
     values = []
-    for key in ALL:
+    for key in KEYS:
         value, part = draw(VALUES[key]), draw(ERRORS)
         values.append(Value(key, value, part and part * max(abs(value), 1e-6), None if part else 'no gyro'))
     surface = Surface('x', **{value.key: value.value for value in values})
@@ -34,9 +31,10 @@ def test_it_can_be_read_again(result):
     surface = read_surface(yaml.safe_load(text), 'x')
     for value in result.values:
         # the file keeps two digits of the error, or six digits of a value without an error
-        allowed = in_file_units(value.key, value.error) / 10 if value.error else 0.0
-        assert isclose(in_file_units(value.key, getattr(surface, value.key)), in_file_units(value.key, value.value),
-                       rel_tol=1e-5, abs_tol=max(allowed, 1e-9)), value
+        in_file = KEYS[value.key].from_si
+        allowed = in_file(value.error) / 10 if value.error else 0.0
+        assert isclose(in_file(getattr(surface, value.key)), in_file(value.value), rel_tol=1e-5,
+                       abs_tol=max(allowed, 1e-9)), value
     assert max(map(len, text.splitlines())) <= 160
 
 
@@ -49,8 +47,8 @@ def test_each_value_is_explained(result):
         assert ('fitted, +- ' in line) == (value.error is not None) == ('not fitted: no gyro' not in line)
     assert any('too far off' in line for line in lines) == bool(result.warnings)
     printed = table(result, 'low_ply_carpet')
-    assert sum(line.split()[0] in ALL for line in printed if line.split()) == len(ALL)
+    assert sum(line.split()[0] in KEYS for line in printed if line.split()) == len(KEYS)
 
 
 def test_every_key_is_in_a_part():
-    assert sorted(key for _, keys in PARTS for key in keys) == sorted(ALL)
+    assert sorted(key for _, keys in PARTS for key in keys) == sorted(KEYS)

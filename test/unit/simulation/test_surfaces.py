@@ -8,9 +8,10 @@ import yaml
 
 from rbx1_nav.config import ConfigError
 from rbx1_nav.simulation.surfaces import (
-    KEYS, OPTIONAL_KEYS, Surface, draw_run, known_surfaces, load_surface, read_seed, read_surface)
+    KEYS, Surface, draw_run, known_surfaces, load_surface, read_seed, read_surface)
 
 FOLDER = os.path.join(os.path.dirname(__file__), '..', '..', '..', 'config', 'surfaces')
+OPTIONAL = [key for key in KEYS if KEYS[key].optional]
 KNOWN = ', '.join(known_surfaces(FOLDER))
 
 
@@ -28,8 +29,8 @@ def test_all_surfaces_of_the_package_can_be_read():
 
 
 def test_the_keys_are_the_fields():
-    assert Surface._fields == ('name', *KEYS, *OPTIONAL_KEYS)
-    assert Surface._field_defaults == dict.fromkeys(OPTIONAL_KEYS, 0.0)
+    assert Surface._fields == ('name', *KEYS)
+    assert Surface._field_defaults == dict.fromkeys(OPTIONAL, 0.0)
 
 
 def test_the_values_of_carpet():
@@ -83,7 +84,7 @@ def test_an_invalid_value_is_named_with_its_key(key, value):
         read_surface(dict(carpet(), **{key: value}), 'x')
 
 
-@pytest.mark.parametrize('key', KEYS)
+@pytest.mark.parametrize('key', set(KEYS) - set(OPTIONAL))
 def test_a_missing_key_is_named(key):
     values = carpet()
     del values[key]
@@ -92,13 +93,13 @@ def test_a_missing_key_is_named(key):
 
 
 def without_optional_keys():
-    return {key: value for key, value in carpet().items() if key in KEYS}
+    return {key: value for key, value in carpet().items() if key not in OPTIONAL}
 
 
 def test_a_file_without_the_optional_keys_is_valid_and_they_are_0():
     surface = read_surface(without_optional_keys(), 'x')
-    assert [getattr(surface, key) for key in OPTIONAL_KEYS] == [0.0] * 6
-    assert read_surface(dict(without_optional_keys(), **dict.fromkeys(OPTIONAL_KEYS, 0)), 'x') == surface
+    assert [getattr(surface, key) for key in OPTIONAL] == [0.0] * 6
+    assert read_surface(dict(without_optional_keys(), **dict.fromkeys(OPTIONAL, 0)), 'x') == surface
 
 
 @pytest.mark.parametrize('key, low, high', [
