@@ -59,7 +59,8 @@ class FakeBase:
     def step(self):
         """Publish the current state of the base."""
         with self.lock:
-            now, stamp, base = self.clock.now(), self.clock.stamp(), self.base
+            now, base = self.clock.now(), self.base
+            stamp = self.clock.stamp(now)
             if stamp == self.last_stamp:
                 return
             self.last_stamp = stamp

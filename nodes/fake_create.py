@@ -26,6 +26,7 @@ from rbx1_nav.create.emulator.pseudo_terminal import PseudoTerminal
 from rbx1_nav.create.emulator.serial_line import SerialLine
 from rbx1_nav.create.protocol import MODELS
 from rbx1_nav.ros import messages
+from rbx1_nav.ros.base.clocks import as_ros_time
 from rbx1_nav.ros.base.parameters import FAKE_CREATE as PARAMETERS
 from rbx1_nav.ros.base.robot_faults import RobotFaults
 from rbx1_nav.ros.node import life
@@ -76,23 +77,24 @@ class FakeCreate:
         self.set_host_baud()        # the client has set it before it sent the data
         robot.receive(data, time.monotonic_ns())    # not before it was sent
         if self.truth_schedule.due(now) and self.truth_pub.get_num_connections():
-            self.publish_truth()
+            self.publish_truth(now)
 
     def set_host_baud(self):
         """Set the host's baud rate on the line to the rate that the client has set."""
         self.robot.line.host_baud = self.terminal.baud or self.robot.line.host_baud
 
-    def publish_truth(self):
+    def publish_truth(self, now):
         """Publish the true pose of the robot."""
         wheels = self.robot.body.wheels
-        self.truth_pub.publish(messages.odometry(rospy.Time.now(), FRAMES, wheels.truth.pose, wheels.true_velocity(
-            *self.robot.body.velocity), IdealWheels.uncertainty))
+        self.truth_pub.publish(messages.odometry(as_ros_time(now, time.monotonic_ns), FRAMES, wheels.truth.pose,
+                                                 wheels.true_velocity(*self.robot.body.velocity),
+                                                 IdealWheels.uncertainty))
 
     def publish_command(self, now, data):
         """Publish a command that arrived: its time in seconds of ROS time, and its bytes in hexadecimal."""
         if self.line_pub.get_num_connections():
-            stamp = rospy.Time.now().to_sec() - (time.monotonic_ns() - now) / SECOND
-            self.line_pub.publish(f'{stamp:.6f} {data.hex()}')
+            stamp = as_ros_time(now, time.monotonic_ns)
+            self.line_pub.publish(f'{stamp.to_sec():.6f} {data.hex()}')
 
 
 def main():

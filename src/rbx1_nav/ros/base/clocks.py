@@ -12,6 +12,9 @@ from rosgraph_msgs.msg import Clock as ClockMessage
 from rbx1_nav.ros.node import life
 from rbx1_nav.schedule import Schedule
 
+READING_TIME = 100_000      # ns: two clocks that are read within this time are read at the same time
+TRIES = 10
+
 
 def wait_for_beat(beat: float, period: float) -> float:
     """Wait until `period` after `beat` (s of the monotonic clock); return that time, or the current time if it is
@@ -22,6 +25,16 @@ def wait_for_beat(beat: float, period: float) -> float:
     return beat
 
 
+def as_ros_time(instant: int, now: Callable[[], int]) -> rospy.Time:
+    """Return the ROS time at an instant (ns) of another clock. now(): returns the current time of that clock, ns."""
+    for _ in range(TRIES):
+        # on a busy machine, the process may be suspended between the readings
+        before, stamp, after = now(), rospy.Time.now(), now()
+        if after - before < READING_TIME:
+            break
+    return stamp - rospy.Duration(0, (before + after) // 2 - instant)
+
+
 class Clock:
     """Interface of all clocks. In this class, a command takes effect when it arrives."""
 
@@ -29,8 +42,8 @@ class Clock:
         """Return the time of the clock that measures motion, ns."""
         raise NotImplementedError
 
-    def stamp(self) -> rospy.Time:
-        """Return the current time as a rospy.Time, for message headers."""
+    def stamp(self, instant: int) -> rospy.Time:
+        """Return an instant of this clock (ns) as a rospy.Time, for message headers."""
         raise NotImplementedError
 
     def run(self, step: Callable[[], None]) -> None:
@@ -62,8 +75,8 @@ class RealTimeClock(Clock):
     def now(self) -> int:
         return time.monotonic_ns()
 
-    def stamp(self) -> rospy.Time:
-        return rospy.Time.now()
+    def stamp(self, instant: int) -> rospy.Time:
+        return as_ros_time(instant, self.now)
 
     def run(self, step: Callable[[], None]) -> None:
         beat = time.monotonic()
@@ -89,8 +102,8 @@ class FollowedClock(Clock):
     def now(self) -> int:
         return self.time
 
-    def stamp(self) -> rospy.Time:
-        return rospy.Time(0, self.time)
+    def stamp(self, instant: int) -> rospy.Time:
+        return rospy.Time(0, instant)
 
     def run(self, step: Callable[[], None]) -> None:
         def on_clock(message: ClockMessage) -> None:

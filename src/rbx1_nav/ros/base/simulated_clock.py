@@ -81,7 +81,7 @@ class OwnClock(FollowedClock):
         while not life.end_requested.is_set():
             self.lockstep.begin_tick()
             self.time += self.period
-            stamp = self.stamp()
+            stamp = self.stamp(self.time)
             rospy.rostime._set_rostime(stamp)
             self.publisher.publish(stamp)
             if self.schedule.due(self.time):

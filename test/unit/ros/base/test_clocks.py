@@ -1,0 +1,48 @@
+"""Stamps of a base in real time are exact, even if the process is suspended while it reads the clocks."""
+from itertools import chain, repeat
+import time
+
+import pytest
+import rospy
+
+from rbx1_nav.ros.base.clocks import HardwareClock, as_ros_time
+
+OFFSET = 1_700_000_000_123_456_789      # ns, ROS time at 0 of the other clock
+MS = 1_000_000      # ns
+
+
+@pytest.fixture(name='now')
+def fixture_now(monkeypatch):
+    """A clock with ROS time at OFFSET beside it; now.suspensions: durations (ns) before each reading of either."""
+    def read():
+        read.time += next(read.suspensions)
+        return read.time
+    read.time, read.suspensions = 5000 * MS, repeat(0)
+    monkeypatch.setattr(rospy.Time, 'now', lambda: rospy.Time(0, OFFSET + read()))
+    return read
+
+
+@pytest.mark.parametrize('instant', [0, 4967 * MS, 5000 * MS, 5033 * MS])
+@pytest.mark.parametrize('suspensions', [[0], [64 * MS], [0, 64 * MS], [0, 0, 64 * MS], [0, 64 * MS, 64 * MS],
+                                         [0, 64 * MS, 0, 0, 0, 64 * MS]])
+def test_a_stamp_does_not_depend_on_suspensions(now, instant, suspensions):
+    now.suspensions = chain(suspensions, repeat(0))
+    assert as_ros_time(instant, now).to_nsec() == OFFSET + instant
+
+
+def test_readings_that_are_all_slow(now):
+    now.suspensions = repeat(3 * MS)
+    # ROS time is read in the middle, so suspensions of equal length cancel out
+    assert as_ros_time(0, now).to_nsec() == OFFSET
+    now.suspensions = chain([0], repeat(3 * MS, 29), [0] * 3)
+    assert abs(as_ros_time(0, now).to_nsec() - OFFSET) <= 3 * MS
+
+
+def test_the_clock_of_a_robot_stamps_with_ros_time(monkeypatch):
+    monkeypatch.setattr(rospy.rostime, '_rostime_initialized', True)
+    clock = HardwareClock(30)
+    before = time.time_ns()
+    stamp = clock.stamp(clock.now()).to_nsec()
+    after = time.time_ns()
+    # if all readings are slow, the error is at most half of the time that they take; and time.time() is rounded
+    assert before - (after - before) / 2 - 1000 <= stamp <= after + (after - before) / 2 + 1000
