@@ -77,12 +77,12 @@ changed_files() {       # print the files with uncommitted changes
 }
 
 changed_tests() {       # print the unit tests of the changed modules, found by name, and the tests of declarations and imports
-  local path name any=
-  changed_files | grep -E '^(src|nodes|test/unit)/.*\.py$' | while read -r path; do
+  local path name
+  changed_files | while read -r path; do
+    printf '%s\n' test/unit/test_rooms.py test/unit/pages/test_parameter_tables.py
+    [[ $path == *.py ]] || continue
     name=${path##*/}; name=${name%.py}
-    find test/unit -name "test_*${name#test_}*.py"
-    [ -n "$any" ] || printf '%s\n' test/unit/test_rooms.py test/unit/pages/test_parameter_tables.py
-    any=1
+    find test/unit bench -name "test_*${name#test_}*.py"
   done | sort -u
 }
 

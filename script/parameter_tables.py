@@ -15,7 +15,7 @@ ROOT = os.path.realpath(os.path.join(os.path.dirname(__file__), '..'))
 SURFACE_FILES = os.path.join(ROOT, 'config', 'surfaces')
 FILES = ['docs/*.md', 'launch/*.launch', 'rbx1_bringup/launch/*.launch*', 'script/demo']
 TABLE = re.compile(r'(?m)^<!-- (parameter|key)s: (\S+) -->\n\n(?:\|.*\n)*')
-SURFACES = re.compile(r'(?<=floor: )\w+(, \w+)*(?=;)')
+SURFACES = re.compile(r'((?:doc="|NAME   )floor: )[^;\n]+')
 sys.path.insert(0, os.path.join(ROOT, 'src'))
 os.environ['ROS_PACKAGE_PATH'] = ROOT      # needed to find the surface files
 
@@ -35,14 +35,14 @@ def declared(kind, name):
 
 def surface_table():
     """Return the lines of the table of surface files, with a column for each."""
-    from rbx1_nav.config import load_yaml
-    from rbx1_nav.simulation import surfaces
-    names = [name for name in surfaces.known_surfaces(SURFACE_FILES) if name != 'ideal']
-    values = [load_yaml(os.path.join(SURFACE_FILES, f'{name}.yaml')) for name in names]
-    rows = [['key', 'unit', 'range', *names, ''], ['---'] * (len(names) + 4)]
-    for name, key in surfaces.KEYS.items():
-        columns = [f'{each[name]:.7g}' if name in each else '' for each in values]
-        rows.append([f'`{name}`', key.unit, f'{key.low:.7g} to {key.high:.7g}', *columns, key.text])
+    from rbx1_nav.simulation.surfaces import KEYS, known_surfaces, load_surface
+    loaded = [load_surface(name, SURFACE_FILES) for name in known_surfaces(SURFACE_FILES)]
+    surfaces = [surface for surface in loaded if surface]       # without the ideal one, which has no values
+    rows = [['key', 'unit', 'range', *(surface.name for surface in surfaces), ''], ['---'] * (len(surfaces) + 4)]
+    for name, key in KEYS.items():
+        values = [f'{key.from_si(getattr(surface, name)):.7g}' for surface in surfaces]
+        text = f'{key.text}; optional' if key.optional else key.text
+        rows.append([f'`{name}`', key.unit, f'{key.low:.7g} to {key.high:.7g}', *values, text])
     return [f"| {' | '.join(row)} |" for row in rows]
 
 
@@ -56,7 +56,7 @@ def filled_in(text):
         lines = surface_table() if name == 'SURFACE' else table(declared(kind, name), kind)
         return f'<!-- {kind}s: {name} -->\n\n' + '\n'.join(lines) + '\n'
     surfaces = ', '.join(known_surfaces(SURFACE_FILES))
-    return SURFACES.sub(surfaces, TABLE.sub(fill, text))
+    return SURFACES.sub(lambda match: match[1] + surfaces, TABLE.sub(fill, text))
 
 
 def files():
@@ -66,12 +66,20 @@ def files():
 
 def main():
     """Update all files."""
+    from rbx1_nav.config import ConfigError
+    changed = {}
     for path in files():
         with open(path, encoding='utf-8') as file:
             text = file.read()
-        if filled_in(text) != text:
-            with open(path, 'w', encoding='utf-8') as file:
-                file.write(filled_in(text))
+        try:
+            filled = filled_in(text)
+        except ConfigError as error:
+            sys.exit(str(error))
+        if filled != text:
+            changed[path] = filled
+    for path, text in changed.items():
+        with open(path, 'w', encoding='utf-8') as file:
+            file.write(text)
 
 
 if __name__ == '__main__':

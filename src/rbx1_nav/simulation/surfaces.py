@@ -11,7 +11,7 @@ import random
 import re
 from typing import NamedTuple
 
-from rbx1_nav.config import ConfigError, Section, YamlValue, load_yaml, show, show_name
+from rbx1_nav.config import ConfigError, Section, YamlValue, load_yaml, show, show_name, suggestion
 
 RANDOM = 'random'   # the value that requests a new random seed
 MAX_SEED = 2 ** 31 - 1
@@ -66,7 +66,7 @@ KEYS = {
 
 
 class Surface(NamedTuple):
-    """A surface, with the keys of its file as fields, in s, m/s, m/s^2 and (unlike the file) rad/s."""
+    """A surface, with the keys of its file as fields, in the units of KEYS, but rad/s instead of degrees/s."""
 
     name: str
     lag: float
@@ -136,12 +136,12 @@ def read_surface(values: YamlValue, name: str) -> Surface | None:
     section = Section(values, f'surface {show_name(name)}')
     if not values:
         return None
+    for each in section.values:
+        if each not in KEYS:
+            raise ConfigError(f"{section.path(each)}{suggestion(each, KEYS)}: unknown: expected only {', '.join(KEYS)}")
     numbers = (section.number(each, key.low, key.high, 0.0 if key.optional else None, key.what, key.unit)
                for each, key in KEYS.items())
-    surface = Surface(name, *(key.to_si(number) for key, number in zip(KEYS.values(), numbers)))
-    if section.unknown():
-        raise ConfigError(f"{section.unknown()[0]}: unknown: expected only {', '.join(KEYS)}")
-    return surface
+    return Surface(name, *(key.to_si(number) for key, number in zip(KEYS.values(), numbers)))
 
 
 def read_seed(value: YamlValue) -> int:

@@ -33,6 +33,12 @@ def test_the_keys_are_the_fields():
     assert Surface._field_defaults == dict.fromkeys(OPTIONAL, 0.0)
 
 
+def test_each_unit_can_be_converted():
+    # Key.to_si() converts degrees/s; these are SI units
+    assert {key.unit for key in KEYS.values()} - {'degrees/s'} == {
+        '', '1/m', 'm', 'm/rad', 'm/s', 'm/s^2', 'rad', 'rad/m', 's'}
+
+
 def test_the_values_of_carpet():
     surface = load_surface('low_ply_carpet', FOLDER)
     assert surface[5:9] == (0.02, 0.0, 0.03, 0.0)
@@ -98,7 +104,7 @@ def without_optional_keys():
 
 def test_a_file_without_the_optional_keys_is_valid_and_they_are_0():
     surface = read_surface(without_optional_keys(), 'x')
-    assert [getattr(surface, key) for key in OPTIONAL] == [0.0] * 6
+    assert [getattr(surface, key) for key in OPTIONAL] == [0.0] * len(OPTIONAL)
     assert read_surface(dict(without_optional_keys(), **dict.fromkeys(OPTIONAL, 0)), 'x') == surface
 
 
@@ -115,6 +121,13 @@ def test_the_range_of_a_key(key, low, high):
     for value in (low - 0.01, high + 0.01):
         with pytest.raises(ConfigError, match=f'^surface x/{key}: '):
             read_surface(dict(without_optional_keys(), **{key: value}), 'x')
+
+
+def test_a_misspelled_key_is_named_with_a_suggestion():
+    values = carpet()
+    values['lagg'] = values.pop('lag')
+    with pytest.raises(ConfigError, match=r'^surface x/lagg \(did you mean lag\?\): unknown: expected only lag, '):
+        read_surface(values, 'x')
 
 
 def test_an_unknown_key_is_rejected():

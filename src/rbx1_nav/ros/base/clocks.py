@@ -17,8 +17,8 @@ TRIES = 10
 
 
 def wait_for_beat(beat: float, period: float) -> float:
-    """Wait until `period` after `beat` (s of the monotonic clock); return that time, or the current time if it is
-    later."""
+    """Wait until `period` after `beat` (s of the monotonic clock), or until shutdown is requested; return that time, or
+    the current time if it is later."""
     beat = max(beat + period, time.monotonic())
     while time.monotonic() < beat and not life.end_requested.is_set():
         life.sleep(beat - time.monotonic())
