@@ -26,9 +26,7 @@ class TestCreateCable(unittest.TestCase):
             count = len(robot.received())
             robot.switch('pull_cable', False)
             robot.wait_for_standstill()
-            # ground truth and commands arrive over different connections, in any order
-            received = support.wait_for(lambda: robot.commands_since(count), 'the command that stopped it')
-            self.assertEqual(received[0], STOP)
+            self.assertEqual(robot.wait_for_command(count)[1], STOP)
             robot.wait_for_status('Stationary')
             self.assertLess(robot.normalized_error(), CHI_SQUARE)
         self.assertEqual(robot.value('Serial line', 'Dropouts'), '2')

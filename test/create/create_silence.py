@@ -21,11 +21,8 @@ class TestCreateSilence(unittest.TestCase):
         self.assertTrue(robot.moving)
         robot.switch('silence', False)
         robot.wait_for_standstill()
-        # The first command that concerns the wheels; a request of the mode may come before it. Ground truth and
-        # commands arrive over different connections, in any order.
-        received = support.wait_for(lambda: [each for each in robot.commands_since(count) if each[:1] == STOP[:1]],
-                                    'the command that stopped it')
-        self.assertEqual(received[0], STOP)
+        # the first command that concerns the wheels; a request of the mode may come before it
+        self.assertEqual(robot.wait_for_command(count, lambda _, data: data[:1] == STOP[:1])[1], STOP)
         robot.wait_for_status('Stationary')
         self.assertLess(abs(robot.error()[0]), distance)
 

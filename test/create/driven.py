@@ -137,6 +137,13 @@ class DrivenRobot(EmulatedRobot):
         """Return the commands that the robot has received after the first `count`."""
         return [data for _, data in self.received()[count:]]
 
+    def wait_for_command(self, count, matches=lambda stamp, data: True):
+        """Return the first matching command after the first `count`, (s of ROS time, bytes).
+
+        It may arrive after the ground truth of its effect, over another connection.
+        """
+        return support.wait_for(lambda: [each for each in self.received()[count:] if matches(*each)], 'a command')[0]
+
     def wait_for_stop(self, count):
         """Wait for a stop that leaves the robot in passive mode, after the first `count` commands."""
         def stopped():

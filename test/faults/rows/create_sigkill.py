@@ -39,7 +39,7 @@ def kill(row, robot, seconds, group, gap):
     if gap is None:
         robot.wait_for_stop(count)
     robot.wait_for_standstill()
-    delay = next(stamp for stamp, data in robot.received()[count:] if data == STOP and stamp > killed) - killed
+    delay = robot.wait_for_command(count, lambda stamp, data: data == STOP and stamp > killed)[0] - killed
     row.figure('stop after (s)', delay)
     assert delay < LIMIT, f'{delay:.3f} s'
     robot.node.wait()

@@ -25,7 +25,7 @@ def pull(row, robot, seconds, gap, velocity):
     count = len(robot.received())
     robot.switch('pull_cable', False)
     robot.wait_for_standstill()
-    assert robot.commands_since(count)[0] == STOP, robot.commands_since(count)
+    assert robot.wait_for_command(count)[1] == STOP, robot.commands_since(count)
     robot.wait_for_status('Stationary')
     error = robot.normalized_error()
     row.figure('normalized squared error', error)
