@@ -75,7 +75,8 @@ class FakeCreate:
         terminal.write(data)
         data = terminal.read()
         self.set_host_baud()        # the client has set it before it sent the data
-        robot.receive(data, time.monotonic_ns())    # not before it was sent
+        now = time.monotonic_ns()   # not before the data was sent
+        robot.receive(data, now)
         if self.truth_schedule.due(now) and self.truth_pub.get_num_connections():
             self.publish_truth(now)
 

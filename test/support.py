@@ -16,6 +16,9 @@ from nav_msgs.msg import Odometry
 from roslib.packages import find_node
 from rosgraph_msgs.msg import Clock
 
+from rbx1_nav.ros.node import resources
+from rbx1_nav.simulation.surfaces import known_surfaces
+
 COLOR = re.compile('\x1b\\[[0-9;]*m')
 LIMIT = 150      # s of wall time after which a wait fails; no test asserts a shorter time
 
@@ -205,6 +208,11 @@ class Process:
         except ProcessLookupError:
             pass
         self.process.wait()
+
+
+def surfaces():
+    """Return the names of the surfaces, as in a message."""
+    return ', '.join(known_surfaces(resources.surfaces()))
 
 
 def out_and_back(*arguments):

@@ -57,7 +57,7 @@ class TestStartMessages(unittest.TestCase):
         self.assertEqual(base.wait(), 1)
         self.assertEqual(len(base.lines), 1, base.output)
         self.assertIn("/arbotix/surface: '/nowhere/sand.yaml': no such file: expected the absolute path of a surface "
-                      'file, or one of ', base.lines[0])
+                      f'file, or one of {support.surfaces()}', base.lines[0])
 
 
 if __name__ == '__main__':

@@ -42,7 +42,7 @@ class TestParameters(unittest.TestCase):
                 ({'link': 7}, 'link: 7: expected a path'),
                 ({'link': '/no/such/folder/port'}, 'link: /no/such/folder/port: No such file or directory: expected'),
                 ({'link': '/etc/hostname'}, 'link: /etc/hostname: exists, and is not a link: expected'),
-                ({'surface': 'sand'}, "surface: 'sand': expected one of"),
+                ({'surface': 'sand'}, f"surface: 'sand': expected one of {support.surfaces()}"),
                 ({'seed': -1}, 'seed: -1: expected random, or an integer'),
                 ({'charge': 2}, 'charge: 2: expected a number from 0 to 1'),
                 ({'corruption': 'some'}, "corruption: 'some': expected a number from 0 to 1"),

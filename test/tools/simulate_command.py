@@ -110,7 +110,7 @@ class TestSimulateCommand(unittest.TestCase):
 
     def test_invalid_arguments(self):
         for arguments, status, text in [
-                (['--surface', 'sand'], 1, "'sand': expected one of"),
+                (['--surface', 'sand'], 1, f"'sand': expected one of {support.surfaces()}"),
                 (['--method', 'luck'], 2, 'luck'), (['--runs', '0'], 2, '--runs: 0: expected'),
                 (['--plot', 'picture.doc'], 2, '--plot: picture.doc: expected'),
                 (['--plot', '/'], 2, '--plot: /: expected'),

@@ -12,7 +12,7 @@ from rosgraph_msgs.msg import Clock as ClockMessage
 from rbx1_nav.ros.node import life
 from rbx1_nav.schedule import Schedule
 
-READING_TIME = 100_000      # ns: two clocks that are read within this time are read at the same time
+READING_TIME = 100_000      # ns: within this time, readings of two clocks count as simultaneous
 TRIES = 10
 
 
