@@ -45,7 +45,7 @@ class FakeBase:
         self.joint_schedule = Schedule(10)
         self.diagnostics_schedule = Schedule(1)
 
-        self.publisher = BasePublisher(robot)
+        self.publisher = BasePublisher(robot, clock.publish)
         self.truth_pub = rospy.Publisher('ground_truth', Odometry, queue_size=10)
         self.reset_pub = rospy.Publisher('reset_odometry', Empty, queue_size=1)
         self.diagnostics = Updater()
@@ -71,14 +71,16 @@ class FakeBase:
             joints_due = self.joint_schedule.due(now)
             if joints_due:
                 self.joints.advance(now)
-        self.publisher.publish_odometry(stamp, pose, velocity, uncertainty)
+        # in this order, so that a node that receives odometry finds the other messages of this time
+        if joints_due:
+            self.publisher.publish_joints(stamp, travel, velocity)
+        self.publisher.publish_transform(stamp, pose)
         if reading:
             self.publisher.publish_imu(stamp, reading)
         if self.truth_pub.get_num_connections():
-            self.truth_pub.publish(messages.odometry(stamp, self.robot, true_pose, true_velocity,
-                                                     IdealWheels.uncertainty))
-        if joints_due:
-            self.publisher.publish_joints(stamp, travel, velocity)
+            self.clock.publish(self.truth_pub, messages.odometry(stamp, self.robot, true_pose, true_velocity,
+                                                                 IdealWheels.uncertainty))
+        self.publisher.publish_odometry(stamp, pose, velocity, uncertainty)
         if timed_out:
             self.commands.log_timeout()
         if self.diagnostics_schedule.due(now):

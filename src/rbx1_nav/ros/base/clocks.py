@@ -2,10 +2,9 @@
 from __future__ import annotations
 
 import time
-from typing import Any, Callable
+from typing import Any, Callable, Protocol
 
 from diagnostic_msgs.msg import DiagnosticStatus
-from geometry_msgs.msg import Twist
 import rospy
 from rosgraph_msgs.msg import Clock as ClockMessage
 
@@ -35,8 +34,26 @@ def as_ros_time(instant: int, now: Callable[[], int]) -> rospy.Time:
     return stamp - rospy.Duration(0, (before + after) // 2 - instant)
 
 
+class Inbox(Protocol):
+    """Receives commands, and applies them later."""
+
+    # Any: rospy has no types
+    def add(self, subscriber: Any) -> None:
+        """Wait for the publishers that a subscriber to commands is connected to."""
+
+    def receive(self, target: Any, header: dict[str, str], command: Any) -> None:
+        """Accept a command that just arrived; target: its apply() is called later; header: of the connection."""
+
+
 class Clock:
-    """Interface of all clocks. In this class, a command takes effect when it arrives."""
+    """Interface of all clocks."""
+
+    inbox: Inbox | None = None      # receives commands that do not take effect when they arrive
+
+    # Any: rospy has no types
+    def publish(self, publisher: rospy.Publisher, message: Any) -> None:
+        """Publish a message."""
+        publisher.publish(message)
 
     def now(self) -> int:
         """Return the time of the clock that measures motion, ns."""
@@ -49,18 +66,6 @@ class Clock:
     def run(self, step: Callable[[], None]) -> None:
         """Call step() at the rate of the odometry until shutdown is requested."""
         raise NotImplementedError
-
-    # Any: the clock passes on commands and rospy's connections without using their contents
-    def set_driver(self, apply: Callable[[Any], None], connections: Callable[[], Any]) -> None:
-        """Set the functions of the driver.
-
-        apply(command): puts a command in force; connections(): returns the connections to publishers of cmd_vel.
-        """
-        self.apply, self.connections = apply, connections
-
-    def command(self, _: Twist, command: Any) -> None:
-        """Call apply(command) when a received command takes effect. The Twist is the message with the command."""
-        self.apply(command)
 
     def diagnose(self, status: DiagnosticStatus) -> None:
         """Add the state of the clock to a DiagnosticStatus."""

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from threading import Lock
-from typing import Any, Iterable, Protocol, Sequence, Tuple
+from typing import Any, Iterable, NamedTuple, Protocol, Sequence
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticStatus
@@ -20,8 +20,14 @@ from rbx1_nav.units import SECOND
 
 RECENT = SECOND * 3 // 2    # ns: a node whose last command is older is not driving; rests last 1 s
 
-# linear velocity (m/s), angular velocity (rad/s), velocities that the base cannot follow, name of the sender
-Command = Tuple[float, float, Tuple[float, float, float, float], str]
+
+class Command(NamedTuple):
+    """The contents of a Twist, and who sent it."""
+
+    linear: float       # m/s
+    angular: float      # rad/s
+    others: tuple[float, float, float, float]       # velocities that a differential drive cannot follow
+    sender: str         # name of the node
 
 
 class Base(Protocol):
@@ -46,12 +52,13 @@ class VelocityCommands:
         self.sender: object = None      # the connection header of the last command
         self.subscriber: rospy.Subscriber | None = None
         self.refusals = Refusals()
-        clock.set_driver(self.apply, self.connections)
 
     def subscribe(self) -> None:
         """Accept commands from now on."""
         if not self.subscriber:
             self.subscriber = rospy.Subscriber('cmd_vel', Twist, self.on_twist, queue_size=None, tcp_nodelay=True)
+            if self.clock.inbox:
+                self.clock.inbox.add(self.subscriber)
 
     # Any: rospy has no types
     def connections(self) -> list[Any]:
@@ -59,35 +66,37 @@ class VelocityCommands:
         return self.subscriber.impl.connections if self.subscriber else []
 
     def on_twist(self, twist: Twist) -> None:
-        """Process a command; the clock determines when it takes effect."""
-        self.sender = header = twist._connection_header
-        command = messages.from_twist(twist)
-        text = self.senders.contradiction(self.clock.now(), header, header['callerid'], command[:2],
+        """Process a command, which takes effect now or when the clock's inbox applies it."""
+        self.sender = header = twist._connection_header     # one object for each connection
+        command = Command(*messages.from_twist(twist), header['callerid'])
+        text = self.senders.contradiction(self.clock.now(), header, command.sender, command[:2],
                                           lambda: [connection.header for connection in self.connections()])
         if text:
             rospy.logwarn_throttle(5, f'{self.topic}: contradictory commands: {text}: expected only one driving node')
-        self.clock.command(twist, command + (header['callerid'],))
+        if self.clock.inbox:
+            self.clock.inbox.receive(self, header, command)
+        else:
+            self.apply(command)
 
     def apply(self, command: Command) -> None:
         """Put a command in force."""
-        sender = command[3]
         try:
             with self.lock:
                 clamped = self.base.command(self.clock.now(), *command)
         except RejectedCommand as error:
             rospy.logerr_throttle(1, f'{self.topic}: {error}; rejected, base stopped')
-            self.refusals.add(sender, str(error))
+            self.refusals.add(command.sender, str(error))
             return
         except RefusedCommand as error:
-            rospy.logwarn_throttle(5, f'{self.topic}: refused a command from {sender}: {error}')
-            self.refusals.add(sender, str(error))
+            rospy.logwarn_throttle(5, f'{self.topic}: refused a command from {command.sender}: {error}')
+            self.refusals.add(command.sender, str(error))
             return
         if clamped:
-            (linear, angular), limits = command[:2], self.gate.limits
-            rospy.logwarn_throttle(5, f'{self.topic}: {linear:g} m/s, {angular:g} rad/s: expected at most '
-                                      f'{limits.linear:g} and {limits.angular:g}; clamped')
-        if any(command[2]):
-            rospy.logwarn_throttle(5, f'{self.topic}: linear.y, linear.z, angular.x, angular.y = {command[2]}: a '
+            limits = self.gate.limits
+            rospy.logwarn_throttle(5, f'{self.topic}: {command.linear:g} m/s, {command.angular:g} rad/s: expected at '
+                                      f'most {limits.linear:g} and {limits.angular:g}; clamped')
+        if any(command.others):
+            rospy.logwarn_throttle(5, f'{self.topic}: linear.y, linear.z, angular.x, angular.y = {command.others}: a '
                                       'differential drive cannot follow these, expected 0; ignored')
 
     def driver(self) -> str | None:

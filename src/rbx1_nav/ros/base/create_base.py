@@ -105,6 +105,7 @@ class CreateBase:
         if self.publisher.robot.base_width != width:    # a different robot than expected has answered
             self.publisher.robot = self.publisher.robot._replace(base_width=width)
         stamp = self.clock.stamp(state.time)
+        self.publisher.publish_transform(stamp, state.pose)
         self.publisher.publish_odometry(stamp, state.pose, state.velocity, Uncertainty(0.0, 0.0, *state.variances),
                                         state.covariance)
         if state.gyro:

@@ -1,6 +1,8 @@
 """Publishes the outputs of every base: odometry and its transform, gyro readings, and joint states."""
 from __future__ import annotations
 
+from typing import Any, Callable
+
 import rospy
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import Imu, JointState
@@ -17,8 +19,11 @@ class BasePublisher:
     """The publishers of a base. Creating a message costs more than sending it, so none is created without a
     subscriber."""
 
-    def __init__(self, robot: Robot) -> None:
+    # Any: rospy has no types
+    def __init__(self, robot: Robot, publish: Callable[[rospy.Publisher, Any], None] = rospy.Publisher.publish) -> None:
+        """publish(publisher, message): publishes a message."""
         self.robot = robot
+        self.publish = publish
         # simulated time may produce many messages at once
         self.odom = rospy.Publisher('odom', Odometry, queue_size=100, tcp_nodelay=True)
         self.imu = rospy.Publisher('imu/data', Imu, queue_size=100, tcp_nodelay=True)
@@ -28,16 +33,20 @@ class BasePublisher:
 
     def publish_odometry(self, stamp: rospy.Time, pose: Pose, velocity: tuple[float, float], uncertainty: Uncertainty,
                          covariance: Array | None = None) -> None:
-        """Publish odometry, and its pose as a transform; for the arguments, see messages.odometry()."""
+        """Publish odometry; for the arguments, see messages.odometry()."""
         if self.odom.get_num_connections():
-            self.odom.publish(messages.odometry(stamp, self.robot, pose, velocity, uncertainty, covariance))
+            self.publish(self.odom, messages.odometry(stamp, self.robot, pose, velocity, uncertainty, covariance))
+
+    def publish_transform(self, stamp: rospy.Time, pose: Pose) -> None:
+        """Publish the pose of the odometry as a transform."""
         if self.robot.publish_tf and self.tf.get_num_connections():
-            self.tf.publish([messages.transform(stamp, self.robot.odom_frame_id, self.robot.base_frame_id, pose)])
+            self.publish(self.tf, TFMessage([messages.transform(stamp, self.robot.odom_frame_id,
+                                                                self.robot.base_frame_id, pose)]))
 
     def publish_imu(self, stamp: rospy.Time, reading: Reading) -> None:
         """Publish a gyro's Reading."""
         if self.imu.get_num_connections():
-            self.imu.publish(messages.imu(stamp, self.robot.base_frame_id, reading))
+            self.publish(self.imu, messages.imu(stamp, self.robot.base_frame_id, reading))
 
     def publish_joints(self, stamp: rospy.Time, travel: tuple[float, float], velocity: tuple[float, float]) -> None:
         """Publish the joints, and the angles of the wheels from their travel (left, right; m) and velocity (m/s,
@@ -46,4 +55,4 @@ class BasePublisher:
         difference = angular * self.robot.base_width / 2
         wheels = [(name, distance / self.robot.wheel_radius, speed / self.robot.wheel_radius) for name, distance, speed
                   in zip(self.robot.wheel_joints, travel, (linear - difference, linear + difference))]
-        self.joint_states.publish(messages.joint_states(stamp, self.robot.joints, wheels))
+        self.publish(self.joint_states, messages.joint_states(stamp, self.robot.joints, wheels))

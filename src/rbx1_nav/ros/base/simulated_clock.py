@@ -6,17 +6,18 @@ from typing import Any, Callable
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticStatus
-from geometry_msgs.msg import Twist
 from rosgraph_msgs.msg import Clock as ClockMessage
 from rospy.impl import simtime
 
 from rbx1_nav.config import ConfigError
-from rbx1_nav.ros.base.clocks import Clock, FollowedClock, RealTimeClock, wait_for_beat
-from rbx1_nav.ros.base.driving_nodes import DrivingNodes
+from rbx1_nav.ros.base.clocks import Clock, FollowedClock, RealTimeClock
+from rbx1_nav.ros.lockstep.lockstep import Lockstep
+from rbx1_nav.ros.lockstep.watch import Watch
 from rbx1_nav.ros.node import life
 from rbx1_nav.ros.node.params import param
-from rbx1_nav.simulation.lockstep import Lockstep
 from rbx1_nav.units import SECOND
+
+CATCH_UP = 0.1      # s of wall time: a delay up to this is made up for
 
 
 def read_clock(rate: float) -> Clock:
@@ -45,16 +46,22 @@ class OwnClock(FollowedClock):
         self.factor = factor
         self.period = period
         self.strict = strict
-        self.publisher = rospy.Publisher('/clock', ClockMessage, queue_size=10, tcp_nodelay=True)
         # rospy subscribes each node to /clock. This node sets the time, and receiving it would take a sixth of a tick.
         simtime._clock_sub.unregister()
-        self.lockstep: Lockstep     # set by set_driver()
+        self.publisher = rospy.Publisher('/clock', ClockMessage, self, tcp_nodelay=True, queue_size=10)
+        self.inbox: Lockstep = Lockstep(Watch(self.publisher), self.report, life.end_requested.is_set)
         self.not_in_step: dict[str, str] = {}   # reasons, by the name of the node
 
-    def set_driver(self, apply: Callable[[Any], None], connections: Callable[[], Any]) -> None:    # see Clock
-        super().set_driver(apply, connections)
-        nodes = DrivingNodes(rospy.resolve_name('cmd_vel'), connections, lambda: self.publisher.impl.connections)
-        self.lockstep = Lockstep(apply, self.report, nodes, life.end_requested.is_set)
+    def peer_subscribe(self, _: str, __: Any, publish: Callable[[ClockMessage], None]) -> None:
+        """Send the time to a new subscriber, called by rospy: otherwise, other messages may arrive before the time."""
+        if self.time:
+            publish(ClockMessage(self.stamp(self.time)))
+
+    def peer_unsubscribe(self, *_: Any) -> None:
+        """Do nothing; called by rospy."""
+
+    def publish(self, publisher: rospy.Publisher, message: Any) -> None:    # see Clock
+        self.inbox.deliver(publisher, message)
 
     def report(self, name: str, reason: str) -> None:
         """Report that a node is not in step. Raises ROSException if that is an error."""
@@ -65,11 +72,6 @@ class OwnClock(FollowedClock):
                       'depends on the speed of the machine. Expected a node that sleeps on simulated time, as '
                       'rospy.Rate does', name, reason)
 
-    def command(self, twist: Twist, command: Any) -> None:
-        """Call apply(command) at the tick at which the command was sent."""
-        header = twist._connection_header       # one object per connection
-        self.lockstep.receive(header, header['callerid'], command)
-
     def diagnose(self, status: DiagnosticStatus) -> None:
         if self.not_in_step:
             status.mergeSummary(DiagnosticStatus.WARN, f"Not in step with /clock: {', '.join(self.not_in_step)}")
@@ -79,12 +81,19 @@ class OwnClock(FollowedClock):
     def run(self, step: Callable[[], None]) -> None:
         beat = time.monotonic()
         while not life.end_requested.is_set():
-            self.lockstep.begin_tick()
+            self.inbox.begin()
+            self.apply()
             self.time += self.period
             stamp = self.stamp(self.time)
             rospy.rostime._set_rostime(stamp)
-            self.publisher.publish(stamp)
             if self.schedule.due(self.time):
                 step()
-            self.lockstep.end_tick()
-            beat = wait_for_beat(beat, self.period / SECOND / self.factor)
+            self.publish(self.publisher, ClockMessage(stamp))
+            self.apply()
+            beat = max(beat + self.period / SECOND / self.factor, time.monotonic() - CATCH_UP)
+            self.inbox.listen(beat)
+
+    def apply(self) -> None:
+        """Put the commands that have arrived in force."""
+        for target, command in self.inbox.take():
+            target.apply(command)

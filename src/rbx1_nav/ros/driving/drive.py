@@ -8,7 +8,7 @@ import rospy
 from geometry_msgs.msg import Twist
 from tqdm import tqdm
 
-from rbx1_nav.ros.driving.rate import Rate, pause
+from rbx1_nav.ros.driving.rate import Rate, pause, wait_for_tick
 from rbx1_nav.ros.driving.waiting import wait_for_subscribers
 from rbx1_nav.ros.driving.watching import Listeners
 from rbx1_nav.ros.node.params import param
@@ -37,6 +37,7 @@ class Drive:
     def __enter__(self: Self) -> Self:
         try:
             self.begin()
+            wait_for_tick(self.listeners)
         except BaseException:
             self.stop()
             raise

@@ -11,11 +11,10 @@ import rospy
 
 from rbx1_nav.ros.driving.watching import Listeners
 from rbx1_nav.ros.node.life import end_requested, sleep
-from rbx1_nav.simulation.lockstep import NODE_TIMEOUT
+from rbx1_nav.ros.lockstep.lockstep import NODE_TIMEOUT
 from rbx1_nav.units import SECOND
 
 MAX_DELAY = SECOND      # ns
-FREE_TICKS = 25     # at the start of a motion, the base's clock may run ahead until the base has noticed the motion
 
 
 def now() -> int:
@@ -71,11 +70,18 @@ def pause(seconds: float, listeners: Listeners) -> None:
     _wait_until(now() + duration, duration, listeners, time.monotonic())
 
 
+def wait_for_tick(listeners: Listeners) -> None:
+    """On simulated time, wait until it advances: what begins now is prompted by the clock. Raises like pause()."""
+    if not rospy.rostime.is_wallclock():
+        _wait_until(now() + 1, 1, listeners, time.monotonic())
+
+
 class Rate:
     """rospy.Rate for commands: a shutdown request interrupts it, and two ticks never follow each other immediately.
 
-    A delay is made up for over the next ticks, each at least 0.6 periods long: otherwise a base could receive two
-    commands in one step. A delay of more than MAX_DELAY is an error, because the base has stopped by then.
+    On the clock of a simulated base, which waits for this script, the ticks are those of rospy.Rate. On any other
+    clock, a delay is made up for over the next ticks, each at least 0.6 periods long: otherwise a base could receive
+    two commands in one step. A delay of more than MAX_DELAY is an error, because the base has stopped by then.
     """
 
     def __init__(self, hz: float, listeners: Listeners) -> None:
@@ -89,25 +95,22 @@ class Rate:
                 raise rospy.ROSException(f'{rospy.get_name()}/rate: {hz:g}: expected at most {1 / step:g} Hz on '
                                          f'simulated time: the clock ticks every {step:g} s')
         self.listeners = listeners
-        self.period = round(SECOND / hz)
+        self.period = int(SECOND / hz)      # rounded down, as in rospy.Rate
+        self.shortest = 0 if listeners.clock else self.period * 6 // 10
         self.restart()
 
     def restart(self) -> None:
         """Start again after a pause; the next tick is a period from now."""
         self.last_look = time.monotonic()
         self.due = self.next = now() + self.period      # times of the next tick without and with delays
-        self.free_ticks = FREE_TICKS if self.listeners.clock else 0
 
     def sleep(self) -> None:
         """Wait for the next tick. Raises like pause(), and ROSException if the delay is too long."""
         _wait_until(self.next, self.period, self.listeners, self.last_look)
         self.last_look = time.monotonic()
         time_now = now()
-        if self.free_ticks:
-            self.free_ticks -= 1
-            self.due = time_now
         if time_now - self.due > MAX_DELAY:
             raise rospy.ROSException(f'A command is {(time_now - self.due) / SECOND:.1f} s late: expected at most '
                                      f'{MAX_DELAY / SECOND:g} s, after which a base stops')
         self.due = min(self.due, time_now) + self.period
-        self.next = max(self.due, time_now + self.period * 6 // 10)
+        self.next = max(self.due, time_now + self.shortest)

@@ -17,9 +17,10 @@ from typing import Callable, Iterable, Optional, Tuple
 POLL = 0.005    # s: a thread that sleeps for less than this polls, as ros::Rate does on simulated time
 ENDED = b'X', b'Z'      # states of a thread that has exited
 LISTEN = '0A'           # state of a socket in /proc/net/tcp
+NANOSLEEP = b'hrtimer_nanosleep'
 TIMED = b'sleep', b'poll', b'select'    # parts of the names of kernel functions that wait with a timeout
 # first parts of the names of the kernel functions in which most threads wait, always in state S
-INTERRUPTIBLE = b'futex_', b'poll_schedule_timeout', b'wait_woken', b'inet_csk_accept', b'hrtimer_nanosleep'
+INTERRUPTIBLE = b'futex_', b'poll_schedule_timeout', b'wait_woken', b'inet_csk_accept', NANOSLEEP
 
 
 def _cpu_clock(number: int, of_thread: bool) -> int:
@@ -33,6 +34,7 @@ class Thread:
     def __init__(self, folder: str, number: int) -> None:
         """folder: folder of the thread below /proc. Raises OSError if it has exited or must not be inspected."""
         self.clock = _cpu_clock(number, True)
+        self.is_main = folder.split('/')[2] == str(number)
         self.files: list[int] = []
         try:
             for name in ('stat', 'wchan', 'schedstat'):
@@ -42,9 +44,7 @@ class Thread:
             raise
         self.ran: bytes | None = None       # how long and how often it has run
         self.changed = 0.0      # s of the monotonic clock: when a change of `ran` was last detected
-        self.noted: bytes | None = None     # `ran` when note() was called
-        self.marked: bytes | None = None    # `ran` when mark() was called; None if it had run since note()
-        self.timed = False      # needs_no_message() when mark() was called
+        self.is_poller = False  # whether it was found to wake by itself every few milliseconds
         self.look()
 
     def close(self) -> None:
@@ -78,25 +78,18 @@ class Thread:
         name = self.waits_in()
         return name == b'0' or any(part in name for part in TIMED)
 
-    def note(self) -> None:
-        """See Process.note()."""
-        self.noted = self.look()
-
-    def mark(self) -> None:
-        """See Process.mark()."""
-        now = self.look()
-        self.marked = now if now == self.noted else None
-        self.timed = self.needs_no_message()
-
-    def woke_by_itself(self) -> bool:
-        """See Process.woke_by_itself()."""
-        return self.marked is None or (self.timed and self.look() != self.marked)
+    def runs(self) -> int:
+        """Return how often the thread has run."""
+        return int(self.look().split()[2])
 
     def polls(self) -> bool:
         """Return whether the thread is running or runnable, or apparently sleeps only briefly."""
         now = time.monotonic()      # before the look: on a busy machine, the caller may be suspended in between
         self.look()
-        return self.needs_no_message() if now - self.changed < POLL else self.waits_in() == b'0'
+        if now - self.changed < POLL:
+            return self.is_poller or any(self.waits_in().startswith(each) for each in (b'0', NANOSLEEP))
+        self.is_poller = False
+        return self.waits_in() == b'0'
 
 
 PollingThread = Tuple[Thread, Optional[bytes]]      # a Thread and its `ran`
@@ -140,28 +133,24 @@ class Process:
             return False
         return all(thread.sleeps() for thread in self.threads.values())
 
-    def note(self) -> None:
-        """Remember what the threads have done so far."""
-        self._each(Thread.note)
-
-    def mark(self) -> None:
-        """Remember what the threads are doing, and whether they have run since note()."""
-        self._each(Thread.mark)
+    def main_sleeps_briefly(self) -> bool:
+        """Return whether the main thread will wake by itself."""
+        return bool(self._each(lambda thread: thread.is_main and thread.needs_no_message()))
 
     def polling(self) -> list[PollingThread]:
         """Return the threads that sleep only briefly."""
         return [(thread, thread.ran) for thread in self._each(Thread.polls)]
 
-    def woke_by_itself(self) -> bool:
-        """Return whether a thread has run since mark() that was in a timed sleep then, or between note() and mark()."""
-        return bool(self._each(Thread.woke_by_itself))
+    def runs(self) -> list[tuple[Thread, int]]:
+        """Return how often each thread has run."""
+        return [(thread, thread.runs()) for thread in self._each(Thread.look)]
 
     def ended(self) -> bool:
         """Update the list of threads after one has exited; return whether all have exited."""
         self._update()
         return not self.threads
 
-    def _each(self, function: Callable[[Thread], bool | None]) -> list[Thread]:
+    def _each(self, function: Callable[[Thread], object]) -> list[Thread]:
         """Call a function with each thread; return the threads for which it is true."""
         found = []
         for thread in self.threads.values():

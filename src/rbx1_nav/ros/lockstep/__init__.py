@@ -1,0 +1,1 @@
+"""Keeps a simulated clock in step with the nodes that drive."""

@@ -1,0 +1,281 @@
+"""Keeps a simulated clock in step with the nodes that use it to drive, whatever they wait for.
+
+The base delivers the messages of a tick one topic after another, and the clock last. After each of them, it waits until
+every process that the message may have woken is asleep again. So a node that wakes at a tick finds all messages of the
+tick, and its commands have arrived before the next tick begins. The result does not depend on the machine.
+
+A node that something else wakes, such as the wall clock, is found by a test: now and then, the clock is held for a
+while when everything is asleep. A command that arrives then was not prompted by a message of the base.
+"""
+from __future__ import annotations
+
+from io import BytesIO
+from random import Random
+import select
+import socket
+from threading import Lock
+from time import monotonic, sleep
+from typing import Any, Callable, NamedTuple, Protocol, Sequence
+
+from genpy import Message
+from rosgraph_msgs.msg import Clock
+import rospy
+from rospy.msg import serialize_message
+
+NODE_TIMEOUT = 5.0      # s of wall time that a tick waits for a node
+LOOK = 2e-5, 5e-3   # s of wall time between two checks of the processes: at least, at most
+LOOK_LATER = 0.05   # s between two checks per s of waiting so far: a node that is starting needs the processor itself
+HOLDS = 3           # ticks after the second command of a motion at which the clock is held
+HOLD_LATER = 1 / 64     # fraction of the later ticks at which the clock is held
+HOLD = 1.5          # duration of a hold, in intervals between the first two commands of the motion
+THREADS = 3         # that run when a rospy node sends: one that receives the message, one that prompts it, one that sends
+TEST, TESTS = 0.005, 4  # s of wall time in which a thread that polls the time runs more than once; how often to try
+SLEEP = 0.05        # s: the longest sleep between two checks for a shutdown request
+
+
+class Command(Protocol):
+    """A velocity command."""
+
+    @property
+    def linear(self) -> float: ...          # m/s
+    @property
+    def angular(self) -> float: ...         # rad/s
+
+
+class Target(Protocol):
+    """A base that follows commands."""
+
+    def apply(self, command: Any) -> None: ...
+
+
+class Processes(Protocol):
+    """Observes the processes of nodes; implemented in watch.py."""
+
+    def add(self, subscriber: rospy.Subscriber) -> None: ...
+    def update(self) -> bool: ...
+    def awake(self) -> str | None: ...
+    def polling(self) -> list[Any]: ...
+    def runs(self, name: str = '') -> list[Any]: ...
+    def find_pollers(self, before: list[Any]) -> bool: ...
+    def still_polling(self, threads: list[Any]) -> bool: ...
+    def forget(self, name: str) -> bool: ...
+    def is_connected(self, header: object) -> bool: ...
+    def obstacle(self, name: str) -> str | None: ...
+    def find_sources(self) -> bool: ...
+    def groups(self, connections: Sequence[Any]) -> list[tuple[Sequence[Any], bool]]: ...
+    drivers: set[str]
+    tested: bool
+
+
+class Received(NamedTuple):
+    """A command that has arrived."""
+
+    target: Target
+    header: dict[str, str]      # of the connection; one object for each connection
+    command: Command
+    time: float                 # s of the monotonic clock
+    idle: bool                  # whether it arrived although everything was asleep
+
+
+class Driver:
+    """What is known of a connection on which commands arrive."""
+
+    def __init__(self, header: dict[str, str]) -> None:
+        self.header = header
+        self.name = header['callerid']
+        self.in_step = True
+        self.motions = 0        # motions that have begun
+        self.moving = False     # whether the last command was not a stop
+        self.tick = 0           # of the last command
+        self.begin = 0.0        # s of the monotonic clock: the first command of the motion
+        self.interval: float | None = None      # s of wall time between the first two commands of the motion
+        self.holds = 0          # ticks at which the clock will be held
+
+
+class Lockstep:
+    """Delivers messages, and applies each command at the tick at which it was sent."""
+
+    def __init__(self, processes: Processes, report: Callable[[str, str], None], ended: Callable[[], bool]) -> None:
+        """report(name, reason): reports a node that is not in step; ended(): whether to stop waiting."""
+        self.processes = processes
+        self.report = report
+        self.ended = ended
+        # by the id of the header, which stays unique because the Driver keeps the header alive
+        self.drivers: dict[int, Driver] = {}
+        self.lock = Lock()
+        self.arrived: list[Received] = []       # commands that settle() has not ordered yet
+        self.ready: list[tuple[Target, Any]] = []   # commands in the order in which they take effect
+        self.idle = True        # whether everything was asleep, and nothing has been delivered since
+        self.mixed: set[str] = set()        # drivers whose last commands arrived together and differed
+        self.suspects: set[str] = set()     # drivers for which this was so before
+        self.tick = 0
+        self.random = Random(0)
+
+    def add(self, subscriber: rospy.Subscriber) -> None:
+        """Keep the clock in step with the publishers that a Subscriber is connected to."""
+        self.processes.add(subscriber)
+
+    def receive(self, target: Target, header: dict[str, str], command: Any) -> None:
+        """Accept a command that just arrived, in any thread. header: see Received."""
+        with self.lock:
+            self.arrived.append(Received(target, header, command, monotonic(), self.idle))
+
+    def begin(self) -> None:
+        """Begin a tick. What has woken by itself still belongs to the tick before."""
+        self.tick += 1
+        moving = {driver.name for driver in self.drivers.values() if driver.moving}
+        if self.processes.update() or not self.processes.drivers or not self.processes.drivers <= moving:
+            self._settle()      # otherwise, all of them wait for the tick
+        while self._has_arrived():
+            self._settle()
+
+    def deliver(self, publisher: rospy.Publisher, message: Message) -> None:
+        """Publish a message, and wait until everything that it has woken is asleep again."""
+        topic = publisher.impl
+        if not topic.connections:
+            return
+        topic.seq += 1
+        buffer = BytesIO()
+        serialize_message(buffer, topic.seq, message)
+        for connections, wait in self.processes.groups(topic.connections):
+            runs = {name: self.processes.runs(name) for name in self.suspects}
+            for connection in connections:
+                write(connection, buffer.getvalue(), wait)
+            if wait:
+                self._settle(isinstance(message, Clock))
+                self._check_threads(runs)
+
+    def take(self) -> list[tuple[Target, Any]]:
+        """Return the commands that take effect now, each with its target."""
+        ready, self.ready = self.ready, []
+        return ready
+
+    def listen(self, until: float) -> None:
+        """Wait until a time (s of the monotonic clock), or longer if this tick tests who sends without being woken."""
+        self.idle = True
+        until = max(until, monotonic() + max(map(self._hold, self.drivers.values()), default=0.0))
+        if not self.processes.tested:
+            self.processes.tested = True
+            for _ in range(TESTS):
+                runs = self.processes.runs()
+                self._sleep(monotonic() + TEST)
+                if not self.processes.find_pollers(runs):
+                    break
+        self._sleep(until)
+
+    def _sleep(self, until: float) -> None:
+        while monotonic() < until and not self.ended():
+            sleep(max(0.0, min(until - monotonic(), SLEEP)))
+
+    def _hold(self, driver: Driver) -> float:
+        """Return for how long to hold the clock after this tick because of a driver, s of wall time."""
+        if not (driver.moving and driver.in_step and driver.interval):
+            return 0.0
+        if not driver.holds:
+            return HOLD * driver.interval if self.random.random() < HOLD_LATER else 0.0
+        driver.holds -= 1
+        return HOLD * driver.interval
+
+    def _has_arrived(self) -> bool:
+        """Return whether a command of the tick before has arrived that is not ordered yet. If not, the next tick has
+        begun."""
+        with self.lock:
+            self.idle = bool(self.arrived)
+            return self.idle
+
+    def _settle(self, new_time: bool = False) -> None:
+        """Wait until everything is asleep, and order the commands that have arrived. new_time: whether the time was
+        delivered, for which some threads poll."""
+        self._wait_while_awake()
+        polling = new_time and self.processes.polling()     # these may not have seen the time yet
+        if polling:
+            while self.processes.still_polling(polling) and not self.ended():
+                sleep(LOOK[0])
+            self._wait_while_awake()
+        with self.lock:
+            arrived, self.arrived = self.arrived, []
+        # the order must not depend on chance
+        arrived.sort(key=lambda each: each.header['callerid'])
+        self.mixed = {one.header['callerid'] for one, other in zip(arrived, arrived[1:])
+                      if one.header is other.header and one.command != other.command}
+        for each in arrived:
+            self._check(self._driver_of(each.header), each)
+            self.ready.append((each.target, each.command))
+
+    def _wait_while_awake(self) -> None:
+        begin = monotonic()
+        deadline = begin + NODE_TIMEOUT
+        while not self.ended():
+            name = self.processes.awake()
+            if not name:
+                return
+            now = monotonic()
+            if now > deadline:
+                if self.processes.forget(name):
+                    self._report(name, f'did not become idle within {NODE_TIMEOUT:g} s')
+                deadline += NODE_TIMEOUT
+            sleep(min(max(LOOK[0], LOOK_LATER * (now - begin)), LOOK[1]))
+
+    def _driver_of(self, header: dict[str, str]) -> Driver:
+        """Return the Driver of a connection."""
+        if id(header) not in self.drivers:
+            self.drivers = {key: driver for key, driver in self.drivers.items()
+                            if self.processes.is_connected(driver.header)}
+            self.drivers[id(header)] = Driver(header)
+        return self.drivers[id(header)]
+
+    def _check(self, driver: Driver, received: Received) -> None:
+        """Update what is known of a driver with a command, and report it if the command is not in step."""
+        command, first = received.command, not driver.moving
+        driver.moving = bool(command.linear or command.angular)
+        if not driver.moving:
+            return
+        if first:
+            driver.motions += 1
+            self.processes.tested = self.processes.tested and driver.motions > 1
+            driver.begin, driver.interval = received.time, None
+        elif driver.interval is None and self.tick > driver.tick:
+            driver.interval, driver.holds = received.time - driver.begin, HOLDS
+        driver.tick = self.tick
+        if not driver.in_step or first and driver.motions == 1:
+            return      # a node may wait by the wall clock before its first motion
+        reason = self.processes.obstacle(driver.name)
+        if not reason and received.idle and not self.processes.find_sources():
+            reason = 'sends commands that no tick of /clock has prompted'
+        if reason:
+            self.processes.forget(driver.name)
+            self._report(driver.name, reason)
+
+    def _check_threads(self, runs: dict[str, list[Any]]) -> None:
+        """Report a driver that has now sent different commands at once, and from more than one thread: their order may
+        depend on chance. runs: of its threads until now; known from the second time on."""
+        for name in self.mixed & runs.keys():
+            ran = sum(thread.runs() != count for thread, count in runs[name])
+            if ran > THREADS:
+                self.suspects.discard(name)
+                self._report(name, f'sends different commands in one tick, in which {ran} of its threads have run: '
+                                   'several of them may send')
+        self.suspects |= self.mixed
+
+    def _report(self, name: str, reason: str) -> None:
+        for driver in self.drivers.values():
+            driver.in_step = driver.in_step and driver.name != name
+        self.report(name, reason)
+
+
+def write(connection: Any, data: bytes, asleep: bool) -> None:
+    """Send a serialized message. asleep: whether everything is asleep, the threads of this process included: then it is
+    sent without a detour through the thread of the connection, unless the receiver does not read."""
+    try:
+        if asleep and not connection._queue and is_writable(connection.socket):
+            connection = connection._connection
+        connection.write_data(data)
+    except Exception:       # TransportTerminated, or any error of the socket: the node has exited
+        connection.close()
+
+
+def is_writable(connected: socket.socket) -> bool:
+    """Return whether a message can be sent without waiting for the receiver."""
+    poll = select.poll()
+    poll.register(connected, select.POLLOUT)
+    return bool(poll.poll(0))
