@@ -28,7 +28,7 @@ LOOK_LATER = 0.05   # s between two checks per s of waiting so far: a node that 
 HOLDS = 3           # ticks after the second command of a motion at which the clock is held
 HOLD_LATER = 1 / 64     # fraction of the later ticks at which the clock is held
 HOLD = 1.5          # duration of a hold, in intervals between the first two commands of the motion
-THREADS = 3         # that run when a rospy node sends: one that receives the message, one that prompts it, one that sends
+SENDERS = 2         # threads of a rospy node that run when one of them publishes: this one, and that of the connection
 TEST, TESTS = 0.005, 4  # s of wall time in which a thread that polls the time runs more than once; how often to try
 SLEEP = 0.05        # s: the longest sleep between two checks for a shutdown request
 
@@ -55,8 +55,10 @@ class Processes(Protocol):
     def update(self) -> bool: ...
     def awake(self) -> str | None: ...
     def polling(self) -> list[Any]: ...
+    def have_new_threads(self) -> bool: ...
     def runs(self, name: str = '') -> list[Any]: ...
     def find_pollers(self, before: list[Any]) -> bool: ...
+    def senders(self, before: list[Any]) -> int: ...
     def still_polling(self, threads: list[Any]) -> bool: ...
     def forget(self, name: str) -> bool: ...
     def is_connected(self, header: object) -> bool: ...
@@ -64,7 +66,6 @@ class Processes(Protocol):
     def find_sources(self) -> bool: ...
     def groups(self, connections: Sequence[Any]) -> list[tuple[Sequence[Any], bool]]: ...
     drivers: set[str]
-    tested: bool
 
 
 class Received(NamedTuple):
@@ -154,8 +155,7 @@ class Lockstep:
         """Wait until a time (s of the monotonic clock), or longer if this tick tests who sends without being woken."""
         self.idle = True
         until = max(until, monotonic() + max(map(self._hold, self.drivers.values()), default=0.0))
-        if not self.processes.tested:
-            self.processes.tested = True
+        if self.processes.have_new_threads():
             for _ in range(TESTS):
                 runs = self.processes.runs()
                 self._sleep(monotonic() + TEST)
@@ -232,7 +232,6 @@ class Lockstep:
             return
         if first:
             driver.motions += 1
-            self.processes.tested = self.processes.tested and driver.motions > 1
             driver.begin, driver.interval = received.time, None
         elif driver.interval is None and self.tick > driver.tick:
             driver.interval, driver.holds = received.time - driver.begin, HOLDS
@@ -250,11 +249,8 @@ class Lockstep:
         """Report a driver that has now sent different commands at once, and from more than one thread: their order may
         depend on chance. runs: of its threads until now; known from the second time on."""
         for name in self.mixed & runs.keys():
-            ran = sum(thread.runs() != count for thread, count in runs[name])
-            if ran > THREADS:
-                self.suspects.discard(name)
-                self._report(name, f'sends different commands in one tick, in which {ran} of its threads have run: '
-                                   'several of them may send')
+            if self.processes.senders(runs[name]) > SENDERS:
+                self._report(name, 'sends different commands in one tick, from several threads')
         self.suspects |= self.mixed
 
     def _report(self, name: str, reason: str) -> None:

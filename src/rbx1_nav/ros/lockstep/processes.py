@@ -12,15 +12,15 @@ import socket
 import sys
 import threading
 import time
-from typing import Callable, Iterable, Optional, Tuple
+from typing import Callable, Iterable, List, Optional, Tuple
 
 POLL = 0.005    # s: a thread that sleeps for less than this polls, as ros::Rate does on simulated time
 ENDED = b'X', b'Z'      # states of a thread that has exited
 LISTEN = '0A'           # state of a socket in /proc/net/tcp
-NANOSLEEP = b'hrtimer_nanosleep'
+FUTEX, NANOSLEEP = b'futex_', b'hrtimer_nanosleep'
 TIMED = b'sleep', b'poll', b'select'    # parts of the names of kernel functions that wait with a timeout
 # first parts of the names of the kernel functions in which most threads wait, always in state S
-INTERRUPTIBLE = b'futex_', b'poll_schedule_timeout', b'wait_woken', b'inet_csk_accept', NANOSLEEP
+INTERRUPTIBLE = FUTEX, b'poll_schedule_timeout', b'wait_woken', b'inet_csk_accept', NANOSLEEP
 
 
 def _cpu_clock(number: int, of_thread: bool) -> int:
@@ -73,6 +73,10 @@ class Thread:
         state = os.pread(self.files[0], 512, 0).rpartition(b') ')[2][:1]
         return self.waits_in() != b'0' if state == b'S' else state in ENDED
 
+    def waits_for_thread(self) -> bool:
+        """Return whether the thread waits for another one of its process, as in rospy.Rate.sleep()."""
+        return self.waits_in().startswith(FUTEX)
+
     def needs_no_message(self) -> bool:
         """Return whether the thread is running, runnable, or will wake by itself."""
         name = self.waits_in()
@@ -92,6 +96,7 @@ class Thread:
         return self.waits_in() == b'0'
 
 
+Runs = List[Tuple[Thread, int]]     # how often threads have run
 PollingThread = Tuple[Thread, Optional[bytes]]      # a Thread and its `ran`
 
 
@@ -106,6 +111,7 @@ class Process:
         self.without = without
         self.socket: socket.socket | None = None    # the connection by which it was found
         self.threads: dict[int, Thread] = {}       # by number
+        self.new_threads = True
         self._update()
         if not self.threads:
             raise ProcessLookupError(f'no process {pid}')
@@ -141,7 +147,12 @@ class Process:
         """Return the threads that sleep only briefly."""
         return [(thread, thread.ran) for thread in self._each(Thread.polls)]
 
-    def runs(self) -> list[tuple[Thread, int]]:
+    def has_new_threads(self) -> bool:
+        """Return whether there are threads that did not exist at the last call."""
+        new, self.new_threads = self.new_threads, False
+        return new
+
+    def runs(self) -> Runs:
         """Return how often each thread has run."""
         return [(thread, thread.runs()) for thread in self._each(Thread.look)]
 
@@ -171,6 +182,7 @@ class Process:
         for number in numbers - self.threads.keys():
             try:
                 self.threads[number] = Thread(f'{self.folder}{number}/', number)
+                self.new_threads = True
             except (FileNotFoundError, ProcessLookupError):
                 pass
 
@@ -221,6 +233,17 @@ def still_polling(threads: Iterable[PollingThread]) -> bool:
         return any(thread.polls() and thread.ran == ran for thread, ran in threads)
     except OSError:     # it has exited
         return False
+
+
+def runs_since(before: Runs) -> Runs:
+    """Return how often threads have run since then, without those that have exited."""
+    runs = []
+    for thread, count in before:
+        try:
+            runs.append((thread, thread.runs() - count))
+        except (OSError, IndexError):       # IndexError: its files are closed
+            pass
+    return runs
 
 
 def own_process() -> Process | None:

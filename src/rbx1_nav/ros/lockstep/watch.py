@@ -10,7 +10,8 @@ import rosgraph
 import rospy
 
 from rbx1_nav.ros.lockstep.processes import (
-    Network, PollingThread, Process, Thread, awake, listening_process, own_process, peer_process, still_polling)
+    Network, PollingThread, Process, Runs, awake, listening_process, own_process, peer_process, runs_since,
+    still_polling)
 from rbx1_nav.ros.network.master import call
 
 CONNECT_TIME = 5.0      # s of wall time to wait for a new connection of cmd_vel; a busy machine takes more than 1 s
@@ -44,7 +45,6 @@ class Watch:
         self.own = own_process()        # the process of this node, without the thread that runs the clock
         self.master = listening_process(urlparse(rosgraph.get_master_uri()).port) if self.own else None
         self.network = Network()
-        self.tested = True      # whether find_pollers() has been called since a node has started
         # by incomplete connection: s of the monotonic clock when it was first seen
         self.new: dict[Any, float] = {}
 
@@ -169,7 +169,6 @@ class Watch:
                 if now < until:
                     return name
         self.starting = {}
-        self.tested = False
         self.find_sources()
         return None
 
@@ -178,24 +177,28 @@ class Watch:
         still_polling()."""
         return [each for process in self.processes.values() for each in process.polling()]
 
-    def runs(self, name: str = '') -> list[tuple[Thread, int]]:
+    def have_new_threads(self) -> bool:
+        """Return whether there are new threads in the watched nodes since the last call."""
+        return any([process.has_new_threads() for process in self.processes.values()])
+
+    def runs(self, name: str = '') -> Runs:
         """Return how often each thread of a watched node has run, or of all watched nodes."""
         processes = [self.processes[name]] if name in self.processes else [] if name else self.processes.values()
         return [each for process in processes for each in process.runs()]
 
     @staticmethod
-    def find_pollers(before: list[tuple[Thread, int]]) -> bool:
-        """Look for threads that have run although nothing was delivered since `before`, runs() then; return whether it is still
+    def find_pollers(before: Runs) -> bool:
+        """Look for threads that have run although nothing was delivered since runs(); return whether it is still
         uncertain for one of them."""
-        uncertain = False
-        for thread, count in before:
-            try:
-                runs = thread.runs() - count
-            except OSError:     # it has exited
-                continue
-            thread.is_poller = thread.is_poller or runs > 1
-            uncertain = uncertain or runs == 1
-        return uncertain
+        runs = runs_since(before)
+        for thread, count in runs:
+            thread.is_poller = thread.is_poller or count > 1
+        return any(count == 1 for _, count in runs)
+
+    @staticmethod
+    def senders(before: Runs) -> int:
+        """Return how many threads have run since runs(), without those that receive messages."""
+        return sum(count > 0 and thread.waits_for_thread() for thread, count in runs_since(before))
 
     @staticmethod
     def still_polling(threads: list[PollingThread]) -> bool:
