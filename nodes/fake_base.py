@@ -45,7 +45,7 @@ class FakeBase:
         self.joint_schedule = Schedule(10)
         self.diagnostics_schedule = Schedule(1)
 
-        self.publisher = BasePublisher(robot, clock.publish)
+        self.publisher = BasePublisher(robot, clock.publish, self)
         self.truth_pub = rospy.Publisher('ground_truth', Odometry, queue_size=10)
         self.reset_pub = rospy.Publisher('reset_odometry', Empty, queue_size=1)
         self.diagnostics = Updater()
@@ -85,6 +85,20 @@ class FakeBase:
             self.commands.log_timeout()
         if self.diagnostics_schedule.due(now):
             self.diagnostics.force_update()
+
+    def peer_subscribe(self, topic, _, publish):
+        """Send the current state to a new subscriber of odom or tf, called by rospy: while a simulated clock waits for
+        a node that is starting, no other message follows."""
+        if not self.clock.inbox or not self.last_stamp:
+            return
+        with self.lock:
+            base, stamp = self.base, self.last_stamp
+            pose, velocity, uncertainty = base.odometry.pose, base.velocity, base.wheels.uncertainty
+        publish(self.publisher.transform(stamp, pose) if topic == '/tf' else
+                messages.odometry(stamp, self.robot, pose, velocity, uncertainty))
+
+    def peer_unsubscribe(self, *_):
+        """Do nothing; called by rospy."""
 
     def on_reset(self, _):
         """Put the robot back at the origin, at rest."""

@@ -20,15 +20,16 @@ class BasePublisher:
     subscriber."""
 
     # Any: rospy has no types
-    def __init__(self, robot: Robot, publish: Callable[[rospy.Publisher, Any], None] = rospy.Publisher.publish) -> None:
-        """publish(publisher, message): publishes a message."""
+    def __init__(self, robot: Robot, publish: Callable[[rospy.Publisher, Any], None] = rospy.Publisher.publish,
+                 listener: rospy.SubscribeListener | None = None) -> None:
+        """publish(publisher, message): publishes a message; listener: is informed of new subscribers of odom and tf."""
         self.robot = robot
         self.publish = publish
         # simulated time may produce many messages at once
-        self.odom = rospy.Publisher('odom', Odometry, queue_size=100, tcp_nodelay=True)
+        self.odom = rospy.Publisher('odom', Odometry, listener, queue_size=100, tcp_nodelay=True)
         self.imu = rospy.Publisher('imu/data', Imu, queue_size=100, tcp_nodelay=True)
         # the broadcaster of tf2_ros does only this, and needs 5 MB more
-        self.tf = rospy.Publisher('/tf', TFMessage, queue_size=100, tcp_nodelay=True)
+        self.tf = rospy.Publisher('/tf', TFMessage, listener, queue_size=100, tcp_nodelay=True)
         self.joint_states = rospy.Publisher('joint_states', JointState, queue_size=10)
 
     def publish_odometry(self, stamp: rospy.Time, pose: Pose, velocity: tuple[float, float], uncertainty: Uncertainty,
@@ -40,8 +41,11 @@ class BasePublisher:
     def publish_transform(self, stamp: rospy.Time, pose: Pose) -> None:
         """Publish the pose of the odometry as a transform."""
         if self.robot.publish_tf and self.tf.get_num_connections():
-            self.publish(self.tf, TFMessage([messages.transform(stamp, self.robot.odom_frame_id,
-                                                                self.robot.base_frame_id, pose)]))
+            self.publish(self.tf, self.transform(stamp, pose))
+
+    def transform(self, stamp: rospy.Time, pose: Pose) -> TFMessage:
+        """Return the pose of the odometry as a transform."""
+        return TFMessage([messages.transform(stamp, self.robot.odom_frame_id, self.robot.base_frame_id, pose)])
 
     def publish_imu(self, stamp: rospy.Time, reading: Reading) -> None:
         """Publish a gyro's Reading."""

@@ -39,6 +39,8 @@ class Watch:
         self.sources: list[str] = []        # names of all nodes whose messages may cause a command, nearest last
         # nodes that are starting, by name; s of the monotonic clock until when they may sleep by the wall clock
         self.starting: dict[str, float | None] = {}
+        self.registered: set[str] = set()   # publishers of commands that the master knew when it was last asked
+        self.connect_by: float | None = None    # s of the monotonic clock, for those of them that are starting
         self.processes: dict[str, Process] = {}     # by name, drivers first
         # sockets by name; None: forgotten independently of a connection
         self.forgotten: dict[str, socket.socket | None] = {}
@@ -100,12 +102,13 @@ class Watch:
         self.drivers = drivers.keys() & processes.keys()
 
     def find_sources(self) -> bool:
-        """Ask the master for the publishers of all topics; return whether there are new sources of commands."""
+        """Ask the master who may cause a command; return whether there are new sources of commands."""
         topics = [each.resolved_name for each in self.commands]
         try:
             publishers, subscribers, _ = call(rosgraph.get_master_uri(), 'getSystemState')
         except Exception:       # the clock must continue after any error of the master
             return False
+        self.registered = {name for topic, names in publishers if topic in topics for name in names}
         before = set(self.sources)
         self.sources = [each for each in reversed(sources_of(topics, publishers, subscribers))
                         if each != rospy.get_name()]
@@ -158,7 +161,8 @@ class Watch:
         return self._still_starting()
 
     def _still_starting(self) -> str | None:
-        """Return the name of a node that is starting and sleeps by the wall clock; None if there is none."""
+        """Return the name of a node that is starting: it sleeps by the wall clock, or it has registered as a publisher
+        of commands and is not connected yet. None if there is none."""
         if not self.starting:
             return None
         now = monotonic()
@@ -168,8 +172,13 @@ class Watch:
                 self.starting[name] = until = until or now + START_SLEEP
                 if now < until:
                     return name
-        self.starting = {}
         self.find_sources()
+        connected = {each.header['callerid'] for each in self._connections() if is_complete(each)}
+        for name in self.starting.keys() & self.registered - connected:
+            self.connect_by = self.connect_by or now + CONNECT_TIME
+            if now < self.connect_by:
+                return name
+        self.starting, self.connect_by = {}, None
         return None
 
     def polling(self) -> list[PollingThread]:
