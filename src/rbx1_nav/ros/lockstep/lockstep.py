@@ -13,7 +13,7 @@ from io import BytesIO
 from random import Random
 import select
 import socket
-from threading import Lock
+from threading import Event, Lock
 from time import monotonic, sleep
 from typing import Any, Callable, NamedTuple, Protocol, Sequence
 
@@ -23,6 +23,7 @@ import rospy
 from rospy.msg import serialize_message
 
 NODE_TIMEOUT = 5.0      # s of wall time that a tick waits for a node
+ANSWER_TIME = 3e-4      # s of wall time in which a driver usually answers
 LOOK = 2e-5, 5e-3   # s of wall time between two checks of the processes: at least, at most
 LOOK_LATER = 0.05   # s between two checks per s of waiting so far: a node that is starting needs the processor itself
 HOLDS = 3           # ticks after the second command of a motion at which the clock is held
@@ -104,6 +105,7 @@ class Lockstep:
         # by the id of the header, which stays unique because the Driver keeps the header alive
         self.drivers: dict[int, Driver] = {}
         self.lock = Lock()
+        self.heard = Event()    # set when a command arrives
         self.arrived: list[Received] = []       # commands that settle() has not ordered yet
         self.ready: list[tuple[Target, Any]] = []   # commands in the order in which they take effect
         self.idle = True        # whether everything was asleep, and nothing has been delivered since
@@ -120,6 +122,7 @@ class Lockstep:
         """Accept a command that just arrived, in any thread. header: see Received."""
         with self.lock:
             self.arrived.append(Received(target, header, command, monotonic(), self.idle))
+        self.heard.set()
 
     def begin(self) -> None:
         """Begin a tick. What has woken by itself still belongs to the tick before."""
@@ -140,9 +143,11 @@ class Lockstep:
         serialize_message(buffer, topic.seq, message)
         for connections, wait in self.processes.groups(topic.connections):
             runs = {name: self.processes.runs(name) for name in self.suspects}
+            self.heard.clear()
             for connection in connections:
-                write(connection, buffer.getvalue(), wait)
+                write(connection, buffer.getvalue())
             if wait:
+                self.heard.wait(ANSWER_TIME)    # before a command arrives, there is no need to look
                 self._settle(isinstance(message, Clock))
                 self._check_threads(runs)
 
@@ -259,11 +264,13 @@ class Lockstep:
         self.report(name, reason)
 
 
-def write(connection: Any, data: bytes, asleep: bool) -> None:
-    """Send a serialized message. asleep: whether everything is asleep, the threads of this process included: then it is
-    sent without a detour through the thread of the connection, unless the receiver does not read."""
+def write(connection: Any, data: bytes) -> None:
+    """Send a serialized message; without a detour through the thread of the connection, unless that has work to do or
+    the receiver does not read."""
     try:
-        if asleep and not connection._queue and is_writable(connection.socket):
+        with connection._lock:
+            is_free = bool(connection._cond_data_available._waiters)    # its thread waits for a message
+        if is_free and is_writable(connection.socket):
             connection = connection._connection
         connection.write_data(data)
     except Exception:       # TransportTerminated, or any error of the socket: the node has exited

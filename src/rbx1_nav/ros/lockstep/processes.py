@@ -44,6 +44,7 @@ class Thread:
             raise
         self.ran: bytes | None = None       # how long and how often it has run
         self.changed = 0.0      # s of the monotonic clock: when a change of `ran` was last detected
+        self.place = b'0'       # result of the last waits_in()
         self.is_poller = False  # whether it was found to wake by itself every few milliseconds
         self.look()
 
@@ -62,7 +63,8 @@ class Thread:
 
     def waits_in(self) -> bytes:
         """Return the name of the kernel function in which the thread waits; 0 if it is running or runnable."""
-        return os.pread(self.files[1], 64, 0)
+        self.place = os.pread(self.files[1], 64, 0)
+        return self.place
 
     def sleeps(self) -> bool:
         """Return whether the thread is waiting or has exited."""
@@ -87,13 +89,13 @@ class Thread:
         return int(self.look().split()[2])
 
     def polls(self) -> bool:
-        """Return whether the thread is running or runnable, or apparently sleeps only briefly."""
+        """Return whether the thread is running or runnable, or sleeps only briefly; to be called after sleeps()."""
+        if not (self.is_poller or self.place.startswith((b'0', NANOSLEEP))):
+            return False
         now = time.monotonic()      # before the look: on a busy machine, the caller may be suspended in between
         self.look()
-        if now - self.changed < POLL:
-            return self.is_poller or any(self.waits_in().startswith(each) for each in (b'0', NANOSLEEP))
-        self.is_poller = False
-        return self.waits_in() == b'0'
+        self.is_poller = self.is_poller and now - self.changed < POLL
+        return now - self.changed < POLL or self.waits_in() == b'0'
 
 
 Runs = List[Tuple[Thread, int]]     # how often threads have run
@@ -128,6 +130,7 @@ class Process:
         try:
             if self.without is None:
                 return time.clock_gettime_ns(self.clock)
+            # the clock of a process does not include the present run of a thread
             return sum(time.clock_gettime_ns(thread.clock) for thread in self.threads.values())
         except OSError:
             return None
