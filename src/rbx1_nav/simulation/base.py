@@ -79,6 +79,8 @@ class SimulatedBase:
 
         If the clock jumped back, the command in force is dropped, because its age is no longer known.
         """
+        if now == self.now:     # usual for a command: it arrives right after a tick
+            return False
         gate = self.gate
         timed_out = False
         if now < self.now:
