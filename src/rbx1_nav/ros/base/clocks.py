@@ -10,6 +10,7 @@ from rosgraph_msgs.msg import Clock as ClockMessage
 
 from rbx1_nav.ros.node import life
 from rbx1_nav.schedule import Schedule
+from rbx1_nav.units import SECOND
 
 READING_TIME = 100_000      # ns: within this time, readings of two clocks count as simultaneous
 TRIES = 10
@@ -19,19 +20,22 @@ def wait_for_beat(beat: float, period: float) -> float:
     """Wait until `period` after `beat` (s of the monotonic clock), or until shutdown is requested; return that time, or
     the current time if it is later."""
     beat = max(beat + period, time.monotonic())
-    while time.monotonic() < beat and not life.end_requested.is_set():
-        life.sleep(beat - time.monotonic())
+    while (left := beat - time.monotonic()) > 0 and not life.end_requested.is_set():
+        life.sleep(left)
     return beat
 
 
 def as_ros_time(instant: int, now: Callable[[], int]) -> rospy.Time:
     """Return the ROS time at an instant (ns) of another clock. now(): returns the current time of that clock, ns."""
+    wall = rospy.rostime.is_wallclock()
     for _ in range(TRIES):
         # on a busy machine, the process may be suspended between the readings
-        before, stamp, after = now(), rospy.Time.now(), now()
+        before, ros, after = now(), time.time_ns() if wall else rospy.Time.now().to_nsec(), now()
         if after - before < READING_TIME:
             break
-    return stamp - rospy.Duration(0, (before + after) // 2 - instant)
+    stamp = rospy.Time.__new__(rospy.Time)      # __init__() takes longer than all readings
+    stamp.set(*divmod(ros + instant - (before + after) // 2, SECOND))
+    return stamp
 
 
 class Inbox(Protocol):

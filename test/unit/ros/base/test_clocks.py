@@ -18,7 +18,7 @@ def fixture_now(monkeypatch):
         read.time += next(read.suspensions)
         return read.time
     read.time, read.suspensions = 5000 * MS, repeat(0)
-    monkeypatch.setattr(rospy.Time, 'now', lambda: rospy.Time(0, OFFSET + read()))
+    monkeypatch.setattr(time, 'time_ns', lambda: OFFSET + read())
     return read
 
 
@@ -38,16 +38,22 @@ def test_readings_that_are_all_slow(now):
     assert abs(as_ros_time(0, now).to_nsec() - OFFSET) <= 3 * MS
 
 
+def test_a_stamp_in_simulated_time(now, monkeypatch):
+    monkeypatch.setattr(rospy.rostime, '_rostime_initialized', True)
+    monkeypatch.setattr(rospy.rostime, '_rostime_current', rospy.Time(7))
+    stamp = as_ros_time(4967 * MS, now)
+    assert (stamp.secs, stamp.nsecs) == (6, 967 * MS)
+
+
 def test_the_clock_of_a_robot_continues_in_suspend(monkeypatch):
     monkeypatch.setattr(time, 'clock_gettime_ns', {time.CLOCK_BOOTTIME: 7}.get)
     assert HardwareClock(30).now() == 7
 
 
 def test_the_clock_of_a_robot_stamps_with_ros_time(monkeypatch):
-    monkeypatch.setattr(rospy.rostime, '_rostime_initialized', True)
     clock = HardwareClock(30)
     before = time.time_ns()
     stamp = clock.stamp(clock.now()).to_nsec()
     after = time.time_ns()
-    # if all readings are slow, the error is at most half of the time that they take; and time.time() is rounded
+    # if all readings are slow, the error is at most half of the time that they take; and readings are rounded
     assert before - (after - before) / 2 - 1000 <= stamp <= after + (after - before) / 2 + 1000
