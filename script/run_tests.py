@@ -87,13 +87,15 @@ class Job:
 
     def trouble(self):
         """Return the end of the output if the process has failed, or ''."""
-        if self.process.exitcode == 0:
-            return ''
         lines = []
         if os.path.exists(self.log):    # not if the process was killed at its start
             with open(self.log, encoding='utf-8', errors='replace') as file:
-                lines = file.read().splitlines()[-40:]
-        return '\n'.join([f'{self.name}: status {self.process.exitcode}', *lines])
+                lines = file.read().splitlines()
+        # if a required node exits, roslaunch interrupts the test; rostest then counts no tests, and succeeds
+        if self.process.exitcode == 0 and ' * TESTS: 0' not in lines:
+            return ''
+        reasons = [line for line in lines[:-40] if '[FATAL]' in line]
+        return '\n'.join([f'{self.name}: status {self.process.exitcode}', *reasons, *lines[-40:]])
 
 
 def read_setup(path):

@@ -27,6 +27,13 @@ def test_jobs(make_job, capsys):
     assert 'bad: status 2\nwhy\n' in output and 'crashed: status -9\n' in output
 
 
+def test_a_rostest_whose_base_exits(make_job, capsys):
+    output = '[FATAL] [12.3]: strict: /driver\n' + 'Traceback\n' * 50 + ' * RESULT: SUCCESS\n * TESTS: 0\n'
+    assert run_tests.run_jobs([make_job('a', lambda: os.write(1, output.encode()))], 1) == ['a']
+    assert 'strict: /driver' in capsys.readouterr().out
+    assert run_tests.run_jobs([make_job('a', lambda: os.write(1, b' * TESTS: 10'))], 1) == []
+
+
 def test_a_job_that_hangs(make_job, monkeypatch):
     monkeypatch.setattr(run_tests, 'LIMIT', 0)
     monkeypatch.setattr(run_tests, 'LOOK', 0.1)
