@@ -29,6 +29,22 @@ def roscpp(name):
     return os.path.join(os.environ['CMAKE_PREFIX_PATH'].split(':')[0], 'lib/rbx1_nav', name)
 
 
+def type_keys(driver):
+    """Type for the kind keys."""
+    driver.wait_for_line('waits for a key')
+    for pause in PAUSES:
+        driver.type('0.1')
+        time.sleep(pause)
+    driver.process.stdin.close()
+
+
+def write_commands(path):
+    """Write a bag with commands at 10 Hz, of which the last one is the stop."""
+    with rosbag.Bag(path, 'w') as bag:
+        for number in range(21):
+            bag.write('/cmd_vel', support.twist(0.1 if number < 20 else 0.0), rospy.Time(1 + number / 10))
+
+
 class TestOffClock(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -74,18 +90,12 @@ class TestOffClock(unittest.TestCase):
 
     def test_keys(self):
         driver = self.start(DRIVER, 'keys')
-        driver.wait_for_line('waits for a key')
-        for pause in PAUSES:
-            driver.type('0.1')
-            time.sleep(pause)
-        driver.process.stdin.close()
+        type_keys(driver)
         self.check(driver, '/keys')
 
     def test_rosbag_play(self):
         with tempfile.NamedTemporaryFile(suffix='.bag') as file:
-            with rosbag.Bag(file.name, 'w') as bag:
-                for number in range(21):    # at 10 Hz; the last one is the stop
-                    bag.write('/cmd_vel', support.twist(0.1 if number < 20 else 0.0), rospy.Time(1 + number / 10))
+            write_commands(file.name)
             self.check(self.start('rosbag', 'play', file.name), r'/play_\d+')
 
     def test_rostopic_pub(self):
