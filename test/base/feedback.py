@@ -16,7 +16,7 @@ from std_srvs.srv import Empty
 import support
 
 FOLDER = os.path.dirname(os.path.realpath(__file__))
-RUNS = '', '', 'wall'   # how the driver starts in each run
+RUNS = 3
 SECOND = 10 ** 9
 STEP = 20_000_000       # ns of the clock
 # rates (Hz) of each kind; 20 Hz is no whole number of ticks
@@ -25,6 +25,8 @@ RATES = {
               'filters': (50,)},
     'roscpp': {'latest': (10, 20, 50), 'tf_loop': (20, 50), 'callback': (10, 50), 'tf_callback': (50,)},
     'filter': {'latest_ekf': (10, 20, 50)}}
+# those that are also started on wall time
+WALL = ('latest', 20), ('latest', 50), ('callback', 50), ('latest_ekf', 20)
 
 
 def driver_in(language):
@@ -90,11 +92,11 @@ class TestFeedback(unittest.TestCase):
         end = support.pose(rospy.wait_for_message('/ground_truth', Odometry))
         return repr(end), end[:2]
 
-    def check(self, language, kind, rate):
+    def check(self, language, kind, rate, *start):
         """Check all runs of a driver."""
         if kind == 'filters' and not importlib.util.find_spec('message_filters'):
             self.skipTest('no package message_filters')
-        ends = [self.drive(driver_in(language), kind, rate, *start.split()) for start in RUNS]
+        ends = [self.drive(driver_in(language), kind, rate, *start) for _ in range(RUNS)]
         self.assertEqual(len(set(ends)), 1, '\n'.join(['end poses of the runs:'] + [text for text, _ in ends]))
         expected = ideal_end(effective_rate(kind, rate))
         for coordinate, ideal in zip(ends[0][1], expected):
@@ -105,6 +107,7 @@ class TestFeedback(unittest.TestCase):
 if __name__ == '__main__':
     for each, rates in RATES[sys.argv[1]].items():
         for number in rates:
-            setattr(TestFeedback, f'test_{each}_{number}',
-                    lambda self, kind=each, rate=number: self.check(sys.argv[1], kind, rate))
+            for start in [(), ('wall',)][:1 + ((each, number) in WALL)]:
+                setattr(TestFeedback, '_'.join(['test', each, str(number), *start]),
+                        lambda self, arguments=(sys.argv[1], each, number, *start): self.check(*arguments))
     support.main('feedback', TestFeedback)
