@@ -179,6 +179,7 @@ class Watch:
             if now < self.connect_by:
                 return name
         self.starting, self.connect_by = {}, None
+        self._select()
         return None
 
     def polling(self) -> list[PollingThread]:

@@ -10,8 +10,9 @@ from types import SimpleNamespace
 
 import pytest
 
-from rbx1_nav.ros.network import processes
-from rbx1_nav.ros.network.processes import Process, awake, listening_process, own_process, peer_process, still_polling
+from rbx1_nav.ros.lockstep import processes
+from rbx1_nav.ros.lockstep.processes import (
+    Process, awake, listening_process, own_process, peer_process, runs_since, still_polling)
 
 LIMIT = 60      # s
 BEGIN = 'import socket, sys, threading, time\nprint("up", flush=True)\n'
@@ -195,32 +196,48 @@ def test_a_runnable_thread_polls_however_long_it_has_not_run(start):
     assert wait_for(thread.polls)
 
 
-def test_who_wakes_by_itself(start):
-    sleeper = Process(start('while True: time.sleep(0.05)').pid)
-    wait_for(lambda: not awake([sleeper]))
-    sleeper.note()
-    sleeper.mark()
-    wait_for(sleeper.woke_by_itself)
-    reader = start('while sys.stdin.read(1): pass')
-    process = Process(reader.pid)
-
-    def wake():
-        before = process.cpu_time()
-        reader.stdin.write(b'x')
-        reader.stdin.flush()
-        wait_for(lambda: process.cpu_time() != before and not awake([process]))
+def test_how_often_threads_have_run(start):
+    child = start('for line in sys.stdin: print("read", flush=True)')
+    process = Process(child.pid)
+    assert process.has_new_threads() and not process.has_new_threads()
     wait_for(lambda: not awake([process]))
-    assert process.woke_by_itself()     # its earlier activity is unknown
-    process.note()
-    process.mark()
-    wake()
-    assert not process.woke_by_itself()
-    # it has run, for any reason, between note() and mark(), although it was looked at in between
-    process.note()
-    wake()
-    process.polling()
-    process.mark()
-    assert process.woke_by_itself()
+    (thread, _), = before = process.runs()
+    assert runs_since(before) == [(thread, 0)]
+    child.stdin.write(b'\n')
+    child.stdin.flush()
+    child.stdout.readline()
+    assert runs_since(before)[0][1] > 0
+    process.close()
+    assert runs_since(before) == []
+
+
+def test_a_thread_that_waits_for_another_one(start):
+    process = Process(start('threading.Thread(target=sys.stdin.read).start()\nthreading.Event().wait()').pid)
+    wait_for(lambda: not awake([process]) and len(process.threads) == 2)
+    assert sorted(thread.waits_for_thread() for thread in process.threads.values()) == [False, True]
+
+
+def test_a_main_thread_on_wall_time(start):
+    code = 'threading.Thread(target=time.sleep, args=[1000]).start()\n'
+    for rest, expected in ('time.sleep(1000)', True), ('sys.stdin.read()', False):
+        process = Process(start(code + rest).pid)
+        wait_for(lambda: not awake([process]) and len(process.threads) == 2)
+        assert process.main_sleeps_briefly() == expected
+
+
+def test_a_thread_that_was_found_to_poll(start):
+    """As ros::Timer does: it waits for a condition for a millisecond, again and again."""
+    process = Process(start('condition = threading.Condition()\nwith condition:\n'
+                            '    while True: condition.wait(0.001)').pid)
+    wait_for(lambda: not awake([process]))
+    assert not process.polling()
+    thread, = process.threads.values()
+    thread.is_poller = True
+    thread.look()
+    wait_for(lambda: not still_polling(wait_for(process.polling)) or not thread.is_poller)
+    thread.is_poller, thread.changed = True, -1000.0
+    thread.look = lambda: thread.ran        # as if it had not run for long
+    assert not thread.polls() and not thread.is_poller
 
 
 def test_the_process_at_the_other_end(start):

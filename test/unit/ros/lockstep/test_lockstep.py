@@ -1,0 +1,380 @@
+"""The clock stays in step with the nodes that drive by it, and names those that do not."""
+import socket
+import threading
+import time
+from types import SimpleNamespace
+
+from geometry_msgs.msg import Twist
+import pytest
+from rosgraph_msgs.msg import Clock
+from rospy.impl.tcpros_pubsub import QueuedConnection
+from rospy.topics import Publisher      # noqa: F401, loads the parts of rospy in the right order
+
+from rbx1_nav.ros.lockstep import lockstep
+from rbx1_nav.ros.lockstep.lockstep import Lockstep, write
+
+MOVE, FASTER, STOP = (SimpleNamespace(linear=speed, angular=0.0) for speed in (0.2, 0.3, 0.0))
+TURN = SimpleNamespace(linear=0.0, angular=1.0)
+UNPROMPTED = 'sends commands that no tick of /clock has prompted'
+
+
+class Connection:
+    """A connection to a subscriber, which runs a function when it receives a message."""
+
+    _queue = ()
+
+    def __init__(self, name, on_message):
+        self.endpoint_id = name
+        self.on_message = on_message
+
+    def write_data(self, _):
+        self.on_message()
+
+
+class Processes:
+    """The drivers a, b and the source s; they sleep as soon as `work` is empty."""
+
+    def __init__(self):
+        self.drivers = {'a', 'b'}
+        self.work = []          # functions, one called at each look; while there are any, a node is awake
+        self.never_sleeps = None
+        self.looks = 0
+        self.obstacles = {}
+        self.new_source = False
+        self.new_threads = False
+        self.poll = []          # functions, one called at each call of still_polling()
+        self.sending = 2        # threads
+        self.tests = 0
+
+    def update(self):
+        return False
+
+    def awake(self):
+        self.looks += 1
+        if self.work:
+            self.work.pop(0)()
+            return 'a'
+        return self.never_sleeps
+
+    def polling(self):
+        return list(self.poll)
+
+    def still_polling(self, _):
+        if self.poll:
+            self.poll.pop()()
+        return bool(self.poll)
+
+    def have_new_threads(self):
+        return self.new_threads
+
+    def runs(self, _=''):
+        return []
+
+    def find_pollers(self, _):
+        self.tests += 1
+        return self.tests < 2
+
+    def senders(self, _):
+        return self.sending
+
+    def forget(self, name):
+        self.drivers.discard(name)
+        if self.never_sleeps == name:
+            self.never_sleeps = None
+        return name != 'starting'
+
+    def is_connected(self, _):
+        return True
+
+    def obstacle(self, name):
+        return self.obstacles.get(name)
+
+    def find_sources(self):
+        return self.new_source
+
+    def groups(self, connections):
+        watched = [[each] for each in connections if each.endpoint_id != 'recorder']
+        return [([each for each in connections if each.endpoint_id == 'recorder'], False)] + [
+            (group, True) for group in watched]
+
+
+class World:
+    """A Lockstep; `applied` has the commands with the ticks at which they took effect."""
+
+    def __init__(self, monkeypatch, report=None):
+        self.applied, self.reports, self.sleeps = [], [], []
+        self.processes = Processes()
+        self.headers = {name: {'callerid': name} for name in 'ab'}
+        self.lockstep = Lockstep(self.processes, report or (lambda *each: self.reports.append(each)), lambda: False)
+        self.now = 100.0
+        self.target = SimpleNamespace(apply=lambda command: self.applied.append((self.lockstep.tick, command)))
+        monkeypatch.setattr(lockstep, 'monotonic', lambda: self.now)
+        monkeypatch.setattr(lockstep, 'sleep', self.sleep)
+        monkeypatch.setattr(self.lockstep.random, 'random', lambda: 1.0)
+
+    def sleep(self, seconds):
+        self.sleeps.append(seconds)
+        self.now += seconds
+
+    def send(self, name, command):
+        self.lockstep.receive(self.target, self.headers[name], command)
+
+    def apply(self):
+        for target, command in self.lockstep.take():
+            target.apply(command)
+
+    def deliver(self, *connections, message=Clock()):
+        self.lockstep.deliver(SimpleNamespace(impl=SimpleNamespace(connections=connections, seq=0)), message)
+
+    def tick(self, *commands, listen=0.001):
+        """Make a tick that is answered with these commands, each (name, command); listen: s."""
+        self.lockstep.begin()
+        self.apply()
+        self.deliver(Connection('a', lambda: self.processes.work.extend(
+            [lambda each=each: self.send(*each) for each in commands])))
+        self.apply()
+        self.lockstep.listen(self.now + listen)
+
+    def drive(self, count, listen=0.001):
+        """Let a driver send MOVE at so many ticks."""
+        for _ in range(count):
+            self.tick(('a', MOVE), listen=listen)
+
+
+@pytest.fixture(name='world')
+def make_world(monkeypatch):
+    monkeypatch.setattr(lockstep, 'write', lambda connection, data: connection.write_data(data))
+    monkeypatch.setattr(lockstep, 'ANSWER_TIME', 0)
+    return World(monkeypatch)
+
+
+def test_a_command_takes_effect_at_the_tick_that_it_answers(world):
+    for period in (1, 2, 3, 5):
+        begin = world.lockstep.tick + 1
+        for tick in range(40):
+            world.tick(*[('a', MOVE)] * (tick % period == 0))
+        world.tick(('a', STOP))
+        assert world.applied == [(begin + tick, MOVE) for tick in range(0, 40, period)] + [(begin + 40, STOP)]
+        world.applied.clear()
+    assert not world.reports
+
+
+def test_the_order_of_a_tick(world):
+    """Topic by topic, and source by source; commands in the order of the names."""
+    events = []
+
+    def node(name, *commands):
+        def work():
+            events.append(f'{name} works')
+            for command in commands:
+                world.send(*command)
+
+        def on_message():
+            events.append(f'{name} receives')
+            world.processes.work.append(work)
+        return Connection(name, on_message)
+    recorder = Connection('recorder', lambda: events.append('recorder receives'))
+    world.lockstep.begin()
+    world.deliver(node('s'), node('a', ('b', FASTER), ('a', MOVE)), recorder, message=Twist())
+    world.deliver(node('a', ('a', STOP)))
+    world.apply()
+    assert events == ['recorder receives', 's receives', 's works', 'a receives', 'a works', 'a receives', 'a works']
+    assert world.applied == [(1, MOVE), (1, FASTER), (1, STOP)]
+
+
+def test_a_command_between_two_ticks_belongs_to_the_tick_before(world):
+    world.tick()
+    world.send('a', MOVE)
+    world.lockstep.begin()
+    assert [command for _, command in world.lockstep.take()] == [MOVE]
+    # also if it comes while the tick begins
+    world.processes.work = [lambda: world.send('a', STOP)]
+    world.lockstep.begin()
+    assert [command for _, command in world.lockstep.take()] == [STOP]
+
+
+def test_a_tick_begins_without_a_look_if_all_drivers_wait_for_it(world):
+    world.processes.drivers = {'a'}
+    world.tick(('a', MOVE))
+    world.processes.looks = 0
+    world.lockstep.begin()
+    assert not world.processes.looks
+    world.processes.drivers = {'a', 'b'}
+    world.lockstep.begin()
+    assert world.processes.looks
+
+
+def test_a_thread_that_polls_the_time_is_waited_for(world):
+    world.lockstep.begin()
+    world.processes.poll = [lambda: world.processes.work.append(lambda: world.send('b', MOVE))]
+    world.deliver(Connection('a', lambda: None), message=Twist())
+    assert world.processes.poll         # not for other messages
+    world.deliver(Connection('a', lambda: None))
+    world.apply()
+    assert world.applied == [(1, MOVE)]
+
+
+def test_a_node_that_never_sleeps_is_given_up(world):
+    world.tick(('a', MOVE))
+    world.processes.never_sleeps = 'a'
+    world.tick(('a', FASTER))
+    assert world.reports == [('a', 'did not become idle within 5 s')]
+    assert world.applied == [(1, MOVE), (2, FASTER)]
+    # no word about a node that only takes long to start
+    world.processes.never_sleeps = 'starting'
+    world.tick()
+    assert len(world.reports) == 1
+
+
+def test_nobody_is_waited_for_at_the_end(world):
+    world.processes.never_sleeps = 'a'
+    world.lockstep.ended = lambda: True
+    world.tick(('a', MOVE))
+    world.tick()
+    assert world.lockstep.tick == 2 and not world.reports and not world.sleeps
+
+
+def test_the_clock_is_held_at_the_start_of_a_motion_and_now_and_then(world, monkeypatch):
+    def holds():
+        """The number of sleeps of HOLD times the 10 ms between the first two commands, and a few looks."""
+        return sum(abs(seconds - lockstep.HOLD * 0.01) < 0.001 for seconds in world.sleeps)
+    world.drive(1, listen=0.01)
+    assert not holds()
+    world.drive(11, listen=0.01)
+    assert holds() == lockstep.HOLDS
+    monkeypatch.setattr(world.lockstep.random, 'random', lambda: 0.0)
+    world.drive(1, listen=0.01)
+    assert holds() == lockstep.HOLDS + 1
+    world.tick(('a', STOP))
+    world.tick()
+    assert holds() == lockstep.HOLDS + 1
+
+
+def test_a_driver_that_sends_while_the_clock_is_held_is_named(world):
+    world.drive(2)
+    world.send('a', MOVE)
+    world.tick()
+    assert world.reports == [('a', UNPROMPTED)]
+    for _ in range(3):      # once
+        world.send('a', TURN)
+        world.tick()
+    assert len(world.reports) == 1 and len(world.applied) == 6
+
+
+def test_the_first_motion_and_every_stop_need_no_tick(world):
+    world.tick()
+    world.send('a', STOP)
+    world.tick()
+    world.send('a', MOVE)
+    world.drive(1)
+    world.send('a', STOP)
+    world.tick()
+    assert not world.reports
+    world.send('a', MOVE)       # a key, perhaps
+    world.tick()
+    assert world.reports == [('a', UNPROMPTED)]
+
+
+def test_a_driver_whose_commands_come_from_a_new_source_is_not_named(world):
+    world.drive(2)
+    world.processes.new_source = True
+    world.send('a', MOVE)
+    world.tick()
+    assert not world.reports
+
+
+def test_one_driver_that_is_named_does_not_affect_another(world):
+    world.tick(('a', MOVE), ('b', MOVE))
+    world.send('a', MOVE)
+    world.tick(('b', FASTER))
+    world.tick(('b', MOVE))
+    assert [name for name, _ in world.reports] == ['a'] and world.applied[-1] == (3, MOVE)
+
+
+def test_a_driver_that_cannot_be_in_step_is_named_if_it_drives(world):
+    world.processes.obstacles = {'a': 'does not subscribe to /clock'}
+    world.tick(('a', STOP), ('a', MOVE))
+    assert not world.reports
+    world.drive(1)
+    assert world.reports == [('a', 'does not subscribe to /clock')]
+
+
+@pytest.mark.parametrize('commands, sending, named', [((MOVE, FASTER), 3, True), ((MOVE, FASTER), 2, False),
+                                                      ((MOVE, MOVE), 3, False), ((MOVE,), 3, False)])
+def test_two_threads_that_send_different_commands_at_once_are_named(world, commands, sending, named):
+    world.processes.sending = sending
+    world.tick(*[('a', command) for command in commands])
+    assert not world.reports        # only from now on, the threads are counted
+    world.tick(*[('a', command) for command in commands])
+    assert [text for _, text in world.reports] == ['sends different commands in one tick, from several threads'] * named
+    assert world.applied == [(tick, command) for tick in (1, 2) for command in commands]
+
+
+def test_new_threads_are_tested(world):
+    world.tick()
+    assert not world.processes.tests
+    world.processes.new_threads = True
+    world.tick()
+    assert world.processes.tests == 2       # as long as a result is uncertain
+
+
+def test_a_report_that_raises_ends_the_tick(monkeypatch, world):
+    def strict(name, reason):
+        raise RuntimeError(name + reason)
+    world.lockstep.report = strict
+    world.drive(2)
+    world.send('a', MOVE)
+    with pytest.raises(RuntimeError):
+        world.tick()
+
+
+@pytest.fixture(name='connection')
+def make_connection():
+    """A connection of rospy with a thread. connection.sent: pairs of data and whether the test's own thread sent it."""
+    ours, theirs = socket.socketpair()
+    ours.setblocking(False)
+    raw = SimpleNamespace(done=False, socket=ours, sent=[], theirs=theirs, set_cleanup_callback=lambda _: None)
+    raw.write_data = lambda data: raw.sent.append((data, threading.current_thread() is threading.main_thread()))
+    connection = QueuedConnection(raw, 10)
+    wait_for(lambda: connection._cond_data_available._waiters)
+    yield connection
+    raw.done = True
+    connection._closed_connection_callback(raw)
+    connection._thread.join()
+    ours.close()
+    theirs.close()
+
+
+def wait_for(condition):
+    end = time.monotonic() + 60
+    while not condition():
+        assert time.monotonic() < end, 'timed out'
+
+
+def test_a_message_is_sent_without_another_thread(connection):
+    write(connection, b'one')
+    assert connection.sent == [(b'one', True)]
+
+
+def test_a_message_to_a_receiver_that_does_not_read_is_queued(connection):
+    with pytest.raises(BlockingIOError):
+        while True:
+            connection.socket.send(bytes(1000))
+    write(connection, b'one')
+    wait_for(lambda: connection.sent)
+    assert connection.sent == [(b'one', False)]
+
+
+def test_messages_do_not_overtake_each_other(connection):
+    with connection._lock:
+        connection._queue.append(b'one')
+        connection._cond_data_available.notify()
+    write(connection, b'two')
+    wait_for(lambda: len(connection.sent) == 2)
+    assert connection.sent == [(b'one', False), (b'two', False)]
+
+
+def test_a_broken_connection_is_closed():
+    closed = []
+    write(SimpleNamespace(close=lambda: closed.append(True)), b'')
+    assert closed

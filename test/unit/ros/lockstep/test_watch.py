@@ -1,0 +1,231 @@
+"""Watch finds the nodes that drive directly or through others, and those that are starting, and watches them."""
+import socket
+import subprocess
+import time
+from types import SimpleNamespace
+
+import pytest
+
+from rbx1_nav.ros.lockstep import watch
+from rbx1_nav.ros.lockstep.watch import Watch, sources_of
+
+PUBLISHERS = [['/cmd_vel', ['/mux']], ['/cmd_vel_raw', ['/driver', '/teleop']], ['/odom', ['/base']],
+              ['/goal', ['/rviz']]]
+SUBSCRIBERS = [['/cmd_vel', ['/base']], ['/cmd_vel_raw', ['/mux']], ['/odom', ['/driver', '/rviz']]]
+
+
+def test_sources_of_commands():
+    assert sources_of(['/cmd_vel'], PUBLISHERS, SUBSCRIBERS) == ['/mux', '/driver', '/teleop', '/base']
+    assert sources_of(['/goal'], PUBLISHERS, SUBSCRIBERS) == ['/rviz', '/base', '/mux', '/driver', '/teleop']
+    assert sources_of(['/nothing'], PUBLISHERS, SUBSCRIBERS) == []
+    assert sources_of(['/cmd_vel', '/goal'], PUBLISHERS, SUBSCRIBERS)[:2] == ['/mux', '/rviz']
+
+
+def test_who_only_listens_is_no_source():
+    assert sources_of(['/cmd_vel'], [['/cmd_vel', ['/driver']], ['/odom', ['/base']]],
+                      [['/cmd_vel', ['/base', '/recorder']], ['/odom', ['/recorder']]]) == ['/driver']
+
+
+def test_a_loop_of_nodes():
+    assert sources_of(['/a'], [['/a', ['/x']], ['/b', ['/y']]], [['/a', ['/y']], ['/b', ['/x']]]) == ['/x', '/y']
+    assert sources_of(['/a'], [['/a', ['/x']]], [['/a', ['/x']]]) == ['/x']
+
+
+def wait_for(condition):
+    end = time.monotonic() + 60
+    while not condition():
+        assert time.monotonic() < end, 'timed out'
+        time.sleep(0.002)
+
+
+class World:
+    """A Watch without a master; child processes act as nodes."""
+
+    def __init__(self):
+        self.server = socket.socket()
+        self.server.bind(('127.0.0.1', 0))
+        self.server.listen()
+        self.children = []
+        self.clock = SimpleNamespace(connections=[])
+        self.commands = SimpleNamespace(connections=[], resolved_name='/cmd_vel')
+        self.watch = Watch(SimpleNamespace(impl=self.clock))
+        self.watch.add(SimpleNamespace(impl=self.commands))
+
+    def connect(self, name, code='sys.stdin.read()'):
+        """Return a connection to a node with this name that runs Python code."""
+        code = 'import socket, sys, time; s = socket.create_connection(("127.0.0.1", %d))\n%s' % (
+            self.server.getsockname()[1], code)
+        self.children.append(subprocess.Popen(['/usr/bin/python3', '-c', code], stdin=subprocess.PIPE))
+        return SimpleNamespace(header={'callerid': name}, endpoint_id=name, socket=self.server.accept()[0])
+
+    def drive(self, *connections):
+        """Set the connections to the publishers of commands."""
+        self.commands.connections = list(connections)
+        self.watch.update()
+
+    def listen(self, *connections):
+        """Set the connections to the subscribers of /clock."""
+        self.clock.connections = list(connections)
+        self.watch.update()
+
+    def settle(self):
+        """Wait until all nodes are asleep."""
+        wait_for(lambda: not self.watch.awake())
+
+
+@pytest.fixture(name='world')
+def make_world(monkeypatch):
+    monkeypatch.setenv('ROS_MASTER_URI', 'http://127.0.0.1:1')      # nothing listens there
+    # the process of pytest itself may have no other thread
+    monkeypatch.setattr(watch, 'own_process', lambda: SimpleNamespace(cpu_time=lambda: 0, sleeps=lambda: True))
+    world = World()
+    yield world
+    for process in world.watch.processes.values():
+        process.close()
+    for child in world.children:
+        child.kill()
+        child.communicate()
+    world.server.close()
+
+
+def test_a_driver_is_watched_while_it_is_connected(world):
+    assert world.watch.awake() is None
+    world.drive(world.connect('/driver'))
+    assert world.watch.drivers == {'/driver'}
+    world.settle()
+    world.drive(*world.commands.connections, world.connect('/computing', 'while True: pass'))
+    wait_for(lambda: world.watch.awake() == '/computing')
+    world.drive()
+    assert not world.watch.drivers and not world.watch.processes and world.watch.awake() is None
+
+
+def test_a_connection_that_its_publisher_refuses_is_no_driver(world, monkeypatch):
+    # rospy keeps only the error until it closes the connection
+    refused = type('Connection', (), dict(vars(world.connect('/driver')), header={'error': 'is not a publisher'}))()
+    world.drive(refused)
+    assert not world.watch.drivers
+    assert world.watch.awake() == '/cmd_vel'        # the node may try again
+    monkeypatch.setattr(watch, 'CONNECT_TIME', 0)
+    assert world.watch.awake() is None
+
+
+def test_what_keeps_a_node_from_being_in_step(world, monkeypatch):
+    driver = world.connect('/driver')
+    world.drive(driver)
+    assert world.watch.obstacle('/driver') == 'does not subscribe to /clock'
+    world.listen(driver)
+    assert world.watch.obstacle('/driver') is None
+    monkeypatch.setattr(watch, 'peer_process', lambda _: None)
+    world.drive(world.connect('/other'))
+    world.listen(*world.commands.connections)
+    assert not world.watch.drivers and 'is not visible' in world.watch.obstacle('/other')
+
+
+def test_the_order_of_subscribers(world, monkeypatch):
+    """Nodes that are not watched; sources, the farthest first; drivers."""
+    monkeypatch.setattr(watch, 'call', lambda *_: (PUBLISHERS, SUBSCRIBERS, []))
+    connections = [world.connect(name) for name in ('/recorder', '/mux', '/driver', '/teleop')]
+    recorder, mux, driver, teleop = connections
+    world.listen(*connections)
+    world.settle()
+    world.drive(mux)
+    assert world.watch.sources == ['/base', '/teleop', '/driver', '/mux']
+    assert set(world.watch.processes) == {'/mux', '/driver', '/teleop'} and world.watch.drivers == {'/mux'}
+    assert world.watch.groups(connections) == [([recorder], False), ([teleop], True), ([driver], True), ([mux], True)]
+    assert world.watch.groups([recorder]) == [([recorder], False)]
+
+
+def test_new_sources(world, monkeypatch):
+    world.drive(world.connect('/mux'))
+    assert not world.watch.find_sources()       # a master that does not answer excuses nobody
+    monkeypatch.setattr(watch, 'call', lambda *_: (PUBLISHERS, SUBSCRIBERS, []))
+    assert world.watch.find_sources() and not world.watch.find_sources()
+
+
+def test_a_node_that_starts_is_watched_until_it_waits(world):
+    node = world.connect('/node', 'sys.stdin.readline()\nwhile True: pass')
+    world.listen(node)
+    assert '/node' in world.watch.processes
+    world.settle()
+    world.watch.update()
+    assert not world.watch.starting
+    # it computes later
+    world.children[-1].stdin.write(b'\n')
+    world.children[-1].stdin.flush()
+    time.sleep(0.05)
+    assert world.watch.awake() is None
+
+
+def test_a_node_that_starts_may_sleep_by_the_wall_clock(world, monkeypatch):
+    world.listen(world.connect('/node', 'time.sleep(1000)'))
+    process = world.watch.processes['/node']
+    wait_for(process.main_sleeps_briefly)
+    for _ in range(10):
+        assert world.watch.awake() == '/node'
+    monkeypatch.setattr(watch, 'START_SLEEP', 0)
+    world.watch.starting = {'/node': None}      # as if it had begun now
+    world.settle()
+
+
+def test_a_publisher_that_has_registered_is_waited_for(world, monkeypatch):
+    monkeypatch.setattr(watch, 'call', lambda *_: ([['/cmd_vel', ['/node', '/old']]], [], []))
+    node = world.connect('/node')
+    world.listen(node)
+    wait_for(lambda: not world.watch.processes['/node'].main_sleeps_briefly())
+    for _ in range(10):
+        assert world.watch.awake() == '/node'
+    world.drive(node)
+    world.settle()
+    assert not world.watch.starting
+
+
+def test_a_publisher_that_never_connects_is_given_up(world, monkeypatch):
+    monkeypatch.setattr(watch, 'call', lambda *_: ([['/cmd_vel', ['/node']]], [], []))
+    monkeypatch.setattr(watch, 'CONNECT_TIME', 0)
+    world.listen(world.connect('/node'))
+    world.settle()
+
+
+def test_a_driver_that_is_forgotten_holds_the_clock_no_more(world):
+    """There is no update() in between: Lockstep forgets a node while it waits for it, and then looks again."""
+    world.drive(world.connect('/driver', 'while True: pass'))
+    wait_for(lambda: world.watch.awake() == '/driver')
+    assert world.watch.forget('/driver')
+    assert world.watch.awake() is None and not world.watch.drivers
+    # until it connects again
+    world.drive(world.connect('/driver'))
+    assert world.watch.drivers == {'/driver'}
+
+
+def test_a_node_that_only_starts_is_forgotten_without_a_word(world):
+    world.listen(world.connect('/node', 'while True: pass'))
+    wait_for(lambda: world.watch.awake() == '/node')
+    assert not world.watch.forget('/node')
+    assert world.watch.awake() is None
+
+
+def test_a_driver_that_has_been_started_again_is_watched(world):
+    world.drive(world.connect('/driver'))
+    world.drive(world.connect('/driver', 'while True: pass'))
+    assert world.watch.processes['/driver'].folder == '/proc/%d/task/' % world.children[1].pid
+
+
+def test_each_connection_has_its_own_header(world):
+    world.drive(world.connect('/driver'), world.connect('/driver'))
+    header = world.commands.connections[0].header
+    assert world.watch.is_connected(header)
+    world.drive(world.commands.connections[1])
+    assert not world.watch.is_connected(header)
+
+
+def test_threads_that_run_although_nothing_was_delivered(world):
+    world.drive(world.connect('/timer', 'import threading\nc = threading.Condition()\nwith c:\n'
+                                        '    while True: c.wait(0.001)'))
+    assert world.watch.have_new_threads() and not world.watch.have_new_threads()
+    world.settle()
+    runs = world.watch.runs()
+    assert world.watch.runs('/timer') and not world.watch.runs('/other')
+    (thread, count), = runs
+    wait_for(lambda: thread.runs() > count + 1)
+    assert not world.watch.find_pollers(runs) and thread.is_poller
+    assert world.watch.senders(runs) == 1
