@@ -26,9 +26,10 @@ NODE_TIMEOUT = 5.0      # s of wall time that a tick waits for a node
 ANSWER_TIME = 3e-4      # s of wall time in which a driver usually answers
 LOOK = 2e-5, 5e-3   # s of wall time between two checks of the processes: at least, at most
 LOOK_LATER = 0.05   # s between two checks per s of waiting so far: a node that is starting needs the processor itself
-HOLDS = 3           # ticks after the second command of a motion at which the clock is held
+INTERVALS = 2       # between the first commands of a motion, of which the shortest is the usual one
+HOLDS = 3           # ticks after these commands at which the clock is held
 HOLD_LATER = 1 / 64     # fraction of the later ticks at which the clock is held
-HOLD = 1.5          # duration of a hold, in intervals between the first two commands of the motion
+HOLD = 1.5          # duration of a hold, in intervals between two commands
 SENDERS = 2         # threads of a rospy node that run when one of them publishes: this one, and that of the connection
 TEST, TESTS = 0.005, 4  # s of wall time in which a thread that polls the time runs more than once; how often to try
 SLEEP = 0.05        # s: the longest sleep between two checks for a shutdown request
@@ -89,8 +90,8 @@ class Driver:
         self.motions = 0        # motions that have begun
         self.moving = False     # whether the last command was not a stop
         self.tick = 0           # of the last command
-        self.begin = 0.0        # s of the monotonic clock: the first command of the motion
-        self.interval: float | None = None      # s of wall time between the first two commands of the motion
+        self.time = 0.0         # s of the monotonic clock: of the last command
+        self.intervals: list[float] = []    # s of wall time between the first commands of the motion
         self.holds = 0          # ticks at which the clock will be held
 
 
@@ -174,12 +175,12 @@ class Lockstep:
 
     def _hold(self, driver: Driver) -> float:
         """Return for how long to hold the clock after this tick because of a driver, s of wall time."""
-        if not (driver.moving and driver.in_step and driver.interval):
+        if not (driver.moving and driver.in_step and len(driver.intervals) == INTERVALS):
             return 0.0
-        if not driver.holds:
-            return HOLD * driver.interval if self.random.random() < HOLD_LATER else 0.0
-        driver.holds -= 1
-        return HOLD * driver.interval
+        if not driver.holds and self.random.random() >= HOLD_LATER:
+            return 0.0
+        driver.holds = max(0, driver.holds - 1)
+        return HOLD * min(driver.intervals)
 
     def _has_arrived(self) -> bool:
         """Return whether a command of the tick before has arrived that is not ordered yet. If not, the next tick has
@@ -237,10 +238,10 @@ class Lockstep:
             return
         if first:
             driver.motions += 1
-            driver.begin, driver.interval = received.time, None
-        elif driver.interval is None and self.tick > driver.tick:
-            driver.interval, driver.holds = received.time - driver.begin, HOLDS
-        driver.tick = self.tick
+            driver.intervals, driver.holds = [], HOLDS
+        elif len(driver.intervals) < INTERVALS and self.tick > driver.tick:
+            driver.intervals.append(received.time - driver.time)
+        driver.tick, driver.time = self.tick, received.time
         if not driver.in_step or first and driver.motions == 1:
             return      # a node may wait by the wall clock before its first motion
         reason = self.processes.obstacle(driver.name)
