@@ -22,6 +22,7 @@ from rbx1_nav.ros.base.commands import VelocityCommands, subscribe_joints
 from rbx1_nav.ros.base.parameters import FAKE_BASE as PARAMETERS
 from rbx1_nav.ros.base.publisher import BasePublisher
 from rbx1_nav.ros.base.simulated_clock import read_clock
+from rbx1_nav.ros.network.no_delay import NoDelay
 from rbx1_nav.ros.node import life
 from rbx1_nav.ros.node.params import param, stored_params
 from rbx1_nav.schedule import Schedule
@@ -45,8 +46,8 @@ class FakeBase:
         self.joint_schedule = Schedule(10)
         self.diagnostics_schedule = Schedule(1)
 
-        self.publisher = BasePublisher(robot, clock.publish, self)
-        self.truth_pub = rospy.Publisher('ground_truth', Odometry, queue_size=10)
+        self.publisher = BasePublisher(robot, clock.publish, self.greet)
+        self.truth_pub = rospy.Publisher('ground_truth', Odometry, NoDelay(), queue_size=10)
         self.reset_pub = rospy.Publisher('reset_odometry', Empty, queue_size=1)
         self.diagnostics = Updater()
         self.diagnostics.setHardwareID('none')
@@ -86,9 +87,9 @@ class FakeBase:
         if self.diagnostics_schedule.due(now):
             self.diagnostics.force_update()
 
-    def peer_subscribe(self, topic, _, publish):
-        """Send the current state to a new subscriber of odom or tf, called by rospy: while a simulated clock waits for
-        a node that is starting, no other message follows."""
+    def greet(self, topic, publish):
+        """Send the current state to a new subscriber of odom or tf: while a simulated clock waits for a node that is
+        starting, no other message follows."""
         if not self.clock.inbox or not self.last_stamp:
             return
         with self.lock:
@@ -96,9 +97,6 @@ class FakeBase:
             pose, velocity, uncertainty = base.odometry.pose, base.velocity, base.wheels.uncertainty
         publish(self.publisher.transform(stamp, pose) if topic == '/tf' else
                 messages.odometry(stamp, self.robot, pose, velocity, uncertainty))
-
-    def peer_unsubscribe(self, *_):
-        """Do nothing; called by rospy."""
 
     def on_reset(self, _):
         """Put the robot back at the origin, at rest."""

@@ -15,6 +15,7 @@ from geometry_msgs.msg import PoseWithCovarianceStamped
 from nav_msgs.msg import Odometry
 
 from rbx1_nav.ros import messages
+from rbx1_nav.ros.network.no_delay import NoDelay
 from rbx1_nav.ros.node import life
 
 MESSAGE_WARN_TIME = 5    # s of wall time without a message before a warning
@@ -27,7 +28,7 @@ class OdomEkf:
         life.init_node('odom_ekf', __doc__)
         self.frames = None      # (frame_id, child_frame_id) of the wheel odometry
         self.last = None        # PoseWithCovarianceStamped
-        self.publisher = rospy.Publisher('/odom_ekf', Odometry, queue_size=10)
+        self.publisher = rospy.Publisher('/odom_ekf', Odometry, NoDelay(), queue_size=10)
         rospy.Subscriber('odom', Odometry, self.on_odom)
         rospy.Subscriber('odom_combined', PoseWithCovarianceStamped, self.on_pose)
 

@@ -31,15 +31,14 @@ LOOK = 60       # s between two checks for jobs that hang
 SETS = {
     'set_tools': ['impossible_plot', 'interrupted_start', 'launch_arguments', 'simulate_command', 'usage'],
     'set_base': ['base_timeout', 'ideal_sensors', 'reset', 'message_counts', 'final_pose'],
-    'set_in_step': ['in_step_at_5', 'in_step_at_10', 'in_step_at_20', 'in_step_at_25', 'in_step_at_30',
-                    'in_step_at_40'],
     'set_calibration': ['angular_calibration', 'linear_calibration'],
     'set_fake_create': ['fake_create_baud_rate', 'fake_create_cable', 'fake_create_faults', 'fake_create_line',
                         'fake_create_parameters', 'fake_create_truth', 'independent_client'],
     'set_create': ['create_cable', 'create_corruption', 'create_drives', 'create_gyro', 'create_port', 'create_rate'],
     'set_create_fails': ['create_killed', 'create_refuses', 'create_safety', 'create_silence']}
 # the longest first, so that none of them is still running when the others have finished
-LONGEST = ['documents', 'calibration_without_gyro', *SETS, 'unit-1', 'unit-2', 'unit-3', 'unit-4', 'browser_page']
+LONGEST = ['documents', 'in_step', 'calibration_without_gyro', *SETS, 'unit-1', 'unit-2', 'unit-3', 'unit-4',
+           'browser_page']
 
 
 def run_rostest(results, name, path):

@@ -1,8 +1,9 @@
 #!/usr/bin/python3
 """With drivers on simulated time, the robot stops exactly where their sleeps lead on an ideal clock, to a micrometer.
 
-    in_step.py RATE STEP     Hz; step of the clock, s
+    in_step.py STEP RATE...     step of the clock, s; Hz
 """
+from math import cos, pi, sin
 import os
 import sys
 import unittest
@@ -37,6 +38,11 @@ class Ideal:
         ticks = [self.tick((number + first) * period) for number in range(count + 1)]
         return [tick - ticks[0] for tick in ticks]
 
+    def exercise(self, rate):
+        """Return the x and y (m) at which timed_out_and_back.py stops."""
+        length, angle = (self.ticks('rate', rate, int(seconds * rate))[-1] * self.step / SECOND for seconds in (5, pi))
+        return SPEED * length * (1 + cos(angle)), SPEED * length * sin(angle)
+
     def distance(self, *drivers):
         """Return the distance that the robot travels, m. drivers: (speed, ticks) by name order, on the same first
         tick."""
@@ -54,9 +60,7 @@ class TestInStep(unittest.TestCase):
     def setUpClass(cls):
         support.init_node('in_step')
         rospy.wait_for_service('/arbotix/reset')
-        cls.rate, step = (float(arg) for arg in sys.argv[1:3])
-        cls.count = round(cls.rate)     # number of commands in a second
-        cls.ideal = Ideal(round(step * SECOND))
+        cls.ideal = Ideal(round(float(sys.argv[1]) * SECOND))
 
     def start(self, *command):
         """Start a driver, a Process that is killed after the test. Like other drivers, it has the threads of OpenBLAS,
@@ -73,36 +77,46 @@ class TestInStep(unittest.TestCase):
         x = rospy.wait_for_message('/odom', Odometry).pose.pose.position.x
         self.assertAlmostEqual(x, expected, delta=support.MICROMETRE)
 
-    def check_kind(self, kind, *command):
-        """Check one driver of this kind, starting at the origin."""
+    def check_kind(self, kind, rate, *command):
+        """Check one driver of this kind, which drives for a second, starting at the origin."""
         rospy.ServiceProxy('/arbotix/reset', Empty)()
-        driver = self.start(*command)
-        self.check(self.ideal.distance((SPEED, self.ideal.ticks(kind, self.rate, self.count))), driver)
+        driver = self.start(*command, rate, rate)
+        self.check(self.ideal.distance((SPEED, self.ideal.ticks(kind, rate, rate))), driver)
 
-    def test_rate(self):
-        self.check_kind('rate', DRIVER, 'rate', self.rate, self.count)
+    def check_rate(self, rate):
+        self.check_kind('rate', rate, DRIVER, 'rate')
 
-    def test_sleep(self):
-        self.check_kind('sleep', DRIVER, 'sleep', self.rate, self.count)
+    def check_sleep(self, rate):
+        self.check_kind('sleep', rate, DRIVER, 'sleep')
 
-    def test_timer(self):
-        self.check_kind('timer', DRIVER, 'timer', self.rate, self.count)
+    def check_timer(self, rate):
+        self.check_kind('timer', rate, DRIVER, 'timer')
 
-    def test_roscpp(self):
+    def check_roscpp(self, rate):
         folder = os.path.join(os.environ['CMAKE_PREFIX_PATH'].split(':')[0], 'lib', 'rbx1_nav')
-        self.check_kind('rate', os.path.join(folder, 'driver_at_rate'), self.rate, self.count)
+        self.check_kind('rate', rate, os.path.join(folder, 'driver_at_rate'))
 
-    def test_beside_an_idle_driver(self):
+    def check_script(self, rate):
+        """The package's own script."""
+        rospy.ServiceProxy('/arbotix/reset', Empty)()
+        driver = support.out_and_back(f'_rate:={rate}')
+        self.addCleanup(driver.kill)
+        self.assertEqual(driver.wait(), 0, driver.output)
+        x, y, _ = support.pose(rospy.wait_for_message('/odom', Odometry))
+        for value, ideal in zip((x, y), self.ideal.exercise(rate)):
+            self.assertAlmostEqual(value, ideal, delta=support.MICROMETRE)
+
+    def check_beside_an_idle_driver(self, rate):
         idle = self.start('/usr/bin/python3', '-c', 'import rospy; from geometry_msgs.msg import Twist; '
                           'rospy.init_node("teleop"); p = rospy.Publisher("/cmd_vel", Twist, queue_size=1); '
                           'input("waits for a key\\n")')
         idle.wait_for_line('waits for a key')
-        self.test_rate()
+        self.check_rate(rate)
 
-    def test_two_drivers(self):
+    def check_two_drivers(self, rate):
         rospy.ServiceProxy('/arbotix/reset', Empty)()
-        drivers = [self.start(DRIVER, 'rate', rate, round(rate), speed, f'__name:={name}')
-                   for name, rate, speed in (('a', 20, SPEED), ('b', self.rate, SPEED / 4))]
+        drivers = [self.start(DRIVER, 'rate', each, each, speed, f'__name:={name}')
+                   for name, each, speed in (('a', 20, SPEED), ('b', rate, SPEED / 4))]
         for driver in drivers:
             driver.wait_for_line('ready')
         now = rospy.wait_for_message('/odom', Odometry).header.stamp.to_sec()
@@ -110,8 +124,12 @@ class TestInStep(unittest.TestCase):
             # whole seconds are ticks; at this speed of simulated time, both drivers have read it by then
             driver.type(str(round(now) + 1 + 2 * rospy.get_param('/arbotix/real_time_factor')))
         self.check(self.ideal.distance((SPEED, self.ideal.ticks('rate', 20, 20)),
-                                       (SPEED / 4, self.ideal.ticks('rate', self.rate, self.count))), *drivers)
+                                       (SPEED / 4, self.ideal.ticks('rate', rate, rate))), *drivers)
 
 
 if __name__ == '__main__':
+    for number in [int(arg) for arg in sys.argv[2:] if arg.isdigit()]:
+        for kind in 'rate', 'sleep', 'timer', 'roscpp', 'script', 'beside_an_idle_driver', 'two_drivers':
+            setattr(TestInStep, f'test_{kind}_{number}',
+                    lambda self, check=f'check_{kind}', rate=number: getattr(self, check)(rate))
     support.main('in_step', TestInStep)

@@ -13,6 +13,7 @@ from rbx1_nav.robot.description import Robot
 from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.robot.readings import Reading, Uncertainty
 from rbx1_nav.ros import messages
+from rbx1_nav.ros.network.no_delay import NoDelay
 
 
 class BasePublisher:
@@ -21,15 +22,15 @@ class BasePublisher:
 
     # Any: rospy has no types
     def __init__(self, robot: Robot, publish: Callable[[rospy.Publisher, Any], None] = rospy.Publisher.publish,
-                 listener: rospy.SubscribeListener | None = None) -> None:
-        """publish(publisher, message): publishes a message; listener: is informed of new subscribers of odom and tf."""
+                 greet: Callable[[str, Callable[[Any], None]], None] | None = None) -> None:
+        """publish(publisher, message): publishes a message; greet: of new subscribers of odom and tf, see NoDelay."""
         self.robot = robot
         self.publish = publish
         # simulated time may produce many messages at once
-        self.odom = rospy.Publisher('odom', Odometry, listener, queue_size=100, tcp_nodelay=True)
-        self.imu = rospy.Publisher('imu/data', Imu, queue_size=100, tcp_nodelay=True)
+        self.odom = rospy.Publisher('odom', Odometry, NoDelay(greet), queue_size=100)
+        self.imu = rospy.Publisher('imu/data', Imu, NoDelay(), queue_size=100)
         # the broadcaster of tf2_ros does only this, and needs 5 MB more
-        self.tf = rospy.Publisher('/tf', TFMessage, listener, queue_size=100, tcp_nodelay=True)
+        self.tf = rospy.Publisher('/tf', TFMessage, NoDelay(greet), queue_size=100)
         self.joint_states = rospy.Publisher('joint_states', JointState, queue_size=10)
 
     def publish_odometry(self, stamp: rospy.Time, pose: Pose, velocity: tuple[float, float], uncertainty: Uncertainty,

@@ -13,6 +13,7 @@ from rbx1_nav.config import ConfigError
 from rbx1_nav.ros.base.clocks import Clock, FollowedClock, RealTimeClock
 from rbx1_nav.ros.lockstep.lockstep import Lockstep
 from rbx1_nav.ros.lockstep.watch import Watch
+from rbx1_nav.ros.network.no_delay import NoDelay
 from rbx1_nav.ros.node import life
 from rbx1_nav.ros.node.params import param
 from rbx1_nav.units import SECOND
@@ -48,17 +49,14 @@ class OwnClock(FollowedClock):
         self.strict = strict
         # rospy subscribes each node to /clock. This node sets the time, and receiving it would take a sixth of a tick.
         simtime._clock_sub.unregister()
-        self.publisher = rospy.Publisher('/clock', ClockMessage, self, tcp_nodelay=True, queue_size=10)
+        self.publisher = rospy.Publisher('/clock', ClockMessage, NoDelay(self.greet), queue_size=10)
         self.inbox: Lockstep = Lockstep(Watch(self.publisher), self.report, life.end_requested.is_set)
         self.not_in_step: dict[str, str] = {}   # reasons, by the name of the node
 
-    def peer_subscribe(self, _: str, __: Any, publish: Callable[[ClockMessage], None]) -> None:
-        """Send the time to a new subscriber, called by rospy: otherwise, other messages may arrive before the time."""
+    def greet(self, _: str, publish: Callable[[ClockMessage], None]) -> None:
+        """Send the time to a new subscriber: otherwise, other messages may arrive before the time."""
         if self.time:
             publish(ClockMessage(self.stamp(self.time)))
-
-    def peer_unsubscribe(self, *_: Any) -> None:
-        """Do nothing; called by rospy."""
 
     def publish(self, publisher: rospy.Publisher, message: Any) -> None:    # see Clock
         self.inbox.deliver(publisher, message)

@@ -16,6 +16,7 @@ from rbx1_nav.ros import messages
 from rbx1_nav.ros.filter.estimated_twist import EstimatedTwist, estimate_twist
 from rbx1_nav.ros.filter.frame_tree import FrameTree
 from rbx1_nav.ros.filter.parameters import FilterParameters
+from rbx1_nav.ros.network.no_delay import NoDelay
 from rbx1_nav.schedule import Schedule
 from rbx1_nav.units import SECOND
 
@@ -54,9 +55,9 @@ class EstimatePublisher:
         self.tree = tree
         self.log = log
         self.schedule = Schedule(parameters.freq)
-        self.pose_pub = rospy.Publisher('~odom_combined', PoseWithCovarianceStamped, queue_size=10)
-        self.odometry_pub = rospy.Publisher('~odometry', Odometry, queue_size=10)
-        self.tf_pub = rospy.Publisher('/tf', TFMessage, queue_size=100, tcp_nodelay=True)
+        self.pose_pub = rospy.Publisher('~odom_combined', PoseWithCovarianceStamped, NoDelay(), queue_size=10)
+        self.odometry_pub = rospy.Publisher('~odometry', Odometry, NoDelay(), queue_size=10)
+        self.tf_pub = rospy.Publisher('/tf', TFMessage, NoDelay(), queue_size=100)
         self.frames = '', ''        # frames of the odometry and of the robot; '': not known yet
         self.published = 0          # number of poses
         self.last: Estimate | None = None       # the latest Estimate

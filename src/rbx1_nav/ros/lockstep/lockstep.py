@@ -175,7 +175,7 @@ class Lockstep:
 
     def _hold(self, driver: Driver) -> float:
         """Return for how long to hold the clock after this tick because of a driver, s of wall time."""
-        if not (driver.moving and driver.in_step and len(driver.intervals) == INTERVALS):
+        if not (driver.moving and driver.name in self.processes.drivers and len(driver.intervals) == INTERVALS):
             return 0.0
         if not driver.holds and self.random.random() >= HOLD_LATER:
             return 0.0

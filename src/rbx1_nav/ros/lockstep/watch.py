@@ -9,9 +9,9 @@ from urllib.parse import urlparse
 import rosgraph
 import rospy
 
+from rbx1_nav.ros.lockstep.peers import listening_process, own_process, peer_process
 from rbx1_nav.ros.lockstep.processes import (
-    Network, PollingThread, Process, Runs, awake, listening_process, own_process, peer_process, runs_since,
-    still_polling)
+    Network, PollingThread, Process, Runs, awake, runs_since, still_polling)
 from rbx1_nav.ros.network.master import call
 
 CONNECT_TIME = 5.0      # s of wall time to wait for a new connection of cmd_vel; a busy machine takes more than 1 s

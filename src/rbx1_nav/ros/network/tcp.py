@@ -29,23 +29,13 @@ def read_connection(sock: socket.socket) -> Connection:
     info = sock.getsockopt(socket.IPPROTO_TCP, socket.TCP_INFO, _INFO.size)
     # an older kernel does not report the window: assume that it is open
     state, acknowledged, window = _INFO.unpack(info) if len(info) == _INFO.size else (info[0], 0, CLOSED_WINDOW)
-    return Connection(state == ESTABLISHED, _read_number(sock, termios.TIOCOUTQ), acknowledged, window)
+    return Connection(state == ESTABLISHED, _read_unsent(sock), acknowledged, window)
 
 
-def unread_bytes(sock: socket.socket | None) -> int:
-    """Return the number of received bytes of a socket that have not been read yet; 0 if it is closed."""
-    if sock is None:
-        return 0
-    try:
-        return _read_number(sock, termios.FIONREAD)
-    except (OSError, ValueError):     # closed
-        return 0
-
-
-def _read_number(sock: socket.socket, request: int) -> int:
-    """Return the kernel's answer to a request of tcp(7): SIOCOUTQ and SIOCINQ are TIOCOUTQ and FIONREAD."""
+def _read_unsent(sock: socket.socket) -> int:
+    """Return the kernel's answer to SIOCOUTQ of tcp(7), which is TIOCOUTQ."""
     number = bytearray(4)
-    fcntl.ioctl(sock, request, number)
+    fcntl.ioctl(sock, termios.TIOCOUTQ, number)
     return int.from_bytes(number, sys.byteorder)
 
 

@@ -11,8 +11,8 @@ from types import SimpleNamespace
 import pytest
 
 from rbx1_nav.ros.lockstep import processes
-from rbx1_nav.ros.lockstep.processes import (
-    Process, awake, listening_process, own_process, peer_process, runs_since, still_polling)
+from rbx1_nav.ros.lockstep.peers import own_process
+from rbx1_nav.ros.lockstep.processes import Process, awake, runs_since, still_polling
 
 LIMIT = 60      # s
 BEGIN = 'import socket, sys, threading, time\nprint("up", flush=True)\n'
@@ -238,32 +238,6 @@ def test_a_thread_that_was_found_to_poll(start):
     thread.is_poller, thread.changed = True, -1000.0
     thread.look = lambda: thread.ran        # as if it had not run for long
     assert not thread.polls() and not thread.is_poller
-
-
-def test_the_process_at_the_other_end(start):
-    with socket.socket() as server:
-        server.bind(('127.0.0.1', 0))
-        server.listen()
-        child = start('s = socket.create_connection(("127.0.0.1", %d))\nsys.stdin.read()' % server.getsockname()[1])
-        connection, _ = server.accept()
-        with connection:
-            assert peer_process(connection).folder == '/proc/%d/task/' % child.pid
-        assert peer_process(connection) is None     # closed
-        # this process itself must not be waited for
-        with socket.create_connection(server.getsockname()) as own:
-            accepted, _ = server.accept()
-            with accepted:
-                assert peer_process(own) is None and peer_process(accepted) is None
-
-
-def test_the_process_that_listens(start):
-    child = start('s = socket.socket()\ns.bind(("0.0.0.0", 0))\ns.listen()\nprint(s.getsockname()[1], flush=True)\n'
-                  'sys.stdin.read()')
-    port = int(child.stdout.readline())
-    assert listening_process(port).folder == '/proc/%d/task/' % child.pid
-    child.kill()
-    child.wait()
-    assert listening_process(port) is None
 
 
 def test_the_thread_that_looks_does_not_count():
