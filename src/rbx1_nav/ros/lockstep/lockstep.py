@@ -254,8 +254,9 @@ class Lockstep:
     def _check_threads(self, runs: dict[str, list[Any]]) -> None:
         """Report a driver that has now sent different commands at once, and from more than one thread: their order may
         depend on chance. runs: of its threads until now; known from the second time on."""
-        for name in self.mixed & runs.keys():
+        for name in self.mixed & self.processes.drivers & runs.keys():
             if self.processes.senders(runs[name]) > SENDERS:
+                self.processes.forget(name)
                 self._report(name, 'sends different commands in one tick, from several threads')
         self.suspects |= self.mixed
 

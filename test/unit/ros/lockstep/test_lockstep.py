@@ -177,8 +177,9 @@ def test_two_threads_that_send_different_commands_at_once_are_named(world, comma
     world.tick(*[('a', command) for command in commands])
     assert not world.reports        # only from now on, the threads are counted
     world.tick(*[('a', command) for command in commands])
+    world.tick(*[('a', command) for command in commands])       # named once
     assert [text for _, text in world.reports] == ['sends different commands in one tick, from several threads'] * named
-    assert world.applied == [(tick, command) for tick in (1, 2) for command in commands]
+    assert world.applied == [(tick, command) for tick in (1, 2, 3) for command in commands]
 
 
 def test_new_threads_are_tested(world):
