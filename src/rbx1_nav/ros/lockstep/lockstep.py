@@ -15,12 +15,14 @@ import select
 import socket
 from threading import Event, Lock
 from time import monotonic, sleep
-from typing import Any, Callable, NamedTuple, Protocol, Sequence
+from typing import Any, Callable, NamedTuple, Protocol
 
 from genpy import Message
 from rosgraph_msgs.msg import Clock
 import rospy
 from rospy.msg import serialize_message
+
+from rbx1_nav.ros.lockstep.watch import Watch
 
 NODE_TIMEOUT = 5.0      # s of wall time that a tick waits for a node
 ANSWER_TIME = 3e-4      # s of wall time in which a driver usually answers
@@ -48,26 +50,6 @@ class Target(Protocol):
     """A base that follows commands."""
 
     def apply(self, command: Any) -> None: ...
-
-
-class Processes(Protocol):
-    """Observes the processes of nodes; implemented in watch.py."""
-
-    def add(self, subscriber: rospy.Subscriber) -> None: ...
-    def update(self) -> bool: ...
-    def awake(self) -> str | None: ...
-    def polling(self) -> list[Any]: ...
-    def have_new_threads(self) -> bool: ...
-    def runs(self, name: str = '') -> list[Any]: ...
-    def find_pollers(self, before: list[Any]) -> bool: ...
-    def senders(self, before: list[Any]) -> int: ...
-    def still_polling(self, threads: list[Any]) -> bool: ...
-    def forget(self, name: str) -> bool: ...
-    def is_connected(self, header: object) -> bool: ...
-    def obstacle(self, name: str) -> str | None: ...
-    def find_sources(self) -> bool: ...
-    def groups(self, connections: Sequence[Any]) -> list[tuple[Sequence[Any], bool]]: ...
-    drivers: set[str]
 
 
 class Received(NamedTuple):
@@ -98,7 +80,7 @@ class Driver:
 class Lockstep:
     """Delivers messages, and applies each command at the tick at which it was sent."""
 
-    def __init__(self, processes: Processes, report: Callable[[str, str], None], ended: Callable[[], bool]) -> None:
+    def __init__(self, processes: Watch, report: Callable[[str, str], None], ended: Callable[[], bool]) -> None:
         """report(name, reason): reports a node that is not in step; ended(): whether to stop waiting."""
         self.processes = processes
         self.report = report
