@@ -90,7 +90,7 @@ class FakeBase:
     def greet(self, topic, publish):
         """Send the current state to a new subscriber of odom or tf: while a simulated clock waits for a node that is
         starting, no other message follows."""
-        if not self.clock.inbox or not self.last_stamp:
+        if not self.clock.inbox or not self.last_stamp or topic == '/tf' and not self.robot.publish_tf:
             return
         with self.lock:
             base, stamp = self.base, self.last_stamp

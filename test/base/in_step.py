@@ -33,7 +33,7 @@ class Ideal:
         """Return the ticks of the commands and of the final stop, counted from the first command."""
         if kind == 'sleep':         # each sleep is measured from the tick at which it begins
             return [number * self.tick(round(SECOND / rate)) for number in range(count + 1)]
-        period = int(SECOND / rate)     # as in rospy.Rate
+        period = round(SECOND / rate) if kind == 'roscpp' else int(SECOND / rate)       # as in ros::Rate, rospy.Rate
         first = 1 if kind == 'timer' else 0     # a Timer's first call is a period after its creation
         ticks = [self.tick((number + first) * period) for number in range(count + 1)]
         return [tick - ticks[0] for tick in ticks]
@@ -94,7 +94,7 @@ class TestInStep(unittest.TestCase):
 
     def check_roscpp(self, rate):
         folder = os.path.join(os.environ['CMAKE_PREFIX_PATH'].split(':')[0], 'lib', 'rbx1_nav')
-        self.check_kind('rate', rate, os.path.join(folder, 'driver_at_rate'))
+        self.check_kind('roscpp', rate, os.path.join(folder, 'driver_at_rate'))
 
     def check_script(self, rate):
         """The package's own script."""

@@ -10,7 +10,7 @@ from rbx1_nav.robot.description import read_robot
 from rbx1_nav.ros.node import resources
 from rbx1_nav.simulation.exercise import simulate
 from rbx1_nav.simulation.surfaces import load_surface
-from rows.feedback import BUSY, load
+from rows.in_step_feedback import BUSY, load
 import support
 
 FAULT = ('odom_out_and_back.py on low_ply_carpet at real_time_factor 20, with a new base for each run; in every second '

@@ -230,14 +230,14 @@ def test_a_thread_that_was_found_to_poll(start):
     process = Process(start('condition = threading.Condition()\nwith condition:\n'
                             '    while True: condition.wait(0.001)').pid)
     wait_for(lambda: not awake([process]))
-    assert not process.polling()
     thread, = process.threads.values()
     thread.is_poller = True
     thread.look()
-    wait_for(lambda: not still_polling(wait_for(process.polling)) or not thread.is_poller)
-    thread.is_poller, thread.changed = True, -1000.0
+    wait_for(process.polling)
     thread.look = lambda: thread.ran        # as if it had not run for long
-    assert not thread.polls() and not thread.is_poller
+    thread.is_poller, thread.changed = True, -1000.0
+    wait_for(lambda: not thread.polls())
+    assert not thread.is_poller
 
 
 def test_the_thread_that_looks_does_not_count():
