@@ -23,7 +23,7 @@ RATES = 10, 20, 50      # Hz
 
 
 class Base:
-    """The simulated base, with a filter if it is needed; started anew when it has exited."""
+    """The simulated base, with a filter if it is needed; started again after it has exited."""
 
     def __init__(self, row, filtered):
         self.row = row
@@ -81,7 +81,7 @@ def run(row):
 
 
 def check(base, driver, arguments, ends):
-    """Run a driver, and compare its end pose. ends: those of earlier runs, by rate."""
+    """Run a driver, and compare its end pose. ends: the end poses of earlier runs, by rate."""
     kind, rate = arguments[0], int(arguments[1])
     base.start()
     process = base.row.start(driver, *arguments)

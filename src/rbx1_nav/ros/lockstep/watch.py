@@ -40,7 +40,7 @@ class Watch:
         # nodes that are starting, by name; s of the monotonic clock until when they may sleep by the wall clock
         self.starting: dict[str, float | None] = {}
         self.registered: set[str] = set()   # publishers of commands that the master knew when it was last asked
-        self.connect_by: float | None = None    # s of the monotonic clock, for those of them that are starting
+        self.connect_by: float | None = None    # s of the monotonic clock: limit for connecting while they start
         self.processes: dict[str, Process] = {}     # by name, drivers first
         # sockets by name; None: forgotten independently of a connection
         self.forgotten: dict[str, socket.socket | None] = {}
