@@ -154,7 +154,7 @@ class Process:
 
     def runs(self) -> Runs:
         """Return how often each thread has run."""
-        return [(thread, thread.runs()) for thread in self._each(Thread.look)]
+        return runs_since((thread, 0) for thread in self.threads.values())
 
     def ended(self) -> bool:
         """Update the list of threads after one has exited; return whether all have exited."""
@@ -162,20 +162,12 @@ class Process:
         return not self.threads
 
     def _each(self, function: Callable[[Thread], object]) -> list[Thread]:
-        """Call a function with each thread; return the threads for which it is true."""
-        found = []
-        for thread in self.threads.values():
-            try:
-                if function(thread):
-                    found.append(thread)
-            except OSError:     # it has exited
-                pass
-        return found
+        return those(self.threads.values(), function)
 
     def _update(self) -> None:
         try:
             numbers = set(map(int, os.listdir(self.folder))) - {self.without}
-        except FileNotFoundError:
+        except (FileNotFoundError, ProcessLookupError):
             numbers = set()     # it has exited
         for number in self.threads.keys() - numbers:
             self.threads.pop(number).close()
@@ -185,6 +177,18 @@ class Process:
                 self.new_threads = True
             except (FileNotFoundError, ProcessLookupError):
                 pass
+
+
+def those(threads: Iterable[Thread], function: Callable[[Thread], object]) -> list[Thread]:
+    """Call a function with each thread; return the threads for which it is true, without those that have exited."""
+    found = []
+    for thread in threads:
+        try:
+            if function(thread):
+                found.append(thread)
+        except OSError:
+            pass
+    return found
 
 
 class Network:
@@ -235,7 +239,7 @@ def still_polling(threads: Iterable[PollingThread]) -> bool:
         return False
 
 
-def runs_since(before: Runs) -> Runs:
+def runs_since(before: Iterable[tuple[Thread, int]]) -> Runs:
     """Return how often threads have run since then, without those that have exited."""
     runs = []
     for thread, count in before:

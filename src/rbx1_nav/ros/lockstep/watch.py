@@ -11,7 +11,7 @@ import rospy
 
 from rbx1_nav.ros.lockstep.peers import listening_process, own_process, peer_process
 from rbx1_nav.ros.lockstep.processes import (
-    Network, PollingThread, Process, Runs, awake, runs_since, still_polling)
+    Network, PollingThread, Process, Runs, Thread, awake, runs_since, still_polling, those)
 from rbx1_nav.ros.network.master import call
 
 CONNECT_TIME = 5.0      # s of wall time to wait for a new connection of cmd_vel; a busy machine takes more than 1 s
@@ -208,7 +208,7 @@ class Watch:
     @staticmethod
     def senders(before: Runs) -> int:
         """Return how many threads have run since runs(), without those that receive messages."""
-        return sum(count > 0 and thread.waits_for_thread() for thread, count in runs_since(before))
+        return len(those((thread for thread, count in runs_since(before) if count), Thread.waits_for_thread))
 
     @staticmethod
     def still_polling(threads: list[PollingThread]) -> bool:

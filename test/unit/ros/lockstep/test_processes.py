@@ -130,6 +130,25 @@ def test_a_process_that_has_ended_counts_as_asleep(start):
         Process(child.pid)
 
 
+def test_a_process_that_ends_while_it_is_observed():
+    for number in range(100):
+        child = subprocess.Popen(['sleep', '10'])
+        process = Process(child.pid)
+
+        def end():
+            time.sleep(number * 2e-5)
+            child.kill()
+            child.wait()
+        thread = threading.Thread(target=end)
+        thread.start()
+        while thread.is_alive():        # none of these may fail
+            awake([process])
+            process.polling()
+            process.main_sleeps_briefly()
+            process.runs()
+        process.close()
+
+
 def test_a_thread_that_polls(start):
     process = Process(start('while True: time.sleep(0.001)').pid)
     polling = wait_for(process.polling)
