@@ -77,7 +77,7 @@ class TestStarvedSender(unittest.TestCase):
     def test_to_the_base_for_too_long(self):
         driver = self.drive('/arbotix', 3, busy=False)
         self.assertEqual(driver.process.returncode, 1, driver.output)
-        self.assertRegex(driver.output, '/cmd_vel: /arbotix accepted no commands for 1 s')
+        self.assertRegex(driver.output, r'/cmd_vel: \d+ of 370 commands to /arbotix were lost')
 
     def test_to_another_listener(self):
         recorder = support.Watch('/cmd_vel', Twist)

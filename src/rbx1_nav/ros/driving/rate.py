@@ -30,7 +30,6 @@ def _wait_until(end: int, longest: int, listeners: Listeners, last_look: float) 
     may have stopped because its base has exited. Also raises ROSException if the base's clock no longer waits
     for this script.
     """
-    listeners.wait_for_room()
     warn_time = time.monotonic() + 5
     last = None
     while True:

@@ -27,7 +27,6 @@ ASK_PERIOD = 0.4        # s from an answer to the next call
 LOOK_PERIOD = 0.05      # s
 UNREGISTER_TIME = 0.5   # s from the end of a connection to the end of the registration, if a node exits properly
 STOP_TIME = 1.0         # s that a script waits after its last command
-ROOM_TIMEOUT = 1.0      # s that a command waits for the one before it to be sent
 
 
 class Peer(NamedTuple):
@@ -141,14 +140,6 @@ class Listener:
             return True
         return any(self.peer.name in nodes for topic, nodes in subscribers if topic == self.topic)
 
-    @property
-    def waiting(self) -> int:
-        """Number of commands that rospy has not begun to send.
-
-        A connection that was made during the creation of the publisher has no queue: it sends immediately.
-        """
-        return len(getattr(self.connection, '_queue', ()))
-
     def lost(self, published: int) -> int:
         """Return how many of the commands published on the topic were not sent."""
         return published - self.offset - self.connection.stat_num_msg
@@ -209,25 +200,6 @@ class Listeners:
         """Look at all connections. now: s of the monotonic clock."""
         for listener in self.listeners:
             listener.look(now)
-
-    def wait_for_room(self) -> None:
-        """Wait until all commands have been sent to the node that publishes /clock: none may be lost in lockstep.
-
-        rospy deletes the oldest command if its queue overflows. Other nodes are never waited for.
-        Raises ROSException after ROOM_TIMEOUT, ROSInterruptException.
-        """
-        if not self.clock:
-            return
-        deadline = time.monotonic() + ROOM_TIMEOUT
-        for listener in self.listeners:
-            while listener.peer.keeps_time and listener.waiting:
-                if end_requested.is_set():
-                    raise rospy.ROSInterruptException('shutdown requested')
-                self.check()
-                if time.monotonic() > deadline:
-                    raise rospy.ROSException(
-                        f'{self.topic}: {listener.peer.name} accepted no commands for {ROOM_TIMEOUT:g} s')
-                time.sleep(0.001)
 
     def check_delivery(self) -> None:
         """Log which listeners were not sent all commands; to be called after the last command.
