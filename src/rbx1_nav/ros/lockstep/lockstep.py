@@ -92,6 +92,7 @@ class Lockstep:
         self.arrived: list[Received] = []       # commands that settle() has not ordered yet
         self.ready: list[tuple[Target, Any]] = []   # commands in the order in which they take effect
         self.idle = True        # whether everything was asleep, and nothing has been delivered since
+        self.held = False       # whether the clock was held after the last tick
         self.mixed: set[str] = set()        # drivers whose last commands arrived together and differed
         self.suspects: set[str] = set()     # drivers for which this was so before
         self.tick = 0
@@ -111,7 +112,7 @@ class Lockstep:
         """Begin a tick. What has woken by itself still belongs to the tick before."""
         self.tick += 1
         moving = {driver.name for driver in self.drivers.values() if driver.moving}
-        if self.processes.update() or not self.processes.drivers or not self.processes.drivers <= moving:
+        if self.processes.update() or self.held or not self.processes.drivers or not self.processes.drivers <= moving:
             self._settle()      # otherwise, all of them wait for the tick
         while self._has_arrived():
             self._settle()
@@ -142,7 +143,9 @@ class Lockstep:
     def listen(self, until: float) -> None:
         """Wait until a time (s of the monotonic clock), or longer if this tick tests who sends without being woken."""
         self.idle = True
-        until = max(until, monotonic() + max(map(self._hold, self.drivers.values()), default=0.0))
+        hold = max(map(self._hold, self.drivers.values()), default=0.0)
+        self.held = hold > 0
+        until = max(until, monotonic() + hold)
         if self.processes.have_new_threads():
             for _ in range(TESTS):
                 runs = self.processes.runs()

@@ -132,6 +132,14 @@ def test_a_driver_that_sends_while_the_clock_is_held_is_named(world):
     assert len(world.reports) == 1 and len(world.applied) == 6
 
 
+def test_a_driver_that_wakes_while_the_clock_is_held_is_named_although_it_is_slow(world):
+    world.processes.drivers = {'a'}
+    world.drive(4)
+    world.processes.work.append(lambda: world.send('a', MOVE))      # it is awake, and waits for the processor
+    world.tick()
+    assert world.reports == [('a', UNPROMPTED)]
+
+
 def test_the_first_motion_and_every_stop_need_no_tick(world):
     world.tick()
     world.send('a', STOP)
