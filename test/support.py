@@ -97,7 +97,6 @@ class OdomWatch(Watch):
 
     def __init__(self):
         super().__init__('/odom', Odometry)
-        self.seen = 0       # number of messages until the last wait_for_twist()
         wait_for(lambda: self.last, '/odom')
 
     def position(self):
@@ -105,18 +104,16 @@ class OdomWatch(Watch):
         point = self.last.pose.pose.position
         return point.x, point.y
 
-    def wait_for_twist(self, linear, angular=0.0):
-        """Wait until the base reports exactly this velocity, m/s and rad/s; return the message. A motion may have ended
-        since the last call: on a busy machine, the test may be suspended for longer than a short motion lasts."""
+    def wait_for_twist(self, linear, angular=0.0, since=-1):
+        """Wait until the base reports exactly this velocity, m/s and rad/s; return the message.
+
+        since: number of messages that do not count, for a motion that ends by itself: on a busy machine, the test may
+        be suspended for longer than it lasts. Default: only the latest message counts.
+        """
         def check():
-            for message in reversed(self.messages[self.seen if linear or angular else -1:]):
-                velocity = message.twist.twist
-                if (velocity.linear.x, velocity.angular.z) == (linear, angular):
-                    return message
-            return None
-        message = wait_for(check, f'odometry with the velocity {linear}, {angular}')
-        self.seen = len(self.messages)
-        return message
+            return next((message for message in self.messages[since:] if (linear, angular) == (
+                message.twist.twist.linear.x, message.twist.twist.angular.z)), None)
+        return wait_for(check, f'odometry with the velocity {linear}, {angular}')
 
 
 class Commander:

@@ -10,7 +10,7 @@ class TestBaseTimeout(unittest.TestCase):
         support.init_node('base_timeout')
         odom = support.OdomWatch()
         support.Commander().send(0.2)
-        odom.wait_for_twist(0.2)
+        odom.wait_for_twist(0.2, since=0)
         odom.wait_for_twist(0.0)
         # 0.2 m/s for the 1.0 s of the default timeout
         x, y = odom.position()

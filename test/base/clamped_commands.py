@@ -16,7 +16,7 @@ class TestClampedCommands(unittest.TestCase):
         for commanded, clamped in [((0.2, 0.1), (0.2, 0.1)), ((1.0, 0.1), (0.3, 0.1)), ((-1.0, 2.0), (-0.3, 0.5)),
                                    ((0.1, -2.0), (0.1, -0.5))]:
             commander.send(*commanded)
-            odom.wait_for_twist(*clamped)
+            odom.wait_for_twist(*clamped, since=0)
         support.wait_for(lambda: any('/cmd_vel: 1 m/s, 0.1 rad/s: expected at most 0.3 and 0.5; clamped' in m.msg
                                      for m in log.messages), 'the warning')
 

@@ -19,7 +19,7 @@ class TestConsistentOutputs(unittest.TestCase):
         commander = support.Commander()
         for linear, angular in [(0.2, 0.7), (0.1, -0.4)]:
             commander.send(linear, angular)
-            odom.wait_for_twist(linear, angular)
+            odom.wait_for_twist(linear, angular, since=0)
             odom.wait_for_twist(0.0)
         end = odom.last.header.stamp
         support.wait_for(lambda: joints.last and joints.last.header.stamp > end, 'joint states after the motion')

@@ -17,7 +17,7 @@ class TestIdealSensors(unittest.TestCase):
         support.wait_for(lambda: truth.last and imu.last, '/ground_truth and /imu/data')
         for linear, angular in [(0.2, 0.7), (0.1, -0.4)]:
             commander.send(linear, angular)
-            odom.wait_for_twist(linear, angular)
+            odom.wait_for_twist(linear, angular, since=0)
             odom.wait_for_twist(0.0)
         end = odom.last.header.stamp
         support.wait_for(lambda: min(truth.last.header.stamp, imu.last.header.stamp) >= end, 'all messages')

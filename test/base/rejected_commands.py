@@ -21,8 +21,9 @@ class TestRejectedCommands(unittest.TestCase):
         bad[3].linear.y = math.nan
 
         for count, message in enumerate(bad, 1):
+            start = len(odom.messages)
             commander.send(0.2)
-            odom.wait_for_twist(0.2)
+            odom.wait_for_twist(0.2, since=start)
             start = len(odom.messages)
             commander.publisher.publish(message)
             odom.wait_for_twist(0.0)
@@ -38,7 +39,7 @@ class TestRejectedCommands(unittest.TestCase):
         lateral = support.twist(0.1)
         lateral.linear.y = 0.1
         commander.publisher.publish(lateral)
-        odom.wait_for_twist(0.1)
+        odom.wait_for_twist(0.1, since=0)
         support.wait_for(lambda: any('ignored' in log.msg for log in logs.messages), 'the line on a lateral velocity')
         self.assertEqual([log.msg for log in logs.messages if 'linear.y' in log.msg and '0.1' not in log.msg], [])
 

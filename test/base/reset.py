@@ -16,7 +16,7 @@ class TestReset(unittest.TestCase):
         odom = support.OdomWatch()
         commander = support.Commander()
         commander.send(0.2, 0.5)
-        odom.wait_for_twist(0.2, 0.5)
+        odom.wait_for_twist(0.2, 0.5, since=0)
         support.wait_for(lambda: odom.position()[0] > 0.05, 'the base to move')
         rospy.wait_for_service('/arbotix/reset', support.LIMIT)
         resets = support.Watch('/reset_odometry', EmptyMessage)

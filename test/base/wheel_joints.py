@@ -15,7 +15,7 @@ class TestWheelJoints(unittest.TestCase):
         joints = support.Watch('/joint_states', JointState)
         transforms = support.Watch('/tf', TFMessage)
         support.Commander().send(0.0, 1.0)
-        odom.wait_for_twist(0.0, 1.0)
+        odom.wait_for_twist(0.0, 1.0, since=0)
         support.wait_for(lambda: joints.next().position[-1] > 0, 'the wheels to turn')
         self.assertEqual(list(joints.last.name), ['pan', 'wheel_left_joint', 'wheel_right_joint'])
         # a turn to the left

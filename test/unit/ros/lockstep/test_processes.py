@@ -134,18 +134,10 @@ def test_a_process_that_ends_while_it_is_observed():
     for number in range(100):
         child = subprocess.Popen(['sleep', '10'])
         process = Process(child.pid)
-
-        def end():
-            time.sleep(number * 2e-5)
-            child.kill()
-            child.wait()
-        thread = threading.Thread(target=end)
-        thread.start()
-        while thread.is_alive():        # none of these may fail
-            awake([process])
-            process.polling()
-            process.main_sleeps_briefly()
-            process.runs()
+        end = threading.Thread(target=lambda: (time.sleep(number * 2e-5), child.kill(), child.wait()))
+        end.start()
+        while end.is_alive():       # none of these may fail
+            _ = awake([process]), process.polling(), process.main_sleeps_briefly(), process.runs()
         process.close()
 
 
