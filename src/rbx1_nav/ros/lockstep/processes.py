@@ -33,17 +33,17 @@ class Thread:
         self.clock = _cpu_clock(number, True)
         self.is_main = folder.split('/')[2] == str(number)
         self.files: list[int] = []
-        try:
-            for name in ('stat', 'wchan', 'schedstat'):
-                self.files.append(os.open(folder + name, os.O_RDONLY))
-        except OSError:
-            self.close()
-            raise
         self.ran: bytes | None = None       # how long and how often it has run
         self.changed = 0.0      # s of the monotonic clock: when a change of `ran` was last detected
         self.place = b'0'       # result of the last waits_in()
         self.is_poller = False  # whether it was found to wake by itself every few milliseconds
-        self.look()
+        try:
+            for name in ('stat', 'wchan', 'schedstat'):
+                self.files.append(os.open(folder + name, os.O_RDONLY))
+            self.look()
+        except OSError:
+            self.close()
+            raise
 
     def close(self) -> None:
         """Close the files of the thread."""

@@ -14,7 +14,8 @@ from rbx1_nav.ros.lockstep.processes import (
     Network, PollingThread, Process, Runs, Thread, awake, runs_since, still_polling, those)
 from rbx1_nav.ros.network.master import call
 
-CONNECT_TIME = 5.0      # s of wall time to wait for a new connection of cmd_vel; a busy machine takes more than 1 s
+# s of wall time to wait for a new connection of cmd_vel; less than NODE_TIMEOUT. A busy machine takes more than 1 s
+CONNECT_TIME = 4.0
 START_SLEEP = 0.5       # s of wall time for which a node that is starting may sleep by the wall clock
 
 
@@ -42,7 +43,7 @@ class Watch:
         self.registered: set[str] = set()   # publishers of commands that the master knew when it was last asked
         self.connect_by: float | None = None    # s of the monotonic clock: limit for connecting while they start
         self.processes: dict[str, Process] = {}     # by name, drivers first
-        # sockets by name; None: forgotten independently of a connection
+        # sockets by name; None: of the master and this node, for good
         self.forgotten: dict[str, socket.socket | None] = {}
         self.own = own_process()        # the process of this node, without the thread that runs the clock
         self.master = listening_process(urlparse(rosgraph.get_master_uri()).port) if self.own else None
@@ -223,7 +224,7 @@ class Watch:
         if process:
             self.forgotten[name] = process.socket
             process.close()
-        else:
+        elif name in (MASTER, rospy.get_name()):
             self.forgotten[name] = None
         self.drivers = self.drivers - {name}
         self.known = []
