@@ -2,6 +2,8 @@
 """A second driving script takes over the name of the first, which stops the robot and exits; the second finishes."""
 import unittest
 
+from rosgraph_msgs.msg import Log
+
 import support
 
 
@@ -9,6 +11,7 @@ class TestTwoDrivers(unittest.TestCase):
     def test_the_second_one_takes_over(self):
         support.init_node('two_drivers')
         odom = support.OdomWatch()
+        log = support.Watch('/rosout', Log)
         first = support.out_and_back('_linear_speed:=0.01')
         self.addCleanup(first.kill)
         odom.wait_for_twist(0.01)
@@ -16,7 +19,8 @@ class TestTwoDrivers(unittest.TestCase):
         self.addCleanup(second.kill)
         first.wait()
         self.assertIn('Stopping the robot...', first.output)
-        self.assertEqual(second.wait(), 0, second.output)
+        status = second.wait()
+        self.assertEqual(status, 0, [second.output] + [each.msg for each in log.messages if each.level >= Log.WARN])
         self.assertEqual(second.output.count('turn left: 3.14 rad'), 2, second.output)
         self.assertNotIn('terminated', second.output)
 
