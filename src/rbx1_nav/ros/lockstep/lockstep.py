@@ -28,7 +28,7 @@ NODE_TIMEOUT = 5.0      # s of wall time that a tick waits for a node
 ANSWER_TIME = 3e-4      # s of wall time in which a driver usually answers
 LOOK = 2e-5, 5e-3   # s of wall time between two checks of the processes: at least, at most
 LOOK_LATER = 0.05   # s between two checks per s of waiting so far: a node that is starting needs the processor itself
-INTERVALS = 2       # between the first commands of a motion, of which the shortest is the usual one
+INTERVALS = 2       # between the first commands of a motion, of which one may be unusual
 HOLDS = 3           # ticks after these commands at which the clock is held
 HOLD_LATER = 1 / 64     # fraction of the later ticks at which the clock is held
 HOLD = 1.5          # duration of a hold, in intervals between two commands
@@ -162,10 +162,10 @@ class Lockstep:
         """Return for how long to hold the clock after this tick because of a driver, s of wall time."""
         if not (driver.moving and driver.name in self.processes.drivers and len(driver.intervals) == INTERVALS):
             return 0.0
-        if not driver.holds and self.random.random() >= HOLD_LATER:
-            return 0.0
-        driver.holds = max(0, driver.holds - 1)
-        return HOLD * min(driver.intervals)
+        if driver.holds:
+            driver.holds -= 1
+            return HOLD * max(driver.intervals)
+        return HOLD * min(driver.intervals) if self.random.random() < HOLD_LATER else 0.0
 
     def _has_arrived(self) -> bool:
         """Return whether a command of the tick before has arrived that is not ordered yet. If not, the next tick has

@@ -105,20 +105,20 @@ def test_nobody_is_waited_for_at_the_end(world):
 
 
 def test_the_clock_is_held_at_the_start_of_a_motion_and_now_and_then(world, monkeypatch):
-    def holds():
-        """The number of sleeps of HOLD times the shortest of the first two intervals, 10 ms and a few looks."""
-        return sum(abs(seconds - lockstep.HOLD * 0.01) < 0.001 for seconds in world.sleeps)
-    world.drive(1, listen=0.05)
+    def holds(interval=0.01):
+        """The number of sleeps of HOLD times an interval between two commands, which also has a few looks."""
+        return sum(abs(seconds - lockstep.HOLD * interval) < 0.001 for seconds in world.sleeps)
+    world.drive(1, listen=0.03)
     world.drive(1, listen=0.01)
-    assert not holds()
+    assert not holds(0.03)
     world.drive(11, listen=0.01)
-    assert holds() == lockstep.HOLDS
+    assert holds(0.03) == lockstep.HOLDS and not holds()
     monkeypatch.setattr(world.lockstep.random, 'random', lambda: 0.0)
     world.drive(1, listen=0.01)
-    assert holds() == lockstep.HOLDS + 1
+    assert holds() == 1
     world.tick(('a', STOP))
     world.tick()
-    assert holds() == lockstep.HOLDS + 1
+    assert holds() == 1
 
 
 def test_a_driver_that_sends_while_the_clock_is_held_is_named(world):
