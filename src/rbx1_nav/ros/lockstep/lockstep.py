@@ -9,6 +9,7 @@ while when everything is asleep. A command that arrives then was not prompted by
 """
 from __future__ import annotations
 
+from collections import Counter
 from io import BytesIO
 from random import Random
 import select
@@ -32,6 +33,7 @@ INTERVALS = 2       # between the first commands of a motion, of which one may b
 HOLDS = 3           # ticks after these commands at which the clock is held
 HOLD_LATER = 1 / 64     # fraction of the later ticks at which the clock is held
 HOLD = 1.5          # duration of a hold, in intervals between two commands
+COMMANDS = 3        # that a driver on the clock may send after one message; stops do not count
 SENDERS = 2         # threads of a rospy node that run when one of them publishes: this one, and that of the connection
 TEST, TESTS = 0.005, 4  # s of wall time in which a thread that polls the time runs more than once; how often to try
 SLEEP = 0.05        # s: the longest sleep between two checks for a shutdown request
@@ -60,6 +62,10 @@ class Received(NamedTuple):
     command: Command
     time: float                 # s of the monotonic clock
     idle: bool                  # whether it arrived although everything was asleep
+
+    def moves(self) -> bool:
+        """Return whether it is not a stop."""
+        return bool(self.command.linear or self.command.angular)
 
 
 class Driver:
@@ -189,8 +195,9 @@ class Lockstep:
         arrived.sort(key=lambda each: each.header['callerid'])
         self.mixed = {one.header['callerid'] for one, other in zip(arrived, arrived[1:])
                       if one.header is other.header and one.command != other.command}
+        counts = Counter(id(each.header) for each in arrived if each.moves())
         for each in arrived:
-            self._check(self._driver_of(each.header), each)
+            self._check(self._driver_of(each.header), each, counts[id(each.header)])
             self.ready.append((each.target, each.command))
 
     def _wait_while_awake(self) -> None:
@@ -215,10 +222,11 @@ class Lockstep:
             self.drivers[id(header)] = Driver(header)
         return self.drivers[id(header)]
 
-    def _check(self, driver: Driver, received: Received) -> None:
-        """Update what is known of a driver with a command, and report it if the command is not in step."""
-        command, first = received.command, not driver.moving
-        driver.moving = bool(command.linear or command.angular)
+    def _check(self, driver: Driver, received: Received, count: int) -> None:
+        """Update what is known of a driver with a command, and report it if the command is not in step. count: of the
+        moving commands that have arrived together."""
+        first = not driver.moving
+        driver.moving = received.moves()
         if not driver.moving:
             return
         if first:
@@ -230,7 +238,9 @@ class Lockstep:
         if not driver.in_step or first and driver.motions == 1:
             return      # a node may wait by the wall clock before its first motion
         reason = self.processes.obstacle(driver.name)
-        if not reason and received.idle and not self.processes.find_sources():
+        if not reason and count > COMMANDS:
+            reason = f'sends more than {COMMANDS} commands at once'
+        elif not reason and received.idle and not self.processes.find_sources():
             reason = 'sends commands that no tick of /clock has prompted'
         if reason:
             self.processes.forget(driver.name)

@@ -162,6 +162,16 @@ def test_a_driver_whose_commands_come_from_a_new_source_is_not_named(world):
     assert not world.reports
 
 
+def test_a_driver_that_never_lets_the_tick_end_is_named(world):
+    world.drive(1)
+    world.tick(*[('a', MOVE)] * lockstep.COMMANDS)
+    world.tick(*[('a', STOP)] * 10)
+    world.tick(*[('a', MOVE)] * lockstep.COMMANDS, *[('b', MOVE)] * lockstep.COMMANDS)
+    assert not world.reports
+    world.tick(*[('a', MOVE)] * (lockstep.COMMANDS + 1))
+    assert world.reports == [('a', 'sends more than 3 commands at once')]
+
+
 def test_one_driver_that_is_named_does_not_affect_another(world):
     world.tick(('a', MOVE), ('b', MOVE))
     world.send('a', MOVE)
