@@ -15,7 +15,7 @@ import off_clock
 FAULT = ('drivers on wall time, on a keyboard, from a bag, or with two threads, at real_time_factor 20 with strict; in '
          'every second run beside four busy loops')
 PROMISE = 'the base names the driver and exits with status 1'
-FULL, SHORT = 20, 0     # runs of each kind of driver
+FULL, SHORT = 20, 2     # runs of each kind of driver
 ROOT, ALONE = False, True
 
 BUSY = 4        # loops
