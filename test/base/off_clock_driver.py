@@ -53,7 +53,7 @@ def wall_thread(publisher):
 
 def wait_for_message(publisher):
     """Send after an odometry message, which is received by polling on wall time."""
-    for _ in range(4 * COUNT):      # on a busy machine, a step may take longer than the poll
+    for _ in range(COUNT):
         rospy.wait_for_message('/odom', Odometry)
         publisher.publish(twist(SPEED))
 

@@ -16,6 +16,7 @@ from rbx1_nav.ros.network.master import call
 
 # s of wall time to wait for a new connection of cmd_vel; less than NODE_TIMEOUT. A busy machine takes more than 1 s
 CONNECT_TIME = 4.0
+RECONNECT_TIME = 0.6    # s of wall time: rospy 1.15.9 connects again at once, but reads only 0.5 s later
 START_SLEEP = 0.5       # s of wall time for which a node that is starting may sleep by the wall clock
 
 
@@ -36,6 +37,7 @@ class Watch:
         # the lists of connections at the last update; rospy replaces a list when it changes
         self.known: list[Any] = []
         self.listeners: dict[str, Any] = {}     # connections to the subscribers of /clock, by name
+        self.reads_again = 0.0      # s of the monotonic clock: when a listener that has connected again surely reads
         self.drivers: set[str] = set()      # names of the watched publishers of commands
         self.sources: list[str] = []        # names of all nodes whose messages may cause a command, nearest last
         # nodes that are starting, by name; s of the monotonic clock until when they may sleep by the wall clock
@@ -65,6 +67,8 @@ class Watch:
         for name, each in listeners.items():
             if self.listeners.get(name) is not each:
                 self.starting[name] = None
+                if name in self.listeners:
+                    self.reads_again = monotonic() + RECONNECT_TIME
         self.listeners = listeners
         self.starting = {name: until for name, until in self.starting.items() if name in listeners}
         drivers = self.drivers
@@ -150,6 +154,8 @@ class Watch:
             return None
         if self._is_connecting():
             return self.commands[0].resolved_name
+        if monotonic() < self.reads_again:
+            return '/clock'
         names, processes = list(self.processes), list(self.processes.values())
         for name, process in ((MASTER, self.master), (rospy.get_name(), self.own)):
             if process and name not in self.forgotten:

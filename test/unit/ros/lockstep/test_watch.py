@@ -121,6 +121,17 @@ def test_what_keeps_a_node_from_being_in_step(world, monkeypatch):
     assert not world.watch.drivers and 'is not visible' in world.watch.obstacle('/other')
 
 
+def test_a_listener_that_connects_again_is_waited_for(world, monkeypatch):
+    """On Debian 11, rospy sleeps for 0.5 s after it has connected again."""
+    world.listen(world.connect('/driver'))
+    world.settle()
+    world.listen(world.connect('/driver'))
+    wait_for(lambda: world.watch.awake() == '/clock')
+    now = watch.monotonic()
+    monkeypatch.setattr(watch, 'monotonic', lambda: now + watch.RECONNECT_TIME)
+    wait_for(lambda: world.watch.awake() is None)
+
+
 def test_the_order_of_subscribers(world, monkeypatch):
     """Nodes that are not watched; sources, the farthest first; drivers."""
     monkeypatch.setattr(watch, 'call', lambda *_: (PUBLISHERS, SUBSCRIBERS, []))
