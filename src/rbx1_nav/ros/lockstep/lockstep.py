@@ -30,12 +30,13 @@ ANSWER_TIME = 3e-4      # s of wall time in which a driver usually answers
 LOOK = 2e-5, 5e-3   # s of wall time between two checks of the processes: at least, at most
 LOOK_LATER = 0.05   # s between two checks per s of waiting so far: a node that is starting needs the processor itself
 INTERVALS = 2       # between the first commands of a motion, of which one may be unusual
-HOLDS = 3           # ticks after these commands at which the clock is held
-HOLD_LATER = 1 / 64     # fraction of the later ticks at which the clock is held
+HOLDS = 3, 1        # ticks after these commands at which the clock is held: in the first motion, in each later one
+FIRST_HOLD = 0.02   # s of wall time: duration of a hold after the very first commands, before the intervals are known
+HOLD_LATER = 1 / 128    # fraction of the later ticks at which the clock is held
 HOLD = 1.5          # duration of a hold, in intervals between two commands
 COMMANDS = 3        # that a driver on the clock may send after one message; stops do not count
 SENDERS = 2         # threads of a rospy node that run when one of them publishes: this one, and that of the connection
-TEST, TESTS = 0.005, 4  # s of wall time in which a thread that polls the time runs more than once; how often to try
+TEST, TESTS = 0.005, 4  # s of wall time in which a thread that polls the time usually runs more than once; how often
 SLEEP = 0.05        # s: the longest sleep between two checks for a shutdown request
 
 
@@ -80,7 +81,7 @@ class Driver:
         self.tick = 0           # of the last command
         self.time = 0.0         # s of the monotonic clock: of the last command
         self.intervals: list[float] = []    # s of wall time between the first commands of the motion
-        self.holds = 0          # ticks at which the clock will be held
+        self.holds = 0          # ticks at which the clock will be held once the intervals are known
 
 
 class Lockstep:
@@ -151,10 +152,13 @@ class Lockstep:
         self.idle = True
         hold = max(map(self._hold, self.drivers.values()), default=0.0)
         self.held = hold > 0
-        until = max(until, monotonic() + hold)
+        later = max(until, monotonic() + hold)
+        for driver in self.drivers.values():
+            driver.time += min(hold, later - until)     # not part of the interval
+        until = later
         if self.processes.have_new_threads():
+            runs = self.processes.runs()
             for _ in range(TESTS):
-                runs = self.processes.runs()
                 self._sleep(monotonic() + TEST)
                 if not self.processes.find_pollers(runs):
                     break
@@ -166,8 +170,10 @@ class Lockstep:
 
     def _hold(self, driver: Driver) -> float:
         """Return for how long to hold the clock after this tick because of a driver, s of wall time."""
-        if not (driver.moving and driver.name in self.processes.drivers and len(driver.intervals) == INTERVALS):
+        if not (driver.moving and driver.name in self.processes.drivers):
             return 0.0
+        if len(driver.intervals) < INTERVALS:
+            return FIRST_HOLD if driver.motions == 1 and driver.tick == self.tick else 0.0
         if driver.holds:
             driver.holds -= 1
             return HOLD * max(driver.intervals)
@@ -231,8 +237,8 @@ class Lockstep:
             return
         if first:
             driver.motions += 1
-            driver.intervals, driver.holds = [], HOLDS
-        elif len(driver.intervals) < INTERVALS and self.tick > driver.tick:
+            driver.intervals, driver.holds = [], HOLDS[driver.motions > 1]
+        elif len(driver.intervals) < INTERVALS:
             driver.intervals.append(received.time - driver.time)
         driver.tick, driver.time = self.tick, received.time
         if not driver.in_step or first and driver.motions == 1:

@@ -12,7 +12,9 @@ import socket
 import time
 from typing import Callable, Iterable, List, Optional, Tuple
 
-POLL = 0.005    # s: a thread that sleeps for less than this polls, as ros::Rate does on simulated time
+# s: a thread that sleeps for less than this polls. ros::Rate does so every millisecond on simulated time, but on a busy
+# machine, a timer may be late by one or more periods of the kernel, 4 ms each
+POLL = 0.02
 ENDED = b'X', b'Z'      # states of a thread that has exited
 FUTEX, NANOSLEEP = b'futex_', b'hrtimer_nanosleep'
 TIMED = b'sleep', b'poll', b'select'    # parts of the names of kernel functions that wait with a timeout

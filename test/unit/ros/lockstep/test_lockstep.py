@@ -65,7 +65,7 @@ def test_a_command_between_two_ticks_belongs_to_the_tick_before(world):
 
 def test_a_tick_begins_without_a_look_if_all_drivers_wait_for_it(world):
     world.processes.drivers = {'a'}
-    world.tick(('a', MOVE))
+    world.drive(6)      # until the clock is no longer held
     world.processes.looks = 0
     world.lockstep.begin()
     assert not world.processes.looks
@@ -105,20 +105,45 @@ def test_nobody_is_waited_for_at_the_end(world):
 
 
 def test_the_clock_is_held_at_the_start_of_a_motion_and_now_and_then(world, monkeypatch):
-    def holds(interval=0.01):
-        """The number of sleeps of HOLD times an interval between two commands, which also has a few looks."""
-        return sum(abs(seconds - lockstep.HOLD * interval) < 0.001 for seconds in world.sleeps)
-    world.drive(1, listen=0.03)
-    world.drive(1, listen=0.01)
-    assert not holds(0.03)
-    world.drive(11, listen=0.01)
-    assert holds(0.03) == lockstep.HOLDS and not holds()
+    def holds(*intervals):
+        """Check the sleeps since the last call; intervals between two commands, which also have a few looks."""
+        times = [seconds for seconds in world.sleeps if seconds > 0.005]
+        world.sleeps.clear()
+        return times == pytest.approx([lockstep.HOLD * interval for interval in intervals], abs=0.001)
+    world.tick(('a', MOVE), listen=0.03)
+    assert holds(0.03 / lockstep.HOLD)      # longer than FIRST_HOLD
+    first = lockstep.FIRST_HOLD / lockstep.HOLD
+    world.tick()
+    world.tick(('a', MOVE))
+    assert holds(first)                     # only after a command
+    world.tick(('a', STOP))
+    world.drive(3, listen=0.004)
+    world.drive(5)
+    assert holds(0.004)                     # once in a later motion
     monkeypatch.setattr(world.lockstep.random, 'random', lambda: 0.0)
-    world.drive(1, listen=0.01)
-    assert holds() == 1
+    world.drive(1)
+    assert holds(0.004)
     world.tick(('a', STOP))
     world.tick()
-    assert holds() == 1
+    assert holds()
+
+
+def test_the_first_holds_are_not_part_of_the_interval_between_two_commands(world):
+    world.drive(1)
+    world.drive(1, listen=lockstep.FIRST_HOLD + 0.01)
+    world.drive(1)
+    driver, = world.lockstep.drivers.values()
+    assert driver.intervals == pytest.approx([0.001, lockstep.FIRST_HOLD + 0.01], abs=0.001)
+
+
+def test_a_late_clock_changes_nothing_about_the_intervals(world):
+    world.drive(1)
+    for _ in range(4):
+        world.now += 0.02
+        world.tick(listen=-0.01)
+    world.drive(1)
+    driver, = world.lockstep.drivers.values()
+    assert driver.intervals == pytest.approx([0.08], abs=0.002)
 
 
 def test_a_driver_that_sends_while_the_clock_is_held_is_named(world):
