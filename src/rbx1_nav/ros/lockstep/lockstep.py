@@ -30,10 +30,10 @@ ANSWER_TIME = 3e-4      # s of wall time in which a driver usually answers
 LOOK = 2e-5, 5e-3   # s of wall time between two checks of the processes: at least, at most
 LOOK_LATER = 0.05   # s between two checks per s of waiting so far: a node that is starting needs the processor itself
 INTERVALS = 2       # between the first commands of a motion, of which one may be unusual
-HOLDS = 3, 1        # ticks after these commands at which the clock is held: in the first motion, in each later one
-FIRST_HOLD = 0.02   # s of wall time: duration of a hold after the very first commands, before the intervals are known
+HOLDS = 3           # ticks with commands at which the clock is held, at the beginning of a motion
 HOLD_LATER = 1 / 128    # fraction of the later ticks at which the clock is held
 HOLD = 1.5          # duration of a hold, in intervals between two commands
+FIRST_HOLD = 0.02   # s of wall time: duration of the first hold, before an interval is known
 COMMANDS = 3        # that a driver on the clock may send after one message; stops do not count
 SENDERS = 2         # threads of a rospy node that run when one of them publishes: this one, and that of the connection
 TEST, TESTS = 0.005, 4  # s of wall time in which a thread that polls the time usually runs more than once; how often
@@ -81,7 +81,7 @@ class Driver:
         self.tick = 0           # of the last command
         self.time = 0.0         # s of the monotonic clock: of the last command
         self.intervals: list[float] = []    # s of wall time between the first commands of the motion
-        self.holds = 0          # ticks at which the clock will be held once the intervals are known
+        self.holds = 0          # ticks with commands at which the clock will be held
 
 
 class Lockstep:
@@ -172,11 +172,12 @@ class Lockstep:
         """Return for how long to hold the clock after this tick because of a driver, s of wall time."""
         if not (driver.moving and driver.name in self.processes.drivers):
             return 0.0
-        if len(driver.intervals) < INTERVALS:
-            return FIRST_HOLD if driver.motions == 1 and driver.tick == self.tick else 0.0
         if driver.holds:
+            if driver.tick != self.tick:
+                return 0.0
             driver.holds -= 1
-            return HOLD * max(driver.intervals)
+            is_first = driver.motions == 1 and driver.holds == HOLDS - 1
+            return FIRST_HOLD if is_first else HOLD * max(driver.intervals, default=0.0)
         return HOLD * min(driver.intervals) if self.random.random() < HOLD_LATER else 0.0
 
     def _has_arrived(self) -> bool:
@@ -237,7 +238,7 @@ class Lockstep:
             return
         if first:
             driver.motions += 1
-            driver.intervals, driver.holds = [], HOLDS[driver.motions > 1]
+            driver.intervals, driver.holds = [], HOLDS
         elif len(driver.intervals) < INTERVALS:
             driver.intervals.append(received.time - driver.time)
         driver.tick, driver.time = self.tick, received.time

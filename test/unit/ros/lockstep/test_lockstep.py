@@ -107,22 +107,28 @@ def test_nobody_is_waited_for_at_the_end(world):
 def test_the_clock_is_held_at_the_start_of_a_motion_and_now_and_then(world, monkeypatch):
     def holds(*intervals):
         """Check the sleeps since the last call; intervals between two commands, which also have a few looks."""
-        times = [seconds for seconds in world.sleeps if seconds > 0.005]
+        times = [seconds for seconds in world.sleeps if seconds > 0.002]
         world.sleeps.clear()
         return times == pytest.approx([lockstep.HOLD * interval for interval in intervals], abs=0.001)
-    world.tick(('a', MOVE), listen=0.03)
-    assert holds(0.03 / lockstep.HOLD)      # longer than FIRST_HOLD
-    first = lockstep.FIRST_HOLD / lockstep.HOLD
-    world.tick()
-    world.tick(('a', MOVE))
-    assert holds(first)                     # only after a command
-    world.tick(('a', STOP))
-    world.drive(3, listen=0.004)
+    world.drive(1)
+    assert holds(lockstep.FIRST_HOLD / lockstep.HOLD)
+    world.now += 0.003
+    for _ in range(2):
+        world.tick()                # not without a command
+        world.drive(1)
     world.drive(5)
-    assert holds(0.004)                     # once in a later motion
+    assert holds(0.005, 0.005)      # the longer one
+    world.tick(('a', STOP))
+    world.drive(1)
+    world.now += 0.003
+    world.drive(2)
+    assert holds(0.004, 0.004)      # a later motion
+    world.tick(('a', STOP))
+    world.drive(5, listen=0.003)
+    world.sleeps.clear()
     monkeypatch.setattr(world.lockstep.random, 'random', lambda: 0.0)
     world.drive(1)
-    assert holds(0.004)
+    assert holds(0.003)
     world.tick(('a', STOP))
     world.tick()
     assert holds()
@@ -159,7 +165,7 @@ def test_a_driver_that_sends_while_the_clock_is_held_is_named(world):
 
 def test_a_driver_that_wakes_while_the_clock_is_held_is_named_although_it_is_slow(world):
     world.processes.drivers = {'a'}
-    world.drive(4)
+    world.drive(3)
     world.processes.work.append(lambda: world.send('a', MOVE))      # it is awake, and waits for the processor
     world.tick()
     assert world.reports == [('a', UNPROMPTED)]
