@@ -36,7 +36,7 @@ HOLD = 1.5          # duration of a hold, in intervals between two commands
 FIRST_HOLD = 0.02   # s of wall time: duration of the first hold, before an interval is known
 COMMANDS = 3        # that a driver on the clock may send after one message; stops do not count
 SENDERS = 2         # threads of a rospy node that run when one of them publishes: this one, and that of the connection
-TEST, TESTS = 0.005, 4  # s of wall time in which a thread that polls the time usually runs more than once; how often
+TEST, TESTS = 0.005, 4  # s of wall time in which a thread that polls usually runs more than once; how often to try
 SLEEP = 0.05        # s: the longest sleep between two checks for a shutdown request
 
 

@@ -12,8 +12,8 @@ import socket
 import time
 from typing import Callable, Iterable, List, Optional, Tuple
 
-# s: a thread that sleeps for less than this polls. ros::Rate does so every millisecond on simulated time, but on a busy
-# machine, a timer may be late by one or more periods of the kernel, 4 ms each
+# s: a thread that sleeps for less than this polls. On simulated time, ros::Rate sleeps for 1 ms at a time, which took
+# up to 3.8 ms on a busy machine
 POLL = 0.02
 ENDED = b'X', b'Z'      # states of a thread that has exited
 FUTEX, NANOSLEEP = b'futex_', b'hrtimer_nanosleep'
