@@ -182,8 +182,10 @@ def has_own_result(results, path):
 
 
 def summarize(results):
-    """Print all results in a folder. Returns the numbers of tests that passed and that failed."""
+    """Print all results in a folder. Returns the numbers of tests that passed and that failed, and the names of those
+    that failed."""
     passed = failed = 0
+    names = []
     for path in sorted(glob.glob(os.path.join(results, '**', '*.xml'), recursive=True)):
         cases = read(path)
         # rostest's own file counts if the test left no file because it crashed, hung, or did not start
@@ -199,10 +201,11 @@ def summarize(results):
                 continue
         print('%-32s %d of %d' % (name, len(cases) - len(bad), len(cases)))
         for case, trouble in bad:
-            print(f"FAILED: {name} {case.get('name')}\n{trouble.text or ''}")
+            names.append(f"{name} {case.get('name')}")
+            print(f"FAILED: {names[-1]}\n{trouble.text or ''}")
         passed += len(cases) - len(bad)
         failed += len(bad) or not cases
-    return passed, failed
+    return passed, failed, names
 
 
 def main():
@@ -220,7 +223,9 @@ def main():
         for process in multiprocessing.active_children():
             process.kill()
         return 130
-    passed, failed = summarize(results)
+    passed, failed, names = summarize(results)
+    for name in names + troubled:   # once more, because the output above may be long
+        print('Failed:', name)
     # a job can also fail without a result
     failed = max(failed, len(troubled))
     print(passed, failed)

@@ -7,6 +7,7 @@ import unittest
 import rospkg
 import rospy
 from geometry_msgs.msg import Twist
+from rosgraph_msgs.msg import Log
 
 import support
 
@@ -51,7 +52,7 @@ class TestStarvedSender(unittest.TestCase):
     def setUpClass(cls):
         support.init_node('starved_sender')
         cls.odom = support.OdomWatch()
-        cls.turned = 0.0
+        cls.log = support.Watch('/rosout', Log)
 
     def drive(self, peer, delay, busy=True):
         """Run the exercise; return the Process when it has exited."""
@@ -62,9 +63,13 @@ class TestStarvedSender(unittest.TestCase):
         self.assertNotIn('Traceback', driver.output)
         return driver
 
+    def report(self, driver):
+        """Return the output of a driver, and the warnings of all nodes, such as of a base that released it."""
+        return [driver.output, *(each.msg for each in self.log.messages if each.level >= Log.WARN)]
+
     def check_end(self, driver, before):
         """Check that the exit status is 0 and that the robot has turned by the exact angle; before: heading, rad."""
-        self.assertEqual(driver.process.returncode, 0, driver.output)
+        self.assertEqual(driver.process.returncode, 0, self.report(driver))
         turn = support.wrapped(support.yaw(self.odom.next()) - before - support.EXACT_TURN)
         self.assertAlmostEqual(turn, 0, delta=1e-6)     # much less than the 0.02 rad of one command
 

@@ -48,7 +48,8 @@ def test_results(tmp_path, capsys):
     for name, text in ('d', ''), ('e', '<testsuite>\x1b</testsuite>'), ('f', '<?xml version="1.0" encoding="-"?><a/>'):
         (tmp_path / f'rosunit-{name}.xml').write_text(text)
         (tmp_path / f'rostest-test_{name}.xml').write_text(f'<testsuite>{FAILED}</testsuite>')
-    assert run_tests.summarize(str(tmp_path)) == (3, 5)
+    passed, failed, names = run_tests.summarize(str(tmp_path))
+    assert (passed, failed, len(names)) == (3, 5, 5)
     assert capsys.readouterr().out.count('FAILED: ') == 5
 
 

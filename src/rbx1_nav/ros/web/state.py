@@ -113,6 +113,10 @@ class State:
             time = self.last[0] - self.origin + min(now - self.last[1], 1.0) * self.factor
             self.speeds['commanded'].sample(time, linear, angular)
 
+    def hears(self, source: str) -> bool:
+        """Return whether a source sends poses. After a reset this stays true, although there is no pose at first."""
+        return source in self.heard
+
     def other_driver(self, now: float) -> str:
         """Return the name of a node that drives the robot and was not started by the page, or ''. now: s, monotonic."""
         name, time = self.other
@@ -130,7 +134,8 @@ class State:
                 self._commanded(0.0, 0.0, now)
             for source in [each for each, heard in self.heard.items() if now - heard > SILENCE]:
                 del self.heard[source]
-                self.silent[source] = self.poses.pop(source)
+                if source in self.poses:
+                    self.silent[source] = self.poses.pop(source)
                 self.counter.next()
 
     def reset(self, now: float) -> None:
@@ -147,6 +152,7 @@ class State:
             if self.last is not None:
                 self._begin()
                 self.last = None
+                self.heard.clear()      # it may be a real robot now
 
     def _begin(self) -> None:
         """Begin a new run: store the end poses of the last one, and clear paths and speeds."""

@@ -41,7 +41,7 @@ class System:
     @property
     def simulated(self) -> bool:
         """Whether messages arrive on ground_truth, which only a simulated robot has."""
-        return 'truth' in self.state.poses
+        return self.state.hears('truth')
 
     def _run(self) -> None:
         server = Server(rosgraph.get_master_uri())
@@ -60,7 +60,7 @@ class System:
         known = any(rospy.get_name() in names for _, names in subscribers)
         self.state.set_status(master='' if known else 'restarted')
         services = {name for name, _ in offered}
-        base = self.topics.base if 'odometry' in self.state.poses else None
+        base = self.topics.base if self.state.hears('odometry') else None
         name = f'{base}/reset'
         self.reset_service = name if base and name in services else ''
         self.state.set_status(base=base or '', simulated=self.simulated,

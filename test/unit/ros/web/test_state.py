@@ -153,6 +153,18 @@ def test_a_source_that_is_silent_vanishes(state):
     state.move('odometry', motion(104.5), 104.5)
     state.tick(101.0 + SILENCE + 0.1)
     assert set(Browser(state).frame()['poses']) == {'odometry'}
+    assert state.hears('odometry') and not state.hears('truth')
+
+
+def test_a_source_is_heard_after_a_reset_but_not_of_another_base(state):
+    drive(state)
+    state.reset(101.0)
+    assert Browser(state).frame()['poses'] == {} and state.hears('truth')
+    state.tick(101.0 + SILENCE + 0.1)
+    assert not state.hears('truth')
+    drive(state, 110.0)
+    state.connected()
+    assert not state.hears('truth')
 
 
 @pytest.mark.parametrize('wrong', [motion(1.0, x=nan), motion(nan), motion(1.0, linear=inf), motion(1.0, yaw=-inf)])
