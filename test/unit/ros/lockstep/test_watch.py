@@ -78,6 +78,8 @@ def make_world(monkeypatch):
     monkeypatch.setenv('ROS_MASTER_URI', 'http://127.0.0.1:1')      # nothing listens there
     # the process of pytest itself may have no other thread
     monkeypatch.setattr(watch, 'own_process', lambda: SimpleNamespace(cpu_time=lambda: 0, sleeps=lambda: True))
+    # other tests on this machine use the network
+    monkeypatch.setattr(watch, 'Network', lambda: SimpleNamespace(busy=lambda: False))
     world = World()
     yield world
     for process in world.watch.processes.values():
