@@ -28,6 +28,7 @@ from rbx1_nav.ros.lockstep.watch import Watch
 NODE_TIMEOUT = 5.0      # s of wall time that a tick waits for a node
 ANSWER_TIME = 3e-4      # s of wall time in which a driver usually answers
 LOOK = 2e-5, 5e-3   # s of wall time between two checks of the processes: at least, at most
+LONGEST_LOOK = 0.1  # s: if it takes longer from one check to the next, the base itself was suspended
 LOOK_LATER = 0.05   # s between two checks per s of waiting so far: a node that is starting needs the processor itself
 INTERVALS = 2       # between the first commands of a motion, of which one may be unusual
 HOLDS = 3           # ticks with commands at which the clock is held, at the beginning of a motion
@@ -101,7 +102,8 @@ class Lockstep:
         self.idle = True        # whether everything was asleep, and nothing has been delivered since
         self.held = False       # whether the clock was held after the last tick
         self.mixed: set[str] = set()        # drivers whose last commands arrived together and differed
-        self.suspects: set[str] = set()     # drivers for which this was so before
+        # drivers for which this was so before, with the threads that ran when it was so for the last time
+        self.suspects: dict[str, set[Any]] = {}
         self.tick = 0
         self.random = Random(0)
 
@@ -208,17 +210,19 @@ class Lockstep:
             self.ready.append((each.target, each.command))
 
     def _wait_while_awake(self) -> None:
-        begin = monotonic()
-        deadline = begin + NODE_TIMEOUT
+        begin = last = monotonic()
+        awake: dict[str, float] = {}    # s of wall time for which each node was awake
         while not self.ended():
             name = self.processes.awake()
             if not name:
                 return
             now = monotonic()
-            if now > deadline:
+            awake[name] = awake.get(name, 0.0) + min(now - last, LONGEST_LOOK)
+            last = now
+            if awake[name] > NODE_TIMEOUT:
+                del awake[name]
                 if self.processes.forget(name):
                     self._report(name, f'did not become idle within {NODE_TIMEOUT:g} s')
-                deadline += NODE_TIMEOUT
             sleep(min(max(LOOK[0], LOOK_LATER * (now - begin)), LOOK[1]))
 
     def _driver_of(self, header: dict[str, str]) -> Driver:
@@ -254,13 +258,17 @@ class Lockstep:
             self._report(driver.name, reason)
 
     def _check_threads(self, runs: dict[str, list[Any]]) -> None:
-        """Report a driver that has now sent different commands at once, and from more than one thread: their order may
-        depend on chance. runs: of its threads until now; known from the second time on."""
+        """Report a driver that sends different commands at once from more than one thread: their order may depend on
+        chance. runs: of its threads until now; known from the second time on."""
         for name in self.mixed & self.processes.drivers & runs.keys():
-            if self.processes.senders(runs[name]) > SENDERS:
+            senders = self.processes.senders(runs[name])
+            # twice the same ones, because rospy has threads that also wake once or twice per second of wall time
+            if len(senders & self.suspects[name]) > SENDERS:
                 self.processes.forget(name)
                 self._report(name, 'sends different commands in one tick, from several threads')
-        self.suspects |= self.mixed
+            self.suspects[name] = senders
+        for name in self.mixed:
+            self.suspects.setdefault(name, set())
 
     def _report(self, name: str, reason: str) -> None:
         for driver in self.drivers.values():

@@ -213,9 +213,9 @@ class Watch:
         return any(count == 1 for _, count in runs)
 
     @staticmethod
-    def senders(before: Runs) -> int:
-        """Return how many threads have run since runs(), without those that receive messages."""
-        return len(those((thread for thread, count in runs_since(before) if count), Thread.waits_for_thread))
+    def senders(before: Runs) -> set[Thread]:
+        """Return the threads that have run since runs(), without those that receive messages."""
+        return set(those((thread for thread, count in runs_since(before) if count), Thread.waits_for_thread))
 
     @staticmethod
     def still_polling(threads: list[PollingThread]) -> bool:

@@ -1,4 +1,5 @@
 """The clock stays in step with the nodes that drive by it, and names those that do not."""
+from itertools import cycle
 from types import SimpleNamespace
 
 from geometry_msgs.msg import Twist
@@ -94,6 +95,21 @@ def test_a_node_that_never_sleeps_is_given_up(world):
     world.processes.never_sleeps = 'starting'
     world.tick()
     assert len(world.reports) == 1
+
+
+def test_only_the_node_that_does_not_sleep_is_given_up(world):
+    """Not one that happens to be awake when the time is over, such as the base itself."""
+    world.processes.never_sleeps = 'a'
+    end = world.now + 5
+    world.processes.awake = lambda: world.processes.never_sleeps and ('base' if abs(world.now - end) < 0.05 else 'a')
+    world.tick()
+    assert world.reports == [('a', 'did not become idle within 5 s')]
+
+
+def test_a_base_that_was_suspended_itself_gives_nobody_up(world):
+    world.processes.work = [lambda: setattr(world, 'now', world.now + 10)]
+    world.tick()
+    assert not world.reports
 
 
 def test_nobody_is_waited_for_at_the_end(world):
@@ -219,16 +235,18 @@ def test_a_driver_that_cannot_be_in_step_is_named_if_it_drives(world):
     assert world.reports == [('a', 'does not subscribe to /clock')]
 
 
-@pytest.mark.parametrize('commands, sending, named', [((MOVE, FASTER), 3, True), ((MOVE, FASTER), 2, False),
-                                                      ((MOVE, MOVE), 3, False), ((MOVE,), 3, False)])
+@pytest.mark.parametrize('commands, sending, named', [
+    ((MOVE, FASTER), ['xyz'], True), ((MOVE, FASTER), ['xy'], False), ((MOVE, FASTER), ['xyt', 'xyu'], False),
+    ((MOVE, MOVE), ['xyz'], False), ((MOVE,), ['xyz'], False)])
 def test_two_threads_that_send_different_commands_at_once_are_named(world, commands, sending, named):
-    world.processes.sending = sending
-    world.tick(*[('a', command) for command in commands])
-    assert not world.reports        # only from now on, the threads are counted
-    world.tick(*[('a', command) for command in commands])
-    world.tick(*[('a', command) for command in commands])       # named once
+    """x, y, z: threads that ran; t, u: others that ran by chance."""
+    sets = cycle(sending)
+    world.processes.senders = lambda _: set(next(sets))
+    for tick in range(5):
+        assert bool(world.reports) == (named and tick > 2)      # from the second tick on, the threads are compared
+        world.tick(*[('a', command) for command in commands])
     assert [text for _, text in world.reports] == ['sends different commands in one tick, from several threads'] * named
-    assert world.applied == [(tick, command) for tick in (1, 2, 3) for command in commands]
+    assert world.applied == [(tick, command) for tick in range(1, 6) for command in commands]
 
 
 def test_new_threads_are_tested(world):
