@@ -56,6 +56,8 @@ class BasePublisher:
     def publish_joints(self, stamp: rospy.Time, travel: tuple[float, float], velocity: tuple[float, float]) -> None:
         """Publish the joints, and the angles of the wheels from their travel (left, right; m) and velocity (m/s,
         rad/s)."""
+        if not self.joint_states.get_num_connections():
+            return
         linear, angular = velocity
         difference = angular * self.robot.base_width / 2
         wheels = [(name, distance / self.robot.wheel_radius, speed / self.robot.wheel_radius) for name, distance, speed
