@@ -9,7 +9,9 @@ KIND: wall_rate          time.sleep() between two commands
       keys               a command for each line of the input
       two_threads        two threads with a rospy.Rate each, whose order at a tick depends on chance
       two_commands       for comparison, on the clock: two commands at a time, of which the second one counts
+      exit               for comparison, on the clock: a node that exits just after a command
 """
+import os
 import sys
 import threading
 import time
@@ -86,6 +88,15 @@ def two_commands(publisher):
         publisher.publish(twist(SPEED / 2))
         publisher.publish(twist(SPEED))
         clock.sleep()
+
+
+def exit(publisher):
+    """Send a speed for 1 s, and exit without a stop."""
+    clock = rospy.Rate(20)
+    for _ in range(20):
+        clock.sleep()
+        publisher.publish(twist(SPEED))
+    os._exit(0)
 
 
 def main(kind):

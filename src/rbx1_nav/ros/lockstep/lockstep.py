@@ -248,7 +248,8 @@ class Lockstep:
         driver.tick, driver.time = self.tick, received.time
         if not driver.in_step or first and driver.motions == 1:
             return      # a node may wait by the wall clock before its first motion
-        reason = self.processes.obstacle(driver.name)
+        # a node that has exited since it sent the command is no longer visible
+        reason = self.processes.obstacle(driver.name) if self.processes.is_connected(driver.header) else None
         if not reason and count > COMMANDS:
             reason = f'sends more than {COMMANDS} commands at once'
         elif not reason and received.idle and not self.processes.find_sources():

@@ -235,6 +235,13 @@ def test_a_driver_that_cannot_be_in_step_is_named_if_it_drives(world):
     assert world.reports == [('a', 'does not subscribe to /clock')]
 
 
+def test_a_node_that_has_exited_is_not_named(world):
+    world.processes.obstacles = {'a': 'is not visible'}
+    world.processes.is_connected = lambda _: False
+    world.drive(3)
+    assert not world.reports and len(world.applied) == 3
+
+
 @pytest.mark.parametrize('commands, sending, named', [
     ((MOVE, FASTER), ['xyz'], True), ((MOVE, FASTER), ['xy'], False), ((MOVE, FASTER), ['xyt', 'xyu'], False),
     ((MOVE, MOVE), ['xyz'], False), ((MOVE,), ['xyz'], False)])
