@@ -108,8 +108,8 @@ class TestOffClock(unittest.TestCase):
     def test_two_commands(self):
         self.check(self.start(DRIVER, 'two_commands'), None)
 
-    def test_exit(self):
-        self.check(self.start(DRIVER, 'exit'), None)
+    def test_last_command(self):
+        self.check(self.start(DRIVER, 'last_command'), None)
 
     def test_rate(self):
         self.check(self.start(AT_RATE, 'rate', 20, 20), None)

@@ -9,7 +9,7 @@ KIND: wall_rate          time.sleep() between two commands
       keys               a command for each line of the input
       two_threads        two threads with a rospy.Rate each, whose order at a tick depends on chance
       two_commands       for comparison, on the clock: two commands at a time, of which the second one counts
-      exit               for comparison, on the clock: a node that exits just after a command
+      last_command       for comparison, on the clock: a node that exits just after a command
 """
 import os
 import sys
@@ -90,7 +90,7 @@ def two_commands(publisher):
         clock.sleep()
 
 
-def exit(publisher):
+def last_command(publisher):
     """Send a speed for 1 s, and exit without a stop."""
     clock = rospy.Rate(20)
     for _ in range(20):

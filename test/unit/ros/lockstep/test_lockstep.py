@@ -250,7 +250,7 @@ def test_two_threads_that_send_different_commands_at_once_are_named(world, comma
     sets = cycle(sending)
     world.processes.senders = lambda _: set(next(sets))
     for tick in range(5):
-        assert bool(world.reports) == (named and tick > 2)      # from the second tick on, the threads are compared
+        assert bool(world.reports) == (named and tick > 2)      # compared from the third tick on
         world.tick(*[('a', command) for command in commands])
     assert [text for _, text in world.reports] == ['sends different commands in one tick, from several threads'] * named
     assert world.applied == [(tick, command) for tick in range(1, 6) for command in commands]
