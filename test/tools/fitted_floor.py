@@ -71,7 +71,7 @@ class TestFittedFloor(unittest.TestCase):
         for key, tolerance in (
                 # the carpet's noise over 4 m and 4 half turns: three standard deviations, 0.022 and 0.024
                 ('slip_straight', 0.07), ('slip_turning', 0.07),
-                # the recorder stamps commands when they arrive, in simulated time, which is 10 times as fast
+                # the recorder stamps commands when they arrive, in simulated time, which is twice as fast
                 ('drag_straight', 0.003), ('drag_turning', 0.003)):
             self.assertAlmostEqual(getattr(fitted, key), getattr(floor, key), delta=tolerance, msg=f"{key}\n{output}")
             self.assertRegex(text, rf'\n{key}: .*fitted, \+- ')
