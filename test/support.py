@@ -96,6 +96,8 @@ class OdomWatch(Watch):
     """Stores all odometry messages of the base."""
 
     def __init__(self):
+        # rospy misses a publisher that registers while its own registration is being answered
+        wait_for(lambda: any(topic == '/odom' for topic, _ in rospy.get_published_topics()), 'a publisher of /odom')
         super().__init__('/odom', Odometry)
         wait_for(lambda: self.last, '/odom')
 
