@@ -16,7 +16,7 @@ from nav_msgs.msg import Odometry
 from roslib.packages import find_node
 from rosgraph_msgs.msg import Clock
 
-from rbx1_nav.ros.node import resources
+from rbx1_nav.ros.node import publisher_lists, resources
 from rbx1_nav.simulation.surfaces import known_surfaces
 
 COLOR = re.compile('\x1b\\[[0-9;]*m')
@@ -33,6 +33,7 @@ ATTEMPTS = 5
 
 def init_node(name):
     """Start a node that ignores simulated time: tests wait for conditions by the wall clock."""
+    publisher_lists.keep()
     rospy.init_node(name, disable_rostime=True, anonymous=True)
 
 
@@ -96,8 +97,6 @@ class OdomWatch(Watch):
     """Stores all odometry messages of the base."""
 
     def __init__(self):
-        # rospy misses a publisher that registers while its own registration is being answered
-        wait_for(lambda: any(topic == '/odom' for topic, _ in rospy.get_published_topics()), 'a publisher of /odom')
         super().__init__('/odom', Odometry)
         wait_for(lambda: self.last, '/odom')
 

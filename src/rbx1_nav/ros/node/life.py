@@ -20,6 +20,7 @@ from rospy.impl.paramserver import get_param_server_cache
 from rbx1_nav.config import YamlValue
 from rbx1_nav.parameters import Parameter, list_parameters
 from rbx1_nav.ros.network.master import require_master, wait_for_master
+from rbx1_nav.ros.node import publisher_lists
 from rbx1_nav.ros.node.arguments import check_command_line, report_parameters
 from rbx1_nav.ros.node.params import check_before_start, future_name, load_params, read_wait_timeout, stored_params
 
@@ -95,6 +96,7 @@ def init_node(name: str, usage: str, parameters: Sequence[Parameter] = (), requi
         check_before_start(name, parameters, check)
     if end_requested.is_set():
         raise rospy.ROSInterruptException('shutdown requested')
+    publisher_lists.keep()
     try:
         rospy.init_node(name, disable_signals=True, disable_rostime=wall_time)
     except (OSError, rospy.ROSInitException) as error:
