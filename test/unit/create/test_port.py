@@ -26,6 +26,7 @@ def test_a_port_is_opened_by_its_link(terminal):
     with open_port(terminal.link, 57600) as port:
         assert terminal.baud == 57600
         port.write(b'abc')
+        terminal.wait(10)
         assert terminal.read() == b'abc'
 
 
