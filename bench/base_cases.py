@@ -4,6 +4,8 @@ from typing import NamedTuple, Optional
 SMALL, MEDIUM, LARGE = (1e-5, 1e-5), (0.001, 0.03), (0.1, 0.5)      # variances, see Case
 LAB, HARD, CARPET = 'create_lab_floor', 'hard_floor', 'low_ply_carpet'
 
+SHORT = dict(lab=LAB, hard=HARD)
+
 
 class Case(NamedTuple):
     """A base and the messages that it sends. Pairs of variances for odometry: x and y (m^2), and yaw (rad^2), also used
@@ -12,7 +14,6 @@ class Case(NamedTuple):
     floor: str
     odom: Optional[tuple] = None        # variances; None: as reported by the simulated base
     odom_at_rest: Optional[tuple] = None    # None: as while moving
-    twist: bool = True                  # whether the twist also has a covariance; otherwise it is 0
     imu: Optional[tuple] = None         # variances; None: as reported by the simulated gyro
     bias: Optional[float] = None        # degrees/s, at the start; None: drawn, see the surface file
     drift: float = 0.0                  # of the bias, degrees/s per minute
@@ -22,6 +23,9 @@ class Case(NamedTuple):
     odom_rate: int = 50                 # Hz
     imu_rate: int = 50                  # Hz
     unbiased: str = ''                  # the name of the corresponding case with a bias of 0
+    rest: float = 3.0                   # s before the first motion; 0: the messages begin while the robot drives
+    path: str = 'legs'                  # a key of bases.PATHS, or random
+    fault: str = ''                     # see bases.Fault
 
 
 # a comment names the driver or robot that a case is taken from; the other cases vary one property
@@ -52,11 +56,26 @@ CASES = {case.name: case for case in (
     Case('odom_10_imu_30', CARPET, MEDIUM, odom_rate=10, imu_rate=30),      # robot_localization, test1.bag: a Husky
     Case('odom_25_imu_100', CARPET, MEDIUM, odom_rate=25, imu_rate=100),
     Case('odom_50_imu_400', CARPET, MEDIUM, imu_rate=400),
-    Case('pose_only', CARPET, MEDIUM, twist=False),
     # kobuki_node, use_imu_heading false: odometry.cpp, slot_callbacks.cpp
-    Case('kobuki', HARD, (0.1, 0.2), twist=False, imu=(0.005, 0.005)),
+    Case('kobuki', HARD, (0.1, 0.2), imu=(0.005, 0.005)),
     # create_node: covariances.py, turtlebot_node.py (update_rate), gyro.py (subtracts the bias from the rate)
     Case('create_node', CARPET, (1e-3, 1e3), odom_at_rest=(1e-9, 1e-9), imu=(1e-6, 1e-6), bias=0.0, odom_rate=30,
          imu_rate=30),
     # robot_localization, test1.bag: variances and rates of a Husky
-    Case('husky', CARPET, MEDIUM, imu=(4e-4, 1.225e-3), bias=1.0, ratio=2.0, speed=1.0, odom_rate=10, imu_rate=30))}
+    Case('husky', CARPET, MEDIUM, imu=(4e-4, 1.225e-3), bias=1.0, ratio=2.0, speed=1.0, odom_rate=10, imu_rate=30),
+    # paths on two floors, with a rest before them, without any, and with odometry that restarts
+    *(Case(f'{floor}_{path}{name}', SHORT[floor], MEDIUM, path=path, **changes)
+      for floor in SHORT for path in ('circle', 'eights', 'squares', 'random')
+      for name, changes in (('', {}), ('_no_rest', dict(rest=0.0)), ('_restart', dict(fault='restart')))),
+    Case('carpet_legs_no_rest', CARPET, MEDIUM, rest=0.0),
+    Case('skid_2_no_rest', CARPET, MEDIUM, ratio=2.0, rest=0.0, path='eights'),
+    Case('husky_no_rest', CARPET, MEDIUM, imu=(4e-4, 1.225e-3), bias=1.0, ratio=2.0, speed=1.0, odom_rate=10,
+         imu_rate=30, rest=0.0, path='random'),
+    Case('scale_circle', CARPET, MEDIUM, scale=0.02, path='circle'),
+    Case('large_covariances', HARD, (1e3, 1e3), path='random'),
+    # faults
+    Case('drift_straight', HARD, MEDIUM, bias=0.5, drift=0.5, path='straight'),
+    Case('clipped', HARD, MEDIUM, path='spins'),
+    Case('frozen', HARD, MEDIUM, path='squares', fault='frozen'),
+    Case('wheel_spins', HARD, MEDIUM, path='squares', fault='spin'),
+    Case('carried', HARD, MEDIUM, path='squares', fault='carried'))}

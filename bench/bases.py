@@ -18,24 +18,40 @@ from replay import replay
 from robot_pose_ekf import RobotPoseEkf
 from rbx1_nav.estimation.priors import UNKNOWN_FLOOR
 from rbx1_nav.estimation.inputs import Imu, Odom
-from rbx1_nav.robot.description import read_robot
+from rbx1_nav.robot.description import Limits, read_robot
 from rbx1_nav.ros.node import resources
+from rbx1_nav.robot.kinematics import ORIGIN
 from rbx1_nav.simulation.base import make_base
 from rbx1_nav.simulation.surfaces import load_surface
 from rbx1_nav.units import SECOND
 
-REST = 3.0              # s before the first motion
+LIMITS = Limits(4.0, 8.0)       # m/s, rad/s; no limits for these paths
+RUN_UP = 2.0            # s of driving before the first message, if there is no rest
 RATIO_SPREAD = 0.1      # 1 sigma of a skid-steer's ratio from motion to motion, as a fraction of the ratio
 SAMPLE = 0.5            # s between two poses for which the NEES is calculated
-# (s, fraction of the speed, rad/s): the exercise three times; figures of eight; legs, some of them without a stop
-PATHS = (((5, 1, 0), (1, 0, 0), (3.2, 0, 1), (1, 0, 0)) * 6,
-         ((10.4, 1, 0.6), (10.4, 1, -0.6), (2, 0, 0)) * 3,
-         ((4, 1, 0), (3, 0.5, 0.5), (6, 1, 0), (1.6, 0, 0), (1.6, 0, -1), (3, 1, 0), (5, 1, -0.3), (1.4, 0, 0),
-          (4, -0.5, 0), (4.8, 0, 1), (1, 0, 0)) * 2)
-ESTIMATORS = '', 'port_', 'reckoned_'      # prefixes of their figures; the first is the filter
+# (s, fraction of the speed, rad/s); one of the paths of a key, depending on the seed
+PATHS = {
+    # the exercise three times; figures of eight; legs, some of them without a stop
+    'legs': (((5, 1, 0), (1, 0, 0), (3.2, 0, 1), (1, 0, 0)) * 6,
+             ((10.4, 1, 0.6), (10.4, 1, -0.6), (2, 0, 0)) * 3,
+             ((4, 1, 0), (3, 0.5, 0.5), (6, 1, 0), (1.6, 0, 0), (1.6, 0, -1), (3, 1, 0), (5, 1, -0.3), (1.4, 0, 0),
+              (4, -0.5, 0), (4.8, 0, 1), (1, 0, 0)) * 2),
+    # without a stop
+    'circle': (((120, 1, 0.35),),),
+    'eights': (((18, 1, 0.35), (18, 1, -0.35)) * 5,),
+    'squares': (((5, 1, 0), (1.6, 0.5, 1)) * 27,),
+    'straight': (((180, 1, 0),),),
+    'spins': (((5, 1, 0), (3.5, 0, 3.6)) * 6,)}
+RANDOM = 600            # s, duration of the random path
+FAULT = 10.0, 4.0       # s: begin after the first motion, and duration
+SPIN, HAND = 0.3, 0.4   # m/s, rad/s: speed of a wheel without grip; a hand that turns the robot
+
+
+ESTIMATORS = '', 'port_', 'reckoned_', 'wheels_'       # prefixes of their figures; the first is the filter
 COLUMNS = (('heading', 'heading deg', 2), ('port_heading', 'port', 2), ('reckoned_heading', 'reckoned', 2),
-           ('position', 'position m', 2), ('port_position', 'port', 2), ('reckoned_position', 'reckoned', 2),
-           ('nees', 'NEES', 1), ('by_bias', 'by bias', 2))      # figure, title, decimals in Markdown
+           ('wheels_heading', 'wheels', 2), ('position', 'position m', 2), ('port_position', 'port', 2),
+           ('reckoned_position', 'reckoned', 2), ('wheels_position', 'wheels', 2),
+           ('nees', 'NEES/3', 2), ('claimed', 'claimed deg', 1), ('by_bias', 'by bias', 2))  # figure, title, decimals
 
 
 class Record(NamedTuple):
@@ -43,6 +59,7 @@ class Record(NamedTuple):
     odom: list      # (Odom, variances of its pose's x, y (m^2) and yaw (rad^2))
     imu: list       # (Imu, (yaw, variance) of its orientation), the first one for the time since 0
     truth: list     # Pose at the stamp of each Odom
+    restarts: list  # numbers of the Odoms at which the odometry restarts at the origin; the truth does, too
 
 
 def drive(robot, case, surface, seed):
@@ -50,25 +67,40 @@ def drive(robot, case, surface, seed):
     rng = random.Random('bases %d' % seed)
     if case.ratio != 1:     # equal noise in a true turn, although the wheels turn farther
         surface = surface._replace(heading_noise_turning=surface.heading_noise_turning / math.sqrt(case.ratio))
-    base = make_base(robot._replace(rate=case.odom_rate), surface, seed)
+    base = make_base(robot._replace(rate=case.odom_rate, limits=LIMITS), surface, seed)
     if case.bias is not None:
         base.gyro.run = base.gyro.run._replace(gyro_bias=math.radians(case.bias))
     if case.scale is not None:
         base.gyro.run = base.gyro.run._replace(gyro_scale_error=case.scale)
     # wheels that report twice the turn are commanded to turn twice as fast, so the paths are equal
     side = case.ratio * (1, -1)[seed // len(PATHS) % 2]
-    legs = [(REST, 0, 0), *PATHS[seed % len(PATHS)], (1, 0, 0)]
+    legs = [(case.rest or RUN_UP, *((0, 0) if case.rest else (1, 0.1))), *path_of(case.path, rng, seed)]
+    if case.rest:
+        legs.append((1, 0, 0))
+    begin = legs[0][0] * SECOND     # of the motion whose errors count
     ends = [round(end * SECOND) for end in accumulate(leg[0] for leg in legs)]
     # devices with different rates have separate clocks
     phase = 0.0 if case.imu_rate == case.odom_rate else rng.random()
     stamps = [(round(number * SECOND / case.odom_rate), 1) for number in range(ends[-1] * case.odom_rate // SECOND + 1)]
     stamps += [(round((number + phase) * SECOND / case.imu_rate), 0)
                for number in range(1, ends[-1] * case.imu_rate // SECOND + 2)]
-    record, current = Record([], [], []), None
+    record, current, before, frozen = Record([], [], [], []), None, 0, None
     base.read_gyro()        # readings start now
     for stamp, is_odom in sorted(stamps):
         base.advance(stamp)
+        at_fault = 0 <= stamp - begin - FAULT[0] * SECOND < FAULT[1] * SECOND
+        duration, before = (stamp - before) / SECOND, stamp
+        if case.fault == 'spin' and at_fault:
+            base.odometry.update(0.0, SPIN * duration)
+        elif case.fault == 'carried' and at_fault:
+            base.wheels.truth.move(0.0, HAND * duration)
+        elif case.fault == 'restart' and at_fault and is_odom and not record.restarts:
+            restart(base, record)
         if is_odom:
+            if not case.rest and stamp <= begin < stamp + SECOND / case.odom_rate:
+                record.odom.clear(), record.truth.clear(), record.restarts.clear()
+                record.imu[:] = record.imu[-1:]
+                restart(base, record)
             record.odom.append(odometry(case, base, stamp))
             record.truth.append(base.wheels.truth.pose)
         else:
@@ -77,24 +109,46 @@ def drive(robot, case, surface, seed):
                 base.gyro.run = base.gyro.run._replace(gyro_bias=math.radians(bias))
             reading = base.read_gyro()
             rate_variance, yaw_variance = case.imu or (reading.rate_variance, reading.yaw_variance)
+            if case.fault == 'frozen' and at_fault:
+                frozen = frozen or reading
+                reading = frozen
             record.imu.append((Imu(stamp, reading.rate, rate_variance), (reading.yaw, yaw_variance)))
         leg = min(bisect_right(ends, stamp), len(legs) - 1)
         if leg != current and case.ratio != 1:
             ratio = case.ratio * max(0.5, rng.gauss(1, RATIO_SPREAD))
             base.wheels.run = base.wheels.run._replace(slip_turning=1 - 1 / ratio)
         current = leg
-        base.command(stamp, legs[leg][1] * case.speed, legs[leg][2] * side)
+        linear, angular = legs[leg][1] * case.speed, legs[leg][2] * side
+        if case.fault == 'carried' and at_fault:
+            linear = angular = 0.0
+        base.command(stamp, linear, angular)
     return record
+
+
+def path_of(name, rng, seed):
+    """The legs of a path."""
+    if name != 'random':
+        return PATHS[name][seed % len(PATHS[name])]
+    legs = []
+    while sum(leg[0] for leg in legs) < RANDOM:
+        legs.append((rng.uniform(1, 8), rng.uniform(0.3, 1), rng.choice((0, rng.uniform(-1, 1)))))
+    return legs
+
+
+def restart(base, record):
+    """Restart the odometry and the truth at the origin."""
+    base.gyro._true_yaw -= base.wheels.truth.pose.yaw
+    base.odometry.pose = base.wheels.truth.pose = ORIGIN
+    record.restarts.append(len(record.odom))
 
 
 def odometry(case, base, stamp):
     """(Odom, variances of its pose's x, y and yaw) of a base."""
-    position, yaw, linear, angular = base.wheels.uncertainty
+    position, yaw = base.wheels.uncertainty[:2]
     if case.odom:
-        position, yaw = linear, angular = case.odom_at_rest if case.odom_at_rest and base.at_rest else case.odom
-    if not case.twist:
-        linear = angular = 0.0
-    return Odom(stamp, base.odometry.pose, linear, angular), (position, position, yaw)
+        position, yaw = case.odom_at_rest if case.odom_at_rest and base.at_rest else case.odom
+    return Odom(stamp, base.odometry.pose, position if case.odom else base.wheels.uncertainty.linear,
+                yaw if case.odom else base.wheels.uncertainty.angular), (position, position, yaw)
 
 
 def run_filter(record):
@@ -109,38 +163,49 @@ def yaw_at_odometry(record, yaws):
     return numpy.interp([odom.stamp for odom, _ in record.odom], [imu.stamp for imu, _ in record.imu], yaws)
 
 
-def run_port(record):
-    """The last pose of robot_pose_ekf's arithmetic. The IMU's yaw is integrated after its calibration at rest."""
-    port = RobotPoseEkf()
+def run_port(record, start=0):
+    """The poses of robot_pose_ekf's arithmetic from an Odom on. The IMU's yaw is integrated after its calibration at
+    rest."""
+    port, poses = RobotPoseEkf(), []
     yaws, variances = (yaw_at_odometry(record, [each[1][index] for each in record.imu]) for index in (0, 1))
-    for (odom, pose_variances), yaw, variance in zip(record.odom, yaws, variances):
+    for (odom, pose_variances), yaw, variance in list(zip(record.odom, yaws, variances))[start:]:
         port.update(odom.stamp / SECOND, odom.pose, pose_variances, yaw, variance)
-    return port.state
+        poses.append(port.state)
+    return poses
 
 
-def reckon(record):
-    """The last pose of dead reckoning: wheel distance along the gyro heading. The mean gyro rate of the first REST
-    seconds is subtracted before the integration."""
+def reckon(record, rest, start=0):
+    """The poses of dead reckoning from an Odom on: wheel distance along the gyro heading. The mean gyro rate of the
+    first `rest` seconds is subtracted before the integration."""
     stamps = numpy.array([imu.stamp for imu, _ in record.imu]) / SECOND
     rates = numpy.array([imu.rate for imu, _ in record.imu])
-    durations = numpy.diff(stamps, prepend=0.0)
-    rest = stamps <= REST
-    yaws = yaw_at_odometry(record, numpy.cumsum((rates - numpy.average(rates[rest], weights=durations[rest]))
-                                                * durations))
-    x, y, yaw = numpy.array([odom.pose for odom, _ in record.odom]).T
+    durations = numpy.diff(stamps, prepend=stamps[0] if record.odom[0][0].stamp else 0.0)
+    resting = stamps <= rest
+    bias = numpy.average(rates[resting], weights=durations[resting]) if rest else 0.0
+    yaws = yaw_at_odometry(record, numpy.cumsum((rates - bias) * durations))[start:]
+    x, y, yaw = numpy.array([odom.pose for odom, _ in record.odom[start:]]).T
+    yaws += yaw[0] - yaws[0]
     reported, turned = (each[:-1] + numpy.diff(each) / 2 for each in (yaw, yaws))
     forward = numpy.diff(x) * numpy.cos(reported) + numpy.diff(y) * numpy.sin(reported)
-    return numpy.sum(forward * numpy.cos(turned)), numpy.sum(forward * numpy.sin(turned)), yaws[-1]
+    x, y = (numpy.cumsum([first, *forward * f(turned)]) for first, f in ((x[0], numpy.cos), (y[0], numpy.sin)))
+    return numpy.stack([x, y, yaws], axis=1)
 
 
 def judge(case, record):
-    """An array: final squared errors of each of ESTIMATORS (degrees^2, m^2), and the mean NEES of the filter."""
-    estimates, truth = run_filter(record), record.truth
-    start, step = round((REST + SAMPLE) * case.odom_rate), round(SAMPLE * case.odom_rate)
-    nees = numpy.mean([consistency(estimate.pose, true, estimate.covariance)
-                       for estimate, true in zip(estimates[start::step], truth[start::step])])
-    return numpy.array([*squared_errors(estimates[-1].pose, truth[-1]), *squared_errors(run_port(record), truth[-1]),
-                        *squared_errors(reckon(record), truth[-1]), nees])
+    """An array: mean squared errors of each of ESTIMATORS (degrees^2, m^2) over the run, the mean NEES of the filter
+    divided by 3, and the mean variance that it claims for its heading (degrees^2)."""
+    start = record.restarts[-1] if record.restarts else 0
+    estimates, truth = run_filter(record)[start:], record.truth[start:]
+    first, step = round(((0 if start else case.rest) + SAMPLE) * case.odom_rate), round(SAMPLE * case.odom_rate)
+    values = []
+    for poses in ([estimate.pose for estimate in estimates], run_port(record, start), reckon(record, case.rest, start),
+                  [odom.pose for odom, _ in record.odom[start:]]):
+        pairs = zip(poses[first::step], truth[first::step])
+        values += numpy.mean([squared_errors(*pair) for pair in pairs], axis=0).tolist()
+    pairs = list(zip(estimates, truth))[first::step]
+    nees = numpy.mean([consistency(estimate.pose, true, estimate.covariance) for estimate, true in pairs]) / 3
+    claimed = numpy.mean([math.degrees(math.sqrt(estimate.covariance[2, 2])) ** 2 for estimate, _ in pairs])
+    return numpy.array([*values, nees, claimed])
 
 
 def run(task):
@@ -149,9 +214,9 @@ def run(task):
 
 
 def figures(name, seeds, sums):
-    """The row of a case: root mean square of the final errors over the seeds (degrees, m), and the mean NEES."""
+    """The row of a case: root mean squares over the seeds (degrees, m), and the mean NEES / 3."""
     means = [float(value) / seeds for value in sums]
-    row = dict(case=name, seeds=seeds, nees=means[-1])
+    row = dict(case=name, seeds=seeds, nees=means[-2], claimed=math.sqrt(means[-1]))
     for prefix, heading, position in zip(ESTIMATORS, means[0::2], means[1::2]):
         row.update({f'{prefix}heading': math.sqrt(heading), f'{prefix}position': math.sqrt(position)})
     return row
@@ -159,8 +224,15 @@ def figures(name, seeds, sums):
 
 def judged(row, unbiased=None):
     """The row with its limits and misses. unbiased: the row of the corresponding case with a bias of 0."""
-    row = dict(row, limits=dict(
-        heading=(0, 1.1 * min(row['port_heading'], row['reckoned_heading']) + 0.1), nees=(0.3, 6)))
+    case = CASES.get(row['case'])
+    if case and not case.rest:
+        limits = dict(heading=1.2 * row['reckoned_heading'] + 2)
+    elif case and (case.fault not in ('', 'restart') or case.path in ('straight', 'spins')):
+        limits = dict(heading=1.5 * min(row[f'{each}heading'] for each in ESTIMATORS[1:]) + 2)
+    else:
+        limits = {figure: 1.2 * min(row[f'{each}{figure}'] for each in ('port_', 'reckoned_')) + margin
+                  for figure, margin in (('heading', 0.5), ('position', 0.02))}
+    row = dict(row, limits={**{figure: (0, limit) for figure, limit in limits.items()}, 'nees': (0.05, 5)})
     if unbiased:
         row['by_bias'] = row['heading'] / unbiased['heading']
         row['limits']['by_bias'] = 0, 1.2

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy
 import rosbag
 
-from replay import replay
+from replay import pose_variances, replay
 from rbx1_nav.estimation.priors import UNKNOWN_FLOOR
 from rbx1_nav.estimation.gyro_input import GyroInput
 from rbx1_nav.ros import messages
@@ -40,7 +40,8 @@ def read_record(path, odom, imu, fix):
             raise ValueError(f'{topic}: {len(each)} messages of type {kind}: expected at least 2')
         each.sort(key=lambda message: message.header.stamp)
     twists = [message.twist.twist for message in found[odom]]
-    return Record([messages.from_odometry(message) for message in found[odom]], gyro_readings(found[imu]),
+    return Record([(messages.from_odometry(message), pose_variances(message)) for message in found[odom]],
+                  gyro_readings(found[imu]),
                   [(twist.linear.x, twist.angular.z) for twist in twists],
                   [(message.header.stamp.to_nsec(), message.latitude, message.longitude) for message in found[fix]])
 

@@ -26,7 +26,7 @@ LONG = 100      # steps after which a filter counts as long-running
 START = 1000 * SECOND   # ns, of the first message
 WARNINGS = (('dropouts', 'has timed out'), ('recoveries', 'has recovered'), ('restarts', 'restarting'),
             ('outliers', ': ignored'), ('contradictions', 'one of them is wrong'),
-            ('other floors', 'assumed floor'))
+            ('slips', 'the wheels slip'))
 
 
 def log_uniform(rng, low, high):
@@ -46,8 +46,8 @@ class Robot:
         self.rate = log_uniform(rng, 1e-3, 0.05)        # probability of each fault per tick
         self.gaps = rng.random() < 0.7
         self.jumps = rng.random() < 0.5
-        # half of the sensors always report constant variances, the others arbitrary ones
-        self.variances = [self._variance() for _ in range(5)] if rng.random() < 0.5 else None
+        # half of the gyros always report a constant variance, the others arbitrary ones
+        self.variance = self._variance() if rng.random() < 0.5 else None
         self.lags = [rng.choice([0.0, 0.0, 0.0, log_uniform(rng, 1e-3, 3.0)]) for _ in range(2)]   # s, odom and imu
         self.slip, self.bias = rng.gauss(0, 0.1), rng.gauss(0, 0.02)
         self.sensitivity = rng.choice([1.0] * 8 + [-1.0, 0.0])      # of the gyro: some are upside down, or broken
@@ -61,7 +61,7 @@ class Robot:
         return self.rng.random() < self.rate
 
     def tick(self):
-        """The messages of a tick: [(ns of arrival, message)]; a message is an Imu, or (Odom, variances of its pose)."""
+        """The messages of a tick: [(ns of arrival, message)]; a message is an Imu or an Odom."""
         rng = self.rng
         elapsed, gap = self.period, self.gaps and self._fault()
         if gap:
@@ -91,17 +91,12 @@ class Robot:
             self.outlier = there
 
     def _odom(self):
-        linear, angular, *pose_variances = self.variances and self.variances[:4] or [self._variance() for _ in range(4)]
-        if self.rng.random() < 0.02:
-            linear = angular = 0.0      # the variances of the pose are used instead
         pose, self.outlier = self.outlier or self.pose, None
-        noise = min(math.sqrt(angular), 0.003)
         x, y, yaw = pose
-        return Odom(self.now, Pose(x, y, yaw + self.rng.gauss(0, noise)), linear, angular), (
-            pose_variances[0], pose_variances[0], pose_variances[1])
+        return Odom(self.now, Pose(x, y, yaw + self.rng.gauss(0, 0.003)))
 
     def _imu(self, rate):
-        variance = self.variances[4] if self.variances else self._variance()
+        variance = self.variance or self._variance()
         noise = self.rng.gauss(0, min(math.sqrt(variance), 0.05))
         return Imu(self.now, rate * self.sensitivity + self.bias + noise, variance)
 
@@ -167,7 +162,7 @@ def run(floors, count, seed):
             if isinstance(message, Imu):
                 combined.add_imu(now, message)
             else:
-                combined.add_odom(now, *message)
+                combined.add_odom(now, message)
         except RejectedMessage:
             counts['rejected'] += 1
         except Exception as error:

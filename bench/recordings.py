@@ -49,6 +49,7 @@ def finish(session, process, limit):
     if status:
         command = next(command for started, command, _ in session.started if started is process)
         raise bench.Failure(f'"{command}": exit status {status}\n{session.output()}')
+    session.started = [each for each in session.started if each[0] is not process]     # the others must keep running
 
 
 def record(path, seed, args):
@@ -59,6 +60,7 @@ def record(path, seed, args):
         recorder = session.start(f'{RECORDER} -O {path} {" ".join(TOPICS)}')
         session.wait(lambda: all(any(name.startswith('/record') for name in subscribers(session, topic))
                                  for topic in TOPICS), 'the recorder')
+        finish(session, session.start(RESET), bench.START)
         # the filter counts its lost messages; only on its own subscriptions, so that nothing else is slowed down
         master = session.changes['ROS_MASTER_URI']
         session.call(master, 'setParam', '/enable_statistics', True)
@@ -71,14 +73,12 @@ def record(path, seed, args):
 
         loops = [subprocess.Popen([sys.executable, '-c', 'while True: pass']) for _ in range(args.load)]
         began = time.monotonic()
-        # from here on, the filter and a replay start with the same message
-        finish(session, session.start(RESET), bench.START)
         time.sleep(REST / args.factor)
         finish(session, session.start(DRIVER), args.limit)
         time.sleep(REST)
         for loop in loops:
             loop.kill()
-        for process, command, _ in session.started[:4]:
+        for process, command, _ in session.started:
             if process.poll() is not None:
                 raise bench.Failure(f'"{command}" exited during the run')
         received = [row[:2] for row in probe.ask('record')[1] if row[0] > began]
@@ -105,7 +105,7 @@ def read(path):
                 stamp = message.header.stamp.to_nsec()
                 headers[topic].append((message.header.seq, stamp))
             if topic == '/odom':
-                found.odom.append(messages.from_odometry(message))
+                found.odom.append((messages.from_odometry(message), replay.pose_variances(message)))
             elif topic == '/imu/data':
                 data = messages.from_imu(message)
                 found.imu.append((gyro.read(data), (messages.yaw_of(message.orientation), data.yaw_variance)))

@@ -31,6 +31,11 @@ class Unusable(Exception):
     """A recording that cannot be evaluated; the text gives the reason."""
 
 
+def pose_variances(message):
+    """The variances of x, y and yaw of an Odometry message."""
+    return tuple(message.pose.covariance[index] for index in (0, 7, 35))
+
+
 def gaps(headers):
     """(stamp after the gap, number of missing messages), from (sequence number, stamp) of the received messages."""
     return [(stamp, number - before - 1) for (before, _), (number, stamp) in zip(headers, headers[1:])
@@ -55,7 +60,7 @@ def replay(recording, prior, start, end=math.inf):
     estimates = {}
     for stamp, kind, message in sorted(messages, key=lambda each: each[:2]):
         if kind:
-            combined.add_odom(stamp, *message)
+            combined.add_odom(stamp, message[0])
         else:
             combined.add_imu(stamp, message)
         if combined.estimate:
@@ -73,20 +78,14 @@ def replay_port(recording, start, end):
 
 
 def find_start(recording, prior):
-    """The stamp of the first odometry after the filter's restart. Raises Unusable.
+    """The stamp of the first odometry that the filter received. Raises Unusable.
 
-    The variance of the yaw becomes small at a restart. How small it is at the first published estimate depends on the
-    number of steps until then.
+    How small the variance of the yaw is at the first published estimate depends on the number of steps until then.
     """
-    combined = recording.combined
-    restarts = [number for number in range(1, len(combined))
-                if combined[number].yaw_variance < combined[number - 1].yaw_variance / 2]
-    if not restarts:
-        raise Unusable('the filter was not restarted: expected a smaller variance of the yaw')
-    before, first = combined[restarts[-1] - 1], combined[restarts[-1]]
-    starts = [odom.stamp for odom, _ in recording.odom if before.stamp < odom.stamp <= first.stamp]
+    first = recording.combined[0]
+    starts = [odom.stamp for odom, _ in recording.odom if first.stamp - SECOND < odom.stamp <= first.stamp]
     if not starts:
-        raise Unusable('no odometry was recorded at the restart of the filter')
+        raise Unusable('no odometry was recorded at the start of the filter')
 
     def deviation(start):
         estimate = replay(recording, prior, start, first.stamp).get(first.stamp)
@@ -138,12 +137,12 @@ def exercise(recording):
 
 def live_figures(recording, prior, period):
     """The reports of the live filter, whether it received the recorded messages, and its difference from the replay,
-    from its restart to the end of the exercise. period: publishing period, ns. Raises Unusable."""
+    from its start to the end of the exercise. period: publishing period, ns. Raises Unusable."""
     start, (begin, end) = find_start(recording, prior), exercise(recording)
     if start > begin:
-        raise Unusable(f'the filter was restarted less than {STANDSTILL / SECOND:g} s before the motion')
+        raise Unusable(f'the filter was started less than {STANDSTILL / SECOND:g} s before the motion')
     estimates = replay(recording, prior, start, end)
-    # the gyro may be ahead at a restart: the first published estimate differs
+    # the gyro may be ahead at the start: the first published estimate differs
     published = [each for each in recording.combined if start + SECOND < each.stamp <= end]
     if not published:
         raise Unusable('no odom_combined during the exercise')

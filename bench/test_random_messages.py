@@ -57,7 +57,7 @@ def test_the_sequences_have_every_fault():
     assert 5e6 * SECOND < gap < 2e7 * SECOND    # two gaps may be consecutive
     assert MIN_VARIANCE <= min(variances) < 1e-11 and 1e11 < max(variances) <= MAX_VARIANCE
     assert doubled > 50 and swapped > 50
-    assert all(counts[name] for name in ('dropouts', 'recoveries', 'restarts', 'outliers', 'other floors'))
+    assert all(counts[name] for name in ('dropouts', 'recoveries', 'restarts', 'outliers', 'contradictions'))
     assert counts['rejected'] < 0.1 * counts['messages'] and counts['late estimates'] > 0.2 * counts['estimates']
 
 

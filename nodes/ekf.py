@@ -87,7 +87,7 @@ class Ekf:
     def add_odom(self, now, message):
         """Pass an Odometry to the filter."""
         frames = frames_of(message, self.parameters)
-        self.combined.add_odom(now, *messages.from_odometry(message))
+        self.combined.add_odom(now, messages.from_odometry(message))
         self.frames = frames
 
     def restart(self, sender):

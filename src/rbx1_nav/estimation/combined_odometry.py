@@ -2,21 +2,21 @@
 from __future__ import annotations
 
 from collections import deque
-from math import cos, hypot, sin
-from typing import Callable, Deque, NamedTuple, Sequence
+from copy import copy
+from math import cos, sin
+from typing import Callable, Deque, NamedTuple
 
 from rbx1_nav.arrays import Array
 from rbx1_nav.estimation.arrivals import IMU, MAX_LEAD, MAX_WAIT, ODOM, Arrivals
 from rbx1_nav.estimation.doubts import Doubts
-from rbx1_nav.estimation.filter import Filter
+from rbx1_nav.estimation.filter import X, Y, YAW, Filter, Measurement
 from rbx1_nav.estimation.inputs import Imu, Odom, check_imu, check_odom
 from rbx1_nav.estimation.jumps import distance, format_pose, has_jumped
 from rbx1_nav.estimation.limits import Limits
-from rbx1_nav.estimation.model import BIAS, TURNING, X, Y, YAW, Measurement
 from rbx1_nav.estimation.past_yaws import PastYaws
 from rbx1_nav.estimation.priors import UNKNOWN_FLOOR, Priors
 from rbx1_nav.estimation.readings import Readings
-from rbx1_nav.estimation.standstill import Part, Standstill
+from rbx1_nav.estimation.standstill import STANDSTILL, Part, Standstill
 from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.units import SECOND, wrap_angle
 
@@ -58,6 +58,10 @@ class CombinedOdometry:
         self.warn = warn
         self.arrivals = Arrivals(timeout, warn, clock, max_lead)
         self.readings = Readings(limits)
+        self.filter: Filter | None = None
+        self.learned: Filter | None = None
+        self.standstill = Standstill(limits.gyro_bias)
+        self.doubts = Doubts(warn)
         self.restart()
 
     def reset(self, now: int) -> None:
@@ -70,7 +74,8 @@ class CombinedOdometry:
         if reason:
             self.warn(f'{reason}: restarting at the odometry pose')
         self.start = 0              # ns, stamp of the first message that counts
-        self.filter: Filter | None = None
+        self.learned = self.filter or self.learned      # about the sensors, which a restart does not change
+        self.filter = None
         self.estimate: Estimate | None = None       # the latest one
         self.pending: Deque[tuple[int, Odom]] = deque()     # with arrival times (ns), until the gyro has caught up
         self.readings.waiting.clear()
@@ -78,8 +83,8 @@ class CombinedOdometry:
         self.odom: Odom | None = None       # the last odometry that was used in a step
         self.odom_yaw = 0.0         # rad, the filter's yaw at that time
         self.yaws = PastYaws()      # yaws since then, if the gyro is ahead of the odometry
-        self.doubts = Doubts(self.warn)
-        self.standstill = Standstill(self.limits.gyro_bias)
+        self.doubts.contradicted = None
+        self.standstill.restart()
         self.placed: tuple[int, Pose, Array] | None = None      # arguments of set_pose(), until the first step after it
         self.placed_at = 0          # ns, the time of the last set_pose() that counts
         self.suspect: Odom | None = None    # odometry that has jumped, until the next message confirms it
@@ -115,15 +120,9 @@ class CombinedOdometry:
             self._place(self.filter)
             self._finish(self.filter, self.time)
 
-    def add_odom(self, now: int, odom: Odom, pose_variances: Sequence[float]) -> None:
-        """Process an Odom that arrived at `now` (ns). Raises RejectedMessage.
-
-        pose_variances: x, y (m^2) and yaw (rad^2). If the sender gives no variances of its speeds (0), these are used
-        as the variances of one second's travel, as in robot_pose_ekf.
-        """
-        check_odom(odom, pose_variances)
-        if not (odom.linear_variance and odom.angular_variance):
-            odom = odom._replace(linear_variance=pose_variances[0], angular_variance=pose_variances[2])
+    def add_odom(self, now: int, odom: Odom) -> None:
+        """Process an Odom that arrived at `now` (ns). Raises RejectedMessage."""
+        check_odom(odom)
         self._arrive(ODOM, now, odom.stamp)
         if odom.stamp >= self.start:
             self.pending.append((self.arrivals.time, odom))
@@ -134,8 +133,8 @@ class CombinedOdometry:
         check_imu(imu)
         before = self._arrive(IMU, now, imu.stamp)
         # the first reading after a dropout covers a period whose start is unknown
-        if (self.filter or self.pending) and before is not None and imu.stamp - before <= self.timeout:
-            self.readings.add(imu)
+        if (self.odom or self.pending) and before is not None and imu.stamp - before <= self.timeout:
+            self.readings.add(imu, self.standstill.case == STANDSTILL)
         self.readings.last = imu
         self._make_steps()
 
@@ -182,20 +181,20 @@ class CombinedOdometry:
         if self.placed and odom.stamp > self.placed[0]:
             self._place(ekf)
         duration = max(0, odom.stamp - self.time) / SECOND      # shorter than since `last` if the gyro was used alone
-        gyro, missing = self._gyro_turn(odom.stamp)
+        gyro = self._gyro_turn(odom.stamp)
         if self.standstill.rests(odom.stamp, odom.pose) and gyro and self.time == last.stamp:
-            ekf.rest(duration)
             self.standstill.add(Part(duration, *gyro), ekf)
             self.odom_yaw = ekf.state[YAW]
         else:
             if self.standstill.case:
                 self._leave_standstill(ekf)
-            self._drive(ekf, last, odom, duration, gyro, missing)
+            self._drive(ekf, last, odom, duration, gyro)
         self._finish(ekf, max(odom.stamp, self.time), odom)
 
     def _begin(self, odom: Odom) -> None:
         """Begin at the pose of the first Odom."""
-        ekf = self.filter = Filter(self.prior, odom.pose, self.limits.gyro_bias)
+        ekf = self.filter = copy(self.learned) or Filter(self.prior, odom.pose, self.limits.gyro_bias)
+        ekf.place(odom.pose)
         self.odom_yaw = odom.pose.yaw
         if self.placed:
             self._place(ekf)
@@ -213,10 +212,9 @@ class CombinedOdometry:
             self.suspect = odom
         return self.suspect is not None
 
-    def _drive(self, ekf: Filter, last: Odom, odom: Odom, duration: float, gyro: Measurement | None,
-               missing: float) -> None:
-        """Move the robot from one Odom to the next. duration: time since the last step, s; gyro, missing: see
-        Readings.turn()."""
+    def _drive(self, ekf: Filter, last: Odom, odom: Odom, duration: float, gyro: Measurement | None) -> None:
+        """Move the robot from one Odom to the next. duration: time since the last step, s; gyro: its turn since then.
+        """
         elapsed = (odom.stamp - last.stamp) / SECOND
         # if set_pose() took effect since the last odometry, only the rest of the distance counts
         share = min(1.0, max(0, odom.stamp - self.placed_at) / (odom.stamp - last.stamp))
@@ -227,32 +225,30 @@ class CombinedOdometry:
             wheels = turned, odom.angular_variance * elapsed ** 2
         elif duration and not gyro:
             # the gyro was used alone, but not up to here: the wheels measured the rest of the turn
-            already = (ekf.state[YAW] - self.odom_yaw) / (1 - ekf.state[TURNING])
+            already = (ekf.state[YAW] - self.odom_yaw) / (1 - self.prior.slip_turning)
             wheels = wrap_angle(turned - already), odom.angular_variance * elapsed ** 2
-        turn = ekf.update(duration, wheels, gyro, hypot(dx, dy), missing)
-        if wheels and gyro:
-            by_gyro = gyro[0] - ekf.state[BIAS] * duration
-            if ekf.agreement.add(wheels[0], by_gyro, gyro[1] + missing, hypot(dx, dy), duration):
-                self.doubts.check(ekf, self.time)
-
-        # the displacement in the frame of the wheels' heading halfway through the turn
+        # in the frame of the wheels' heading halfway through the turn
         heading = last.pose.yaw + turned / 2
         c, s = cos(heading), sin(heading)
         forward, left = dx * c + dy * s, dy * c - dx * s
+        turn = ekf.turn(duration, wheels, gyro, forward)
         # this heading in the filter's frame: halfway between the yaws at the last odometry and at this one
         yaw = ekf.state[YAW]
         end = yaw + turn.angle if odom.stamp >= self.time else self.yaws.at(odom.stamp)
         ahead = turned + wrap_angle(end - self.odom_yaw - turned)
-        ekf.predict(duration, turn, self.odom_yaw + ahead / 2 - yaw - turn.angle / 2, forward, left,
-                    odom.linear_variance * elapsed ** 2)
+        ekf.step(duration, turn, self.odom_yaw + ahead / 2 - yaw - turn.angle / 2, forward, left,
+                 odom.linear_variance * elapsed ** 2)
         self.odom_yaw = end
+        verdict = ekf.compare()
+        if verdict:
+            self.doubts.check(verdict, ekf, odom.stamp)
 
     def _leave_standstill(self, ekf: Filter) -> None:
         """Use the gyro's turn in the last part at rest, in which the robot may have begun to turn."""
         last = self.standstill.leave(ekf)
         if last.time:
             before = ekf.state[YAW]
-            ekf.predict(last.time, ekf.update(last.time, None, (last.angle, last.variance)))
+            ekf.step(last.time, ekf.turn(last.time, None, (last.angle, last.variance)))
             self.odom_yaw += ekf.state[YAW] - before
 
     def _step_by_gyro(self, ekf: Filter, end: int) -> None:
@@ -261,17 +257,17 @@ class CombinedOdometry:
         if duration > 0:
             if self.placed and end > self.placed[0]:
                 self._place(ekf)
-            gyro, missing = self._gyro_turn(end)
+            gyro = self._gyro_turn(end)
             if not gyro:    # the wheels will measure this turn
                 return
             if self.standstill.case:
                 self._leave_standstill(ekf)
             self.yaws.add(self.time, ekf.state[YAW])
-            ekf.predict(duration, ekf.update(duration, None, gyro, missing=missing))
+            ekf.step(duration, ekf.turn(duration, None, gyro))
             self._finish(ekf, end)
             self.yaws.add(end, ekf.state[YAW])
 
-    def _gyro_turn(self, end: int) -> tuple[Measurement | None, float]:
+    def _gyro_turn(self, end: int) -> Measurement | None:
         """Return the turn since the last step, see Readings.turn()."""
         return self.readings.turn(self.time, end, self.prior.gyro_measurement_range, self.standstill.max_density)
 

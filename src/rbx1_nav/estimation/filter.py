@@ -1,299 +1,295 @@
 """The arithmetic of the combined odometry: a planar extended Kalman filter of wheel odometry and a gyro.
 
-The model and its state are in model.py. In each step, update() uses the difference of wheels and gyro as a measurement
-of their errors, and predict() makes the step with the mean of both. The differences of several steps are used as one
-sum, because the wheels may report the turn of a single step in coarse units. The rest is the standard filter (Thrun,
-Burgard and Fox, Probabilistic Robotics, section 3.3; their letters in parentheses): the covariance P (Sigma), the
-derivatives F (G) of the state after a step and H of a measured value, the variance R (Q) of that value, and the gain K.
-Unlike there, update() comes first in a step, because the turn in predict() depends on the corrected errors.
+The gyro measures how the robot turns, and the wheels measure how far it moves. The wheels measure the turn only if the
+gyro cannot (readings.py).
 
-Which of the errors are learned depends on the case:
+- The state is the pose x, y (m), yaw (rad), the bias of the gyro (rad/s), and the curvature that unequal wheels drive
+  (rad/m). The bias is learned at rest (standstill.py). Until the first rest it is 0, with the uncertainty of any gyro.
+- Three more errors are considered, but not estimated: the gyro's scale error, and the slip of the wheels in turns and
+  in straight motion (fractions of the travel). They have the mean and the spread of the floor (priors.py), and widen
+  the covariance of the state (Schmidt, Application of state-space methods to navigation problems, 1966; Brown and
+  Hwang, Introduction to Random Signals and Applied Kalman Filtering, section 5.9).
+- The turns of wheels and gyro are compared in windows (a chi-square test). After a rest, their difference in straight
+  motion, where slip hardly matters, is a measurement of curvature and bias.
+- When they differ by more than all of these errors allow, the slip of the wheels has grown, if that is possible; or the
+  bias has drifted, if the motion was straight. Otherwise, the heading is in doubt until both agree again.
 
-- standstill (standstill.py): the gyro's rate is its bias. The change of the bias between two standstills shows how fast
-  it drifts, and so how uncertain the heading becomes between them.
-- agreement: wheels and gyro differ by no more than a floor allows. The difference is a measurement of the slip. It is
-  also a measurement of bias and scale error, but only until the bias has been learned at rest, because slip that is not
-  in the model would corrupt them. The noise of the wheels is as small as the differences show (noise.py).
-- contradiction: wheels and gyro differ by more than on any floor (agreement.py). The heading uncertainty grows by the
-  difference. From then on, a turn measures only the slip. When wheels and gyro agree again, the doubt
-  shrinks to the part that this slip does not explain.
-- carried (standstill.py): the heading turns with the gyro, and its uncertainty grows by the turn. The uncertainty of
-  the position grows by the distance that the robot may have been carried.
+The covariance P, the derivatives F of the errors after a step, a square root G of its noise, the variance S of a
+difference and the gain K have their usual letters.
 """
 from __future__ import annotations
 
-from math import exp, radians, sqrt
+from math import cos, exp, hypot, pi, radians, sin, sqrt
+from typing import NamedTuple, Tuple
 
 import numpy
 
 from rbx1_nav.arrays import Array
-from rbx1_nav.estimation.agreement import Agreement
-from rbx1_nav.estimation.covariance import Covariance
 from rbx1_nav.estimation.limits import Limits
-from rbx1_nav.estimation.model import (
-    BIAS, SCALE, STRAIGHT, TURNING, X, Y, YAW, HeadingChange, Measurement, Turns, innovation, innovation_derivatives,
-    mean_turn, move, turn_by_gyro, turn_by_wheels)
-from rbx1_nav.estimation.noise import Drift, NoiseFactor
 from rbx1_nav.estimation.priors import UNKNOWN_FLOOR, Priors
+from rbx1_nav.estimation.window import WINDOW_TIME, WINDOW_TURN, Sums, Window
 from rbx1_nav.robot.kinematics import Pose
-from rbx1_nav.units import clamp
+
+# indices of P; the state has the first five. WINDOW: the difference of both turns in the window
+X, Y, YAW, BIAS, CURVATURE, SCALE, SLIP_TURNING, SLIP_STRAIGHT, WINDOW = range(9)
+IDENTITY = numpy.eye(9)
 
 START_VARIANCE = 1e-9       # variance of the first pose, m^2 and rad^2: the frame begins at this pose
-BIAS_WALK = radians(0.0005)  # rad/s after 1 s: random walk of a bias that does not drift; 0.03 degrees/s in an hour
-SLIP_WALK = 0.02            # after 1 rad or 1 m: random walk of the slip
-OUTLIER = 5.0               # standard deviations between wheels and gyro beyond which one of them must be wrong
-MAX_SPREAD = 0.1            # 1 sigma of the straight slip, however far the robot drives
-MAX_ERROR = 0.8             # largest slip and scale error: if they are larger, something else is wrong
-PART_TURN, PART_TIME = 0.2, 1.0     # rad, s: turn and time over which the differences of wheels and gyro are summed
-UNREAD = 0.5                # variance of the gyro's turn over a gap at a steady rate / variance of the wheels' turn
-MIN_DRIFT_TIME = 1.0        # minimum time (s) between two standstills to learn a drift
-COINCIDENCE = 0.4           # 1 sigma of the scale error / difference of wheels and gyro; the rest is slip
+FIRST_BIAS = 0.1            # 1 sigma of the bias before the first rest / its limit
+BIAS_WALK = radians(0.001)  # rad/s after 1 s: random walk of the bias; 0.06 degrees/s in an hour
 CARRY_SPEED = 0.5           # m/s: possible speed of the robot (1 sigma) while it is carried
-FADE = 0.5                  # rad: a doubt decays exponentially with the turn in which wheels and gyro agree
+ROUNDING = 0.005            # rad: 1 sigma of a turn in odometry that is rounded to whole degrees
+MAX_DRIFT = radians(1)      # rad/s: a larger difference in a window is no drift of the bias
+RARE, IMPROBABLE = 3.0 ** 2, 5.0 ** 2       # chi-square, one degree of freedom: 1 of 370, and 1 of 1.7 million
+POSSIBLE_SLIP = -0.3, 0.7   # a skid-steer that turns three times as far as its wheels report, or less
+FADE = 0.85                 # fraction of a doubt, or of too large a slip, that remains when wheels and gyro agree
+LEAST_SLIP = 0.05           # 1 sigma of the slip in turns, however well wheels and gyro agree
+HALF_TRACK = 0.2            # m: half the distance of the wheels of a robot of medium size
 
-# lower limits of the values in a surface file: 1 sigma of the gyro's scale error, of the slip in turns and straight on
-MIN_SCALE_ERROR, MIN_SPREAD_TURNING, MIN_SPREAD_STRAIGHT = 0.003, 0.05, 0.02
-# not changed by a difference of wheels and gyro once the bias is known, or they have contradicted each other
-KEPT = [X, Y, YAW, BIAS, SCALE]
+Measurement = Tuple[float, float]   # a turn (rad) and its variance (rad^2)
+Verdict = Tuple[Sums, str]  # 'imu_data', 'wheels' or 'both' (one of them) is doubted, or '' if they agree
+
+
+class Turn(NamedTuple):
+    """The turn of a step, and its derivatives with respect to BIAS, CURVATURE, SCALE and SLIP_TURNING."""
+
+    angle: float        # rad
+    variance: float     # rad^2
+    by_errors: tuple[float, float, float, float]
+    compared: Sums | None = None    # with the turn of the wheels, if this is the gyro's turn
 
 
 class Filter:
     """The state and its covariance. Time stamps, dropouts and invalid messages are handled elsewhere."""
 
     def __init__(self, prior: Priors, pose: Pose, max_bias: float = Limits().gyro_bias) -> None:
-        """pose: initial pose; max_bias: initial 1 sigma of the bias, rad/s."""
+        """pose: initial pose; max_bias: the largest bias of a gyro, rad/s."""
         self.prior = prior
-        self.state = [pose.x, pose.y, pose.yaw, 0.0, 0.0, prior.slip_turning, prior.slip_straight]
-        # `doubt` is the error of the state after a contradiction of wheels and gyro; `drift` is the change of the state
-        # since the bias was last known, for a drift of 1 rad/s^2
-        self.P = Covariance([sqrt(START_VARIANCE)] * 3 + [
-            max_bias, max(prior.gyro_scale_error, MIN_SCALE_ERROR),
-            max(prior.slip_turning_spread, MIN_SPREAD_TURNING),
-            max(prior.slip_straight_spread, MIN_SPREAD_STRAIGHT)], self._take_random_walks)
-        self.walked = [0.0] * 3     # s, rad, m since the random walks were last added
-        self.part: Turns | None = None      # sum of the steps whose differences have not been used yet
-        self.agreement = Agreement()
-        self.bias_known = False     # whether the bias was learned at rest
-        self.bias_drift = Drift()        # drift of the bias
-        self.carried: Array = numpy.zeros(2)    # rad, m: how far the robot may have been carried
-        self.contradicted = False          # whether wheels and gyro have contradicted each other
-        self.contradicting: Array = numpy.zeros(2)  # rad, turns measured then: wheels, gyro
-        self.noise = NoiseFactor()  # noise of the wheels
-        self.roughness = 1.0        # noise of the wheels' last turn, as a fraction of the prior's noise
+        # variances per unit of travel on the assumed floor, and on any floor
+        self.noises = [(each.heading_noise_turning ** 2, each.heading_noise_straight ** 2, each.distance_noise ** 2)
+                       for each in (prior, UNKNOWN_FLOOR)]
+        self.state = [*pose, 0.0, prior.curvature]
+        self.P: Array = numpy.diag([START_VARIANCE] * 3 + [
+            (FIRST_BIAS * max_bias) ** 2, prior.curvature_spread ** 2, prior.gyro_scale_error ** 2,
+            prior.slip_turning_spread ** 2, prior.slip_straight_spread ** 2, 0.0])
+        # the errors that a bias would have caused if it had drifted by 1 rad/s^2 since the last rest
+        self.drift = numpy.zeros(9)
+        self.carried = 0.0      # m: how far the robot may have been carried
+        self.doubt = [0.0, 0.0, 0.0]    # error of x, y (m) and yaw (rad) if the gyro was wrong
+        self.rested = False     # whether the bias was learned at rest
+        self.moving = 0.0       # s since the last rest
+        self.walk = BIAS_WALK ** 2      # rad^2/s^3: variance of the bias per s of motion
+        self._start_window()
+        self.place(pose)
 
     @property
     def covariance(self) -> Array:
         """The covariance of x, y (m) and yaw (rad), 3x3."""
-        covariance = self.P.of_first(3)
-        if self.contradicted:
-            doubt = self.P.doubt[:3]
-            covariance += doubt[:, None] * doubt
-        if self.bias_drift.value:
-            drift = sqrt(self.bias_drift.value) * self.P.drift[:3]
-            covariance += drift[:, None] * drift
-        return covariance
+        x, y, yaw = self.doubt
+        (xx, xy, x_yaw, *_), (_, yy, y_yaw, *_), (_, _, yaw_yaw, *_) = self.P[:3].tolist()
+        yaw_yaw += yaw * yaw
+        # the derivatives hold for small errors of the heading: with a large one, the path has turned about its start
+        turned = ((1 - exp(-yaw_yaw)) * self.reach) ** 2
+        known = min(1.0, pi / sqrt(yaw_yaw))    # an unknown heading is no more than half a turn off
+        xy, x_yaw, y_yaw = xy + x * y, known * (x_yaw + x * yaw), known * (y_yaw + y * yaw)
+        return numpy.array([[xx + x * x + turned, xy, x_yaw], [xy, yy + y * y + turned, y_yaw],
+                            [x_yaw, y_yaw, known ** 2 * yaw_yaw]])
 
     @property
     def bias(self) -> float:
         """The bias of the gyro, rad/s."""
         return self.state[BIAS]
 
-    @property
-    def bias_sigma(self) -> float:
-        """1 sigma of the gyro's bias, rad/s."""
-        return sqrt(self.P.variance(BIAS) + self.bias_drift.value * float(self.P.drift[BIAS]) ** 2)
+    def sigma(self, index: int) -> float:
+        """Return 1 sigma of an error."""
+        return sqrt(max(0.0, float(self.P[index, index])))
 
-    def place(self, pose: Pose, covariance: Array) -> None:
-        """Set the robot's Pose, with its covariance (3x3) of x, y (m) and yaw (rad)."""
+    def place(self, pose: Pose, covariance: Array = numpy.zeros((3, 3))) -> None:
+        """Set the robot's Pose, with its covariance (3x3; m and rad). What is known of the sensors remains."""
         self.state[:3] = pose
-        self.P.replace_first(covariance, START_VARIANCE)
-        self.carried[:] = self.contradicting[:] = 0.0
+        self.start, self.reach = pose, 0.0      # the last known pose, and the largest distance from it, m
+        self.carried, self.doubt = 0.0, [0.0, 0.0, 0.0]
+        self.P[:3] = self.P[:, :3] = 0.0
+        values, vectors = numpy.linalg.eigh(covariance)
+        self.P[:3, :3] = vectors * numpy.maximum(values, START_VARIANCE) @ vectors.T
+        self.drift[:3] = 0.0
+
+    # steps
+
+    def wheel_variance(self, wheels: Measurement, forward: float) -> float:
+        """Return the variance (rad^2) of a turn that the wheels measured over a distance (m): at least the noise of the
+        assumed floor, and at most that of any floor, because many drivers report constants."""
+        (turning, straight, _), (most_turning, most_straight, _) = self.noises
+        turned, path = abs(wheels[0]), abs(forward)
+        return max(turning * turned + straight * path, min(wheels[1], most_turning * turned + most_straight * path))
+
+    def turn(self, duration: float, wheels: Measurement | None, gyro: Measurement | None, forward: float = 0.0) -> Turn:
+        """Return the Turn of a step of `duration` (s): as measured by the gyro, or by the wheels if the gyro has not
+        measured it, or so many of its readings are missing that the wheels are more certain."""
+        compared = by_wheels = None
+        if wheels:
+            angle = wheels[0] * (1 - self.prior.slip_turning) + self.state[CURVATURE] * forward
+            by_wheels = Turn(angle, self.wheel_variance(wheels, forward), (0.0, forward, 0.0, -wheels[0]))
+        if gyro:
+            angle = gyro[0] - self.bias * duration
+            if by_wheels and wheels:
+                if gyro[1] > max(ROUNDING ** 2, by_wheels.variance + (self.sigma(SLIP_TURNING) * wheels[0]) ** 2):
+                    return by_wheels
+                if duration < WINDOW_TIME:
+                    compared = Sums(duration, wheels[0], by_wheels.angle, angle, forward, by_wheels.variance)
+            return Turn(angle, gyro[1], (-duration, 0.0, -angle, 0.0), compared)
+        return by_wheels or Turn(0.0, 0.0, (0.0, 0.0, 0.0, 0.0))
+
+    def step(self, duration: float, turn: Turn, direction: float = 0.0, forward: float = 0.0, left: float = 0.0,
+             reported: float = 0.0) -> None:
+        """Make a step of `duration` (s) with a Turn and a displacement.
+
+        forward, left: displacement (m) measured by the wheels, in a frame that is rotated by `direction` (rad) relative
+        to the robot's own frame halfway through the turn; reported: its variance, m^2.
+        """
+        x, y, yaw = self.state[:3]
+        middle = yaw + turn.angle / 2 + direction
+        c, s = cos(middle), sin(middle)
+        grip = 1 - self.prior.slip_straight
+        along, across = forward * c - left * s, forward * s + left * c
+        self.state[:3] = x + grip * along, y + grip * across, yaw + turn.angle
+        # the derivatives with respect to the heading halfway, which depends on half of the turn
+        by_x, by_y = -grip * across, grip * along
+        F = IDENTITY.copy()
+        F[X, YAW:WINDOW] = by_x, *(by_x / 2 * each for each in turn.by_errors), -along
+        F[Y, YAW:WINDOW] = by_y, *(by_y / 2 * each for each in turn.by_errors), -across
+        F[YAW, BIAS:SLIP_STRAIGHT] = turn.by_errors
+        if turn.compared:
+            F[WINDOW, BIAS:SLIP_STRAIGHT] = duration, forward, turn.angle, -turn.compared.wheels
+            self.window.add(turn.compared)
+        self.drift = F @ self.drift
+        self.drift[BIAS] += duration
+        # the noise of the turn, and of the distance, with the same limits as in wheel_variance()
+        path, ((*_, least), (*_, most)) = abs(forward) + abs(left), self.noises
+        noise, length = sqrt(turn.variance), grip * sqrt(max(least * path, min(reported, most * path)))
+        G = numpy.array([[by_x / 2 * noise, by_y / 2 * noise, noise, 0.0, 0.0, 0.0, 0.0, 0.0,
+                          -noise if turn.compared else 0.0], [length * c, length * s] + 7 * [0.0]])
+        self.P = F @ self.P @ F.T + G.T @ G
+        self.P[BIAS, BIAS] += self.walk * duration
+        x, y, doubt = self.doubt
+        self.doubt = [x + by_x * doubt, y + by_y * doubt, doubt]
+        self.moving += duration
+        self.reach = max(self.reach, hypot(self.state[X] - self.start.x, self.state[Y] - self.start.y))
+
+    def _scale(self, index: int, factor: float) -> None:
+        """Multiply the deviation of one error by a factor."""
+        self.P[index] *= factor
+        self.P[:, index] *= factor
 
     # measurements
 
-    def update(self, duration: float, wheels: Measurement | None = None, gyro: Measurement | None = None,
-               travelled: float = 0.0, missing: float = 0.0) -> HeadingChange:
-        """Update the errors in the state with the measurements of a step, and return the HeadingChange for predict().
-
-        duration: s; travelled: distance measured by the wheels, m; missing: additional variance (rad^2) of the gyro's
-        turn because readings are missing in this step. If wheels and gyro disagree by more than OUTLIER, the wheels
-        have slipped far more than usual, and only the gyro is used.
-        """
-        if wheels:
-            prior, (angle, variance) = self.prior, wheels
-            floor = prior.heading_noise_turning ** 2 * abs(angle) + prior.heading_noise_straight ** 2 * travelled
-            variance = self.noise.value * max(variance, floor)
-            self.roughness = min(1.0, variance / floor) if floor else 1.0
-            wheels = angle, variance
-        both = self._compare(Turns(duration, *wheels, *gyro), missing) if wheels and gyro else None
-        if both:
-            return both
-        if gyro:
-            return turn_by_gyro(self.state, (gyro[0], gyro[1] + missing), duration)
-        if wheels:
-            return turn_by_wheels(self.state, wheels)
-        return HeadingChange(0.0, 0.0, 0.0, 0.0, 0.0)
-
-    def _compare(self, turns: Turns, missing: float) -> HeadingChange | None:
-        """Add a step to the part, use the part if it is complete, and return the mean, or None for an outlier."""
-        # the noise of this step would hide the differences of the other steps
-        alone = bool(missing) or turns.gyro_variance > turns.wheel_variance
-        if alone:
-            self._use_part()
-        difference, R = innovation(self.state, turns)
-        if missing:
-            # if the rate changed while it was not read, the difference is the error of the gyro's turn
-            unread = min(missing, UNREAD * turns.wheel_variance + difference ** 2)
-            turns = turns._replace(gyro_variance=turns.gyro_variance + unread)
-            difference, R = innovation(self.state, turns)
-        if difference ** 2 > OUTLIER ** 2 * R:      # rare: also consider the errors in the state
-            HS = self._derivatives(turns)
-            if difference ** 2 > OUTLIER ** 2 * (R + float(HS @ HS)):
-                return None
-        if alone:
-            self._use(turns)
-        else:
-            part = self.part = self.part.plus(turns) if self.part else turns
-            if part.time > PART_TIME or abs(part.wheels) > PART_TURN or abs(part.gyro) > PART_TURN:
-                self._use_part()
-        return mean_turn(self.state, turns)
-
-    def _derivatives(self, turns: Turns) -> Array:
-        """Return H S of innovation()."""
-        HS: Array = innovation_derivatives(self.state, turns) @ self.P.root[BIAS:STRAIGHT]
-        return HS
-
-    def _use_part(self) -> None:
-        """Use the part, if there is one."""
-        part, self.part = self.part, None
-        if part:
-            self._use(part)
-
-    def _use(self, turns: Turns) -> None:
-        """Use the difference of wheels and gyro as a measurement of the errors."""
-        HS = self._derivatives(turns)
-        difference, R = innovation(self.state, turns)
-        total = float(HS @ HS) + R
-        self.noise.add(difference ** 2 / total, turns.wheel_variance * (1 - self.state[TURNING]) ** 2 / total)
-        self._correct(difference, HS, R, KEPT if self.bias_known or self.contradicted else None)
-
-    def _correct(self, difference: float, HS: Array, R: float, kept: list[int] | None = None) -> None:
-        """Correct the state and P with an innovation (a difference), as in Covariance.update()."""
-        K = self.P.update(HS, R, kept)
-        state = self.state = [old + gain * difference for old, gain in zip(self.state, K.tolist())]
-        for index in SCALE, TURNING:
-            state[index] = clamp(state[index], MAX_ERROR)
-
-    # comparison of wheels and gyro
-
-    def doubt_floor(self) -> bool:
-        """Return whether wheels and gyro show a slip that the prior's floor does not have. If so, make the straight
-        slip, which nothing measures, as uncertain as on an unknown floor."""
-        if self.contradicted or not self.agreement.difference(self.prior, self.P.variance(BIAS)):
-            return False
-        self.P.add_to(STRAIGHT, UNKNOWN_FLOOR.slip_straight_spread)
-        return True
-
-    def doubt_heading(self) -> float:
-        """Return the angle (rad) by which wheels and gyro differ if no floor explains it, or 0. If it is not 0, one of
-        them is wrong: the heading uncertainty grows by this angle, and a new comparison begins. If they agree, that
-        uncertainty shrinks."""
-        floor = UNKNOWN_FLOOR._replace(slip_turning=self.state[TURNING] if self.contradicted else 0.0)
-        difference = self.agreement.difference(floor, self.P.variance(BIAS))
-        if difference:
-            self.P.doubt[YAW] += abs(difference)
-            self.contradicting += self.agreement.wheels, self.agreement.gyro
-            self.contradicted = True
-            self.agreement = Agreement()
-        elif not self.P.doubt[YAW]:
-            self._limit_scale()
-        elif self.agreement.agrees(floor):
-            self._shrink_doubt()
-        return difference
-
-    def _shrink_doubt(self) -> None:
-        """Shrink the doubt, because wheels and gyro agree, to the part that the present slip does not explain. If the
-        gyro was wrong, and is right again, the whole doubt remains."""
-        doubt = float(self.P.doubt[YAW])
-        wheels, gyro = self.contradicting
-        unexplained = abs(wheels * (1 - self.state[TURNING]) - gyro)
-        self.P.doubt *= max(exp(-abs(self.agreement.last.gyro) / FADE), min(1.0, unexplained / doubt))
-
-    def _limit_scale(self) -> None:
-        """Limit the scale error to the difference of wheels and gyro if they agree over a long turn: it would be a
-        coincidence if a larger scale error had the same effect as the slip of the wheels."""
-        seen = self.agreement.ratio(self.P.variance(BIAS))
-        if seen:
-            variance = self.P.variance(SCALE)
-            least = max(seen * COINCIDENCE, MIN_SCALE_ERROR) ** 2
-            if variance > 1.01 * least:
-                # a measurement of 0, with noise that leaves a variance of `least`
-                self._correct(-self.state[SCALE], self.P.root[SCALE], 1 / (1 / least - 1 / variance))
-
-    # results of standstill.py
-
-    def rest(self, duration: float) -> None:
-        """Make a step of `duration` (s) in which the wheels are at rest."""
-        self._use_part()
-        self.walked[0] += duration
-        self.P.drift[BIAS] += duration
-
     def learn_bias(self, rate: float, variance: float) -> None:
-        """Learn the bias from the gyro's mean rate (rad/s) and its variance, because the robot is at rest."""
-        drift, difference = self.P.drift, rate - self.state[BIAS]
-        if self.bias_known:
-            if drift[BIAS] > MIN_DRIFT_TIME:
-                self.bias_drift.add(float(drift[BIAS]), difference ** 2, self.P.variance(BIAS) + variance)
-            self.P.add(sqrt(self.bias_drift.value) * drift)
-        self._correct(difference, self.P.root[BIAS], variance)
-        drift[:] = 0.0
-        self.bias_known = True
+        """Learn the bias from the gyro's mean rate (rad/s) and its variance, because the robot is at rest; correct the
+        heading and the position by what the bias has caused."""
+        innovation = rate - self.bias
+        if self.rested and self.moving > 0.0:
+            self.walk = max(BIAS_WALK ** 2, self.walk / 2)      # a drift goes on, but not for ever
+            if innovation ** 2 > RARE * (self.P[BIAS, BIAS] + variance):
+                self._doubt_drift(innovation / self.moving)
+        self._update(BIAS, innovation, variance, self.P[BIAS])
+        if not self.rested:     # the window has begun with another bias
+            self._start_window()
+        self.rested, self.moving = True, 0.0
+        self.drift = numpy.zeros(9)
 
-    def carry(self, angle: float, duration: float) -> None:
-        """Turn the robot by an angle (rad) that the gyro measured in `duration` (s) while the wheels were at rest. No
-        sensor measures how far the robot was carried."""
-        self.state[YAW] += angle
-        before, self.carried = self.carried, self.carried + (abs(angle), CARRY_SPEED * duration)
-        turned, moved = numpy.sqrt(self.carried ** 2 - before ** 2)
-        self.P.add_to(YAW, turned)
-        self.P.add_to(X, moved)
-        self.P.add_to(Y, moved)
+    def _update(self, index: int, innovation: float, variance: float, correlated: Array) -> None:
+        """Update the state with a measured error (its index in P), the variance of the measurement, and the covariances
+        of all errors with it."""
+        K = correlated / (self.P[index, index] + variance)
+        K[SCALE:] = 0.0     # these are considered only
+        self.state = [old + gain * innovation for old, gain in zip(self.state, K.tolist())]
+        A = numpy.eye(9)
+        A[:, index] -= K    # Joseph's form holds for any gain
+        self.P = A @ self.P @ A.T + variance * K[:, None] * K
+        self.drift = A @ self.drift
 
     def doubt_bias(self, rate: float) -> None:
         """Make the bias uncertain: the wheels were at rest, and a steady rate (rad/s) of the gyro may be the bias."""
-        self.P.add_to(BIAS, abs(rate - self.state[BIAS]))
+        self.P[BIAS, BIAS] += (rate - self.bias) ** 2
 
-    # the model
+    def _doubt_drift(self, rate: float) -> None:
+        """Allow for a bias that has drifted at a rate (rad/s^2) since the last rest, and still may."""
+        self.P += rate ** 2 * self.drift[:, None] * self.drift
+        self.walk = max(self.walk, rate ** 2 * self.moving)
 
-    def predict(self, duration: float, turn: HeadingChange, direction: float = 0.0, forward: float = 0.0,
-                left: float = 0.0, variance: float = 0.0) -> None:
-        """Predict the state after a step of `duration` (s) with a HeadingChange from update() and a displacement.
+    def carry(self, angle: float, duration: float) -> None:
+        """Turn the robot by an angle (rad), measured in `duration` (s) with the wheels at rest; it may have moved."""
+        self.state[YAW] += angle
+        before, self.carried = self.carried, self.carried + CARRY_SPEED * duration
+        self._move_by(self.carried ** 2 - before ** 2)
 
-        forward, left: displacement (m) measured by the wheels, in a frame that is rotated by `direction` (rad) relative
-        to the robot's own frame halfway through the turn; variance: variance of the displacement, m^2.
+    def _move_by(self, variance: float) -> None:
+        """Make the position uncertain by a variance, m^2."""
+        self.P[X, X] += variance
+        self.P[Y, Y] += variance
+
+    def _start_window(self) -> None:
+        self.window = Window()
+        self.P[WINDOW] = self.P[:, WINDOW] = self.drift[WINDOW] = 0.0
+
+    def compare(self) -> Verdict | None:
+        """Compare the turns that wheels and gyro have measured. Returns a Verdict at the end of a window."""
+        sums = self.window.complete()
+        if not sums:
+            return None
+        doubted = self._judge(sums)
+        self._start_window()
+        return sums, doubted
+
+    def _learn_difference(self, sums: Sums, variance: float, drift: float = 0.0) -> None:
+        """Learn the curvature from straight motion; if the bias drifts, also the bias, and correct the pose by what it
+        has caused. drift: rate at which the bias may have drifted since the last rest, rad/s^2.
         """
-        step = move(self.state, turn, direction, forward, left)
-        deviation = sqrt(turn.variance)
-        noise = [[each * deviation for each in step.by_turn]]
-        travelled = abs(forward) + abs(left)
-        if travelled:
-            floor = self.prior.distance_noise ** 2 * travelled
-            grip = 1 - self.state[STRAIGHT]
-            deviation = grip * sqrt(max(self.noise.value * variance, self.roughness * floor))
-            noise.append([each * deviation for each in step.by_distance])
-        self.state = step.state
-        self.walked[0] += duration
-        self.walked[1] += abs(turn.angle)
-        self.walked[2] += travelled
-        self.P.predict(step.F, noise)
-        self.P.drift[BIAS] += duration
+        # slip and scale matter little here, and would move the pose by what wheels have caused that replaced the gyro
+        correlated = self.P[WINDOW] + sums.wheels * self.P[SLIP_TURNING] - sums.gyro * self.P[SCALE]
+        correlated[:3] -= sums.forward * self.P[:3, CURVATURE]
+        if self.walk <= BIAS_WALK ** 2:
+            correlated[:CURVATURE] = 0.0    # the last rest shows the bias better
+        correlated += drift ** 2 * self.drift[WINDOW] * self.drift
+        self._doubt_drift(drift)
+        self._update(WINDOW, sums.gyro - sums.expected, variance, correlated)
 
-    def _take_random_walks(self) -> Array:
-        """Return the noise (7 x 3) of the random walks of bias and slips since the last call."""
-        walks = numpy.zeros((7, 3))
-        variances = [walk ** 2 * path for walk, path in zip((BIAS_WALK, SLIP_WALK, SLIP_WALK), self.walked)]
-        # nothing measures the straight slip, so its uncertainty would grow without limit
-        variances[2] = min(variances[2], max(0.0, MAX_SPREAD ** 2 - self.P.variance(STRAIGHT)))
-        walks[[BIAS, TURNING, STRAIGHT], range(3)] = numpy.sqrt(variances)
-        self.walked = [0.0] * 3
-        return walks
+    def _judge(self, sums: Sums) -> str:
+        """Let the error grow that may be the reason for a difference, or shrink; return which sensor is doubted."""
+        difference = sums.gyro - sums.expected
+        # in straight motion, the slip matters less than the curvature; both can be told from a known bias
+        straight = self.rested and (
+            self.prior.slip_turning_spread * sums.turned < self.prior.curvature_spread * abs(sums.forward))
+        # the scatter of slip in turns is no noise
+        variance = min(sums.scatter, sums.variance) if straight else sums.variance + ROUNDING ** 2
+        S = float(self.P[WINDOW, WINDOW]) + variance
+        without_slip = max(variance, S - (self.sigma(SLIP_TURNING) * sums.wheels) ** 2)
+        # the turns that are possible with any slip
+        low, high = sorted(sums.expected - sums.wheels * slip for slip in POSSIBLE_SLIP)
+        beyond = max(low - sums.gyro, sums.gyro - high, 0.0)
+        limit = IMPROBABLE if straight else RARE    # because a drift is corrected
+        if beyond ** 2 > limit * without_slip:
+            if not straight or self.moving < sums.time or abs(difference) > MAX_DRIFT * sums.time:
+                self.doubt[YAW] += abs(difference)
+                return 'both'
+            before = self.state[CURVATURE]
+            self._learn_difference(sums, variance, difference / self.drift[WINDOW])
+            # at a constant speed, no more drift and as much more curvature would have been the same
+            error = numpy.zeros(9)
+            error[CURVATURE] = (self.state[CURVATURE] - before) / 2
+            error[BIAS] = -error[CURVATURE] * sums.forward / sums.time
+            self.P += error[:, None] * error
+            return 'imu_data'
+        if straight:
+            self._learn_difference(sums, variance)
+        measured = abs(sums.wheels) > WINDOW_TURN / 2
+        slip = max(LEAST_SLIP, abs(difference / sums.wheels)) if measured else self.prior.slip_turning_spread
+        if difference ** 2 > IMPROBABLE * S:
+            self._scale(SLIP_TURNING, max(1.0, slip / self.sigma(SLIP_TURNING)))
+            self._move_by((HALF_TRACK * difference) ** 2)   # as if only one of the wheels slipped
+            self._scale(SLIP_STRAIGHT, max(1.0, UNKNOWN_FLOOR.slip_straight_spread / self.sigma(SLIP_STRAIGHT)))
+            return 'wheels'
+        self.doubt = [FADE * each for each in self.doubt]
+        if measured:
+            self._scale(SLIP_TURNING, min(1.0, max(FADE, slip / self.sigma(SLIP_TURNING))))
+        return ''

@@ -1,7 +1,7 @@
 """The inputs of the filter: odometry and gyro readings, and the checks that reject invalid messages."""
 from __future__ import annotations
 
-from typing import NamedTuple, Sequence
+from typing import NamedTuple
 
 from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.robot.readings import MIN_VARIANCE
@@ -11,7 +11,6 @@ MAX_VARIANCE = 1 / MIN_VARIANCE
 NUMBER = f'a number of at most {MAX_NUMBER:g}'
 VARIANCE = f'a variance above 0, from {MIN_VARIANCE:g} to {MAX_VARIANCE:g}'
 POSE_FIELDS = 'pose.pose.position.x', 'pose.pose.position.y', 'pose.pose.orientation'
-VARIANCE_FIELDS = 'pose.covariance[0]', 'pose.covariance[7]', 'pose.covariance[35]'
 
 
 class Odom(NamedTuple):
@@ -19,8 +18,8 @@ class Odom(NamedTuple):
 
     stamp: int                  # ns
     pose: Pose                  # in the odometry frame
-    linear_variance: float      # variance of the linear speed, m^2/s^2
-    angular_variance: float     # variance of the angular speed, rad^2/s^2
+    linear_variance: float = 0.0    # variance of the linear speed, m^2/s^2; 0 or less, or not finite: not known
+    angular_variance: float = 0.0   # variance of the angular speed, rad^2/s^2; the same
 
 
 class Imu(NamedTuple):
@@ -55,19 +54,10 @@ def check_variance(field: str, value: float) -> None:
     check(field, value, MIN_VARIANCE <= value <= MAX_VARIANCE, VARIANCE)
 
 
-def check_odom(odom: Odom, pose_variances: Sequence[float]) -> None:
-    """Raise RejectedMessage if an Odom cannot be used.
-
-    pose_variances: x, y (m^2) and yaw (rad^2). A speed variance of 0 means that the sender does not provide it.
-    """
+def check_odom(odom: Odom) -> None:
+    """Raise RejectedMessage if an Odom cannot be used."""
     for field, value in zip(POSE_FIELDS, odom.pose):
         check_number(field, value)
-    for field, variance in zip(VARIANCE_FIELDS, pose_variances):
-        check_variance(field, variance)
-    for field, variance in (('twist.covariance[0]', odom.linear_variance),
-                            ('twist.covariance[35]', odom.angular_variance)):
-        if variance != 0:
-            check_variance(field, variance)
 
 
 def check_imu(imu: Imu) -> None:

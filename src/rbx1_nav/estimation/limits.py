@@ -9,4 +9,4 @@ class Limits(NamedTuple):
     max_turn_rate: float = 6.0              # rad/s: odometry that turns faster has jumped
     max_angular_acceleration: float = 10.0  # rad/s^2: how fast the turn rate may change while gyro readings are lost
     gyro_bias: float = radians(10)          # rad/s: the largest bias of a gyro, in either direction
-    gyro_scale_error: float = 0.015         # 1 sigma of the gyro's scale error if the floor is unknown
+    gyro_scale_error: float = 0.007         # 1 sigma of the gyro's scale error if the floor is unknown; 3 sigma: 2 %

@@ -14,7 +14,7 @@ from __future__ import annotations
 from math import inf, radians, sqrt
 from typing import NamedTuple
 
-from rbx1_nav.estimation.filter import Filter
+from rbx1_nav.estimation.filter import BIAS, Filter
 from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.units import SECOND, wrap_angle
 
@@ -53,12 +53,16 @@ class Standstill:
     def __init__(self, max_bias: float) -> None:
         """max_bias: rad/s, the largest bias of a gyro."""
         self.max_bias = max_bias
-        self.pose: Pose | None = None       # the pose that does not change
-        self.since = 0              # ns, stamp of the first message with it
         self.case: str | None = None        # STANDSTILL or CARRIED while the wheels are at rest
         self.density = 0.0          # rad^2/s, measured noise of the gyro
         self.samples = 0            # number of samples of this noise
         self.max_density = inf      # rad^2/s: the noise of a reading is limited to this value
+        self.restart()
+
+    def restart(self) -> None:
+        """Wait for the next standstill."""
+        self.pose: Pose | None = None       # the pose that does not change
+        self.since = 0              # ns, stamp of the first message with it
         self._clear()
 
     def _clear(self) -> None:
@@ -82,7 +86,7 @@ class Standstill:
         The Filter has not used this Part.
         """
         unused = self.part.plus(self.complete or Part())
-        if ekf.bias_known and self.undecided.time > STEADY_DOUBT - ROUNDING:
+        if ekf.rested and self.undecided.time > STEADY_DOUBT - ROUNDING:
             ekf.doubt_bias(self.undecided.angle / self.undecided.time)
         self._clear()
         return unused
@@ -102,7 +106,7 @@ class Standstill:
         rate = part.angle / part.time
         margin = STEADY + DEVIATIONS * sqrt(part.variance) / part.time
         possible = abs(rate) <= self.max_bias
-        if ekf.bias_known and possible and abs(rate - ekf.bias) <= margin + BIAS_DEVIATIONS * ekf.bias_sigma:
+        if ekf.rested and possible and abs(rate - ekf.bias) <= margin + BIAS_DEVIATIONS * ekf.sigma(BIAS):
             self._measure_noise(part, rate)
             self._learn(part, ekf)
             return
@@ -110,13 +114,16 @@ class Standstill:
         before, self.undecided = self.undecided, part
         if before.time and abs(rate - before.angle / before.time) <= margin:
             self.undecided = before.plus(part)
-        elif before.time and not ekf.bias_known:
+        elif before.time and not ekf.rested:
             self._carry(before, ekf)
-        if ekf.bias_known or not possible:
+        if ekf.rested or not possible:
             self._carry(part, ekf)
         if not possible:
             self.undecided = Part()
-        elif self.undecided.time >= (STEADY_AGAIN if ekf.bias_known else FIRST_STEADY) - ROUNDING:
+        elif self.undecided.time >= (STEADY_AGAIN if ekf.rested else FIRST_STEADY) - ROUNDING:
+            if ekf.rested:      # no hand has turned the robot
+                ekf.carry(ekf.bias * self.undecided.time - self.undecided.angle, 0.0)
+                ekf.doubt_bias(self.undecided.angle / self.undecided.time)
             self._learn(self.undecided, ekf)
 
     def _measure_noise(self, part: Part, rate: float) -> None:

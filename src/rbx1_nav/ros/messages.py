@@ -13,7 +13,7 @@ from sensor_msgs.msg import Imu, JointState
 from rbx1_nav.arrays import Array
 from rbx1_nav.config import show
 from rbx1_nav.estimation.gyro_input import ImuData
-from rbx1_nav.estimation.inputs import Odom, check, check_number, check_variance
+from rbx1_nav.estimation.inputs import MAX_VARIANCE, Odom, check, check_number, check_variance
 from rbx1_nav.robot.description import Robot
 from rbx1_nav.robot.joints import Joint
 from rbx1_nav.robot.kinematics import Pose
@@ -133,14 +133,14 @@ def joint_states(stamp: rospy.Time, joints: Sequence[Joint], wheels: Sequence[tu
     return message
 
 
-def from_odometry(message: Odometry) -> tuple[Odom, tuple[float, float, float]]:
-    """Return (Odom, variances of x, y and yaw of the pose) of an Odometry message, for the filter."""
-    pose = message.pose.pose
-    covariance = message.pose.covariance
-    return (Odom(message.header.stamp.to_nsec(),
-                 Pose(pose.position.x, pose.position.y, yaw_of(pose.orientation)),
-                 message.twist.covariance[0], message.twist.covariance[35]),
-            (covariance[0], covariance[7], covariance[35]))
+def from_odometry(message: Odometry) -> Odom:
+    """Return the Odom of an Odometry message, for the filter. Without variances of the speeds, those of the pose are
+    used as the variances of one second's travel, as in robot_pose_ekf."""
+    pose, twist = message.pose, message.twist
+    linear, angular = (twist.covariance[index] or pose.covariance[index] for index in (0, 35))
+    return Odom(message.header.stamp.to_nsec(),
+                Pose(pose.pose.position.x, pose.pose.position.y, yaw_of(pose.pose.orientation)),
+                *(value if 0 < value < MAX_VARIANCE else 0.0 for value in (linear, angular)))
 
 
 def from_imu(message: Imu) -> ImuData:

@@ -68,7 +68,7 @@ def feed(combined: CombinedOdometry, messages: Messages) -> None:
     """Pass the Messages of a tick to a CombinedOdometry."""
     now = messages.odom.stamp
     combined.add_imu(now, messages.imu)
-    combined.add_odom(now, messages.odom, messages.pose_variances)
+    combined.add_odom(now, messages.odom)
 
 
 Listen = Callable[[Snapshot, Messages], None]

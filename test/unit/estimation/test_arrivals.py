@@ -5,7 +5,6 @@ from rbx1_nav.estimation.arrivals import IMU, ODOM, Arrivals
 from rbx1_nav.estimation.inputs import RejectedMessage
 from rbx1_nav.units import SECOND
 from sample_robot import Robot
-from test_inputs import VARIANCES
 
 NOW = 1000 * SECOND
 
@@ -37,10 +36,10 @@ def test_clocks_of_computers_may_differ_by_half_a_second(lead, accepted):
     robot = Robot()
     odom = robot.odom()._replace(stamp=robot.now + lead)
     if accepted:
-        robot.combined.add_odom(robot.now, odom, VARIANCES)
+        robot.combined.add_odom(robot.now, odom)
     else:
         with pytest.raises(RejectedMessage, match='expected a stamp not later than now'):
-            robot.combined.add_odom(robot.now, odom, VARIANCES)
+            robot.combined.add_odom(robot.now, odom)
 
 
 def test_a_stamp_is_later_than_the_last_one_of_its_sensor():

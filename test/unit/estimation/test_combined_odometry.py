@@ -4,14 +4,13 @@ from math import cos, pi, sin
 import numpy
 import pytest
 
-from rbx1_nav.estimation.model import BIAS, YAW
+from rbx1_nav.estimation.filter import BIAS, YAW
 from rbx1_nav.estimation.inputs import Imu, Odom
 from rbx1_nav.estimation.limits import Limits
 from rbx1_nav.robot.kinematics import ORIGIN, Pose, arc
 from rbx1_nav.units import SECOND
 from sample_priors import IDEAL
 from sample_robot import STEP, Robot, exact
-from test_inputs import VARIANCES
 
 
 def test_the_estimate_follows_sensors_without_errors_exactly():
@@ -46,7 +45,7 @@ def test_a_gyro_may_be_later_than_the_odometry():
     for _ in range(100):
         late.now += STEP
         late.pose = arc(late.pose, 0.004, 0.01)
-        late.combined.add_odom(late.now, late.odom(), VARIANCES)
+        late.combined.add_odom(late.now, late.odom())
         stamps.append(late.now)
         if len(stamps) == 10:     # 0.2 s late
             for stamp in stamps:
@@ -63,7 +62,7 @@ def test_a_gyro_may_have_another_rate(rate):
     for _ in range(200):
         robot.now += STEP
         robot.pose = arc(robot.pose, 0.004, 0.01)
-        robot.combined.add_odom(robot.now, robot.odom(), VARIANCES)
+        robot.combined.add_odom(robot.now, robot.odom())
         while next_reading <= robot.now:
             robot.combined.add_imu(robot.now, Imu(next_reading, 0.5, 3e-6))
             next_reading += SECOND // rate
@@ -85,7 +84,7 @@ def test_messages_from_before_a_reset_do_not_count():
     robot.combined.arrivals.last_stamp['odom'] -= 2 * STEP       # as if they had not arrived yet
     robot.combined.reset(robot.now - 10 * STEP)
     for stamp, odom in late:
-        robot.combined.add_odom(robot.now, odom._replace(stamp=stamp - 1), VARIANCES)
+        robot.combined.add_odom(robot.now, odom._replace(stamp=stamp - 1))
     assert robot.combined.filter is None
     robot.pose = ORIGIN
     assert exact(robot.send(2), ORIGIN) and not robot.warnings
@@ -97,7 +96,7 @@ def test_on_simulated_time_a_stamp_may_be_far_ahead_of_the_clock():
         robot.now += STEP
         robot.pose = arc(robot.pose, 0.004, 0.01)
         robot.combined.add_imu(robot.now - 50 * SECOND, Imu(robot.now, 0.5, 3e-6))
-        robot.combined.add_odom(robot.now - 50 * SECOND, robot.odom(), VARIANCES)
+        robot.combined.add_odom(robot.now - 50 * SECOND, robot.odom())
     assert exact(robot.combined.estimate, robot.pose) and not robot.warnings
 
 
@@ -171,8 +170,8 @@ def test_set_pose_while_the_odometry_has_timed_out():
     estimate = robot.send(10, 0.2, odom=False)
     assert robot.combined.timed_out['odom'] and estimate.pose.yaw == pytest.approx(pi / 2)
     # odometry that is older than the new pose
-    late = Odom(robot.now - 9 * STEP, Pose(robot.pose.x - 9 * 0.004, 0.0, 0.0), 1e-6, 1e-6)
-    robot.combined.add_odom(robot.now, late, VARIANCES)
+    late = Odom(robot.now - 9 * STEP, Pose(robot.pose.x - 9 * 0.004, 0.0, 0.0))
+    robot.combined.add_odom(robot.now, late)
     assert exact(robot.combined.estimate, Pose(0.0, 0.0, pi / 2), abs=1e-6)
     # the first of 10 ticks was before the new pose
     assert exact(robot.send(1, 0.2), Pose(0.0, 9 * 0.004, pi / 2), abs=1e-6)

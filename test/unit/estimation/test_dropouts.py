@@ -3,13 +3,12 @@ from itertools import count
 
 import pytest
 
-from rbx1_nav.estimation.model import X, Y, YAW
+from rbx1_nav.estimation.filter import X, Y, YAW
 from rbx1_nav.estimation.inputs import Imu, Odom
 from rbx1_nav.robot.kinematics import Pose, arc
 from rbx1_nav.units import SECOND
 from sample_priors import IDEAL, PRIORS
 from sample_robot import STEP, Robot, exact
-from test_inputs import VARIANCES
 
 
 def test_a_gyro_times_out_and_recovers():
@@ -38,18 +37,19 @@ def test_a_gyro_that_is_not_used_is_not_waited_for():
     assert exact(robot.combined.estimate, robot.pose) and not robot.warnings
 
 
-def test_without_a_gyro_the_heading_is_as_uncertain_as_the_odometry_reports():
-    robot = Robot(IDEAL, gyro_used=False)
-    before = robot.send(imu=False)
-    for _ in range(10):
-        robot.now += STEP
-        robot.combined.add_odom(robot.now, Odom(robot.now, robot.pose, 1e-2, 1e-3), VARIANCES)
-    # in each step, the variance of an angular velocity times the square of 0.02 s
-    assert robot.combined.estimate.covariance[2, 2] - before.covariance[2, 2] == pytest.approx(10 * 1e-3 * 0.02 ** 2)
+def test_without_a_gyro_the_heading_is_as_uncertain_as_the_slip_of_the_floor():
+    robot = Robot(PRIORS, gyro_used=False)
+    robot.send(2, imu=False)
+    estimate = robot.send(100, angular=1.0, imu=False)
+    # a turn of 2 rad with a slip of 3 +- 5 %, and the noise of the carpet
+    assert estimate.pose.yaw == pytest.approx(2 * 0.97)
+    assert estimate.covariance[2, 2] == pytest.approx(
+        (0.05 * 2) ** 2 + PRIORS.heading_noise_turning ** 2 * 2, rel=0.01)
 
 
 def test_odometry_times_out_and_its_travel_meanwhile_counts_when_it_recovers():
     robot = Robot(IDEAL)
+    robot.send(100)
     robot.send(50, 0.2)
     last = robot.pose
     robot.send(100, 0.0, 0.5, odom=False)
@@ -83,25 +83,23 @@ def test_odometry_that_waits_for_a_late_gyro_has_not_timed_out():
     pending = last + 3 * SECOND
     for stamp in range(last + STEP, pending + 1, STEP):     # readings arrive 2.5 s late
         if robot.now == pending:
-            robot.combined.add_odom(robot.now, robot.odom(), VARIANCES)
+            robot.combined.add_odom(robot.now, robot.odom())
         assert robot.combined.estimate.stamp == last
         robot.now = stamp + 5 * SECOND // 2
         robot.combined.add_imu(robot.now, Imu(stamp, 0.0, 3e-6))
     assert robot.combined.estimate.stamp == pending and not robot.warnings
 
 
-def test_a_turn_while_both_sensors_are_silent_is_as_uncertain_as_the_odometry_over_the_whole_dropout():
+def test_a_turn_while_both_sensors_are_silent_is_measured_by_the_wheels():
     robot = Robot(IDEAL)
     robot.send(50)
     before = robot.send(100, 0.0, 2.0, odom=False)      # 2 s and more than half a turn, measured by the gyro
     assert exact(before, robot.pose)
     robot.now += 3 * SECOND // 2
-    robot.combined.add_odom(robot.now, Odom(robot.now, robot.pose, 1e-2, 1e-3), VARIANCES)
+    robot.combined.add_odom(robot.now, Odom(robot.now, robot.pose))
     robot.combined.add_imu(robot.now, Imu(robot.now, 0.0, 3e-6))
     after = robot.combined.estimate
     assert after.stamp == robot.now and exact(after, robot.pose)
-    # the wheels have had less noise than they report
-    assert after.covariance[2, 2] - before.covariance[2, 2] == pytest.approx(1e-3 * 3.5 ** 2, rel=0.2)
 
 
 @pytest.mark.parametrize('odom_first', [True, False])
@@ -109,8 +107,8 @@ def test_odometry_that_recovers_in_a_turn_does_not_count_it_again(odom_first):
     robot = Robot()     # its wheels slip by 3 %, as the filter expects, and it turns at 0.5 rad/s
     for tick in range(300):
         robot.now += STEP
-        wheels = Odom(robot.now, Pose(0.0, 0.0, 0.5 * 0.02 * tick / 0.97), 1e-6, 1e-5)
-        odom = (robot.combined.add_odom, wheels, VARIANCES)
+        wheels = Odom(robot.now, Pose(0.0, 0.0, 0.5 * 0.02 * tick / 0.97))
+        odom = (robot.combined.add_odom, wheels)
         imu = (robot.combined.add_imu, Imu(robot.now, 0.5 if tick else 0.0, 3e-6))
         for add, *message in (odom, imu) if odom_first else (imu, odom):
             if add is imu[0] or not 50 < tick < 200:
@@ -128,7 +126,7 @@ def test_wheels_that_slip_measure_the_rest_of_a_turn_when_the_gyro_fails_too():
         if tick <= 150:
             robot.combined.add_imu(robot.now, Imu(robot.now, 0.5 if tick > 50 else 0.0, 3e-6))
         if tick <= 50 or tick > 250:
-            robot.combined.add_odom(robot.now, Odom(robot.now, Pose(0.0, 0.0, yaw / 0.97), 1e-6, 1e-5), VARIANCES)
+            robot.combined.add_odom(robot.now, Odom(robot.now, Pose(0.0, 0.0, yaw / 0.97)))
     assert robot.combined.filter.state[YAW] == pytest.approx(yaw, abs=1e-3)
 
 
@@ -146,7 +144,7 @@ def test_readings_at_the_limit_of_the_measurement_range_are_not_used():
         robot.now += STEP
         robot.pose = arc(robot.pose, 0.0, 4.0 * 0.02)
         robot.combined.add_imu(robot.now, Imu(robot.now, limit, 3e-6))
-        robot.combined.add_odom(robot.now, robot.odom(), VARIANCES)
+        robot.combined.add_odom(robot.now, robot.odom())
     assert robot.combined.filter.state[YAW] == pytest.approx(4.0 * 0.97, abs=1e-3)
 
 
@@ -158,7 +156,7 @@ def send_late(odom_lag, imu_lag):
         robot.pose = poses[robot.now] = arc(robot.pose, 0.004, 0.01)
         stamp = robot.now - round(odom_lag * SECOND)
         if stamp in poses:
-            robot.combined.add_odom(robot.now, Odom(stamp, poses[stamp], 1e-6, 1e-6), VARIANCES)
+            robot.combined.add_odom(robot.now, Odom(stamp, poses[stamp]))
         robot.combined.add_imu(robot.now, Imu(robot.now - round(imu_lag * SECOND), 0.5, 3e-6))
     return robot, poses[robot.combined.estimate.stamp]
 
@@ -180,6 +178,7 @@ def test_a_gyro_that_is_too_late_times_out_once():
 
 def test_odometry_that_is_later_after_a_dropout_counts_again():
     robot = Robot(IDEAL)
+    robot.send(100)
     robot.send(50, 0.2)
     poses = {}
     for tick in range(600):     # no odometry for 4 s, then odometry that is 1.1 s late
@@ -187,7 +186,7 @@ def test_odometry_that_is_later_after_a_dropout_counts_again():
         poses[robot.now] = robot.pose
         stamp = robot.now - round(1.1 * SECOND)
         if tick > 200 and stamp in poses:
-            robot.combined.add_odom(robot.now, Odom(stamp, poses[stamp], 1e-6, 1e-6), VARIANCES)
+            robot.combined.add_odom(robot.now, Odom(stamp, poses[stamp]))
     assert len(robot.warnings) == 2 and not robot.combined.timed_out['odom']
     assert exact(robot.combined.estimate, poses[robot.combined.estimate.stamp], abs=1e-3)
     assert robot.combined.estimate.covariance[X, X] < 1e-3
@@ -203,7 +202,7 @@ def test_simulated_time_that_runs_fast_is_no_dropout():
             robot.pose = arc(robot.pose, 0.004, 0.01)
             odoms.append(robot.odom())
         for odom in odoms:
-            robot.combined.add_odom(robot.now, odom, VARIANCES)
+            robot.combined.add_odom(robot.now, odom)
         arrival += SECOND * 15 // 100
         for stamp in stamps:
             robot.combined.add_imu(robot.now, Imu(stamp, 0.5, 3e-6))
@@ -225,7 +224,7 @@ def test_messages_that_wait_while_the_process_sleeps_are_no_dropout():
         clock += SECOND // 1000
         robot.combined.add_imu(robot.now, Imu(stamp, 0.5, 3e-6))
     for odom in odoms:
-        robot.combined.add_odom(robot.now, odom, VARIANCES)
+        robot.combined.add_odom(robot.now, odom)
     assert not robot.warnings and exact(robot.combined.estimate, robot.pose)
 
 
@@ -243,7 +242,7 @@ def test_a_turn_while_both_sensors_are_silent_is_never_certain(imu_first):
     robot.send(60, 0.0, 0.5, odom=False)        # odometry times out,
     robot.now += 3 * SECOND // 2                # and then the gyro
     robot.pose = arc(robot.pose, 0.0, 0.75)
-    odom = (robot.combined.add_odom, robot.odom(), VARIANCES)
+    odom = (robot.combined.add_odom, robot.odom())
     imu = (robot.combined.add_imu, Imu(robot.now, 0.5, 3e-6))
     for add, *message in (imu, odom) if imu_first else (odom, imu):
         add(robot.now, *message)
@@ -262,5 +261,5 @@ def test_odometry_from_before_the_first_step_by_the_gyro_alone_counts_when_it_ar
         late.append(robot.odom())
     assert robot.combined.timed_out['odom']
     for odom in late:
-        robot.combined.add_odom(robot.now, odom, VARIANCES)
+        robot.combined.add_odom(robot.now, odom)
     assert exact(robot.combined.estimate, robot.pose, abs=2e-3)

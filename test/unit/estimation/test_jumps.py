@@ -12,7 +12,7 @@ from rbx1_nav.units import SECOND
 
 def odom(time, x=0.0, y=0.0, yaw=0.0):
     """Return an Odom at a time (s)."""
-    return Odom(round(time * SECOND), Pose(x, y, yaw), 1e-6, 1e-6)
+    return Odom(round(time * SECOND), Pose(x, y, yaw))
 
 
 @pytest.mark.parametrize('limits, speed, turn_rate', [

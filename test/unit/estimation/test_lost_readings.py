@@ -4,7 +4,6 @@ import pytest
 from rbx1_nav.estimation.inputs import Imu
 from sample_priors import IDEAL
 from sample_robot import STEP, Robot, exact
-from test_inputs import VARIANCES
 
 
 @pytest.mark.parametrize('lost', [4, 10, 20, 40])
@@ -39,7 +38,7 @@ def test_a_rate_that_is_a_mean_counts_for_the_whole_gap(lost):
     robot.send(lost // 2, odom=False, imu=False)
     robot.now += STEP
     robot.combined.add_imu(robot.now, Imu(robot.now, lost / 2 / (lost + 1), 1e-6, is_mean=True))
-    robot.combined.add_odom(robot.now, robot.odom(), VARIANCES)
+    robot.combined.add_odom(robot.now, robot.odom())
     estimate = robot.combined.estimate
     assert abs(estimate.pose.yaw - robot.pose.yaw) < 0.01 and not robot.warnings
 

@@ -33,9 +33,8 @@ class Gyro:
         return self
 
     def turn(self, start, end, max_rate=inf, max_density=inf):
-        """Return the angle, the variance and the additional variance of the turn between two times (s)."""
-        turn, missing = self.readings.turn(ns(start), ns(end), max_rate, max_density)
-        return turn and (*turn, missing)
+        """Return the angle and the variance of the turn between two times (s)."""
+        return self.readings.turn(ns(start), ns(end), max_rate, max_density)
 
 
 def steady(interval, count=5, **options):
@@ -48,26 +47,26 @@ def steady(interval, count=5, **options):
 def test_a_reading_is_the_rate_since_the_one_before():
     gyro = Gyro(rate=9.0).report((0.02, 0.5), (0.04, -1.0), (0.06, 2.0))
     # the noise of the readings is independent: the variances of the three turns add up
-    assert gyro.turn(0.0, 0.06) == pytest.approx((0.02 * (0.5 - 1.0 + 2.0), 3 * NOISE * 0.02 ** 2, 0.0))
+    assert gyro.turn(0.0, 0.06) == pytest.approx((0.02 * (0.5 - 1.0 + 2.0), 3 * NOISE * 0.02 ** 2))
     assert not gyro.readings.waiting
 
 
 def test_a_reading_that_continues_after_the_step_counts_in_both_steps():
     gyro = Gyro().report((0.02, 0.5), (0.04, 1.0))
-    assert gyro.turn(0.0, 0.03) == pytest.approx((0.01 + 0.01, NOISE * (0.02 ** 2 + 0.01 * 0.02), 0.0))
-    assert gyro.turn(0.03, 0.04) == pytest.approx((0.01, NOISE * 0.01 * 0.02, 0.0))
+    assert gyro.turn(0.0, 0.03) == pytest.approx((0.01 + 0.01, NOISE * (0.02 ** 2 + 0.01 * 0.02)))
+    assert gyro.turn(0.03, 0.04) == pytest.approx((0.01, NOISE * 0.01 * 0.02))
     assert not gyro.readings.waiting
 
 
 def test_readings_from_before_the_step_do_not_count():
     gyro = Gyro().report((0.02, 9.0), (0.04, 9.0), (0.06, 1.0))
     # nor the fact that they are beyond the measurement range
-    assert gyro.turn(0.04, 0.06, max_rate=5.0) == pytest.approx((0.02, NOISE * 0.02 ** 2, 0.0))
+    assert gyro.turn(0.04, 0.06, max_rate=5.0) == pytest.approx((0.02, NOISE * 0.02 ** 2))
 
 
 @pytest.mark.parametrize('start, end', [(-0.01, 0.04), (0.0, 0.05), (0.05, 0.06), (0.02, 0.02)])
 def test_readings_that_do_not_cover_the_whole_time_measure_no_turn(start, end):
-    assert Gyro().report((0.02, 0.5), (0.04, 0.5)).readings.turn(ns(start), ns(end), inf, inf) == (None, 0.0)
+    assert Gyro().report((0.02, 0.5), (0.04, 0.5)).readings.turn(ns(start), ns(end), inf, inf) is None
 
 
 def test_readings_with_a_gap_measure_no_turn():
@@ -87,23 +86,23 @@ def test_a_noise_that_is_greater_than_the_gyro_has_shown_is_limited():
     for density, variance in ((1.0, NOISE), (NOISE / 100, NOISE / 2)):
         # a density in rad^2/s is the variance of the mean over 1 s; over 0.02 s, the variance is 50 times as large
         gyro = Gyro().report((0.02, 0.5), (0.04, 0.5))
-        assert gyro.turn(0.0, 0.04, max_density=density) == pytest.approx((0.02, 2 * variance * 0.02 ** 2, 0.0))
+        assert gyro.turn(0.0, 0.04, max_density=density) == pytest.approx((0.02, 2 * variance * 0.02 ** 2))
 
 
 @pytest.mark.parametrize('interval', [0.0501, 0.1, 0.4])
 def test_after_a_long_interval_the_rate_was_anywhere_between_two_readings(interval):
     # usual for this gyro, so that no reading was lost; a uniform distribution has a variance of range^2 / 12
     assert Gyro(rate=0.3).report((interval, 0.9)).turn(0.0, interval) == pytest.approx(
-        (0.6 * interval, (NOISE + 0.6 ** 2 / 12) * interval ** 2, 0.0))
+        (0.6 * interval, (NOISE + 0.6 ** 2 / 12) * interval ** 2))
 
 
 def test_after_50_milliseconds_the_rate_has_hardly_changed():
-    assert Gyro(rate=0.3).report((0.05, 0.9)).turn(0.0, 0.05) == pytest.approx((0.9 * 0.05, NOISE * 0.05 ** 2, 0.0))
+    assert Gyro(rate=0.3).report((0.05, 0.9)).turn(0.0, 0.05) == pytest.approx((0.9 * 0.05, NOISE * 0.05 ** 2))
 
 
 def test_a_mean_is_the_turn_of_a_long_interval():
     gyro = Gyro(rate=0.3).report((0.4, 0.9), is_mean=True)
-    assert gyro.turn(0.0, 0.4) == pytest.approx((0.36, (NOISE + 0.6 ** 2 / 12) * 0.4 ** 2, 0.0))
+    assert gyro.turn(0.0, 0.4) == pytest.approx((0.36, NOISE * 0.4 ** 2))
 
 
 @pytest.mark.parametrize('limits, gap, error', [
@@ -115,7 +114,7 @@ def test_lost_readings_make_a_turn_uncertain(limits, gap, error):
     gyro, start = steady(0.02, limits=limits)
     gyro.report((start + gap, 0.0))
     # a uniform distribution between -error and error has a variance of error^2 / 3
-    assert gyro.turn(start, start + gap) == pytest.approx((0.0, NOISE * gap ** 2, error ** 2 / 3))
+    assert gyro.turn(start, start + gap) == pytest.approx((0.0, NOISE * gap ** 2 + error ** 2 / 3))
 
 
 @pytest.mark.parametrize('before, after', [(0.1, 0.0), (0.0, 0.3), (0.1, 0.1)])
@@ -128,14 +127,14 @@ def test_a_gap_that_is_not_within_one_step_is_uncertain_without_the_wheels(befor
         gyro.readings.turn(ns(start), ns(start + before), inf, inf)
     # the error of the rate is the same in all parts of the gap
     assert gyro.turn(start + before, start + gap - after) == pytest.approx(
-        (0.0, (NOISE + error ** 2 / gap ** 2 / 3) * part * gap, 0.0))
+        (0.0, (NOISE + error ** 2 / gap ** 2 / 3) * part * gap))
 
 
 @pytest.mark.parametrize('gap, lost', [(0.06, False), (0.061, True)])
 def test_readings_are_lost_in_an_interval_of_more_than_one_and_a_half_times_the_usual_one(gap, lost):
     gyro, start = steady(0.04)
     gyro.report((start + gap, 0.0))
-    assert (gyro.turn(start, start + gap)[2] > 0) == lost
+    assert (gyro.turn(start, start + gap)[1] > 1e-5) == lost
 
 
 @pytest.mark.parametrize('gap, lost', [(0.0899, False), (0.0901, True)])
@@ -144,4 +143,60 @@ def test_the_usual_interval_is_a_running_mean_over_16_readings(gap, lost):
     # the usual interval becomes 0.04 s + 0.32 s / 16
     gyro.report((start + 0.36, 0.0), (start + 0.36 + gap, 0.0))
     gyro.readings.turn(ns(start), ns(start + 0.36), inf, inf)
-    assert (gyro.turn(start + 0.36, start + 0.36 + gap)[2] > 0) == lost
+    assert (gyro.turn(start + 0.36, start + 0.36 + gap)[1] > 1e-5) == lost
+
+
+def moving(rates, at_rest):
+    """Return a Gyro that has reported these rates at rest, and then is in motion."""
+    gyro = Gyro()
+    for number, rate in enumerate(at_rest):
+        imu = Imu(ns(0.02 * (number + 1)), rate, NOISE)
+        gyro.readings.add(imu, at_rest=True)
+        gyro.readings.last = imu
+    start = 0.02 * len(at_rest)
+    gyro.readings.waiting.clear()
+    return gyro.report(*((start + 0.02 * (number + 1), rate) for number, rate in enumerate(rates))), start
+
+
+NOISY = [1e-3 * (1 + number % 7) for number in range(50)]       # no two readings are equal
+
+
+@pytest.mark.parametrize('equal, measured', [(2, True), (3, True), (4, False)])
+def test_readings_that_are_equal_while_the_robot_moves_are_not_measured(equal, measured):
+    gyro, start = moving([2.0] * equal, NOISY)
+    assert (gyro.turn(start, start + 0.02 * equal) is not None) == measured
+    gyro.report((start + 0.02 * (equal + 1), 1.9))      # and measured again
+    assert gyro.turn(start + 0.02 * equal, start + 0.02 * (equal + 1)) == pytest.approx((0.038, NOISE * 0.02 ** 2))
+
+
+@pytest.mark.parametrize('at_rest', [[0.0] * 50, NOISY[:19], []])
+def test_readings_of_a_gyro_without_visible_noise_may_be_equal(at_rest):
+    gyro, start = moving([2.0] * 30, at_rest)
+    assert gyro.turn(start, start + 0.6) is not None
+
+
+def in_motion(rates, at_rest):
+    """Return for each reading in motion, 0.02 s apart, whether the gyro has measured it; `at_rest`: rates before it."""
+    readings, measured = Readings(Limits()), []
+    readings.last = Imu(START, 9.0, NOISE)
+    for number, rate in enumerate([*at_rest, *rates], 1):
+        imu = Imu(ns(number * 0.02), rate, NOISE)
+        readings.add(imu, number <= len(at_rest))
+        readings.last = imu
+        turn = readings.turn(ns(number * 0.02 - 0.02), ns(number * 0.02), inf, inf)
+        measured.append(turn is not None)
+    return measured[len(at_rest):]
+
+
+VARIES = [0.001 * number for number in range(20)]
+
+
+def test_a_rate_that_repeats_in_motion_is_not_measured():
+    assert in_motion([2.6] * 5 + [1.0, 2.6], VARIES) == [True] * 3 + [False] * 2 + [True] * 2
+
+
+def test_a_rate_may_repeat_as_often_as_at_rest():
+    """A gyro with coarse steps: pairs of equal readings at rest."""
+    at_rest = [rate for rate in VARIES for _ in range(2)]
+    assert in_motion([2.6] * 6, at_rest) == [True] * 5 + [False]
+    assert all(in_motion([2.6] * 6, [0.0] * 100)) and all(in_motion([2.6] * 6, VARIES[1:]))

@@ -8,13 +8,13 @@ from rbx1_nav.estimation.inputs import Imu, Odom, RejectedMessage
 from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.units import SECOND
 from sample_robot import STEP, Robot
-from test_inputs import BAD_ODOMETRY, BAD_READINGS, VARIANCES, with_field
+from test_inputs import BAD_ODOMETRY, BAD_READINGS, with_field
 
 
 def check_rejected(make_message, text, same_time=False):
     """Check that a message is rejected with an error that contains `text`, and has no effect.
 
-    make_message(robot): returns the arguments of add_odom() or add_imu(); same_time: whether the message is sent after
+    make_message(robot): returns an Odom or an Imu; same_time: whether the message is sent after
     the valid messages of its time, and not before them.
     """
     robot, undisturbed = Robot(), Robot()
@@ -23,9 +23,9 @@ def check_rejected(make_message, text, same_time=False):
     if not same_time:
         robot.now += STEP
     message = make_message(robot)
-    add = robot.combined.add_imu if isinstance(message[0], Imu) else robot.combined.add_odom
+    add = robot.combined.add_imu if isinstance(message, Imu) else robot.combined.add_odom
     with pytest.raises(RejectedMessage) as error:
-        add(robot.now, *message)
+        add(robot.now, message)
     assert text in str(error.value) and ': expected a' in str(error.value) and '\n' not in str(error.value)
     if not same_time:
         robot.now -= STEP
@@ -37,24 +37,24 @@ def check_rejected(make_message, text, same_time=False):
 
 @pytest.mark.parametrize('field, value', BAD_ODOMETRY)
 def test_rejected_odometry_leaves_no_trace(field, value):
-    check_rejected(lambda robot: with_field(robot.odom(), VARIANCES, field, value), field)
+    check_rejected(lambda robot: with_field(robot.odom(), field, value), field)
 
 
 @pytest.mark.parametrize('field, rate, variance', BAD_READINGS)
 def test_a_rejected_gyro_reading_leaves_no_trace(field, rate, variance):
-    check_rejected(lambda robot: (Imu(robot.now, rate, variance),), field)
+    check_rejected(lambda robot: Imu(robot.now, rate, variance), field)
 
 
 @pytest.mark.parametrize('offset', [0, -1, -3600 * SECOND, 10 * SECOND])
 def test_stamps_out_of_order_or_from_the_future_are_rejected(offset):
-    check_rejected(lambda robot: (robot.odom()._replace(stamp=robot.now + offset), VARIANCES), 'header.stamp', True)
-    check_rejected(lambda robot: (Imu(robot.now + offset, 0.0, 1e-6),), 'header.stamp', True)
+    check_rejected(lambda robot: robot.odom()._replace(stamp=robot.now + offset), 'header.stamp', True)
+    check_rejected(lambda robot: Imu(robot.now + offset, 0.0, 1e-6), 'header.stamp', True)
 
 
 def test_a_first_stamp_that_is_too_old_is_rejected():
     robot = Robot()
     with pytest.raises(RejectedMessage, match='^header.stamp: 0.000000000: expected a stamp not much older than now'):
-        robot.combined.add_odom(robot.now, robot.odom()._replace(stamp=0), VARIANCES)
+        robot.combined.add_odom(robot.now, robot.odom()._replace(stamp=0))
 
 
 def test_a_restart_does_not_make_old_stamps_acceptable():
@@ -62,12 +62,12 @@ def test_a_restart_does_not_make_old_stamps_acceptable():
     robot.send(10)
     robot.combined.restart('test')
     with pytest.raises(RejectedMessage, match='later than the last'):
-        robot.combined.add_odom(robot.now, robot.odom(), VARIANCES)
+        robot.combined.add_odom(robot.now, robot.odom())
     robot.send(2)
     robot.pose = Pose(5.0, 0.0, 0.0)
     robot.send(2)
     with pytest.raises(RejectedMessage, match='later than the last'):
-        robot.combined.add_odom(robot.now, robot.odom(), VARIANCES)
+        robot.combined.add_odom(robot.now, robot.odom())
 
 
 @given(st.lists(st.tuples(st.sampled_from(['odom', 'imu']), st.floats() | st.sampled_from([0.0, 0.001, 5.0, 5.001]),
@@ -81,8 +81,7 @@ def test_no_sequence_of_messages_makes_the_estimate_infinite(messages):
         stamp = robot.now + offset
         try:
             if kind == 'odom':
-                robot.combined.add_odom(robot.now, Odom(stamp, Pose(value, -value, value), variance, variance),
-                                        (variance, variance, variance))
+                robot.combined.add_odom(robot.now, Odom(stamp, Pose(value, -value, value)))
             else:
                 robot.combined.add_imu(robot.now, Imu(stamp, value, variance))
         except RejectedMessage:
@@ -90,12 +89,3 @@ def test_no_sequence_of_messages_makes_the_estimate_infinite(messages):
     estimate = robot.combined.estimate
     if estimate:
         assert numpy.isfinite(estimate.pose).all() and numpy.isfinite(estimate.covariance).all()
-
-
-def test_without_variances_of_the_speeds_those_of_the_pose_are_used():
-    robot = Robot()
-    robot.send(10)
-    robot.now += STEP
-    robot.combined.add_imu(robot.now, Imu(robot.now, 0.0, 1e-6))
-    robot.combined.add_odom(robot.now, Odom(robot.now, robot.pose, 0.0, 0.0), (0.1, 0.1, 0.2))
-    assert robot.combined.odom.linear_variance == 0.1 and robot.combined.odom.angular_variance == 0.2

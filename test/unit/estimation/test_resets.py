@@ -8,14 +8,13 @@ from rbx1_nav.units import SECOND
 from sample_priors import IDEAL
 from sample_robot import STEP, Robot, exact
 from test_contradictions import turn_with_wheels
-from test_inputs import VARIANCES
 
 
 @pytest.mark.parametrize('offset, counts', [(0, True), (-1, False)])
 def test_odometry_from_the_time_of_a_reset_counts(offset, counts):
     robot = Robot(gyro_used=False)
     robot.combined.reset(robot.now + STEP)
-    robot.combined.add_odom(robot.now + STEP, Odom(robot.now + STEP + offset, ORIGIN, 1e-6, 1e-6), VARIANCES)
+    robot.combined.add_odom(robot.now + STEP, Odom(robot.now + STEP + offset, ORIGIN))
     assert bool(robot.combined.estimate) == counts
 
 
@@ -30,19 +29,19 @@ def test_after_a_reset_odometry_counts_from_the_last_stamp_of_the_gyro_on():
     assert exact(robot.send(1, imu=False), robot.pose) and not robot.warnings
 
 
-def test_a_reset_forgets_what_was_learned_and_waited_for():
+def test_a_reset_forgets_what_was_waited_for_but_not_the_bias():
     robot = Robot()
     robot.send(100, bias=0.05)
     turn_with_wheels(robot, 150, -1.0, bias=0.05)
     robot.combined.set_pose(robot.now + STEP, Pose(5.0, 0.0, 0.0), numpy.eye(3))
     robot.combined.arrivals.set_timed_out('imu_data')
-    assert robot.combined.contradicts and robot.combined.filter.bias_known
+    assert robot.combined.contradicts and robot.combined.filter.rested
     robot.combined.reset(robot.now)
     assert robot.combined.case is None and not robot.combined.contradicts
     assert robot.combined.timed_out == {'odom': False, 'imu_data': False}
     robot.pose = ORIGIN
-    assert exact(robot.send(2), ORIGIN) and not robot.combined.filter.bias_known
-    assert exact(robot.send(100), ORIGIN) and robot.combined.filter.bias == pytest.approx(0.0, abs=1e-4)
+    assert exact(robot.send(2, bias=0.05), ORIGIN, 1e-4) and robot.combined.filter.rested
+    assert robot.combined.filter.bias == pytest.approx(0.05, abs=1e-4)
 
 
 def test_a_clock_that_jumped_back_is_reported_with_the_jump():

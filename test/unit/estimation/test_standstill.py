@@ -5,13 +5,13 @@ import numpy
 import pytest
 
 from rbx1_nav.estimation.combined_odometry import CombinedOdometry
+from rbx1_nav.estimation.filter import BIAS_WALK
 from rbx1_nav.estimation.priors import UNKNOWN_FLOOR
 from rbx1_nav.estimation.inputs import Imu, Odom
 from rbx1_nav.robot.kinematics import ORIGIN, arc
 from rbx1_nav.units import SECOND
 
 ODOM_STEP, IMU_STEP = SECOND // 25, SECOND // 50
-CONSTANT = 0.03         # rad^2/s^2: variance of the odometry, also at rest, as in many drivers
 NOISE = radians(0.1)    # rad/s, of a reading
 
 
@@ -41,7 +41,7 @@ class Robot:
             rate = (angular + carried) * (not self.stuck) + self.bias + self.generator.normal(0, NOISE)
             self.combined.add_imu(self.now, Imu(self.now, rate, self.imu_variance))
             if self.now % ODOM_STEP == 0:
-                self.combined.add_odom(self.now, Odom(self.now, self.wheels, 0.001, CONSTANT), (0.001, 0.001, CONSTANT))
+                self.combined.add_odom(self.now, Odom(self.now, self.wheels))
         estimate = self.combined.estimate
         return degrees(estimate.pose.yaw - self.yaw), degrees(sqrt(estimate.covariance[2, 2]))
 
@@ -97,13 +97,13 @@ def test_standstill_wheels_that_report_later_than_the_gyro_are_not_carried():
         robot.go(1.0, 0.1, 0.5)
         error, sigma = robot.go(1.5 + 0.02 * number)
     # 0.04 s of 0.5 rad/s are 1.1 degrees each time
-    assert not robot.combined.filter.carried.any() and abs(error) < 3.0 and sigma < 15.0
+    assert not robot.combined.filter.carried and abs(error) < 3.0 and sigma < 15.0
 
 
 def test_standstill_noise_is_no_drift():
     robot = Robot()
     robot.go(60.0)
-    assert robot.combined.filter.bias_drift.value == 0.0
+    assert robot.combined.filter.walk == BIAS_WALK ** 2
 
 
 def test_a_drifting_bias_makes_the_heading_as_uncertain_as_it_is_wrong():
@@ -120,7 +120,7 @@ def test_a_drifting_bias_makes_the_heading_as_uncertain_as_it_is_wrong():
     assert max(squares[1:]) < 9.0
 
 
-def test_carried_the_heading_turns_with_the_gyro_and_is_uncertain():
+def test_carried_the_heading_turns_with_the_gyro():
     robot = Robot()
     robot.bias = radians(1.0)
     robot.go(3.0)
@@ -128,7 +128,7 @@ def test_carried_the_heading_turns_with_the_gyro_and_is_uncertain():
     assert robot.case == 'carried'
     error, sigma = robot.go(2.0)
     # the wheels have reported none of the 86 degrees
-    assert abs(error) < 2.0 and sigma > 45.0 and robot.case == 'standstill'
+    assert abs(error) < 2.0 and abs(error) < 4 * sigma and robot.case == 'standstill'
     assert degrees(robot.combined.filter.bias) == pytest.approx(1.0, abs=0.1)
 
 
@@ -137,9 +137,9 @@ def test_carried_before_the_bias_is_known():
     robot.go(0.6)
     for _ in range(20):
         robot.go(0.12, carried=radians(2))
-        error, sigma = robot.go(0.12, carried=radians(8))
+        error, _ = robot.go(0.12, carried=radians(8))
     # 24 degrees, of which less than a tenth is not decided yet
-    assert robot.case == 'carried' and abs(error) < 2.4 and sigma > 20.0
+    assert robot.case == 'carried' and abs(error) < 2.4
 
 
 @pytest.mark.parametrize('rate', [2.0, 5.0, 9.0])
@@ -148,8 +148,8 @@ def test_carried_slowly_and_steadily_is_no_bias(rate):
     robot.go(3.0)
     robot.go(8.0, carried=radians(rate))
     assert robot.case == 'carried'
-    error, sigma = robot.go(2.0)
-    assert abs(error) < 1.0 and sigma > 0.9 * 8 * rate
+    error, _ = robot.go(2.0)
+    assert abs(error) < 1.0
     assert abs(degrees(robot.combined.filter.bias)) < 0.1
 
 
@@ -174,12 +174,12 @@ def test_carried_shaking_teaches_no_bias():
 def test_a_bias_that_has_changed_is_uncertain_after_a_rest_and_learned_in_the_next():
     robot = Robot()
     robot.go(3.0)
-    robot.bias = radians(1.5)
+    robot.bias = radians(2.5)
     robot.go(5.0)
     error, sigma = robot.go(30.0, 0.2)
-    assert abs(error) > 40.0 and abs(error) < 3 * sigma
+    assert abs(error) > 70.0 and abs(error) < 3 * sigma
     robot.go(3.0)
-    assert robot.case == 'standstill' and degrees(robot.combined.filter.bias) == pytest.approx(1.5, abs=0.1)
+    assert robot.case == 'standstill' and degrees(robot.combined.filter.bias) == pytest.approx(2.5, abs=0.1)
 
 
 def test_carried_a_rate_above_the_limit_is_never_a_bias():
@@ -196,6 +196,7 @@ def test_a_rate_that_is_steady_for_longer_than_a_hand_can_be_is_a_bias():
     robot.bias = radians(4.0)
     robot.go(15.0)
     assert robot.case == 'standstill' and degrees(robot.combined.filter.bias) == pytest.approx(4.0, abs=0.1)
+    assert abs(degrees(robot.combined.estimate.pose.yaw)) < 2.0     # it has not turned
 
 
 def test_agreement_does_not_change_a_bias_that_was_learned_at_rest():
@@ -207,17 +208,15 @@ def test_agreement_does_not_change_a_bias_that_was_learned_at_rest():
 
 
 @pytest.mark.parametrize('ratio', [1.5, 2.0, 3.0])
-def test_contradiction_of_a_skid_steer_follows_the_gyro(ratio):
+def test_a_skid_steer_follows_the_gyro(ratio):
     robot = Robot()
     robot.go(3.0)
     errors = []
     for angular in (0.5, -0.5, 0.5, -0.5, 0.5, -0.5, 0.5, -0.5):
-        errors.append(robot.go(4.0, 0.2, angular, ratio=ratio) + (robot.case,))
+        errors.append(robot.go(4.0, 0.2, angular, ratio=ratio))
         robot.go(1.0)
-    assert 'contradiction' in [case for _, _, case in errors] and len(robot.warnings) <= 2
-    assert max(abs(error) for error, _, _ in errors) < 2.0
-    # the doubt has shrunk to less than a tenth of the contradiction in one turn, and the filter is never too certain
-    assert errors[-1][1] < 6.0 and all(abs(error) < 4 * sigma for error, sigma, _ in errors)
+    assert max(abs(error) for error, _ in errors) < 2.0 and len(robot.warnings) <= 1
+    assert errors[-1][1] < 6.0 and all(abs(error) < 4 * sigma for error, sigma in errors)
 
 
 def test_contradiction_of_a_gyro_that_was_stuck_leaves_its_doubt():
@@ -253,5 +252,5 @@ def test_without_a_gyro_there_is_no_case():
     robot.go(3.0)
     for _ in range(60):
         robot.now += ODOM_STEP
-        robot.combined.add_odom(robot.now, Odom(robot.now, robot.wheels, 0.001, CONSTANT), (0.001, 0.001, CONSTANT))
+        robot.combined.add_odom(robot.now, Odom(robot.now, robot.wheels))
     assert robot.case is None and hypot(*robot.combined.estimate.pose[:2]) < 1e-6

@@ -16,13 +16,16 @@ class Recorder:
     """Stands for the filter, and records what it is told."""
 
     def __init__(self, bias=None, sigma=0.0):
-        self.bias, self.bias_sigma, self.bias_known = bias or 0.0, sigma, bias is not None
+        self.bias, self.deviation, self.rested = bias or 0.0, sigma, bias is not None
         self.calls = []
 
     def learn_bias(self, rate, variance):
         self.calls.append(('bias', rate, variance))
-        if not self.bias_known:
-            self.bias, self.bias_known = rate, True
+        if not self.rested:
+            self.bias, self.rested = rate, True
+
+    def sigma(self, _):
+        return self.deviation
 
     def carry(self, angle, duration):
         self.calls.append(('carried', angle, duration))
@@ -140,8 +143,10 @@ def test_a_bias_above_the_limit_is_not_learned():
 @pytest.mark.parametrize('parts, learned', [(79, False), (80, True)])
 def test_another_rate_is_the_bias_after_10_seconds(parts, learned):
     standstill, recorder = rest([0.125] * parts, variance=1e-6, bias=0.0)
-    assert [call[0] for call in recorder.calls] == ['carried'] * parts + ['bias'] * learned
+    # if it is the bias, the robot was not carried
+    assert [call[0] for call in recorder.calls] == ['carried'] * parts + ['carried', 'doubt', 'bias'] * learned
     if learned:
+        assert sum(call[1] for call in recorder.calls[:-2]) == pytest.approx(0.0)
         assert recorder.calls[-1] == ('bias', 0.125, pytest.approx(80 * 1e-6 / 10.0 ** 2))
     assert standstill.case == (STANDSTILL if learned else CARRIED)
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from rbx1_nav.estimation.arrivals import IMU
 from rbx1_nav.estimation.combined_odometry import DROPOUT_SPEED, CombinedOdometry, Estimate
-from rbx1_nav.estimation.model import BIAS, SCALE, STRAIGHT, TURNING
+from rbx1_nav.estimation.filter import BIAS, SCALE, SLIP_STRAIGHT, SLIP_TURNING
 from rbx1_nav.robot.readings import MEASURED
 from rbx1_nav.simulation.floor_noise import CELL_TRAVELLED, CELL_TURNED
 from rbx1_nav.units import SECOND, wrap_angle
@@ -32,16 +32,17 @@ def _of_floor(noise: float, speed: float, elapsed: float, cell: float) -> float:
 def estimate_twist(combined: CombinedOdometry, before: Estimate) -> EstimatedTwist | None:
     """Return the EstimatedTwist from the Estimate `before` to the latest one; None if their stamps are equal.
 
-    The displacement comes from the odometry, reduced by the estimated slip, and the turn comes from the filter. During
-    an odometry dropout the displacement is unknown: it is set to 0, with the uncertainty that the filter assumes for a
-    dropout. The uncertainty is the same while the robot is carried, because its wheels do not measure its motion.
+    The displacement comes from the odometry, reduced by the slip of the assumed floor, and the turn comes from the
+    filter. During an odometry dropout the displacement is unknown: it is set to 0, with the uncertainty that the filter
+    assumes for a dropout. The uncertainty is the same while the robot is carried, because its wheels do not measure its
+    motion.
     """
     last, ekf = combined.estimate, combined.filter
     assert last is not None and ekf is not None     # because there is a `before`
     elapsed = (last.stamp - before.stamp) / SECOND
     if elapsed <= 0:
         return None
-    state, variance = ekf.state, ekf.P.variance
+    prior = ekf.prior
     turn = wrap_angle(last.pose.yaw - before.pose.yaw) / elapsed
     travel_time = (last.odom.stamp - before.odom.stamp) / SECOND
     forward = left = by_wheels = 0.0
@@ -50,13 +51,13 @@ def estimate_twist(combined: CombinedOdometry, before: Estimate) -> EstimatedTwi
         start, end = before.odom.pose, last.odom.pose
         turned = wrap_angle(end.yaw - start.yaw)
         c, s = cos(start.yaw + turned / 2), sin(start.yaw + turned / 2)
-        share = (1 - state[STRAIGHT]) / travel_time
+        share = (1 - prior.slip_straight) / travel_time
         dx, dy = end.x - start.x, end.y - start.y
         forward, left = (dx * c + dy * s) * share, (dy * c - dx * s) * share
         by_wheels = turned / travel_time
         if combined.case != 'carried':
-            slip = variance(STRAIGHT)
-            floor = _of_floor(ekf.prior.distance_noise, abs(forward), travel_time, CELL_TRAVELLED)
+            slip = ekf.sigma(SLIP_STRAIGHT) ** 2
+            floor = _of_floor(prior.distance_noise, abs(forward), travel_time, CELL_TRAVELLED)
             forward_variance = MEASURED + max(last.odom.linear_variance, floor) + slip * forward ** 2
             left_variance = MEASURED + slip * left ** 2      # wheels do not roll sideways
 
@@ -65,11 +66,11 @@ def estimate_twist(combined: CombinedOdometry, before: Estimate) -> EstimatedTwi
         step = last.stamp - before.stamp
         # the noise averages out over the readings of the step
         averaged = imu.variance * min(1.0, (combined.readings.period or step) / step)
-        turn_variance = averaged + variance(BIAS) + variance(SCALE) * turn ** 2
+        turn_variance = averaged + ekf.sigma(BIAS) ** 2 + (ekf.sigma(SCALE) * turn) ** 2
         if combined.case == 'contradiction':    # either wheels or gyro are wrong
-            turn_variance += (by_wheels * (1 - state[TURNING]) - turn) ** 2
+            turn_variance += (by_wheels * (1 - prior.slip_turning) - turn) ** 2
     else:
-        floor = (_of_floor(ekf.prior.heading_noise_turning, abs(by_wheels), elapsed, CELL_TURNED)
-                 + _of_floor(ekf.prior.heading_noise_straight, abs(forward), elapsed, CELL_TRAVELLED))
-        turn_variance = max(last.odom.angular_variance, floor) + variance(TURNING) * turn ** 2
+        floor = (_of_floor(prior.heading_noise_turning, abs(by_wheels), elapsed, CELL_TURNED)
+                 + _of_floor(prior.heading_noise_straight, abs(forward), elapsed, CELL_TRAVELLED))
+        turn_variance = max(last.odom.angular_variance, floor) + (ekf.sigma(SLIP_TURNING) * turn) ** 2
     return EstimatedTwist(forward, left, turn, forward_variance, left_variance, MEASURED + turn_variance)

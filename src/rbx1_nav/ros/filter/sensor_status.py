@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from functools import partial
-from math import radians, sqrt
+from math import degrees, sqrt
 from threading import Lock
 from typing import Callable, Sequence
 
@@ -11,8 +11,7 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from diagnostic_updater import DiagnosticStatusWrapper, Updater
 
 from rbx1_nav.estimation.combined_odometry import CombinedOdometry
-from rbx1_nav.estimation.filter import Filter
-from rbx1_nav.estimation.model import BIAS, STRAIGHT, TURNING
+from rbx1_nav.estimation.filter import BIAS, Filter
 
 OK, WARN = DiagnosticStatus.OK, DiagnosticStatus.WARN
 CONTRADICTION = WARN, 'Wheels and gyro contradict each other'
@@ -77,12 +76,11 @@ class Diagnostics:
             else:
                 status.summary(OK, 'The gyro is not used')
             status.add('Case', case or 'none')
-            for key, index, unit in (('Gyro bias (degrees/s)', BIAS, radians(1)), ('Slip in turns', TURNING, 1.0),
-                                     ('Slip in straight motion', STRAIGHT, 1.0)):
-                status.add(key, f'{ekf.state[index] / unit:.4f} +- {sqrt(ekf.P.variance(index)) / unit:.4f}' if ekf
-                           else 'unknown')
+            status.add('Gyro bias (degrees/s)',
+                       f'{degrees(ekf.bias):.4f} +- {degrees(ekf.sigma(BIAS)):.4f}' if ekf else 'unknown')
+            status.add('Doubted', combined.doubts.doubted if combined else 'nothing')
             status.add('Standard deviation of the heading (degrees)',
-                       f'{sqrt(estimate.covariance[2, 2]) / radians(1):.2f}' if estimate else 'unknown')
+                       f'{degrees(sqrt(estimate.covariance[2, 2])):.2f}' if estimate else 'unknown')
             status.add('Contradictions', self.counts['contradiction'])
             status.add('Times carried', self.counts['carried'])
             status.add('Restarts', max(0, self.starts - 1))

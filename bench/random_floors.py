@@ -1,0 +1,96 @@
+#!/usr/bin/env python3
+"""Drive randomly on random floors, and compare the filter with its two sensors. See README.md."""
+import argparse
+from concurrent.futures import ProcessPoolExecutor
+import math
+import random
+
+import numpy
+import yaml
+
+from base_cases import Case
+import bases
+from floors import squared_errors
+from rbx1_nav.estimation.combined_odometry import CombinedOdometry
+from rbx1_nav.estimation.priors import UNKNOWN_FLOOR
+from rbx1_nav.robot.description import read_robot
+from rbx1_nav.ros.node import resources
+from rbx1_nav.simulation.surfaces import load_surface
+from rbx1_nav.units import SECOND
+
+SLIP, UNEQUAL, BIAS = 0.3, 0.05, 6.0    # largest slips; difference of the wheels; bias of the gyro, degrees/s
+SIGMAS = 5.0            # an error of more standard deviations than this must have been announced
+MARGIN = 2.0            # degrees: smaller differences from the sensors do not count
+
+
+def make_floor(floor, seed, width):
+    """(Surface, bias in degrees/s): a random floor whose noise is a fraction of that of another one. width: m."""
+    rng = random.Random(f'floor {seed}')
+    noise = rng.random()
+    return floor._replace(
+        slip_straight=rng.uniform(-SLIP, SLIP), slip_turning=rng.uniform(-SLIP, SLIP),
+        curvature=rng.uniform(-UNEQUAL, UNEQUAL) / width,
+        **{key: noise * getattr(floor, key) for key in ('heading_noise_turning', 'heading_noise_straight',
+                                                        'distance_noise')}), rng.uniform(-BIAS, BIAS)
+
+
+def run(task):
+    """(seed, rest, warnings, rms heading errors of filter, gyro and wheels (degrees), largest error in sigmas)."""
+    robot, floor, bias, seed = task
+    rest = 3.0 * (seed % 2)
+    case = Case('random', '', bias=bias, rest=rest, path='random')
+    record = bases.drive(robot, case, floor, seed)
+    warnings, estimates = [], []
+    combined = CombinedOdometry(UNKNOWN_FLOOR, SECOND, warn=warnings.append)
+    messages = [(imu.stamp, 0, imu) for imu, _ in record.imu] + [(odom.stamp, 1, odom) for odom, _ in record.odom]
+    for stamp, is_odom, message in sorted(messages, key=lambda each: each[:2]):
+        (combined.add_odom if is_odom else combined.add_imu)(stamp, message)
+        if is_odom:
+            estimates.append(combined.estimate)
+    start = round(rest * case.odom_rate) + 1
+    step = round(bases.SAMPLE * case.odom_rate)
+
+    def errors(poses):
+        return [squared_errors(*pair)[0] for pair in zip(poses[start::step], record.truth[start::step])]
+    squares = errors([estimate and estimate.pose for estimate in estimates])     # the first one may be None
+    sigmas = [math.degrees(math.sqrt(estimate.covariance[2, 2])) for estimate in estimates[start::step]]
+    worst = max(math.sqrt(square) / sigma for square, sigma in zip(squares, sigmas))
+    means = [numpy.mean(each) for each in (squares, errors(bases.reckon(record, rest)),
+                                           errors([odom.pose for odom, _ in record.odom]))]
+    return seed, rest, warnings, [math.sqrt(mean) for mean in means], worst
+
+
+def main():
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument('--floors', type=int, default=50, metavar='N', help='default: 50')
+    parser.add_argument('--drives', type=int, default=10, metavar='N', help='on each floor; default: 10')
+    parser.add_argument('--duration', type=float, default=120, metavar='S', help='of a drive; default: 120')
+    parser.add_argument('--jobs', type=int, default=1, metavar='N', help='processes; default: 1')
+    arguments = parser.parse_args()
+    bases.RANDOM = arguments.duration
+    with open(resources.path('config', 'turtlebot.yaml'), encoding='utf-8') as file:
+        robot = read_robot(yaml.safe_load(file))
+    lab = load_surface('create_lab_floor', resources.surfaces())
+    tasks = []
+    for number in range(arguments.floors):
+        floor, bias = make_floor(lab, number, robot.base_width)
+        tasks += [(robot, floor, bias, number * arguments.drives + drive) for drive in range(arguments.drives)]
+    worse = silent = 0
+    ratios = []
+    with ProcessPoolExecutor(arguments.jobs) as pool:
+        for seed, rest, warnings, (heading, gyro, wheels), sigmas in pool.map(run, tasks):
+            is_worse = heading > 2 * max(gyro, wheels) + MARGIN
+            is_silent = sigmas > SIGMAS and not warnings
+            worse, silent = worse + is_worse, silent + is_silent
+            ratios.append((heading / max(gyro, wheels), sigmas))
+            if is_worse or is_silent:
+                print(f'seed {seed}, rest {rest:g} s: heading {heading:.2f}, gyro {gyro:.2f}, wheels {wheels:.2f} '
+                      f'degrees; {sigmas:.1f} sigma; {warnings or "no warning"}')
+    print(f'{len(tasks)} drives: {worse} worse than twice the worse sensor, {silent} beyond {SIGMAS:g} sigma in '
+          f'silence; rms of the heading / that of the worse sensor at most {max(each for each, _ in ratios):.2f}; '
+          f'beyond {SIGMAS:g} sigma at all: {sum(sigma > SIGMAS for _, sigma in ratios)}')
+
+
+if __name__ == '__main__':
+    main()
