@@ -269,7 +269,9 @@ class Filter:
         beyond = max(low - sums.gyro, sums.gyro - high, 0.0)
         limit = IMPROBABLE if straight else RARE    # because a drift is corrected
         if beyond ** 2 > limit * without_slip:
-            if not straight or self.moving < sums.time or abs(difference) > MAX_DRIFT * sums.time:
+            # whether a drift since the rest has little effect: the window began before it, or the speed has changed
+            small = self.drift[WINDOW] < sums.time ** 2 / 4
+            if not straight or small or abs(difference) > MAX_DRIFT * sums.time:
                 self.doubt[YAW] += abs(difference)
                 return 'both'
             before = self.state[CURVATURE]

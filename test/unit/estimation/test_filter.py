@@ -228,6 +228,14 @@ def test_a_drift_while_the_robot_drives_straight_is_found_and_corrected():
     assert abs(ekf.state[Y]) < 0.05
 
 
+def test_a_difference_that_no_steady_drift_explains_is_none():
+    """A drift would have been taken for a curvature that is now, at three times the speed, as large as the drift."""
+    ekf, _ = straight_on([0.0] * 2000)
+    ekf.drift[CURVATURE] = -75.0    # rad/m: 450 rad in 10 s, 6 m; the drift since the rest, 40 s ago: 10 s * 45 rad/s
+    assert move(ekf, [((0.0, 0.0), (0.005 * 0.02, 1e-10))] * 500, 0.012) == ['both']
+    assert abs(ekf.bias) < 1e-9 and ekf.sigma(BIAS) < 1e-3
+
+
 def test_a_constant_curve_is_no_drift():
     ekf, doubts = straight_on([0.002] * 3000)
     assert not any(doubts) and ekf.state[CURVATURE] == pytest.approx(0.01, rel=0.02)
