@@ -25,7 +25,7 @@ class Case(NamedTuple):
     unbiased: str = ''                  # the name of the corresponding case with a bias of 0
     rest: float = 3.0                   # s before the first motion; 0: the messages begin while the robot drives
     path: str = 'legs'                  # a key of bases.PATHS, or random
-    fault: str = ''                     # see bases.Fault
+    fault: str = ''                     # one of the faults in README.md
 
 
 # a comment names the driver or robot that a case is taken from; the other cases vary one property

@@ -45,8 +45,6 @@ PATHS = {
 RANDOM = 600            # s, duration of the random path
 FAULT = 10.0, 4.0       # s: begin after the first motion, and duration
 SPIN, HAND = 0.3, 0.4   # m/s, rad/s: speed of a wheel without grip; a hand that turns the robot
-
-
 ESTIMATORS = '', 'port_', 'reckoned_', 'wheels_'       # prefixes of their figures; the first is the filter
 COLUMNS = (('heading', 'heading deg', 2), ('port_heading', 'port', 2), ('reckoned_heading', 'reckoned', 2),
            ('wheels_heading', 'wheels', 2), ('position', 'position m', 2), ('port_position', 'port', 2),
@@ -151,9 +149,9 @@ def odometry(case, base, stamp):
                 yaw if case.odom else base.wheels.uncertainty.angular), (position, position, yaw)
 
 
-def run_filter(record):
+def run_filter(record, warn=lambda text: None):
     """The Estimate of the filter at the stamp of each Odom, or the previous one if there is none."""
-    estimates = replay(record, UNKNOWN_FLOOR, 0)
+    estimates = replay(record, UNKNOWN_FLOOR, 0, warn=warn)
     stamps = sorted(estimates)
     return [estimates[stamps[bisect_right(stamps, odom.stamp) - 1]] for odom, _ in record.odom]
 

@@ -11,12 +11,9 @@ import yaml
 from base_cases import Case
 import bases
 from floors import squared_errors
-from rbx1_nav.estimation.combined_odometry import CombinedOdometry
-from rbx1_nav.estimation.priors import UNKNOWN_FLOOR
 from rbx1_nav.robot.description import read_robot
 from rbx1_nav.ros.node import resources
 from rbx1_nav.simulation.surfaces import load_surface
-from rbx1_nav.units import SECOND
 
 SLIP, UNEQUAL, BIAS = 0.3, 0.05, 6.0    # largest slips; difference of the wheels; bias of the gyro, degrees/s
 SIGMAS = 5.0            # an error of more standard deviations than this must have been announced
@@ -24,7 +21,7 @@ MARGIN = 2.0            # degrees: smaller differences from the sensors do not c
 
 
 def make_floor(floor, seed, width):
-    """(Surface, bias in degrees/s): a random floor whose noise is a fraction of that of another one. width: m."""
+    """(Surface, bias in degrees/s): a random floor with a fraction of the noise of another floor. width: m."""
     rng = random.Random(f'floor {seed}')
     noise = rng.random()
     return floor._replace(
@@ -40,19 +37,14 @@ def run(task):
     rest = 3.0 * (seed % 2)
     case = Case('random', '', bias=bias, rest=rest, path='random')
     record = bases.drive(robot, case, floor, seed)
-    warnings, estimates = [], []
-    combined = CombinedOdometry(UNKNOWN_FLOOR, SECOND, warn=warnings.append)
-    messages = [(imu.stamp, 0, imu) for imu, _ in record.imu] + [(odom.stamp, 1, odom) for odom, _ in record.odom]
-    for stamp, is_odom, message in sorted(messages, key=lambda each: each[:2]):
-        (combined.add_odom if is_odom else combined.add_imu)(stamp, message)
-        if is_odom:
-            estimates.append(combined.estimate)
+    warnings = []
+    estimates = bases.run_filter(record, warnings.append)
     start = round(rest * case.odom_rate) + 1
     step = round(bases.SAMPLE * case.odom_rate)
 
     def errors(poses):
         return [squared_errors(*pair)[0] for pair in zip(poses[start::step], record.truth[start::step])]
-    squares = errors([estimate and estimate.pose for estimate in estimates])     # the first one may be None
+    squares = errors([estimate.pose for estimate in estimates])
     sigmas = [math.degrees(math.sqrt(estimate.covariance[2, 2])) for estimate in estimates[start::step]]
     worst = max(math.sqrt(square) / sigma for square, sigma in zip(squares, sigmas))
     means = [numpy.mean(each) for each in (squares, errors(bases.reckon(record, rest)),
@@ -87,8 +79,9 @@ def main():
             if is_worse or is_silent:
                 print(f'seed {seed}, rest {rest:g} s: heading {heading:.2f}, gyro {gyro:.2f}, wheels {wheels:.2f} '
                       f'degrees; {sigmas:.1f} sigma; {warnings or "no warning"}')
-    print(f'{len(tasks)} drives: {worse} worse than twice the worse sensor, {silent} beyond {SIGMAS:g} sigma in '
-          f'silence; rms of the heading / that of the worse sensor at most {max(each for each, _ in ratios):.2f}; '
+    print(f'{len(tasks)} drives: {worse} worse than twice the worse sensor, '
+          f'{silent} beyond {SIGMAS:g} sigma in silence; '
+          f'rms of the heading at most {max(each for each, _ in ratios):.2f} times as large as with the worse sensor; '
           f'beyond {SIGMAS:g} sigma at all: {sum(sigma > SIGMAS for _, sigma in ratios)}')
 
 

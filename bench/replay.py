@@ -51,9 +51,9 @@ def count_lines(lines):
     return counts
 
 
-def replay(recording, prior, start, end=math.inf):
+def replay(recording, prior, start, end=math.inf, warn=lambda text: None):
     """{stamp: Estimate} of a filter that receives its first odometry at `start`, and all messages up to `end`."""
-    combined = CombinedOdometry(prior, SECOND)
+    combined = CombinedOdometry(prior, SECOND, warn=warn)
     # the interval of the next reading starts at the reading before the first odometry
     messages = [(imu.stamp, 0, imu) for imu, _ in recording.imu if start - SECOND <= imu.stamp <= end]
     messages += [(odom.stamp, 1, (odom, variances)) for odom, variances in recording.odom if start <= odom.stamp <= end]

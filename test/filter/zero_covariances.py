@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""An IMU without covariances is used with robot_pose_ekf's covariances; those of odometry are not needed."""
+"""An IMU without covariances is used with robot_pose_ekf's covariances; odometry does not need any."""
 import unittest
 
 from altered import AlteredRobot

@@ -118,7 +118,7 @@ class Filter:
 
     def wheel_variance(self, wheels: Measurement, forward: float) -> float:
         """Return the variance (rad^2) of a turn that the wheels measured over a distance (m): at least the noise of the
-        assumed floor, and at most that of any floor, because many drivers report constants."""
+        assumed floor, and at most the noise of any floor, because many drivers report constants."""
         (turning, straight, _), (most_turning, most_straight, _) = self.noises
         turned, path = abs(wheels[0]), abs(forward)
         return max(turning * turned + straight * path, min(wheels[1], most_turning * turned + most_straight * path))
@@ -135,7 +135,7 @@ class Filter:
             if by_wheels and wheels:
                 if gyro[1] > max(ROUNDING ** 2, by_wheels.variance + (self.sigma(SLIP_TURNING) * wheels[0]) ** 2):
                     return by_wheels
-                if duration < WINDOW_TIME:
+                if duration < WINDOW_TIME:      # a longer step is no part of a window
                     compared = Sums(duration, wheels[0], by_wheels.angle, angle, forward, by_wheels.variance)
             return Turn(angle, gyro[1], (-duration, 0.0, -angle, 0.0), compared)
         return by_wheels or Turn(0.0, 0.0, (0.0, 0.0, 0.0, 0.0))

@@ -4,9 +4,9 @@ from __future__ import annotations
 from collections import deque
 from typing import Deque, NamedTuple
 
+from rbx1_nav.estimation.filter import Measurement
 from rbx1_nav.estimation.inputs import Imu
 from rbx1_nav.estimation.limits import Limits
-from rbx1_nav.estimation.filter import Measurement
 from rbx1_nav.units import SECOND
 
 SHORT = SECOND // 20    # ns between two readings in which the rate hardly changes

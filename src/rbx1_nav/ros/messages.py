@@ -134,8 +134,8 @@ def joint_states(stamp: rospy.Time, joints: Sequence[Joint], wheels: Sequence[tu
 
 
 def from_odometry(message: Odometry) -> Odom:
-    """Return the Odom of an Odometry message, for the filter. Without variances of the speeds, those of the pose are
-    used as the variances of one second's travel, as in robot_pose_ekf."""
+    """Return the Odom of an Odometry message, for the filter. Without variances of the speeds, the variances of the
+    pose are used for one second's travel, as in robot_pose_ekf."""
     pose, twist = message.pose, message.twist
     linear, angular = (twist.covariance[index] or pose.covariance[index] for index in (0, 35))
     return Odom(message.header.stamp.to_nsec(),

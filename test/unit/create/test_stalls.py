@@ -72,7 +72,7 @@ def errors(floor, seeds):
 def test_on_a_hard_floor_the_filter_is_as_good_as_the_wheels():
     by_filter, by_wheels, _ = errors('hard_floor', range(12))
     # the wheels measure the stalls, and the gyro, with its scale error, the rest
-    assert by_filter < 1.4 * by_wheels
+    assert by_filter < 1.3 * by_wheels
 
 
 def test_without_slip_the_filter_does_not_find_any():
@@ -84,7 +84,7 @@ def test_without_slip_the_filter_does_not_find_any():
 def test_on_a_floor_that_varies_the_filter_is_better_than_the_wheels_and_knows_how_good(floor):
     by_filter, by_wheels, ratio = errors(floor, range(12))
     # the mean of 12 squares varies by 40 %; the slip of an unknown floor is assumed to be much larger, 30 %
-    assert by_filter < 0.7 * by_wheels and 0.03 < ratio < 2.5
+    assert by_filter < 0.7 * by_wheels and 0.04 < ratio < 2.5
 
 
 def test_readings_that_come_late_change_nothing():

@@ -6,9 +6,9 @@ import pytest
 from rbx1_nav.estimation.priors import UNKNOWN_FLOOR
 from rbx1_nav.estimation.inputs import Odom
 from rbx1_nav.robot.kinematics import arc
+from rbx1_nav.units import wrap_angle
 from sample_priors import IDEAL
 from sample_robot import Robot
-from rbx1_nav.units import wrap_angle
 
 
 def turn_with_wheels(robot, ticks, factor, linear=0.0, angular=1.0, bias=0.0):

@@ -175,28 +175,8 @@ def test_readings_of_a_gyro_without_visible_noise_may_be_equal(at_rest):
     assert gyro.turn(start, start + 0.6) is not None
 
 
-def in_motion(rates, at_rest):
-    """Return for each reading in motion, 0.02 s apart, whether the gyro has measured it; `at_rest`: rates before it."""
-    readings, measured = Readings(Limits()), []
-    readings.last = Imu(START, 9.0, NOISE)
-    for number, rate in enumerate([*at_rest, *rates], 1):
-        imu = Imu(ns(number * 0.02), rate, NOISE)
-        readings.add(imu, number <= len(at_rest))
-        readings.last = imu
-        turn = readings.turn(ns(number * 0.02 - 0.02), ns(number * 0.02), inf, inf)
-        measured.append(turn is not None)
-    return measured[len(at_rest):]
-
-
-VARIES = [0.001 * number for number in range(20)]
-
-
-def test_a_rate_that_repeats_in_motion_is_not_measured():
-    assert in_motion([2.6] * 5 + [1.0, 2.6], VARIES) == [True] * 3 + [False] * 2 + [True] * 2
-
-
-def test_a_rate_may_repeat_as_often_as_at_rest():
-    """A gyro with coarse steps: pairs of equal readings at rest."""
-    at_rest = [rate for rate in VARIES for _ in range(2)]
-    assert in_motion([2.6] * 6, at_rest) == [True] * 5 + [False]
-    assert all(in_motion([2.6] * 6, [0.0] * 100)) and all(in_motion([2.6] * 6, VARIES[1:]))
+def test_readings_may_be_equal_as_often_as_at_rest():
+    """A gyro with coarse steps: pairs of equal readings at rest, and twice as many, plus two, in motion."""
+    at_rest = [rate for rate in NOISY for _ in range(2)]
+    gyro, start = moving([2.0] * 6, at_rest)
+    assert gyro.turn(start, start + 0.1) is not None and gyro.turn(start + 0.1, start + 0.12) is None
