@@ -5,7 +5,7 @@ import pytest
 
 from rbx1_nav.create import protocol
 from rbx1_nav.create.driver import sequences
-from rbx1_nav.create.driver.fractions import AUTO, KEPT, LOST
+from rbx1_nav.create.driver.fractions import KEPT, LOST
 from rbx1_nav.create.emulator.body import Quirks
 from rbx1_nav.simulation.surfaces import load_surface
 
@@ -29,22 +29,16 @@ def test_a_turn_is_reported_whatever_the_robot_does_with_fractions(surface, lost
     reported, true = turn(driven, rate, 2 * pi)
     assert reported == pytest.approx(true, rel=0.03)
     kind = driven.driver.counter.fractions.kind
-    assert kind == LOST if lost else kind in (AUTO, KEPT)
+    assert kind == (LOST if lost else KEPT)
     # at the next turn, the handling of fractions is known
     reported, true = turn(driven, -rate, pi)
     assert reported == pytest.approx(true, rel=0.03)
 
 
-@pytest.mark.parametrize('kind, drops', [(LOST, True), (KEPT, False)])
-def test_a_robot_that_is_known_is_not_examined(kind, drops):
-    driven = started('create', quirks=Quirks(drops_fractions=drops), angle_fractions=kind)
-    assert driven.driver.counter.fractions.coarse == (kind == LOST)
-    reported, true = turn(driven, 1.0, pi / 2)
-    assert reported == pytest.approx(true, rel=0.03)
-
-
 def test_a_robot_that_keeps_fractions_is_asked_for_the_angle_each_time():
     driven = started('create')
+    turn(driven, 1.0, pi / 2)
+    driven.commands.clear()
     turn(driven, 1.0, 2 * pi)
     queries = [data for _, data in driven.commands if data[0] == protocol.OPCODES['query_list']]
     assert set(queries) == {sequences.query(sequences.QUERIED)}

@@ -17,7 +17,8 @@ RATE = 1.0      # rad/s
 
 def half_turn(floor, seed, starts):
     """Return a DrivenCreate after half a turn with stalls that begin at `starts` (s)."""
-    driven = DrivenCreate('create', load_surface(floor, SURFACES), seed, gyro_scale_correction=1.0)
+    driven = DrivenCreate('create', load_surface(floor, SURFACES), seed, gyro_scale_correction=1.0,
+                          angle_fractions='kept')
     driven.connect()
     driven.run(3.0)
     driven.velocity = 0.0, RATE

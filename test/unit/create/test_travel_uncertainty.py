@@ -127,7 +127,7 @@ def test_what_was_lost_before_the_first_reading_is_no_travel():
     counter.miss(True, 0.1, Expected(0.02, 0.02))
     counter.miss(False, 0.1, Expected(0.02, 0.02))
     assert counter.update(counters(500, 90), 0.0, STILL) == NOWHERE
-    assert counter.update(counters(20), 0.1, Expected(0.02, 0.02)) == pytest.approx((0.02, 0, 0, 0))
+    assert counter.update(counters(20), 0.1, Expected(0.02, 0.02)) == pytest.approx((0.02, 0, 0, 0), abs=1e-5)
 
 
 @pytest.mark.parametrize('reading, capped', [
@@ -136,7 +136,7 @@ def test_what_was_lost_before_the_first_reading_is_no_travel():
 def test_a_robot_that_has_stopped_counting_may_be_anywhere(reading, capped):
     travel = counter_travel().update(reading, 1e4, STILL)
     # 10 m or rad, 1 sigma
-    assert (travel.distance_variance, travel.angle_variance) == ((100, 100) if capped else (0, 0))
+    assert travel.distance_variance == (100 if capped else 0) and (travel.angle_variance >= 100) == capped
 
 
 @pytest.mark.parametrize('reading, reset', [
@@ -161,9 +161,9 @@ def test_a_query_of_which_it_is_unclear_whether_it_arrived_counts_half():
     counter = counter_travel()
     counter.miss(False, 0.1, Expected(0.002, 0.002))
     travel = counter.update(counters(402), 2.0, Expected(0.4, 0.4))
-    # 1 mm, plus or minus 1 mm and 10 % of it
+    # 1 mm, plus or minus 1 mm; the rest is for errors that are not detected on a bad line
     assert travel.distance == pytest.approx(0.403)
-    assert travel.distance_variance == pytest.approx(2 * 0.0011 ** 2 / 4, rel=1e-6)
+    assert 0.001 < travel.distance_variance ** 0.5 < 0.01
 
 
 @pytest.mark.parametrize('read, distance', [(20, 0.06), (60, 0.06)])
@@ -177,74 +177,42 @@ def test_whether_a_query_arrived_follows_from_the_next_reading(read, distance):
     assert travel.distance == pytest.approx(0.02) and travel.distance_variance < 1e-7
 
 
-# a robot that may lose fractions of a degree
+# a robot that drops fractions of a degree
 
 def test_between_two_readings_of_the_angle_the_turn_follows_the_commands():
     counter = counter_travel(LOST)
-    turn, wheel = radians(5), radians(5) * 0.13
+    wheel = radians(5) * 0.13
     angles = []
-    for reads in (False, False, True):
-        assert counter.wants_angle(Expected(-wheel, wheel)) == reads
+    for reads in (False, False, True, False):
+        assert counter.wants_angle(Expected(-wheel, wheel), 0.1) == reads
         reading = counters(0, 14) if reads else {'distance': 0}
-        angles.append(counter.update(reading, 0.1, Expected(-wheel, wheel)))
-    assert [each.angle for each in angles[:2]] == pytest.approx([turn, turn])
-    # the last reading corrects the sum: 14 degrees, and half a degree that the robot lost
-    assert sum(each.angle for each in angles) == pytest.approx(radians(14.5))
-    # while it was not read, the turn is known as well as the wheels follow the commands
-    assert angles[0].angle_variance == 0
-    assert angles[2].angle_variance == pytest.approx(radians(0.5) ** 2 / 4 + radians(1) ** 2 / 12)
+        angles.append(counter.update(reading, 0.1, Expected(-wheel, wheel)).angle)
+        # what was not read is as uncertain as a travel that is expected
+        unread = 0 if reads else len(angles) % 4 * 5 or 5
+        assert counter.unread_variance == pytest.approx((0.1 * radians(unread)) ** 2, abs=1e-9)
+    # 14 degrees, and half a degree that the robot dropped
+    assert angles == pytest.approx([radians(5), radians(5), radians(4.5), radians(5)])
 
 
-def test_the_angle_is_read_at_least_every_0_9_s():
+def test_at_rest_the_angle_is_read_every_0_9_s():
     counter = counter_travel(LOST)
     read = []
     for _ in range(40):
-        read.append(counter.wants_angle(STILL))
+        read.append(counter.wants_angle(STILL, 0.1))
         counter.update(counters(0) if read[-1] else {'distance': 0}, 0.1, STILL)
     # every 0.9 to 1.3 s, after the reading 0.1 s before
-    assert 3 <= sum(read) <= 4 and not any(read[:9])
+    assert 3 <= sum(read) <= 4 and not any(read[:8])
 
 
-def test_a_reply_that_is_lost_between_two_readings_of_the_angle_does_not_change_the_turn():
-    counter = counter_travel(LOST)
-    wheel = radians(5) * 0.13       # 5 degrees per query
-    total = 0.0
-    for number in range(3):
-        assert counter.wants_angle(Expected(-wheel, wheel)) == (number == 2)
-        if number == 1:
-            counter.miss(True, 0.1, Expected(-wheel, wheel))
-        else:
-            reading = counters(0, 14) if number else {'distance': 0}
-            total += counter.update(reading, 0.1, Expected(-wheel, wheel)).angle
-    assert total == pytest.approx(radians(14.5))
-
-
-def test_a_robot_that_counts_on_has_lost_no_turn_with_a_doubtful_query():
+@pytest.mark.parametrize('begun, reading, total', [
+    (True, {'distance': 0, 'angle': 14}, 34.5), (False, {'distance': 0, 'angle': 34}, 34.5),
+    (False, {'distance': 0, 'angle': 14}, 34.5)])
+def test_an_angle_that_was_lost_is_replaced_by_the_commands(begun, reading, total):
     counter = counter_travel(LOST)
     wheel = radians(20) * 0.13
-    assert counter.wants_angle(Expected(-wheel, wheel))
-    counter.miss(False, 0.4, Expected(-wheel, wheel))
-    assert counter.wants_angle(Expected(-wheel, wheel))
-    # it has turned by half of both commands
-    assert counter.update(counters(0, 19), 0.8, Expected(-wheel, wheel)).angle == pytest.approx(radians(19.5))
-
-
-def test_each_angle_of_a_robot_that_loses_fractions_is_uncertain():
-    counter = counter_travel(LOST)
-    wheel = radians(20) * 0.13
-    assert counter.wants_angle(Expected(-wheel, wheel))
-    travel = counter.update(counters(0, 18), 0.4, Expected(-wheel, wheel))
-    # half of the difference between 18.5 and 20 degrees, and the rounding
-    assert travel.angle == pytest.approx(radians(18.5))
-    assert travel.angle_variance == pytest.approx(radians(1.5) ** 2 / 4 + radians(1) ** 2 / 12)
-    assert counter_travel().update(counters(0, 18), 0.4, Expected(-wheel, wheel)).angle_variance == 0
-
-
-def test_a_lost_angle_begins_again():
-    counter = counter_travel(LOST)
-    wheel = radians(20) * 0.13
-    assert counter.wants_angle(Expected(-wheel, wheel))
-    counter.miss(True, 0.4, Expected(-wheel, wheel))
-    # the next query need not read the angle, and its turn is that of the commands
-    assert not counter.wants_angle(Expected(-wheel / 4, wheel / 4))
-    assert counter.update({'distance': 0}, 0.5, Expected(-wheel / 4, wheel / 4)).angle == pytest.approx(radians(25))
+    assert counter.wants_angle(Expected(-wheel, wheel), 0.2)
+    counter.miss(begun, 0.2, Expected(-wheel, wheel))
+    wheel = radians(15) * 0.13
+    assert counter.wants_angle(Expected(-wheel, wheel), 0.35)
+    travel = counter.update(reading, 0.35, Expected(-wheel, wheel))
+    assert travel.angle == pytest.approx(radians(total)) and travel.angle_variance > radians(2) ** 2

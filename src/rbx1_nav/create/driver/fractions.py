@@ -1,137 +1,211 @@
-"""Detects and corrects the loss of fractions of a degree when the angle of a Create is read.
+"""Reads the angle of a Create, which may keep or drop the fraction of a degree at each reading.
 
 According to the specification, each reading continues where the last one stopped. But some robots start each reading at
 0 and drop the fraction (libcreate, issue 22; create_robot, issue 28). At 30 readings per second and 1 rad/s, they lose
-a third of the turn. The less often the angle is read, the less is lost.
+a third of the turn.
+
+A test shows which kind of robot this is: in a steady turn, the angle is read so often that the robot turns by less than
+a degree between two readings. A robot that keeps fractions reports this turn in steps of 1 degree. A robot that drops
+them reports zeros, although the next reading, 10 degrees later, shows that it turns. Before the test, and on a robot
+that drops fractions, the angle is read rarely, and the heading follows the commands in between.
 """
 from __future__ import annotations
 
-from math import copysign
-from typing import Callable
+from math import ceil, copysign
+from typing import Callable, NamedTuple
 
 from rbx1_nav.config import AUTO
+from rbx1_nav.create.protocol import UPDATE_PERIOD
 from rbx1_nav.units import clamp
 
 KEPT, LOST = 'kept', 'lost'
 KINDS = (AUTO, KEPT, LOST)
 
-STEADY = 0.5            # s after a change of the commanded turn in which the robot may still lag
-SUSPICIOUS = 15.0       # degrees of a steady turn after which readings that are too small raise a suspicion
-CONTRAST = 6.0          # minimum number of degrees that must be missing if fractions are lost
-ENOUGH = 90.0           # degrees after which readings that were large enough are discarded
-COARSE_ANGLE = 14.0     # degrees between two readings of a robot that may lose fractions
-COARSE_TIME = 0.9       # maximum time (s) between two such readings
-VARIATION = 0.3         # relative variation of both: with equal intervals, each could lose the same fraction
+STEADY = 0.3            # s after a change of the commanded turn in which the robot may still lag
+BELOW = 0.95            # degrees between two readings of the test
+ENOUGH = 4.0            # degrees of such readings that show which kind of robot this is, if they are all zeros
+ROUNDS = 2              # number of times that this must happen: the wheels may have been blocked for a while
+TURNS = 0.3             # part of the commanded turn from which the robot turns: on carpet, slow wheels lag
+UNCLEAR = 12.0          # degrees after which a test without a result begins again
+SLOW = 3                # number of readings that come too late, after which the test waits for a slower turn
+CHECK_ANGLE = 10.0      # degrees after which a reading shows whether a robot that reported zeros turns
+MIN_CHECK = 4.0         # minimum, if the robot stops before
+COARSE_ANGLE = {AUTO: 45.0, LOST: 14.0}     # degrees between two readings: the fewer readings, the less is dropped
+COARSE_TIME = 0.9       # s between two readings of a robot that is not commanded to turn
+VARIATION = 0.3         # relative variation of both: with equal intervals, each could drop the same fraction
 GOLDEN = (5 ** 0.5 - 1) / 2     # its multiples are spread evenly between whole numbers
-COMPARED = 40.0         # degrees of coarse readings that are compared with the readings before
-MEAN_LOSS = 0.5         # degrees, mean loss of a nonzero reading
-GAP = 2.5               # intervals between two readings beyond which readings are missing
-MAX_CORRECTION = 2.0    # degrees per update: a filter would mistake a large jump of the heading for a change of place
+RETEST = 360.0          # degrees after which a robot that drops fractions is tested again
+MISSING = 0.9           # a robot that reports less than this part of a turn is tested again
+COMPARED = 30.0         # degrees of such a turn, doubled with each test
+MEAN_LOSS = 0.5         # degrees: a fraction is uniformly distributed
+LOSS_VARIANCE = 1 / 6    # degrees^2, of a reading that drops a fraction, or may do so
+MAX_CORRECTION = 120.0  # degrees/s: a filter would mistake a large jump of the heading for a change of place
+GAP = 0.3               # s without a reading after which the angle is read
+UNSURE = 0.1            # 1 sigma of a commanded turn that was not read, as a part of it
 
 
-def fraction(turn: float) -> float:
-    """Return the expected loss (degrees) of a turn (degrees): half a degree on average, since the robot measures at its
-    own instants; all of a turn that is smaller than a degree."""
-    return turn if turn < 1 else MEAN_LOSS
+class Turn(NamedTuple):
+    """A turn in degrees, and its variance in degrees^2 without rounding."""
+
+    angle: float
+    variance: float
 
 
-class _Readings:
-    """Readings in one steady turn, in degrees, positive in the commanded direction."""
-
-    def __init__(self) -> None:
-        self.commanded: list[float] = []
-        self.total = self.read = self.fractions = 0.0   # commanded turn, turn that was read, expected loss
-
-    def add(self, commanded: float, read: float) -> None:
-        self.commanded.append(commanded)
-        self.total += commanded
-        self.read += read
-        self.fractions += fraction(commanded)
+NO_TURN = Turn(0.0, 0.0)
 
 
 class Fractions:
-    """Detects from readings and commands whether fractions are lost, and corrects the loss. Angles are in degrees.
-
-    Readings that are too small raise a suspicion, but wheels that slip or are held back look the same. So the angle is
-    read less often for a while. If fractions are lost, the robot then seems to turn faster.
-    """
+    """Decides when to read the angle, and converts the readings to turns. Angles are in degrees."""
 
     def __init__(self, kind: str = AUTO, warn: Callable[[str], None] = lambda text: None) -> None:
         """kind: one of KINDS; warn: logs a line."""
         self.kind = kind
+        self._fixed = kind != AUTO
         self._warn = warn
-        self._count = 0                 # number of readings
-        self._elapsed = 0.0             # s, interval of the last reading
-        self._owed = 0.0                # lost turn that has not been corrected yet
-        self._side = 0                  # direction of the commanded turn: 1 left, -1 right
-        self._rate = 0.0                # commanded rate, degrees/s
-        self._begin(0, 0.0)
+        self._count = 0                         # number of readings
+        self._rate, self._steady = 0.0, 0.0     # commanded rate (degrees/s), and for how long (s)
+        self.turn = self.time = 0.0             # commanded turn and time (s) since the last reading of the angle
+        self._doubtful = 0.0                    # the part of `turn` before a query that may not have arrived
+        self._compared = self._reported = 0.0   # commanded turn and readings of a robot that keeps fractions
+        self._enough = COMPARED
+        self._owed = 0.0                        # correction of the commanded turn that was not returned yet
+        self._fastest = BELOW / UPDATE_PERIOD   # degrees/s up to which this line allows the test
+        self._begin_test()
 
-    def add(self, commanded: float, angle: float, elapsed: float) -> float:
-        """Return the turn since the previous reading. commanded: commanded turn; angle: the reading; elapsed: s."""
-        self._count += 1
-        if not self.coarse and elapsed > GAP * self._elapsed:
-            self.disturb()
-        self._elapsed = elapsed
-        side = int(commanded > 0) - int(commanded < 0)
-        rate = commanded / elapsed if elapsed > 0 else 0.0
-        if side != self._side or abs(rate - self._rate) > 0.2 * abs(rate):
-            self._begin(side, rate)
-        self._turning += elapsed
-        if self.kind == AUTO and side:
-            self._owed = side * self._compare(side * commanded, side * angle)
-        return angle + (copysign(MEAN_LOSS, angle) if self.kind == LOST and angle else 0.0)
+    def _begin_test(self) -> None:
+        self._checking = False
+        self._since_test = 0.0              # commanded turn since the last test
+        self._tested = self._tested_turn = 0.0      # absolute and signed commanded turn between readings of the test
+        self._rounds = 0                    # number of checks that have shown that the robot turns
+        self._shown = self._shown_turn = 0  # what these readings show
+        self._slow = 0                      # number of readings that came too late
 
-    def make_up(self) -> float:
-        """Return a part of the turn that was lost before, to be added at each update."""
-        part = clamp(self._owed, MAX_CORRECTION)
-        self._owed -= part
-        return part
+    @property
+    def hurries(self) -> bool:
+        """Whether to query the robot again as soon as it has replied."""
+        return (not self._fixed and not self._checking and self._steady > STEADY
+                and 0 < abs(self._rate) <= self._fastest
+                and (self.kind == AUTO or (self.kind == LOST and self._since_test > RETEST)))
+
+    @property
+    def unread(self) -> float:
+        """The turn that was reported and not read."""
+        return self.turn + self._tested_turn - self._owed
 
     def is_due(self, turn: float, time: float) -> bool:
-        """Return whether to read the angle now. turn: commanded turn since the last reading; time: s since then."""
-        if not self.coarse:
+        """Return whether to read the angle now. turn, time: commanded turn and time (s) since the last update."""
+        if self.kind == KEPT or self.hurries or time > GAP:
             return True
         factor = 1 + VARIATION * (self._count * GOLDEN % 1)
-        return abs(turn) >= factor * COARSE_ANGLE or time >= factor * COARSE_TIME
+        angle = CHECK_ANGLE if self._checking else COARSE_ANGLE[self.kind]
+        return abs(self.turn + turn) >= factor * angle or (not turn and self.time + time >= factor * COARSE_TIME)
 
-    def disturb(self) -> None:
-        """Restart the comparison, because a reading was lost."""
-        self._begin(self._side, self._rate)
+    def lose(self, doubtful: bool) -> None:
+        """Handle a reading of the angle that was lost. doubtful: whether the query may not have arrived."""
+        if doubtful:
+            self._doubtful = self.turn
+        else:       # the commands replace it
+            self._finish_reading()
 
-    def _begin(self, side: int, rate: float) -> None:
-        self._side, self._rate, self._turning = side, rate, 0.0
-        self._start, self._fine, self._coarse = _Readings(), _Readings(), _Readings()
-        self.coarse = self.kind == LOST     # whether to read the angle less often
+    def _finish_reading(self) -> None:
+        self.turn = self.time = self._doubtful = 0.0
 
-    def _compare(self, commanded: float, read: float) -> float:
-        """Compare a reading. Returns the turn that was lost before, once a loss of fractions is detected; else 0."""
-        if self.coarse:
-            self._coarse.add(commanded, read)
-            return self._decide() if self._coarse.total >= COMPARED else 0.0
-        if self._turning <= STEADY:
-            self._start.add(commanded, read)
-            return 0.0
-        fine = self._fine
-        fine.add(commanded, read)
-        if fine.total >= SUSPICIOUS and fine.fractions >= CONTRAST:
-            self.coarse = fine.read < fine.total - fine.fractions / 2
-            if not self.coarse and fine.total > ENOUGH:
-                self._fine = _Readings()
-        return 0.0
+    def update(self, commanded: float, elapsed: float, angle: int | None) -> Turn:
+        """Return the turn since the last update. commanded: commanded turn; elapsed: s; angle: the reading, or None."""
+        rate = commanded / elapsed if elapsed > 0 else 0.0
+        self._steady = self._steady + elapsed if abs(rate - self._rate) <= 0.2 * abs(rate) else 0.0
+        self._rate = rate
+        self._since_test += abs(commanded)
+        ahead = self.turn
+        self.turn += commanded
+        self.time += elapsed
+        variance = 0.0
+        if angle is not None:
+            turn, variance = self._add(commanded, elapsed, angle)
+            if self.kind == KEPT and not ahead and not self._owed:
+                return Turn(turn, variance)
+            self._owed += turn - commanded - ahead
+        part = clamp(self._owed, MAX_CORRECTION * elapsed)
+        self._owed -= part
+        return Turn(commanded + part, variance)
 
-    def _decide(self) -> float:
-        start, fine, coarse = self._start, self._fine, self._coarse
-        if_kept = coarse.read / coarse.total * fine.total
-        ratio = (coarse.read + MEAN_LOSS * len(coarse.commanded)) / coarse.total
-        if_lost = sum(ratio * each - fraction(ratio * each) for each in fine.commanded)
-        if fine.read > (if_kept + if_lost) / 2:
-            self.kind, self.coarse = KEPT, False
-            return 0.0
-        self.kind = LOST
-        self._warn('The robot loses fractions of a degree: correcting the odometry. Set angle_fractions:=lost to '
-                   'correct it from the start')
-        # while the robot lagged behind its command, only the number of readings shows how much was lost
-        begun = min(MEAN_LOSS * len(start.commanded), max(0.0, ratio * start.total - start.read))
-        # add() corrects the last coarse reading itself, like each one from now on
-        return begun + max(0.0, ratio * fine.total - fine.read) + MEAN_LOSS * (len(coarse.commanded) - 1)
+    def _add(self, commanded: float, elapsed: float, angle: int) -> Turn:
+        """Return the Turn since the last reading of the angle."""
+        self._count += 1
+        if self.hurries and self.time == elapsed and not self._doubtful:
+            if abs(self._rate) * UPDATE_PERIOD * ceil(elapsed / UPDATE_PERIOD) < 1:
+                self._finish_reading()
+                return self._test(commanded, angle)
+            self._slow += 1
+            if self._slow >= SLOW:
+                self._fastest, self._slow = abs(self._rate) / 2, 0
+        tested = self._check(angle) if self._checking else NO_TURN
+        if self.kind == KEPT:
+            self._compare(commanded, angle)
+        turn, variance = self._read(angle)
+        self._finish_reading()
+        return Turn(turn + tested.angle, variance + tested.variance)
+
+    def _read(self, angle: int) -> Turn:
+        """Return the Turn since the last reading."""
+        turn, variance = float(angle), 0.0
+        if abs(angle - self.turn + self._doubtful) < abs(angle - self.turn):
+            turn += self._doubtful      # an earlier reply was lost
+            variance = (UNSURE * self._doubtful) ** 2
+        if angle and self.kind == LOST:
+            turn += copysign(MEAN_LOSS, angle)
+        return Turn(turn, variance + (LOSS_VARIANCE if self.kind != KEPT and (angle or self.turn) else 0.0))
+
+    def _test(self, commanded: float, angle: int) -> Turn:
+        """Add a reading before which the robot has turned by less than a degree."""
+        self._tested += abs(commanded)
+        self._tested_turn += commanded
+        self._shown += angle if commanded > 0 else -angle
+        self._shown_turn += angle
+        part = self._tested - ENOUGH * self._rounds
+        if not -1 <= self._shown <= 1.5 * self._tested + 2:     # the robot is pushed
+            self._steady = 0.0
+            return self._finish_test(self.kind, commanded, (UNSURE * self._tested_turn) ** 2)
+        if part >= ENOUGH:
+            if self._shown == 0:
+                self._checking = True
+            elif self._shown >= TURNS * part:
+                return self._finish_test(KEPT, commanded, 0.0)
+            elif part >= UNCLEAR:   # the robot was pushed, or its wheels were blocked
+                return self._finish_test(self.kind, commanded, (UNSURE * self._tested_turn) ** 2)
+        return Turn(commanded, 0.0)
+
+    def _check(self, angle: int) -> Turn:
+        """Check whether a robot that reported zeros turns. angle: the reading after them."""
+        share = (angle + copysign(MEAN_LOSS, angle)) / self.turn if self.turn else 0.0
+        if abs(self.turn) < MIN_CHECK or share > 1.5:
+            return NO_TURN
+        if share < TURNS:   # the wheels are blocked
+            return self._finish_test(self.kind, 0.0, 0.0)
+        self._checking = False
+        self._rounds += 1
+        if self._rounds < ROUNDS:
+            return NO_TURN
+        self._shown_turn = share * self._tested_turn
+        return self._finish_test(LOST, 0.0, (UNSURE * self._tested_turn) ** 2)
+
+    def _finish_test(self, kind: str, commanded: float, variance: float) -> Turn:
+        """Return the Turn that replaces the commands during the test by what was read."""
+        if kind != self.kind:
+            self.kind = kind
+            if kind == LOST:
+                self._warn('The robot loses fractions of a degree: correcting the odometry. Set '
+                           'angle_fractions:=lost to correct it from the start')
+        turn = Turn(commanded + self._shown_turn - self._tested_turn, variance)
+        self._begin_test()
+        return turn
+
+    def _compare(self, commanded: float, angle: int) -> None:
+        """Look for a robot that reports too small a part of a steady turn, and test it again."""
+        if self._fixed or self._steady <= STEADY or self._compared >= self._enough:
+            self._compared = self._reported = 0.0
+        self._compared += abs(commanded)
+        self._reported += angle if commanded > 0 else -angle
+        if self._compared >= self._enough and self._reported < MISSING * self._compared:
+            self.kind = AUTO
+            self._enough *= 2

@@ -72,8 +72,9 @@ class MotionReport:
         """Whether there is a reading since the last State."""
         return self.time != self.reported
 
-    def state(self, gyro: Reading | None) -> State:
-        """Return the State, with the gyro's last Reading or None. Call it after add()."""
+    def state(self, gyro: Reading | None, unread_variance: float = 0.0) -> State:
+        """Return the State, with the gyro's last Reading or None. unread_variance: see CounterTravel. Call it after
+        add()."""
         assert self.time is not None
         elapsed = (self.time - self.reported) / SECOND if self.reported is not None else 0.0
         velocity, variances = (0.0, 0.0), (MEASURED, MEASURED)
@@ -85,6 +86,7 @@ class MotionReport:
                                for variance, error, rounding in zip(self.since[2:], errors, self.rounding))
             variances = linear, angular
         covariance = self.odometry.covariance
+        covariance[2, 2] += unread_variance
         if self.moving_yaw_variance and any(velocity):
             covariance[2, 2] = self.moving_yaw_variance
             variances = variances[0], self.moving_yaw_variance

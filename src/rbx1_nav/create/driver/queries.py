@@ -30,13 +30,19 @@ class Queries:
     def begin(self, now: int, start: bool) -> bytes:
         """Return the bytes of the next query. start: whether the robot is started first."""
         self.give_up()
+        elapsed = (now - self.commanded.counted_from) / SECOND
         self.commanded.ask(now)
         # not every query asks a Create for its angle
         short = (isinstance(self.counter, CounterTravel) and not start
-                 and not self.counter.wants_angle(self.commanded.asked))
+                 and not self.counter.wants_angle(self.commanded.asked, elapsed))
         numbers = self.numbers[1 if short else 0]
         self.reader.expect(numbers)
         return sequences.query(numbers)
+
+    @property
+    def hurries(self) -> bool:
+        """Whether to send the next query as soon as the robot has replied."""
+        return isinstance(self.counter, CounterTravel) and self.counter.fractions.hurries
 
     def awaits_reply(self, now: int) -> bool:
         """Return whether the reply to the last query may still arrive."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 from math import degrees, radians
 from typing import Mapping, NamedTuple, Protocol
 
-from rbx1_nav.create.driver.fractions import LOST, Fractions
+from rbx1_nav.create.driver.fractions import UNSURE, Fractions
 from rbx1_nav.create.protocol import MAX_SPEED, Model
 
 WHEEL_LIMIT = 1.3 * MAX_SPEED / 1000    # m/s: faster than any wheel
@@ -15,6 +15,7 @@ MEMORY = 0.02           # weight of the last reply in the share of lost replies,
 BAD_LINE = 0.015        # share of lost replies, reached after one loss: other replies may be corrupted undetected
 DOUBT = 0.005           # m: on a bad line, a larger difference between read and expected wheel travel is doubtful
 REPLY_SIZE = 30         # bytes
+LOW_BYTE = 0.128        # m, the largest error of a low byte, which no range can reveal
 LONG = 0.3              # s without a reading after which the next reading cannot be compared with the previous one
 ROUND = 1 / 12 ** 0.5   # 1 sigma of rounding to a whole number
 
@@ -76,11 +77,6 @@ def is_possible(left: float, right: float, elapsed: float) -> bool:
     return max(abs(left), abs(right)) <= WHEEL_LIMIT * elapsed + MARGIN
 
 
-def _distance(one: Expected, other: Expected) -> float:
-    """Return the larger of the two wheels' differences, m."""
-    return max(abs(one.left - other.left), abs(one.right - other.right))
-
-
 def bridged(expected: Expected, measured: Expected, width: float) -> Travel:
     """Return the Travel that was not read, as expected from the commands. measured: travel at the speeds of the last
     reading; where the two differ, the wheels do not follow the commands, and either may be closer to the truth."""
@@ -100,6 +96,7 @@ class EncoderTravel:
     """Travel of the Create 2, from 16-bit encoders that wrap."""
 
     WRAP = 1 << 16
+    bad = unread_variance = 0.0     # lost readings lose no travel, and each reading shows the whole turn
 
     def __init__(self, model: Model) -> None:
         """model: one with encoders."""
@@ -155,8 +152,7 @@ class EncoderTravel:
 
 
 class CounterTravel:
-    """Travel of the Create, from distance and angle since the last reply. A lost reply loses the travel it reported.
-    If the robot may lose fractions of a degree, the turn between two readings of the angle follows the commands."""
+    """Travel of the Create, from distance and angle since the last reply. A lost reply loses the travel it reported."""
 
     CAP = 32767     # mm or degrees at which the robot stops counting
 
@@ -165,133 +161,120 @@ class CounterTravel:
         self.width = model.wheel_separation
         self.fractions = fractions
         self.rounding = 1e-3 * ROUND, radians(1) * ROUND
+        self.bad = 0.0          # share of the last replies that were lost
         self.restart()
 
     def restart(self) -> None:
         self.first = True
-        self.lost: list[Travel] = []    # travel of lost replies
+        self.lost = NOWHERE     # travel of lost replies
+        self.lost_time = 0.0    # s, time before the queries for which no reading was accepted
         self.doubtful = STILL   # commanded travel before queries that may or may not have reached the robot
         self.speed = STILL      # m/s, wheel speeds in the last reading
-        self.bad = 0.0          # share of the last replies that were lost
+        self.rejected = 0       # number of consecutive doubtful readings
         self.asks_angle = True  # whether the last query asks for the angle
-        self._begin_angle()
-
-    def _begin_angle(self) -> None:
-        # since the last reading of the angle: time (s), commanded turn (rad), turn returned by update() (rad)
-        self.angle_time = self.commanded_turn = self.returned_turn = 0.0
+        self.fractions.lose(doubtful=False)
 
     def _turn(self, expected: Expected) -> float:
-        return (expected.right - expected.left) / self.width
+        """Return a turn in degrees."""
+        return degrees((expected.right - expected.left) / self.width)
 
-    def wants_angle(self, expected: Expected) -> bool:
-        """Return whether the next query is to ask for the angle. expected: commanded travel since the last query."""
-        turn = degrees(self.commanded_turn + self._turn(expected))
-        self.asks_angle = self.fractions.is_due(turn, self.angle_time)
+    @property
+    def unread_variance(self) -> float:
+        """The variance (rad^2) of the turn that was commanded and has not been read yet."""
+        return radians(UNSURE * self.fractions.unread) ** 2
+
+    def wants_angle(self, expected: Expected, elapsed: float) -> bool:
+        """Return whether the next query is to ask for the angle. expected: commanded travel since the last query,
+        `elapsed` s ago."""
+        self.asks_angle = self.fractions.is_due(self._turn(expected), elapsed)
         return self.asks_angle
 
     def update(self, reading: Mapping[str, int], elapsed: float, expected: Expected) -> Travel:
-        distance = reading['distance'] / 1000
         if self.first:
             self.restart()
             self.first = False
             return NOWHERE
-        time, turn = self.angle_time + elapsed, self._turn(expected)
-        # the share of the last interval, if the angle covers a longer time
-        angle = radians(reading['angle']) * (elapsed / time if time else 1.0) if self.asks_angle else turn
-        wheels = Expected(distance - angle * self.width / 2, distance + angle * self.width / 2)
-        if not is_possible(*wheels, elapsed):
+        interval = elapsed - self.lost_time
+        distance, turn = reading['distance'] / 1000, self._turn(expected)
+        angle = reading['angle'] if self.asks_angle else None
+        wheels = self._wheels(distance, turn if angle is None else self._share(angle, interval))
+        possible = WHEEL_LIMIT * elapsed + MARGIN
+        is_checked = self.bad < BAD_LINE or (interval <= LONG and not any(self.doubtful) and self.rejected < AGREED)
+        is_doubtful = is_checked and self.bad >= BAD_LINE and self._is_doubtful(wheels, expected, interval)
+        self.rejected = self.rejected + 1 if is_doubtful else 0
+        if wheels.largest() > possible or is_doubtful:
             raise Implausible(f"distance: {reading['distance']} mm, angle: {reading.get('angle')} degrees in "
                               f'{elapsed:.3f} s')
-        capped = abs(reading['distance']) >= self.CAP or (self.asks_angle and abs(reading['angle']) >= self.CAP)
-        cap_variance = 100.0 if capped else 0.0
-        angle, variance = self._read_angle(reading, time, turn)
-        doubtful = self._doubt(wheels, expected, elapsed)
-        resolved = self._resolve(wheels, expected)
-        if self.fractions.coarse:       # the robot keeps counting the angle
-            resolved = resolved._replace(angle=0.0)
-        parts = [Travel(distance, angle, cap_variance, cap_variance + variance), resolved, *self.lost, doubtful]
-        if elapsed > 0 and not self.lost and not any(resolved):
-            self.speed = Expected(*(wheel / elapsed for wheel in wheels))
-        self.lost.clear()
-        self.doubtful = STILL
+        capped = max(abs(reading['distance']), abs(angle or 0)) >= self.CAP
+        unsure = 10.0 if capped else self._undetected(DOUBT if is_checked else min(possible, LOW_BYTE))
+        turned = self.fractions.update(turn, interval, angle)
+        parts = [Travel(distance, radians(turned.angle), unsure ** 2,
+                        (2 / self.width * unsure) ** 2 + radians(1) ** 2 * turned.variance),
+                 self._resolve(distance, expected), self.lost]
+        if interval > 0 and not any(self.doubtful):
+            self.speed = Expected(*(wheel / interval for wheel in wheels))
+        self.lost, self.lost_time, self.doubtful = NOWHERE, 0.0, STILL
+        self.bad *= 1 - MEMORY
         return Travel(*map(sum, zip(*parts)))
 
-    def _doubt(self, wheels: Expected, expected: Expected, elapsed: float) -> Travel:
-        """Return the Travel by which to correct a reading. wheels: travel that was read.
+    def _wheels(self, distance: float, turn: float) -> Expected:
+        half = radians(turn) * self.width / 2
+        return Expected(distance - half, distance + half)
 
-        A reply has no checksum, so on a bad line some corrupted replies are not detected. A reply that differs from
-        the expected travel is corrected: by half of the difference, or by all of it if the expectations agree.
-        """
-        self.bad *= 1 - MEMORY
-        if self.bad < BAD_LINE or elapsed > LONG:
-            return NOWHERE
-        by_speed = Expected(*(speed * elapsed for speed in self.speed))
-        with_doubtful = expected.plus(self.doubtful)
+    def _share(self, angle: int, interval: float) -> float:
+        """Return the part of an angle in the last `interval` s, if the angle was not read for a longer time."""
+        time = self.fractions.time + interval
+        return angle * interval / time if time else angle
+
+    def _is_doubtful(self, wheels: Expected, expected: Expected, interval: float) -> bool:
+        """Return whether a reading is probably corrupted: it is beyond both the commanded travel and the travel at the
+        speed of the reading before. A reply has no checksum, so on a bad line some errors are not detected."""
         far = DOUBT + LOST_SHARE * expected.largest()
-        closest = min((expected, with_doubtful, by_speed), key=lambda each: _distance(wheels, each))
-        if _distance(wheels, closest) > far:
-            # if the robot keeps its speed, the reading is corrupted; otherwise the speed may have changed
-            share = 1.0 if _distance(expected, by_speed) < far else 0.5
-            less = Expected(*(share * (one - other) for one, other in zip(closest, wheels)))
-            unsure = Expected(*((1 - share) * abs(each) + DOUBT for each in less))
-            return bridged(less, less, self.width)._replace(
-                distance_variance=sum(each ** 2 for each in unsure) / 4,
-                angle_variance=sum(each ** 2 for each in unsure) / self.width ** 2)
-        # an undetected error of one bit in the two low bytes
-        variance = 2 * self.bad / REPLY_SIZE * DOUBT ** 2
-        return Travel(0.0, 0.0, variance / 4, variance / self.width ** 2)
+        by_speed = (speed * interval for speed in self.speed)
+        return any(not min(limits) - far <= wheel <= max(limits) + far
+                   for wheel, *limits in zip(wheels, expected, by_speed))
 
-    def _read_angle(self, reading: Mapping[str, int], time: float, turn: float) -> tuple[float, float]:
-        """Return (turn since the last update in rad, its variance excluding rounding). time: s since the angle was read
-        before; turn: commanded turn since the last update, rad."""
-        self.commanded_turn += turn
-        if self.asks_angle:
-            whole = self.fractions.add(degrees(self.commanded_turn), reading['angle'], time)
-            angle = radians(whole) - self.returned_turn
-            coarse = self.fractions.kind == LOST or bool(self.returned_turn)
-            self._begin_angle()
-        else:
-            angle, coarse, self.angle_time = turn, True, time
-            self.returned_turn += turn
-        angle += radians(self.fractions.make_up())
-        # the turn returned before was wrong by about as much as the angle differs now
-        variance = (angle - turn) ** 2 / 4 + (self.rounding[1] ** 2 if self.asks_angle else 0.0)
-        return angle, variance if coarse else 0.0
+    def _undetected(self, size: float) -> float:
+        """Return 1 sigma of an undetected error of at most `size`: one of the four bytes of distance and angle."""
+        return size * ((1 - (1 - self.bad) ** (4 / REPLY_SIZE)) / 3) ** 0.5 if self.bad >= BAD_LINE else 0.0
 
-    def _resolve(self, wheels: Expected, expected: Expected) -> Travel:
-        """Return the Travel lost by doubtful queries. wheels: the travel that was read afterwards.
-
-        If they did not arrive, `wheels` includes the travel before them. If this is unclear, the result is half of that
-        travel, plus or minus half.
-        """
-        doubtful = self.doubtful
-        size = doubtful.largest()
-        if not size:
+    def _resolve(self, distance: float, expected: Expected) -> Travel:
+        """Return the Travel lost by doubtful queries. distance: what was read afterwards. If they did not arrive, it
+        includes the distance before them. Fractions handles the angle in the same way."""
+        doubtful, after = (sum(each) / 2 for each in (self.doubtful, expected))
+        if not any(self.doubtful):
             return NOWHERE
-        answered = max(abs(wheel - part) for wheel, part in zip(wheels, expected))
-        ignored = max(abs(wheel - part - other) for wheel, part, other in zip(wheels, expected, doubtful))
-        if size > 2 * (LOST_SHARE * expected.largest() + self.rounding[0] + self.rounding[1] * self.width):
-            return NOWHERE if ignored < answered else bridged(doubtful, doubtful, self.width)
-        return bridged(Expected(*(part / 2 for part in doubtful)), STILL, self.width)
+        lost = bridged(self.doubtful, self.doubtful, self.width)
+        unclear = abs(doubtful) < 2 * (self.rounding[0] + LOST_SHARE * abs(after))
+        if unclear:
+            return Travel(doubtful / 2, 0.0, lost.distance_variance + (doubtful / 2) ** 2, lost.angle_variance)
+        if abs(distance - after - doubtful) < abs(distance - after):
+            return NOWHERE
+        return lost._replace(angle=0.0)
 
     @staticmethod
     def is_reset(reading: Mapping[str, int]) -> bool:
         return reading['distance'] == 0 and reading.get('angle', 0) == 0
 
     def miss(self, begun: bool, elapsed: float, expected: Expected) -> None:
-        self.fractions.disturb()
         self.bad += (1 - self.bad) * MEMORY
-        if not begun:
-            self.doubtful = self.doubtful.plus(expected)
+        if self.first:
             return
-        measured = Expected(*(speed * elapsed for speed in self.speed))
-        part = bridged(expected, measured, self.width)
-        self.lost.append(part)
-        if self.asks_angle:
-            self._begin_angle()
+        turn = self._turn(expected)
+        turned = self.fractions.update(turn, elapsed, None)
+        self.lost_time += elapsed
+        if begun:
+            by_speed = Expected(*(speed * elapsed for speed in self.speed))
+            part = bridged(expected, by_speed, self.width)
         else:
-            self.commanded_turn += self._turn(expected)
-            self.returned_turn += part.angle
+            self.doubtful = self.doubtful.plus(expected)
+            part = NOWHERE
+        part = part._replace(angle=radians(turned.angle))
+        if self.asks_angle:
+            unread = radians(UNSURE * self.fractions.turn)
+            part = part._replace(angle_variance=part.angle_variance + unread ** 2)
+            self.fractions.lose(doubtful=not begun)
+        self.lost = Travel(*map(sum, zip(self.lost, part)))
 
 
 def travel_of(model: Model, fractions: Fractions) -> EncoderTravel | CounterTravel:

@@ -1,0 +1,181 @@
+"""Whether a robot keeps or drops fractions of a degree is tested with readings that follow each other fast."""
+from math import trunc
+
+import pytest
+
+from rbx1_nav.create.driver.fractions import AUTO, KEPT, LOST, Fractions
+
+PERIOD = 1 / 32         # s between two readings
+FAST = 1 / 128          # s between two readings of the test
+
+
+class Turning:
+    """A robot in a turn that is read whenever a reading is due."""
+
+    def __init__(self, kind=AUTO, drops=False, rate=40.0):
+        """rate: degrees/s."""
+        self.log = []
+        self.fractions = Fractions(kind, self.log.append)
+        self.drops = drops
+        self.rate = self.wheels = rate      # commanded, and of the wheels
+        self.true = self.pending = 0.0      # turn (degrees) in total, and since the last reading
+        self.total = 0.0        # turn returned
+        self.readings = 0       # number of readings of the angle
+        self.intervals = []     # s between two queries
+
+    def run(self, seconds, fast=FAST):
+        """Turn for some seconds. fast: s between two queries of the test."""
+        while seconds > 0:
+            elapsed = fast if self.fractions.hurries else PERIOD
+            seconds -= elapsed
+            self.intervals.append(elapsed)
+            self.true += self.wheels * elapsed
+            self.pending += self.wheels * elapsed
+            commanded = self.rate * elapsed
+            angle = None
+            if self.fractions.is_due(commanded, elapsed):
+                self.readings += 1
+                angle = trunc(self.pending)
+                self.pending = 0.0 if self.drops else self.pending - angle
+            self.total += self.fractions.update(commanded, elapsed, angle).angle
+
+    def stop(self):
+        """Stop the robot, and wait until its turn has been read."""
+        self.rate = self.wheels = 0.0
+        self.run(2.0)
+
+    @property
+    def error(self):
+        """Difference between the turn that was returned and the true turn, degrees."""
+        return self.total - self.true
+
+
+@pytest.mark.parametrize('rate', [6.0, -20.0, 60.0])
+@pytest.mark.parametrize('drops', [False, True])
+def test_one_steady_turn_shows_what_the_robot_does_with_fractions(drops, rate):
+    robot = Turning(drops=drops, rate=rate)
+    robot.run(80 / abs(rate))
+    assert robot.fractions.kind == (LOST if drops else KEPT)
+    assert len(robot.log) == drops
+    robot.stop()
+    assert abs(robot.error) < 2
+    # from now on, one robot is asked for its angle each time, the other one after 14 degrees or more
+    robot.rate = robot.wheels = 32.0
+    robot.readings = 0
+    robot.run(1.0)
+    assert robot.readings <= 2 if drops else robot.readings == 32
+
+
+def test_a_robot_that_may_lag_is_not_tested():
+    robot = Turning()
+    robot.run(0.3)
+    assert set(robot.intervals) == {PERIOD}
+    robot.run(0.1)
+    assert FAST in robot.intervals
+
+
+@pytest.mark.parametrize('drops', [False, True])
+def test_blocked_wheels_show_nothing(drops):
+    robot = Turning(drops=drops)
+    robot.wheels = 0.0
+    robot.run(3.0)
+    assert robot.fractions.kind == AUTO
+    robot.stop()
+    # the last test is not finished: one of its steps is still open
+    assert 0 <= robot.error < 4.5 and robot.fractions.unread == pytest.approx(robot.error)
+
+
+@pytest.mark.parametrize('drops', [False, True])
+def test_wheels_that_are_blocked_during_a_part_of_the_test(drops):
+    for blocked in range(1, 20):
+        robot = Turning(drops=drops)
+        robot.run(0.5)
+        robot.wheels = 0.0
+        robot.run(0.05 * blocked)
+        robot.wheels = robot.rate
+        robot.run(3.0)
+        assert robot.fractions.kind == (LOST if drops else KEPT), blocked
+        robot.stop()
+        assert abs(robot.error) < 7, blocked      # a part of the test, and the fractions
+
+
+@pytest.mark.parametrize('push', [100.0, -100.0])
+@pytest.mark.parametrize('drops', [False, True])
+def test_a_hand_that_turns_the_robot_during_the_test(drops, push):
+    robot = Turning(drops=drops)
+    robot.run(0.5)
+    robot.wheels += push
+    robot.run(0.5)
+    robot.wheels = robot.rate
+    robot.run(4.0)
+    assert robot.fractions.kind == (LOST if drops else KEPT)
+    robot.stop()
+    assert abs(robot.error) < 10        # between readings, the heading follows the commands
+
+
+def test_a_turn_that_is_too_fast_is_not_tested_and_read_rarely():
+    robot = Turning(drops=True, rate=150.0)
+    robot.run(10.0)
+    assert robot.fractions.kind == AUTO and set(robot.intervals) == {PERIOD}
+    robot.stop()
+    # 45 degrees or more per reading, each of which drops less than 1
+    assert robot.readings < 40 and abs(robot.error) < 0.015 * robot.true + 1
+
+
+def test_a_slow_line_is_tested_in_a_slow_turn():
+    robot = Turning(drops=True, rate=40.0)
+    robot.run(5.0, fast=0.03)       # two updates of the robot: 1.2 degrees
+    assert robot.fractions.kind == AUTO
+    robot.rate = robot.wheels = 10.0
+    robot.run(8.0, fast=0.03)
+    assert robot.fractions.kind == LOST
+    robot.stop()
+    assert abs(robot.error) < 0.015 * robot.true + 1
+
+
+def test_a_robot_that_reports_too_little_is_tested_again():
+    robot = Turning(drops=True)
+    robot.fractions.kind = KEPT     # a wrong result
+    robot.run(5.0)
+    assert robot.fractions.kind == LOST
+
+
+def test_a_robot_that_drops_fractions_is_tested_again_after_a_turn():
+    robot = Turning(drops=True)
+    robot.run(5.0)
+    assert robot.fractions.kind == LOST
+    robot.drops = False             # a wrong result
+    robot.run(10.0)
+    assert robot.fractions.kind == KEPT
+
+
+@pytest.mark.parametrize('kind', [KEPT, LOST])
+def test_a_known_robot_is_not_tested(kind):
+    robot = Turning(kind, drops=kind == LOST, rate=41.3)
+    robot.run(30.0)
+    assert robot.fractions.kind == kind and set(robot.intervals) == {PERIOD}
+    robot.stop()
+    assert abs(robot.error) < 0.005 * robot.true + 1 and not robot.log
+
+
+def test_a_lost_reading_is_replaced_by_the_commands():
+    fractions = Fractions(LOST)
+    fractions.update(10.0, PERIOD, None)
+    fractions.lose(doubtful=False)
+    assert fractions.update(5.0, PERIOD, 5).angle == pytest.approx(5.5)
+
+
+@pytest.mark.parametrize('angle, turn', [(20, 10.5), (10, 10.5)])
+def test_whether_a_query_arrived_follows_from_the_next_reading(angle, turn):
+    """The query after 10 degrees may not have arrived. The robot then reports 20 degrees, otherwise 10."""
+    fractions = Fractions(LOST)
+    fractions.update(10.0, 1.0, None)
+    fractions.lose(doubtful=True)
+    assert fractions.update(10.0, 1.0, angle).angle == pytest.approx(turn)
+
+
+def test_a_correction_is_no_jump():
+    """The heading is corrected by up to 120 degrees/s."""
+    fractions = Fractions(LOST)
+    fractions.update(20.0, 0.5, None)
+    assert [fractions.update(0.0, 0.05, angle).angle for angle in (9, None, None)] == pytest.approx([-6, -4.5, 0])
