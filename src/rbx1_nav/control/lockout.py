@@ -34,7 +34,7 @@ class Lockout:
         last = self._latest.get(sender)
         self._latest[sender] = now
         if len(self._latest) > MAX_SENDERS:
-            self._latest = {name: time + unobserved for name, time in self._latest.items() if now - time <= self.silence}
+            self._latest = {name: time for name, time in self._latest.items() if now - time <= self.silence}
         if self._released is None or sender in self._released:
             return False
         if moving and last is not None and now - last <= self.silence:
