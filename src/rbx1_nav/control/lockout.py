@@ -18,9 +18,13 @@ class Lockout:
         self._released: set[str] | None = None      # senders whose commands are accepted; None for all senders
         self._latest: dict[str, int] = {}   # arrival time of the last command, by sender
 
-    def lock(self, reason: str) -> None:
-        """Refuse the commands of all senders, because something has stopped the robot."""
+    def lock(self, reason: str, unobserved: int = 0) -> None:
+        """Refuse the commands of all senders, because something has stopped the robot.
+
+        unobserved: time until now in which no command could be received, which does not count as silence.
+        """
         self.reason, self._released = reason, set()
+        self._latest = {name: time + unobserved for name, time in self._latest.items()}
 
     def refuses(self, now: int, sender: str, moving: bool) -> bool:
         """Return whether to refuse a command that arrives at `now`.

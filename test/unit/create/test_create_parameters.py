@@ -8,7 +8,7 @@ from rbx1_nav.create.driver.parameters import read_settings
 
 def test_the_defaults():
     settings, robot = read_settings({})
-    assert settings.model is protocol.CREATE and settings.port == '/dev/ttyUSB0' and settings.mode == protocol.SAFE
+    assert settings.model is protocol.CREATE and settings.port == 'auto' and settings.mode == protocol.SAFE
     assert settings.has_gyro and settings.gyro_correction == 1.35 and settings.gyro_range == 150
     assert settings.linear_correction == settings.angular_correction == 1
     assert robot.timeout == 600000000 and robot.rate == 30 and robot.publish_tf
@@ -28,8 +28,8 @@ def test_own_names_of_the_wheels():
 @pytest.mark.parametrize('params, text', [
     ({'robot_type': 'roomba'}, "robot_type: 'roomba': expected one of auto, create, create2"),
     ({'robot_type': ['create']}, "robot_type: ['create']: expected one of auto, create, create2"),
-    ({'port': 3}, 'port: 3: expected the absolute path of a device'),
-    ({'port': 'COM1'}, "port: 'COM1': expected the absolute path of a device"),
+    ({'port': 3}, 'port: 3: expected the absolute path of a device, or auto'),
+    ({'port': 'COM1'}, "port: 'COM1': expected the absolute path of a device, or auto"),
     ({'operation_mode': 0}, 'operation_mode: 0: expected 1 (passive), 2 (safe) or 3 (full)'),
     ({'operation_mode': True}, 'operation_mode: True: expected 1 (passive), 2 (safe) or 3 (full)'),
     ({'drive_mode': 'turtle'}, "drive_mode: 'turtle': expected one of twist"),

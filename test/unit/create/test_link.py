@@ -45,7 +45,7 @@ def test_a_port_that_is_missing_is_logged_once_after_a_second(tmp_path):
         assert not link.open(tenth * SECOND // 10)
         assert len(log) == (tenth >= 10)
     assert log[0].endswith('; trying again')
-    link.path = str(tmp_path)       # another problem
+    link.configured = str(tmp_path)       # another problem
     assert not link.open(5 * SECOND) and len(log) == 2
 
 

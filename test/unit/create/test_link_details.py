@@ -70,16 +70,16 @@ def test_the_port_is_tried_five_times_per_second(tmp_path, monkeypatch):
 
 def test_a_problem_that_is_gone_is_logged_again_when_it_returns(line):
     link, log = line
-    path, link.path = link.path, '/dev/none'
+    path, link.configured = link.path, '/dev/none'
     link.close()
     for start in 10 * SECOND, 30 * SECOND:
         for tenth in range(20):
             link.open(start + tenth * TENTH)
         assert len(log) == (1 if start == 10 * SECOND else 2)
-        link.path = path
+        link.configured = path
         assert link.open(start + 5 * SECOND) and link.problem == link.logged == '' and link.lost_at is None
         link.close()
-        link.path = '/dev/none'
+        link.configured = '/dev/none'
         log[:] = [text for text in log if 'check that the same robot' not in text]
 
 

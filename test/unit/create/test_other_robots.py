@@ -115,10 +115,10 @@ def test_a_stop_is_not_sent_to_another_robot_before_it_is_known():
     driven.connect()
     driven.run(0.1)
     sent.clear()
-    driven.driver.stop(driven.now)      # as when the guardian dies
+    driven.driver.stop(driven.now, 'test')      # as when the guardian dies
     assert not sent
     driven.run(2)
-    driven.driver.stop(driven.now)
+    driven.driver.stop(driven.now, 'test')
     assert sequences.STOP in b''.join(sent)
 
 

@@ -5,7 +5,8 @@ import sys
 
 import pytest
 
-from rbx1_nav.create.driver.port import PortError, group_of, open_port, reason
+from rbx1_nav.create.driver import port as module
+from rbx1_nav.create.driver.port import PortError, open_port, reason
 from rbx1_nav.create.emulator.pseudo_terminal import PseudoTerminal
 
 
@@ -57,20 +58,26 @@ def test_not_permitted(terminal):
             open_port(terminal.device, 115200)
         except PortError as error:
             # this user may not even see the device
-            os.write(write_end, (f'{group_of(terminal.device)}\n{error}').encode())
+            os.write(write_end, f'{reason(terminal.device, 13, None)}\n{error}'.encode())
         os._exit(0)
     os.waitpid(child, 0)
     os.close(write_end)
     with open(read_end, encoding='utf-8') as pipe:
-        group, text = pipe.read().splitlines()
-    assert text == ('{0}: not permitted: expected a member of the group {1}; run `sudo adduser $USER {1}`, then log in '
-                    'again'.format(terminal.device, group))
+        expected, text = pipe.read().splitlines()
+    assert text == f'{terminal.device}: {expected}'
 
 
 def test_what_a_user_without_permission_reads(tmp_path):
     text = reason(str(tmp_path / 'none'), 13, None)     # also if the group is unknown
     assert text == ('not permitted: expected a member of the group dialout; run `sudo adduser $USER dialout`, then log '
                     'in again')
+
+
+def test_a_port_of_the_group_root_needs_the_udev_rules(monkeypatch):
+    monkeypatch.setattr(module, 'group_of', lambda path: 'root')
+    assert reason('/dev/ttyUSB0', 13, None) == (
+        'not permitted: expected a port of the group dialout; install the udev rules: see docs/real_robot.md, "The '
+        'serial port"')
 
 
 def test_another_process_has_it(terminal):

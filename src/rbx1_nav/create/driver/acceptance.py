@@ -29,6 +29,7 @@ class Acceptance:
         self.supervisor = supervisor
         self.lockout = Lockout(gate.timeout)
         self.reading_time: int | None = None    # time at which the robot made the last reading
+        self._ran: int | None = None    # time at which the driver last ran
         self._bits = self._felt = 0     # bumps and wheel drops in the last reading, in both of the last two readings
         self._blocked = 0.0         # m, see BLOCKED
         self._ignored_since: int | None = None  # time of the first motion command that the robot does not follow
@@ -51,11 +52,18 @@ class Acceptance:
         self.gate.halt()
         self._felt = 0
 
-    def lock(self, reason: str) -> None:
+    def lock(self, reason: str, unobserved: int = 0) -> None:
         """Halt, and lock out senders that have not noticed the stop: see Lockout."""
         self.gate.halt()
         self._blocked = 0.0
-        self.lockout.lock(reason)
+        self.lockout.lock(reason, unobserved)
+
+    def notice_stall(self, now: int) -> None:
+        """Lock if the driver did not run for so long that a command would have expired: the commands that arrive now
+        may have been sent any time before. Call it whenever the driver runs, before anything else."""
+        stall, self._ran = now - (self._ran or now), now
+        if stall >= max(self.gate.timeout, OUTAGE):
+            self.lock(f'this node did not run for {stall / SECOND:.1f} s', stall)
 
     def check_sender(self, now: int, sender: str, moving: bool) -> None:
         """Raise RefusedCommand for a sender that has not noticed that the robot was stopped."""

@@ -60,9 +60,8 @@ class Driver:
         self.leaving: int | None = None     # ns, when the final stop was requested
         self.left = False           # whether the robot has confirmed the final stop
         self.told = 0               # ns, when the final stop was last sent
-        # counters for /diagnostics
-        self.saturated = 0          # commands
-        self.implausible = 0        # readings
+        self.saturated = 0          # commands, for /diagnostics
+        self.implausible = 0        # readings, for /diagnostics
         self.use(settings.model)
 
     def use(self, model: protocol.Model) -> None:
@@ -96,9 +95,9 @@ class Driver:
         if self.polled:
             self.queries.give_up()
 
-    def stop(self, now: int) -> None:
-        """Stop the robot until the next command."""
-        self.gate.halt()
+    def stop(self, now: int, reason: str) -> None:
+        """Stop the robot, and lock out senders that have not noticed the stop."""
+        self.acceptance.lock(reason)
         if self.contact.may_ask:
             self.sender.stop(now)
 
@@ -148,6 +147,7 @@ class Driver:
 
         sender: the name of the node that sent it. Raises RefusedCommand if the robot does not follow the command now.
         """
+        self.acceptance.notice_stall(now)
         self.acceptance.check_sender(now, sender, bool(linear or angular))
         try:
             clamped = self.gate.command(now, linear, angular, others)
@@ -177,10 +177,10 @@ class Driver:
     def tick(self, now: int) -> bool:
         """Do what is due. Call it after each receive(), and at least at the update rate. Returns whether the command in
         force has timed out. Raises OSError."""
-        gate = self.gate
-        timed_out = gate.moving and now >= gate.expiry
+        timed_out = self.gate.moving and now >= self.gate.expiry
+        self.acceptance.notice_stall(now)
         if timed_out:
-            gate.halt()
+            self.gate.halt()
         if self.leaving is not None:
             if self.contact.searching:      # the Start bytes of the search stop any motion
                 self.contact.tick(now, self.reading_time)

@@ -13,7 +13,7 @@ import serial
 from rbx1_nav.create.driver import sequences
 from rbx1_nav.create.driver.guardian import Guardian
 from rbx1_nav.create.driver.parameters import Settings
-from rbx1_nav.create.driver.port import PortError, describe_adapter, open_port
+from rbx1_nav.create.driver.port import PortError, describe_adapter, find_port, list_adapters, open_port
 from rbx1_nav.create.driver.search import Found, NoWakeLines, Search
 from rbx1_nav.create.driver.stream import FrameReader, ReplyReader
 from rbx1_nav.create.line_settings import rate_in, read_settings
@@ -36,7 +36,8 @@ class Link:
 
     def __init__(self, settings: Settings, warn: Callable[[str], None]) -> None:
         """warn(text): logs a line."""
-        self.path = settings.port
+        self.configured = settings.port
+        self.path = find_port(settings.port, '', set())
         self.warn = warn
         self.baud = settings.baud or settings.model.baud
         self.port: serial.Serial = None     # None while it is not open
@@ -46,6 +47,7 @@ class Link:
         self.lost_at: int | None = None     # when the port became unavailable
         self.logged = ''            # the problem that was logged
         self.adapter = ''           # description of the last adapter
+        self.others: set[str] = set()       # ports of other adapters at that time
         self.is_same = True         # whether the previous line had the same adapter
         self.attempt: int | None = None
         self.beat_time = 0
@@ -58,6 +60,7 @@ class Link:
         if self.attempt is not None and now - self.attempt < RETRY:
             return False
         self.attempt = now
+        self.path = find_port(self.configured, self.adapter, self.others)
         try:
             self.port = open_port(self.path, self.baud)
             self.settings = read_settings(self.port.fd)
@@ -79,6 +82,7 @@ class Link:
 
     def _compare_adapters(self) -> None:
         before, self.adapter = self.adapter, describe_adapter(self.path)
+        self.others = list_adapters() - {os.path.realpath(self.path)}
         self.is_same = before in ('', self.adapter)
         if not self.is_same:
             self.warn(f'{self.path} is now {self.adapter} (previously {before}): check that the same robot is '

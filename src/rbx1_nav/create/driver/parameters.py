@@ -17,8 +17,8 @@ WHEEL_RADIUS = 0.033    # m, radius of the wheels in RViz
 
 
 def _check_port(port: YamlValue) -> str:
-    if not (isinstance(port, str) and port.startswith('/')):
-        raise ConfigError(f'port: {show(port)}: expected the absolute path of a device')
+    if not (isinstance(port, str) and (port.startswith('/') or port == AUTO)):
+        raise ConfigError(f'port: {show(port)}: expected the absolute path of a device, or auto')
     return port
 
 
@@ -32,7 +32,8 @@ def _check_mode(mode: YamlValue) -> int:
 _CALIBRATED = 'see [calibration files](files.md#calibration-files)'
 
 PARAMETERS = (
-    custom('port', '/dev/ttyUSB0', 'serial port, or a link to it', _check_port),
+    custom('port', AUTO, 'serial port, or a link to it; auto: /dev/create if it exists, else /dev/ttyUSB0',
+           _check_port),
     choice('robot_type', (AUTO, *protocol.MODELS), AUTO, 'robot model; auto: detect it'),
     choice('baud', (AUTO, *protocol.BAUD_RATES), AUTO, 'rate of the serial port', 'bits per second',
            note='auto tries 57600, 115200 and 19200'),
@@ -79,7 +80,7 @@ class Settings(NamedTuple):
 
     robot_type: str             # name of a Model, or AUTO
     model: protocol.Model       # expected model
-    port: str
+    port: str                   # path, or AUTO
     baud: int | None            # bits per second; None: detect it
     wake: bool                  # whether to wake the robot using RTS and DTR
     update_rate: float          # Hz

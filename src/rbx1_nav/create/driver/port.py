@@ -10,7 +10,14 @@ import termios
 
 import serial
 
+from rbx1_nav.config import AUTO
+
+PSEUDO_TERMINAL = 'a pseudo-terminal'
 PSEUDO_TERMINALS = range(136, 144)      # major device numbers (Linux kernel, admin-guide/devices.txt)
+
+
+ADAPTERS = '/dev/ttyUSB*', '/dev/ttyACM*'      # USB adapters
+DEFAULT = '/dev/create', '/dev/ttyUSB0'         # name from the udev rules, first adapter
 
 
 class PortError(OSError):
@@ -41,6 +48,9 @@ def reason(path: str, number: int | None, error: Exception) -> str:
         return f"in use by {user_of(path) or 'another process'}: expected a port that is not in use"
     if number in (errno.EACCES, errno.EPERM):
         group = group_of(path)
+        if group == 'root':
+            return ('not permitted: expected a port of the group dialout; install the udev rules: see '
+                    'docs/real_robot.md, "The serial port"')
         return (f'not permitted: expected a member of the group {group}; run `sudo adduser $USER {group}`, then log in '
                 'again')
     if number in (errno.ENOENT, errno.ENXIO, errno.ENODEV):
@@ -55,7 +65,7 @@ def describe_adapter(path: str) -> str:
     else the device name. All pseudo-terminals have one text, because each gets a new name when it is reopened."""
     name = os.path.realpath(path)
     if name.startswith('/dev/pts/'):
-        return 'a pseudo-terminal'
+        return PSEUDO_TERMINAL
     device = os.path.join('/sys/class/tty', os.path.basename(name), 'device')
     folders = [os.path.realpath(os.path.join(device, *['..'] * level)) for level in range(4)]
     for folder in folders:
@@ -63,6 +73,24 @@ def describe_adapter(path: str) -> str:
         if any(texts):
             return ' '.join(filter(None, texts))
     return name
+
+
+def list_adapters() -> set[str]:
+    """Return the paths of the ports of all USB adapters."""
+    return {path for pattern in ADAPTERS for path in glob.glob(pattern)}
+
+
+def find_port(port: str, adapter: str, others: set[str]) -> str:
+    """Return the path of a port, which may be AUTO. A USB adapter that was unplugged may return under another number.
+
+    adapter: description of the last adapter, '' if there is none; others: ports of other adapters, which were there
+    at the same time. Two adapters with one description are not distinguished.
+    """
+    path = next(filter(os.path.exists, DEFAULT), DEFAULT[-1]) if port == AUTO else port
+    if adapter.startswith('/') or adapter in ('', PSEUDO_TERMINAL, describe_adapter(path)):
+        return path
+    same = [each for each in list_adapters() - others if describe_adapter(each) == adapter]
+    return same[0] if len(same) == 1 else path
 
 
 def _read_text(path: str) -> str:

@@ -70,7 +70,7 @@ class CreateBase:
         if not self.link.is_guarded(self.clock.now()):
             rospy.logwarn('The guardian process died: starting a new one')
             with self.lock:
-                self.driver.stop(self.clock.now())
+                self.driver.stop(self.clock.now(), 'the guardian process died')
             self.disconnect()
             return
         if self.link.disturbed:

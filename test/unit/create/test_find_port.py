@@ -1,0 +1,66 @@
+"""Which port is opened: the default, and an adapter that was unplugged and returns under another number."""
+import os
+
+import pytest
+
+from rbx1_nav.create.driver import port
+from rbx1_nav.create.driver.port import find_port
+
+FTDI = 'FTDI USB-Serial 42'
+
+
+@pytest.fixture(name='usb')
+def make_usb(tmp_path, monkeypatch):
+    """Return (plug(name, description), unplug(name)), which return the path of a port."""
+    def plug(name, description):
+        (tmp_path / name).write_text(description)
+        return str(tmp_path / name)
+
+    def unplug(name):
+        (tmp_path / name).unlink()
+        return str(tmp_path / name)
+
+    def describe(path):
+        return open(path, encoding='utf-8').read() if os.path.exists(path) else path
+    monkeypatch.setattr(port, 'ADAPTERS', (str(tmp_path / 'ttyUSB*'), str(tmp_path / 'ttyACM*')))
+    monkeypatch.setattr(port, 'DEFAULT', (str(tmp_path / 'create'), str(tmp_path / 'ttyUSB0')))
+    monkeypatch.setattr(port, 'describe_adapter', describe)
+    return plug, unplug
+
+
+@pytest.mark.parametrize('name', ['ttyUSB1', 'ttyACM0'])
+def test_an_adapter_is_found_under_another_number(usb, name):
+    plug, unplug = usb
+    path = plug('ttyUSB0', FTDI)
+    assert find_port(path, FTDI, set()) == path
+    unplug('ttyUSB0')
+    plug('ttyUSB2', 'GPS')
+    assert find_port(path, FTDI, set()) == path
+    other = plug(name, FTDI)
+    assert find_port(path, FTDI, set()) == other
+    plug('ttyUSB0', 'GPS')      # another device has taken the number
+    assert find_port(path, FTDI, set()) == other
+
+
+def test_another_adapter_with_this_description_is_not_the_robots(usb):
+    plug, unplug = usb
+    path, other = plug('ttyUSB0', FTDI), plug('ttyUSB1', FTDI)
+    unplug('ttyUSB0')
+    assert find_port(path, FTDI, {other}) == path
+    third = plug('ttyUSB2', FTDI)
+    assert find_port(path, FTDI, {other}) == third and find_port(path, FTDI, set()) == path
+
+
+@pytest.mark.parametrize('adapter', ['', port.PSEUDO_TERMINAL, '/dev/ttyS0'])
+def test_only_usb_adapters_are_searched(usb, adapter):
+    plug, _ = usb
+    plug('ttyUSB1', adapter)
+    assert find_port('/dev/none', adapter, set()) == '/dev/none'
+
+
+def test_the_name_from_the_udev_rules_is_the_default(usb):
+    plug, unplug = usb
+    link = plug('create', FTDI)
+    assert find_port('auto', '', set()) == link
+    unplug('create')
+    assert find_port('auto', '', set()) == link.replace('create', 'ttyUSB0')
