@@ -40,6 +40,13 @@ build_dependencies() {  # print the packages that debian/control lists as needed
   sed -n 's/^Build-Depends: //p' "$source_dir/debian/control" | sed 's/debhelper-compat ([^)]*)/debhelper/; s/, /\n/g'
 }
 
+package_version() {     # print the version of the Debian packages: it is higher after each commit and each uncommitted change
+  local version; version=$(sed -n '1s/.*(\(.*\)).*/\1/p' "$source_dir/debian/changelog")
+  if ! git -C "$source_dir" rev-parse --verify --quiet HEAD >/dev/null 2>&1; then echo "$version"
+  elif [ -n "$(changed_files)" ]; then echo "$version+git$(date --utc +%Y%m%d%H%M%S)"
+  else echo "$version+git$(TZ=UTC0 git -C "$source_dir" log -1 --date=format-local:%Y%m%d%H%M%S --format=%cd)"; fi
+}
+
 missing_packages() {    # PACKAGE...: print the packages that are not installed
   comm -23 <(printf '%s\n' "$@" | sort -u) <(dpkg-query -W -f '${binary:Package} ${db:Status-Status}\n' "$@" 2>/dev/null |
     sed -n 's/:[^ ]* installed$//p; s/ installed$//p' | sort -u)
