@@ -15,6 +15,7 @@ from rbx1_nav.create.driver.travel import Expected, Travel
 from rbx1_nav.units import SECOND
 
 OUTAGE = 3 * SECOND // 10   # longest harmless time in which the robot does not answer or obey
+TOO_BAD = 0.5               # share of lost replies at which the robot is stopped
 BLOCKED = 0.1               # m, commanded travel of a wheel without a turn of any wheel
 TURNED = 0.1                # fraction of the commanded travel from which the wheels count as turning
 
@@ -64,6 +65,11 @@ class Acceptance:
         stall, self._ran = now - (self._ran or now), now
         if stall >= max(self.gate.timeout, OUTAGE):
             self.lock(f'this node did not run for {stall / SECOND:.1f} s', stall)
+
+    def notice_losses(self, share: float) -> None:
+        """Lock if the robot is driven on a line that loses too large a share of the last replies."""
+        if self.gate.moving and share > TOO_BAD:
+            self.lock(f'{100 * share:.0f} % of the replies of the robot are lost or corrupted')
 
     def check_sender(self, now: int, sender: str, moving: bool) -> None:
         """Raise RefusedCommand for a sender that has not noticed that the robot was stopped."""

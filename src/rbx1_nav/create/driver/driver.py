@@ -29,7 +29,6 @@ from rbx1_nav.units import SECOND
 
 INSIST_WAIT = SECOND // 10      # ns without confirmation after which the last stop is repeated
 STREAM_BAUD = 57600             # bits per second that a stream requires
-TOO_BAD = 0.5                   # share of lost replies at which the robot is stopped
 GAP = 3                         # periods without a reading after which one gyro rate no longer represents all of them
 
 
@@ -152,8 +151,7 @@ class Driver:
         try:
             clamped = self.gate.command(now, linear, angular, others)
         finally:
-            if is_too_fast(self.gate.linear, self.gate.angular, self.model.wheel_separation):
-                self.saturated += 1
+            self.saturated += is_too_fast(self.gate.linear, self.gate.angular, self.model.wheel_separation)
             self._send_speeds(now)
         self.acceptance.check_obedience(now)
         return clamped
@@ -188,15 +186,13 @@ class Driver:
                 self._insist(now)
             return False
         self.contact.tick(now, self.reading_time)
-        if gate.moving and self.counter.bad > TOO_BAD:
-            self.acceptance.lock(f'{100 * self.counter.bad:.0f} % of the replies of the robot are lost or corrupted')
+        self.acceptance.notice_losses(self.counter.bad)
         due = self.schedule.due(now)
         if due and self.due is None:
             self.due = now
         if due or self._must_stop():
             self._send_speeds(now)
-        if self.polled and (due or self.queries.hurries) and self.contact.may_ask and (
-                not self.queries.awaits_reply(now)):
+        if self.polled and self.contact.may_ask and (due or self.counter.hurries) and not self.queries.awaits_reply(now):
             self.ask(now)
         return timed_out
 
@@ -212,8 +208,7 @@ class Driver:
         """The reader for the data that is due now; None before the next tick."""
         if self.contact.searching:
             return self.contact.search
-        waits = self.due is None and self.leaving is None and not (self.polled and self.queries.hurries)
-        return None if waits else self.reader
+        return None if self.due is None and self.leaving is None and not self.counter.hurries else self.reader
 
     # readings
 

@@ -39,11 +39,6 @@ class Queries:
         self.reader.expect(numbers)
         return sequences.query(numbers)
 
-    @property
-    def hurries(self) -> bool:
-        """Whether to send the next query as soon as the robot has replied."""
-        return isinstance(self.counter, CounterTravel) and self.counter.fractions.hurries
-
     def awaits_reply(self, now: int) -> bool:
         """Return whether the reply to the last query may still arrive."""
         if not self.reader.waiting:

@@ -96,7 +96,9 @@ class EncoderTravel:
     """Travel of the Create 2, from 16-bit encoders that wrap."""
 
     WRAP = 1 << 16
-    bad = unread_variance = 0.0     # lost readings lose no travel, and each reading shows the whole turn
+    # see CounterTravel: lost readings lose no travel, and each reading shows the whole turn
+    bad = unread_variance = 0.0
+    hurries = False
 
     def __init__(self, model: Model) -> None:
         """model: one with encoders."""
@@ -177,6 +179,11 @@ class CounterTravel:
     def _turn(self, expected: Expected) -> float:
         """Return a turn in degrees."""
         return degrees((expected.right - expected.left) / self.width)
+
+    @property
+    def hurries(self) -> bool:
+        """Whether to query the robot again as soon as it has replied."""
+        return self.fractions.hurries
 
     @property
     def unread_variance(self) -> float:
