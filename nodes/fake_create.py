@@ -4,7 +4,8 @@
 usage: fake_create.py [_parameter:=value ...] [topic:=new_topic ...]    usually started by fake_turtlebot_create.launch
 
 Events and faults of the robot:
-    services ~pull_cable, ~silence, ~drop_wheel, ~cliff, ~bump, ~dock (SetBool) and ~power_cycle (Trigger);
+    services ~pull_cable, ~silence, ~drop_wheel, ~cliff, ~bump, ~dock, ~charging_fault (SetBool),
+    ~power_cycle (Trigger);
     topics ~charge, ~corruption and ~gyro_stuck (Float64), which set the values of these parameters
 It publishes the true pose on /ground_truth, and each command that it receives, with its time, on /line.
 A pseudo-terminal has no RTS and DTR lines: a driver that requires them gets an error.

@@ -5,7 +5,7 @@ from diagnostic_updater import DiagnosticStatusWrapper
 import pytest
 
 from driven_create import DrivenCreate
-from rbx1_nav.ros.base.create_status import CreateStatus
+from rbx1_nav.ros.base.create_status import ERROR, OK, WARN, CreateStatus, battery_status
 
 
 def statuses(driven):
@@ -29,3 +29,27 @@ def test_each_robot_has_a_status_at_each_rate(robot, baud):
     assert found['Base'].message == 'Stationary' and values['Robot type'] == robot
     # only a Create may lose fractions of a degree
     assert ('Fractions of a degree' in values) == ('Gyro' in found) == (robot == 'create')
+
+
+@pytest.mark.parametrize('changes, level, text', [
+    ({}, OK, '100 %'),
+    ({'charging_state': 2, 'charging_sources': 2, 'charge': 30}, OK, 'charging'),
+    ({'charging_state': 5, 'charging_sources': 2}, ERROR, 'charging fault'),
+    ({'charge': 30}, ERROR, 'Low: 1 %'),
+    ({'charge': 30, 'charging_sources': 2}, ERROR, 'Low: 1 %'),     # on the dock, but not charging
+    ({'charge': 5010}, WARN, '167 %: expected at most 110 %'),
+    ({'temperature': 75}, ERROR, '75 degrees C: expected at most 60'),
+    ({'charge': 2490, 'voltage': 9500}, WARN, '9.5 V: expected at least 10.8 V'),
+])
+def test_a_bad_battery_is_reported(changes, level, text):
+    reading = {'charging_state': 0, 'charging_sources': 0, 'charge': 3000, 'capacity': 3000, 'temperature': 25,
+               'voltage': 16000}
+    assert battery_status({**reading, **changes}) == (level, text)
+
+
+def test_the_emulated_robot_shows_a_charging_fault():
+    driven = DrivenCreate('create2')
+    driven.body.docked = driven.body.charging_fault = True
+    driven.connect()
+    driven.run(3)
+    assert statuses(driven)['Battery'].message == 'charging fault'

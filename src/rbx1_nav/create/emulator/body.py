@@ -86,7 +86,7 @@ class Body:
             model.wheel_separation * errors.wheel_base, surface._replace(ticks_meter=FINE) if surface else None, seed,
             UPDATE_PERIOD)
         self.drive(0, 0)
-        self.bumped = self.wheel_dropped = self.cliff = self.docked = False
+        self.bumped = self.wheel_dropped = self.cliff = self.docked = self.charging_fault = False
         self.charge: float = CAPACITY       # mAh
         self.now: int | None = None
         self.reset_counters()
@@ -128,7 +128,7 @@ class Body:
         left, right = self._counted_left, self._counted_right
         self.distance.total = 1000 * (left + right) / 2
         self.angle.total = degrees((right - left) / self.model.wheel_separation)
-        charging = charging and self.docked
+        charging = charging and self.docked and not self.charging_fault
         current = self._use_battery(duration, charging)
         charge = max(0, min(CAPACITY, round(self.charge)))
         linear, angular = self.velocity
@@ -138,7 +138,8 @@ class Body:
             bumps_and_wheel_drops=(BUMP_LEFT | BUMP_RIGHT if self.bumped else 0) | (
                 WHEEL_DROP_LEFT if self.wheel_dropped else 0),
             cliff_front_left=int(self.cliff), cliff_front_right=int(self.cliff),
-            charging_state=(3 if charge == CAPACITY else 2) if charging else 0,     # trickle, full charging, none
+            # fault, trickle charging, full charging, none
+            charging_state=5 if self.charging_fault else (3 if charge == CAPACITY else 2) if charging else 0,
             charging_sources=2 if self.docked else 0,
             voltage=round(1000 * (EMPTY + (FULL - EMPTY) * charge / CAPACITY)), current=current, charge=charge)
         if self.cliff:

@@ -15,6 +15,10 @@ from rbx1_nav.create.driver.travel import CounterTravel
 from rbx1_nav.ros.base.commands import VelocityCommands
 
 LOW, EMPTY = 0.2, 0.05      # levels of the battery's charge, fractions of its capacity
+OVERFULL = 1.1      # the capacity is an estimate of the robot, so a full battery may exceed it a little
+HOT = 60            # degrees C, usual limit of NiMH and lithium-ion cells during discharge
+FLAT = 10800        # mV: 12 NiMH cells with 0.9 V each, which are empty
+FAULT = 5           # charging state
 CHARGING_STATES = ('not charging', 'reconditioning', 'charging', 'trickle charging', 'waiting', 'charging fault')
 OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR
 
@@ -22,6 +26,24 @@ OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.E
 def charge_of(reading: Mapping[str, int]) -> float | None:
     """Return the charge of the battery as a fraction; None if the robot reports no capacity."""
     return reading['charge'] / reading['capacity'] if reading['capacity'] else None
+
+
+def battery_status(reading: Mapping[str, int]) -> tuple[int, str]:
+    """Return the level and the summary of the battery's status."""
+    charge, state = charge_of(reading), reading['charging_state']
+    docked = charge is None or reading['charging_sources']
+    shown = CHARGING_STATES[state] if docked else f'{100 * charge:.0f} %' if charge is not None else ''
+    if state == FAULT:
+        return ERROR, CHARGING_STATES[FAULT]
+    if reading['temperature'] > HOT:
+        return ERROR, f"{reading['temperature']} degrees C: expected at most {HOT}"
+    if charge is not None and charge > OVERFULL:
+        return WARN, f'{100 * charge:.0f} %: expected at most {100 * OVERFULL:.0f} %'
+    if reading['voltage'] < FLAT:
+        return WARN, f"{reading['voltage'] / 1000:g} V: expected at least {FLAT / 1000:g} V"
+    if charge is not None and charge < LOW and state == 0:
+        return ERROR if charge < EMPTY else WARN, f'Low: {100 * charge:.0f} %'
+    return OK, shown
 
 
 class CreateStatus:
@@ -72,14 +94,9 @@ class CreateStatus:
         reading = self._reading(status)
         if not reading:
             return status
-        charge = charge_of(reading)
-        if charge is None or reading['charging_sources']:
-            level, text = OK, CHARGING_STATES[reading['charging_state']]
-        else:
-            level = ERROR if charge < EMPTY else WARN if charge < LOW else OK
-            text = f"{'' if level == OK else 'Low: '}{100 * charge:.0f} %"
+        level, text = battery_status(reading)
         if level > self.battery_level:
-            rospy.logwarn('Battery: %s: charge it soon', text)
+            rospy.logwarn('Battery: %s%s', text, ': charge it soon' if text.startswith('Low') else '')
         self.battery_level = level
         status.summary(level, text)
         status.add('Voltage (V)', reading['voltage'] / 1000)

@@ -31,7 +31,8 @@ class RobotFaults:
                              ('drop_wheel', lambda on: setattr(body, 'wheel_dropped', on)),
                              ('cliff', lambda on: setattr(body, 'cliff', on)),
                              ('bump', lambda on: setattr(body, 'bumped', on)),
-                             ('dock', lambda on: setattr(body, 'docked', on))]:
+                             ('dock', lambda on: setattr(body, 'docked', on)),
+                             ('charging_fault', lambda on: setattr(body, 'charging_fault', on))]:
             self._offer_switch(name, switch)
         rospy.Service('~power_cycle', Trigger, lambda _: TriggerResponse(
             *self._request('power_cycle', lambda: robot.switch_on(robot.now))))
