@@ -35,7 +35,7 @@ def test_each_robot_has_a_status_at_each_rate(robot, baud):
     ({}, OK, '100 %'),
     ({'charging_state': 2, 'charging_sources': 2, 'charge': 30}, OK, 'charging'),
     ({'charging_state': 5, 'charging_sources': 2}, ERROR, 'charging fault'),
-    ({'charge': 30}, ERROR, 'Low: 1 %'),
+    ({'charge': 30}, ERROR, 'Low: 1 %'), ({'charge': 30, 'voltage': 9500}, ERROR, 'Low: 1 %'),
     ({'charge': 30, 'charging_sources': 2}, ERROR, 'Low: 1 %'),     # on the dock, but not charging
     ({'charge': 5010}, WARN, '167 %: expected at most 110 %'),
     ({'temperature': 75}, ERROR, '75 degrees C: expected at most 60'),
@@ -52,4 +52,5 @@ def test_the_emulated_robot_shows_a_charging_fault():
     driven.body.docked = driven.body.charging_fault = True
     driven.connect()
     driven.run(3)
-    assert statuses(driven)['Battery'].message == 'charging fault'
+    battery = statuses(driven)['Battery']
+    assert (battery.level, battery.message) == (ERROR, 'charging fault')

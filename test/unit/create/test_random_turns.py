@@ -43,7 +43,8 @@ def random_drive(seed, drops):
             driven.run(STEP)
             turned += abs(angle.total - last)
     for _ in range(choose.choice([6, 12, 20])):
-        velocity = (choose.choice([0, choose.uniform(-0.1, 0.15)]), choose.choice([-1, 1]) * 0.1 * 30 ** choose.random())
+        rate = choose.choice([-1, 1]) * 0.1 * 30 ** choose.random()     # 0.1 to 3 rad/s
+        velocity = choose.choice([0, choose.uniform(-0.1, 0.15)]), rate
         event = choose.random()
         hand.blocks = event < 0.08
         if 0.08 < event < 0.16:

@@ -188,11 +188,11 @@ class Driver:
         self.contact.tick(now, self.reading_time)
         self.acceptance.notice_losses(self.counter.bad)
         due = self.schedule.due(now)
-        if due and self.due is None:
-            self.due = now
+        self.due = now if due and self.due is None else self.due
         if due or self._must_stop():
             self._send_speeds(now)
-        if self.polled and self.contact.may_ask and (due or self.counter.hurries) and not self.queries.awaits_reply(now):
+        asks = self.contact.may_ask and self.polled and (due or self.counter.hurries)
+        if asks and not self.queries.awaits_reply(now):
             self.ask(now)
         return timed_out
 

@@ -77,7 +77,7 @@ class Fractions:
         self._since_test = 0.0              # commanded turn since the last test
         self._tested = self._tested_turn = 0.0      # absolute and signed commanded turn between readings of the test
         self._rounds = 0                    # number of checks that have shown that the robot turns
-        self._shown = self._shown_turn = 0  # what these readings show
+        self._shown = self._shown_turn = 0.0    # what these readings show
         self._slow = 0                      # number of readings that came too late
 
     @property

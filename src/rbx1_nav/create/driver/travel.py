@@ -1,7 +1,7 @@
 """Converts the robot's counters to travel, and handles wraps, gaps and implausible readings."""
 from __future__ import annotations
 
-from math import degrees, radians
+from math import degrees, radians, sqrt
 from typing import Mapping, NamedTuple, Protocol
 
 from rbx1_nav.create.driver.fractions import UNSURE, Fractions
@@ -222,7 +222,7 @@ class CounterTravel:
             self.speed = Expected(*(wheel / interval for wheel in wheels))
         self.lost, self.lost_time, self.doubtful = NOWHERE, 0.0, STILL
         self.bad *= 1 - MEMORY
-        return Travel(*map(sum, zip(*parts)))
+        return Travel(*(sum(each) for each in zip(*parts)))
 
     def _wheels(self, distance: float, turn: float) -> Expected:
         half = radians(turn) * self.width / 2
@@ -243,7 +243,7 @@ class CounterTravel:
 
     def _undetected(self, size: float) -> float:
         """Return 1 sigma of an undetected error of at most `size`: one of the four bytes of distance and angle."""
-        return size * ((1 - (1 - self.bad) ** (4 / REPLY_SIZE)) / 3) ** 0.5 if self.bad >= BAD_LINE else 0.0
+        return size * sqrt((1 - (1 - self.bad) ** (4 / REPLY_SIZE)) / 3) if self.bad >= BAD_LINE else 0.0
 
     def _resolve(self, distance: float, expected: Expected) -> Travel:
         """Return the Travel lost by doubtful queries. distance: what was read afterwards. If they did not arrive, it
@@ -276,12 +276,11 @@ class CounterTravel:
         else:
             self.doubtful = self.doubtful.plus(expected)
             part = NOWHERE
-        part = part._replace(angle=radians(turned.angle))
+        unread = radians(UNSURE * self.fractions.turn) if self.asks_angle else 0.0
         if self.asks_angle:
-            unread = radians(UNSURE * self.fractions.turn)
-            part = part._replace(angle_variance=part.angle_variance + unread ** 2)
             self.fractions.lose(doubtful=not begun)
-        self.lost = Travel(*map(sum, zip(self.lost, part)))
+        part = part._replace(angle=radians(turned.angle), angle_variance=part.angle_variance + unread ** 2)
+        self.lost = Travel(*(one + other for one, other in zip(self.lost, part)))
 
 
 def travel_of(model: Model, fractions: Fractions) -> EncoderTravel | CounterTravel:

@@ -29,21 +29,22 @@ def charge_of(reading: Mapping[str, int]) -> float | None:
 
 
 def battery_status(reading: Mapping[str, int]) -> tuple[int, str]:
-    """Return the level and the summary of the battery's status."""
+    """Return the level and the summary of the battery's status: its worst problem."""
     charge, state = charge_of(reading), reading['charging_state']
+    percent = '' if charge is None else f'{100 * charge:.0f} %'
     docked = charge is None or reading['charging_sources']
-    shown = CHARGING_STATES[state] if docked else f'{100 * charge:.0f} %' if charge is not None else ''
+    found = [(OK, CHARGING_STATES[state] if docked else percent)]
     if state == FAULT:
-        return ERROR, CHARGING_STATES[FAULT]
+        found.append((ERROR, CHARGING_STATES[FAULT]))
     if reading['temperature'] > HOT:
-        return ERROR, f"{reading['temperature']} degrees C: expected at most {HOT}"
-    if charge is not None and charge > OVERFULL:
-        return WARN, f'{100 * charge:.0f} %: expected at most {100 * OVERFULL:.0f} %'
-    if reading['voltage'] < FLAT:
-        return WARN, f"{reading['voltage'] / 1000:g} V: expected at least {FLAT / 1000:g} V"
+        found.append((ERROR, f"{reading['temperature']} degrees C: expected at most {HOT}"))
     if charge is not None and charge < LOW and state == 0:
-        return ERROR if charge < EMPTY else WARN, f'Low: {100 * charge:.0f} %'
-    return OK, shown
+        found.append((ERROR if charge < EMPTY else WARN, f'Low: {percent}'))
+    if charge is not None and charge > OVERFULL:
+        found.append((WARN, f'{percent}: expected at most {100 * OVERFULL:.0f} %'))
+    if reading['voltage'] < FLAT:
+        found.append((WARN, f"{reading['voltage'] / 1000:g} V: expected at least {FLAT / 1000:g} V"))
+    return max(found, key=lambda each: each[0])
 
 
 class CreateStatus:
