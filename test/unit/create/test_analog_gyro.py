@@ -84,7 +84,7 @@ def test_a_fast_turn_is_not_a_gyro_without_power():
 def test_a_rate_beyond_the_range_is_not_reported():
     driven = calibrated()
     turn(driven, -3.5, 8 * pi)      # 200 degrees/s: full scale
-    assert not lines(driven) and driven.driver.gyro.yaw == pytest.approx(driven.truth.yaw, abs=0.1)
+    assert not lines(driven) and driven.driver.gyro.yaw == pytest.approx(driven.truth.yaw, abs=0.3)
 
 
 def test_the_power_that_the_base_switches_on_with_its_control_may_take_a_moment():

@@ -6,6 +6,7 @@ import pytest
 from rbx1_nav.control.gate import CommandGate, RefusedCommand
 from rbx1_nav.create.driver.acceptance import Acceptance
 from rbx1_nav.create.driver.parameters import read_settings
+from rbx1_nav.create.driver.supervisor import CLIFFS
 from rbx1_nav.create.driver.travel import NOWHERE, Expected, Travel
 from rbx1_nav.create.protocol import CREATE
 from rbx1_nav.units import SECOND
@@ -26,7 +27,8 @@ class Base:
 
     def feel(self, *bits):
         """Feed readings with these bumps and wheel drops. Returns the result of the last one."""
-        return [self.acceptance.feel(NOW, {'bumps_and_wheel_drops': each}) for each in bits][-1]
+        no_cliff = dict.fromkeys(CLIFFS, 0)
+        return [self.acceptance.feel(NOW, {**no_cliff, 'bumps_and_wheel_drops': each}) for each in bits][-1]
 
     def command(self, linear, angular, now=NOW):
         """Put a command in force. Returns why it is refused, or ''."""

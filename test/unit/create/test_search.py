@@ -6,6 +6,7 @@ import pytest
 from rbx1_nav.create import protocol
 from rbx1_nav.create.driver import sequences
 from rbx1_nav.create.driver.search import RATES, WAKE_TIME, Search, has_frames, is_battery
+from rbx1_nav.create.emulator.emulator import EmulatedCreate
 from rbx1_nav.create.emulator.serial_line import misread
 from rbx1_nav.units import SECOND
 
@@ -186,3 +187,23 @@ def test_two_frames_in_a_row_are_a_stream_and_one_may_be_chance():
     frame = protocol.encode_frame(protocol.CREATE_2, (35,), {'mode': 1})
     assert not has_frames(b'\x13' + frame + b'\0' + frame[:-1])
     assert has_frames(b'\x13' + frame + frame + b'\x13')
+
+
+class SciRobot(EmulatedCreate):
+    """A Roomba of the 400 series, whose interface (SCI) knows only the packet groups 0 to 3."""
+
+    def _do_sensors(self, data):
+        if data[0] <= 3:
+            super()._do_sensors(data)
+
+
+def test_a_roomba_400_is_named():
+    driven = DrivenCreate('auto', robot='create')
+    driven.robot = SciRobot(driven.body.model, driven.body, driven.line, driven.now)
+    driven.run(0.05)
+    driven.connect()
+    driven.run(20)
+    assert driven.log == [
+        'A robot answers, but only the query of its battery, as a Roomba of the 400 series (SCI) does: expected a Create, '
+        'Create 2, or Roomba 500 or 600']
+    assert not driven.found and not driven.body.moving

@@ -10,14 +10,16 @@ from rbx1_nav.create import protocol
 from rbx1_nav.create.driver.contact import Contact
 from rbx1_nav.create.driver.parameters import Settings
 from rbx1_nav.create.driver.speeds import wheel_speeds
-from rbx1_nav.create.driver.supervisor import BUMPS, WHEEL_DROPS, Supervisor
+from rbx1_nav.create.driver.supervisor import BUMPS, CLIFFS, WHEEL_DROPS, Supervisor
 from rbx1_nav.create.driver.travel import Expected, Travel
 from rbx1_nav.units import SECOND
 
 OUTAGE = 3 * SECOND // 10   # longest harmless time in which the robot does not answer or obey
 TOO_BAD = 0.5               # share of lost replies at which the robot is stopped
 BLOCKED = 0.1               # m, commanded travel of a wheel without a turn of any wheel
+ROBOT_RADIUS = 0.165        # m; at a cliff, safe mode allows only backing up, in a larger curve (Create p. 6)
 TURNED = 0.1                # fraction of the commanded travel from which the wheels count as turning
+BACK_UP = 'a cliff: expected a command that backs up'
 
 
 class Acceptance:
@@ -32,6 +34,7 @@ class Acceptance:
         self.reading_time: int | None = None    # time at which the robot made the last reading
         self._ran: int | None = None    # time at which the driver last ran
         self._bits = self._felt = 0     # bumps and wheel drops in the last reading, in both of the last two readings
+        self._at_cliff = False      # in the last reading
         self._blocked = 0.0         # m, see BLOCKED
         self._ignored_since: int | None = None  # time of the first motion command that the robot does not follow
 
@@ -39,6 +42,7 @@ class Acceptance:
         """Process a reading. Returns whether two readings show a dropped wheel, since one may be corrupted."""
         bits, self.reading_time = reading['bumps_and_wheel_drops'], time
         self._felt, self._bits = bits & self._bits, bits
+        self._at_cliff = any(reading[name] for name in CLIFFS)
         return bool(self._felt & WHEEL_DROPS)
 
     def follow(self, elapsed: float, expected: Expected, travel: Travel, width: float) -> None:
@@ -81,6 +85,8 @@ class Acceptance:
         """Raise RefusedCommand if the robot does not follow the command in force, and will not do so shortly."""
         if self._is_bumped(self._felt):
             raise RefusedCommand('a bumper is pressed')
+        if self._is_at_edge() and self._is_obeyed:
+            raise RefusedCommand(BACK_UP)
         obstacle = self._obstacle(now)
         if obstacle:
             self.lock(obstacle)
@@ -89,7 +95,7 @@ class Acceptance:
     def speeds(self, model: protocol.Model) -> tuple[float, float]:
         """Return the wheel speeds (left, right; mm/s) that a robot of this Model may have now."""
         linear, angular = self.gate.linear, self.gate.angular
-        if not self._is_obeyed or self._bits & WHEEL_DROPS or self._is_bumped(self._bits):
+        if not self._is_obeyed or self._bits & WHEEL_DROPS or self._is_bumped(self._bits) or self._is_at_edge():
             return 0.0, 0.0
         if angular:
             angular = copysign(max(abs(angular), self.settings.min_yaw_speed), angular)
@@ -98,6 +104,14 @@ class Acceptance:
     @property
     def _is_obeyed(self) -> bool:
         return self.contact.answers and self.supervisor.in_control and self.settings.mode != protocol.PASSIVE
+
+    @property
+    def backs(self) -> bool:
+        """Whether the command in force is one that a robot in safe mode follows at a cliff."""
+        return self.gate.linear < 0 and -self.gate.linear >= abs(self.gate.angular) * ROBOT_RADIUS
+
+    def _is_at_edge(self) -> bool:
+        return self._at_cliff and self.settings.mode == protocol.SAFE and self.gate.moving and not self.backs
 
     def _is_bumped(self, bits: int) -> bool:
         return self.gate.linear > 0 and self.settings.stop_on_bump and bool(bits & BUMPS)
@@ -117,4 +131,6 @@ class Acceptance:
             return ''
         if self.supervisor.in_control:
             return 'operation_mode: 1: the robot is not driven in passive mode'
+        if self._is_at_edge():
+            return BACK_UP
         return f"the robot cannot be driven: {self.supervisor.reason or 'it does not change to the requested mode'}"

@@ -272,7 +272,7 @@ class Driver:
 
     def _supervise(self, time: int, reading: Mapping[str, int]) -> None:
         before = self.supervisor.in_control
-        if self.supervisor.update(time, reading, self.gate.moving):
+        if self.supervisor.update(time, reading, self.gate.moving, self.acceptance.backs):
             self.sender.send(time, sequences.take_control(self.model, self.settings.mode))
         if self.acceptance.feel(time, reading) or (before and not self.supervisor.in_control):
             self.acceptance.lock(', '.join(causes(reading)) or 'the robot left the mode in which it is driven')

@@ -37,7 +37,7 @@ GOLDEN = (5 ** 0.5 - 1) / 2     # its multiples are spread evenly between whole 
 RETEST = 360.0          # degrees after which a robot that drops fractions is tested again
 MISSING = 0.9           # a robot that reports less than this part of a turn is tested again
 COMPARED = 30.0         # degrees of such a turn, doubled with each test
-MEAN_LOSS = 0.5         # degrees: a fraction is uniformly distributed
+MEAN_LOSS = {KEPT: 0.0, AUTO: 0.25, LOST: 0.5}     # degrees of a reading: a fraction is uniformly distributed
 LOSS_VARIANCE = 1 / 6    # degrees^2, of a reading that drops a fraction, or may do so
 MAX_CORRECTION = 120.0  # degrees/s: a filter would mistake a large jump of the heading for a change of place
 GAP = 0.3               # s without a reading after which the angle is read
@@ -152,8 +152,8 @@ class Fractions:
         if abs(angle - self.turn + self._doubtful) < abs(angle - self.turn):
             turn += self._doubtful      # an earlier reply was lost
             variance = (UNSURE * self._doubtful) ** 2
-        if angle and self.kind == LOST:
-            turn += copysign(MEAN_LOSS, angle)
+        if angle:
+            turn += copysign(MEAN_LOSS[self.kind], angle)
         return Turn(turn, variance + (LOSS_VARIANCE if self.kind != KEPT and (angle or self.turn) else 0.0))
 
     def _test(self, commanded: float, angle: int) -> Turn:
@@ -165,23 +165,29 @@ class Fractions:
         part = self._tested - ENOUGH * self._rounds
         if not -1 <= self._shown <= 1.5 * self._tested + 2:     # the robot is pushed
             self._steady = 0.0
-            return self._finish_test(self.kind, commanded, (UNSURE * self._tested_turn) ** 2)
+            return self._give_up(commanded)
         if part >= ENOUGH:
             if self._shown == 0:
                 self._checking = True
             elif self._shown >= TURNS * part:
                 return self._finish_test(KEPT, commanded, 0.0)
-            elif part >= UNCLEAR:   # the robot was pushed, or its wheels were blocked
-                return self._finish_test(self.kind, commanded, (UNSURE * self._tested_turn) ** 2)
+            elif part >= UNCLEAR:   # its wheels were blocked for a part of the time
+                return self._give_up(commanded)
         return Turn(commanded, 0.0)
+
+    def _give_up(self, commanded: float) -> Turn:
+        """Finish a test that has no result. If a check has shown that the robot turns, zeros before it prove nothing.
+        """
+        self._shown_turn += self._tested_turn * self._rounds * ENOUGH / self._tested
+        return self._finish_test(self.kind, commanded, (UNSURE * self._tested_turn) ** 2)
 
     def _check(self, angle: int) -> Turn:
         """Check whether a robot that reported zeros turns. angle: the reading after them."""
-        share = (angle + copysign(MEAN_LOSS, angle)) / self.turn if self.turn else 0.0
+        share = (angle + copysign(MEAN_LOSS[LOST], angle)) / self.turn if self.turn else 0.0
         if abs(self.turn) < MIN_CHECK or share > 1.5:
             return NO_TURN
         if share < TURNS:   # the wheels are blocked
-            return self._finish_test(self.kind, 0.0, 0.0)
+            return self._give_up(0.0)
         self._checking = False
         self._rounds += 1
         if self._rounds < ROUNDS:

@@ -87,6 +87,7 @@ class Search:
         self.rates = rates
         self.wake = wake
         self.rounds = 0         # completed rounds without an answer
+        self.only_battery = 0   # number of times that a robot answered nothing but the query of its battery
         self.baud = rates[0]    # rate being tried
         self._line: SearchedLine
         self._order: list[int] = []         # rates still to be tried in this round
@@ -202,5 +203,6 @@ class Search:
         elif any(self._models):
             return Found(protocol.CREATE_2 if self.baud == protocol.CREATE_2.baud else protocol.CREATE, self.baud)
         else:
-            self._next_rate(now)    # the robot no longer answers
+            self.only_battery += 1
+            self._next_rate(now)
         return None

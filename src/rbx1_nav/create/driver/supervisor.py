@@ -13,6 +13,7 @@ ATTEMPTS_BEFORE_LOG = 3            # number of attempts that fail without a know
 CLIFFS = ('cliff_left', 'cliff_front_left', 'cliff_front_right', 'cliff_right')
 WHEEL_DROPS = protocol.WHEEL_DROP_LEFT | protocol.WHEEL_DROP_RIGHT | protocol.WHEEL_DROP_CASTOR
 BUMPS = protocol.BUMP_LEFT | protocol.BUMP_RIGHT
+CLIFF = 'a cliff'       # the only cause that a command can remove
 CHARGER, DOCK = 1, 2    # bits of packet 34
 
 
@@ -22,7 +23,7 @@ def causes(reading: Mapping[str, int]) -> list[str]:
     if reading['bumps_and_wheel_drops'] & WHEEL_DROPS:
         found.append('a wheel dropped')
     if any(reading[name] for name in CLIFFS):
-        found.append('a cliff')
+        found.append(CLIFF)
     if reading['charging_sources'] & CHARGER:
         found.append('the charger is plugged in')
     return found
@@ -98,8 +99,9 @@ class Supervisor:
         offsets = (0, 1) if self.offset.value is None else (self.offset.value,)
         return reading['mode'] - protocol.PASSIVE in offsets
 
-    def update(self, now: int, reading: Mapping[str, int], wants_motion: bool) -> bool:
-        """Return whether to request the wanted mode at `now` (ns). wants_motion: whether a motion command is in force.
+    def update(self, now: int, reading: Mapping[str, int], wants_motion: bool, backs: bool = False) -> bool:
+        """Return whether to request the wanted mode at `now` (ns). wants_motion: whether a motion command is in force;
+        backs: whether it is one that a robot in safe mode follows at a cliff.
         """
         reported, before = reading['mode'], self.latest
         self.latest = reported
@@ -131,12 +133,13 @@ class Supervisor:
         if self.failures > ATTEMPTS_BEFORE_LOG:
             reasons.append(self._contradiction(reported))
         self._explain(', '.join(reasons))
-        if found or (docked and not wants_motion):
+        leaves_cliff = backs and found == [CLIFF]
+        if (found and not leaves_cliff) or (docked and not wants_motion):
             self.clear_since = None
             return False
         if self.clear_since is None:
             self.clear_since = now
-        if (self.had_control and now - self.clear_since < HOLD) or (
+        if (self.had_control and now - self.clear_since < HOLD and not leaves_cliff) or (
                 self.attempt is not None and now - self.attempt < RETRY):
             return False
         return self._ask(now, reported, obstructed)
