@@ -48,7 +48,8 @@ def main():
     system = System(state)
     runs = Runs(os.path.dirname(os.path.abspath(sys.argv[0])),
                 lambda name, outcome: state.set_status(started=name, outcome=outcome), system.forget_frame)
-    controls = Controls(state, system, hand, runs, (param('linear_speed'), param('angular_speed')), in_background)
+    controls = Controls(state, system, hand, runs, (param('linear_speed'), param('angular_speed')), in_background,
+                        log=rospy.loginfo, stop_needs_token=param('stop_needs_token'))
     connections = Connections(state, controls, token, time.monotonic)
     try:
         server = Server(resources.path('web'), HostCheck(address, machine_names()), connections, address, param('port'))

@@ -1,5 +1,6 @@
 // The WebSocket to the node: sends hello with the token, and reconnects when the connection is lost.
 
+const SILENCE = 1000;                       // ms: the node sends a frame at least every 250 ms
 const RETRY = [500, 1000, 2000, 4000];      // ms
 
 // The token is the part of the printed address after #, which a browser does not send to the server. It is stored for
@@ -14,11 +15,14 @@ function readToken() {
 }
 
 export class Connection extends EventTarget {
-  // Events: welcome, frame, refused (detail: the message), lost.
+  // Events: welcome, frame, refused, stopping, stopped (detail: the message), lost, silent (no frame for a while), heard.
   constructor() {
     super();
     this.token = readToken();
     this.failures = 0;
+    this.clock = 0;         // s, clock of the node in the last frame: a request carries it, and so its age
+    this.silent = false;
+    setInterval(() => this.checkSilence(), 100);
     // pasting another printed address into an open page changes only the part after #, and does not reload the page
     window.addEventListener('hashchange', () => {
       this.token = readToken();
@@ -36,6 +40,11 @@ export class Connection extends EventTarget {
       if (message.type === 'welcome') {
         this.failures = 0;
       }
+      this.heard = performance.now();
+      this.clock = message.clock ?? this.clock;
+      if (this.silent) {
+        this.checkSilence();
+      }
       this.dispatchEvent(new CustomEvent(message.type, {detail: message}));
     };
     this.socket.onclose = event => {
@@ -44,12 +53,20 @@ export class Connection extends EventTarget {
     };
   }
 
-  // Sends a message; returns false if there is no connection.
+  checkSilence() {
+    const silent = performance.now() - this.heard > SILENCE;
+    if (silent !== this.silent) {
+      this.silent = silent;
+      this.dispatchEvent(new CustomEvent(silent ? 'silent' : 'heard'));
+    }
+  }
+
+  // Sends a message with the clock of the last frame; returns false if there is no connection.
   send(message) {
     if (this.socket.readyState !== WebSocket.OPEN) {
       return false;
     }
-    this.socket.send(JSON.stringify(message));
+    this.socket.send(JSON.stringify({clock: this.clock, ...message}));
     return true;
   }
 }

@@ -1,15 +1,19 @@
 // Controls that move the robot (runs, reset, arrow keys), and Stop.
 
+const ANSWER = 1000, STOP_AGAIN = 500;     // ms: time for an answer to Stop; Stop is repeated until it is answered
+const HELD = 300;       // ms: after a longer pause, as of a frozen browser, a key must be pressed again
 const REPEAT = 100;     // ms: the node stops the robot if held keys are not repeated within 300 ms
 const KEYS = {ArrowUp: [1, 0], ArrowDown: [-1, 0], ArrowLeft: [0, 1], ArrowRight: [0, -1]};    // forward, left
 
 export class Drive {
-  // notify(text): shows a message to the user; '' removes it.
+  // notify(text, alarm): shows a message to the user, in red if alarm is true; '' removes it.
   constructor(connection, model, notify) {
     Object.assign(this, {connection, model, notify});
     this.trusted = false;
     this.connected = false;
-    this.stopped = false;       // whether Stop was the last action on this page
+    this.answer = '';       // the answer to Stop, if it was the last action on this page
+    this.stops = 0;         // number of the last Stop
+    this.stopTimer = null;  // repeats Stop until it is answered
     this.hand = false;
     this.held = new Set();
     this.timer = null;
@@ -26,7 +30,7 @@ export class Drive {
       run.onclick = () => this.startRun(run);
     }
     document.getElementById('reset').onclick = () => {
-      this.notify('');
+      this.begin();
       this.setHand(false);
       connection.send({type: 'reset'});
     };
@@ -36,9 +40,12 @@ export class Drive {
 
   connectKeys() {
     document.addEventListener('keydown', event => {
-      if (this.hand && KEYS[event.key] && !event.target.closest('dialog')) {
+      if (this.hand && KEYS[event.key] && !event.ctrlKey && !event.altKey && !event.metaKey &&
+          !event.target.closest('dialog')) {
         event.preventDefault();
-        this.hold(event.key);
+        if (!event.repeat) {    // a key that has been released here, for example by Stop, must be pressed again
+          this.hold(event.key);
+        }
       }
     }, {capture: true});
     document.addEventListener('keyup', event => this.release(event.key));
@@ -61,6 +68,7 @@ export class Drive {
   hold(key) {
     if (this.hand && !this.held.has(key)) {
       this.held.add(key);
+      this.repeated = performance.now();
       this.sendKeys();
       this.timer = this.timer || setInterval(() => this.sendKeys(), REPEAT);
     }
@@ -80,6 +88,11 @@ export class Drive {
   }
 
   sendKeys() {
+    const now = performance.now();
+    if (now - this.repeated > HELD || this.connection.silent) {
+      this.held.clear();
+    }
+    this.repeated = now;
     let forward = 0, left = 0;
     for (const key of this.held) {
       forward += KEYS[key][0];
@@ -106,12 +119,52 @@ export class Drive {
     this.held.clear();
     this.showHeld();
     this.setHand(false);
-    this.stopped = true;
     if (this.dialog.open) {
       this.dialog.close('cancel');
     }
-    this.notify(this.connection.send({type: 'stop'}) ? '' :
-      'Not connected: Stop did not reach the robot. Stop it by hand.');
+    this.begin();
+    this.answer = 'Stopping.';
+    this.stops += 1;
+    this.answered = performance.now();
+    this.stopTimer = setInterval(() => this.sendStop(), STOP_AGAIN);
+    this.sendStop();
+  }
+
+  sendStop() {
+    if (!this.connection.send({type: 'stop', number: this.stops})) {
+      this.alarm('Not connected: Stop did not reach the robot. Stop it by hand. This page repeats Stop until it is answered.');
+    } else if (performance.now() - this.answered >= ANSWER) {
+      this.alarm('No answer: the robot may still be moving. Stop it by hand. This page repeats Stop until it is answered.');
+    }
+  }
+
+  // The node has received Stop, and waits until the robot is stationary.
+  stopReceived({number}) {
+    if (this.stopTimer && number === this.stops) {
+      this.answered = performance.now();
+      this.alarm('');
+    }
+  }
+
+  stopAnswered({number, stationary, text}) {
+    if (this.stopTimer && number === this.stops) {
+      this.begin();
+      this.answer = text;
+      this.alarm(stationary ? '' : text);
+      this.draw();
+    }
+  }
+
+  alarm(text) {
+    this.notify(text, true);
+  }
+
+  // Ends the previous action, and removes its messages.
+  begin() {
+    clearInterval(this.stopTimer);
+    this.stopTimer = null;
+    this.answer = '';
+    this.notify('');
   }
 
   // Asks the user whether a real robot may move. Resolves to true if so, or if the robot is simulated.
@@ -129,8 +182,7 @@ export class Drive {
   async startRun(button) {
     if (await this.confirm(
         'It will drive 1 m forward and back. It needs 1.5 m of free floor ahead and 1 m on either side.')) {
-      this.notify('');
-      this.stopped = false;
+      this.begin();
       this.setHand(false);
       const reset = Boolean(this.model.status.can_reset && document.getElementById('reset-first').checked);
       this.connection.send({type: 'run', method: button.dataset.method, reset, confirmed: !this.model.status.simulated});
@@ -141,8 +193,7 @@ export class Drive {
     if (on && !await this.confirm('It will follow the arrow keys, and stop when you release them.')) {
       return;
     }
-    this.notify('');
-    this.stopped = false;
+    this.begin();
     this.connection.send({type: 'hand', on, confirmed: !this.model.status.simulated});
     this.setHand(on);
   }
@@ -157,6 +208,9 @@ export class Drive {
   }
 
   refused(message) {
+    if (message.what === 'stop') {
+      this.begin();
+    }
     if (message.what === 'hand') {
       this.setHand(false);
     }
@@ -169,7 +223,7 @@ export class Drive {
   // Enables the buttons that can be used now, and shows what is running.
   draw() {
     const {status} = this.model, running = Boolean(status.started) && !status.outcome;
-    const ready = this.connected && this.trusted && !status.master && Boolean(status.base) &&
+    const ready = this.connected && !this.connection.silent && this.trusted && !status.master && Boolean(status.base) &&
       'odometry' in this.model.poses;
     if (running && this.hand) {     // another browser has started a run
       this.setHand(false);
@@ -185,14 +239,14 @@ export class Drive {
     document.getElementById('reset').disabled = !ready || running || !status.can_reset;
     document.getElementById('reset-first').disabled = !status.can_reset;
     this.toggle.disabled = !ready || running;
-    const text = !this.connected ? '' : !this.trusted ?
+    const answered = this.answer && this.connected && !running && !this.hand && !status.master;
+    const text = this.stopTimer || answered ? this.answer : !this.connected ? '' : !this.trusted ?
       'This page can only watch and stop the robot. To drive, open the complete address that the web view printed.'
       : status.master === 'silent' ? 'The ROS master does not answer. Start roscore, the base and the web view again.'
       : status.master === 'restarted' ? 'The ROS master was restarted. Start the web view again, then reload this page.'
       : !ready ? 'Waiting for a base that publishes /odom.'
       : running ? `Running: ${status.started}`
       : this.hand ? 'The arrow keys drive the robot.'
-      : this.stopped && status.outcome !== 'stopped' ? 'Stopped.'
       : status.started ? `${status.started[0].toUpperCase()}${status.started.slice(1)}: ${status.outcome}` : '';
     const line = document.getElementById('run-state');
     if (line.textContent !== text) {

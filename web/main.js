@@ -14,7 +14,8 @@ const byId = id => document.getElementById(id);
 const LEGEND = {truth: 'truth', odometry: 'odometry', estimate: 'estimate',
   commanded: 'commanded', reported: 'reported by the wheels', true: 'true'};
 
-function notify(text) {
+function notify(text, alarm = false) {
+  byId('notice').className = alarm ? 'alarm' : '';
   byId('notice').textContent = text;
   byId('notice').hidden = !text;
 }
@@ -97,6 +98,14 @@ function legendItem(name, parent, checkbox) {
   parent.append(label);
 }
 
+function showConnection() {
+  if (drive.connected) {
+    byId('connection').className = connection.silent ? 'lost' : 'live';
+    byId('connection').textContent = connection.silent ? 'No answer: the page does not show where the robot is now'
+      : drive.trusted ? 'Connected' : 'Connected, watching only';
+  }
+}
+
 function hold() {
   held = held ? null : {time: model.time, speeds: structuredClone(model.speeds)};
   byId('hold').setAttribute('aria-pressed', Boolean(held));
@@ -121,8 +130,7 @@ connection.addEventListener('welcome', ({detail}) => {
   drive.trusted = detail.trusted;
   drive.connected = true;
   drive.setHand(false);
-  byId('connection').className = 'live';
-  byId('connection').textContent = detail.trusted ? 'Connected' : 'Connected, watching only';
+  showConnection();
   notify(detail.known_token ? '' :
     'The token in this address is not valid. Open the complete address that the web view printed when it was last started.');
 });
@@ -130,6 +138,13 @@ connection.addEventListener('frame', ({detail}) => {
   model.add(detail);
   redraw();
 });
+connection.addEventListener('stopping', ({detail}) => drive.stopReceived(detail));
+connection.addEventListener('stopped', ({detail}) => drive.stopAnswered(detail));
+connection.addEventListener('silent', () => {
+  showConnection();
+  drive.draw();
+});
+connection.addEventListener('heard', showConnection);
 connection.addEventListener('refused', ({detail}) => drive.refused(detail));
 connection.addEventListener('lost', ({detail}) => {
   drive.connected = false;

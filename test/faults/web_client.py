@@ -4,6 +4,7 @@ import json
 import os
 import socket
 import struct
+import time
 
 TEXT, CLOSE = 1, 8      # opcodes, RFC 6455
 
@@ -55,8 +56,8 @@ class WebClient:
         self.received += data
 
     def send(self, **fields):
-        """Send a message."""
-        self.send_frame(json.dumps(fields).encode())
+        """Send a message. A page sends the clock of the last frame; this is the clock of the node."""
+        self.send_frame(json.dumps({'clock': time.monotonic(), **fields}).encode())
 
     def send_frame(self, data, opcode=TEXT):
         """Send a frame. Frames from a client must be masked; the mask is zero."""

@@ -77,6 +77,17 @@ class Page:
         support.wait_for(lambda: self.find(selector).is_enabled(), f'{selector} to be enabled')
         self.find(selector).click()
 
+    def run(self, method):
+        """Start a run. On a busy machine, the node may refuse the request because it is too old."""
+        def answered():
+            text = self.text('notice')
+            if 'more than 2 s old' in text:
+                self.click(f'.run[data-method={method}]')
+                return False
+            return text or self.text('run-state').startswith('Running')
+        self.click(f'.run[data-method={method}]')
+        support.wait_for(answered, f'an answer to the request of a run: {method}')
+
     def robot(self, source):
         """Return where the page draws a robot: x, y (m), heading (degrees)."""
         transform = self.find(f'#robot-{source}').get_attribute('transform')

@@ -89,7 +89,7 @@ class TestBrowserPage(unittest.TestCase):
         self.assertTrue(self.page.find('#linear .reported').get_attribute('d'))
 
     def test_a_run_and_the_run_before(self):
-        self.page.click('.run[data-method=timed]')
+        self.page.run('timed')
         self.odom.wait_for_twist(0.0, 1.0)
         self.page.wait_for_text('run-state', 'Running: timed')
         self.page.wait_for_text('run-state', 'Timed: finished')
@@ -107,11 +107,11 @@ class TestBrowserPage(unittest.TestCase):
         self.page.wait_for_text('tables', 'The run before: timed')
 
     def test_stop_ends_a_run(self):
-        self.page.click('.run[data-method=odometry]')
+        self.page.run('odometry')
         support.wait_for(lambda: self.odom.position()[0] > 0.05, 'the robot to drive')
         self.page.click('#stop')
         self.odom.wait_for_twist(0.0)
-        self.page.wait_for_text('run-state', 'With odometry: stopped')
+        self.page.wait_for_text('run-state', 'The robot is stationary')
         self.assertFalse(rospy.has_param('/out_and_back/odom_frame'), 'it would affect the next run in a terminal')
         self.assertLess(self.odom.position()[0], 0.9)   # before the end of the first leg
 
@@ -127,7 +127,7 @@ class TestBrowserPage(unittest.TestCase):
     def test_a_run_is_refused_while_a_script_of_a_terminal_drives(self):
         script = support.out_and_back()
         self.odom.wait_for_twist(SPEED)
-        self.page.click('.run[data-method=timed]')
+        self.page.run('timed')
         self.page.wait_for_text('notice', '/out_and_back is driving the robot: stop it first')
         self.odom.wait_for_twist(0.0, 1.0)      # the script goes on
         script.signal(signal.SIGINT)
@@ -137,7 +137,7 @@ class TestBrowserPage(unittest.TestCase):
         self.drive_ahead(0.05)
         self.page.key('keyUp', 'ArrowUp')
         warnings = self.page.text('lines').count('is not valid')    # setUp resets the robot just after Stop
-        self.page.click('.run[data-method=timed]')
+        self.page.run('timed')
         self.odom.wait_for_twist(0.0, 1.0)
         self.page.wait_for_text('run-state', 'Timed: finished')
         self.assertLessEqual(self.page.text('lines').count('is not valid'), warnings)
@@ -152,6 +152,20 @@ class TestBrowserPage(unittest.TestCase):
         self.page.key('keyUp', 'ArrowUp')
         self.assertEqual(self.page.find('#hand').get_attribute('aria-pressed'), 'false')
         self.assertEqual(self.driver.find_elements('css selector', '.pad button.held'), [])
+
+    def test_stop_is_repeated_until_it_is_answered(self):
+        pid = support.pid_of('/web_view')
+        self.addCleanup(os.kill, pid, signal.SIGCONT)
+        os.kill(pid, signal.SIGSTOP)    # its sockets remain open
+        self.page.wait_for_text('connection', 'No answer')
+        self.assertEqual(self.page.find('#connection').get_attribute('class'), 'lost')
+        self.assertFalse(self.page.find('.run[data-method=timed]').is_enabled())
+        self.page.click('#stop')
+        self.page.wait_for_text('notice', 'No answer: the robot may still be moving')
+        os.kill(pid, signal.SIGCONT)
+        self.page.wait_for_text('run-state', r'Stopped\. The robot is stationary\.')
+        support.wait_for(lambda: not self.page.find('#notice').is_displayed(), 'the alarm to disappear')
+        self.page.wait_for_text('connection', 'Connected')
 
     def test_a_browser_that_is_killed_stops_the_robot(self):
         other = start_chromium(self.folder.name)

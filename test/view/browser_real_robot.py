@@ -55,7 +55,7 @@ class TestBrowserRealRobot(unittest.TestCase):
         self.odom.wait_for_twist(SPEED)
         page.click('#stop')
         self.odom.wait_for_twist(0.0)
-        page.wait_for_text('run-state', 'Timed: stopped')
+        page.wait_for_text('run-state', 'The robot is stationary')
         self.assertEqual(page.console_errors(), [])
         self.view.signal(signal.SIGINT)
         self.assertEqual(self.view.wait(), 0, self.view.output)

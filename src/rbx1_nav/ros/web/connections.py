@@ -6,12 +6,13 @@ from typing import Callable, Protocol
 
 from rbx1_nav.ros.web.checks import RateLimit, same_token
 from rbx1_nav.ros.web.controls import Controls
-from rbx1_nav.ros.web.protocol import Hello, InvalidMessage, encode, parse
+from rbx1_nav.ros.web.protocol import Hello, InvalidMessage, Stop, encode, parse
 from rbx1_nav.ros.web.state import State
 
 MAX_SOCKETS = 100       # maximum number of browsers
 MAX_WATCHERS = 60       # maximum without the token, so that browsers with the token can connect
 HELLO_TIMEOUT = 5.0     # s within which a browser must send its first message
+FRAME_TIMEOUT = 0.25     # s after which a frame is sent although nothing has changed; see web/connection.js
 RATE, BURST = 30, 60    # messages per second, and in a burst; held keys are sent 10 times per second
 TRY_AGAIN_LATER, POLICY = 1013, 1008    # close codes: RFC 6455 and the IANA registry
 
@@ -35,6 +36,8 @@ class Browser:
         self.since = now
         self.greeted = self.trusted = False
         self.limit = RateLimit(RATE, BURST)
+        self.address = getattr(getattr(socket, 'request', None), 'remote_ip', 'an unknown address')
+        self.sent = now         # s: when the last frame was sent
         self.number, self.epoch = 0, -1     # what this browser has received, see history.py
         self.sending: Future[None] | None = None    # the frame that is being sent
 
@@ -97,6 +100,8 @@ class Connections:
             self._greet(browser, message)
             return
         refused = self.controls.handle(browser, browser.trusted, message)
+        if isinstance(message, Stop) and not refused:
+            browser.send(encode('stopping', number=message.number))
         if refused:
             browser.send(encode('refused', what=type(message).__name__.lower(), reason=refused))
 
@@ -119,16 +124,20 @@ class Connections:
         """Send a frame to each browser that is ready. To be called periodically."""
         now = self.clock()
         self.state.tick(now)
+        for browser, answer in self.controls.answers().items():
+            if self.browsers.get(browser.socket) is browser:
+                browser.send(encode('stopped', **answer._asdict()))
         # most browsers have received the same frames, so they need the same next frame
         frames: dict[tuple[int, int], tuple[int, int, bytes]] = {}
         latest = self.state.counter.last
         for browser in list(self.browsers.values()):
             if not browser.greeted and now - browser.since > HELLO_TIMEOUT:
                 self._close(browser, POLICY, 'expected hello')
-            if not browser.ready or browser.number == latest:
+            if not browser.ready or browser.number == latest and now - browser.sent < FRAME_TIMEOUT:
                 continue
             key = browser.number, browser.epoch
             if key not in frames:
-                frames[key] = self.state.frame(*key)
+                frames[key] = self.state.frame(*key, now)
             browser.number, browser.epoch, message = frames[key]
             browser.send(message)
+            browser.sent = now

@@ -8,13 +8,18 @@ from rbx1_nav.ros.web.hand_drive import HandDrive
 from rbx1_nav.ros.web.protocol import Drive, Hand, Hello, Message, Reset, Run, Stop
 from rbx1_nav.ros.web.runs import Runs
 from rbx1_nav.ros.web.state import State
+from rbx1_nav.ros.web.stopping import Answer, Drivers, Stopper
 
 NO_TOKEN = 'this page can only watch: open the complete address that the web view printed, with its token'
 BUSY = 'a run is in progress: stop it first'
+OLD = 'the request is more than 2 s old, so that nothing was started: try again'
+STOP_NEEDS_TOKEN = 'Stop needs the token here: open the complete address that the web view printed'
+ROUNDING = 0.001    # s: resolution of the clock in a frame
+MAX_AGE = 2.0       # s: age of the last frame that the browser had received when it sent a request
 NOT_CONFIRMED = 'a real robot moves only after you have confirmed that its path is free'
 
 
-class System(Protocol):
+class System(Drivers, Protocol):
     """The running system; see system.py."""
 
     @property
@@ -24,17 +29,16 @@ class System(Protocol):
     def reset(self) -> None:
         """Put the robot back at its start. Raises an exception if this fails."""
 
-    def shut_down_drivers(self) -> None:
-        """Shut down the other nodes that drive the robot."""
-
 
 class Controls:
     """Executes the requests of browsers."""
 
     def __init__(self, state: State, system: System, hand: HandDrive, runs: Runs, speeds: tuple[float, float],
                  in_background: Callable[[Callable[[], None]], Any],
-                 clock: Callable[[], float] = time.monotonic) -> None:
-        """speeds: speeds of the arrow keys, m/s and rad/s; in_background(function): calls the function in a thread."""
+                 clock: Callable[[], float] = time.monotonic, log: Callable[[str], None] = print,
+                 stop_needs_token: bool = False) -> None:
+        """speeds: speeds of the arrow keys, m/s and rad/s; in_background(function): calls the function in a thread;
+        log(text): logs a message."""
         self.state = state
         self.system = system
         self.hand = hand
@@ -42,16 +46,23 @@ class Controls:
         self.speeds = speeds
         self.in_background = in_background
         self.clock = clock
+        self.stop_needs_token = stop_needs_token
+        self.stopper = Stopper(self._stop, system, state.speed_since, log)
 
     def handle(self, browser: object, trusted: bool, message: Message) -> str:
         """Execute a request. trusted: whether the browser sent the token. Returns why it was rejected, or ''."""
-        if isinstance(message, Stop):       # anyone who sees a robot move may stop it
-            self.stop()
+        if isinstance(message, Stop):
+            if self.stop_needs_token and not trusted:
+                return STOP_NEEDS_TOKEN
+            self.stopper.request(browser, message.number, self.clock())
             return ''
         if isinstance(message, Hello):
             return ''
         if not trusted:
             return NO_TOKEN
+        ends = isinstance(message, Hand) and not message.on or isinstance(message, Drive) and not any(message[:2])
+        if not ends and not 0 <= self.clock() - message.clock + ROUNDING <= MAX_AGE:
+            return OLD
         if isinstance(message, Drive):
             linear, angular = self.speeds
             if self.hand.drive(browser, message.forward * linear, message.left * angular):
@@ -118,11 +129,13 @@ class Controls:
         self.hand.wait_until_closed()   # the base warns of a reset while a node drives
         self.system.reset()
 
-    def stop(self) -> None:
-        """Stop the robot, regardless of which node drives it."""
+    def answers(self) -> dict[Any, Answer]:
+        """Return the answers to Stop that are due, by browser. To be called periodically."""
+        return self.stopper.answers(self.runs.busy, self.clock())
+
+    def _stop(self) -> None:
         self.runs.stop()
         self.hand.stop()
-        self.system.shut_down_drivers()
         self.state.forget_driver()
 
     def leave(self, browser: object) -> None:

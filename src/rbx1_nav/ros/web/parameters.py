@@ -5,7 +5,7 @@ import ipaddress
 import re
 
 from rbx1_nav.config import ConfigError, YamlValue, show
-from rbx1_nav.parameters import custom, number
+from rbx1_nav.parameters import custom, flag, number
 
 LOCALHOST = 'localhost'
 
@@ -35,5 +35,6 @@ PARAMETERS = (
            note='0.0.0.0: all addresses of this machine; see [Security](web_view.md#security)'),
     custom('port', 8080, 'TCP port at which the page is served; 0: any free port', check_port,
            range='0, 1024 to 65535'),
+    flag('stop_needs_token', False, 'whether Stop needs the token, for a machine that is shared with strangers'),
     number('linear_speed', 0.2, 'm/s', 'speed while an arrow key drives forward or backward', 0.01, 1),
     number('angular_speed', 1.0, 'rad/s', 'speed while an arrow key turns the robot', 0.01, 4))

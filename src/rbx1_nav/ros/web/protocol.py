@@ -5,10 +5,10 @@ Every field that a browser sends is checked here. The rest of the server uses th
 from __future__ import annotations
 
 import json
-from math import isfinite
 from typing import Mapping, NamedTuple, Union
 
 MAX_MESSAGE = 1024      # bytes
+MAX_NUMBER = 2 ** 53     # largest integer that JavaScript represents exactly
 METHODS = ('timed', 'odometry', 'gyro')
 
 
@@ -28,6 +28,7 @@ class Run(NamedTuple):
     method: str         # one of METHODS
     reset: bool         # whether to reset a simulated robot before the run
     confirmed: bool     # whether the user has confirmed that a real robot may move
+    clock: float        # s: `clock` of the last frame that the browser has received
 
 
 class Hand(NamedTuple):
@@ -35,6 +36,7 @@ class Hand(NamedTuple):
 
     on: bool
     confirmed: bool     # as in Run
+    clock: float        # s, as in Run
 
 
 class Drive(NamedTuple):
@@ -42,14 +44,19 @@ class Drive(NamedTuple):
 
     forward: float      # -1 to 1, fraction of the linear speed
     left: float         # -1 to 1, fraction of the angular speed
+    clock: float        # s, as in Run
 
 
 class Reset(NamedTuple):
     """Put a simulated robot back at its start."""
 
+    clock: float        # s, as in Run
+
 
 class Stop(NamedTuple):
     """Stop the robot, regardless of which node drives it."""
+
+    number: int = 0     # returned in the answer
 
 
 Message = Union[Hello, Run, Hand, Drive, Reset, Stop]
@@ -70,15 +77,15 @@ def parse(text: object) -> Message:
         method = _text(fields, 'method')
         if method not in METHODS:
             raise InvalidMessage(f'method: expected one of {", ".join(METHODS)}')
-        return Run(method, _flag(fields, 'reset'), _flag(fields, 'confirmed'))
+        return Run(method, _flag(fields, 'reset'), _flag(fields, 'confirmed'), _clock(fields))
     if kind == 'hand':
-        return Hand(_flag(fields, 'on'), _flag(fields, 'confirmed'))
+        return Hand(_flag(fields, 'on'), _flag(fields, 'confirmed'), _clock(fields))
     if kind == 'drive':
-        return Drive(_fraction(fields, 'forward'), _fraction(fields, 'left'))
+        return Drive(_fraction(fields, 'forward'), _fraction(fields, 'left'), _clock(fields))
     if kind == 'reset':
-        return Reset()
+        return Reset(_clock(fields))
     if kind == 'stop':
-        return Stop()
+        return Stop(int(_number(fields, 'number', 0, MAX_NUMBER)))
     raise InvalidMessage('type: expected hello, run, hand, drive, reset or stop')
 
 
@@ -96,12 +103,20 @@ def _flag(fields: Mapping[str, object], name: str) -> bool:
     return value
 
 
-def _fraction(fields: Mapping[str, object], name: str) -> float:
+def _number(fields: Mapping[str, object], name: str, low: float, high: float) -> float:
     value = fields.get(name, 0)
-    # bool is a subclass of int; a very large integer can be compared, but not converted to float
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not -1 <= value <= 1 or not isfinite(value):
-        raise InvalidMessage(f'{name}: expected a number from -1 to 1')
+    # bool is a subclass of int; a very large integer can be compared, but not converted to float; NaN is in no range
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not low <= value <= high:
+        raise InvalidMessage(f'{name}: expected a number from {low} to {high}')
     return float(value)
+
+
+def _fraction(fields: Mapping[str, object], name: str) -> float:
+    return _number(fields, name, -1, 1)
+
+
+def _clock(fields: Mapping[str, object]) -> float:
+    return _number(fields, 'clock', 0, MAX_NUMBER)
 
 
 def encode(kind: str, **fields: object) -> bytes:

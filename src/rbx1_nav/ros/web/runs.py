@@ -76,7 +76,7 @@ class Runs:
     def stop(self) -> None:
         """Stop the run as Ctrl-C does: the script stops the robot before it exits."""
         with self.lock:
-            if not self.busy:
+            if not self.busy or self.stop_requested:
                 return
             self.stop_requested = True
             process = self.process

@@ -53,6 +53,7 @@ class State:
         self.away: dict[str, tuple[float, PoseRow]] = {}    # by source: time, last pose that is not the origin
         self.origin: float | None = None        # s: stamp at which the run began
         self.last: tuple[float, float] | None = None    # last odometry message: stamp and monotonic clock, s
+        self.speed = 0.0        # in the last odometry message, the larger of m/s and rad/s
         self.factor = 1.0       # measured speed of simulated time, relative to real time
         self.mark: tuple[float, float] | None = None    # stamp and monotonic clock at the start of this measurement, s
         self.last_command = 0.0     # s, monotonic clock
@@ -69,6 +70,7 @@ class State:
             self.late.pop(source, None)
             if source == 'odometry':
                 self._keep_time(motion, now)
+                self.speed = max(abs(motion.linear), abs(motion.angular))
             pose = [round(value, 4) for value in motion.pose]
             if pose != self.poses.get(source):
                 self.counter.next()
@@ -121,6 +123,11 @@ class State:
         """Return the name of a node that drives the robot and was not started by the page, or ''. now: s, monotonic."""
         name, time = self.other
         return name if now - time < DRIVING_TIMEOUT else ''
+
+    def speed_since(self, since: float) -> float | None:
+        """Return the larger of m/s and rad/s in the odometry, or None without odometry since a time (s, monotonic)."""
+        with self.lock:
+            return self.speed if self.last is not None and self.last[1] > since else None
 
     def forget_driver(self) -> None:
         """Forget which node drove, because all of them were stopped."""
@@ -182,8 +189,10 @@ class State:
         with self.lock:
             self.log.line(level, time, node, text)
 
-    def frame(self, number: int, epoch: int) -> tuple[int, int, bytes]:
+    def frame(self, number: int, epoch: int, now: float) -> tuple[int, int, bytes]:
         """Make the frame for a browser that has received everything up to this number, in this epoch.
+
+        now: s, monotonic clock, by which a later request of the browser shows its age.
 
         Returns the number and the epoch of the browser after this frame, and the encoded message.
         """
@@ -196,6 +205,7 @@ class State:
             log = self.log.since(number)
             fields: dict[str, Any] = {
                 'epoch': self.epoch,
+                'clock': round(now, 3),
                 'time': round(self.last[0] - self.origin, 3) if self.last and self.origin is not None else None,
                 'poses': self.poses,
                 'run': self.run_name,

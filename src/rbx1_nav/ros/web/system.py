@@ -12,7 +12,7 @@ from std_srvs.srv import Empty
 from rbx1_nav.ros.network.master import Server, call
 from rbx1_nav.ros.node import life
 from rbx1_nav.ros.web.state import State
-from rbx1_nav.ros.web.topics import Topics
+from rbx1_nav.ros.web.topics import COMMANDS, Topics
 
 PERIOD = 2.0        # s
 RESET_TIMEOUT = 5.0  # s
@@ -27,6 +27,10 @@ class System:
         self.drawn: tuple[str, str] | None = None   # surface and seed, from /diagnostics
         self.topics = Topics(state, self.on_seed)
         self.reset_service = ''     # '' if there is none
+        self.searching = False      # whether the master is being asked for driving nodes
+        self.shutting_down: set[str] = set()    # nodes that have not answered yet
+        self.stopped: set[str] = set()
+        self.silent: set[str] = set()
         self.thread = Thread(target=self._run, daemon=True)
 
     def start(self) -> None:
@@ -89,28 +93,59 @@ class System:
         """Delete the parameter of a run that the page has started, so that it does not affect later runs."""
         call(rosgraph.get_master_uri(), 'deleteParam', rospy.resolve_name('out_and_back/odom_frame'))
 
+    @property
+    def pending(self) -> bool:
+        """Whether nodes are still being shut down."""
+        with self.lock:
+            return self.searching or bool(self.shutting_down)
+
     def shut_down_drivers(self) -> None:
-        """Shut down all other nodes that publish /cmd_vel, as `rosnode kill` does. Does not wait for them."""
+        """Shut down all other nodes that publish the commands, as `rosnode kill` does. Does not wait for them."""
+        with self.lock:
+            if self.searching:
+                return
+            self.searching = True
         Thread(target=self._shut_down_drivers, daemon=True).start()
 
     def _shut_down_drivers(self) -> None:
+        publishers: Any = ()
         try:
             publishers, _, _ = call(rosgraph.get_master_uri(), 'getSystemState')
         except Exception as error:
-            rospy.logwarn('The master does not answer, so Stop may not have reached other driving nodes: %s', error)
-            return
-        for name in dict(publishers).get('/cmd_vel', ()):
-            if name != rospy.get_name():
-                # a node that hangs must not delay the others
-                Thread(target=shut_down, args=(name,), daemon=True).start()
+            rospy.logwarn_throttle(5, f'The master does not answer, so Stop may not have reached other driving nodes: '
+                                      f'{error}')
+            with self.lock:
+                self.silent.add('the master')
+        names = set(dict(publishers).get(rospy.resolve_name(COMMANDS), ())) - {rospy.get_name()}
+        with self.lock:
+            names -= self.shutting_down
+            self.shutting_down |= names
+            self.searching = False
+        for name in names:      # a node that hangs must not delay the others
+            Thread(target=self._shut_down, args=(name,), daemon=True).start()
 
+    def _shut_down(self, node: str) -> None:
+        try:
+            uri = call(rosgraph.get_master_uri(), 'lookupNode', node)
+            if not uri:
+                raise KeyError(node)
+            call(uri, 'shutdown', 'stopped from the browser')
+            answered = self.stopped
+        except (ConnectionError, KeyError):     # the process of the node has exited, so it no longer drives
+            answered = set()
+        except Exception:       # the node does not answer
+            answered = self.silent
+        with self.lock:
+            self.shutting_down.discard(node)
+            answered.add(node)
 
-def shut_down(node: str) -> None:
-    """Shut down a node."""
-    try:
-        call(call(rosgraph.get_master_uri(), 'lookupNode', node), 'shutdown', 'stopped from the browser')
-    except Exception:
-        pass    # the node has exited, or does not answer
+    def take_shut_down(self) -> tuple[list[str], list[str]]:
+        """Return the nodes that were shut down since the last call, and those that did not answer."""
+        with self.lock:
+            found = sorted(self.stopped), sorted((self.silent | self.shutting_down) - self.stopped)
+            self.stopped.clear()
+            self.silent.clear()
+        return found
 
 
 def _param(master: Server, name: str, default: object) -> Any:

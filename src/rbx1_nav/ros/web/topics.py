@@ -17,6 +17,7 @@ from rbx1_nav.ros.web.state import BY_HAND, Motion, State
 
 TOPICS = {'truth': 'ground_truth', 'odometry': 'odom', 'estimate': 'odom_ekf'}
 PERIOD = 0.02       # s: only the latest of the messages that arrive in this time is read
+COMMANDS = '/cmd_vel'    # rospy.resolve_name() applies a remapping
 COMMAND_PERIOD = 0.01   # s; short, because a driving script detects a subscriber that does not read
 LOG_PERIOD = 0.02   # s
 BUFFER = 2 ** 20    # bytes: more than arrives in PERIOD at 50 times real time
@@ -34,7 +35,7 @@ class Topics:
         self.truth: str | None = None   # the node that publishes the ground truth
         self.subscribers = [
             *(subscribe(topic, Odometry, self.on_odometry, source) for source, topic in TOPICS.items()),
-            subscribe('/cmd_vel', Twist, self.on_command),
+            subscribe(COMMANDS, Twist, self.on_command),
             subscribe('reset_odometry', Empty, self.on_reset),
             subscribe('/diagnostics', DiagnosticArray, self.on_diagnostics, queue_size=5),
             # the log of all nodes, over one connection to rosout instead of one to each node
@@ -101,9 +102,9 @@ class CommandPublisher:
         """Register as a publisher, unless already registered."""
         if self.publisher is None:
             try:
-                self.publisher = rospy.Publisher('/cmd_vel', Twist, queue_size=5, tcp_nodelay=True)
+                self.publisher = rospy.Publisher(COMMANDS, Twist, queue_size=5, tcp_nodelay=True)
             except Exception as error:
-                rospy.logwarn_throttle(5, f'/cmd_vel: the master does not answer: {error}')
+                rospy.logwarn_throttle(5, f'{rospy.resolve_name(COMMANDS)}: the master does not answer: {error}')
 
     def publish(self, linear: float, angular: float) -> None:
         """Send a command, m/s and rad/s."""
@@ -122,4 +123,4 @@ class CommandPublisher:
             try:
                 publisher.unregister()
             except Exception as error:
-                rospy.logwarn_throttle(5, f'/cmd_vel: the master does not answer: {error}')
+                rospy.logwarn_throttle(5, f'{rospy.resolve_name(COMMANDS)}: the master does not answer: {error}')

@@ -19,7 +19,7 @@ class Browser:
         self.number, self.epoch = 0, -1
 
     def frame(self):
-        self.number, self.epoch, message = self.state.frame(self.number, self.epoch)
+        self.number, self.epoch, message = self.state.frame(self.number, self.epoch, 0.0)
         return json.loads(message)
 
 

@@ -10,11 +10,11 @@ from rbx1_nav.ros.web.protocol import Drive, Hand, Hello, InvalidMessage, Reset,
 @pytest.mark.parametrize('fields, message', [
     ({'type': 'hello', 'token': 'abc'}, Hello('abc')),
     ({'type': 'hello'}, Hello('')),
-    ({'type': 'run', 'method': 'gyro', 'reset': True}, Run('gyro', True, False)),
-    ({'type': 'hand', 'on': True, 'confirmed': True}, Hand(True, True)),
-    ({'type': 'drive', 'forward': 1, 'left': -0.5}, Drive(1.0, -0.5)),
-    ({'type': 'drive'}, Drive(0.0, 0.0)),
-    ({'type': 'reset'}, Reset()),
+    ({'type': 'run', 'method': 'gyro', 'reset': True}, Run('gyro', True, False, 0.0)),
+    ({'type': 'hand', 'on': True, 'confirmed': True, 'clock': 2.5}, Hand(True, True, 2.5)),
+    ({'type': 'drive', 'forward': 1, 'left': -0.5}, Drive(1.0, -0.5, 0.0)),
+    ({'type': 'drive'}, Drive(0.0, 0.0, 0.0)),
+    ({'type': 'reset'}, Reset(0.0)),
     ({'type': 'stop', 'more': 1}, Stop())])
 def test_a_message(fields, message):
     assert parse(json.dumps(fields)) == message
