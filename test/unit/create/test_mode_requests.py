@@ -1,7 +1,7 @@
 """When the mode in which the robot is driven is requested, and what is logged about it: see docs/bases.md, 'Modes'."""
 import pytest
 
-from rbx1_nav.create.driver.supervisor import Offset, Supervisor, causes
+from rbx1_nav.create.driver.supervisor import Supervisor, causes
 from rbx1_nav.create.protocol import FULL, OFF, PASSIVE, SAFE
 from rbx1_nav.units import SECOND
 
@@ -22,13 +22,20 @@ class Supervised:
         self.log = []
         self.supervisor = Supervisor(wanted, plus_one, self.log.append, self.log.append)
         self.now = 0
+        self.starts = 0     # number of requests of passive mode
+
+    def start(self):
+        """Start the robot."""
+        self.supervisor.restart(self.now)
 
     def feed(self, mode, times=1, wants_motion=False, tick=TENTH, **changes):
-        """Feed equal readings. Returns the numbers of those after which the mode is requested."""
+        """Feed equal readings. Returns the numbers of those after which the wanted mode is requested."""
         requests = []
         for number in range(1, times + 1):
             self.now += tick
-            if self.supervisor.update(self.now, reading(mode, **changes), wants_motion):
+            request = self.supervisor.update(self.now, reading(mode, **changes), wants_motion)
+            self.starts += request == PASSIVE
+            if request == self.supervisor.wanted:
                 requests.append(number)
         return requests
 
@@ -121,57 +128,60 @@ def test_a_mode_above_full_is_full():
 
 # the offset of the reported mode
 
-def test_the_mode_is_requested_once_whatever_is_reported():
-    for mode in (PASSIVE, SAFE, FULL):
-        robot = Supervised(plus_one=None)
-        assert robot.feed(mode, 2) == [2]
+def begun(wanted=SAFE):
+    """Return a robot of unknown offset that was just started."""
+    robot = Supervised(wanted, plus_one=None)
+    robot.start()
+    return robot
 
 
-def test_a_reading_less_than_0_1_s_after_the_request_does_not_show_its_effect():
-    robot = Supervised(plus_one=None)
-    robot.feed(PASSIVE, 2)
-    robot.feed(FULL, 2, tick=TENTH // 3)
-    assert robot.supervisor.offset.value is None
-    robot.feed(FULL, 1, tick=TENTH // 3 + 1)
-    assert robot.supervisor.offset.value == 1 and robot.supervisor.in_control
+@pytest.mark.parametrize('wanted', [PASSIVE, SAFE, FULL])
+@pytest.mark.parametrize('offset', [0, 1])
+def test_what_is_reported_after_a_start_shows_the_offset(wanted, offset):
+    robot = begun(wanted)
+    assert robot.feed(PASSIVE + offset, 2) == ([] if wanted == PASSIVE else [2])
+    robot.feed(wanted + offset, 2)
+    assert robot.supervisor.in_control and robot.supervisor.offset == offset and not robot.starts
+    assert sum('mode plus one' in line for line in robot.log) == offset
 
 
-@pytest.mark.parametrize('wanted, reported, offset', [
-    (PASSIVE, PASSIVE, 0), (PASSIVE, SAFE, 1), (SAFE, FULL, 1), (SAFE, PASSIVE, 0), (SAFE, OFF, None),
-    (FULL, 4, 1), (FULL, FULL, 0), (FULL, PASSIVE, 0), (FULL, SAFE, None)])
-def test_what_a_mode_after_the_request_shows(wanted, reported, offset):
-    found = Offset(wanted)
-    found.ask(FULL if wanted == SAFE else SAFE)
-    found.judge(reported, False)
-    assert found.value == offset
+def test_a_reading_less_than_0_1_s_after_the_start_does_not_show_its_effect():
+    robot = begun()
+    assert robot.feed(SAFE, 3, tick=TENTH // 4) == [] and not robot.supervisor.observed
+    assert robot.feed(PASSIVE, 2, tick=TENTH // 4) == [2] and robot.supervisor.offset == 0
 
 
-@pytest.mark.parametrize('before, obstructed, attempts, offset', [
-    (PASSIVE, False, 1, 0), (PASSIVE, True, 1, None), (SAFE, False, 1, None), (SAFE, False, 2, 0),
-    (SAFE, True, 2, None)])
-def test_safe_mode_may_be_passive_mode_plus_one(before, obstructed, attempts, offset):
-    """It is safe mode if passive mode was reported before, or if a second request did not change it."""
-    found = Offset(SAFE)
-    for _ in range(attempts):
-        found.ask(before)
-        found.judge(SAFE, obstructed)
-    assert found.value == offset
+@pytest.mark.parametrize('mode', [OFF, FULL, 4])
+def test_another_mode_after_a_start_shows_nothing_and_the_start_is_repeated(mode):
+    robot = begun()
+    assert robot.feed(mode, 10) == [] and robot.starts == 2 and not robot.supervisor.in_control
+    assert robot.feed(PASSIVE, 2) == [2]
+    # the node can report it
+    robot = begun()
+    robot.feed(mode, 30)
+    assert robot.supervisor.reason.startswith(f'it reports mode {mode} ')
 
 
-def test_passive_mode_that_was_reported_after_a_request_counts_too():
-    found = Offset(SAFE)
-    found.ask(SAFE)
-    found.judge(PASSIVE, True)
-    assert found.value == 0
+def test_the_offset_is_observed_despite_an_obstacle():
+    robot = begun()
+    assert robot.feed(SAFE, 3, **WHEEL) == [] and robot.supervisor.mode == PASSIVE and robot.supervisor.offset == 1
+    assert robot.feed(SAFE, 1) == [1]
 
 
-def test_an_obstacle_after_the_request_makes_safe_mode_doubtful():
-    """The robot reports its mode plus one, and stays in passive mode because a wheel drops for a moment."""
-    robot = Supervised(plus_one=None)
-    assert robot.feed(SAFE, 12, tick=TENTH // 2) == [2, 12]
-    robot.feed(SAFE, 1, tick=TENTH // 2, **WHEEL)
-    robot.feed(SAFE, 3, tick=TENTH // 2)
-    assert robot.supervisor.offset.value is None and not robot.supervisor.in_control
+def test_a_lost_start_is_repeated_when_the_robot_does_not_seem_to_obey():
+    """The robot is still in safe mode, and does not report its mode plus one."""
+    robot = begun()
+    assert robot.feed(SAFE, 20) == [2, 7, 12, 17] and robot.supervisor.offset == 1 and not robot.starts
+    assert robot.feed(SAFE, 2) == [] and robot.starts == 1
+    assert robot.feed(PASSIVE, 2) == [2] and robot.supervisor.offset == 0
+    robot.feed(SAFE, 2)
+    assert robot.supervisor.in_control
+
+
+def test_a_given_offset_needs_no_start():
+    robot = Supervised(plus_one=True)
+    robot.start()
+    assert robot.feed(PASSIVE, 50) and not robot.starts and robot.supervisor.offset == 1
 
 
 @pytest.mark.parametrize('plus_one, mode, passive', [
@@ -182,14 +192,23 @@ def test_which_readings_may_show_passive_mode(plus_one, mode, passive):
 
 
 def test_a_silence_is_forgotten_and_a_start_also_forgets_the_offset():
-    robot = Supervised(plus_one=None)
-    robot.feed(PASSIVE, 2)
-    robot.feed(FULL, 3)
-    assert robot.supervisor.in_control and robot.supervisor.offset.value == 1
+    robot = begun()
+    robot.feed(SAFE, 2)
+    robot.feed(FULL, 2)
+    assert robot.supervisor.in_control
     robot.supervisor.forget()
-    assert not robot.supervisor.in_control and robot.supervisor.offset.value == 1
-    assert robot.feed(SAFE) == []       # the reading before the silence does not count
-    robot.supervisor.restart()
-    assert robot.supervisor.offset.value is None
-    assert robot.feed(PASSIVE, 2) == [2]
+    assert not robot.supervisor.in_control and robot.supervisor.observed
+    assert robot.feed(FULL) == [] and not robot.supervisor.in_control     # the reading before does not count
+    robot.feed(FULL)
+    assert robot.supervisor.in_control and robot.supervisor.offset == 1 and not robot.starts
+    robot.start()
+    assert robot.feed(PASSIVE, 2) == [2] and robot.supervisor.offset == 0
+    robot.start()
+    robot.feed(SAFE, 2)
     assert sum('mode plus one' in line for line in robot.log) == 1
+
+
+def test_a_silence_before_the_offset_is_known_needs_another_start():
+    robot = begun()
+    robot.supervisor.forget()
+    assert robot.feed(SAFE, 2) == [] and robot.starts == 1 and not robot.supervisor.observed

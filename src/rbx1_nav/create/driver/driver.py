@@ -135,7 +135,7 @@ class Driver:
         """Ask for a reading. start: whether to start the robot first."""
         data = self.queries.begin(now, start) if self.polled else sequences.RESUME_STREAM
         if start:
-            self.supervisor.restart()
+            self.supervisor.restart(now)
             data = sequences.start(self.model, self.polled)
         self.sender.send(now, data)
 
@@ -272,8 +272,8 @@ class Driver:
 
     def _supervise(self, time: int, reading: Mapping[str, int]) -> None:
         before = self.supervisor.in_control
-        if self.supervisor.update(time, reading, self.gate.moving, self.acceptance.backs):
-            self.sender.send(time, sequences.take_control(self.model, self.settings.mode))
+        if (mode := self.supervisor.update(time, reading, self.gate.moving, self.acceptance.backs)) is not None:
+            self.sender.send(time, sequences.take_control(self.model, mode))
         if self.acceptance.feel(time, reading) or (before and not self.supervisor.in_control):
             self.acceptance.lock(', '.join(causes(reading)) or 'the robot left the mode in which it is driven')
 

@@ -8,7 +8,7 @@ from rbx1_nav.units import SECOND
 
 HOLD = SECOND           # ns without the cause before the driver takes control again
 RETRY = SECOND // 2     # ns between two attempts
-SETTLE = SECOND // 10   # ns after which a reading shows the requested mode
+SETTLE = SECOND // 10   # ns after which a reading shows the effect of a Start
 ATTEMPTS_BEFORE_LOG = 3            # number of attempts that fail without a known cause before the failure is logged
 CLIFFS = ('cliff_left', 'cliff_front_left', 'cliff_front_right', 'cliff_right')
 WHEEL_DROPS = protocol.WHEEL_DROP_LEFT | protocol.WHEEL_DROP_RIGHT | protocol.WHEEL_DROP_CASTOR
@@ -29,37 +29,12 @@ def causes(reading: Mapping[str, int]) -> list[str]:
     return found
 
 
-class Offset:
-    """The offset of the reported mode: Roombas with Wi-Fi report their mode plus one (create_robot, issue 64)."""
-
-    def __init__(self, wanted: int, value: int | None = None) -> None:
-        """wanted: the mode that is requested; value: 0 or 1, or None to detect it."""
-        self.wanted = wanted
-        self.value = value
-        self._reported: set[int | None] = set()     # modes reported so far
-        self._attempts = 0
-
-    def ask(self, reported: int) -> None:
-        """Record that the wanted mode is requested. reported: the mode reported before."""
-        self._reported.add(reported)
-        self._attempts += 1
-
-    def judge(self, reported: int, obstructed: bool) -> None:
-        """Determine the offset from the mode that is reported after the request. obstructed: whether the robot has had
-        a reason not to leave passive mode."""
-        self._reported.add(reported)
-        if reported == self.wanted + 1:
-            self.value = 1
-        elif reported == self.wanted == protocol.SAFE:
-            # passive mode plus one looks the same, but it is also reported before the request
-            if not obstructed and (protocol.PASSIVE in self._reported or self._attempts >= 2):
-                self.value = 0
-        elif reported in (self.wanted, protocol.PASSIVE):
-            self.value = 0
-
-
 class Supervisor:
-    """Decides when to request the mode in which the robot is driven."""
+    """Decides which mode to request, and when.
+
+    Some Roombas report their mode plus one (create_robot, issue 64). Start puts a robot into passive mode, so what it
+    reports after Start shows this offset. Only then is the mode requested in which the robot is driven.
+    """
 
     def __init__(self, mode: int, plus_one: bool | None, info: Callable[[str], None],
                  warn: Callable[[str], None]) -> None:
@@ -72,60 +47,53 @@ class Supervisor:
         self.mode: int | None = None    # mode in the last two readings
         self.reason = ''            # why the robot is not in the wanted mode
         self.had_control = False
+        self.offset = int(plus_one or False)        # of the reported mode
+        self.observed = plus_one is not None        # whether the offset is known
         self.offset_logged = False
-        self.restart()
+        self.forget()
 
     @property
     def in_control(self) -> bool:
         """Whether the robot is in the wanted mode."""
         return self.mode == self.wanted
 
-    def restart(self) -> None:
-        """Handle a start of the robot, which may be a different robot."""
-        self.offset = Offset(self.wanted, None if self.plus_one is None else int(self.plus_one))
-        self.forget()
-
     def forget(self) -> None:
         """Handle a robot that sends no more readings."""
         self.mode = None
         self.latest: int | None = None          # mode in the last reading
         self.clear_since: int | None = None     # ns, since when nothing prevents the robot from being driven
-        self.attempt: int | None = None         # ns, time of the last attempt
-        self.obstructed = False     # since the last attempt
-        self.failures = 0           # consecutive attempts that failed without a known cause
+        self.attempt: int | None = None         # ns, time of the last request
+        self.failures = 0           # consecutive requests that failed without a known cause
+
+    def restart(self, now: int) -> None:
+        """Handle a Start that is sent to a robot, which may be a different robot."""
+        self.forget()
+        self.had_control = False
+        if self.plus_one is None:
+            self.observed, self.attempt = False, now
 
     def is_passive(self, reading: Mapping[str, int]) -> bool:
         """Return whether a robot from which passive mode was requested may be in passive mode."""
-        offsets = (0, 1) if self.offset.value is None else (self.offset.value,)
-        return reading['mode'] - protocol.PASSIVE in offsets
+        return reading['mode'] - protocol.PASSIVE in ((self.offset,) if self.observed else (0, 1))
 
-    def update(self, now: int, reading: Mapping[str, int], wants_motion: bool, backs: bool = False) -> bool:
-        """Return whether to request the wanted mode at `now` (ns). wants_motion: whether a motion command is in force;
-        backs: whether it is one that a robot in safe mode follows at a cliff.
+    def update(self, now: int, reading: Mapping[str, int], wants_motion: bool, backs: bool = False) -> int | None:
+        """Return the mode to request at `now` (ns), or None. wants_motion: whether a motion command is in force; backs:
+        whether it is one that a robot in safe mode follows at a cliff.
         """
         reported, before = reading['mode'], self.latest
         self.latest = reported
         if reported != before:      # one reading may be corrupted, so the second one counts
-            return False
-        found = causes(reading)
-        docked = bool(reading['charging_sources'] & DOCK)
-        obstructed = bool(found or docked)
-        self.obstructed |= obstructed
-        if self.offset.value is None:
-            if self.attempt is None:        # request it once, whatever mode is reported
-                return self._ask(now, reported, obstructed)
-            if now - self.attempt < SETTLE:
-                return False
-            self.offset.judge(reported, self.obstructed)
-            if self.offset.value and not self.offset_logged:
-                self.offset_logged = True
-                self.warn('The robot reports its mode plus one: expected a mode from 0 to 3; corrected, as with '
-                          'oi_mode_workaround:=true')
-        self._note(protocol.PASSIVE if self.offset.value is None else min(reported - self.offset.value, protocol.FULL))
+            return None
+        if not self.observed:
+            self._observe(now, reported)
+        if self.observed:
+            self._note(min(reported - self.offset, protocol.FULL))
         if self.in_control:
             self.clear_since, self.failures = None, 0
-            return False
-        if obstructed:
+            return None
+        found = causes(reading)
+        docked = bool(reading['charging_sources'] & DOCK)
+        if found or docked:
             self.failures = 0
         reasons = list(found)
         if docked:
@@ -136,27 +104,34 @@ class Supervisor:
         leaves_cliff = backs and found == [CLIFF]
         if (found and not leaves_cliff) or (docked and not wants_motion):
             self.clear_since = None
-            return False
+            return None
         if self.clear_since is None:
             self.clear_since = now
         if (self.had_control and now - self.clear_since < HOLD and not leaves_cliff) or (
                 self.attempt is not None and now - self.attempt < RETRY):
-            return False
-        return self._ask(now, reported, obstructed)
+            return None
+        if self.attempt is not None and self.failures > ATTEMPTS_BEFORE_LOG:
+            self.observed = self.plus_one is not None       # a Start may have been lost
+        self.attempt = now
+        self.failures += 1
+        return self.wanted if self.observed else protocol.PASSIVE
 
-    def _ask(self, now: int, reported: int, obstructed: bool) -> bool:
-        self.attempt, self.obstructed = now, obstructed
-        if not obstructed:
-            self.failures += 1
-        self.offset.ask(reported)
-        return True
+    def _observe(self, now: int, reported: int) -> None:
+        """Determine the offset if the last request, a Start, has had its effect."""
+        if self.attempt is None or now - self.attempt < SETTLE or reported - protocol.PASSIVE not in (0, 1):
+            return
+        self.offset, self.observed, self.attempt = reported - protocol.PASSIVE, True, None
+        if self.offset and not self.offset_logged:
+            self.offset_logged = True
+            self.warn('The robot reports its mode plus one: expected a mode from 0 to 3; corrected, as with '
+                      'oi_mode_workaround:=true')
 
     def _contradiction(self, reported: int) -> str:
         """Return the reason for a robot that seems to disobey without a cause. reported: the reported mode."""
         workaround = '' if self.plus_one is None else (
             f' with oi_mode_workaround:={str(self.plus_one).lower()}; without this parameter the base detects it')
         return (f'it reports mode {reported} after it was asked for {protocol.MODE_NAMES[self.wanted]} mode: expected '
-                f'{self.wanted + (self.offset.value or 0)}{workaround}')
+                f'{self.wanted + self.offset}{workaround}')
 
     def _note(self, mode: int) -> None:
         before, self.mode = self.mode, mode
