@@ -13,6 +13,7 @@ import threading
 import time
 
 import rospy
+from rospy.names import get_resolved_mappings
 
 from rbx1_nav.config import ConfigError
 from rbx1_nav.ros.node import life, resources
@@ -40,6 +41,11 @@ def url(address, port, token):
     return f'http://{host}:{port}/#{token}'
 
 
+def remappings():
+    """Return the remappings of this node, for the scripts that the page starts; without __name and the like."""
+    return {name: new for name, new in get_resolved_mappings().items() if not name.startswith('__')}
+
+
 def main():
     """Serve the page until the node shuts down; return the exit status."""
     # the page takes its time from the odometry, so the node need not read /clock
@@ -47,7 +53,8 @@ def main():
     state, hand, token, address = State(), HandDrive(CommandPublisher()), make_token(), param('address')
     system = System(state)
     runs = Runs(os.path.dirname(os.path.abspath(sys.argv[0])),
-                lambda name, outcome: state.set_status(started=name, outcome=outcome), system.forget_frame)
+                lambda name, outcome: state.set_status(started=name, outcome=outcome), system.forget_frame,
+                remappings())
     controls = Controls(state, system, hand, runs, (param('linear_speed'), param('angular_speed')), in_background,
                         log=rospy.loginfo, stop_needs_token=param('stop_needs_token'))
     connections = Connections(state, controls, token, time.monotonic)

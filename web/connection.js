@@ -1,6 +1,6 @@
 // The WebSocket to the node: sends hello with the token, and reconnects when the connection is lost.
 
-const SILENCE = 1000;                       // ms: the node sends a frame at least every 250 ms
+const SILENCE = 1000;                       // ms: the node sends a frame at least every 400 ms
 const RETRY = [500, 1000, 2000, 4000];      // ms
 
 // The token is the part of the printed address after #, which a browser does not send to the server. It is stored for

@@ -57,6 +57,17 @@ export class Drive {
       for (const name of ['pointerup', 'pointercancel', 'lostpointercapture']) {
         button.addEventListener(name, () => this.release(button.dataset.key));
       }
+      button.addEventListener('keydown', event => {
+        if (event.key === ' ' || event.key === 'Enter') {
+          event.preventDefault();
+          if (!event.repeat) {
+            this.hold(button.dataset.key);
+          }
+        }
+      });
+      for (const name of ['keyup', 'blur']) {
+        button.addEventListener(name, () => this.release(button.dataset.key));
+      }
       button.addEventListener('contextmenu', event => event.preventDefault());
     }
     // the page does not receive the release of a key while another window or tab has the focus
@@ -67,8 +78,8 @@ export class Drive {
 
   hold(key) {
     if (this.hand && !this.held.has(key)) {
+      this.repeated = this.held.size ? this.repeated : performance.now();
       this.held.add(key);
-      this.repeated = performance.now();
       this.sendKeys();
       this.timer = this.timer || setInterval(() => this.sendKeys(), REPEAT);
     }

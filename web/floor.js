@@ -7,11 +7,17 @@ const CELL = 0.5;                   // m, as in RViz
 const RADIUS = 0.165;               // m, radius of the robot
 const ARROW = {length: 0.3, head: 0.08};                // m, as in sim.rviz
 const TOLERANCE = {distance: 0.1, angle: 0.15};         // m, rad: distance between arrows, as in sim.rviz
+const FAR = 1000;                   // m from the start: a robot beyond it is only in the table
 const MIN_SCALE = 10, MAX_SCALE = 3000;                 // pixels per meter
 const SEEN = {left: -0.5, right: 1.5, bottom: -0.6, top: 1.0};     // m, visible area before the robot has moved
 
 function wrap(angle) {
   return Math.atan2(Math.sin(angle), Math.cos(angle));
+}
+
+// Whether a pose is drawn. At 1e17 m, the coordinates of neighboring grid lines are the same number.
+function near([x, y]) {
+  return Math.hypot(x, y) < FAR;
 }
 
 function arrowPath([x, y, yaw]) {
@@ -43,7 +49,7 @@ class Trace {
       return;
     }
     const before = this.arrowText;
-    for (const point of points.slice(this.count)) {
+    for (const point of points.slice(this.count).filter(near)) {
       this.lineText += `${this.lineText ? 'L' : 'M'}${point[0]} ${point[1]}`;
       if (!this.last || Math.hypot(point[0] - this.last[0], point[1] - this.last[1]) >= TOLERANCE.distance ||
           Math.abs(wrap(point[2] - this.last[2])) >= TOLERANCE.angle) {
@@ -105,19 +111,22 @@ export class Floor {
       this.traces[source].draw(model.paths[source]);
     }
     for (const [source, robot] of Object.entries(this.robots)) {
-      const pose = model.poses[source];
-      robot.style.display = pose && this.shown[source] ? '' : 'none';
-      if (pose) {
+      const pose = model.poses[source], drawn = pose && near(pose);
+      robot.style.display = drawn && this.shown[source] ? '' : 'none';
+      if (drawn) {
         robot.setAttribute('transform', `translate(${pose[0]} ${pose[1]}) rotate(${pose[2] * 180 / Math.PI})`);
       }
     }
     // if the true pose is known, the robot at its odometry pose is transparent, as in RViz
     this.robots.odometry.classList.toggle('ghost', 'truth' in model.poses);
     const pose = model.poses.truth || model.poses.odometry;
-    if (this.following && pose) {
+    if (!pose || !near(pose)) {
+      return;
+    }
+    if (this.following) {
       Object.assign(this.view, {x: pose[0], y: pose[1]});
       this.project();
-    } else if (!this.touched && pose && !this.inside(pose)) {
+    } else if (!this.touched && !this.inside(pose)) {
       this.fit();
     }
   }
@@ -139,11 +148,11 @@ export class Floor {
       Math.abs(y - this.view.y) < height / 2 / this.view.scale - margin;
   }
 
-  // Show the start, all robots and all paths.
+  // Show the start, all robots and all paths, except for poses that are not drawn.
   fit() {
     const box = {...SEEN}, margin = 0.35;
     const poses = [...Object.values(this.poses || {}), ...Object.values(this.points || {}).flat()];
-    for (const [x, y] of poses) {
+    for (const [x, y] of poses.filter(near)) {
       box.left = Math.min(box.left, x - margin);
       box.right = Math.max(box.right, x + margin);
       box.bottom = Math.min(box.bottom, y - margin);

@@ -32,9 +32,12 @@ export class LogView {
     if (lines === this.shown) {
       return;
     }
+    // keep the lines that are on the page, because a screen reader reads each line that is added
+    const kept = this.shown ? lines.indexOf(this.shown[this.shown.length - 1]) + 1 : 0;
     this.shown = lines;
     const following = this.following;
-    this.list.replaceChildren(...lines.map(makeLine));
+    [...this.list.children].slice(0, this.list.children.length - kept).forEach(line => line.remove());
+    this.list.append(...lines.slice(kept).map(makeLine));
     this.following = following;
     this.follow();
   }

@@ -119,11 +119,6 @@ byId('save-svg').onclick = () => saveSvg(floor.svg);
 byId('save-png').onclick = () => savePng(floor.svg);
 byId('window').onchange = redraw;
 byId('hold').onclick = hold;
-document.addEventListener('keydown', event => {
-  if (event.key.toLowerCase() === 'h' && !event.ctrlKey && !event.metaKey && !event.target.closest('dialog')) {
-    hold();
-  }
-});
 
 connection.addEventListener('welcome', ({detail}) => {
   model.forget();

@@ -33,13 +33,12 @@ export function connectView(floor, model, redraw) {
   const keys = {
     '+': () => floor.zoom(ZOOM), '=': () => floor.zoom(ZOOM), '-': () => floor.zoom(1 / ZOOM), '0': all,
     'f': () => follow(!pressed('follow')), 'a': () => arrows(!pressed('arrows')), 'c': clear};
-  document.addEventListener('keydown', event => {
-    if (!event.ctrlKey && !event.altKey && !event.metaKey && !event.target.closest('dialog')) {
+  const moves = {ArrowLeft: [PAN, 0], ArrowRight: [-PAN, 0], ArrowUp: [0, PAN], ArrowDown: [0, -PAN]};
+  // only while the floor has the focus, so that a key that is pressed by mistake elsewhere has no effect
+  svg.addEventListener('keydown', event => {
+    if (!event.ctrlKey && !event.altKey && !event.metaKey) {
       keys[event.key.toLowerCase()]?.();
     }
-  });
-  const moves = {ArrowLeft: [PAN, 0], ArrowRight: [-PAN, 0], ArrowUp: [0, PAN], ArrowDown: [0, -PAN]};
-  svg.addEventListener('keydown', event => {
     // while driving by hand is on, the arrow keys drive the robot, and drive.js has handled this event
     if (moves[event.key] && !event.defaultPrevented) {
       follow(false);

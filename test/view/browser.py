@@ -12,7 +12,10 @@ import support
 # no sandbox: it does not work as root or in a container
 ARGUMENTS = ('--headless=new', '--no-sandbox', '--disable-gpu', '--disable-dev-shm-usage', '--window-size=1300,950',
              '--disable-background-networking', '--no-first-run')
-KEYS = {'ArrowUp': 38, 'ArrowLeft': 37, 'Escape': 27}   # key codes
+# records whether an element receives a click
+RECORD = '''rbx1.clicked = false;
+arguments[0].addEventListener('click', () => { rbx1.clicked = true; }, {once: true})'''
+KEYS = {'ArrowUp': 38, 'ArrowLeft': 37, 'Escape': 27, ' ': 32, 'a': 65}   # key codes
 
 
 def start_chromium(downloads):
@@ -73,9 +76,14 @@ class Page:
         support.wait_for(lambda: re.search(pattern, self.text(name)), f'{pattern} in #{name}: {self.text(name)}')
 
     def click(self, selector):
-        """Click on an element, as soon as it is enabled."""
-        support.wait_for(lambda: self.find(selector).is_enabled(), f'{selector} to be enabled')
-        self.find(selector).click()
+        """Click on an element, as soon as it is enabled. Just after a reset, the page disables its buttons until the
+        next odometry. A button that is disabled between a check and the click does not receive the click."""
+        def clicked():
+            element = self.find(selector)
+            self.driver.execute_script(RECORD, element)
+            element.click()
+            return self.driver.execute_script('return rbx1.clicked')
+        support.wait_for(clicked, f'{selector} to be enabled')
 
     def run(self, method):
         """Start a run. On a busy machine, the node may refuse the request because it is too old."""

@@ -167,6 +167,47 @@ class TestBrowserPage(unittest.TestCase):
         support.wait_for(lambda: not self.page.find('#notice').is_displayed(), 'the alarm to disappear')
         self.page.wait_for_text('connection', 'Connected')
 
+    def test_a_key_that_was_held_while_the_page_was_frozen_must_be_pressed_again(self):
+        self.drive_ahead(0.05)
+        self.driver.execute_script('const end = performance.now() + 1000; while (performance.now() < end) {}')
+        support.wait_for(lambda: not self.driver.find_elements('css selector', '.pad button.held'), 'the release')
+        self.odom.wait_for_twist(0.0)
+        self.page.key('keyUp', 'ArrowUp')
+
+    def test_space_on_an_arrow_button_drives(self):
+        def check():
+            if self.page.find('#hand').get_attribute('aria-pressed') == 'false':
+                self.page.click('#hand')
+            self.driver.execute_script('document.querySelector(".pad button").focus()')
+            self.page.key('keyDown', ' ')
+            return self.odom.position()[0] > 0.05
+        support.wait_for(check, 'the robot to drive')
+        self.page.key('keyUp', ' ')
+        self.odom.wait_for_twist(0.0)
+
+    def test_a_letter_is_a_shortcut_only_while_the_floor_has_the_focus(self):
+        def pressed_a():
+            self.page.key('keyDown', 'a')
+            self.page.key('keyUp', 'a')
+            return self.page.find('#arrows').get_attribute('aria-pressed')
+        self.assertEqual(pressed_a(), 'true')
+        self.driver.execute_script('document.getElementById("floor").focus()')
+        self.assertEqual(pressed_a(), 'false')
+
+    def test_a_pose_far_away_is_only_a_number(self):
+        publisher = rospy.Publisher('/odom_ekf', Odometry, queue_size=1)
+        self.addCleanup(publisher.unregister)
+        far = Odometry()
+        far.pose.pose.position.x, far.pose.pose.orientation.w = 1e17, 1.0
+
+        def shown():
+            publisher.publish(far)
+            return f'{1e17:.0f}' in self.page.text('table-now')
+        support.wait_for(shown, 'the pose in the table')
+        self.page.click('#home')
+        self.page.click('#stop')
+        self.page.wait_for_text('run-state', 'The robot is stationary')
+
     def test_a_browser_that_is_killed_stops_the_robot(self):
         other = start_chromium(self.folder.name)
         try:

@@ -12,7 +12,7 @@ from rbx1_nav.ros.web.state import State
 MAX_SOCKETS = 100       # maximum number of browsers
 MAX_WATCHERS = 60       # maximum without the token, so that browsers with the token can connect
 HELLO_TIMEOUT = 5.0     # s within which a browser must send its first message
-FRAME_TIMEOUT = 0.25     # s after which a frame is sent although nothing has changed; see web/connection.js
+FRAME_TIMEOUT = 0.4     # s after which a frame is sent although nothing has changed; see web/connection.js
 RATE, BURST = 30, 60    # messages per second, and in a burst; held keys are sent 10 times per second
 TRY_AGAIN_LATER, POLICY = 1013, 1008    # close codes: RFC 6455 and the IANA registry
 

@@ -5,7 +5,8 @@ import os
 import signal
 import subprocess
 from threading import Lock, Thread
-from typing import Callable, Sequence
+from types import MappingProxyType
+from typing import Callable, Mapping, Sequence
 
 # by method: displayed name, script, arguments. The frame is always set, because the master keeps it from earlier runs
 SCRIPTS: dict[str, tuple[str, str, Sequence[str]]] = {
@@ -18,12 +19,15 @@ STOP_TIMEOUT = 3.0  # s after which a script that does not exit is killed; a scr
 class Runs:
     """At most one run at a time."""
 
-    def __init__(self, folder: str, on_change: Callable[[str, str], None], after: Callable[[], None]) -> None:
+    def __init__(self, folder: str, on_change: Callable[[str, str], None], after: Callable[[], None],
+                 remappings: Mapping[str, str] = MappingProxyType({})) -> None:
         """folder: directory of the scripts; on_change(name, outcome): called with the outcome '' when a run begins, and
-        with its outcome when it has finished; after(): called before the second of these calls."""
+        with its outcome when it has finished; after(): called before the second of these calls; remappings: of names,
+        for the scripts."""
         self.folder = folder
         self.on_change = on_change
         self.after = after
+        self.remappings = [f'{name}:={new}' for name, new in remappings.items()]
         self.lock = Lock()
         self.busy = False
         self.stop_requested = False
@@ -47,7 +51,7 @@ class Runs:
         self.on_change(name, '')
         try:
             before()
-            outcome = self._execute([os.path.join(self.folder, script), *arguments])
+            outcome = self._execute([os.path.join(self.folder, script), *arguments, *self.remappings])
         except Exception as error:
             outcome = f'not started: {error}'
         try:
