@@ -17,6 +17,7 @@ from typing import Iterable, Mapping, NamedTuple, Optional, Tuple
 
 MAX_SPEED = 500         # mm/s, wheel speed limit in either direction (Create p. 9, Create 2 p. 13)
 UPDATE_PERIOD = 0.015   # s, between two frames of the stream (Create p. 13, Create 2 p. 21)
+ROBOT_RADIUS = 0.165    # m
 MIN_VOLTAGE, MAX_VOLTAGE = 5000, 25000      # mV, battery voltage of a running robot
 FRAME_HEADER = 19       # the first byte of a frame (Create p. 13, Create 2 p. 22)
 

@@ -61,7 +61,7 @@ def test_readings_that_are_rejected_again_and_again_are_true():
 
 
 @pytest.mark.parametrize('good, rejected', [(14, True), (15, False)])
-def test_after_one_loss_14_readings_are_doubted(good, rejected):
+def test_after_one_loss_15_readings_are_doubted(good, rejected):
     """The share of lost replies is 1/50 and decreases by 1/50 with each reading: 0.98^14 / 50 = 0.0151."""
     counter = counter_after(good=good)
     if rejected:

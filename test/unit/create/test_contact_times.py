@@ -25,7 +25,7 @@ class Contacted:
         self.sender = SimpleNamespace(stop=lambda now: self.events.append('stop'))
         self.contact = Contact(read_settings(params)[0], self, self.log.append)
         self.search = self.contact.search = SimpleNamespace(
-            only_battery=0,
+            battery_rates=[],
             begin=lambda now, line, baud: self.events.append(f'search {baud}'), tick=lambda now: self.found, rounds=0,
             rates=(57600, 19200), begin_later=lambda now, wait: self.events.append(f'search in {wait // MS}'))
         self.found = None

@@ -204,6 +204,6 @@ def test_a_roomba_400_is_named():
     driven.connect()
     driven.run(20)
     assert driven.log == [
-        'A robot answers, but only the query of its battery, as a Roomba of the 400 series (SCI) does: expected a '
-        'Create, Create 2, or Roomba 500 or 600']
+        'A robot answers at 57600 baud, but only the query of its battery, as a Roomba of the 400 series (SCI) does: '
+        'expected a Create, Create 2, or Roomba 500 or 600']
     assert not driven.found and not driven.body.moving

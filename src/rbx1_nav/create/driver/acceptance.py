@@ -17,7 +17,6 @@ from rbx1_nav.units import SECOND
 OUTAGE = 3 * SECOND // 10   # longest harmless time in which the robot does not answer or obey
 TOO_BAD = 0.5               # share of lost replies at which the robot is stopped
 BLOCKED = 0.1               # m, commanded travel of a wheel without a turn of any wheel
-ROBOT_RADIUS = 0.165        # m; at a cliff, safe mode allows only backing up, in a larger curve (Create p. 6)
 TURNED = 0.1                # fraction of the commanded travel from which the wheels count as turning
 BACK_UP = 'a cliff: expected a command that backs up'
 
@@ -107,8 +106,9 @@ class Acceptance:
 
     @property
     def backs(self) -> bool:
-        """Whether the command in force is one that a robot in safe mode follows at a cliff."""
-        return self.gate.linear < 0 and -self.gate.linear >= abs(self.gate.angular) * ROBOT_RADIUS
+        """Whether the command in force is one that a robot in safe mode follows at a cliff: backward, in a curve with a
+        radius larger than the robot's (Create p. 6)."""
+        return self.gate.linear < 0 and -self.gate.linear >= abs(self.gate.angular) * protocol.ROBOT_RADIUS
 
     def _is_at_edge(self) -> bool:
         return self._at_cliff and self.settings.mode == protocol.SAFE and self.gate.moving and not self.backs

@@ -181,10 +181,11 @@ class Contact:
                       f'robot_type:={found.model.name}, or auto')
 
     def _warn_of_silence(self) -> None:
-        if self.search.only_battery >= ROUNDS_BEFORE_WARNING and not self._warned:
+        answered = self.search.battery_rates
+        if len(answered) >= ROUNDS_BEFORE_WARNING and not self._warned:
             self._warned = True
-            self.warn('A robot answers, but only the query of its battery, as a Roomba of the 400 series (SCI) does: '
-                      'expected a Create, Create 2, or Roomba 500 or 600')
+            self.warn(f'A robot answers at {answered[-1]} baud, but only the query of its battery, as a Roomba of the '
+                      '400 series (SCI) does: expected a Create, Create 2, or Roomba 500 or 600')
         if self.search.rounds >= ROUNDS_BEFORE_WARNING and not self._warned and not self.found and not self._refused:
             self._warned = True
             rates = ', '.join(map(str, self.search.rates))

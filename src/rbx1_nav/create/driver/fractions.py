@@ -22,7 +22,7 @@ KEPT, LOST = 'kept', 'lost'
 KINDS = (AUTO, KEPT, LOST)
 
 STEADY = 0.3            # s after a change of the commanded turn in which the robot may still lag
-BELOW = 0.95            # degrees between two readings of the test
+BELOW = 0.95            # maximum number of degrees between two readings of the test
 ENOUGH = 4.0            # degrees of such readings that show which kind of robot this is, if they are all zeros
 ROUNDS = 2              # number of times that this must happen: the wheels may have been blocked for a while
 TURNS = 0.3             # part of the commanded turn from which the robot turns: on carpet, slow wheels lag
@@ -133,7 +133,7 @@ class Fractions:
         """Return the Turn since the last reading of the angle."""
         self._count += 1
         if self.hurries and self.time == elapsed and not self._doubtful:
-            if abs(self._rate) * UPDATE_PERIOD * ceil(elapsed / UPDATE_PERIOD) < 1:
+            if abs(self._rate) * UPDATE_PERIOD * ceil(elapsed / UPDATE_PERIOD) <= BELOW:
                 self._finish_reading()
                 return self._test(commanded, angle)
             self._slow += 1

@@ -14,8 +14,6 @@ from rbx1_nav.config import AUTO
 
 PSEUDO_TERMINAL = 'a pseudo-terminal'
 PSEUDO_TERMINALS = range(136, 144)      # major device numbers (Linux kernel, admin-guide/devices.txt)
-
-
 ADAPTERS = '/dev/ttyUSB*', '/dev/ttyACM*'      # USB adapters
 DEFAULT = '/dev/create', '/dev/ttyUSB0'         # name from the udev rules, first adapter
 

@@ -87,7 +87,7 @@ class Search:
         self.rates = rates
         self.wake = wake
         self.rounds = 0         # completed rounds without an answer
-        self.only_battery = 0   # number of times that a robot answered nothing but the query of its battery
+        self.battery_rates: list[int] = []  # rates at which a robot answered nothing but the query of its battery
         self.baud = rates[0]    # rate being tried
         self._line: SearchedLine
         self._order: list[int] = []         # rates still to be tried in this round
@@ -104,6 +104,7 @@ class Search:
         self._line = line
         self.rates = tuple(sorted(self.rates, key=lambda rate: rate != baud))
         self.rounds, self._order = 0, list(self.rates)
+        self.battery_rates.clear()
         self._next_rate(now)
 
     def begin_later(self, now: int, duration: int) -> None:
@@ -203,6 +204,6 @@ class Search:
         elif any(self._models):
             return Found(protocol.CREATE_2 if self.baud == protocol.CREATE_2.baud else protocol.CREATE, self.baud)
         else:
-            self.only_battery += 1
+            self.battery_rates.append(self.baud)
             self._next_rate(now)
         return None

@@ -72,9 +72,14 @@ class Counter(Protocol):
         """Return whether this may be the reading of a robot that counts from 0 again."""
 
 
+def reach(elapsed: float) -> float:
+    """Return how far (m) a wheel can travel in `elapsed` seconds."""
+    return WHEEL_LIMIT * elapsed + MARGIN
+
+
 def is_possible(left: float, right: float, elapsed: float) -> bool:
     """Return whether wheels can travel these distances (m) in `elapsed` seconds."""
-    return max(abs(left), abs(right)) <= WHEEL_LIMIT * elapsed + MARGIN
+    return max(abs(left), abs(right)) <= reach(elapsed)
 
 
 def bridged(expected: Expected, measured: Expected, width: float) -> Travel:
@@ -205,15 +210,14 @@ class CounterTravel:
         distance, turn = reading['distance'] / 1000, self._turn(expected)
         angle = reading['angle'] if self.asks_angle else None
         wheels = self._wheels(distance, turn if angle is None else self._share(angle, interval))
-        possible = WHEEL_LIMIT * elapsed + MARGIN
-        is_checked = self.bad < BAD_LINE or (interval <= LONG and not any(self.doubtful) and self.rejected < AGREED)
-        is_doubtful = is_checked and self.bad >= BAD_LINE and self._is_doubtful(wheels, expected, interval)
+        comparable = interval <= LONG and not any(self.doubtful) and self.rejected < AGREED
+        is_doubtful = self.bad >= BAD_LINE and comparable and self._is_doubtful(wheels, expected, interval)
         self.rejected = self.rejected + 1 if is_doubtful else 0
-        if wheels.largest() > possible or is_doubtful:
+        if is_doubtful or not is_possible(*wheels, elapsed):
             raise Implausible(f"distance: {reading['distance']} mm, angle: {reading.get('angle')} degrees in "
                               f'{elapsed:.3f} s')
         capped = max(abs(reading['distance']), abs(angle or 0)) >= self.CAP
-        unsure = 10.0 if capped else self._undetected(DOUBT if is_checked else min(possible, LOW_BYTE))
+        unsure = 10.0 if capped else self._undetected(DOUBT if comparable else min(reach(elapsed), LOW_BYTE))
         turned = self.fractions.update(turn, interval, angle)
         parts = [Travel(distance, radians(turned.angle), unsure ** 2,
                         (2 / self.width * unsure) ** 2 + radians(1) ** 2 * turned.variance),

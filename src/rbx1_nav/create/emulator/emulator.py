@@ -10,8 +10,8 @@ from rbx1_nav.create.emulator.programs import Programs
 from rbx1_nav.create.emulator.scripts import MAX_SCRIPT, Scripts
 from rbx1_nav.create.emulator.serial_line import SerialLine
 from rbx1_nav.create.protocol import (
-    BAUD_RATES, COUNTED, CREATE, IN_PLACE_LEFT, IN_PLACE_RIGHT, MAX_SPEED, OFF, PASSIVE, SAFE, STRAIGHT,
-    UPDATE_PERIOD, Command, Model, encode_frame, frame_format, packets_format, single_packets)
+    BAUD_RATES, COUNTED, CREATE, IN_PLACE_LEFT, IN_PLACE_RIGHT, MAX_SPEED, OFF, PASSIVE, ROBOT_RADIUS, SAFE,
+    STRAIGHT, UPDATE_PERIOD, Command, Model, encode_frame, frame_format, packets_format, single_packets)
 from rbx1_nav.units import SECOND, clamp
 
 TICK = round(UPDATE_PERIOD * SECOND)
@@ -23,7 +23,6 @@ INPUT_SIZE = 3 + 2 * 255    # bytes that are buffered while a script waits; the 
 MAX_NOTES = 16          # in a song (Create p. 11, Create 2 p. 20)
 MAX_FRAME = 255         # data bytes in a frame of the stream
 MAX_PWM = 255
-ROBOT_RADIUS = 0.165    # m
 BUTTON_TIME = SECOND // 6
 PAIR = Struct('>hh')
 
