@@ -50,8 +50,8 @@ def main():
     """Serve the page until the node shuts down; return the exit status."""
     # the page takes its time from the odometry, so the node need not read /clock
     life.init_node('web_view', __doc__, PARAMETERS, wall_time=True)
-    state, hand, token, address = State(), HandDrive(CommandPublisher()), make_token(), param('address')
-    system = System(state)
+    state, publisher, token, address = State(), CommandPublisher(), make_token(), param('address')
+    hand, system = HandDrive(publisher), System(state, publisher.connected)
     runs = Runs(os.path.dirname(os.path.abspath(sys.argv[0])),
                 lambda name, outcome: state.set_status(started=name, outcome=outcome), system.forget_frame,
                 remappings())

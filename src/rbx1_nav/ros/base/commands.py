@@ -18,7 +18,7 @@ from rbx1_nav.ros.base.clocks import Clock
 from rbx1_nav.ros.network.refusals import Refusals
 from rbx1_nav.units import SECOND
 
-RECENT = SECOND * 3 // 2    # ns: a node whose last command is older is not driving; rests last 1 s
+RECENT = SECOND * 3 // 2    # ns: a node whose last motion is older is not driving; rests last 1 s
 
 
 class Command(NamedTuple):
@@ -49,7 +49,8 @@ class VelocityCommands:
         self.lock = lock
         self.topic = rospy.resolve_name('cmd_vel')
         self.senders = Senders()
-        self.sender: object = None      # the connection header of the last command
+        # the connection header of the last command that is not zero, and its time, ns
+        self.moving: tuple[object, int] | None = None
         self.subscriber: rospy.Subscriber | None = None
         self.refusals = Refusals()
 
@@ -67,8 +68,10 @@ class VelocityCommands:
 
     def on_twist(self, twist: Twist) -> None:
         """Process a command, which takes effect now or when the clock's inbox applies it."""
-        self.sender = header = twist._connection_header     # one object for each connection
+        header = twist._connection_header       # one object for each connection
         command = Command(*messages.from_twist(twist), header['callerid'])
+        if any(command[:2]):
+            self.moving = header, self.clock.now()
         text = self.senders.contradiction(self.clock.now(), header, command.sender, command[:2],
                                           lambda: [connection.header for connection in self.connections()])
         if text:
@@ -101,11 +104,11 @@ class VelocityCommands:
 
     def driver(self) -> str | None:
         """Return the name of the node that is driving the base, also while it rests between two motions, or None."""
-        last = self.gate.command_time
-        if last is None or self.clock.now() - last > RECENT:
+        header, last = self.moving or (None, 0)
+        if self.clock.now() - last > RECENT:
             return None
         return next((connection.header['callerid'] for connection in self.connections()
-                     if connection.header is self.sender), None)
+                     if connection.header is header), None)
 
     def log_timeout(self) -> None:
         """Log that the current command has timed out."""

@@ -87,7 +87,9 @@ class Watch:
         connections = self._connections()
         start = monotonic()
         self.new = {each: self.new.get(each, start) for each in connections if not is_complete(each)}
-        drivers = {each.header['callerid']: each.socket for each in connections if is_complete(each)}
+        # a node that does not subscribe to the clock cannot be in step, so there is no use in waiting for it
+        drivers = {each.header['callerid']: each.socket for each in connections
+                   if is_complete(each) and each.header['callerid'] in self.listeners}
         others = [name for name in (*self.sources, *self.starting) if name in self.listeners and name not in drivers]
         sockets = {**drivers, **{name: self.listeners[name].socket for name in others}}
         self.forgotten = {name: sock for name, sock in self.forgotten.items() if sock in (None, sockets.get(name))}

@@ -70,10 +70,15 @@ class Connections:
     @property
     def full(self) -> bool:
         """Whether no further browser may connect."""
-        return len(self.browsers) >= MAX_SOCKETS
+        return sum(each.greeted for each in self.browsers.values()) >= MAX_SOCKETS
 
     def opened(self, socket: Socket) -> None:
-        """Add a browser that has connected."""
+        """Add a browser that has connected. If all places are taken, it replaces the one that has waited longest
+        without sending hello."""
+        if len(self.browsers) >= MAX_SOCKETS:
+            silent = next((each for each in self.browsers.values() if not each.greeted), None)
+            if silent:
+                self._close(silent, POLICY, 'expected hello')
         self.browsers[socket] = Browser(socket, self.clock())
 
     def closed(self, socket: Socket) -> None:

@@ -94,7 +94,7 @@ class Controls:
             return self._other()
         self._release()
         reset = message.reset and self.system.simulated
-        if not self.runs.start(message.method, self._reset_robot if reset else self.hand.wait_until_closed):
+        if not self.runs.start(message.method, self._reset_robot if reset else self.hand.wait_until_quiet):
             return BUSY
         return ''
 
@@ -109,7 +109,7 @@ class Controls:
 
         def reset() -> None:
             try:
-                self._reset_robot()
+                self._reset_robot(lambda: False)
             except Exception as error:
                 self.state.set_status(outcome=f'reset failed: {error}')
         self.in_background(reset)
@@ -125,9 +125,10 @@ class Controls:
         if self.hand.drivers:
             self.hand.stop()
 
-    def _reset_robot(self) -> None:
-        self.hand.wait_until_closed()   # the base warns of a reset while a node drives
-        self.system.reset()
+    def _reset_robot(self, cancelled: Callable[[], bool]) -> None:
+        self.hand.wait_until_quiet(cancelled)   # the base warns of a reset while a node drives
+        if not cancelled():
+            self.system.reset()
 
     def answers(self) -> dict[Any, Answer]:
         """Return the answers to Stop that are due, by browser. To be called periodically."""

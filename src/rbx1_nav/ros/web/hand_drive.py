@@ -11,19 +11,14 @@ from typing import Callable, Protocol
 KEY_TIMEOUT = 0.3   # s after the last message of the driving browser; the robot must stop within 0.5 s
 PERIOD = 0.05       # s between commands
 LINGER = 1.0        # s during which zero commands are sent after the last command, and after Stop
+QUIET = 1.6         # s after the last motion: the base counts a node as driving for 1.5 s
 
 
 class Publisher(Protocol):
     """Sends commands to the base."""
 
-    def open(self) -> None:
-        """Prepare for commands; no effect if already open."""
-
     def publish(self, linear: float, angular: float) -> None:
         """Send a command, m/s and rad/s."""
-
-    def close(self) -> None:
-        """Stop publishing, so that other nodes can drive the robot."""
 
 
 class Keys:
@@ -64,7 +59,7 @@ class HandDrive:
         self.drivers: set[object] = set()   # the browsers in which driving by hand is on
         self.stop_until = 0.0       # s: zero commands are sent until then
         self.changed = Condition()
-        self.opened = False     # whether this node is registered as a driver
+        self.moved = -QUIET     # s: when the last command that is not zero was sent
         self.ended = False
         self.thread = Thread(target=self._run, daemon=True)
 
@@ -73,10 +68,9 @@ class HandDrive:
         self.thread.start()
 
     def begin(self, owner: object) -> None:
-        """Switch driving by hand on for a browser. This connects to the base, so that the first key takes effect."""
+        """Switch driving by hand on for a browser."""
         with self.changed:
             self.drivers.add(owner)
-            self.changed.notify_all()
 
     def leave(self, owner: object) -> None:
         """Switch driving by hand off for a browser, or remove a browser that has disconnected."""
@@ -103,10 +97,13 @@ class HandDrive:
             self._stop()
             self.changed.notify_all()
 
-    def wait_until_closed(self) -> None:
-        """Wait until this node no longer drives: for the zero commands after a stop, but at most twice as long."""
+    def wait_until_quiet(self, cancelled: Callable[[], bool]) -> None:
+        """Wait until this node has not driven for a while and sends no zero commands, or until cancelled(). A Stop
+        meanwhile does not make the wait longer."""
         with self.changed:
-            self.changed.wait_for(lambda: not self.opened, 2 * LINGER)
+            quiet = max(self.stop_until, self.moved + QUIET)
+            while self.clock() < quiet and not (self.ended or cancelled()):
+                self.changed.wait(PERIOD)
 
     def _stop(self) -> None:
         self.keys.release()
@@ -130,21 +127,14 @@ class HandDrive:
                 velocity = self.keys.velocity(now)
                 if moving and not any(velocity):    # including keys that have timed out
                     self.stop_until = now + LINGER
-                stopping = now < self.stop_until
-                wanted = bool(self.drivers) or stopping
-                if not (wanted or self.opened):
+                stopping, moving = now < self.stop_until, any(velocity)
+                if not (moving or stopping):
                     self.changed.wait()
                     continue
-            if wanted:
-                self.publisher.open()
-            else:
-                self.publisher.close()
-            if any(velocity) or stopping:
-                self.publisher.publish(*velocity)
-            moving = any(velocity)
+                if moving:
+                    self.moved = now
+            self.publisher.publish(*velocity)
             with self.changed:
-                self.opened = wanted
-                self.changed.notify_all()
                 if not self.ended:
                     self.changed.wait(PERIOD)
         if moving or stopping:

@@ -33,8 +33,9 @@ class Runs:
         self.stop_requested = False
         self.process: subprocess.Popen[bytes] | None = None
 
-    def start(self, method: str, before: Callable[[], None]) -> bool:
-        """Call before(), and then start a run. method: a key of SCRIPTS. Returns False if a run is in progress.
+    def start(self, method: str, before: Callable[[Callable[[], bool]], None]) -> bool:
+        """Call before(cancelled), and then start a run. method: a key of SCRIPTS; cancelled(): returns whether the run
+        was stopped. Returns False if a run is in progress.
 
         If before() raises an exception, the run is not started, and the outcome contains the error.
         """
@@ -45,12 +46,12 @@ class Runs:
         Thread(target=self._run, args=(method, before), daemon=True).start()
         return True
 
-    def _run(self, method: str, before: Callable[[], None]) -> None:
+    def _run(self, method: str, before: Callable[[Callable[[], bool]], None]) -> None:
         # this thread must live as long as the script: pdeathsig is sent when the thread that started the script exits
         name, script, arguments = SCRIPTS[method]
         self.on_change(name, '')
         try:
-            before()
+            before(lambda: self.stop_requested)
             outcome = self._execute([os.path.join(self.folder, script), *arguments, *self.remappings])
         except Exception as error:
             outcome = f'not started: {error}'

@@ -19,7 +19,7 @@ from rbx1_nav.ros.web.connections import MAX_SOCKETS, Connections
 from rbx1_nav.ros.web.protocol import MAX_MESSAGE
 
 FRAME_PERIOD = 50       # ms
-MAX_CONNECTIONS = MAX_SOCKETS + 60      # TCP connections that are not WebSockets yet, including idle ones
+MAX_CONNECTIONS = 160   # TCP connections that are not WebSockets yet, including idle ones
 IDLE_TIMEOUT = 5.0      # s in which a request must arrive; s after which an unused connection is closed
 PING_PERIOD = 10.0      # s: a browser that does not answer three pings is disconnected
 MAX_HEADER = 8192       # bytes
@@ -124,21 +124,26 @@ class SocketHandler(WebSocketHandler, CheckedHandler):
 
 
 class BoundedServer(HTTPServer):
-    """An HTTP server with a limited number of connections. Connections limits the WebSockets."""
+    """An HTTP server with a limited number of connections, of which a new one replaces the oldest. Connections limits
+    the WebSockets."""
 
-    count = 0
+    def initialize(self, *args: Any, **kwargs: Any) -> None:
+        """Called by tornado, instead of __init__()."""
+        super().initialize(*args, **kwargs)
+        self.streams: dict[IOStream, None] = {}     # oldest first
 
     def handle_stream(self, stream: IOStream, address: tuple[Any, ...]) -> None:
         """Called by tornado for each connection."""
-        if self.count >= MAX_CONNECTIONS:
-            stream.close()
-            return
-        self.count += 1
+        if len(self.streams) >= MAX_CONNECTIONS:
+            oldest = next(iter(self.streams))
+            del self.streams[oldest]
+            oldest.close()
+        self.streams[stream] = None
         super().handle_stream(stream, address)
 
     def on_close(self, server_conn: object) -> None:
         """Called by tornado when a connection is closed, or has become a WebSocket."""
-        self.count -= 1
+        self.streams.pop(server_conn.stream, None)      # type: ignore[attr-defined]
         super().on_close(server_conn)
 
 

@@ -22,8 +22,9 @@ class Drivers(Protocol):
     def shut_down_drivers(self) -> None:
         """Shut down the other nodes that drive the robot, in the background."""
 
-    def take_shut_down(self) -> tuple[list[str], list[str]]:
-        """Return the nodes that were shut down since the last call, and those that did not answer."""
+    def take_shut_down(self) -> tuple[list[str], list[str], str]:
+        """Return the nodes that were shut down since the last call, those that did not answer, and the name of a base
+        that subscribes to the commands but is not connected, or ''."""
 
 
 class Answer(NamedTuple):
@@ -75,10 +76,12 @@ class Stopper:
         stopping = self.again or busy or self.drivers.pending or not stationary
         if stopping and now - self.begun < LIMIT:
             return {}
-        stopped, silent = self.drivers.take_shut_down()
+        stopped, silent, not_connected = self.drivers.take_shut_down()
         texts = [f'Stopped {" and ".join(stopped)}.' if stopped else 'Stopped.']
         if silent:
             texts.append(f'No answer from {" and ".join(silent)}.')
+        if not_connected:
+            texts.append(f'{not_connected} does not receive the commands of this page: restart the web view.')
         texts.append('The robot is stationary.' if stationary else
                      'There is no odometry: the robot may still be moving.' if speed is None else
                      'The robot is still moving.')

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from threading import Lock, Thread
 import time
-from typing import Any
+from typing import Any, Callable
 
 import rosgraph
 import rospy
@@ -21,8 +21,10 @@ RESET_TIMEOUT = 5.0  # s
 class System:
     """Queries the master once per PERIOD, and updates the status of the page."""
 
-    def __init__(self, state: State) -> None:
+    def __init__(self, state: State, connected: Callable[[], set[str]]) -> None:
+        """connected(): returns the names of the nodes that receive the commands of this node."""
         self.state = state
+        self.connected = connected
         self.lock = Lock()
         self.drawn: tuple[str, str] | None = None   # surface and seed, from /diagnostics
         self.topics = Topics(state, self.on_seed)
@@ -31,6 +33,7 @@ class System:
         self.shutting_down: set[str] = set()    # nodes that have not answered yet
         self.stopped: set[str] = set()
         self.silent: set[str] = set()
+        self.not_connected = ''     # a base that does not receive the commands of this node, at the last Stop
         self.thread = Thread(target=self._run, daemon=True)
 
     def start(self) -> None:
@@ -109,15 +112,19 @@ class System:
 
     def _shut_down_drivers(self) -> None:
         publishers: Any = ()
+        subscribers: Any = ()
         try:
-            publishers, _, _ = call(rosgraph.get_master_uri(), 'getSystemState')
+            publishers, subscribers, _ = call(rosgraph.get_master_uri(), 'getSystemState')
         except Exception as error:
             rospy.logwarn_throttle(5, f'The master does not answer, so Stop may not have reached other driving nodes: '
                                       f'{error}')
             with self.lock:
                 self.silent.add('the master')
-        names = set(dict(publishers).get(rospy.resolve_name(COMMANDS), ())) - {rospy.get_name()}
+        topic, base = rospy.resolve_name(COMMANDS), self.topics.base or ''
+        names = set(dict(publishers).get(topic, ())) - {rospy.get_name()}
+        listening = base in dict(subscribers).get(topic, ())
         with self.lock:
+            self.not_connected = base if listening and base not in self.connected() else ''
             names -= self.shutting_down
             self.shutting_down |= names
             self.searching = False
@@ -139,10 +146,11 @@ class System:
             self.shutting_down.discard(node)
             answered.add(node)
 
-    def take_shut_down(self) -> tuple[list[str], list[str]]:
-        """Return the nodes that were shut down since the last call, and those that did not answer."""
+    def take_shut_down(self) -> tuple[list[str], list[str], str]:
+        """Return the nodes that were shut down since the last call, those that did not answer, and the name of a base
+        that subscribes to the commands but is not connected, or ''."""
         with self.lock:
-            found = sorted(self.stopped), sorted((self.silent | self.shutting_down) - self.stopped)
+            found = sorted(self.stopped), sorted((self.silent | self.shutting_down) - self.stopped), self.not_connected
             self.stopped.clear()
             self.silent.clear()
         return found

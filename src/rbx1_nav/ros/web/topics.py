@@ -92,35 +92,21 @@ def subscribe(topic: str, kind: type, callback: Callable[..., None], args: Any =
 
 
 class CommandPublisher:
-    """Publishes /cmd_vel. The topic is registered only while it is needed, because simulated time waits for each
-    registered publisher."""
+    """Publishes /cmd_vel. It stays registered, because a subscriber of rospy that connects while a publisher
+    unregisters may keep a dead connection to it."""
 
     def __init__(self) -> None:
-        self.publisher: rospy.Publisher | None = None
-
-    def open(self) -> None:
-        """Register as a publisher, unless already registered."""
-        if self.publisher is None:
-            try:
-                self.publisher = rospy.Publisher(COMMANDS, Twist, queue_size=5, tcp_nodelay=True)
-            except Exception as error:
-                rospy.logwarn_throttle(5, f'{rospy.resolve_name(COMMANDS)}: the master does not answer: {error}')
+        self.publisher = rospy.Publisher(COMMANDS, Twist, queue_size=5, tcp_nodelay=True)
 
     def publish(self, linear: float, angular: float) -> None:
         """Send a command, m/s and rad/s."""
-        publisher, command = self.publisher, Twist()
+        command = Twist()
         command.linear.x, command.angular.z = linear, angular
         try:
-            if publisher:
-                publisher.publish(command)
+            self.publisher.publish(command)
         except rospy.ROSException:
             pass    # closed by the shutdown of the node, which sends its own stop
 
-    def close(self) -> None:
-        """Unregister as a publisher."""
-        publisher, self.publisher = self.publisher, None
-        if publisher:
-            try:
-                publisher.unregister()
-            except Exception as error:
-                rospy.logwarn_throttle(5, f'{rospy.resolve_name(COMMANDS)}: the master does not answer: {error}')
+    def connected(self) -> set[str]:
+        """Return the names of the nodes that receive the commands."""
+        return {connection.endpoint_id for connection in self.publisher.impl.connections}

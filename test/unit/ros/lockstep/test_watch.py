@@ -59,8 +59,8 @@ class World:
         return SimpleNamespace(header={'callerid': name}, endpoint_id=name, socket=self.server.accept()[0])
 
     def drive(self, *connections):
-        """Set the connections to the publishers of commands."""
-        self.commands.connections = list(connections)
+        """Set the connections to the publishers of commands, which also subscribe to /clock."""
+        self.clock.connections = self.commands.connections = list(connections)
         self.watch.update()
 
     def listen(self, *connections):
@@ -112,14 +112,12 @@ def test_a_connection_that_its_publisher_refuses_is_no_driver(world, monkeypatch
 
 
 def test_what_keeps_a_node_from_being_in_step(world, monkeypatch):
-    driver = world.connect('/driver')
-    world.drive(driver)
-    assert world.watch.obstacle('/driver') == 'does not subscribe to /clock'
-    world.listen(driver)
-    assert world.watch.obstacle('/driver') is None
+    world.drive(world.connect('/driver'))
+    assert world.watch.obstacle('/driver') is None and world.watch.drivers == {'/driver'}
+    world.listen()
+    assert world.watch.obstacle('/driver') == 'does not subscribe to /clock' and not world.watch.drivers
     monkeypatch.setattr(watch, 'peer_process', lambda _: None)
     world.drive(world.connect('/other'))
-    world.listen(*world.commands.connections)
     assert not world.watch.drivers and 'is not visible' in world.watch.obstacle('/other')
 
 
@@ -142,7 +140,8 @@ def test_the_order_of_subscribers(world, monkeypatch):
     recorder, mux, driver, teleop = connections
     world.listen(*connections)
     world.settle()
-    world.drive(mux)
+    world.commands.connections = [mux]
+    world.watch.update()
     assert world.watch.sources == ['/base', '/teleop', '/driver', '/mux']
     assert set(world.watch.processes) == {'/mux', '/driver', '/teleop'} and world.watch.drivers == {'/mux'}
     assert world.watch.groups(connections) == [([recorder], False), ([teleop], True), ([driver], True), ([mux], True)]

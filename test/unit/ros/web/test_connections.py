@@ -33,7 +33,7 @@ class Hand:
         self.drivers.clear()
         self.calls.append('stop')
 
-    def wait_until_closed(self):
+    def wait_until_quiet(self, _):
         self.calls.append('wait')
 
 
@@ -46,7 +46,7 @@ class Runs:
 
     def start(self, method, before):
         self.calls.append(method)
-        before()
+        before(lambda: False)
         return not self.busy
 
     def stop(self):
@@ -64,13 +64,13 @@ class System:
         self.calls.append('reset')
 
     pending = False
-    stopped, silent = (), ()
+    stopped, silent, not_connected = (), (), ''
 
     def shut_down_drivers(self):
         self.calls.append('shut down')
 
     def take_shut_down(self):
-        return list(self.stopped), list(self.silent)
+        return list(self.stopped), list(self.silent), self.not_connected
 
 
 class Socket:
@@ -269,6 +269,14 @@ def test_watchers_leave_room_for_one_with_the_token(view):
     while len(view.connections.browsers) < MAX_SOCKETS:
         view.connect(TOKEN)
     assert view.connections.full
+
+
+def test_a_newcomer_replaces_who_never_says_hello(view):
+    first = view.connect('')
+    silent = [view.connect() for _ in range(2 * MAX_SOCKETS)]
+    assert len(view.connections.browsers) == MAX_SOCKETS and not view.connections.full
+    assert view.connect(TOKEN).closed is None and first.closed is None
+    assert silent[0].closed[0] == 1008 and silent[-1].closed is None
 
 
 def test_frames(view):

@@ -56,7 +56,7 @@ def begun(pid_file):
 def test_the_script_gets_the_remappings(started, tmp_path):
     _, _, pid_file, _ = started
     runs = Runs(str(tmp_path), lambda *_: None, lambda: None, {'/cmd_vel': '/other/cmd_vel'})
-    runs.start('timed', lambda: None)
+    runs.start('timed', lambda _: None)
     wait_for(lambda: begun(pid_file))
     with open(f'/proc/{begun(pid_file)}/cmdline', encoding='utf-8') as file:
         assert file.read().split('\0')[-2] == '/cmd_vel:=/other/cmd_vel'
@@ -66,9 +66,9 @@ def test_the_script_gets_the_remappings(started, tmp_path):
 
 def test_a_run(started):
     runs, changes, pid_file, _ = started
-    assert runs.start('timed', lambda: None)
+    assert runs.start('timed', lambda _: None)
     wait_for(lambda: begun(pid_file))
-    assert runs.busy and not runs.start('timed', lambda: None)
+    assert runs.busy and not runs.start('timed', lambda _: None)
     (pid_file.parent / 'pid.end').touch()
     wait_for(lambda: not runs.busy)
     wait_for(lambda: changes == [('timed', ''), ('timed', 'finished')])
@@ -78,14 +78,14 @@ def test_a_run_that_fails(started):
     runs, changes, pid_file, write = started
     write(status=1)
     (pid_file.parent / 'pid.end').touch()
-    runs.start('timed', lambda: None)
+    runs.start('timed', lambda _: None)
     wait_for(lambda: len(changes) == 2)
     assert 'exit status 1' in changes[1][1]
 
 
 def test_stop(started):
     runs, changes, pid_file, _ = started
-    runs.start('timed', lambda: None)
+    runs.start('timed', lambda _: None)
     wait_for(lambda: begun(pid_file))
     runs.stop()
     wait_for(lambda: changes[1:] == [('timed', 'stopped')])
@@ -95,7 +95,7 @@ def test_a_script_that_hangs_is_killed(started, monkeypatch):
     runs, changes, pid_file, write = started
     monkeypatch.setattr(module, 'STOP_TIMEOUT', 0.1)
     write(handler='signal.SIG_IGN')
-    runs.start('timed', lambda: None)
+    runs.start('timed', lambda _: None)
     wait_for(lambda: begun(pid_file))
     runs.stop()
     wait_for(lambda: changes[1:] == [('timed', 'stopped')])
@@ -103,7 +103,7 @@ def test_a_script_that_hangs_is_killed(started, monkeypatch):
 
 def test_stop_before_the_script_is_started(started):
     runs, changes, pid_file, _ = started
-    runs.start('timed', runs.stop)      # while the robot is put back
+    runs.start('timed', lambda _: runs.stop())      # while the robot is put back
     wait_for(lambda: changes[1:] == [('timed', 'stopped')])
     assert not pid_file.exists()
 
@@ -111,7 +111,7 @@ def test_stop_before_the_script_is_started(started):
 def test_a_reset_that_fails(started):
     runs, changes, pid_file, _ = started
 
-    def fail():
+    def fail(_):
         raise OSError('no such service')
     runs.start('timed', fail)
     wait_for(lambda: changes[1:] == [('timed', 'not started: no such service')])
@@ -123,7 +123,7 @@ def test_a_run_ends_with_a_view_that_is_killed(started):
     code = ('import sys, time; sys.path.insert(0, sys.argv[1])\n'
             'from rbx1_nav.ros.web import runs\n'
             'runs.SCRIPTS = {"timed": ("timed", "script.py", (sys.argv[3],))}\n'
-            'runs.Runs(sys.argv[2], lambda *_: None, lambda: None).start("timed", lambda: None)\n'
+            'runs.Runs(sys.argv[2], lambda *_: None, lambda: None).start("timed", lambda _: None)\n'
             'time.sleep(600)')
     with subprocess.Popen([sys.executable, '-c', code, SOURCE, runs.folder, str(pid_file)]) as view:
         wait_for(lambda: begun(pid_file))

@@ -1,4 +1,5 @@
-"""Stop shuts down the nodes that publish the topic of the commands, under the name to which it is remapped."""
+"""Stop shuts down the nodes that publish the topic of the commands, under the name to which it is remapped, and finds
+a base that is not connected."""
 import time
 
 import rospy
@@ -16,7 +17,7 @@ def test_stop_shuts_down_the_drivers_of_the_remapped_topic(monkeypatch):
 
     def call(uri, method, *arguments):
         if method == 'getSystemState':
-            return PUBLISHERS, [], []
+            return PUBLISHERS, [['/other/cmd_vel', ['/base']]], []
         if method == 'lookupNode':
             return f'uri of {arguments[0]}'
         shut_down.append((uri, method))
@@ -25,10 +26,11 @@ def test_stop_shuts_down_the_drivers_of_the_remapped_topic(monkeypatch):
     monkeypatch.setattr(rospy, 'get_name', lambda: '/unnamed')
     monkeypatch.setattr(module, 'call', call)
     monkeypatch.setattr(topics, 'subscribe', lambda *_, **__: None)
-    system = module.System(State())
+    system = module.System(State(), lambda: {'/recorder'})
+    system.topics.base = '/base'
     system.shut_down_drivers()
     end = time.monotonic() + LIMIT
     while system.pending:
         assert time.monotonic() < end
         time.sleep(0.002)
-    assert shut_down == [('uri of /driver', 'shutdown')] and system.take_shut_down() == (['/driver'], [])
+    assert shut_down == [('uri of /driver', 'shutdown')] and system.take_shut_down() == (['/driver'], [], '/base')
