@@ -7,6 +7,7 @@ import struct
 import time
 
 TEXT, CLOSE = 1, 8      # opcodes, RFC 6455
+LIMIT = 60      # s
 
 
 def request(port, path='/', host=None, method='GET', **headers):
@@ -88,11 +89,13 @@ class WebClient:
             self.receive()
 
     def wait_for(self, kind):
-        """Return the next message of a kind; skip all others."""
-        while True:
+        """Return the next message of a kind; skip all others. Raises TimeoutError."""
+        end = time.monotonic() + LIMIT
+        while time.monotonic() < end:
             message = self.next()
             if message['type'] == kind:
                 return message
+        raise TimeoutError(f'no {kind} within {LIMIT} s')
 
     def close(self):
         """Close the connection without a close frame."""

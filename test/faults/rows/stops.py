@@ -1,0 +1,114 @@
+"""Stop and driving by hand while other drivers come and go, and Stop while the node is frozen."""
+import re
+import signal
+import sys
+import time
+
+import support
+from rows.browsers import View
+from web_client import WebClient
+
+FAULT = ('a driver unregisters 0 to 30 ms before or after a Stop; a run of the page is stopped at a random moment; the '
+         'node is frozen when a Stop arrives')
+PROMISE = ('the Stop is answered; the robot is at rest; hand driving works afterwards; a frozen node answers as soon as it '
+           'runs again')
+FULL, SHORT = 250, 10
+ROOT, ALONE = False, True
+
+MARGIN = 0.03       # s
+DRIVER = '''
+import sys, rospy
+from geometry_msgs.msg import Twist
+rospy.init_node('driver', anonymous=True)
+publisher = rospy.Publisher('/cmd_vel', Twist, queue_size=5)
+command = Twist()
+command.linear.x = 0.2
+while publisher.get_num_connections() < 2:
+    rospy.sleep(0.02)
+publisher.publish(command)
+sys.stdin.readline()
+publisher.publish(Twist())
+publisher.unregister()
+sys.stdin.readline()
+'''
+
+
+def stop(client):
+    """Send Stop; return the time until the answer, s."""
+    client.send(type='stop', number=1)
+    start = time.monotonic()
+    answer = client.wait_for('stopped')
+    assert answer['stationary'], answer
+    return time.monotonic() - start
+
+
+def leaving_driver(row, view, client):
+    """Another driver unregisters just before or after a Stop."""
+    driver = row.start(sys.executable, '-c', DRIVER)
+    view.odom.wait_for_twist(0.2)
+    delay = row.random.uniform(-MARGIN, MARGIN)
+    if delay < 0:
+        driver.type('')
+    time.sleep(abs(delay) / 2)
+    client.send(type='stop', number=1)
+    time.sleep(abs(delay) / 2)
+    if delay >= 0:
+        driver.type('')
+    assert client.wait_for('stopped')['stationary']
+    driver.process.stdin.close()
+    driver.wait()       # with an error if it was shut down while it published
+
+
+def run_of_the_page(row, view, client):
+    """A run of the page is stopped at a random moment."""
+    client.send(type='run', method='timed')
+    time.sleep(row.random.uniform(0, 4))
+    row.figure('answer to Stop during a run, s', stop(client))
+
+
+def frozen(row, view, client):
+    """The node is frozen when a Stop arrives, and runs again later."""
+    client.send(type='run', method='timed')
+    support.wait_for(lambda: view.odom.last.twist.twist.linear.x, 'the run')
+    time.sleep(row.random.uniform(0, 0.5))
+    view.process.signal(signal.SIGSTOP)
+    client.send(type='stop', number=1)
+    time.sleep(row.random.uniform(0.1, 1.5))
+    view.process.signal(signal.SIGCONT)
+    start = time.monotonic()
+    assert client.wait_for('stopped')['stationary']
+    row.figure('answer to Stop after the node was frozen, s', time.monotonic() - start)
+
+
+def drives(view, client):
+    """Assert that driving by hand works."""
+    client.send(type='hand', on=True)
+    start = time.monotonic()
+    while view.odom.last.twist.twist.linear.x != 0.2:
+        client.send(type='drive', forward=1.0)
+        time.sleep(0.05)
+        assert time.monotonic() - start < support.LIMIT / 10, 'hand driving does not work'
+    client.send(type='hand', on=False)
+    view.odom.wait_for_twist(0.0)
+
+
+KINDS = [leaving_driver, run_of_the_page, leaving_driver, run_of_the_page, frozen]
+
+
+def run(row):
+    """See FAULT."""
+    row.roscore()
+    row.base('model:=none')
+    support.init_node('faults')
+    view = View(row)
+    for number in range(row.times):
+        kind = KINDS[number % len(KINDS)]
+        with row.fault(f'{kind.__name__} ({number})'):
+            client = WebClient(view.port, view.token)
+            client.wait_for('welcome')
+            kind(row, view, client)
+            view.odom.wait_for_twist(0.0)
+            drives(view, client)
+            client.close()
+            lines = re.findall('.*is not a publisher of.*', view.process.output)
+            assert not lines, lines

@@ -1,0 +1,84 @@
+#!/usr/bin/python3
+"""seats.py gives each learner a master, a base and a page, and stops all of them when it exits."""
+from contextlib import suppress
+import os
+import signal
+import unittest
+from urllib.request import urlopen
+from xmlrpc.client import ServerProxy
+
+import roslib.packages
+
+from ports import free_port
+import support
+
+SEATS = 2
+
+
+def answers(port):
+    """Return the nodes of the master at a port, or None if there is none."""
+    try:
+        _, _, (_, subscribers, _) = ServerProxy(f'http://localhost:{port}').getSystemState('/test')
+    except OSError:
+        return None
+    return {node for _, nodes in subscribers for node in nodes}
+
+
+class TestSeats(unittest.TestCase):
+    def start(self, *arguments):
+        """Start seats.py; return its Process."""
+        node = roslib.packages.find_node('rbx1_nav', 'seats.py')[0]
+        process = support.Process('/usr/bin/python3', node, *map(str, arguments))
+        self.addCleanup(process.kill)
+        return process
+
+    def check(self, ending, status):
+        """Start seats, check them, and end the process with a signal."""
+        masters, pages = free_port() - SEATS, free_port() - SEATS
+        process = self.start(SEATS, '--master-port', masters, '--web-port', pages, 'surface:=hard_floor')
+        process.wait_for_line(f'Ready: {SEATS} seats')
+        tokens = set()
+        for number in range(1, SEATS + 1):
+            match = process.wait_for_line(f' {number}  http://localhost:{masters + number} +'
+                                          rf'(http://localhost:{pages + number}/)#(\S+)')
+            tokens.add(match.group(2))
+            self.assertIn(b'Out and back', urlopen(match.group(1)).read())
+            self.assertLessEqual({'/arbotix', '/web_view'}, answers(masters + number))
+        self.assertEqual(len(tokens), SEATS)
+        process.signal(ending)
+        self.assertEqual(process.wait(), status, process.output)
+        support.wait_for(lambda: not any(answers(masters + number) for number in range(1, SEATS + 1)), 'the masters')
+
+    def test_ctrl_c_stops_all_seats(self):
+        self.check(signal.SIGINT, 0)
+
+    def test_seats_end_with_a_process_that_is_killed(self):
+        self.check(signal.SIGKILL, -signal.SIGKILL)
+
+    def test_a_seat_that_exits_is_reported(self):
+        masters = free_port() - 1
+        process = self.start(1, '--master-port', masters, '--web-port', free_port() - 1)
+        process.wait_for_line('Ready: 1 seats')
+        master = ServerProxy(f'http://localhost:{masters + 1}')
+        with suppress(OSError):     # it exits without an answer
+            ServerProxy(master.lookupNode('/test', '/arbotix')[2]).shutdown('/test', 'by a learner')
+        self.assertEqual(process.wait(), 1, process.output)
+        self.assertIn('seat 1: exited: REQUIRED process', process.output)
+
+    def test_what_is_wrong_is_named(self):
+        port = int(os.environ['ROS_MASTER_URI'].rpartition(':')[2].strip('/'))
+        for arguments, status, text in (
+                (('--help',), 0, 'usage: seats.py'),
+                ((0,), 2, 'seats: 0: expected an integer from 1 to 100'),
+                ((1, '--web-port', 80), 2, '--web-port: 80: expected 1024 to'),
+                ((1, 'carpet'), 2, 'carpet: expected argument:=value'),
+                ((1, '--master-port', port - 1), 1, f'port {port}: in use'),
+                ((1, '--master-port', free_port() - 1, '--web-port', free_port() - 1, 'surface:=sand'), 1,
+                 'seat 1: not started: ')):
+            process = self.start(*arguments)
+            self.assertEqual(process.wait(), status, process.output)
+            self.assertIn(text, process.output)
+
+
+if __name__ == '__main__':
+    support.main('seats', TestSeats)
