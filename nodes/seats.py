@@ -15,8 +15,7 @@ import sys
 import threading
 import time
 
-START_TIMEOUT = 60.0    # s for a seat to start
-STOP_TIMEOUT = 20.0     # s for all seats to stop
+START_TIMEOUT, STOP_TIMEOUT = 60.0, 20.0    # s for a seat to start, and for all seats to stop
 MAX_SEATS = 100
 COLOR = re.compile('\x1b\\[[0-9;]*m')
 

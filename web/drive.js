@@ -245,7 +245,6 @@ export class Drive {
         this.stop.focus();      // a button that is disabled loses the focus
       }
       run.disabled = !ready || running || missing;
-      run.title = missing ? 'Needs the filter: roslaunch rbx1_bringup odom_ekf.launch' : '';
     }
     document.getElementById('reset').disabled = !ready || running || !status.can_reset;
     document.getElementById('reset-first').disabled = !status.can_reset;
@@ -256,12 +255,17 @@ export class Drive {
       : status.master === 'silent' ? 'The ROS master does not answer. Start roscore, the base and the web view again.'
       : status.master === 'restarted' ? 'The ROS master was restarted. Start the web view again, then reload this page.'
       : !ready ? 'Waiting for a base that publishes /odom.'
-      : running ? `Running: ${status.started}`
+      : running ? `Running: ${status.started}. Stop it to use the other buttons.`
       : this.hand ? 'The arrow keys drive the robot.'
       : status.started ? `${status.started[0].toUpperCase()}${status.started.slice(1)}: ${status.outcome}` : '';
-    const line = document.getElementById('run-state');
-    if (line.textContent !== text) {
-      line.textContent = text;
+    const why = !ready || running ? [] : [
+      !('estimate' in this.model.poses) && 'With odometry and gyro needs the filter: roslaunch rbx1_bringup odom_ekf.launch.',
+      !status.can_reset && 'Only a simulated robot can be reset.'];
+    for (const [id, shown] of Object.entries({'run-state': text, why: why.filter(Boolean).join(' ')})) {
+      const line = document.getElementById(id);
+      if (line.textContent !== shown) {
+        line.textContent = shown;
+      }
     }
   }
 }

@@ -1,4 +1,4 @@
-// The floor from above, x to the right and y up, in meters: grid, start, paths, arrows and robots.
+// The floor from above, x to the right and y up, in meters: grid, start, paths, arrows, robots, and earlier runs.
 
 import {SOURCES} from './model.js';
 import {element, short} from './svg.js';
@@ -6,7 +6,7 @@ import {element, short} from './svg.js';
 const CELL = 0.5;                   // m, as in RViz
 const RADIUS = 0.165;               // m, radius of the robot
 const ARROW = {length: 0.3, head: 0.08};                // m, as in sim.rviz
-const TOLERANCE = {distance: 0.1, angle: 0.15};         // m, rad: distance between arrows, as in sim.rviz
+const TOLERANCE = {distance: 0.1, angle: 0.5};          // m, rad: between arrows; more of them in a turn cover each other
 const FAR = 1000;                   // m from the start: a robot beyond it is only in the table
 const MIN_SCALE = 10, MAX_SCALE = 3000;                 // pixels per meter
 const SEEN = {left: -0.5, right: 1.5, bottom: -0.6, top: 1.0};     // m, visible area before the robot has moved
@@ -79,6 +79,7 @@ export class Floor {
     this.labels = element('g', {}, svg);
     this.world = element('g', {}, svg);
     this.arrows = element('g', {class: 'arrows'}, this.world);
+    this.earlier = element('g', {class: 'earlier'}, this.world);
     const lines = element('g', {}, this.world);
     this.traces = Object.fromEntries(SOURCES.map(source => [source, new Trace(source, lines, this.arrows)]));
     element('path', {class: 'start', d: 'M-.06 0H.06M0-.06V.06', 'vector-effect': 'non-scaling-stroke'}, this.world);
@@ -105,6 +106,10 @@ export class Floor {
       this.cleared = model.cleared;
       Object.values(this.traces).forEach(trace => trace.erase());
     }
+    if (model.earlier !== this.drawn) {
+      this.drawn = model.earlier;
+      this.drawEarlier(model.earlier);
+    }
     this.poses = model.poses;
     this.points = model.paths;
     for (const source of SOURCES) {
@@ -129,6 +134,19 @@ export class Floor {
     } else if (!this.touched && !this.inside(pose)) {
       this.fit();
     }
+  }
+
+  // The paths of earlier runs, each with its number at the end.
+  drawEarlier(runs) {
+    this.earlier.replaceChildren(...runs.filter(run => run.shown).map(({number, name, points}) => {
+      const group = element('g', {class: 'truth', 'data-run': name}), drawn = points.filter(near);
+      element('path', {class: 'path', 'vector-effect': 'non-scaling-stroke',
+        d: drawn.map(([x, y], index) => `${index ? 'L' : 'M'}${x} ${y}`).join('')}, group);
+      const [x, y] = drawn[drawn.length - 1];
+      const label = element('text', {transform: `translate(${x} ${y}) scale(1 -1)`}, group);
+      label.textContent = number;
+      return group;
+    }));
   }
 
   show(source, shown) {

@@ -7,7 +7,7 @@ import {LogView} from './log.js';
 import {Model, SOURCES} from './model.js';
 import {savePng, saveSvg} from './picture.js';
 import {Plot} from './plot.js';
-import {Tables} from './tables.js';
+import {Tables, rowOf} from './tables.js';
 import {connectView} from './view_controls.js';
 
 const byId = id => document.getElementById(id);
@@ -27,7 +27,7 @@ const tables = new Tables(byId('tables'));
 const log = new LogView(byId('lines'));
 const drive = new Drive(connection, model, notify);
 const plots = [new Plot(byId('linear'), 'forward (m/s)', 1, 0.25), new Plot(byId('angular'), 'turning (rad/s), left is up', 2, 1.2)];
-let held = null;        // the time and the speeds that were shown when Hold was pressed
+let listed = null;      // the earlier runs that are listed below the floor
 let waiting = false;    // whether a redraw has been requested
 
 function facts() {
@@ -68,10 +68,45 @@ function draw() {
   log.draw(model.log);
   drive.draw();
   drawFacts();
-  const shown = held || model;
-  for (const plot of plots) {
-    plot.draw(shown.speeds, shown.time, Number(byId('window').value));
+  drawEarlier();
+  const end = byId('end'), live = Number(end.value) >= Number(end.max);
+  end.max = Math.max(0.1, model.time || 0);
+  if (live) {
+    end.value = end.max;
   }
+  for (const plot of plots) {
+    plot.draw(model.speeds, model.time === null ? null : live ? model.time : Number(end.value), Number(byId('window').value));
+  }
+}
+
+// Lists the earlier runs, each with a check box.
+function drawEarlier() {
+  if (model.earlier === listed) {
+    return;
+  }
+  listed = model.earlier;
+  byId('earlier').hidden = !listed.length;
+  byId('earlier').replaceChildren('Earlier runs: ', ...listed.map(run => {
+    const label = document.createElement('label'), box = document.createElement('input');
+    box.type = 'checkbox';
+    box.checked = run.shown;
+    box.onchange = () => {
+      run.shown = box.checked;
+      floor.drawEarlier(model.earlier);
+    };
+    label.append(box, `${run.number} ${run.name}`);
+    return label;
+  }));
+}
+
+// The lines of a saved picture: what was run, and the numbers, which are also the legend of the colors.
+function caption() {
+  const {surface, seed} = model.status;
+  const what = [model.run, surface, surface && surface !== 'ideal' && seed && `seed ${seed}`].filter(Boolean).join(', ');
+  return [['', what], ...SOURCES.filter(source => model.poses[source]).map(source => {
+    const [x, y, heading, distance] = rowOf(model.poses[source]);
+    return [source, `${source}: x ${x} m, y ${y} m, heading ${heading}°, ${distance} m from the start`];
+  })];
 }
 
 function redraw() {
@@ -106,19 +141,20 @@ function showConnection() {
   }
 }
 
-function hold() {
-  held = held ? null : {time: model.time, speeds: structuredClone(model.speeds)};
-  byId('hold').setAttribute('aria-pressed', Boolean(held));
+function large() {
+  const on = document.body.classList.toggle('large');
+  byId('large').setAttribute('aria-pressed', on);
   redraw();
 }
 
 SOURCES.forEach(source => legendItem(source, byId('legend'), true));
 ['commanded', 'reported', 'true'].forEach(name => legendItem(name, byId('speed-legend'), false));
 connectView(floor, model, redraw);
-byId('save-svg').onclick = () => saveSvg(floor.svg);
-byId('save-png').onclick = () => savePng(floor.svg);
+byId('save-svg').onclick = () => saveSvg(floor.svg, caption());
+byId('save-png').onclick = () => savePng(floor.svg, caption());
 byId('window').onchange = redraw;
-byId('hold').onclick = hold;
+byId('end').oninput = redraw;
+byId('large').onclick = large;
 
 connection.addEventListener('welcome', ({detail}) => {
   model.forget();

@@ -2,7 +2,8 @@
 
 export const SOURCES = ['truth', 'odometry', 'estimate'];
 export const SPEEDS = ['commanded', 'reported', 'true'];
-const MAX_POINTS = 6000, MAX_LINES = 50;
+const MAX_POINTS = 6000, MAX_LINES = 50, MAX_EARLIER = 30;
+const MOVED = 0.02;         // m: a run that never left its start is not kept
 
 function lists(names) {
   return Object.fromEntries(names.map(name => [name, []]));
@@ -10,6 +11,7 @@ function lists(names) {
 
 export class Model {
   constructor() {
+    this.earlier = [];      // runs of this page that are over: {number, name, points, shown}
     this.forget();
   }
 
@@ -30,8 +32,18 @@ export class Model {
     this.cleared = (this.cleared || 0) + 1;     // a counter, so that the floor detects the change
   }
 
+  // Keeps the path of the run that is over: the true one, if it is known.
+  keep() {
+    const points = this.paths.truth.length ? this.paths.truth : this.paths.odometry;
+    if (points.some(([x, y]) => Math.hypot(x, y) > MOVED)) {
+      const number = (this.earlier[this.earlier.length - 1]?.number || 0) + 1;
+      this.earlier = [...this.earlier, {number, name: this.run, points, shown: true}].slice(-MAX_EARLIER);
+    }
+  }
+
   add(frame) {
     if (frame.epoch !== this.epoch) {   // a new run
+      this.keep();
       this.epoch = frame.epoch;
       this.clear();
       this.speeds = lists(SPEEDS);

@@ -4,8 +4,8 @@ const STYLES = ['fill', 'fill-opacity', 'stroke', 'stroke-width', 'stroke-dashar
   'opacity', 'display', 'font-family', 'font-size', 'text-anchor'];
 const PNG_SCALE = 2;
 
-// A copy of the current picture, with the styles from the style sheet as attributes.
-function standalone(svg) {
+// A copy of the current picture, with the styles from the style sheet as attributes, and lines of text: [source, text].
+function standalone(svg, lines) {
   const copy = svg.cloneNode(true), originals = svg.querySelectorAll('*');
   copy.querySelectorAll('*').forEach((each, index) => {
     const style = getComputedStyle(originals[index]);
@@ -21,6 +21,15 @@ function standalone(svg) {
     background.setAttribute(name, value);
   }
   copy.prepend(background);
+  lines.forEach(([source, text], index) => {
+    const line = document.createElementNS(svg.namespaceURI, 'text');
+    const color = getComputedStyle(document.documentElement).getPropertyValue(`--${source || 'text'}`);
+    for (const [name, value] of Object.entries({x: 10, y: 18 + 16 * index, fill: color, 'font-size': 12, 'font-family': 'sans-serif'})) {
+      line.setAttribute(name, value);
+    }
+    line.textContent = text;
+    copy.append(line);
+  });
   for (const name of ['id', 'tabindex', 'role', 'aria-label']) {
     copy.removeAttribute(name);
   }
@@ -43,12 +52,12 @@ function fileName(kind) {
   return `rbx1_nav-${new Date().toISOString().slice(0, 19).replace(/[:T]/g, '-')}.${kind}`;
 }
 
-export function saveSvg(svg) {
-  download(new Blob([standalone(svg).text], {type: 'image/svg+xml'}), fileName('svg'));
+export function saveSvg(svg, lines) {
+  download(new Blob([standalone(svg, lines).text], {type: 'image/svg+xml'}), fileName('svg'));
 }
 
-export async function savePng(svg) {
-  const {text, width, height} = standalone(svg), image = new Image();
+export async function savePng(svg, lines) {
+  const {text, width, height} = standalone(svg, lines), image = new Image();
   image.src = URL.createObjectURL(new Blob([text], {type: 'image/svg+xml'}));
   await image.decode();
   const canvas = document.createElement('canvas');

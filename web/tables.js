@@ -27,9 +27,8 @@ class Table {
     this.caption = this.table.createCaption();
     const head = this.table.createTHead().insertRow();
     for (const text of HEAD) {
-      const cell = document.createElement('th');
+      const cell = document.createElement(text ? 'th' : 'td');     // an empty header is read aloud
       cell.textContent = text;
-      cell.scope = 'col';
       head.append(cell);
     }
     const body = this.table.createTBody();

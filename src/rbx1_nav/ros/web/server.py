@@ -15,7 +15,7 @@ from tornado.web import Application, HTTPError, RequestHandler
 from tornado.websocket import WebSocketHandler
 
 from rbx1_nav.ros.web.checks import HostCheck
-from rbx1_nav.ros.web.connections import MAX_SOCKETS, Connections
+from rbx1_nav.ros.web.connections import Connections
 from rbx1_nav.ros.web.protocol import MAX_MESSAGE
 
 FRAME_PERIOD = 50       # ms

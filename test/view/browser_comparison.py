@@ -1,0 +1,135 @@
+#!/usr/bin/python3
+"""Tests what the page offers for comparing runs: earlier paths, speeds that can be scrolled, a saved picture with its
+numbers, reasons for disabled buttons; and a session by keyboard alone."""
+import os
+import signal
+import tempfile
+import unittest
+
+from selenium.webdriver.common.action_chains import ActionChains
+from selenium.webdriver.common.keys import Keys
+import rospy
+
+import support
+from browser import Page, start_chromium, start_view
+
+
+class TestBrowserComparison(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        support.init_node('browser_comparison')
+        rospy.set_param('/out_and_back/goal_distance', 0.2)
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.odom = support.OdomWatch()
+        cls.view, cls.url = start_view()
+        cls.driver = start_chromium(cls.folder.name)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.driver.quit()
+        cls.view.signal(signal.SIGTERM)
+        assert cls.view.wait() == 0, cls.view.output
+        cls.folder.cleanup()
+
+    def setUp(self):
+        self.page = Page(self.driver, self.url)
+        self.page.click('#stop')
+        self.wait_for_rest()
+
+    def tearDown(self):
+        folder = os.environ.get('RBX1_PICTURE_DIR')
+        if folder:
+            self.page.picture(os.path.join(folder, f'{self.id().rpartition(".")[2]}.png'))
+        self.assertEqual(self.page.console_errors(), [])
+
+    def wait_for_rest(self):
+        """Wait until the robot is at rest, apart from the noise of its encoders."""
+        def check():
+            twist = self.odom.next().twist.twist
+            return abs(twist.linear.x) < 0.01 and abs(twist.angular.z) < 0.05
+        support.wait_for(check, 'the robot to rest')
+
+    def count(self, selector):
+        """Return the number of elements for a CSS selector."""
+        return len(self.driver.find_elements('css selector', selector))
+
+    def press(self, key):
+        """Press and release a key."""
+        ActionChains(self.driver).send_keys(key).perform()
+
+    def go_to(self, name):
+        """Press Tab until the element with this id or method has the focus."""
+        def focused():
+            self.press(Keys.TAB)
+            return self.driver.execute_script(
+                'const {id, dataset} = document.activeElement; return [id, dataset.method].includes(arguments[0])', name)
+        support.wait_for(focused, f'the focus on {name}')
+
+    def test_earlier_runs_stay_and_can_be_hidden(self):
+        for number, method in enumerate(('timed', 'odometry'), 1):
+            self.page.run(method)
+            self.page.wait_for_text('run-state', 'finished')
+            self.page.click('#reset')
+            support.wait_for(lambda: self.count('.earlier path') == number, 'the path of the run')
+        self.assertEqual(self.page.text('earlier').split('\n'), ['Earlier runs:', '1 timed', '2 with odometry'])
+        self.page.click('#earlier input')
+        self.assertEqual(self.count('.earlier path'), 1)
+        self.assertEqual(self.page.find('.earlier g').get_attribute('data-run'), 'with odometry')
+
+    def test_the_speeds_can_be_scrolled_back(self):
+        self.page.run('timed')
+        self.page.wait_for_text('run-state', 'finished')
+        self.page.find('#window').send_keys('2 s')
+        self.driver.execute_script('const end = document.getElementById("end"); end.value = 3; end.oninput()')
+        support.wait_for(lambda: '3 s' in self.page.text('linear'), 'the seconds 1 to 3')
+        shown = self.page.find('#linear .commanded').get_attribute('d')
+        self.odom.next()
+        self.assertEqual(self.page.find('#linear .commanded').get_attribute('d'), shown)
+
+    def test_a_saved_picture_has_its_numbers(self):
+        self.page.run('timed')
+        self.page.wait_for_text('run-state', 'finished')
+        support.wait_for(lambda: self.driver.execute_script('return rbx1.model.status.seed') == '7', 'the seed')
+        self.page.click('#save-svg')
+        name = support.wait_for(lambda: [each for each in os.listdir(self.folder.name) if each.endswith('.svg')], 'a file')
+        with open(os.path.join(self.folder.name, name[0]), encoding='utf-8') as file:
+            text = file.read()
+        self.assertIn('timed, low_ply_carpet, seed 7<', text)
+        for source in 'truth', 'odometry':
+            x = self.page.row('table-now', source)[0]
+            self.assertIn(f'{source}: x {x:.3f} m', text)
+
+    def test_why_a_button_is_disabled(self):
+        support.wait_for(lambda: self.page.find('.run[data-method=timed]').is_enabled(), 'a base')
+        self.assertFalse(self.page.find('.run[data-method=gyro]').is_enabled())
+        self.assertIn('needs the filter', self.page.text('why'))
+
+    def test_a_session_by_keyboard_alone(self):
+        self.go_to('timed')
+        self.press(Keys.ENTER)
+        self.page.wait_for_text('run-state', 'Running: timed')
+        support.wait_for(lambda: self.odom.last.twist.twist.linear.x > 0.1, 'the run')
+        self.press(Keys.ESCAPE)
+        self.page.wait_for_text('run-state', 'The robot is stationary')
+        self.go_to('reset')
+        self.press(Keys.SPACE)
+        support.wait_for(lambda: self.odom.position() == (0, 0), 'the reset')
+        self.go_to('hand')
+        self.press(Keys.ENTER)
+
+        def moved():
+            if self.page.find('#hand').get_attribute('aria-pressed') == 'false':    # a busy machine is late
+                self.press(Keys.ENTER)
+            self.page.key('keyDown', 'ArrowUp')
+            return self.odom.position()[0] > 0.05
+        support.wait_for(moved, 'the robot to drive')
+        self.page.key('keyUp', 'ArrowUp')
+        self.wait_for_rest()
+        self.go_to('large')
+        self.press(Keys.ENTER)
+        self.assertFalse(self.page.find('#drive').is_displayed())
+        self.assertTrue(self.page.find('#stop').is_displayed())
+
+
+if __name__ == '__main__':
+    support.main('browser_comparison', TestBrowserComparison)
