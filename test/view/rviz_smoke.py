@@ -243,7 +243,7 @@ class RvizSmoke(RvizTest):
     def test_trouble_is_seen(self):
         """The other test can fail: two errors in a copy of the file appear on screen, on the console and in the log."""
         config = copy.deepcopy(self.config)
-        display(config, 'Robot by odometry')['Robot Description'] = 'no_such_parameter'
+        display(config, 'Robot at its odometry pose')['Robot Description'] = 'no_such_parameter'
         config['Visualization Manager']['Displays'].append({'Class': 'rviz/NoSuchDisplay', 'Name': 'No such display'})
         path = os.path.join(self.scratch, 'broken.rviz')
         with open(path, 'w') as file:
