@@ -99,7 +99,8 @@ def main():
             draw(arguments.plot, arguments.surface, results, seeds)
             print(f'Picture: {arguments.plot}')
         if arguments.animate:
-            animate(arguments.animate, arguments.surface, {method: each[0] for method, each in results.items()})
+            animate(arguments.animate, f'{arguments.surface}, seed {seeds[0]}',
+                    {method: each[0] for method, each in results.items()})
             print(f'Animation: {arguments.animate}')
     except (OSError, ValueError) as error:     # or a robot that is stuck
         # the device of the output may be full, and Python would try to write to it again at exit
