@@ -15,7 +15,7 @@ from rbx1_nav.plotting.runs import save
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-SIMULATED = ESTIMATE    # what a model says, as opposed to a measurement
+SIMULATED = ESTIMATE    # results of a model, as opposed to measurements
 REGIONS = (0.9, 0.2), (0.5, 0.35)       # share of the simulated end poses, opacity
 MARGIN = 0.08       # margin around all paths, as a fraction of their extent
 POINTS = 150        # number of simulated end poses shown per run
