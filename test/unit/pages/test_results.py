@@ -52,7 +52,7 @@ QUOTED = [
      [(CARPET, method, MISSES, CM) for method in ('timed', 'odom', 'ekf')]),
     (FIGURES, '(cm) | # | # | | true final angle from the initial heading (degrees) | # | # |',
      [(HARD, method, MISSES, unit) for unit in (CM, DEGREES) for method in ('odom', 'ekf')]),
-    (TUTORIAL, 'the mean distance from the start is # cm when timed, # cm with odometry, and # cm with odometry and gyro',
+    (TUTORIAL, 'the mean distance from the start is # cm when timed, # cm with odometry, and # cm with odometry and',
      [(CARPET, method, MISSES, CM) for method in ('timed', 'odom', 'ekf')]),
 ]
 
