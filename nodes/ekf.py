@@ -70,7 +70,7 @@ class Ekf:
         """Restart the filter because the base was reset."""
         with self.lock:
             if self.combined:
-                self.log.add(rospy.loginfo, 'reset_odometry: restarting at the pose of the odometry')
+                self.log.add(rospy.loginfo, 'Odometry was reset: restarting the filter at the odometry pose')
                 self.combined.reset(rospy.Time.now().to_nsec())
 
     def on_set_pose(self, message):

@@ -132,7 +132,7 @@ def main():
         return 1
     surface, seed = param('surface'), param('seed')
     if robot.hardware:
-        rospy.loginfo('Simulated base: %d parameters that only hardware needs are ignored', len(robot.hardware))
+        rospy.loginfo('Ignoring %d parameters that apply only to hardware', len(robot.hardware))
     if robot.unknown:
         rospy.logwarn('Ignoring unknown parameters: %s', ', '.join(robot.unknown))
     rospy.loginfo('Surface: %s', f'{surface.name}; seed:={seed} repeats this run' if surface else 'ideal')

@@ -9,13 +9,11 @@ import argparse
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import closing
 from functools import partial
-from math import atan2, cos, degrees, hypot, sin
 import os
 import signal
 import sys
 import time
 
-import numpy
 from tqdm import tqdm
 
 from rbx1_nav.config import ConfigError, show, show_name
@@ -24,8 +22,8 @@ from rbx1_nav.plotting.runs import PATHS, check_picture, draw
 from rbx1_nav.robot.description import load_robot
 from rbx1_nav.ros.node import resources
 from rbx1_nav.simulation.exercise import METHODS, simulate_many
+from rbx1_nav.simulation.summary import HEADER, summary
 from rbx1_nav.simulation.surfaces import MAX_SEED, known_surfaces, load_surface
-from rbx1_nav.units import rounded, wrap_angle
 
 MOMENT = 1.0    # s: longer simulations get a progress bar and all processor cores
 
@@ -37,8 +35,8 @@ def read_arguments():
                         help=f"one of {', '.join(known_surfaces(resources.surfaces()))}, or a YAML file; default: "
                              "ideal")
     parser.add_argument('--method', choices=METHODS, action='append',
-                        help='timed: with time alone; odom: with odometry; ekf: with odometry and gyro. Can be given '
-                             'more than once; default: all three')
+                        help='timed: fixed durations, no feedback; odom: stops at the odometry goal; ekf: stops at the '
+                             'estimated goal. Can be given more than once; default: all three')
     parser.add_argument('--runs', type=int, default=100, metavar='N', help='number of runs per method; default: 100')
     parser.add_argument('--seed', type=int, default=0, metavar='S',
                         help='seed of the first run; the next runs use S+1, S+2, ...; default: 0')
@@ -79,32 +77,6 @@ def run_all(method, robot, surface, seeds, arguments):
     return results, time.monotonic() - start
 
 
-def spread(values):
-    """Return the mean and the standard deviation as text."""
-    return f'{rounded(numpy.mean(values), 3):8.3f} +- {numpy.std(values):5.3f}'
-
-
-def spread_of_angles(angles):
-    """Return the circular mean and the standard deviation of angles (rad) as text, in degrees."""
-    mean = atan2(sum(map(sin, angles)), sum(map(cos, angles)))
-    around = [degrees(wrap_angle(angle - mean)) for angle in angles]
-    return f'{rounded(degrees(mean) + numpy.mean(around), 2):8.2f} +- {numpy.std(around):5.2f}'
-
-
-def report(method, results):
-    """Print the true end poses, and the end poses that odometry and estimate report."""
-    rows = [('truth', [r.end.truth for r in results]), ('/odom', [r.end.odometry for r in results])]
-    if results[0].end.estimate:
-        rows.append(('/odom_ekf', [r.end.estimate for r in results]))
-    for name, poses in rows:
-        x, y, yaw = zip(*poses)
-        print(f'{method:6} {name:14}  {spread(x)}  {spread(y)}  {spread_of_angles(yaw)}  '
-              f'{spread([hypot(*pose[:2]) for pose in poses])}')
-        method = ''
-    legs = [r.first_leg for r in results]
-    print(f"{'':6} first leg {numpy.mean(legs):.3f} m ({min(legs):.3f} to {max(legs):.3f})")
-
-
 def main():
     """Simulate, print and draw; return the exit status."""
     signal.signal(signal.SIGPIPE, signal.SIG_DFL)               # the reader of a pipe may stop reading early
@@ -115,19 +87,20 @@ def main():
         surface = load_surface(arguments.surface, resources.surfaces())
         seeds = range(arguments.seed, arguments.seed + arguments.runs)
         robot = load_robot(arguments.config)
-        print(f'Runs of each method on {arguments.surface}: {arguments.runs}. Mean and spread (1 sigma) at the end:\n'
-              f"{'method':6} {'':14}  {'x (m)':>17}  {'y (m)':>17}  {'heading (degrees)':>17}  {'from start (m)':>17}")
+        print(f'{arguments.runs} runs of each method on {arguments.surface}, seeds {seeds[0]} to {seeds[-1]}. Mean and '
+              f'standard deviation of the end poses:\n{HEADER}')
         results = {}
         for method in arguments.method:
             results[method], took = run_all(method, robot, surface, seeds, arguments)
-            report(method, results[method])
+            print('\n'.join(summary(method, results[method])))
             simulated = sum(r.end.time for r in results[method])
             print(f"{'':6} {simulated:.0f} s simulated in {took:.2f} s, {simulated / took:.0f} times real time")
         if arguments.plot:
             draw(arguments.plot, arguments.surface, results, seeds)
             print(f'Picture: {arguments.plot}')
         if arguments.animate:
-            animate(arguments.animate, arguments.surface, {method: each[0] for method, each in results.items()})
+            animate(arguments.animate, f'{arguments.surface}, seed {seeds[0]}',
+                    {method: each[0] for method, each in results.items()})
             print(f'Animation: {arguments.animate}')
     except (OSError, ValueError) as error:     # or a robot that is stuck
         # the device of the output may be full, and Python would try to write to it again at exit

@@ -7,13 +7,15 @@ import matplotlib
 import rosbag
 from nav_msgs.msg import Odometry
 
+from rbx1_nav.plotting.palette import ESTIMATE, ODOMETRY, TRUTH
+
 matplotlib.use('Agg')
 from matplotlib import pyplot       # noqa: E402  (the backend comes first)
 
 SPACING, TURN = 0.1, 0.15       # m and rad between two arrows, as in sim.rviz
-# in drawing order, with the truth last, on top; the colors are distinguishable for color-blind readers
-TOPICS = {'/odom': ('odometry', '#d55e00'), '/odom_ekf': ('estimate from wheels and gyro', '#009e73'),
-          '/ground_truth': ('truth', '#0072b2')}
+# in drawing order, with the truth last, on top
+TOPICS = {'/odom': ('odometry', ODOMETRY), '/odom_ekf': ('estimate from wheels and gyro', ESTIMATE),
+          '/ground_truth': ('truth', TRUTH)}
 
 # otherwise rosbag generates the class, as Python code, from the message definition in the bag, which may be untrusted
 rosbag.bag._message_types[Odometry._md5sum] = Odometry

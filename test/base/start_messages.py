@@ -34,7 +34,7 @@ class TestStartMessages(unittest.TestCase):
 
     def test_ideal(self):
         self.assertEqual(self.messages(), [
-            'INFO Simulated base: 13 parameters that only hardware needs are ignored', 'INFO Surface: ideal',
+            'INFO Ignoring 13 parameters that apply only to hardware', 'INFO Surface: ideal',
             'INFO Ready: base_footprint is at the origin of odom'])
 
     def test_a_seed(self):

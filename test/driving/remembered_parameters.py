@@ -45,7 +45,7 @@ class TestRememberedParameters(unittest.TestCase):
 
     def test_what_is_still_in_force(self):
         self.assertEqual(self.warnings(support.out_and_back('_goal_distance:=0.2', '_rate:=40')), [])
-        expected = 'Left by an earlier command, still in force: goal_distance = 0.2%s (`%s` removes them)'
+        expected = 'Parameters from an earlier run still apply: goal_distance = 0.2%s (`%s` clears them)'
         # a parameter that this command line sets again causes no warning
         self.assertEqual(self.warnings(support.by_odometry('_rate:=50')), [expected % ('', FORGET)])
         self.assertEqual(self.warnings(support.out_and_back()), [expected % (', rate = 50', FORGET)])
@@ -56,7 +56,7 @@ class TestRememberedParameters(unittest.TestCase):
         # both scripts have the same name: the parameters of one are on the master when the other one runs
         self.assertEqual(self.warnings(support.by_odometry('_odom_frame:=odom')), [])
         rospy.set_param('/out_and_back/goal_distanc', 0.2)
-        expected = 'Left by an earlier command, without effect here: %s (`%s` removes them)'
+        expected = 'Ignoring parameters from an earlier run: %s (`%s` clears them)'
         self.assertEqual(self.warnings(support.out_and_back()), [
             expected % ('goal_distanc (did you mean goal_distance?), odom_frame', FORGET)])
 

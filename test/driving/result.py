@@ -25,7 +25,7 @@ class TestResult(unittest.TestCase):
     def test_by_time(self):
         self.assertRegex(self.last_line(support.out_and_back('_goal_distance:=0.5')),
                          r'^\[INFO\] .*: Done: commanded 1\.00 m forward and 6\.28 rad to the left\. '
-                         'To see where that led: rosrun rbx1_nav pose.py$')
+                         'To see where the robot is now, run: rosrun rbx1_nav pose.py$')
 
     def test_by_odometry(self):
         # not at the origin, and with half a turn, so that the end pose differs from the start pose

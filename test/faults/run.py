@@ -182,7 +182,7 @@ def spread(values):
 def write_table(path, modules, results, seed):
     """Write the rows as a Markdown table."""
     with open(path, 'w', encoding='utf-8') as file:
-        file.write('Seed %d.\n\n| row | what was done | times | what is promised | what happened '
+        file.write('Seed %d.\n\n| row | fault | times | guarantee | result '
                    '|\n|---|---|---|---|---|\n'
                    % seed)
         for result in results:

@@ -69,7 +69,7 @@ class TestEkfMessages(unittest.TestCase):
         reset = rospy.Publisher('reset_odometry', Empty, queue_size=1)
         support.wait_for(reset.get_num_connections, 'the filter to subscribe to reset_odometry')
         reset.publish()
-        self.wait_for_log('reset_odometry: restarting')
+        self.wait_for_log('Odometry was reset: restarting')
         self.poses.next()
 
     def test_wheels_and_gyro_that_contradict_each_other_are_diagnosed(self):

@@ -34,7 +34,7 @@ class TestRobotFrame(unittest.TestCase):
             return any(m.name == '/robot_pose_ekf' and text in m.msg for m in list(log.messages))
         support.wait_for(lambda: children() == [('robot/odom_combined', 'robot/base_footprint')],
                          'the transform to the frame of the robot')
-        support.wait_for(lambda: has_logged('to robot/base_footprint: no other node publishes one'), 'the line')
+        support.wait_for(lambda: has_logged('-> robot/base_footprint (no other node publishes'), 'the line')
 
         # the base starts to publish its own transform
         base = TransformStamped()
@@ -42,7 +42,8 @@ class TestRobotFrame(unittest.TestCase):
         base.transform.rotation.w = 1.0
         support.wait_for(lambda: others.publish([base]) or children() == [('robot/odom_combined', 'odom')],
                          'the transform to the odometry')
-        support.wait_for(lambda: has_logged('Transform from robot/odom_combined to odom: /robot_frame'), 'the line')
+        support.wait_for(lambda: has_logged('Publishing the transform robot/odom_combined -> odom (/robot_frame'),
+                         'the line')
 
         # another robot, whose odometry names its frame
         support.wait_for(lambda: children('base_link') == [('robot/odom_combined', 'base_link')],

@@ -63,8 +63,9 @@ class TestStockLaunchFile(unittest.TestCase):
         # 30 Hz from messages that arrive at 50 Hz: every second one, or two of three
         stamps = [m.header.stamp.to_sec() for m in poses.messages]
         self.assertAlmostEqual((len(stamps) - 1) / (stamps[-1] - stamps[0]), 30, delta=6)
-        self.assertEqual([m.msg for m in log.messages if m.name == '/robot_pose_ekf' and 'Transform' in m.msg], [
-            'Transform from odom_combined to base_footprint: no other node publishes one to base_footprint'])
+        self.assertEqual([m.msg for m in log.messages if m.name == '/robot_pose_ekf' and 'transform' in m.msg], [
+            'Publishing the transform odom_combined -> base_footprint (no other node publishes a transform to '
+            'base_footprint)'])
 
 
 if __name__ == '__main__':

@@ -58,11 +58,11 @@ class TestSimulateCommand(unittest.TestCase):
         self.assertEqual([method for method, _ in rows], ['timed', 'odom', 'ekf'], output)
         by_time, by_odometry, by_both = (float(distance) for _, distance in rows)
         self.assertTrue(by_time > by_odometry > by_both, output)
-        # three panels side by side, each with paths in blue and an end pose in red
+        # three panels side by side, each with pale paths and a solid arrow at an end pose, both blue
         for panel in numpy.array_split(pixels[:len(pixels) // 2], 3, axis=1):
             red, green, blue = (panel[..., i] for i in range(3))
-            self.assertGreater(((blue > 150) & (red < 120)).sum(), 50)
-            self.assertGreater(((red > 150) & (green < 60) & (blue < 60)).sum(), 50)
+            self.assertGreater(((blue > 200) & (red > 100) & (red < 200)).sum(), 50)
+            self.assertGreater(((blue > 250) & (red < 45) & (green < 130)).sum(), 50)
 
     def test_one_method_on_the_ideal_surface(self):
         status, output = simulate('--method', 'timed', '--runs', '1')

@@ -44,7 +44,7 @@ def display(config, name):
 
 
 def colour(text):
-    """Convert a color such as '255; 25; 0' to numbers."""
+    """Convert a color such as '242; 16; 0' to numbers."""
     return tuple(int(each) for each in text.split(';'))
 
 
@@ -56,8 +56,8 @@ def painted(pixels, wanted):
 def lit(pixels, wanted):
     """Return where the pixels have this color at any brightness. The red of the arrows and the orange of the marks
     differ by 100 in green."""
-    light = pixels.max(axis=-1, keepdims=True)
-    return (abs(pixels - numpy.array(wanted) * light / 255) < 30).all(axis=-1) & (light[..., 0] > 100)
+    light = pixels.max(axis=-1, keepdims=True) / max(wanted)
+    return (abs(pixels - numpy.array(wanted) * light) < 30).all(axis=-1) & (light[..., 0] > 0.4)
 
 
 class Picture:
@@ -243,7 +243,7 @@ class RvizSmoke(RvizTest):
     def test_trouble_is_seen(self):
         """The other test can fail: two errors in a copy of the file appear on screen, on the console and in the log."""
         config = copy.deepcopy(self.config)
-        display(config, 'Robot by odometry')['Robot Description'] = 'no_such_parameter'
+        display(config, 'Robot (odometry)')['Robot Description'] = 'no_such_parameter'
         config['Visualization Manager']['Displays'].append({'Class': 'rviz/NoSuchDisplay', 'Name': 'No such display'})
         path = os.path.join(self.scratch, 'broken.rviz')
         with open(path, 'w') as file:

@@ -10,6 +10,7 @@ from PIL import Image
 import numpy
 
 from rbx1_nav.config import ConfigError
+from rbx1_nav.plotting.palette import ESTIMATE, ODOMETRY, TRUTH
 from rbx1_nav.plotting.runs import TITLES, check_writable, write_file
 from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.simulation.exercise import SimulationResult, Snapshot
@@ -22,6 +23,7 @@ SPEED = 4.0         # times real time
 FRAME = 0.1         # s that a frame is shown
 LAST_FRAME = 3.0    # s that the last frame is shown
 RADIUS = 0.17       # m, of a TurtleBot
+GRID = 0.5          # m
 
 
 class Panel:
@@ -31,13 +33,20 @@ class Panel:
         """path: the Snapshots of all ticks."""
         self.method, self.path = method, path
         self.axes = axes
-        axes.set(xlim=(-0.45, 1.45), ylim=(-0.65, 1.05), aspect='equal', xticks=[0, 0.5, 1], yticks=[-0.5, 0, 0.5, 1])
+        axes.set(xlim=(-0.45, 1.45), ylim=(-0.65, 1.05), aspect='equal', xticks=[0, GRID, 2 * GRID],
+                 yticks=[-GRID, 0, GRID, 2 * GRID])
         axes.grid(True, alpha=0.5)
         axes.tick_params(labelbottom=False, labelleft=False, length=0)
         axes.plot(0, 0, marker='+', markersize=18, markeredgewidth=2, color='black')
-        self.trail, = axes.plot([], [], color='tab:blue', linewidth=2)
-        self.believed, = axes.plot([], [], color='gray', linestyle=':')
-        self.robot, = axes.plot([], [], color='firebrick', linewidth=2.5)
+        # the scale, along a line of the grid
+        axes.annotate('', (GRID, -GRID), (0, -GRID), arrowprops=dict(arrowstyle='|-|', mutation_scale=4, shrinkA=0,
+                                                                   shrinkB=0))
+        axes.text(GRID / 2, -GRID - 0.03, f'{GRID} m', ha='center', va='top')
+        self.trail, = axes.plot([], [], color=TRUTH, linewidth=1.5)
+        self.robot, = axes.plot([], [], color=TRUTH, linewidth=2.5)
+        # on top, so that it is also visible where the robot is
+        color = ESTIMATE if method == 'ekf' else ODOMETRY
+        self.believed, = axes.plot([], [], color=color, linestyle='--', linewidth=1.8)
 
     def show(self, time: float) -> None:
         """Show the robot at a time (s), or at its end pose after the run."""
@@ -68,12 +77,21 @@ def animate(file: str, surface: str, results: Mapping[str, SimulationResult]) ->
     """Draw one run of each method, side by side, at SPEED times real time. Raises OSError.
 
     surface: name of the surface; results: one run of each method, with its path. The solid circle is the true pose of
-    the robot. The dotted circle is the pose from the filter, or without a filter from the odometry.
+    the robot. The dashed circle is the pose from the filter, or without a filter from the odometry.
     """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
-    figure = Figure(figsize=(3.2 * len(results), 3.6), constrained_layout=True)
+    from matplotlib.lines import Line2D
+    figure = Figure(figsize=(3.2 * len(results), 3.9))
+    figure.subplots_adjust(left=0.01, right=0.99, bottom=0.1, top=0.8, wspace=0.04)
     figure.suptitle(f'Out and back on {surface}')
+    shown = {'true pose': (TRUTH, '-')}
+    if set(results) - {'ekf'}:
+        shown['odometry'] = ODOMETRY, '--'
+    if 'ekf' in results:
+        shown['estimate from odometry and gyro'] = ESTIMATE, '--'
+    figure.legend([Line2D([], [], color=color, linestyle=style, linewidth=2) for color, style in shown.values()],
+                  list(shown), loc='lower center', ncol=len(shown), frameon=False)
     canvas = FigureCanvasAgg(figure)
     panels = [Panel(axes, method, result.path or [])
               for axes, (method, result) in zip(figure.subplots(1, len(results), squeeze=False)[0], results.items())]

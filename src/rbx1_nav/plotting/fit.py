@@ -9,12 +9,13 @@ import numpy
 from rbx1_nav.arrays import Array
 from rbx1_nav.fitting.comparison import Comparison, shares
 from rbx1_nav.fitting.ensemble import mahalanobis
+from rbx1_nav.plotting.palette import ESTIMATE, ODOMETRY, TRUTH
 from rbx1_nav.plotting.runs import save
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-TRUTH, ODOMETRY, SIMULATED = '#0072b2', '#d55e00', '#009e73'    # as in script/report.py; safe for color-blind readers
+SIMULATED = ESTIMATE    # results of a model, as opposed to measurements
 REGIONS = (0.9, 0.2), (0.5, 0.35)       # share of the simulated end poses, opacity
 MARGIN = 0.08       # margin around all paths, as a fraction of their extent
 POINTS = 150        # number of simulated end poses shown per run

@@ -11,6 +11,7 @@ import numpy
 
 from rbx1_nav.arrays import Array
 from rbx1_nav.config import ConfigError
+from rbx1_nav.plotting.palette import TRUTH
 from rbx1_nav.robot.kinematics import ORIGIN, Pose
 from rbx1_nav.simulation.exercise import SimulationResult
 from rbx1_nav.units import rounded
@@ -128,9 +129,9 @@ def draw_paths(axes: Axes, results: Sequence[SimulationResult]) -> None:
     for result in results:
         if result.path:
             x, y, _ = zip(*[snapshot.truth for snapshot in result.path])
-            axes.plot(x, y, color='tab:blue', linewidth=0.8, alpha=0.5)
+            axes.plot(x, y, color=TRUTH, linewidth=0.8, alpha=0.5)
     draw_robot(axes, ORIGIN, 'black', 'start')
-    draw_robot(axes, results[0].end.truth, 'firebrick', 'end pose of the first run')
+    draw_robot(axes, results[0].end.truth, TRUTH, 'end pose of the first run')
     axes.set(xlabel='x (m)', ylabel='y (m)', aspect='equal', xlim=(-0.35, 1.25), ylim=(-0.45, 0.85),
              xticks=[0, 0.5, 1], yticks=[0, 0.5])
     axes.grid(True, alpha=0.5)
@@ -151,7 +152,7 @@ def draw_ends(axes: Axes, poses: Array, extent: Extent, norm: Normalize | None) 
     x, y, error = poses.T
     few = len(x) <= 500
     style = dict(s=12 if few else 3, alpha=0.8 if few else 0.4, linewidths=0)
-    color = dict(c=error, norm=norm) if norm else dict(color='tab:blue')
+    color = dict(c=error, norm=norm) if norm else dict(color=TRUTH)
     points = axes.scatter(x, y, **style, **color)
     axes.plot(0, 0, marker='+', markersize=14, color='black')
     size = max(numpy.ptp(x), numpy.ptp(y))

@@ -6,7 +6,8 @@ from pages import markdown
 
 ROOT = os.path.realpath(os.path.join(os.path.dirname(__file__), '..', '..', '..'))
 LANGUAGES = ('xml', 'python', 'yaml', 'cmake')
-EXAMPLES = {'docs/test_bench.md': 'my_robot', 'docs/answers.md': 'answers'}     # the folder of each page
+# the folder of each page
+EXAMPLES = {'docs/test_bench.md': 'my_robot', 'docs/answers.md': 'answers', 'docs/beside_the_book.md': ''}
 
 
 def shown():

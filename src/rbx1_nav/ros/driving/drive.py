@@ -89,5 +89,5 @@ class TimedDrive(Drive):
 
     def finish(self) -> None:
         self.listeners.check_delivery()
-        rospy.loginfo('Done: commanded %.2f m forward and %.2f rad to the left. To see where that led: '
+        rospy.loginfo('Done: commanded %.2f m forward and %.2f rad to the left. To see where the robot is now, run: '
                       'rosrun rbx1_nav pose.py', self.distance, self.angle)

@@ -108,14 +108,14 @@ class EstimatePublisher:
             self._set_child(base_frame, 'the odometry is in the same frame')
             self.settled = True
         elif other:
-            self._set_child(odom_frame, f'{other[1]} publishes the one from {other[0]} to {base_frame}')
+            self._set_child(odom_frame, f'{other[1]} already publishes {other[0]} -> {base_frame}')
             self.settled = True
         elif self.first is None or now < self.first[0]:     # also after the clock has jumped back
             self.first = now, time.monotonic()
         elif now - self.first[0] >= TRANSFORM_TIME and time.monotonic() - self.first[1] >= MIN_WAIT:
-            self._set_child(base_frame, f'no other node publishes one to {base_frame}')
+            self._set_child(base_frame, f'no other node publishes a transform to {base_frame}')
 
     def _set_child(self, child: str, why: str) -> None:
         if child != self.child:
             self.child = child
-            self.log(f'Transform from {self.output_frame} to {child}: {why}')
+            self.log(f'Publishing the transform {self.output_frame} -> {child} ({why})')

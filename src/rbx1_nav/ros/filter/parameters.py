@@ -73,7 +73,7 @@ PARAMETERS = (
            note='on an `unknown` floor, gyro readings above it are not used'),
     number('max_angular_acceleration', DEFAULT.max_angular_acceleration, 'rad/s^2',
            'highest angular acceleration while gyro readings are missing', 0.01, 1e4, 'an angular acceleration',
-           note='see [messages that are not as expected](#messages-that-are-not-as-expected)'),
+           note='see [Unexpected messages](#unexpected-messages)'),
     number('gyro_bias', degrees(DEFAULT.gyro_bias), 'degrees/s', 'largest gyro bias in either direction', 0.01, 1000,
            'a bias', note='a higher rate at rest is not learned as bias. A tenth of it is the standard deviation of '
            'the bias before the first standstill'),

@@ -82,8 +82,8 @@ def report_parameters(stored: Mapping[str, YamlValue], names: Sequence[str]) -> 
     in_force = [f'{each} = {show_name(stored[each])}' for each in sorted(set(stored) & set(names) - given)]
     # a mapping was loaded from a file, which is also on purpose
     if in_force and not any(isinstance(value, dict) for value in stored.values()):
-        rospy.logwarn('Left by an earlier command, still in force: %s (`rosparam delete %s` removes them)',
+        rospy.logwarn('Parameters from an earlier run still apply: %s (`rosparam delete %s` clears them)',
                       ', '.join(in_force), name)
     if unknown:
-        rospy.logwarn('Left by an earlier command, without effect here: %s (`rosparam delete %s` removes them)',
+        rospy.logwarn('Ignoring parameters from an earlier run: %s (`rosparam delete %s` clears them)',
                       ', '.join(unknown), name)

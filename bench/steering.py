@@ -1,0 +1,80 @@
+#!/usr/bin/env python3
+"""Simulate the exercise with and without steering on the legs (examples/answers/steering.py). See README.md."""
+import argparse
+from functools import partial
+import importlib.util
+from math import pi
+import os
+
+import numpy
+
+from rbx1_nav.control.legs import Straight, out_and_back_by_odometry
+from rbx1_nav.robot.description import load_robot
+from rbx1_nav.robot.kinematics import ORIGIN
+from rbx1_nav.ros.node import resources
+from rbx1_nav.simulation import exercise
+from rbx1_nav.simulation.summary import HEADER, summary
+from rbx1_nav.simulation.surfaces import load_surface
+
+ANSWER = os.path.join(os.path.dirname(os.path.realpath(__file__)), '..', 'examples', 'answers', 'steering.py')
+
+
+def load_answer():
+    """The module of the answer, which drives only if it is run as a script."""
+    spec = importlib.util.spec_from_file_location('steering_answer', ANSWER)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+class Steered(Straight):
+    """A straight leg that is steered to the line between the start and the goal of the exercise."""
+
+    direction = 0.0     # rad
+    steering = None     # steering() of the answer
+
+    def velocity(self, speed):
+        """(linear, angular) for a speed, m/s and rad/s."""
+        return speed, self.steering(self.last, ORIGIN, self.direction)
+
+
+def steered_legs(steering, **arguments):
+    """The legs of the exercise, the straight ones Steered."""
+    legs = out_and_back_by_odometry(**arguments)
+    for leg, direction in zip((leg for leg in legs if isinstance(leg, Straight)), (0.0, pi)):
+        leg.__class__ = Steered
+        leg.direction, leg.steering = direction, steering
+    return legs
+
+
+def across(results):
+    """A line with the components of the error, and how much of the one across the legs the estimate shows."""
+    truth = numpy.array([r.end.truth for r in results])
+    x, y = (numpy.sqrt((truth[:, axis] ** 2).mean()) for axis in (0, 1))
+    line = f'x rms {x:.4f} m, y rms {y:.4f} m, {100 * y ** 2 / (x ** 2 + y ** 2):.0f} % of the square across the legs'
+    if results[0].end.estimate:
+        estimated = numpy.array([r.end.estimate.y for r in results])
+        line += (f'; y and its estimate: correlation {numpy.corrcoef(truth[:, 1], estimated)[0, 1]:.3f}, '
+                 f'difference rms {numpy.sqrt(((truth[:, 1] - estimated) ** 2).mean()):.4f} m')
+    return line
+
+
+def main():
+    """Simulate and print."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument('--surface', default='low_ply_carpet')
+    parser.add_argument('--runs', type=int, default=100, help='runs of each method, seeds from 0; default: 100')
+    arguments = parser.parse_args()
+    surface = load_surface(arguments.surface, resources.surfaces())
+    robot = load_robot(resources.path('config', 'turtlebot.yaml'))
+    print(HEADER)
+    for title, legs in (('Straight ahead', out_and_back_by_odometry),
+                        ('Steered', partial(steered_legs, load_answer().steering))):
+        exercise.out_and_back_by_odometry = legs
+        for method in 'odom', 'ekf':
+            results = list(exercise.simulate_many(method, robot, surface, range(arguments.runs)))
+            print('\n'.join([f'{title}:', *summary(method, results), across(results)]))
+
+
+if __name__ == '__main__':
+    main()

@@ -1,0 +1,47 @@
+"""Steering on the legs: the answer to exercise 5 steers toward the line, and the pages quote what this gains."""
+from functools import partial
+from math import pi
+import os
+import re
+
+import numpy
+import pytest
+import steering
+from rbx1_nav.robot.description import load_robot
+from rbx1_nav.robot.kinematics import Pose
+from rbx1_nav.simulation import exercise
+from rbx1_nav.simulation.surfaces import load_surface
+
+CONFIG = os.path.join(os.path.dirname(__file__), '..', 'config')
+ANSWER = steering.load_answer()
+
+
+@pytest.mark.parametrize('pose, direction, sign', [
+    (Pose(0.5, 0.1, 0.0), 0.0, -1), (Pose(0.5, -0.1, 0.0), 0.0, 1), (Pose(0.5, 0.0, 0.1), 0.0, -1),
+    (Pose(0.5, 0.1, pi), pi, 1), (Pose(0.5, 0.0, -pi + 0.1), pi, -1), (Pose(0.5, 0.0, 3 * pi), pi, 0)])
+def test_it_turns_toward_the_line(pose, direction, sign):
+    turn = ANSWER.steering(pose, Pose(0.0, 0.0, 0.0), direction)
+    assert numpy.sign(round(turn, 9)) == sign
+
+
+def test_the_pages_quote_the_gain(monkeypatch):
+    """docs/answers.md, why_it_misses.md and figures.md: steered, the mean distance and the rms of y of 100 runs, cm."""
+    carpet = load_surface('low_ply_carpet', os.path.join(CONFIG, 'surfaces'))
+    robot = load_robot(os.path.join(CONFIG, 'turtlebot.yaml'))
+    monkeypatch.setattr(exercise, 'out_and_back_by_odometry', partial(steering.steered_legs, ANSWER.steering))
+    ends = numpy.array([run.end.truth for run in exercise.simulate_many('ekf', robot, carpet, range(100))])
+    gain = 100 * numpy.hypot(*ends.T[:2]).mean(), 100 * numpy.sqrt((ends[:, 1] ** 2).mean())
+    texts = {}
+    for page in 'answers', 'why_it_misses', 'figures':
+        with open(os.path.join(CONFIG, '..', 'docs', f'{page}.md'), encoding='utf-8') as file:
+            texts[page] = ' '.join(file.read().split())
+    for page, sentence, value in [
+            ('answers', r'distance from the start \| 7.6 cm \| (\S+) cm', gain[0]),
+            ('answers', r'y \(root mean square\) \| 5.3 cm \| (\S+) cm', gain[1]),
+            ('why_it_misses', r'reduces the error across the legs to (\S+) cm', gain[1]),
+            ('why_it_misses', r'and the distance from the start to (\S+) cm', gain[0]),
+            ('figures', r'7.6 cm straight ahead and (\S+) cm', gain[0]),
+            ('figures', r'across the legs 5.3 cm and (\S+) cm', gain[1])]:
+        number, = re.findall(sentence, texts[page])
+        # rounded to a millimeter; versions of numpy may differ by as much
+        assert float(number) == pytest.approx(value, abs=0.1)
