@@ -9,6 +9,7 @@ import unittest
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.keys import Keys
 import rospy
+from std_srvs.srv import Empty
 
 import support
 from browser import Page, start_chromium, start_view
@@ -35,6 +36,9 @@ class TestBrowserComparison(unittest.TestCase):
         self.page = Page(self.driver, self.url)
         self.page.click('#stop')
         self.wait_for_rest()
+        rospy.ServiceProxy('/arbotix/reset', Empty)()
+        support.wait_for(lambda: self.odom.position() == (0, 0), 'the reset')
+        self.page = Page(self.driver, self.url)     # without the runs of the test before
 
     def tearDown(self):
         folder = os.environ.get('RBX1_PICTURE_DIR')
@@ -62,7 +66,8 @@ class TestBrowserComparison(unittest.TestCase):
         def focused():
             self.press(Keys.TAB)
             return self.driver.execute_script(
-                'const {id, dataset} = document.activeElement; return [id, dataset.method].includes(arguments[0])', name)
+                'const {id, dataset} = document.activeElement; return [id, dataset.method].includes(arguments[0])',
+                name)
         support.wait_for(focused, f'the focus on {name}')
 
     def test_earlier_runs_stay_and_can_be_hidden(self):
@@ -91,7 +96,8 @@ class TestBrowserComparison(unittest.TestCase):
         self.page.wait_for_text('run-state', 'finished')
         support.wait_for(lambda: self.driver.execute_script('return rbx1.model.status.seed') == '7', 'the seed')
         self.page.click('#save-svg')
-        name = support.wait_for(lambda: [each for each in os.listdir(self.folder.name) if each.endswith('.svg')], 'a file')
+        name = support.wait_for(lambda: [each for each in os.listdir(self.folder.name) if each.endswith('.svg')],
+                                'a file')
         with open(os.path.join(self.folder.name, name[0]), encoding='utf-8') as file:
             text = file.read()
         self.assertIn('timed, low_ply_carpet, seed 7<', text)

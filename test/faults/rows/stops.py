@@ -10,8 +10,8 @@ from web_client import WebClient
 
 FAULT = ('a driver unregisters 0 to 30 ms before or after a Stop; a run of the page is stopped at a random moment; the '
          'node is frozen when a Stop arrives')
-PROMISE = ('the Stop is answered; the robot is at rest; hand driving works afterwards; a frozen node answers when it runs '
-           'again')
+PROMISE = ('the Stop is answered; the robot is at rest; hand driving works afterwards; a frozen node answers when it '
+           'runs again')
 FULL, SHORT = 250, 10
 ROOT, ALONE = False, True
 

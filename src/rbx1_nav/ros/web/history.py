@@ -52,10 +52,6 @@ class Series:
             found.append(item)
         return found[::-1]
 
-    def clear(self) -> None:
-        """Remove all items."""
-        self.items.clear()
-
 
 class Path(Series):
     """Poses [x, y, yaw] (m, rad), spaced by at least STEP or TURN."""
@@ -95,10 +91,6 @@ class Speeds(Series):
                 self.add(self.held)
         self.held = None
         self.add(item)
-
-    def clear(self) -> None:
-        super().clear()
-        self.held = None
 
 
 class Log(Series):

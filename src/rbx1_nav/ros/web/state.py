@@ -18,6 +18,7 @@ RESET_DELAY = 0.5   # s: largest delay between the message about a reset and the
 SILENCE = 3.0       # s without a message after which a pose is no longer shown
 DRIVING_TIMEOUT = 2.0   # s without a motion after which a node no longer drives; a script rests for 1 s between motions
 COMMAND_TIMEOUT = 1.0   # s without a command after which the commanded speed is 0
+FACTOR_PERIOD = 2.0     # s of wall time
 
 PoseRow = Sequence[float]   # x, y, yaw: m, rad
 
@@ -31,31 +32,57 @@ class Motion(NamedTuple):
     angular: float      # rad/s
 
 
+class Run:
+    """What belongs to one run: from a reset, or the connection of a base, to the next."""
+
+    def __init__(self, counter: Counter, origin: float | None) -> None:
+        """origin: stamp at which the run begins, s; None before the first odometry."""
+        self.name = ''          # the run or node that drives the robot, or drove it last
+        self.origin = origin
+        self.travelled = False  # whether the robot has left its start
+        self.paths = {source: Path(counter) for source in SOURCES}
+        self.speeds = {name: Speeds(counter, steps=name == 'commanded') for name in SPEEDS}
+        self.poses: dict[str, PoseRow] = {}
+        self.silent: dict[str, PoseRow] = {}    # last poses of sources that have become silent
+        self.away: dict[str, tuple[float, PoseRow]] = {}    # by source: time, last pose that is not the origin
+
+    def time(self, stamp: float) -> float | None:
+        """Return the time since the beginning of the run, s, or None before the first odometry."""
+        return None if self.origin is None else stamp - self.origin
+
+
+class TimeFactor:
+    """Measures how fast simulated time advances, relative to real time."""
+
+    def __init__(self) -> None:
+        self.value = 1.0
+        self.begin: tuple[float, float] | None = None   # stamp and monotonic clock, s
+
+    def measure(self, stamp: float, now: float) -> None:
+        """Process the stamp of a message. now: s, monotonic clock."""
+        if self.begin and now - self.begin[1] > FACTOR_PERIOD:
+            self.value = max(0.0, (stamp - self.begin[0]) / (now - self.begin[1]))
+            self.begin = None
+        self.begin = self.begin or (stamp, now)
+
+
 class State:
     """The state that the page shows. ROS threads write it, and the server thread reads it."""
 
     def __init__(self) -> None:
         self.lock = Lock()
         self.counter = Counter()
-        self.paths = {source: Path(self.counter) for source in SOURCES}
-        self.speeds = {name: Speeds(self.counter, steps=name == 'commanded') for name in SPEEDS}
         self.log = Log(self.counter)
-        self.poses: dict[str, PoseRow] = {}
-        self.heard: dict[str, float] = {}       # s, monotonic clock: last message, by source
-        self.silent: dict[str, PoseRow] = {}    # last poses of sources that have become silent in this run
+        self.run = Run(self.counter, None)
+        self.epoch = 0          # number of the run
         self.before: dict[str, PoseRow] = {}    # end poses of the previous run
         self.before_name = ''
-        self.run_name = ''      # the run or node that drives the robot, or drove it last
         self.other: tuple[str, float] = '', -DRIVING_TIMEOUT    # node that has moved the robot, and when
-        self.epoch = 0          # number of the run; paths and speeds are cleared at the start of each run
-        self.travelled = False      # whether this run has left its start
+        self.heard: dict[str, float] = {}       # s, monotonic clock: last message, by source
         self.late: dict[str, float] = {}    # s, by source: until then, a pose away from the start precedes the reset
-        self.away: dict[str, tuple[float, PoseRow]] = {}    # by source: time, last pose that is not the origin
-        self.origin: float | None = None        # s: stamp at which the run began
         self.last: tuple[float, float] | None = None    # last odometry message: stamp and monotonic clock, s
         self.speed = 0.0        # in the last odometry message, the larger of m/s and rad/s
-        self.factor = 1.0       # measured speed of simulated time, relative to real time
-        self.mark: tuple[float, float] | None = None    # stamp and monotonic clock at the start of this measurement, s
+        self.factor = TimeFactor()
         self.last_command = 0.0     # s, monotonic clock
         self.status: dict[str, Any] = {}
         self.status_number = self.counter.next()
@@ -71,30 +98,28 @@ class State:
             if source == 'odometry':
                 self._keep_time(motion, now)
                 self.speed = max(abs(motion.linear), abs(motion.angular))
-            pose = [round(value, 4) for value in motion.pose]
-            if pose != self.poses.get(source):
+            run, pose = self.run, [round(value, 4) for value in motion.pose]
+            if pose != run.poses.get(source):
                 self.counter.next()
-            self.poses[source], self.heard[source] = pose, now
+            run.poses[source], self.heard[source] = pose, now
             if any(pose):
-                self.away[source] = now, pose
-            self.travelled = self.travelled or moved(pose)
-            self.paths[source].move(*motion.pose)
-            if self.origin is not None and source != 'estimate':
+                run.away[source] = now, pose
+            run.travelled = run.travelled or moved(pose)
+            run.paths[source].move(*motion.pose)
+            time = run.time(motion.time)
+            if time is not None and source != 'estimate':
                 name = 'true' if source == 'truth' else 'reported'
-                self.speeds[name].sample(motion.time - self.origin, motion.linear, motion.angular)
+                run.speeds[name].sample(time, motion.linear, motion.angular)
 
     def _keep_time(self, motion: Motion, now: float) -> None:
-        last = self.poses.get('odometry')
+        last = self.run.poses.get('odometry')
         jumped = last is not None and hypot(motion.pose[0] - last[0], motion.pose[1] - last[1]) > JUMP
         if self.last is None or motion.time < self.last[0] - BACK or jumped:
             if self.last is not None:
                 self._begin()
-            self.origin, self.mark = motion.time, None
+            self.run.origin, self.factor.begin = motion.time, None
         self.last = motion.time, now
-        if self.mark is None or now - self.mark[1] > 2:
-            if self.mark is not None:
-                self.factor = max(0.0, (motion.time - self.mark[0]) / (now - self.mark[1]))
-            self.mark = self.last
+        self.factor.measure(*self.last)
 
     def command(self, linear: float, angular: float, sender: str, now: float) -> None:
         """Process a command. sender: name of the node that published it."""
@@ -104,16 +129,18 @@ class State:
             self.last_command = now
             if linear or angular:
                 running = self.status.get('started') and not self.status.get('outcome')
-                self.run_name = self.status['started'] if running else sender
+                self.run.name = self.status['started'] if running else sender
                 if not running and sender != BY_HAND:
                     self.other = sender, now
             self._commanded(linear, angular, now)
 
     def _commanded(self, linear: float, angular: float, now: float) -> None:
-        if self.last is not None and self.origin is not None:
-            # a Twist has no stamp: derive its time from the last odometry message
-            time = self.last[0] - self.origin + min(now - self.last[1], 1.0) * self.factor
-            self.speeds['commanded'].sample(time, linear, angular)
+        if self.last is None:
+            return
+        # a Twist has no stamp: derive its time from the last odometry message
+        time = self.run.time(self.last[0] + min(now - self.last[1], 1.0) * self.factor.value)
+        if time is not None:
+            self.run.speeds['commanded'].sample(time, linear, angular)
 
     def hears(self, source: str) -> bool:
         """Return whether a source sends poses. After a reset this stays true, although there is no pose at first."""
@@ -136,20 +163,21 @@ class State:
     def tick(self, now: float) -> None:
         """Time out a command that is not repeated, and remove silent sources. To be called periodically."""
         with self.lock:
-            items = self.speeds['commanded'].items
+            run, items = self.run, self.run.speeds['commanded'].items
             if items and any(items[-1][1][1:]) and now - self.last_command > COMMAND_TIMEOUT:
                 self._commanded(0.0, 0.0, now)
             for source in [each for each, heard in self.heard.items() if now - heard > SILENCE]:
                 del self.heard[source]
-                if source in self.poses:
-                    self.silent[source] = self.poses.pop(source)
+                if source in run.poses:
+                    run.silent[source] = run.poses.pop(source)
                 self.counter.next()
 
     def reset(self, now: float) -> None:
         """Begin a new run, because the robot was put back at its start."""
         with self.lock:
-            self.poses.update({source: pose for source, (time, pose) in self.away.items()
-                               if source in self.poses and now - time < RESET_DELAY})
+            run = self.run
+            run.poses.update({source: pose for source, (time, pose) in run.away.items()
+                              if source in run.poses and now - time < RESET_DELAY})
             self._begin()
             self.late = dict.fromkeys(SOURCES, now + RESET_DELAY)
 
@@ -162,20 +190,12 @@ class State:
                 self.heard.clear()      # it may be a real robot now
 
     def _begin(self) -> None:
-        """Begin a new run: store the end poses of the last one, and clear paths and speeds."""
-        if self.travelled:
-            self.before, self.before_name = {**self.silent, **self.poses}, self.run_name
-        self.poses.clear()
-        self.silent.clear()
-        self.away.clear()
-        self.travelled = False
-        self.run_name = ''
+        """Begin a new run, and store the end poses of the last one."""
+        if self.run.travelled:
+            self.before, self.before_name = {**self.run.silent, **self.run.poses}, self.run.name
+        self.run = Run(self.counter, self.last[0] if self.last else self.run.origin)
         self.epoch += 1
         self.status_number = self.counter.next()
-        for series in (*self.paths.values(), *self.speeds.values()):
-            series.clear()
-        if self.last is not None:
-            self.origin = self.last[0]
 
     def set_status(self, **values: Any) -> None:
         """Set values of the status, which the page shows as text or uses to enable its buttons."""
@@ -198,23 +218,23 @@ class State:
         """
         with self.lock:
             series: dict[str, Any] = {}
-            groups: dict[str, Mapping[str, Series]] = {'paths': self.paths, 'speeds': self.speeds}
+            groups: dict[str, Mapping[str, Series]] = {'paths': self.run.paths, 'speeds': self.run.speeds}
             for group, members in groups.items():
                 found = {name: each.since(number) for name, each in members.items()}
                 series[group] = {name: items for name, items in found.items() if items}
-            log = self.log.since(number)
+            log, time = self.log.since(number), self.run.time(self.last[0]) if self.last else None
             fields: dict[str, Any] = {
                 'epoch': self.epoch,
                 'clock': round(now, 3),
-                'time': round(self.last[0] - self.origin, 3) if self.last and self.origin is not None else None,
-                'poses': self.poses,
-                'run': self.run_name,
+                'time': None if time is None else round(time, 3),
+                'poses': self.run.poses,
+                'run': self.run.name,
                 **{key: value for key, value in series.items() if value}}
             if log:
                 fields['log'] = log
             if self.status_number > number or epoch != self.epoch:
                 fields['status'] = dict(self.status, before=self.before, before_name=self.before_name,
-                                        factor=round(self.factor, 1))
+                                        factor=round(self.factor.value, 1))
             return self.counter.last, self.epoch, encode('frame', **fields)
 
 
