@@ -2,13 +2,13 @@
 from __future__ import annotations
 
 from enum import Enum
-from typing import Callable, Protocol
+from typing import Callable
 
 from rbx1_nav.config import AUTO
 from rbx1_nav.create.driver import sequences
 from rbx1_nav.create.driver.parameters import Settings
 from rbx1_nav.create.driver.queries import Queries
-from rbx1_nav.create.driver.search import RATES, Found, Search, SearchedLine
+from rbx1_nav.create.driver.search import RATES, Found, Line, Search
 from rbx1_nav.create.driver.sender import Sender
 from rbx1_nav.create.driver.supervisor import Supervisor
 from rbx1_nav.units import SECOND
@@ -18,17 +18,6 @@ FLUSH_WAIT = SECOND // 10       # time without an answer after which garbage may
 FIRST_WAIT = 3 * SECOND // 10   # time that a robot that is on may need to answer; after it, the robot is started
 START_WAIT = SECOND             # time that a robot may need to start; after it, the search begins
 ROUNDS_BEFORE_WARNING = 2       # rounds of the search before the first warning
-
-
-class Line(SearchedLine, Protocol):
-    """The line to the robot."""
-
-    @property
-    def is_same(self) -> bool:
-        """Whether the line uses the same adapter as the previous line."""
-
-    def confirm(self, found: Found) -> None:
-        """Allow the guardian to stop the robot that was found."""
 
 
 class Event(Enum):

@@ -11,14 +11,14 @@ from rbx1_nav.create import protocol
 from rbx1_nav.create.driver import sequences
 from rbx1_nav.create.driver.acceptance import OUTAGE, Acceptance
 from rbx1_nav.create.driver.analog_gyro import AnalogGyro
-from rbx1_nav.create.driver.contact import Contact, Event, Line
+from rbx1_nav.create.driver.contact import Contact, Event
 from rbx1_nav.create.driver.fractions import Fractions
 from rbx1_nav.create.driver.gyro_check import Step
 from rbx1_nav.create.driver.motion_report import MotionReport, State
 from rbx1_nav.create.driver.parameters import Settings
 from rbx1_nav.create.driver.queries import Queries
 from rbx1_nav.create.driver.replies import ReplyReader
-from rbx1_nav.create.driver.search import Search
+from rbx1_nav.create.driver.search import Line, Search
 from rbx1_nav.create.driver.sender import Sender
 from rbx1_nav.create.driver.speeds import is_too_fast
 from rbx1_nav.create.driver.supervisor import WHEEL_DROPS, Supervisor, causes

@@ -9,7 +9,7 @@ from rbx1_nav.create.protocol import MAX_SPEED, Model
 
 WHEEL_LIMIT = 1.3 * MAX_SPEED / 1000    # m/s: faster than any wheel
 MARGIN = 0.015          # m of wheel travel that one reading may miss and the next one include
-AGREED = 3              # consecutive implausible readings that agree, which show that the robot was reset
+AGREED = 3              # consecutive implausible readings, which show that the robot was reset
 LOST_SHARE = 0.1        # 1 sigma of an expected travel that was never read, as a fraction of it
 MEMORY = 0.02           # weight of the last reply in the share of lost replies, which covers about 50 replies
 BAD_LINE = 0.015        # share of lost replies, reached after one loss: other replies may be corrupted undetected
@@ -97,8 +97,7 @@ class EncoderTravel:
     def restart(self) -> None:
         """Handle a robot that counts from 0 again: the next reading yields no travel."""
         self.counts: tuple[int, int] | None = None
-        self.suspect: tuple[int, int] | None = None     # implausible counts
-        self.suspected = 0      # number of consecutive implausible counts that agree
+        self.rejected = 0       # number of consecutive implausible counts
 
     def update(self, reading: Mapping[str, int], elapsed: float, expected: Expected) -> Travel:
         """Return the Travel since the last good reading, `elapsed` s ago. expected: commanded travel in this time.
@@ -110,9 +109,11 @@ class EncoderTravel:
         before = self.counts
         left, right = (self.difference(new, old, travel) for new, old, travel in zip(counts, before, expected))
         if not is_possible(left, right, elapsed):
-            self.check_reset(counts)
+            self.rejected += 1
+            if self.rejected >= AGREED:
+                self.restart()
             raise Implausible(f'encoders: {counts[0]} and {counts[1]} after {before[0]} and {before[1]}')
-        self.counts, self.suspected = counts, 0
+        self.counts, self.rejected = counts, 0
         self.bad *= 1 - MEMORY
         # beyond half a wrap, the number of wraps follows from commands that the robot may not have followed
         unsure = sum((self.WRAP * self.scale) ** 2 for travel in expected if abs(travel) > self.WRAP / 2 * self.scale)
@@ -129,16 +130,6 @@ class EncoderTravel:
         low = (new - old + self.WRAP // 2) % self.WRAP - self.WRAP // 2
         wraps = round((expected / self.scale - low) / self.WRAP)
         return (low + self.WRAP * wraps) * self.scale
-
-    def check_reset(self, counts: tuple[int, int]) -> None:
-        """Restart if implausible readings agree with each other: they come from a robot that counts from 0 again."""
-        agrees = self.suspect and all(abs(self.difference(new, old, 0.0)) <= 2 * MARGIN
-                                      for new, old in zip(counts, self.suspect))
-        self.suspected = self.suspected + 1 if agrees else 1
-        self.suspect = counts
-        if self.suspected >= AGREED:
-            self.restart()
-            self.counts = counts
 
     def miss(self, begun: bool, elapsed: float, expected: Expected) -> None:
         """Handle a reading that was lost on the line. begun: whether a part of it arrived."""
