@@ -153,7 +153,8 @@ def test_a_robot_that_falls_silent_is_searched_for_at_the_next_rate():
     searching = Searching()
     searching.find_battery()
     assert [searching.answer(b'') for _ in range(5)] == [None] * 5
-    assert searching.line.rates == [57600, 115200] and not searching.search.battery_rates and searching.line.sent[-1] == sequences.ASK_BATTERY
+    assert searching.line.rates == [57600, 115200] and searching.line.sent[-1] == sequences.ASK_BATTERY
+    assert not searching.search.battery_rates
 
 
 def test_only_a_robot_that_answers_the_battery_query_again_counts_as_one_that_answers_nothing_else():
