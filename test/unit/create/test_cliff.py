@@ -66,6 +66,7 @@ def test_one_corrupted_reading_is_no_cliff(robot_type):
     driven = started(robot_type)
     driven.drive(0.2, 0, 1)
     driven.driver.acceptance.feel(driven.now, dict(driven.driver.reading, cliff_left=1))
+    driven.command(0.2, 0)
     driven.drive(0.2, 0, 0.3)
     assert not driven.refusals and driven.speeds == (200, 200)
     # two are a cliff
