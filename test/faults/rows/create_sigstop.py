@@ -22,6 +22,7 @@ ROOT = False
 ALONE = True    # it measures a duration
 
 LIMIT = 0.2         # s from SIGCONT to the stop
+WAIT = 3            # s until the stop counts as missing
 OBSERVED = 1.5      # s in which the robot must not move
 
 
@@ -46,7 +47,8 @@ def check(row, robot, seconds, stall, goes_on):
         time.sleep(stall / 2)
         continued = rospy.get_time()
         os.kill(pid, signal.SIGCONT)
-        delay = robot.wait_for_command(count, lambda stamp, data: data == STOP and stamp > continued)[0] - continued
+        delay = support.wait_for(lambda: [stamp for stamp, data in robot.received()[count:]
+                                          if data == STOP and stamp > continued], 'a stop', WAIT)[0] - continued
         row.figure('stop after (s)', delay)
         assert delay < LIMIT, f'{delay:.3f} s'
         robot.wait_for_standstill()
