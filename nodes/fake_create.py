@@ -6,7 +6,8 @@ usage: fake_create.py [_parameter:=value ...] [topic:=new_topic ...]    usually 
 Events and faults of the robot:
     services ~pull_cable, ~silence, ~drop_wheel, ~cliff, ~bump, ~dock, ~charging_fault (SetBool),
     ~power_cycle (Trigger);
-    topics ~charge, ~corruption and ~gyro_stuck (Float64), which set the values of these parameters
+    topics ~charge, ~battery_temperature, ~battery_voltage, ~corruption and ~gyro_stuck (Float64), which set these
+    parameters
 It publishes the true pose on /ground_truth, and each command that it receives, with its time, on /line.
 A pseudo-terminal has no RTS and DTR lines: a driver that requires them gets an error.
 """
@@ -108,6 +109,7 @@ def main():
     body = Body(model, param('surface'), seed, BodyErrors(*map(param, BodyErrors._fields)),
                 param('gyro_measurement_range'), Quirks(*map(param, Quirks._fields)))
     body.charge = CAPACITY * param('charge')
+    body.temperature, body.voltage = round(param('battery_temperature')), round(1000 * param('battery_voltage'))
     body.gyro_stuck = floor(param('gyro_stuck'))
     try:
         terminal = PseudoTerminal(param('link') or None)

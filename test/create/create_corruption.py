@@ -17,8 +17,8 @@ class TestCreateCorruption(unittest.TestCase):
         robot.publish('corruption', 0.0)
         robot.diagnostics.next()
         robot.diagnostics.next()
-        # each frame of 36 bytes is corrupted with a probability of 0.3, at 66 frames per second
-        self.assertGreater(int(robot.value('Serial line', 'Corrupted readings')), 50)
+        # each reply of 29 bytes is corrupted with a probability of 0.25, at 30 replies per second
+        self.assertGreater(int(robot.value('Serial line', 'Lost replies')), 20)
         self.assertEqual(robot.value('Serial line', 'Dropouts'), '0')
         self.assertLess(max(map(abs, robot.error())), 0.003)     # rounding along a path of 1 m
 

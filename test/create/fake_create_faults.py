@@ -73,8 +73,10 @@ class TestFaults(unittest.TestCase):
 
     def test_the_battery(self):
         robot = self.robot('create')
-        robot.publish('charge', 0.25)
-        robot.wait_for(25, 750)
+        for topic, value, number, shown in ('charge', 0.25, 25, 750), ('charge', 1.67, 25, 5010), (
+                'battery_temperature', 75, 24, 75), ('battery_voltage', 9.5, 22, 9500):
+            robot.publish(topic, value)
+            robot.wait_for(number, shown)
         robot.publish('charge', 0.0)
         support.wait_for(lambda: not robot.moving, 'the robot to stop')
         robot.port.timeout = 0.5
@@ -100,8 +102,8 @@ class TestFaults(unittest.TestCase):
 
     def test_a_fraction_out_of_range_is_rejected(self):
         robot = self.robot('create')
-        robot.publish('charge', 1.5)
-        robot.process.wait_for_line('charge: 1.5: expected a number from 0 to 1; rejected')
+        robot.publish('charge', 2.5)
+        robot.process.wait_for_line('charge: 2.5: expected a number from 0 to 2; rejected')
         self.assertNotEqual(robot.read(35), {'mode': OFF})
 
 

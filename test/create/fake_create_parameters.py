@@ -44,7 +44,7 @@ class TestParameters(unittest.TestCase):
                 ({'link': '/etc/hostname'}, 'link: /etc/hostname: exists, and is not a link: expected'),
                 ({'surface': 'sand'}, f"surface: 'sand': expected one of {support.surfaces()}"),
                 ({'seed': -1}, 'seed: -1: expected random, or an integer'),
-                ({'charge': 2}, 'charge: 2: expected a number from 0 to 1'),
+                ({'charge': 3}, 'charge: 3: expected a number from 0 to 2'),
                 ({'corruption': 'some'}, "corruption: 'some': expected a number from 0 to 1"),
                 ({'wheel_base': 0}, 'wheel_base: 0: expected a factor from 0.1 to 10'),
                 ({'gyro_measurement_range': 0}, 'gyro_measurement_range: 0: expected a number from 1')]:

@@ -182,7 +182,6 @@ class Model(NamedTuple):
     packets: dict[int, Packet]          # by number
     groups: dict[int, tuple[int, ...]]  # packet numbers by group number
     commands: dict[int, Command]        # by opcode
-    songs: int                          # number of songs that it stores
 
 
 def _packets_by_number(packets: Iterable[Packet]) -> dict[int, Packet]:
@@ -201,13 +200,13 @@ CREATE = Model(
     name='create', baud=57600, wheel_separation=0.26, counts_per_metre=None,
     packets=_packets_by_number(Packet(number, name, form, *values, unit)
                                for number, name, form, values, _, unit in _PACKETS if values),
-    groups=_packets_of(_GROUPS), commands=_commands_by_opcode(_BOTH + _CREATE), songs=16)
+    groups=_packets_of(_GROUPS), commands=_commands_by_opcode(_BOTH + _CREATE))
 # 72 mm wheels, 508.8 counts per revolution (Create 2, packet 43)
 CREATE_2 = Model(
     name='create2', baud=115200, wheel_separation=0.235, counts_per_metre=508.8 / (pi * 0.072),
     packets=_packets_by_number(Packet(number, name, form, *values, unit)
                                for number, name, form, _, values, unit in _PACKETS),
-    groups=_packets_of({**_GROUPS, **_GROUPS_2}), commands=_commands_by_opcode(_BOTH + _CREATE_2), songs=4)
+    groups=_packets_of({**_GROUPS, **_GROUPS_2}), commands=_commands_by_opcode(_BOTH + _CREATE_2))
 MODELS = {model.name: model for model in (CREATE, CREATE_2)}
 OPCODES = {command.name: command.opcode for command in _BOTH + _CREATE + _CREATE_2}
 

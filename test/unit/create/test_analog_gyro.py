@@ -99,14 +99,15 @@ def test_the_power_that_the_base_switches_on_with_its_control_may_take_a_moment(
     assert not lines(driven) and driven.states[-1].gyro
 
 
-@pytest.mark.parametrize('mode', [1, 2])
-def test_a_gyro_that_never_has_power(mode):
+@pytest.mark.parametrize('mode, errors', [(1, 0), (2, 1)])
+def test_a_gyro_that_never_has_power(mode, errors):
+    """In passive mode, the base does not switch the power on."""
     driven = DrivenCreate('create', operation_mode=mode)
     driven.body.gyro_stuck = 12
     driven.connect()
     driven.run(3)
-    assert len(driven.errors) == 1 and '12 counts' in driven.errors[0] and not any(
-        state.gyro for state in driven.states)
+    assert ['12 counts' in error for error in driven.errors] == errors * [True]
+    assert not any(state.gyro for state in driven.states)
 
 
 # at rest
@@ -156,59 +157,17 @@ def test_who_lifts_the_robot_may_turn_it(mode):
 
 # in motion
 
-def test_a_gyro_that_is_stuck_while_the_wheels_turn_is_noticed():
-    driven = DrivenCreate('create')
-    driven.body.gyro_stuck = 512
-    driven.connect()
-    driven.run(2)
-    turn(driven, 0.5, pi / 2)
-    states = len(driven.states)
-    turn(driven, 0.5, pi)
-    assert lines(driven) == driven.errors == [
-        'Gyro: stuck at 512 counts while the wheels turn the robot; using the wheels alone for the heading']
-    assert not any(state.gyro for state in driven.states[states:])
-
-
-def test_wheels_that_turn_in_the_air_do_not_prove_a_gyro_stuck():
-    driven = calibrated(operation_mode=3)
-    driven.body.wheel_dropped = True
-    driven.body.gyro_stuck = 512
-    driven.drive(0, 1.0, 5)
-    assert not lines(driven)
-
-
-@pytest.mark.parametrize('count, seconds', [(900, 1.0), (800, 1.4), (150, 1.0), (620, 3.2)])
-@pytest.mark.parametrize('speed', [0.1, -0.2, 0.4])
-def test_a_steady_turn_that_the_wheels_do_not_make(speed, count, seconds):
-    driven = calibrated()
-    driven.velocity = speed, 0
-    driven.run(1)
-    _, first, _ = read(driven, 4, count)
-    assert first < seconds and lines(driven) == driven.errors == [
-        'Gyro: stuck at %d counts: it shows a turn that the wheels do not make; using the wheels alone for the '
-        'heading'
-        % count]
-    # the turn that it showed before the problem was detected does not count
-    assert driven.driver.gyro.yaw == pytest.approx(driven.truth.yaw, abs=0.02)
-
-
-def test_a_turn_to_the_other_side_is_one_that_the_wheels_do_not_make():
-    driven = calibrated()
-    driven.velocity = 0, 0.5
-    driven.run(1)
-    _, first, _ = read(driven, 4, 900)
-    assert first < 1.0
-    assert driven.driver.gyro.yaw == pytest.approx(driven.truth.yaw, abs=0.05)
-
-
-def test_a_turn_that_is_not_steady_may_be_a_shove():
+@pytest.mark.parametrize('count', [150, 800, 900])
+def test_a_wrong_reading_in_motion_is_noticed_at_the_next_stop(count):
     driven = calibrated()
     driven.velocity = 0.2, 0
     driven.run(1)
-    for _ in range(15):
-        read(driven, 0.1, 900)
-        read(driven, 0.1, 903)
-    assert not lines(driven)
+    read(driven, 2, count)
+    driven.velocity = None
+    driven.command_zero()
+    _, first, _ = read(driven, 2, count)
+    # half a second until the robot counts as stationary
+    assert first < 0.7 + PROOF_AT_REST and len(lines(driven)) == 1
 
 
 @pytest.mark.parametrize('event', ['bumped', 'wheel_dropped'])
@@ -237,11 +196,6 @@ def test_a_gyro_that_works_is_never_taken_for_broken(surface, sensitivity, drops
     assert not lines(driven)
 
 
-def test_a_robot_that_stands_does_not_prove_its_gyro_stuck():
-    driven = calibrated(60)
-    assert not lines(driven) and driven.states[-1].gyro
-
-
 # repaired
 
 @pytest.mark.parametrize('broken, repaired', [(12, 512), (900, 512), (12, 530), (300, -1)])
@@ -265,8 +219,8 @@ def test_from_one_fault_to_another_it_does_not_work_again():
         assert '12 counts' in driven.driver.gyro.check.problem
         read(driven, 4, 900)
         assert '900 counts' in driven.driver.gyro.check.problem
-    # each is logged once
-    assert len(lines(driven)) == len(driven.errors) == 2
+    # only the first one is logged
+    assert len(lines(driven)) == len(driven.errors) == 1
 
 
 def test_in_motion_it_does_not_work_again():
@@ -279,16 +233,3 @@ def test_in_motion_it_does_not_work_again():
     driven.command_zero()
     driven.run(2.5)
     assert lines(driven)[-1] == 'Gyro: working again' and driven.states[-1].gyro
-
-
-def test_a_gyro_that_was_stuck_is_used_again_after_it_has_moved_and_rested():
-    driven = calibrated()
-    driven.body.gyro_stuck = 512
-    turn(driven, 0.5, pi)
-    driven.body.gyro_stuck = -1
-    driven.run(5)
-    assert driven.driver.gyro.check.problem     # it may still be stuck
-    turn(driven, 0.5, pi)
-    assert not driven.driver.gyro.check.problem and driven.states[-1].gyro and driven.log[-1] == 'Gyro: working again'
-    # the wheels measured the turn that the gyro did not measure
-    assert driven.driver.gyro.yaw == pytest.approx(driven.truth.yaw, abs=0.1)

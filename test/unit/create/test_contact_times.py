@@ -5,7 +5,7 @@ import pytest
 
 from rbx1_nav.create import protocol
 from rbx1_nav.create.driver import sequences
-from rbx1_nav.create.driver.contact import Contact
+from rbx1_nav.create.driver.contact import Contact, Event
 from rbx1_nav.create.driver.parameters import read_settings
 from rbx1_nav.create.driver.search import Found
 from rbx1_nav.units import SECOND
@@ -19,27 +19,18 @@ class Contacted:
 
     is_same = True
 
-    def __init__(self, polled=True, **params):
+    def __init__(self, **params):
         self.events, self.log = [], []
-        self.polled = polled
-        self.sender = SimpleNamespace(stop=lambda now: self.events.append('stop'))
-        self.contact = Contact(read_settings(params)[0], self, self.log.append)
+        sender = SimpleNamespace(stop=lambda now: self.events.append('stop'))
+        queries = SimpleNamespace(give_up=lambda: None,
+                                  ask=lambda now, start: self.events.append('start' if start else 'ask'))
+        supervisor = SimpleNamespace(forget=lambda: self.events.append('lost'), restart=lambda now: None)
+        self.contact = Contact(read_settings(params)[0], sender, queries, supervisor, self.log.append)
         self.search = self.contact.search = SimpleNamespace(
             battery_rates=[],
             begin=lambda now, line, baud: self.events.append(f'search {baud}'), tick=lambda now: self.found, rounds=0,
             rates=(57600, 19200), begin_later=lambda now, wait: self.events.append(f'search in {wait // MS}'))
         self.found = None
-
-    # the interface of the driver
-
-    def use(self, model):
-        self.events.append(f'use {model.name}')
-
-    def ask(self, now, start=False):
-        self.events.append('start' if start else 'ask')
-
-    def lost_robot(self):
-        self.events.append('lost')
 
     # the interface of the line
 
@@ -58,7 +49,9 @@ class Contacted:
     def tick(self, milliseconds, reading=None):
         """Return the events of a tick. reading: time of the last reading."""
         self.events.clear()
-        self.contact.tick(milliseconds * MS, None if reading is None else reading * MS)
+        event = self.contact.tick(milliseconds * MS, None if reading is None else reading * MS)
+        if event is Event.FOUND:
+            self.contact.start(milliseconds * MS)
         return list(self.events)
 
     def attach(self, milliseconds):
@@ -82,7 +75,7 @@ def test_a_robot_that_was_found_is_started_and_searched_for_again_after_a_second
     contacted = Contacted()
     assert contacted.attach(0) == ['search 57600'] and not contacted.contact.may_ask
     contacted.found = CREATE
-    assert contacted.tick(0) == ['use create', 'confirm create', 'stop', 'start']
+    assert contacted.tick(0) == ['confirm create', 'stop', 'start']
     assert contacted.contact.started and contacted.contact.may_ask
     assert contacted.tick(1000) == [] and contacted.tick(1001) == ['search 57600']
 
@@ -98,12 +91,6 @@ def test_silence_for_half_a_second():
     assert contacted.tick(1801) == [] and contacted.tick(1802) == ['stop', 'start']
     assert contacted.tick(2802) == [] and contacted.tick(2803) == ['search 57600']
     assert contacted.contact.dropouts == 1
-
-
-def test_a_stream_is_flushed_at_once():
-    contacted = answering(polled=False)
-    assert contacted.tick(1501, 1000) == ['lost', 'rate 57600', 'stop', 'flush', 'stop', 'ask']
-    assert contacted.tick(1700) == []
 
 
 def test_each_silence_is_flushed_and_counted():
@@ -168,7 +155,7 @@ def test_a_robot_of_the_wrong_type():
         assert contacted.tick(0) == ['search in 1000']
         assert contacted.log == [text] and not contacted.contact.may_ask
     contacted.found = CREATE
-    assert contacted.tick(0)[0] == 'use create'
+    assert contacted.tick(0)[0] == 'confirm create'
     # another robot on another adapter, and a second time after the right one
     contacted.is_same = False
     for count in 2, 3:
@@ -196,6 +183,6 @@ def test_a_warning_after_two_rounds_without_any_robot(rounds, known, warned):
 
 
 def test_the_rates_of_the_search():
-    assert Contact(read_settings({})[0], None, print).search.rates == (57600, 115200, 19200)
-    search = Contact(read_settings({'baud': 9600, 'wake_robot': True})[0], None, print).search
+    assert Contact(read_settings({})[0], None, None, None, print).search.rates == (57600, 115200, 19200)
+    search = Contact(read_settings({'baud': 9600, 'wake_robot': True})[0], None, None, None, print).search
     assert search.rates == (9600,) and search.wake

@@ -200,7 +200,7 @@ def test_a_corrupted_line_leaves_the_odometry_as_it_is(seed):
     # as large as without corruption: rounding along the path
     for value, truth in zip(driven.pose, driven.truth):
         assert value == pytest.approx(truth, abs=0.003)
-    assert driven.driver.reader.rejected > 100 and driven.driver.contact.dropouts == 0
+    assert driven.driver.queries.reader.rejected > 20 and driven.driver.contact.dropouts == 0
 
 
 @pytest.mark.parametrize('seed', range(4))

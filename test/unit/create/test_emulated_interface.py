@@ -1,4 +1,4 @@
-"""Details of the emulated robot's interface: songs, buttons, frames, restarts, and what completes a command."""
+"""Details of the emulated robot's interface: frames, restarts, and what completes a command."""
 import pytest
 
 from rbx1_nav.create.protocol import (
@@ -11,39 +11,6 @@ both = pytest.mark.parametrize('model', list(MODELS.values()), ids=list(MODELS))
 def pair(first, second):
     """Return the data bytes of two 16-bit numbers."""
     return [byte for value in (first, second) for byte in value.to_bytes(2, 'big', signed=True)]
-
-
-@both
-def test_limits_of_songs(model):
-    robot = robot_in(SAFE, model)
-
-    def plays(number, *notes):
-        robot.send(command('song', number, len(notes) // 2, *notes), command('play_song', number))
-        playing = robot.read(37)['song_playing']
-        robot.run(5)
-        return bool(playing)
-    assert plays(model.songs - 1, 60, 64) and not plays(model.songs, 60, 64)
-    assert not plays(0) and plays(1, *[60, 16] * 16) and not plays(2, *[60, 16] * 17)
-
-
-@both
-def test_a_song_lasts_64ths_of_a_second(model):
-    robot = robot_in(SAFE, model)
-    robot.send(command('song', 0, 3, 60, 32, 62, 64, 64, 32), command('play_song', 0))     # 2 s
-    robot.run(1.85)
-    assert robot.read(37) == {'song_playing': 1}
-    robot.run(0.1)
-    assert robot.read(37) == {'song_playing': 0}
-
-
-def test_a_button_is_pressed_for_a_sixth_of_a_second():
-    robot = robot_in(SAFE, CREATE_2)
-    assert robot.read(18) == {'buttons': 0}
-    robot.send(command('push_buttons', 5))
-    robot.run(0.06)
-    assert robot.read(18) == {'buttons': 5}
-    robot.run(0.01)
-    assert robot.read(18) == {'buttons': 0}
 
 
 @both
@@ -62,16 +29,13 @@ def test_a_frame_has_up_to_255_data_bytes(model):
 @both
 def test_outputs_and_requests_are_cleared_by_a_restart(model):
     robot = robot_in(FULL, model)
-    robot.send(command('leds', 1, 2, 3), command('song', 0, 1, 60, 255), command('play_song', 0),
-               command('stream', 1, 7), drive_direct(100, 100))
+    robot.send(command('leds', 1, 2, 3), command('stream', 1, 7), drive_direct(100, 100))
     robot.robot.switch_on(robot.now)
     assert robot.robot.outputs == {} and not robot.body.moving
     robot.run(1)
     robot.send(command('start'))
     values = robot.read(5)
     assert values == {**dict.fromkeys(values, 0), 'mode': PASSIVE}
-    robot.send(command('full'), command('play_song', 0))        # the song is not stored any more
-    assert robot.read(37) == {'song_playing': 0}
 
 
 @both

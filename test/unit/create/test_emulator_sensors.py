@@ -1,4 +1,4 @@
-"""The emulated Create: its sensors and their packets, its buttons, battery and songs."""
+"""The emulated Create: its sensors and their packets, and its battery."""
 from math import pi, radians
 
 import pytest
@@ -122,28 +122,7 @@ def test_the_gyro_on_the_analog_input_of_a_create():
     assert robot_in(PASSIVE, CREATE_2).read(33) == {'analog_input': 0}
 
 
-# songs, buttons, baud rate
-
-@both
-def test_a_song_plays_for_its_duration_and_no_other_meanwhile(model):
-    robot = robot_in(SAFE, model)
-    robot.send(command('song', 1, 2, 60, 32, 62, 64), command('song', 2, 1, 60, 64))
-    assert robot.read(37) == {'song_playing': 0}
-    robot.send(command('play_song', 1), command('play_song', 2))
-    assert robot.read(36) == {'song_number': 1} and robot.read(37) == {'song_playing': 1}
-    robot.run(1.5)
-    assert robot.read(37) == {'song_playing': 0}
-    robot.send(command('play_song', model.songs))       # no such song
-    assert robot.read(37) == {'song_playing': 0}
-
-
-def test_a_pushed_button_comes_back():
-    robot = robot_in(SAFE, CREATE_2)
-    robot.send(command('push_buttons', 4))
-    assert robot.read(18) == {'buttons': 4}
-    robot.run(0.2)
-    assert robot.read(18) == {'buttons': 0}
-
+# baud rate
 
 @both
 def test_baud(model):

@@ -94,7 +94,7 @@ def test_the_guardian_gets_ten_heartbeats_per_second(line):
     link.guardian.lives = True
     assert not link.is_guarded(5 * SECOND)      # a dead guardian remains dead
     link.confirm(SimpleNamespace(model=protocol.CREATE_2))
-    assert link.guardian.confirmed.endswith(b'\x80\x96\x00')    # Start, and a pause of the stream
+    assert link.guardian.confirmed.endswith(bytes((145, 0, 0, 0, 0, 128)))      # a stop, and Start
 
 
 def test_a_line_is_closed_once(line):

@@ -22,7 +22,7 @@ def test_the_offset_of_the_mode_is_found(robot_type, mode, plus_one):
     assert driven.log.count(REPORTED) == plus_one and len(driven.log) == 2 + plus_one
     driven.drive(0.2, 0, 0.2)
     assert driven.body.moving == (mode != protocol.PASSIVE)
-    assert driven.driver.reader.rejected == 0
+    assert driven.driver.queries.reader.rejected == 0
 
 
 @BOTH

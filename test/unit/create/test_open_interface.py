@@ -87,8 +87,8 @@ def test_the_opcodes_that_the_driver_sends():
 
 def test_the_robots():
     """Create p. 4, 9, 11; Create 2 p. 4, 5, 13, 20, 31."""
-    assert (CREATE.baud, CREATE.wheel_separation, CREATE.counts_per_metre, CREATE.songs) == (57600, 0.26, None, 16)
-    assert (CREATE_2.baud, CREATE_2.wheel_separation, CREATE_2.songs) == (115200, 0.235, 4)
+    assert (CREATE.baud, CREATE.wheel_separation, CREATE.counts_per_metre) == (57600, 0.26, None)
+    assert (CREATE_2.baud, CREATE_2.wheel_separation) == (115200, 0.235)
     assert CREATE_2.counts_per_metre == pytest.approx(508.8 / (pi * 0.072))
 
 

@@ -88,7 +88,7 @@ def test_a_create_at_the_slowest_rate_is_driven(robot_type):
     driven.run(2)
     driven.drive(0.2, 0.5, 10)
     driven.run(1)
-    assert driven.driver.contact.dropouts == driven.driver.reader.rejected == 0
+    assert driven.driver.contact.dropouts == driven.driver.queries.reader.rejected == 0
     assert driven.pose.x == pytest.approx(driven.truth.x, abs=0.01) and len(driven.states) > 200
 
 

@@ -82,7 +82,7 @@ def test_a_robot_whose_stream_was_left_on_is_found(robot):
     driven = searching(robot)
     driven.connected = False
     driven.line.host_baud = driven.line.baud
-    driven.write(sequences.START + sequences.START_STREAM[:1] + bytes((2, 7, 35)))
+    driven.write(sequences.START + protocol.command('stream', 2, 7, 35))
     driven.run(0.2)
     driven.connect()
     driven.run(2)

@@ -152,8 +152,19 @@ def test_after_four_unclear_replies_the_rate_decides(baud, model):
 def test_a_robot_that_falls_silent_is_searched_for_at_the_next_rate():
     searching = Searching()
     searching.find_battery()
-    assert [searching.answer(b'') for _ in range(4)] == [None] * 4
+    assert [searching.answer(b'') for _ in range(5)] == [None] * 5
     assert searching.line.rates == [57600, 115200] and searching.line.sent[-1] == sequences.ASK_BATTERY
+    assert not searching.search.battery_rates
+
+
+def test_only_a_robot_that_answers_the_battery_query_again_counts_as_one_that_answers_nothing_else():
+    """A Create that is silent for half a second, twice, is not a Roomba 400."""
+    searching = Searching((57600,))
+    for last, count in (battery(), 1), (battery(), 2), (b'', 0), (battery(), 1):
+        searching.find_battery()
+        for reply in (b'', b'', b'', b'', last):
+            assert searching.answer(reply) is None
+        assert len(searching.search.battery_rates) == count
 
 
 def test_a_stream_shows_the_rate():

@@ -138,7 +138,10 @@ def test_the_speed_limit_of_a_wheel_is_500_mm_s():
 
 def queries(model=protocol.CREATE, kind=KEPT):
     """Return (Queries to a robot, its Counter, the lost replies)."""
-    result, losses = Queries(Sender()), []
+    sender, losses = Sender(), []
+    result = Queries(sender)
+    result.sent = []
+    sender.open(result.sent.append)
     counter = travel_of(model, Fractions(kind))
     counter.miss = lambda *arguments: losses.append(arguments)
     result.use(model, counter)
@@ -148,7 +151,7 @@ def queries(model=protocol.CREATE, kind=KEPT):
 def test_a_reply_is_awaited_for_0_2_s_and_its_next_byte_for_50_ms():
     result, _ = queries()
     assert not result.awaits_reply(SECOND)
-    result.begin(SECOND, False)
+    result.ask(SECOND)
     assert result.awaits_reply(SECOND * 6 // 5 - 1) and not result.awaits_reply(SECOND * 6 // 5)
     result.reader.feed(b'\0')
     result.byte_time = 2 * SECOND
@@ -158,15 +161,16 @@ def test_a_reply_is_awaited_for_0_2_s_and_its_next_byte_for_50_ms():
 @pytest.mark.parametrize('begun', [False, True])
 def test_a_query_gives_up_the_previous_one(begun):
     result, losses = queries()
-    result.commanded.send(0, (100, 200))
-    result.begin(tenths(1), False)
+    result.sender.commanded.send(0, (100, 200))
+    result.ask(tenths(1))
     assert result.missed == 0
     result.reader.feed(b'\0' * begun)
-    result.begin(tenths(3), False)
+    result.ask(tenths(3))
     assert result.missed == 1 and not result.reader.buffer
     assert losses == [(begun, 0.1, pytest.approx((0.01, 0.02)))]
     # the robot counts from the lost query on
-    assert result.commanded.counted == pytest.approx((0.02, 0.04)) and result.commanded.counted_from == tenths(1)
+    commanded = result.sender.commanded
+    assert commanded.counted == pytest.approx((0.02, 0.04)) and commanded.counted_from == tenths(1)
     result.give_up()
     assert result.missed == 2 and losses[1] == (False, 0.2, pytest.approx((0.02, 0.04)))
     result.give_up()
@@ -175,10 +179,14 @@ def test_a_query_gives_up_the_previous_one(begun):
 
 def test_what_a_robot_is_asked_for():
     all_packets, no_angle = sequences.query(sequences.QUERIED), sequences.query(sequences.QUERIED_WITHOUT_ANGLE)
-    assert queries()[0].begin(0, False) == all_packets
     result, _ = queries(kind=LOST)
-    assert result.begin(0, True) == all_packets and result.begin(0, False) == no_angle
-    assert queries(protocol.CREATE_2)[0].begin(0, False) == sequences.query((1, 3, 34, 35, 43, 44))
+    result.ask(0, start=True)
+    result.ask(0)
+    assert result.sent == [sequences.STOP + sequences.START + all_packets, no_angle]
+    for model, query in (protocol.CREATE, all_packets), (protocol.CREATE_2, sequences.query((1, 3, 34, 35, 43, 44))):
+        result, _ = queries(model)
+        result.ask(0)
+        assert result.sent == [query]
     assert isinstance(travel_of(protocol.CREATE_2, Fractions()), EncoderTravel)
 
 
@@ -187,8 +195,7 @@ def test_the_queries_of_the_document():
     query list (149) with 6 packets."""
     assert sequences.query(sequences.QUERIED) == bytes((149, 6, 1, 3, 34, 35, 2, 33))
     assert sequences.query(sequences.QUERIED_WITHOUT_ANGLE) == bytes((149, 6, 1, 3, 34, 35, 19, 33))
-    assert sequences.START_STREAM == bytes((148, 6, 1, 3, 34, 35, 43, 44))
-    assert sequences.PAUSE_STREAM == bytes((150, 0)) and sequences.RESUME_STREAM == bytes((150, 1))
+    assert sequences.PAUSE_STREAM == bytes((150, 0))
     assert sequences.ASK_BATTERY == bytes((128, 142, 3))
     assert sequences.ASK_ENCODER + sequences.ASK_WALL == bytes((142, 43, 142, 8))
     # an encoder has two bytes, so zeros complete the longest command of the driver before a stop
@@ -200,9 +207,8 @@ def test_how_a_robot_is_left():
     create, create_2 = protocol.CREATE, protocol.CREATE_2
     assert sequences.leave(create) == sequences.STOP + bytes((147, 0, 128))
     assert sequences.leave(create_2) == sequences.STOP + bytes((128,))
-    for model, pause in (create, b''), (create_2, bytes((150, 0))):
-        stop = sequences.leave(model) + pause
-        assert sequences.guardian_stop(model) == stop + bytes(512) + stop
+    for model in create, create_2:
+        assert sequences.guardian_stop(model) == sequences.leave(model) + bytes(512) + sequences.leave(model)
 
 
 @pytest.mark.parametrize('mode, opcode', [(1, 128), (2, 131), (3, 132)])

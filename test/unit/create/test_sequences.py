@@ -7,7 +7,7 @@ from rbx1_nav.create.driver import sequences
 from driven_create import started
 
 COMMANDS = [protocol.drive_direct(500, -500), protocol.drive_direct(-1, -1), sequences.query(sequences.QUERIED),
-            sequences.query(sequences.QUERIED_WITHOUT_ANGLE), sequences.START_STREAM, sequences.RESUME_STREAM,
+            sequences.query(sequences.QUERIED_WITHOUT_ANGLE), sequences.query(sequences.QUERIED_ENCODERS),
             protocol.command('start'), protocol.command('safe'), protocol.command('full'),
             protocol.command('digital_outputs', 1)]
 BEGINNINGS = sorted({command[:size] for command in COMMANDS for size in range(len(command) + 1)})
@@ -31,8 +31,7 @@ def test_the_robot_stands_after_any_beginning_of_a_command(robot_type, stop):
 def test_nothing_that_is_sent_to_a_robot_that_is_off_resets_it(model):
     # a robot that is off takes each byte for a command
     reset = protocol.OPCODES['reset']
-    for data in (sequences.STOP, sequences.FLUSH, sequences.start(model, True),
-                 sequences.start(model, False), sequences.leave(model),
+    for data in (sequences.STOP, sequences.FLUSH, sequences.START, sequences.leave(model),
                  sequences.guardian_stop(model), sequences.ASK_BATTERY, sequences.ASK_ENCODER, sequences.ASK_WALL,
-                 sequences.query(sequences.QUERIED), sequences.query(sequences.QUERIED_WITHOUT_ANGLE)):
+                 *map(sequences.query, sequences.queried(model))):
         assert reset not in data

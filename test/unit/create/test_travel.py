@@ -54,11 +54,12 @@ def test_one_implausible_reading_is_dropped():
     assert counter.update(encoders(1010, 1010), 0.030, STILL).distance == pytest.approx(10 * COUNT)
 
 
-def test_implausible_readings_that_agree_are_a_new_beginning():
+def test_three_implausible_readings_in_a_row_are_a_new_beginning():
     counter = encoder_travel(1000, 1000)
     for count in range(3):
         with pytest.raises(Implausible):
             counter.update(encoders(20000 + count, 0), 0.015, STILL)
+    assert counter.update(encoders(20002, 0), 0.015, STILL) == NOWHERE
     assert counter.update(encoders(20012, 10), 0.015, STILL).distance == pytest.approx(10 * COUNT)
 
 

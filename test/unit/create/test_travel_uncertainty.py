@@ -101,13 +101,9 @@ def feed(counter, *readings):
     return results
 
 
-def test_three_implausible_readings_in_a_row_must_agree():
+def test_three_implausible_readings_must_be_in_a_row():
     jump = 20000
-    # 2 * 15 mm are 67 counts
-    assert feed(encoder_travel(), *[(jump + 60 * index, 0) for index in range(4)])[:3] == [None] * 3
     assert feed(encoder_travel(), (jump, 0), (jump, 0), (jump, 0), (jump, 0)) == [None, None, None, 0]
-    assert feed(encoder_travel(), (jump, 0), (jump + 70, 0), (jump + 140, 0), (jump + 140, 0)) == [None] * 4
-    assert feed(encoder_travel(), (jump, 0), (jump, 70), (jump, 140), (jump, 140)) == [None] * 4
     # a good reading in between: the count starts again
     assert feed(encoder_travel(), (jump, 0), (jump, 0), (0, 0), (jump, 0), (jump, 0), (0, 0)) == [
         None, None, 0, None, None, 0]

@@ -18,6 +18,7 @@ OUTAGE = 3 * SECOND // 10   # longest harmless time in which the robot does not 
 TOO_BAD = 0.5               # share of lost replies at which the robot is stopped
 BLOCKED = 0.1               # m, commanded travel of a wheel without a turn of any wheel
 TURNED = 0.1                # fraction of the commanded travel from which the wheels count as turning
+AT_CLIFF = 1 << 8       # a bit beside those of bumps and wheel drops
 BACK_UP = 'a cliff: expected a command that backs up'
 
 
@@ -32,16 +33,16 @@ class Acceptance:
         self.lockout = Lockout(gate.timeout)
         self.reading_time: int | None = None    # time at which the robot made the last reading
         self._ran: int | None = None    # time at which the driver last ran
-        self._bits = self._felt = 0     # bumps and wheel drops in the last reading, in both of the last two readings
-        self._at_cliff = False      # in the last reading
+        # bumps, wheel drops and AT_CLIFF: in the last reading, and in both of the last two readings
+        self._bits = self._felt = 0
         self._blocked = 0.0         # m, see BLOCKED
         self._ignored_since: int | None = None  # time of the first motion command that the robot does not follow
 
     def feel(self, time: int, reading: Mapping[str, int]) -> bool:
         """Process a reading. Returns whether two readings show a dropped wheel, since one may be corrupted."""
-        bits, self.reading_time = reading['bumps_and_wheel_drops'], time
+        self.reading_time = time
+        bits = reading['bumps_and_wheel_drops'] | (AT_CLIFF if any(reading[name] for name in CLIFFS) else 0)
         self._felt, self._bits = bits & self._bits, bits
-        self._at_cliff = any(reading[name] for name in CLIFFS)
         return bool(self._felt & WHEEL_DROPS)
 
     def follow(self, elapsed: float, expected: Expected, travel: Travel, width: float) -> None:
@@ -84,7 +85,7 @@ class Acceptance:
         """Raise RefusedCommand if the robot does not follow the command in force, and will not do so shortly."""
         if self._is_bumped(self._felt):
             raise RefusedCommand('a bumper is pressed')
-        if self._is_at_edge() and self._is_obeyed:
+        if self._is_at_edge(self._felt) and self._is_obeyed:
             raise RefusedCommand(BACK_UP)
         obstacle = self._obstacle(now)
         if obstacle:
@@ -94,7 +95,8 @@ class Acceptance:
     def speeds(self, model: protocol.Model) -> tuple[float, float]:
         """Return the wheel speeds (left, right; mm/s) that a robot of this Model may have now."""
         linear, angular = self.gate.linear, self.gate.angular
-        if not self._is_obeyed or self._bits & WHEEL_DROPS or self._is_bumped(self._bits) or self._is_at_edge():
+        bits = self._bits
+        if not self._is_obeyed or bits & WHEEL_DROPS or self._is_bumped(bits) or self._is_at_edge(bits):
             return 0.0, 0.0
         if angular:
             angular = copysign(max(abs(angular), self.settings.min_yaw_speed), angular)
@@ -110,8 +112,9 @@ class Acceptance:
         radius larger than the robot's (Create p. 6)."""
         return self.gate.linear < 0 and -self.gate.linear >= abs(self.gate.angular) * protocol.ROBOT_RADIUS
 
-    def _is_at_edge(self) -> bool:
-        return self._at_cliff and self.settings.mode == protocol.SAFE and self.gate.moving and not self.backs
+    def _is_at_edge(self, bits: int) -> bool:
+        return (bool(bits & AT_CLIFF) and self.settings.mode == protocol.SAFE and self.gate.moving
+                and not self.backs)
 
     def _is_bumped(self, bits: int) -> bool:
         return self.gate.linear > 0 and self.settings.stop_on_bump and bool(bits & BUMPS)
@@ -131,6 +134,6 @@ class Acceptance:
             return ''
         if self.supervisor.in_control:
             return 'operation_mode: 1: the robot is not driven in passive mode'
-        if self._is_at_edge():
+        if self._is_at_edge(self._felt):
             return BACK_UP
         return f"the robot cannot be driven: {self.supervisor.reason or 'it does not change to the requested mode'}"

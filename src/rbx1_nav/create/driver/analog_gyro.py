@@ -30,7 +30,6 @@ class AnalogGyro:
         self.rest: deque[int] = deque(maxlen=MAX_REST)
         self.total = 0          # sum of the readings in `rest`
         self.jumped = 0.0       # s of consecutive readings at rest that are far from the offset
-        self.rate = 0.0         # rad/s, last rate
         self.yaw = 0.0          # rad, integrated rate
         self.turned = 0.0       # rad, integrated absolute rate
         self.variance = MEASURED    # rad^2, variance of the yaw without the scale error
@@ -44,32 +43,24 @@ class AnalogGyro:
         """Return the Reading for a count after a Step; None without an offset, or if the count shows no angular
         velocity.
 
-        The rate is always the current rate. The heading follows the wheels where the gyro does not measure it.
+        The rate is always the current rate. In gaps and without a rate, the heading follows the wheels.
         """
         self._calibrate(count, step)
-        offset, before, reading = self.offset, self.yaw, None
-        if offset is None or self.check.problem or not self.check.accepts(count, step.at_rest and not step.touched):
-            self.yaw += step.turn
-            self.variance += step.variance
-        else:
-            reading = self._measure(count, offset, step)
-        if self.check.update(count, step, self.yaw - before):
-            self.yaw += self.check.unseen
-            self.variance += self.check.variance
-        return None if self.check.problem else reading
-
-    def _measure(self, count: int, offset: float, step: Step) -> Reading:
-        scale = self.full_scale / offset
-        rate = (offset - count) * scale
-        variance = COUNT_VARIANCE * scale ** 2
-        if step.missing:
-            self._bridge((self.rate + rate) / 2 * step.elapsed, step.turn, step.variance)
-        else:
+        offset = self.offset
+        scale = self.full_scale / (offset or 1.0)
+        rate, variance = ((offset or 0.0) - count) * scale, COUNT_VARIANCE * scale ** 2
+        measures = offset is not None and not self.check.problem and self.check.accepts(
+            count, step.at_rest and not step.touched)
+        if measures and not step.missing:
             self.yaw += rate * step.elapsed
             self.turned += abs(rate) * step.elapsed
             self.variance += variance * (1 + 1 / len(self.rest)) * step.elapsed ** 2
-        self.rate = rate
-        return Reading(rate, variance, self.yaw, self.variance + (SCALE_ERROR * self.turned) ** 2)
+        else:
+            self.yaw += step.turn
+            self.variance += step.variance
+        reading = Reading(rate, variance, self.yaw, self.variance + (SCALE_ERROR * self.turned) ** 2)
+        self.check.update(count, step)
+        return reading if measures and not self.check.problem else None
 
     def _calibrate(self, count: int, step: Step) -> None:
         """Add a count to the offset if it is good, and discard an offset that has become wrong."""
@@ -85,15 +76,3 @@ class AnalogGyro:
                 self.total -= self.rest[0]
             self.rest.append(count)
             self.total += count
-
-    def _bridge(self, steady: float, turn: float, variance: float) -> None:
-        """Add the turn during a gap: the weighted mean of the turn at a steady rate and the turn from the odometry.
-
-        variance: variance of the odometry's turn, rad^2. If the rate was not steady, the two turns differ: see
-        estimation/filter.py.
-        """
-        difference = turn - steady
-        wrong = variance / 2 + difference ** 2
-        share = wrong / (wrong + variance)      # weight of the odometry
-        self.yaw += steady + share * difference
-        self.variance += share * variance

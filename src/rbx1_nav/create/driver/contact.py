@@ -1,14 +1,16 @@
 """Finds and starts the robot, detects when it stops responding, and reconnects to it. All times are in ns."""
 from __future__ import annotations
 
-from typing import Callable, Protocol
+from enum import Enum
+from typing import Callable
 
 from rbx1_nav.config import AUTO
-from rbx1_nav.create import protocol
 from rbx1_nav.create.driver import sequences
 from rbx1_nav.create.driver.parameters import Settings
-from rbx1_nav.create.driver.search import RATES, Found, Search, SearchedLine
+from rbx1_nav.create.driver.queries import Queries
+from rbx1_nav.create.driver.search import RATES, Found, Line, Search
 from rbx1_nav.create.driver.sender import Sender
+from rbx1_nav.create.driver.supervisor import Supervisor
 from rbx1_nav.units import SECOND
 
 SILENCE = SECOND // 2           # time without a reading after which the robot counts as not answering
@@ -18,43 +20,22 @@ START_WAIT = SECOND             # time that a robot may need to start; after it,
 ROUNDS_BEFORE_WARNING = 2       # rounds of the search before the first warning
 
 
-class Line(SearchedLine, Protocol):
-    """The line to the robot."""
+class Event(Enum):
+    """What tick() has noticed."""
 
-    @property
-    def is_same(self) -> bool:
-        """Whether the line uses the same adapter as the previous line."""
-
-    def confirm(self, found: Found) -> None:
-        """Allow the guardian to stop the robot that was found."""
-
-
-class Asker(Protocol):
-    """The part of the driver that Contact uses."""
-
-    sender: Sender
-
-    @property
-    def polled(self) -> bool:
-        """Whether the robot sends readings only in reply to queries."""
-
-    def use(self, model: protocol.Model) -> None:
-        """Drive a robot of this Model."""
-
-    def ask(self, now: int, start: bool = False) -> None:
-        """Ask for a reading. start: whether to start the robot first."""
-
-    def lost_robot(self) -> None:
-        """Handle a robot that no longer answers."""
+    NONE, LOST, FOUND = range(3)
 
 
 class Contact:
     """Monitors whether the robot answers, and tries to restore contact when it does not."""
 
-    def __init__(self, settings: Settings, driver: Asker, warn: Callable[[str], None]) -> None:
+    def __init__(self, settings: Settings, sender: Sender, queries: Queries, supervisor: Supervisor,
+                 warn: Callable[[str], None]) -> None:
         """warn: logs a line."""
         self.settings = settings
-        self.driver = driver
+        self.sender = sender
+        self.queries = queries
+        self.supervisor = supervisor
         self.warn = warn
         self.line: Line | None = None
         self.found: Found | None = None         # the robot on this line, kept while it does not answer
@@ -84,31 +65,38 @@ class Contact:
         """Handle the loss of the line."""
         self.line = None
         self._lose()
+        self.queries.give_up()
 
     def receive(self, now: int, data: bytes) -> None:
         """Process bytes that arrive during the search."""
         self.search.receive(now, data)
 
-    def tick(self, now: int, reading_time: int | None) -> None:
-        """Do what is due. reading_time: when the robot made the last reading."""
+    def tick(self, now: int, reading_time: int | None) -> Event:
+        """Do what is due. reading_time: when the robot made the last reading. After FOUND, call start()."""
         line = self.line
         if line is None:
-            return
+            return Event.NONE
         if self.searching:
             found = self.search.tick(now)
-            if found:
-                self._finish_search(now, line, found)
             self._warn_of_silence()
+            if found and self._accepts(now, found):
+                self.searching, self._refused, self.found, self._baud = False, None, found, found.baud
+                line.confirm(found)
+                return Event.FOUND
         elif self.answers:
             if reading_time is not None and now - reading_time > SILENCE:
                 self._fall_silent(now, line)
+                return Event.LOST
         elif self.started:
             if now - self._attempt > START_WAIT:
                 self._begin_search(now, line)
         elif now - self._attempt > FIRST_WAIT:
-            self._start(now)
+            self.start(now)
         elif now - self._attempt > FLUSH_WAIT and not self._flushed:
-            self._flush(now, line)
+            self._flushed = True
+            line.write(sequences.FLUSH)
+            self._stop_and_ask(now)
+        return Event.NONE
 
     @property
     def may_ask(self) -> bool:
@@ -121,33 +109,27 @@ class Contact:
         return not before
 
     def _lose(self) -> None:
-        if self.answers:
-            self.dropouts += 1
+        self.dropouts += self.answers
         self.answers = False
+        self.supervisor.forget()
 
     def _begin_asking(self, now: int, line: Line) -> None:
         self._attempt, self.started, self._flushed = now, False, False
         line.set_rate(self._baud)       # another process may have changed it
-        self.driver.sender.stop(now)
-        if self.driver.polled:
-            self.driver.ask(now)
-        else:
-            self._flush(now, line)      # a stream alone does not show that the robot receives commands
+        self._stop_and_ask(now)
 
-    def _flush(self, now: int, line: Line) -> None:
-        self._flushed = True
-        line.write(sequences.FLUSH)
-        self.driver.sender.stop(now)
-        self.driver.ask(now)
+    def _stop_and_ask(self, now: int, start: bool = False) -> None:
+        self.sender.stop(now)
+        self.queries.ask(now, start)
 
-    def _start(self, now: int) -> None:
+    def start(self, now: int) -> None:
+        """Start the robot that was found."""
         self._attempt, self.started = now, True
-        self.driver.sender.stop(now)
-        self.driver.ask(now, start=True)
+        self.supervisor.restart(now)
+        self._stop_and_ask(now, start=True)
 
     def _fall_silent(self, now: int, line: Line) -> None:
         self._lose()
-        self.driver.lost_robot()
         self.warn('The robot has stopped responding. If it is still moving, stop it by hand: it keeps executing its '
                   'last command')
         self._begin_asking(now, line)
@@ -158,20 +140,14 @@ class Contact:
         self.searching = True
         self.search.begin(now, line, self._baud)
 
-    def _finish_search(self, now: int, line: Line, found: Found) -> None:
+    def _accepts(self, now: int, found: Found) -> bool:
+        """Return whether this robot may be driven; otherwise, the search continues."""
         before = self.found.model.name if self.found else self.settings.robot_type
-        if before not in (AUTO, found.model.name):
-            self._refuse(found, before)
-            self.search.begin_later(now, START_WAIT)
-            return
-        self.searching, self._refused, self.found, self._baud = False, None, found, found.baud
-        self.driver.use(found.model)
-        line.confirm(found)
-        self._start(now)
-
-    def _refuse(self, found: Found, before: str) -> None:
+        if before in (AUTO, found.model.name):
+            return True
+        self.search.begin_later(now, START_WAIT)
         if found == self._refused:
-            return
+            return False
         self._refused = found
         if self.found:
             self.warn(f'A {found.model.name} answers at {found.baud} baud instead of a {before}: restart this node '
@@ -179,6 +155,7 @@ class Contact:
         else:
             self.warn(f'robot_type: {before}: a {found.model.name} answers at {found.baud} baud: expected '
                       f'robot_type:={found.model.name}, or auto')
+        return False
 
     def _warn_of_silence(self) -> None:
         answered = self.search.battery_rates

@@ -11,16 +11,16 @@ from rbx1_nav.create import protocol
 from rbx1_nav.create.driver import sequences
 from rbx1_nav.create.driver.acceptance import OUTAGE, Acceptance
 from rbx1_nav.create.driver.analog_gyro import AnalogGyro
-from rbx1_nav.create.driver.contact import Contact, Line
+from rbx1_nav.create.driver.contact import Contact, Event
 from rbx1_nav.create.driver.fractions import Fractions
 from rbx1_nav.create.driver.gyro_check import Step
 from rbx1_nav.create.driver.motion_report import MotionReport, State
 from rbx1_nav.create.driver.parameters import Settings
 from rbx1_nav.create.driver.queries import Queries
-from rbx1_nav.create.driver.search import Search
+from rbx1_nav.create.driver.replies import ReplyReader
+from rbx1_nav.create.driver.search import Line, Search
 from rbx1_nav.create.driver.sender import Sender
 from rbx1_nav.create.driver.speeds import is_too_fast
-from rbx1_nav.create.driver.stream import FrameReader, ReplyReader
 from rbx1_nav.create.driver.supervisor import WHEEL_DROPS, Supervisor, causes
 from rbx1_nav.create.driver.travel import Expected, Implausible, Travel, travel_of, unknown
 from rbx1_nav.robot.readings import Reading
@@ -28,7 +28,6 @@ from rbx1_nav.schedule import Schedule
 from rbx1_nav.units import SECOND
 
 INSIST_WAIT = SECOND // 10      # ns without confirmation after which the last stop is repeated
-STREAM_BAUD = 57600             # bits per second that a stream requires
 GAP = 3                         # periods without a reading after which one gyro rate no longer represents all of them
 
 
@@ -46,8 +45,8 @@ class Driver:
         self.sender = Sender()
         self.commanded = self.sender.commanded
         self.queries = Queries(self.sender)
-        self.contact = Contact(settings, self, warn)
         self.supervisor = Supervisor(settings.mode, settings.mode_plus_one, info, warn)
+        self.contact = Contact(settings, self.sender, self.queries, self.supervisor, warn)
         self.acceptance = Acceptance(settings, gate, self.contact, self.supervisor)
         self.schedule = Schedule(settings.update_rate)
         self.due: int | None = None     # ns: report the State of the first reading that arrives after this
@@ -68,31 +67,25 @@ class Driver:
         self.model = model
         self.baud = (self.contact.found or model).baud
         self.sender.byte = 10 * SECOND // self.baud
-        # a Create is always polled; the stream of a Create 2, with a frame every 15 ms, needs a fast line
-        self.polled = model is protocol.CREATE or self.baud < STREAM_BAUD
         if self.reading is None:
             self.counter = travel_of(model, Fractions(self.settings.angle_fractions, self.warn))
             self.motion = MotionReport(self.settings, model, self.counter.rounding)
             self.gyro = (AnalogGyro(self.settings.gyro_range, self.settings.gyro_correction, self.error, self.info)
                          if model is protocol.CREATE and self.settings.has_gyro else None)
-        self.reader: ReplyReader | FrameReader = (
-            self.queries.use(model, self.counter) if self.polled else FrameReader(model, sequences.STREAMED))
+        self.queries.use(model, self.counter)
 
     # the line
 
     def attach(self, now: int, line: Line) -> None:
         """Start using a line that was opened: see Contact. Raises OSError."""
         self.sender.open(line.write)
-        self.reader.clear()
         self.contact.attach(now, line)
 
     def detach(self) -> None:
         """Handle the loss of the line. The robot is out of control: it keeps executing the last command."""
         self.contact.detach()
-        self.lost_robot()
+        self.acceptance.lose_robot()
         self.sender.close()
-        if self.polled:
-            self.queries.give_up()
 
     def stop(self, now: int, reason: str) -> None:
         """Stop the robot, and lock out senders that have not noticed the stop."""
@@ -122,22 +115,12 @@ class Driver:
     def _leave(self, now: int, before: bytes = b'') -> None:
         self.told = now + len(before) * self.sender.byte
         self.sender.stop(now, before, sequences.leave(self.model))
-        self.ask(now)
+        self.queries.ask(now)
 
     def _insist(self, now: int) -> None:
         """Repeat the final stop, after bytes that complete whatever may have swallowed the previous one."""
         if not self.left and now - self.told > INSIST_WAIT:
             self._leave(now, sequences.FLUSH)
-
-    # queries
-
-    def ask(self, now: int, start: bool = False) -> None:
-        """Ask for a reading. start: whether to start the robot first."""
-        data = self.queries.begin(now, start) if self.polled else sequences.RESUME_STREAM
-        if start:
-            self.supervisor.restart(now)
-            data = sequences.start(self.model, self.polled)
-        self.sender.send(now, data)
 
     # commands
 
@@ -179,21 +162,24 @@ class Driver:
         self.acceptance.notice_stall(now)
         if timed_out:
             self.gate.halt()
-        if self.leaving is not None:
-            if self.contact.searching:      # the Start bytes of the search stop any motion
-                self.contact.tick(now, self.reading_time)
-            else:
-                self._insist(now)
+        if self.leaving is not None and not self.contact.searching:     # the Start bytes of the search stop any motion
+            self._insist(now)
             return False
-        self.contact.tick(now, self.reading_time)
+        event = self.contact.tick(now, self.reading_time)
+        if event is Event.LOST:
+            self.acceptance.lose_robot()
+        elif event is Event.FOUND and self.contact.found:
+            self.use(self.contact.found.model)
+            self.contact.start(now)
+        if self.leaving is not None:
+            return False
         self.acceptance.notice_losses(self.counter.bad)
         due = self.schedule.due(now)
         self.due = now if due and self.due is None else self.due
         if due or self._must_stop():
             self._send_speeds(now)
-        asks = self.contact.may_ask and self.polled and (due or self.counter.hurries)
-        if asks and not self.queries.awaits_reply(now):
-            self.ask(now)
+        if self.contact.may_ask and (due or self.counter.hurries) and not self.queries.awaits_reply(now):
+            self.queries.ask(now)
         return timed_out
 
     def until_tick(self, now: int) -> float:
@@ -204,11 +190,11 @@ class Driver:
         return max(0, time - now) / SECOND
 
     @property
-    def awaited(self) -> Search | ReplyReader | FrameReader | None:
+    def awaited(self) -> Search | ReplyReader | None:
         """The reader for the data that is due now; None before the next tick."""
         if self.contact.searching:
             return self.contact.search
-        return None if self.due is None and self.leaving is None and not self.counter.hurries else self.reader
+        return None if self.due is None and self.leaving is None and not self.counter.hurries else self.queries.reader
 
     # readings
 
@@ -217,22 +203,16 @@ class Driver:
         if self.contact.searching:
             self.contact.receive(now, data)
             return
-        if data:
-            self.queries.byte_time = now
-        rejected = self.reader.rejected
-        for reading in self.reader.feed(data):
-            # the robot samples a frame before sending it, and a reply when it receives the query
-            time = self.commanded.asked_time if self.polled else now - len(data) * self.sender.byte
+        reading = self.queries.receive(now, data)
+        if reading:
             self.commanded.advance(now)
             self.received = now
-            self._accept(max(time, self.reading_time or 0), reading)
-        if self.polled and self.reader.rejected != rejected:
-            self.queries.lose_reply(True)
+            self._accept(reading)
 
-    def _accept(self, time: int, reading: Mapping[str, int]) -> None:
+    def _accept(self, reading: Mapping[str, int]) -> None:
         commanded = self.commanded
+        time, part = commanded.asked_time, commanded.asked      # the robot senses when it receives the query
         elapsed = (time - self.reading_time) / SECOND if self.reading_time is not None else 0.0
-        part = commanded.asked if self.polled else commanded.counted
         # a robot that was just switched on and started is in passive mode, and counts from 0
         reset = (self.contact.started and self.reading is not None
                  and self.supervisor.is_passive(reading) and self.counter.is_reset(reading))
@@ -242,8 +222,7 @@ class Driver:
             travel = self.counter.update(reading, elapsed, part)
         except Implausible:
             self.implausible += 1
-            if self.polled:
-                self.queries.lose_reply(True)
+            self.queries.lose_reply(True)
             return
         if reset:
             travel = unknown(commanded.since_reading, self.model.wheel_separation)
@@ -285,11 +264,6 @@ class Driver:
         self.warn(f"The robot answers again, after {elapsed:.1f} s{': it was switched off or reset' if reset else ''}")
         if reset or elapsed > OUTAGE / SECOND:
             self.acceptance.lock(what)
-
-    def lost_robot(self) -> None:
-        """Handle a robot that no longer answers."""
-        self.supervisor.forget()
-        self.acceptance.lose_robot()
 
     def state(self) -> State | None:
         """Return the State if one is due and there is a new reading for it; else None."""

@@ -14,8 +14,8 @@ from rbx1_nav.create.driver import sequences
 from rbx1_nav.create.driver.guardian import Guardian
 from rbx1_nav.create.driver.parameters import Settings
 from rbx1_nav.create.driver.port import PortError, describe_adapter, find_port, list_adapters, open_port
+from rbx1_nav.create.driver.replies import ReplyReader
 from rbx1_nav.create.driver.search import Found, NoWakeLines, Search
-from rbx1_nav.create.driver.stream import FrameReader, ReplyReader
 from rbx1_nav.create.line_settings import rate_in, read_settings
 from rbx1_nav.units import SECOND
 
@@ -158,7 +158,7 @@ class Link:
             self.write(bytes((byte,)))
             time.sleep(sequences.PAUSE / SECOND)
 
-    def read(self, duration: float, reader: FrameReader | ReplyReader | Search | None) -> bytes:
+    def read(self, duration: float, reader: ReplyReader | Search | None) -> bytes:
         """Return the bytes that arrive. Returns at once if the guardian has died. Raises LineLost.
 
         duration: s until the next tick; reader: if it is set, return when its next reading is complete. Waiting for all

@@ -63,8 +63,12 @@ class NoWakeLines(OSError):
     """The line has no RTS and DTR."""
 
 
-class SearchedLine(Protocol):
-    """The line on which to search. All methods may raise OSError."""
+class Line(Protocol):
+    """The line to the robot. All methods may raise OSError."""
+
+    @property
+    def is_same(self) -> bool:
+        """Whether the line uses the same adapter as the previous line."""
 
     def set_rate(self, baud: int) -> None:
         """Set the rate, bits per second."""
@@ -78,6 +82,9 @@ class SearchedLine(Protocol):
     def write_apart(self, data: bytes) -> None:
         """Send bytes with a pause after each."""
 
+    def confirm(self, found: Found) -> None:
+        """Allow the guardian to stop the robot that was found."""
+
 
 class Search:
     """Queries one rate after another. All times are in ns."""
@@ -89,7 +96,7 @@ class Search:
         self.rounds = 0         # completed rounds without an answer
         self.battery_rates: list[int] = []  # rates at which a robot answered nothing but the query of its battery
         self.baud = rates[0]    # rate being tried
-        self._line: SearchedLine
+        self._line: Line
         self._order: list[int] = []         # rates still to be tried in this round
         self._buffer = bytearray()
         self._sizes: Sequence[int] = ()     # possible sizes of the reply in bytes, the largest last
@@ -99,7 +106,7 @@ class Search:
         # the model according to each reply so far; None for an inconclusive reply
         self._models: list[protocol.Model | None] = []
 
-    def begin(self, now: int, line: SearchedLine, baud: int | None = None) -> None:
+    def begin(self, now: int, line: Line, baud: int | None = None) -> None:
         """Begin to search on a line. baud: the rate to try first, one of `rates`."""
         self._line = line
         self.rates = tuple(sorted(self.rates, key=lambda rate: rate != baud))
@@ -204,6 +211,13 @@ class Search:
         elif any(self._models):
             return Found(protocol.CREATE_2 if self.baud == protocol.CREATE_2.baud else protocol.CREATE, self.baud)
         else:
-            self.battery_rates.append(self.baud)
-            self._next_rate(now)
+            self._send(now, sequences.ASK_BATTERY, self._judge_silence, _BATTERY_FORMAT.size)
         return None
+
+    def _judge_silence(self, now: int) -> None:
+        """Judge a robot that has answered the battery query, and no query of its model: it may have fallen silent."""
+        if is_battery(self._buffer):
+            self.battery_rates.append(self.baud)
+        else:
+            self.battery_rates.clear()
+        self._next_rate(now)

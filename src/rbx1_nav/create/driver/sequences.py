@@ -9,17 +9,16 @@ from rbx1_nav.units import SECOND
 
 # bumps, wheel drops and cliffs; charging state to capacity; then single packets
 _NUMBERS = (1, 3, 34, 35)
-STREAMED = _NUMBERS + (43, 44)      # of the Create 2
+QUERIED_ENCODERS = _NUMBERS + (43, 44)      # of the Create 2
 # of the Create, which resets distance and angle to 0 when it sends them. Group 2 contains both, which keeps the count
 # of numbers below seven: a robot that is off would take the byte 7 for a reset
 QUERIED = _NUMBERS + (2, 33)
 QUERIED_WITHOUT_ANGLE = _NUMBERS + (19, 33)
-START_STREAM = command('stream', len(STREAMED), *STREAMED)
-PAUSE_STREAM, RESUME_STREAM = (command('pause_resume_stream', on) for on in (0, 1))
 START = command('start')
 MODES = {protocol.PASSIVE: START, protocol.SAFE: command('safe'), protocol.FULL: command('full')}
 
 # the search for a robot: see search.py
+PAUSE_STREAM = command('pause_resume_stream', 0)
 BATTERY = 3                         # a group of 10 bytes
 ASK_BATTERY = START + command('sensors', BATTERY)
 ASK_ENCODER, ASK_WALL = command('sensors', 43), command('sensors', 8)
@@ -33,21 +32,15 @@ def query(numbers: Sequence[int]) -> bytes:
 
 # The last bytes sent may be the beginning of any of the driver's commands. Zeros complete it: with zeros as data no
 # command causes a lasting motion, and 0 is not a command.
-_PADDING = bytes(max(len(query(QUERIED)), len(START_STREAM)) - 1)
+_PADDING = bytes(len(query(QUERIED)) - 1)
 STOP = _PADDING + protocol.drive_direct(0, 0)
 # The longest command has 513 bytes: a song of 255 notes. This many zeros complete any command that garbage has begun.
 FLUSH = bytes(512)
 
 
 def queried(model: protocol.Model) -> tuple[tuple[int, ...], ...]:
-    """Return the numbers for the queries to a polled robot: all packets, and for a Create also without the angle."""
-    return (QUERIED, QUERIED_WITHOUT_ANGLE) if model is protocol.CREATE else (STREAMED,)
-
-
-def start(model: protocol.Model, polled: bool) -> bytes:
-    """Return the bytes that start the interface of a robot that was switched off, and ask for a reading. The robot is
-    then in passive mode."""
-    return STOP + START + (query(queried(model)[0]) if polled else START_STREAM)
+    """Return the numbers for the queries to a robot: all packets, and for a Create also without the angle."""
+    return (QUERIED, QUERIED_WITHOUT_ANGLE) if model is protocol.CREATE else (QUERIED_ENCODERS,)
 
 
 def take_control(model: protocol.Model, mode: int) -> bytes:
@@ -64,7 +57,6 @@ def leave(model: protocol.Model) -> bytes:
 
 
 def guardian_stop(model: protocol.Model) -> bytes:
-    """Return the bytes that a guardian sends: leave() and a pause of the stream, and both again after completing any
-    command that garbage has begun."""
-    stop = leave(model) + (b'' if model is protocol.CREATE else PAUSE_STREAM)
-    return stop + FLUSH + stop
+    """Return the bytes that a guardian sends: leave(), and again after completing any command that garbage has begun.
+    """
+    return leave(model) + FLUSH + leave(model)

@@ -2,14 +2,14 @@
 from __future__ import annotations
 
 from math import degrees, radians, sqrt
-from typing import Mapping, NamedTuple, Protocol
+from typing import Mapping, NamedTuple
 
 from rbx1_nav.create.driver.fractions import UNSURE, Fractions
 from rbx1_nav.create.protocol import MAX_SPEED, Model
 
 WHEEL_LIMIT = 1.3 * MAX_SPEED / 1000    # m/s: faster than any wheel
 MARGIN = 0.015          # m of wheel travel that one reading may miss and the next one include
-AGREED = 3              # consecutive implausible readings that agree, which show that the robot was reset
+AGREED = 3              # consecutive implausible readings, which show that the robot was reset
 LOST_SHARE = 0.1        # 1 sigma of an expected travel that was never read, as a fraction of it
 MEMORY = 0.02           # weight of the last reply in the share of lost replies, which covers about 50 replies
 BAD_LINE = 0.015        # share of lost replies, reached after one loss: other replies may be corrupted undetected
@@ -52,26 +52,6 @@ class Implausible(ValueError):
     """A reading that no robot could produce: it is corrupted, or the robot has been reset."""
 
 
-class Counter(Protocol):
-    """Converts counts to Travel. elapsed: s since the last good reading; expected: commanded travel in this time."""
-
-    @property
-    def rounding(self) -> tuple[float, float]:
-        """1 sigma (m, rad) of a position and a heading that are counted in whole units."""
-
-    def update(self, reading: Mapping[str, int], elapsed: float, expected: Expected) -> Travel:
-        """Return the Travel since the last good reading. Raises Implausible."""
-
-    def miss(self, begun: bool, elapsed: float, expected: Expected) -> None:
-        """Handle a reading that was lost on the line. begun: whether a part of it arrived."""
-
-    def restart(self) -> None:
-        """Handle a robot that counts from 0 again: the next reading yields no travel."""
-
-    def is_reset(self, reading: Mapping[str, int]) -> bool:
-        """Return whether this may be the reading of a robot that counts from 0 again."""
-
-
 def reach(elapsed: float) -> float:
     """Return how far (m) a wheel can travel in `elapsed` seconds."""
     return WHEEL_LIMIT * elapsed + MARGIN
@@ -98,11 +78,10 @@ def unknown(expected: Expected, width: float) -> Travel:
 
 
 class EncoderTravel:
-    """Travel of the Create 2, from 16-bit encoders that wrap."""
+    """Travel of the Create 2, from 16-bit encoders that wrap. A lost reply loses no travel."""
 
     WRAP = 1 << 16
-    # see CounterTravel: lost readings lose no travel, and each reading shows the whole turn
-    bad = unread_variance = 0.0
+    unread_variance = 0.0   # each reading shows the whole turn: see CounterTravel
     hurries = False
 
     def __init__(self, model: Model) -> None:
@@ -110,15 +89,19 @@ class EncoderTravel:
         assert model.counts_per_metre
         self.scale = 1 / model.counts_per_metre
         self.width = model.wheel_separation
+        # 1 sigma (m, rad) of a position and a heading that are counted in whole units
         self.rounding = self.scale * ROUND / 2 ** 0.5, 2 ** 0.5 * self.scale * ROUND / self.width
+        self.bad = 0.0          # share of the last replies that were lost
         self.restart()
 
     def restart(self) -> None:
+        """Handle a robot that counts from 0 again: the next reading yields no travel."""
         self.counts: tuple[int, int] | None = None
-        self.suspect: tuple[int, int] | None = None     # implausible counts
-        self.suspected = 0      # number of consecutive implausible counts that agree
+        self.rejected = 0       # number of consecutive implausible counts
 
     def update(self, reading: Mapping[str, int], elapsed: float, expected: Expected) -> Travel:
+        """Return the Travel since the last good reading, `elapsed` s ago. expected: commanded travel in this time.
+        Raises Implausible."""
         counts = reading['left_encoder'], reading['right_encoder']
         if self.counts is None:
             self.counts = counts
@@ -126,14 +109,18 @@ class EncoderTravel:
         before = self.counts
         left, right = (self.difference(new, old, travel) for new, old, travel in zip(counts, before, expected))
         if not is_possible(left, right, elapsed):
-            self.check_reset(counts)
+            self.rejected += 1
+            if self.rejected >= AGREED:
+                self.restart()
             raise Implausible(f'encoders: {counts[0]} and {counts[1]} after {before[0]} and {before[1]}')
-        self.counts, self.suspected = counts, 0
+        self.counts, self.rejected = counts, 0
+        self.bad *= 1 - MEMORY
         # beyond half a wrap, the number of wraps follows from commands that the robot may not have followed
         unsure = sum((self.WRAP * self.scale) ** 2 for travel in expected if abs(travel) > self.WRAP / 2 * self.scale)
         return Travel((left + right) / 2, (right - left) / self.width, unsure / 4, unsure / self.width ** 2)
 
     def is_reset(self, reading: Mapping[str, int]) -> bool:
+        """Return whether this may be the reading of a robot that counts from 0 again."""
         counts = [reading[name] for name in ('left_encoder', 'right_encoder')]
         return (all(abs(self.difference(count, 0, 0.0)) < MARGIN for count in counts)
                 and not all(abs(self.difference(count, 0, 0.0)) < MARGIN for count in self.counts or (0, 0)))
@@ -144,22 +131,13 @@ class EncoderTravel:
         wraps = round((expected / self.scale - low) / self.WRAP)
         return (low + self.WRAP * wraps) * self.scale
 
-    def check_reset(self, counts: tuple[int, int]) -> None:
-        """Restart if implausible readings agree with each other: they come from a robot that counts from 0 again."""
-        agrees = self.suspect and all(abs(self.difference(new, old, 0.0)) <= 2 * MARGIN
-                                      for new, old in zip(counts, self.suspect))
-        self.suspected = self.suspected + 1 if agrees else 1
-        self.suspect = counts
-        if self.suspected >= AGREED:
-            self.restart()
-            self.counts = counts
-
     def miss(self, begun: bool, elapsed: float, expected: Expected) -> None:
-        """Do nothing: the encoders keep counting, so no travel is lost."""
+        """Handle a reading that was lost on the line. begun: whether a part of it arrived."""
+        self.bad += (1 - self.bad) * MEMORY
 
 
 class CounterTravel:
-    """Travel of the Create, from distance and angle since the last reply. A lost reply loses the travel it reported."""
+    """Like EncoderTravel, for the Create: distance and angle since the last reply. A lost reply loses this travel."""
 
     CAP = 32767     # mm or degrees at which the robot stops counting
 

@@ -35,7 +35,7 @@ CHARGING, RESTING, MOVING = 1500, -300, -1000     # mA: current of the battery
 FLOOR, NO_FLOOR = 1500, 20  # signals of a cliff sensor
 
 # packet values that are not 0 and never change
-CONSTANT = {'temperature': 25, 'capacity': CAPACITY, **dict.fromkeys(
+CONSTANT = {'capacity': CAPACITY, **dict.fromkeys(
     ('cliff_left_signal', 'cliff_front_left_signal', 'cliff_front_right_signal', 'cliff_right_signal'), FLOOR)}
 # nothing received; weak pull-ups on the digital inputs
 CONSTANT_1 = {'infrared': 255, 'digital_inputs': 15}
@@ -87,7 +87,9 @@ class Body:
             UPDATE_PERIOD)
         self.drive(0, 0)
         self.bumped = self.wheel_dropped = self.cliff = self.docked = self.charging_fault = False
-        self.charge: float = CAPACITY       # mAh
+        self.charge: float = CAPACITY       # mAh; more than CAPACITY if the robot misjudges its battery
+        self.temperature = 25               # degrees C, of the battery
+        self.voltage = 0                    # mV; 0: it follows the charge
         self.now: int | None = None
         self.reset_counters()
 
@@ -130,7 +132,7 @@ class Body:
         self.angle.total = degrees((right - left) / self.model.wheel_separation)
         charging = charging and self.docked and not self.charging_fault
         current = self._use_battery(duration, charging)
-        charge = max(0, min(CAPACITY, round(self.charge)))
+        charge = round(self.charge)
         linear, angular = self.velocity
         rate = degrees(self.gyro.read(self.wheels.truth.pose.yaw, duration, False).rate) * self.errors.gyro_sensitivity
         self.values.update(
@@ -139,9 +141,10 @@ class Body:
                 WHEEL_DROP_LEFT if self.wheel_dropped else 0),
             cliff_front_left=int(self.cliff), cliff_front_right=int(self.cliff),
             # fault, trickle charging, full charging, none
-            charging_state=5 if self.charging_fault else (3 if charge == CAPACITY else 2) if charging else 0,
+            charging_state=5 if self.charging_fault else (3 if charge >= CAPACITY else 2) if charging else 0,
             charging_sources=2 if self.docked else 0,
-            voltage=round(1000 * (EMPTY + (FULL - EMPTY) * charge / CAPACITY)), current=current, charge=charge)
+            voltage=self.voltage or round(1000 * (EMPTY + (FULL - EMPTY) * min(1, charge / CAPACITY))),
+            temperature=self.temperature, current=current, charge=charge)
         if self.cliff:
             self.values.update(cliff_front_left_signal=NO_FLOOR, cliff_front_right_signal=NO_FLOOR)
         if self.model is CREATE:
@@ -163,5 +166,5 @@ class Body:
             current = CHARGING if self.charge < CAPACITY else 0
         else:
             current = MOVING if self.moving else RESTING
-        self.charge = max(0.0, min(CAPACITY, self.charge + current * duration / 3600))
+        self.charge = max(0.0, self.charge + current * duration / 3600)
         return current

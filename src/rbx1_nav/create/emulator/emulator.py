@@ -6,7 +6,7 @@ from struct import Struct
 from typing import Callable, Sequence
 
 from rbx1_nav.create.emulator.body import Body
-from rbx1_nav.create.emulator.programs import Programs
+from rbx1_nav.create.emulator.programs import CIRCLE, Programs
 from rbx1_nav.create.emulator.scripts import MAX_SCRIPT, Scripts
 from rbx1_nav.create.emulator.serial_line import SerialLine
 from rbx1_nav.create.protocol import (
@@ -20,10 +20,8 @@ CREATE_RESET_TIME = 3 * SECOND      # this time after a reset of a Create: its b
 # text with the firmware version, which the Create 2 sends at power-on
 BOOT_TEXT = b'bl-start\r\nSTR730\r\nRoomba by iRobot!\r\nr3_robot/tags/release-3.5.4\r\n'
 INPUT_SIZE = 3 + 2 * 255    # bytes that are buffered while a script waits; the longest command, 255 notes, must fit
-MAX_NOTES = 16          # in a song (Create p. 11, Create 2 p. 20)
 MAX_FRAME = 255         # data bytes in a frame of the stream
 MAX_PWM = 255
-BUTTON_TIME = SECOND // 6
 PAIR = Struct('>hh')
 
 
@@ -79,9 +77,6 @@ class EmulatedCreate:
                                          'requested_left_velocity'), 0)
         self._stream: list[int] = []
         self._streaming = False
-        self._songs: dict[int, int] = {}        # lengths in ns, by number
-        self._song, self._song_end = 0, now
-        self._buttons, self._buttons_end = 0, now
         self._scripts = Scripts(self.body, lambda: dict(self._values(()), mode=self.mode))
 
     # time
@@ -130,8 +125,10 @@ class EmulatedCreate:
             return
         if self.mode == SAFE and self._unsafe():
             self._enter(PASSIVE)
+        if self.body.wheel_dropped or self.body.cliff or self.body.docked:
+            self.programs.stop()
         if self.programs.running:
-            self._drive_curve(*self.programs.update(self.now))
+            self._drive_curve(*CIRCLE)
         self._input[:0] = self._scripts.update(self.now)
         del self._input[INPUT_SIZE + MAX_SCRIPT:]   # a script may play itself repeatedly before its last command
         self._execute()
@@ -248,8 +245,7 @@ class EmulatedCreate:
         names = {packet.name for packet in single_packets(self.model, numbers)}
         return dict(
             body.values, **self._requested, mode=self.mode + int(self.body.quirks.mode_plus_one),
-            song_number=self._song, song_playing=int(self.now < self._song_end), stream_packets=len(self._stream),
-            buttons=self._buttons if self.now < self._buttons_end else 0,
+            stream_packets=len(self._stream),
             distance=body.distance.take() if 'distance' in names else 0,
             angle=body.angle.take() if 'angle' in names else 0)
 
@@ -272,19 +268,6 @@ class EmulatedCreate:
 
     def _do_pause_resume_stream(self, data: bytes) -> None:
         self._streaming = bool(data[0] and self._stream)
-
-    # songs, buttons, scripts
-
-    def _do_song(self, data: bytes) -> None:
-        if data[0] < self.model.songs and 0 < data[1] <= MAX_NOTES:
-            self._songs[data[0]] = sum(data[3::2]) * SECOND // 64
-
-    def _do_play_song(self, data: bytes) -> None:
-        if data[0] in self._songs and self.now >= self._song_end:
-            self._song, self._song_end = data[0], self.now + self._songs[data[0]]
-
-    def _do_push_buttons(self, data: bytes) -> None:
-        self._buttons, self._buttons_end = data[0], self.now + BUTTON_TIME
 
     def _do_show_script(self, _: bytes) -> None:
         self._streaming = False

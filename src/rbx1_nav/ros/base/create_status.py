@@ -80,7 +80,7 @@ class CreateStatus:
             status.summary(OK, 'Stationary' if driver.motion.stands else 'Moving')
         found = driver.contact.found
         status.add('Robot type', found.model.name if found else 'unknown')
-        if driver.polled and isinstance(driver.counter, CounterTravel):
+        if isinstance(driver.counter, CounterTravel):
             status.add('Fractions of a degree', driver.counter.fractions.kind)
         mode = supervisor.mode
         status.add('Mode', 'unknown' if mode is None else protocol.MODE_NAMES[mode])
@@ -158,8 +158,8 @@ class CreateStatus:
         status.add('Adapter', self.link.adapter or 'unknown')
         status.add('Rate (baud)', self.link.baud)
         status.add('Settings changed by other processes', self.link.changes)
-        status.add('Corrupted readings', driver.reader.rejected)
-        status.add('Bytes outside readings', driver.reader.skipped)
+        status.add('Corrupted readings', driver.queries.reader.rejected)
+        status.add('Bytes outside readings', driver.queries.reader.skipped)
         status.add('Implausible readings', driver.implausible)
         status.add('Lost replies', driver.queries.missed)
         status.add('Dropouts', driver.contact.dropouts)

@@ -37,6 +37,8 @@ class RobotFaults:
         rospy.Service('~power_cycle', Trigger, lambda _: TriggerResponse(
             *self._request('power_cycle', lambda: robot.switch_on(robot.now))))
         self._offer_number('charge', lambda value: setattr(body, 'charge', value * CAPACITY))
+        self._offer_number('battery_temperature', lambda value: setattr(body, 'temperature', round(value)))
+        self._offer_number('battery_voltage', lambda value: setattr(body, 'voltage', round(1000 * value)))
         self._offer_number('corruption', lambda value: setattr(line, 'corruption', value))
         self._offer_number('gyro_stuck', lambda value: setattr(body, 'gyro_stuck', floor(value)))
 

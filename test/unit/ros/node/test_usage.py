@@ -21,6 +21,6 @@ def test_nodes_without_parameters(node):
 def test_the_faults_of_the_emulated_robot():
     offered = set(re.findall(r"\('(\w+)', lambda", read('src', 'rbx1_nav', 'ros', 'base', 'robot_faults.py')))
     text = ast.get_docstring(ast.parse(read('nodes', 'fake_create.py')))
-    assert len(offered) == 11
+    assert len(offered) == 13
     for name in offered:
         assert f'~{name}' in text

@@ -1,0 +1,77 @@
+"""SIGSTOP to the base node of an emulated Create in motion, and SIGCONT: a stall, or a computer that was suspended."""
+import os
+import signal
+import sys
+import threading
+import time
+import unittest
+
+import rospy
+
+import support
+
+sys.path.append(os.path.join(os.path.dirname(__file__), '..', '..', 'create'))
+from driven import STOP, DrivenRobot
+
+FAULT = ("SIGSTOP to a Create's base node for 0.6 or 0.9 s at a random moment of a motion; its driver sends commands "
+         'all the time, or stops sending in the middle of the stall')
+PROMISE = ('the robot stops when the node continues, and does not drive again before its driver has sent a zero '
+           'command or nothing for 0.6 s')
+FULL, SHORT = 24, 4
+ROOT = False
+ALONE = True    # it measures a duration
+
+LIMIT = 0.2         # s from SIGCONT to the stop
+WAIT = 3            # s until the stop counts as missing
+OBSERVED = 1.5      # s in which the robot must not move
+
+
+def check(row, robot, seconds, stall, goes_on):
+    """One fault, in motion. seconds: until the stall; goes_on: whether the driver sends commands all the time."""
+    left = threading.Event()
+
+    def send():
+        while not left.wait(0.02):
+            robot.commander.send(0.2, 0.3)
+    robot.drive(0.2, 0.3, lambda: robot.moving, 'the robot to move')
+    thread = threading.Thread(target=send)
+    thread.start()
+    try:
+        time.sleep(seconds)
+        assert robot.moving
+        pid, count = support.pid_of('/turtlebot_node'), len(robot.received())
+        os.kill(pid, signal.SIGSTOP)
+        time.sleep(stall / 2)
+        if not goes_on:
+            left.set()
+        time.sleep(stall / 2)
+        continued = rospy.get_time()
+        os.kill(pid, signal.SIGCONT)
+        delay = support.wait_for(lambda: [stamp for stamp, data in robot.received()[count:]
+                                          if data == STOP and stamp > continued], 'a stop', WAIT)[0] - continued
+        row.figure('stop after (s)', delay)
+        assert delay < LIMIT, f'{delay:.3f} s'
+        robot.wait_for_standstill()
+        end = time.monotonic() + OBSERVED
+        while time.monotonic() < end:
+            assert not robot.moving, 'the robot drives on'
+    finally:
+        left.set()
+        thread.join()
+    robot.commander.send(0.0, 0.0)
+    robot.drive_again()
+
+
+def run(row):
+    """See FAULT."""
+    row.roscore()
+    support.init_node('faults')
+    for robot_type in ('create', 'create2'):
+        case = unittest.TestCase()
+        robot = DrivenRobot(case, robot_type)
+        for index in range((row.times + 1) // 2):
+            seconds, stall, goes_on = row.random.uniform(0.2, 1), (0.6, 0.9)[index % 2], index // 2 % 2 == 0
+            with row.fault('%s: stalled for %.1f s after %.3f s, its driver %s' % (
+                    robot_type, stall, seconds, 'goes on' if goes_on else 'stops')):
+                check(row, robot, seconds, stall, goes_on)
+        case.doCleanups()
