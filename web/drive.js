@@ -1,6 +1,6 @@
 // Controls that move the robot (runs, reset, arrow keys), and Stop.
 
-const ANSWER = 1000, STOP_AGAIN = 500;     // ms: time for an answer to Stop; Stop is repeated until it is answered
+const ANSWER = 900, STOP_AGAIN = 450;      // ms: time for an answer to Stop; Stop is repeated until it is answered
 const HELD = 300;       // ms: after a longer pause, as of a frozen browser, a key must be pressed again
 const REPEAT = 100;     // ms: the node stops the robot if held keys are not repeated within 300 ms
 const KEYS = {ArrowUp: [1, 0], ArrowDown: [-1, 0], ArrowLeft: [0, 1], ArrowRight: [0, -1]};    // forward, left
