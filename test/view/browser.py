@@ -86,10 +86,14 @@ class Page:
         support.wait_for(clicked, f'{selector} to be enabled')
 
     def run(self, method):
-        """Start a run. On a busy machine, the node may refuse the request because it is too old."""
+        """Start a run. On a busy machine, the node may refuse the request because it is too old, or the page may ask
+        whether the robot may move, because its ground truth is late."""
         def answered():
             text = self.text('notice')
-            if 'more than 2 s old' in text:
+            asks = self.find('#confirm').is_displayed()
+            if asks:
+                self.click('#confirm button')
+            if asks or 'more than 2 s old' in text:
                 self.click(f'.run[data-method={method}]')
                 return False
             return text or self.text('run-state').startswith('Running')
