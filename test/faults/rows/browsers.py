@@ -3,17 +3,18 @@ import os
 import re
 import signal
 import socket
+import threading
 import time
 
 import support
 from web_client import WebClient, request
 
-FAULT = ('requests and WebSockets from a foreign page; another user without the token; 100 connections; slow readers; '
-         'random bytes; the browser or the node is killed while keys drive the robot')
-PROMISE = ('foreign requests are rejected; the robot does not move without the token; other browsers receive their '
+FAULT = ('requests and WebSockets from a foreign page; another user without the token; 100 connections; connections that '
+         'fill all places; slow readers; random bytes; the browser or the node is killed while keys drive the robot')
+PROMISE = ('foreign requests are rejected; the robot does not move without the token; others receive their '
            'frames; the memory of the node does not grow, and it logs no errors; the robot stops within 0.5 s if the '
            'browser is killed, and within the timeout of the base (1 s) if the node is killed')
-FULL, SHORT = 28, 7
+FULL, SHORT = 32, 8
 ROOT, ALONE = False, True
 
 SPEED = 0.2             # m/s
@@ -111,6 +112,37 @@ def many_connections(row, view):
         each.close()
 
 
+def no_place_left(row, view):
+    """60 browsers without the token watch, and more connect all the time: half of them send nothing, the others half a
+    request. Browsers with the token find a place."""
+    watchers = [WebClient(view.port, '') for _ in range(60)]
+    others, ended = [], threading.Event()
+
+    def crowd():
+        while not ended.is_set():
+            others.append(socket.create_connection(('127.0.0.1', view.port)))
+            others[-1].sendall(b'GET / HTTP/1.1\r\n')
+            try:
+                others.append(WebClient(view.port).socket)
+            except (ConnectionError, OSError):      # replaced by a newer one
+                pass
+            if len(others) > 400:
+                others.pop(0).close()
+            time.sleep(0.005)
+    thread = threading.Thread(target=crowd)
+    thread.start()
+    try:
+        support.wait_for(lambda: len(others) > 300, 'the crowd')
+        for _ in range(20):
+            assert request(view.port) == 200
+            view.check()
+    finally:
+        ended.set()
+        thread.join()
+        for each in (*watchers, *others):
+            each.close()
+
+
 def slow_readers(row, view):
     """Some browsers do not read while the robot drives."""
     asleep = [WebClient(view.port, '', small=True) for _ in range(30)]
@@ -184,7 +216,7 @@ def view_killed(row, view):
     client.close()
 
 
-KINDS = [foreign_page, no_token, many_connections, slow_readers, random_bytes, browser_gone, view_killed]
+KINDS = [foreign_page, no_token, many_connections, no_place_left, slow_readers, random_bytes, browser_gone, view_killed]
 
 
 def run(row):
