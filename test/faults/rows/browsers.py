@@ -10,7 +10,7 @@ import support
 from web_client import WebClient, request
 
 FAULT = ('requests and WebSockets from a foreign page; another user without the token; 100 connections; connections '
-         'that fill all places; slow readers; random bytes; the browser or the node is killed while keys drive the robot')
+         'that fill all places; slow readers; random bytes; the browser or the node is killed while keys drive it')
 PROMISE = ('foreign requests are rejected; the robot does not move without the token; others receive their '
            'frames; the memory of the node does not grow, and it logs no errors; the robot stops within 0.5 s if the '
            'browser is killed, and within the timeout of the base (1 s) if the node is killed')
