@@ -3,6 +3,8 @@ import json
 import os
 import re
 import signal
+import tempfile
+import unittest
 
 from selenium import webdriver
 from selenium.webdriver.chrome.options import Options
@@ -128,6 +130,33 @@ class Page:
         """Return the errors and warnings that the browser has logged."""
         return [json.dumps(entry) for entry in self.driver.get_log('browser')
                 if entry['level'] in ('SEVERE', 'WARNING')]
+
+
+class PageTest(unittest.TestCase):
+    """Tests of the page in Chromium, with a base that is running. They need rospy's node.
+
+    If the environment variable RBX1_PICTURE_DIR is set, the screenshots are saved in that directory.
+    """
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()      # for files that the page saves
+        cls.odom = support.OdomWatch()
+        cls.view, cls.url = start_view()
+        cls.driver = start_chromium(cls.folder.name)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.driver.quit()
+        cls.view.signal(signal.SIGTERM)
+        assert cls.view.wait() == 0, cls.view.output
+        cls.folder.cleanup()
+
+    def tearDown(self):
+        folder = os.environ.get('RBX1_PICTURE_DIR')
+        if folder:
+            self.page.picture(os.path.join(folder, f'{self.id().rpartition(".")[2]}.png'))
+        self.assertEqual(self.page.console_errors(), [])
 
 
 def start_view(*arguments):

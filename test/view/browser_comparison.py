@@ -2,9 +2,6 @@
 """Tests what the page offers for comparing runs: earlier paths, speeds that can be scrolled, a saved picture with its
 numbers, reasons for disabled buttons; and a session by keyboard alone."""
 import os
-import signal
-import tempfile
-import unittest
 
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.keys import Keys
@@ -12,25 +9,15 @@ import rospy
 from std_srvs.srv import Empty
 
 import support
-from browser import Page, start_chromium, start_view
+from browser import Page, PageTest
 
 
-class TestBrowserComparison(unittest.TestCase):
+class TestBrowserComparison(PageTest):
     @classmethod
     def setUpClass(cls):
         support.init_node('browser_comparison')
         rospy.set_param('/out_and_back/goal_distance', 0.2)
-        cls.folder = tempfile.TemporaryDirectory()
-        cls.odom = support.OdomWatch()
-        cls.view, cls.url = start_view()
-        cls.driver = start_chromium(cls.folder.name)
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.driver.quit()
-        cls.view.signal(signal.SIGTERM)
-        assert cls.view.wait() == 0, cls.view.output
-        cls.folder.cleanup()
+        super().setUpClass()
 
     def setUp(self):
         self.page = Page(self.driver, self.url)
@@ -39,12 +26,6 @@ class TestBrowserComparison(unittest.TestCase):
         rospy.ServiceProxy('/arbotix/reset', Empty)()
         support.wait_for(lambda: self.odom.position() == (0, 0), 'the reset')
         self.page = Page(self.driver, self.url)     # without the runs of the test before
-
-    def tearDown(self):
-        folder = os.environ.get('RBX1_PICTURE_DIR')
-        if folder:
-            self.page.picture(os.path.join(folder, f'{self.id().rpartition(".")[2]}.png'))
-        self.assertEqual(self.page.console_errors(), [])
 
     def wait_for_rest(self):
         """Wait until the robot is at rest, apart from the noise of its encoders."""

@@ -1,14 +1,9 @@
 #!/usr/bin/python3
 """Tests the page in Chromium: it shows the robot at the pose in /odom, runs and keys drive the robot, Stop stops it,
-and the browser logs no errors.
-
-If the environment variable RBX1_PICTURE_DIR is set, the screenshots are saved in that directory.
-"""
+and the browser logs no errors."""
 import math
 import os
 import signal
-import tempfile
-import unittest
 import xml.etree.ElementTree as ElementTree
 
 from nav_msgs.msg import Odometry
@@ -16,30 +11,24 @@ import rospy
 from std_srvs.srv import Empty
 
 import support
-from browser import Page, kill_chromium, start_chromium, start_view
+from browser import Page, PageTest, kill_chromium, start_chromium
 
 SPEED, TIMEOUT = 0.2, 1.0       # m/s, speed of the arrow keys; s, timeout of the base
 
 
-class TestBrowserPage(unittest.TestCase):
+class TestBrowserPage(PageTest):
     @classmethod
     def setUpClass(cls):
         support.init_node('browser_page')
-        cls.folder = tempfile.TemporaryDirectory()
-        cls.odom = support.OdomWatch()
         cls.truth = support.Watch('/ground_truth', Odometry)
         # rosout collects the log of all nodes; roscore starts it, but rostest does not
         cls.rosout = support.Process('rosrun', 'rosout', 'rosout')
-        cls.view, cls.url = start_view()
-        cls.driver = start_chromium(cls.folder.name)
+        super().setUpClass()
 
     @classmethod
     def tearDownClass(cls):
-        cls.driver.quit()
-        cls.view.signal(signal.SIGTERM)
-        assert cls.view.wait() == 0, cls.view.output
+        super().tearDownClass()
         cls.rosout.kill()
-        cls.folder.cleanup()
 
     def setUp(self):
         self.page = Page(self.driver, self.url)
@@ -47,12 +36,6 @@ class TestBrowserPage(unittest.TestCase):
         self.odom.wait_for_twist(0.0)
         rospy.ServiceProxy('/arbotix/reset', Empty)()
         support.wait_for(lambda: self.odom.position() == (0, 0), 'the reset')
-
-    def tearDown(self):
-        folder = os.environ.get('RBX1_PICTURE_DIR')
-        if folder:
-            self.page.picture(os.path.join(folder, f'{self.id().rpartition(".")[2]}.png'))
-        self.assertEqual(self.page.console_errors(), [])
 
     def hold(self, key, condition, what):
         """Hold an arrow key until a condition holds; it remains pressed. The keyboard repeats it, and like a user, this
