@@ -31,6 +31,7 @@ with exit_status():
     terminal = termios.tcgetattr(0)
     with TimedDrive(cmd_vel, 20, shutdown) as drive:    # 20 commands per second
         tty.setcbreak(0)        # pass on each key at once
+        print(__doc__)
         move_cmd, r = Twist(), drive.Rate()
         while True:
             if select.select([0], [], [], 0)[0]:        # a key was pressed

@@ -233,7 +233,7 @@ export class Drive {
 
   // Enables the buttons that can be used now, and shows what is running.
   draw() {
-    const {status} = this.model, running = Boolean(status.started) && !status.outcome;
+    const {status} = this.model, running = Boolean(status.started) && !status.outcome || Boolean(status.driver);
     const ready = this.connected && !this.connection.silent && this.trusted && !status.master && Boolean(status.base) &&
       'odometry' in this.model.poses;
     if (running && this.hand) {     // another browser has started a run
@@ -255,7 +255,7 @@ export class Drive {
       : status.master === 'silent' ? 'The ROS master does not answer. Start roscore, the base and the web view again.'
       : status.master === 'restarted' ? 'The ROS master was restarted. Start the web view again, then reload this page.'
       : !ready ? 'Waiting for a base that publishes /odom.'
-      : running ? `Running: ${status.started}. Stop it to use the other buttons.`
+      : running ? `Running: ${status.driver || status.started}. Stop it to use the other buttons.`
       : this.hand ? 'The arrow keys drive the robot.'
       : status.started ? `${status.started[0].toUpperCase()}${status.started.slice(1)}: ${status.outcome}` : '';
     const why = !ready || running ? [] : [

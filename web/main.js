@@ -103,7 +103,8 @@ function drawEarlier() {
 function caption() {
   const {surface, seed} = model.status;
   const what = [model.run, surface, surface && surface !== 'ideal' && seed && `seed ${seed}`].filter(Boolean).join(', ');
-  return [['', what], ...SOURCES.filter(source => model.poses[source]).map(source => {
+  const earlier = model.earlier.filter(run => run.shown).map(run => `${run.number} ${run.name}`).join(', ');
+  return [['', what], ...earlier ? [['', `Earlier runs: ${earlier}`]] : [], ...SOURCES.filter(source => model.poses[source]).map(source => {
     const [x, y, heading, distance] = rowOf(model.poses[source]);
     return [source, `${source}: x ${x} m, y ${y} m, heading ${heading}°, ${distance} m from the start`];
   })];

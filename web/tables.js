@@ -71,6 +71,6 @@ export class Tables {
     this.now.fill(`This run${model.run ? `: ${model.run}` : ''}`, model.poses, '–');
     const before = model.status.before || {};
     this.before.table.hidden = !Object.keys(before).length;
-    this.before.fill(`The run before${model.status.before_name ? `: ${model.status.before_name}` : ''}`, before, '–');
+    this.before.fill(`Previous run${model.status.before_name ? `: ${model.status.before_name}` : ''}`, before, '–');
   }
 }

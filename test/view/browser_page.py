@@ -87,7 +87,7 @@ class TestBrowserPage(PageTest):
         # the table may show the run of an earlier test
         support.wait_for(lambda: self.page.find('#table-before').is_displayed()
                          and self.page.row('table-before', 'odometry') == end, 'the table of the run before')
-        self.page.wait_for_text('tables', 'The run before: timed')
+        self.page.wait_for_text('tables', 'Previous run: timed')
 
     def test_stop_ends_a_run(self):
         self.page.run('odometry')
@@ -110,7 +110,9 @@ class TestBrowserPage(PageTest):
     def test_a_run_is_refused_while_a_script_of_a_terminal_drives(self):
         script = support.out_and_back()
         self.odom.wait_for_twist(SPEED)
-        self.page.run('timed')
+        self.page.wait_for_text('run-state', 'Running: /out_and_back')
+        self.assertFalse(self.page.find('.run').is_enabled())
+        self.page.send(type='run', method='timed')
         self.page.wait_for_text('notice', '/out_and_back is driving the robot: stop it first')
         self.odom.wait_for_twist(0.0, 1.0)      # the script goes on
         script.signal(signal.SIGINT)

@@ -12,7 +12,7 @@ from rbx1_nav.ros.web.stopping import Answer, Drivers, Stopper
 
 NO_TOKEN = 'this page can only watch: open the complete address that the web view printed, with its token'
 BUSY = 'a run is in progress: stop it first'
-OLD = 'the request is more than 2 s old, so that nothing was started: try again'
+OLD = 'the request was more than 2 s old, so nothing was started: try again'
 STOP_NEEDS_TOKEN = 'Stop needs the token here: open the complete address that the web view printed'
 ROUNDING = 0.001    # s: resolution of the clock in a frame
 MAX_AGE = 2.0       # s: age of the last frame that the browser had received when it sent a request

@@ -162,6 +162,7 @@ class State:
 
     def tick(self, now: float) -> None:
         """Time out a command that is not repeated, and remove silent sources. To be called periodically."""
+        self.set_status(driver=self.other_driver(now))
         with self.lock:
             run, items = self.run, self.run.speeds['commanded'].items
             if items and any(items[-1][1][1:]) and now - self.last_command > COMMAND_TIMEOUT:

@@ -77,7 +77,8 @@ class Stopper:
         if stopping and now - self.begun < LIMIT:
             return {}
         stopped, silent, not_connected = self.drivers.take_shut_down()
-        texts = [f'Stopped {" and ".join(stopped)}.' if stopped else 'Stopped.']
+        texts = [f'Stopped {" and ".join(stopped)}.' if stopped else 'Stopped.' if stationary else
+                 'Zero commands were sent.']
         if silent:
             texts.append(f'No answer from {" and ".join(silent)}.')
         if not_connected:

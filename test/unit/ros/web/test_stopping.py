@@ -38,10 +38,10 @@ def test_the_answer_waits_until_the_robot_is_stationary(view):
 
 
 @pytest.mark.parametrize('silent, not_connected, speed, text', [
-    ([], '', None, 'Stopped. There is no odometry: the robot may still be moving.'),
-    ([], '', 0.2, 'Stopped. The robot is still moving.'),
-    ([], '/a', 0.2, 'Stopped. /a does not receive the commands of this page: restart the web view. The robot is still '
-                    'moving.'),
+    ([], '', None, 'Zero commands were sent. There is no odometry: the robot may still be moving.'),
+    ([], '', 0.2, 'Zero commands were sent. The robot is still moving.'),
+    ([], '/a', 0.2, 'Zero commands were sent. /a does not receive the commands of this page: restart the web view. '
+                    'The robot is still moving.'),
     (['/b'], '', 0.0, 'Stopped. No answer from /b. The robot is stationary.')])
 def test_what_is_missing_is_in_the_answer(view, silent, not_connected, speed, text):
     socket = view.connect('')
