@@ -96,8 +96,8 @@ def run(seats):
 def main():
     """Run until Ctrl-C; return the exit status."""
     arguments = read_arguments()
-    ports = arguments.master_port, arguments.web_port
-    seats = [Seat(number, *(port + number for port in ports), launch_arguments(arguments), report)
+    shared = launch_arguments(arguments)
+    seats = [Seat(number, arguments.master_port + number, arguments.web_port + number, shared, report)
              for number in range(1, arguments.seats + 1)]
     check_ports(seats, arguments.address)
     signal.signal(signal.SIGINT, signal.default_int_handler)

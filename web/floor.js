@@ -138,7 +138,7 @@ export class Floor {
 
   // The paths of earlier runs, each with its number at the end.
   drawEarlier(runs) {
-    this.earlier.replaceChildren(...runs.filter(run => run.shown).map(({number, name, points}) => {
+    this.earlier.replaceChildren(...runs.filter(run => run.shown && run.points.some(near)).map(({number, name, points}) => {
       const group = element('g', {class: 'truth', 'data-run': name}), drawn = points.filter(near);
       element('path', {class: 'path', 'vector-effect': 'non-scaling-stroke',
         d: drawn.map(([x, y], index) => `${index ? 'L' : 'M'}${x} ${y}`).join('')}, group);

@@ -104,10 +104,11 @@ function caption() {
   const {surface, seed} = model.status;
   const what = [model.run, surface, surface && surface !== 'ideal' && seed && `seed ${seed}`].filter(Boolean).join(', ');
   const earlier = model.earlier.filter(run => run.shown).map(run => `${run.number} ${run.name}`).join(', ');
-  return [['', what], ...earlier ? [['', `Earlier runs: ${earlier}`]] : [], ...SOURCES.filter(source => model.poses[source]).map(source => {
+  const numbers = SOURCES.filter(source => model.poses[source]).map(source => {
     const [x, y, heading, distance] = rowOf(model.poses[source]);
     return [source, `${source}: x ${x} m, y ${y} m, heading ${heading}°, ${distance} m from the start`];
-  })];
+  });
+  return [['', what], ['', earlier && `Earlier runs: ${earlier}`], ...numbers].filter(([, text]) => text);
 }
 
 function redraw() {

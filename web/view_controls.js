@@ -17,6 +17,7 @@ export function connectView(floor, model, redraw) {
   const pressed = id => button(id).getAttribute('aria-pressed') === 'true';
   const clear = () => {
     model.clear();
+    model.earlier = [];
     redraw();
   };
   const all = () => {

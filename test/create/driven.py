@@ -5,6 +5,7 @@ import itertools
 import os
 import signal
 import threading
+import unittest
 
 import numpy
 import rospy
@@ -29,6 +30,18 @@ def guardian_of(pid):
         except OSError:     # the process has exited
             pass
     return None
+
+
+def faults_of_both(row):
+    """Yield (robot type, DrivenRobot, number) for each fault of a row; half of the faults on a robot of each type."""
+    row.roscore()
+    support.init_node('faults')
+    for robot_type in ('create', 'create2'):
+        case = unittest.TestCase()
+        robot = DrivenRobot(case, robot_type)
+        for number in range((row.times + 1) // 2):
+            yield robot_type, robot, number
+        case.doCleanups()
 
 
 class DrivenRobot(EmulatedRobot):

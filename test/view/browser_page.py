@@ -189,6 +189,10 @@ class TestBrowserPage(PageTest):
             publisher.publish(far)
             return f'{1e17:.0f}' in self.page.text('table-now')
         support.wait_for(shown, 'the pose in the table')
+        self.driver.execute_script(     # an earlier run that was never near the start
+            'rbx1.model.earlier = [{number: 1, name: "far", points: [[1e17, 0, 0]], shown: true}];'
+            'rbx1.floor.draw(rbx1.model)')
+        self.assertFalse(self.driver.find_elements('css selector', '.earlier path'))
         self.page.click('#home')
         self.page.click('#stop')
         self.page.wait_for_text('run-state', 'The robot is stationary')

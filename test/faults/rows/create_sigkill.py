@@ -3,14 +3,13 @@ import os
 import signal
 import sys
 import time
-import unittest
 
 import rospy
 
 import support
 
 sys.path.append(os.path.join(os.path.dirname(__file__), '..', '..', 'create'))
-from driven import STOP, DrivenRobot, guardian_of
+from driven import STOP, faults_of_both, guardian_of
 
 FAULT = ("SIGKILL to a Create's base node, or to its process group, at a random moment of a motion; in four of five "
          'cases, also to its guardian, 3 to 50 ms or 100 to 200 ms earlier or later; half of the faults beside four '
@@ -91,16 +90,10 @@ def check(row, robot, seconds, group, gap, loops):
 
 def run(row):
     """See FAULT."""
-    row.roscore()
-    support.init_node('faults')
-    for robot_type in ('create', 'create2'):
-        case = unittest.TestCase()
-        robot = DrivenRobot(case, robot_type)
-        for index in range((row.times + 1) // 2):
-            seconds, group = row.random.uniform(0.2, 2), row.random.random() < 0.5
-            gap = (0, 1, -1, 1, -1)[index % 5] * row.random.uniform(*(LONG_GAP if index % 5 < 3 else SHORT_GAP))
-            loops = LOOPS * (index // 5 % 2)
-            with row.fault('%s: SIGKILL to the %s after %.3f s, %.1f ms after its guardian, %d busy loops' % (
-                    robot_type, 'group' if group else 'node', seconds, 1000 * gap, loops)):
-                check(row, robot, seconds, group, gap, loops)
-        case.doCleanups()
+    for robot_type, robot, index in faults_of_both(row):
+        seconds, group = row.random.uniform(0.2, 2), row.random.random() < 0.5
+        gap = (0, 1, -1, 1, -1)[index % 5] * row.random.uniform(*(LONG_GAP if index % 5 < 3 else SHORT_GAP))
+        loops = LOOPS * (index // 5 % 2)
+        with row.fault('%s: SIGKILL to the %s after %.3f s, %.1f ms after its guardian, %d busy loops' % (
+                robot_type, 'group' if group else 'node', seconds, 1000 * gap, loops)):
+            check(row, robot, seconds, group, gap, loops)

@@ -4,14 +4,13 @@ import signal
 import sys
 import threading
 import time
-import unittest
 
 import rospy
 
 import support
 
 sys.path.append(os.path.join(os.path.dirname(__file__), '..', '..', 'create'))
-from driven import STOP, DrivenRobot
+from driven import STOP, faults_of_both
 
 FAULT = ("SIGSTOP to a Create's base node for 0.6 or 0.9 s at a random moment of a motion; its driver sends commands "
          'all the time, or stops sending in the middle of the stall')
@@ -64,14 +63,8 @@ def check(row, robot, seconds, stall, goes_on):
 
 def run(row):
     """See FAULT."""
-    row.roscore()
-    support.init_node('faults')
-    for robot_type in ('create', 'create2'):
-        case = unittest.TestCase()
-        robot = DrivenRobot(case, robot_type)
-        for index in range((row.times + 1) // 2):
-            seconds, stall, goes_on = row.random.uniform(0.2, 1), (0.6, 0.9)[index % 2], index // 2 % 2 == 0
-            with row.fault('%s: stalled for %.1f s after %.3f s, its driver %s' % (
-                    robot_type, stall, seconds, 'goes on' if goes_on else 'stops')):
-                check(row, robot, seconds, stall, goes_on)
-        case.doCleanups()
+    for robot_type, robot, index in faults_of_both(row):
+        seconds, stall, goes_on = row.random.uniform(0.2, 1), (0.6, 0.9)[index % 2], index // 2 % 2 == 0
+        with row.fault('%s: stalled for %.1f s after %.3f s, its driver %s' % (
+                robot_type, stall, seconds, 'goes on' if goes_on else 'stops')):
+            check(row, robot, seconds, stall, goes_on)

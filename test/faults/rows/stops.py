@@ -33,12 +33,11 @@ sys.stdin.readline()
 '''
 
 
-def stop(client):
-    """Send Stop; return the time until the answer, s."""
-    client.send(type='stop', number=1)
+def answer(client):
+    """Wait for the answer to Stop; return the time until then, s."""
     start = time.monotonic()
-    answer = client.wait_for('stopped')
-    assert answer['stationary'], answer
+    stopped = client.wait_for('stopped')
+    assert stopped['stationary'], stopped
     return time.monotonic() - start
 
 
@@ -54,7 +53,7 @@ def leaving_driver(row, view, client):
     time.sleep(abs(delay) / 2)
     if delay >= 0:
         driver.type('')
-    assert client.wait_for('stopped')['stationary']
+    answer(client)
     driver.process.stdin.close()
     driver.wait()       # with an error if it was shut down while it published
 
@@ -63,7 +62,8 @@ def run_of_the_page(row, view, client):
     """A run of the page is stopped at a random moment."""
     client.send(type='run', method='timed')
     time.sleep(row.random.uniform(0, 4))
-    row.figure('answer to Stop during a run, s', stop(client))
+    client.send(type='stop', number=1)
+    row.figure('answer to Stop during a run, s', answer(client))
 
 
 def frozen(row, view, client):
@@ -75,9 +75,7 @@ def frozen(row, view, client):
     client.send(type='stop', number=1)
     time.sleep(row.random.uniform(0.1, 1.5))
     view.process.signal(signal.SIGCONT)
-    start = time.monotonic()
-    assert client.wait_for('stopped')['stationary']
-    row.figure('answer to Stop after the node was frozen, s', time.monotonic() - start)
+    row.figure('answer to Stop after the node was frozen, s', answer(client))
 
 
 def drives(view, client):

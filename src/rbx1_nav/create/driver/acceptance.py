@@ -18,7 +18,7 @@ OUTAGE = 3 * SECOND // 10   # longest harmless time in which the robot does not 
 TOO_BAD = 0.5               # share of lost replies at which the robot is stopped
 BLOCKED = 0.1               # m, commanded travel of a wheel without a turn of any wheel
 TURNED = 0.1                # fraction of the commanded travel from which the wheels count as turning
-AT_CLIFF = 1 << 8       # a bit beside those of bumps and wheel drops
+AT_CLIFF = 1 << 8       # a bit that bumps and wheel drops do not use
 BACK_UP = 'a cliff: expected a command that backs up'
 
 

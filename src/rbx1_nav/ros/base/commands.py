@@ -104,11 +104,10 @@ class VelocityCommands:
 
     def driver(self) -> str | None:
         """Return the name of the node that is driving the base, also while it rests between two motions, or None."""
-        header, last = self.moving or (None, 0)
-        if self.clock.now() - last > RECENT:
+        if self.moving is None or self.clock.now() - self.moving[1] > RECENT:
             return None
         return next((connection.header['callerid'] for connection in self.connections()
-                     if connection.header is header), None)
+                     if connection.header is self.moving[0]), None)
 
     def log_timeout(self) -> None:
         """Log that the current command has timed out."""
