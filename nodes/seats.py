@@ -55,8 +55,7 @@ def read_arguments():
 def launch_arguments(arguments):
     """Return the arguments of seat.launch that are the same for all seats."""
     model = resources.path('urdf', 'turtlebot.urdf') if arguments.rviz else 'none'
-    return [f'model:={model}', f'surface:={arguments.surface}', f'seed:={arguments.seed}',
-            f'web_address:={arguments.address}']
+    return [f'model:={model}', f'surface:={arguments.surface}', f'seed:={arguments.seed}']
 
 
 def report(text):
@@ -77,18 +76,20 @@ def check_ports(seats, address):
 
 
 def run(seats):
-    """Start the seats, and report those that exit. Returns 1 when none is left."""
+    """Start the seats, and start those again that exit, with the same addresses. Returns 1 when none is left."""
     print('seat  ROS_MASTER_URI            page')
     for seat in seats:
         if not seat.start():
             sys.exit(f'seat {seat.number}: not started: {seat.error()}')
         print(f'{seat.number:4}  http://localhost:{seat.master_port:<7} {seat.page}')
     print(f'Ready: {len(seats)} seats. Ctrl-C stops them')
-    running = set(seats)
-    while running:
-        for seat in [each for each in running if not each.is_running]:
-            running.remove(seat)
-            report(f'seat {seat.number}: exited: {seat.error()}')
+    left = set(seats)
+    while left:
+        for seat in [each for each in left if not each.is_running]:
+            report(f'seat {seat.number}: exited: {seat.error()}; starting it again')
+            if not seat.start():
+                left.remove(seat)
+                report(f'seat {seat.number}: not started: {seat.error()}')
         time.sleep(0.5)
     return 1
 
@@ -97,8 +98,8 @@ def main():
     """Run until Ctrl-C; return the exit status."""
     arguments = read_arguments()
     shared = launch_arguments(arguments)
-    seats = [Seat(number, arguments.master_port + number, arguments.web_port + number, shared, report)
-             for number in range(1, arguments.seats + 1)]
+    seats = [Seat(number, arguments.master_port + number, arguments.address, arguments.web_port + number, shared,
+                  report) for number in range(1, arguments.seats + 1)]
     check_ports(seats, arguments.address)
     signal.signal(signal.SIGINT, signal.default_int_handler)
     try:

@@ -18,11 +18,11 @@ from rospy.names import get_resolved_mappings
 from rbx1_nav.config import ConfigError
 from rbx1_nav.ros.node import life, resources
 from rbx1_nav.ros.node.params import param
-from rbx1_nav.ros.web.checks import HostCheck, is_wildcard, machine_names, make_token
+from rbx1_nav.ros.web.checks import TOKEN_VARIABLE, HostCheck, machine_names, make_token, page_address
 from rbx1_nav.ros.web.connections import Connections
 from rbx1_nav.ros.web.controls import Controls
 from rbx1_nav.ros.web.hand_drive import HandDrive
-from rbx1_nav.ros.web.parameters import LOCALHOST, PARAMETERS
+from rbx1_nav.ros.web.parameters import PARAMETERS
 from rbx1_nav.ros.web.runs import Runs
 from rbx1_nav.ros.web.server import Server
 from rbx1_nav.ros.web.state import State
@@ -35,12 +35,6 @@ def in_background(function):
     threading.Thread(target=function, daemon=True).start()
 
 
-def url(address, port, token):
-    """Return the address to open. A browser does not send the part after #, so no proxy can log the token."""
-    host = LOCALHOST if is_wildcard(address) else f'[{address}]' if ':' in address else address
-    return f'http://{host}:{port}/#{token}'
-
-
 def remappings():
     """Return the remappings of this node, for the scripts that the page starts; without __name and the like."""
     return {name: new for name, new in get_resolved_mappings().items() if not name.startswith('__')}
@@ -50,7 +44,9 @@ def main():
     """Serve the page until the node shuts down; return the exit status."""
     # the page takes its time from the odometry, so the node need not read /clock
     life.init_node('web_view', __doc__, PARAMETERS, wall_time=True)
-    state, publisher, token, address = State(), CommandPublisher(), make_token(), param('address')
+    state, publisher, address = State(), CommandPublisher(), param('address')
+    token = os.environ.get(TOKEN_VARIABLE) or make_token()
+    state.set_status(title=param('title'))
     hand, system = HandDrive(publisher), System(state, publisher.connected)
     runs = Runs(os.path.dirname(os.path.abspath(sys.argv[0])),
                 lambda name, outcome: state.set_status(started=name, outcome=outcome), system.forget_frame,
@@ -68,7 +64,7 @@ def main():
     system.start()
     server.start()
     # printed instead of logged, because everyone who can reach the master can read the log
-    print(f'[INFO] [{time.time():.6f}]: Open {url(address, server.port, token)}')
+    print(f'[INFO] [{time.time():.6f}]: Open {page_address(address, server.port, token)}')
     life.end_requested.wait()
     runs.stop()
     hand.end()

@@ -8,6 +8,7 @@ const RADIUS = 0.165;               // m, radius of the robot
 const ARROW = {length: 0.3, head: 0.08};                // m, as in sim.rviz
 const TOLERANCE = {distance: 0.1, angle: 0.5};          // m, rad: between arrows; more of them in a turn cover each other
 const FAR = 1000;                   // m from the start: a robot beyond it is only in the table
+const MANY = 10;                    // earlier runs beyond which their numbers are smaller
 const MIN_SCALE = 10, MAX_SCALE = 3000;                 // pixels per meter
 const SEEN = {left: -0.5, right: 1.5, bottom: -0.6, top: 1.0};     // m, visible area before the robot has moved
 
@@ -138,6 +139,7 @@ export class Floor {
 
   // The paths of earlier runs, each with its number at the end.
   drawEarlier(runs) {
+    this.earlier.classList.toggle('many', runs.length > MANY);
     this.earlier.replaceChildren(...runs.filter(run => run.shown && run.points.some(near)).map(({number, name, points}) => {
       const group = element('g', {class: 'truth', 'data-run': name}), drawn = points.filter(near);
       element('path', {class: 'path', 'vector-effect': 'non-scaling-stroke',

@@ -48,6 +48,10 @@ function facts() {
 }
 
 function drawFacts() {
+  const {title} = model.status;
+  if (title && title !== document.title) {
+    document.title = byId('title').textContent = title;
+  }
   const text = JSON.stringify(facts());
   if (byId('facts').dataset.shown !== text) {
     byId('facts').dataset.shown = text;
@@ -79,6 +83,10 @@ function draw() {
   }
 }
 
+function kindOf({name, stopped}) {
+  return `${name}${stopped ? ', stopped' : ''}`;
+}
+
 // Lists the earlier runs, each with a check box.
 function drawEarlier() {
   if (model.earlier === listed) {
@@ -94,7 +102,7 @@ function drawEarlier() {
       run.shown = box.checked;
       floor.drawEarlier(model.earlier);
     };
-    label.append(box, `${run.number} ${run.name}`);
+    label.append(box, `${run.number} ${kindOf(run)}`);
     return label;
   }));
 }
@@ -103,12 +111,14 @@ function drawEarlier() {
 function caption() {
   const {surface, seed} = model.status;
   const what = [model.run, surface, surface && surface !== 'ideal' && seed && `seed ${seed}`].filter(Boolean).join(', ');
-  const earlier = model.earlier.filter(run => run.shown).map(run => `${run.number} ${run.name}`).join(', ');
+  const shown = model.earlier.filter(run => run.shown);
+  const earlier = [...new Set(shown.map(kindOf))].map(kind =>
+    ['', `Earlier runs (${kind}): ${shown.filter(run => kindOf(run) === kind).map(run => run.number).join(', ')}`]);
   const numbers = SOURCES.filter(source => model.poses[source]).map(source => {
     const [x, y, heading, distance] = rowOf(model.poses[source]);
     return [source, `${source}: x ${x} m, y ${y} m, heading ${heading}°, ${distance} m from the start`];
   });
-  return [['', what], ['', earlier && `Earlier runs: ${earlier}`], ...numbers].filter(([, text]) => text);
+  return [['', what], ...earlier, ...numbers];
 }
 
 function redraw() {

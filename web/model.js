@@ -11,7 +11,7 @@ function lists(names) {
 
 export class Model {
   constructor() {
-    this.earlier = [];      // runs of this page that are over: {number, name, points, shown}
+    this.earlier = [];      // runs of this page that are over: {number, name, stopped, points, shown}
     this.forget();
   }
 
@@ -37,7 +37,8 @@ export class Model {
     const points = this.paths.truth.length ? this.paths.truth : this.paths.odometry;
     if (points.some(([x, y]) => Math.hypot(x, y) > MOVED)) {
       const number = (this.earlier[this.earlier.length - 1]?.number || 0) + 1;
-      this.earlier = [...this.earlier, {number, name: this.run, points, shown: true}].slice(-MAX_EARLIER);
+      this.earlier = [...this.earlier, {number, name: this.run, stopped: this.stopped, points, shown: true}]
+        .slice(-MAX_EARLIER);
     }
   }
 
@@ -45,6 +46,7 @@ export class Model {
     if (frame.epoch !== this.epoch) {   // a new run
       this.keep();
       this.epoch = frame.epoch;
+      this.stopped = false;
       this.clear();
       this.speeds = lists(SPEEDS);
     }
@@ -70,6 +72,8 @@ export class Model {
     }
     if (frame.status) {
       this.status = frame.status;
+      const {started, outcome} = frame.status;
+      this.stopped = started === this.run ? outcome === 'stopped' : this.stopped;
     }
   }
 }

@@ -3,6 +3,7 @@
 import {SPEEDS} from './model.js';
 import {element, roundStep, short} from './svg.js';
 
+const MISSING = 2;        // s between two samples without a line; the node sends at least one per second
 const MARGIN = {left: 42, right: 8, top: 18, bottom: 20};      // pixels
 
 export class Plot {
@@ -53,11 +54,14 @@ export class Plot {
       return '';
     }
     const points = samples.map(sample => [Math.max(from, sample[0]), sample[this.index]]);
-    // a command is in force until the next one
-    if (name === 'commanded') {
+    const steps = name === 'commanded';     // a command is in force until the next one
+    if (steps) {
       points.push([Math.max(end, points[points.length - 1][0]), points[points.length - 1][1]]);
     }
-    return 'M' + points.map(([time, value]) => `${x(time).toFixed(1)} ${y(value).toFixed(1)}`).join('L');
+    return points.map(([time, value], index) => {
+      const joined = index && (steps || time - samples[index - 1][0] < MISSING);
+      return `${joined ? 'L' : 'M'}${x(time).toFixed(1)} ${y(value).toFixed(1)}`;
+    }).join('');
   }
 
   drawAxes({width, height, from, seconds, low, high, x, y}) {

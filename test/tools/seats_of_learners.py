@@ -3,6 +3,7 @@
 from contextlib import suppress
 import os
 import signal
+import sys
 import unittest
 from urllib.request import urlopen
 from xmlrpc.client import ServerProxy
@@ -11,6 +12,9 @@ import roslib.packages
 
 from ports import free_port
 import support
+
+sys.path.append(os.path.join(os.path.dirname(__file__), '..', 'faults'))
+from web_client import WebClient
 
 SEATS = 2
 
@@ -22,6 +26,13 @@ def answers(port):
     except OSError:
         return None
     return {node for _, nodes in subscribers for node in nodes}
+
+
+def title(port, token):
+    """Return the title of the page at a port; None if no node that knows the token answers."""
+    with suppress(OSError):
+        client = WebClient(port, token)
+        return client.wait_for('welcome')['trusted'] and client.wait_for('frame')['status']['title']
 
 
 class TestSeats(unittest.TestCase):
@@ -55,15 +66,18 @@ class TestSeats(unittest.TestCase):
     def test_seats_end_with_a_process_that_is_killed(self):
         self.check(signal.SIGKILL, -signal.SIGKILL)
 
-    def test_a_seat_that_exits_is_reported(self):
-        masters = free_port() - 1
-        process = self.start(1, '--master-port', masters, '--web-port', free_port() - 1)
+    def test_a_seat_that_exits_is_started_again(self):
+        masters, page = free_port() - 1, free_port()
+        process = self.start(1, '--master-port', masters, '--web-port', page - 1)
+        token = process.wait_for_line(r' 1 .*/#(\S+)').group(1)
+        self.assertEqual(title(page, token), 'Seat 1')
         process.wait_for_line('Ready: 1 seats')
         master = ServerProxy(f'http://localhost:{masters + 1}')
+        base = master.lookupNode('/test', '/arbotix')[2]
         with suppress(OSError):     # it exits without an answer
-            ServerProxy(master.lookupNode('/test', '/arbotix')[2]).shutdown('/test', 'by a learner')
-        self.assertEqual(process.wait(), 1, process.output)
-        self.assertIn('REQUIRED process [arbotix', process.output)
+            ServerProxy(base).shutdown('/test', 'by a learner')
+        process.wait_for_line('REQUIRED process .arbotix.*; starting it again')
+        support.wait_for(lambda: title(page, token) == 'Seat 1', 'the page of the seat')
 
     def test_what_is_wrong_is_named(self):
         port = int(os.environ['ROS_MASTER_URI'].rpartition(':')[2].strip('/'))

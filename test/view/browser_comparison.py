@@ -72,16 +72,29 @@ class TestBrowserComparison(PageTest):
         self.odom.next()
         self.assertEqual(self.page.find('#linear .commanded').get_attribute('d'), shown)
 
-    def test_a_saved_picture_has_its_numbers(self):
+    def test_missing_odometry_leaves_a_gap(self):
         self.page.run('timed')
         self.page.wait_for_text('run-state', 'finished')
+
+        def gaps():
+            return self.page.find('#linear .reported').get_attribute('d').count('M') - 1
+        self.assertEqual(gaps(), 0)
+        self.driver.execute_script(
+            'const {reported} = rbx1.model.speeds; reported.push([reported[reported.length - 1][0] + 3, 0, 0])')
+        support.wait_for(lambda: gaps() == 1, 'a gap')
+
+    def test_a_saved_picture_has_its_numbers(self):
+        for method in 'timed', 'odometry':
+            self.page.run(method)
+            self.page.wait_for_text('run-state', ': finished')
         support.wait_for(lambda: self.driver.execute_script('return rbx1.model.status.seed') == '7', 'the seed')
         self.page.click('#save-svg')
         name = support.wait_for(lambda: [each for each in os.listdir(self.folder.name) if each.endswith('.svg')],
                                 'a file')
         with open(os.path.join(self.folder.name, name[0]), encoding='utf-8') as file:
             text = file.read()
-        self.assertIn('timed, low_ply_carpet, seed 7<', text)
+        self.assertIn('with odometry, low_ply_carpet, seed 7<', text)
+        self.assertIn('Earlier runs (timed): 1<', text)
         for source in 'truth', 'odometry':
             x = self.page.row('table-now', source)[0]
             self.assertIn(f'{source}: x {x:.3f} m', text)
@@ -91,16 +104,20 @@ class TestBrowserComparison(PageTest):
         self.assertFalse(self.page.find('.run[data-method=gyro]').is_enabled())
         self.assertIn('needs the filter', self.page.text('why'))
 
-    def test_a_session_by_keyboard_alone(self):
+    def test_a_session_by_keyboard_alone_and_with_reduced_motion(self):
+        self.driver.execute_cdp_cmd('Emulation.setEmulatedMedia', {
+            'features': [{'name': 'prefers-reduced-motion', 'value': 'reduce'}]})
         self.go_to('timed')
         self.press(Keys.ENTER)
         self.page.wait_for_text('run-state', 'Running: timed')
-        support.wait_for(lambda: self.odom.last.twist.twist.linear.x > 0.1, 'the run')
+        support.wait_for(lambda: self.odom.position()[0] > 0.05, 'the run')
+        self.assertEqual(self.driver.execute_script('return document.getAnimations().length'), 0)
         self.press(Keys.ESCAPE)
         self.page.wait_for_text('run-state', 'The robot is stationary')
         self.go_to('reset')
         self.press(Keys.SPACE)
         support.wait_for(lambda: self.odom.position() == (0, 0), 'the reset')
+        support.wait_for(lambda: '1 timed, stopped' in self.page.text('earlier'), 'the path of the run')
         self.go_to('hand')
         self.press(Keys.ENTER)
 

@@ -12,7 +12,7 @@ FAULT = ('a driver unregisters 0 to 30 ms before or after a Stop; a run of the p
          'node is frozen when a Stop arrives')
 PROMISE = ('the Stop is answered; the robot is at rest; hand driving works afterwards; a frozen node answers when it '
            'runs again')
-FULL, SHORT = 250, 10
+FULL, SHORT = 125, 10
 ROOT, ALONE = False, True
 
 MARGIN = 0.03       # s

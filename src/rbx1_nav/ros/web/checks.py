@@ -17,11 +17,18 @@ from rbx1_nav.ros.web.parameters import LOCALHOST
 
 LOOPBACK = frozenset((LOCALHOST, '127.0.0.1', '::1'))
 TOKEN_BYTES = 16
+TOKEN_VARIABLE = 'RBX1_NAV_TOKEN'   # environment variable with the token, if several processes must agree on it
 
 
 def make_token() -> str:
     """Return a new token that cannot be guessed."""
     return secrets.token_urlsafe(TOKEN_BYTES)
+
+
+def page_address(address: str, port: int, token: str) -> str:
+    """Return the address to open. A browser does not send the part after #, so no proxy can log the token."""
+    host = LOCALHOST if is_wildcard(address) else f'[{address}]' if ':' in address else address
+    return f'http://{host}:{port}/#{token}'
 
 
 def same_token(token: str, given: object) -> bool:

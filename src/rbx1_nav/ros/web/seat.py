@@ -1,11 +1,14 @@
 """A seat of seats.py: a roslaunch process with its own master, a simulated robot, and a page."""
 from __future__ import annotations
 
+import os
 import re
 import signal
 import subprocess
 from threading import Event, Thread
 from typing import Callable, Sequence
+
+from rbx1_nav.ros.web.checks import TOKEN_VARIABLE, make_token, page_address
 
 START_TIMEOUT = 60.0    # s for a seat to start
 LINES = 20      # of the output that are kept
@@ -13,48 +16,50 @@ COLOR = re.compile('\x1b\\[[0-9;]*m')
 
 
 class Seat:
-    """The process of a seat."""
+    """The process of a seat. It can be started again, with the same address of its page."""
 
-    def __init__(self, number: int, master_port: int, web_port: int, arguments: Sequence[str],
+    def __init__(self, number: int, master_port: int, address: str, web_port: int, arguments: Sequence[str],
                  report: Callable[[str], None]) -> None:
-        """arguments: further arguments of seat.launch; report(text): called when a node of the seat exits."""
+        """address: where the page is served; arguments: further arguments of seat.launch; report(text): called when a
+        node of the seat exits."""
         self.number = number
         self.master_port = master_port
         self.web_port = web_port
-        self.command = ['roslaunch', '-p', str(master_port), 'rbx1_bringup', 'seat.launch', f'web_port:={web_port}',
-                        *arguments]
+        self.token = make_token()
+        self.page = page_address(address, web_port, self.token)
+        self.command = ['roslaunch', '-p', str(master_port), 'rbx1_bringup', 'seat.launch', f'address:={address}',
+                        f'port:={web_port}', f'title:=Seat {number}', *arguments]
         self.report = report
         self.process: subprocess.Popen[str] | None = None
-        self.page = ''          # address
         self.lines: list[str] = []      # the last ones of its output
-        self.ready = Event()    # set when base and page are ready, or the process has exited
 
     def start(self) -> bool:
         """Start the process. Returns whether base and page are ready."""
+        self.lines, ready = [], Event()
         # it gets SIGINT when this process exits, however it exits; and Ctrl-C in the terminal reaches only this process
         self.process = subprocess.Popen(['setpriv', '--pdeathsig', 'INT', *self.command], stdin=subprocess.DEVNULL,
                                         stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-                                        start_new_session=True)
-        Thread(target=self._read, args=(self.process,), daemon=True).start()
-        self.ready.wait(START_TIMEOUT)
-        return bool(self.page) and self.is_running
+                                        start_new_session=True, env={**os.environ, TOKEN_VARIABLE: self.token})
+        Thread(target=self._read, args=(self.process, ready), daemon=True).start()
+        return ready.wait(START_TIMEOUT) and self.is_running
 
     @property
     def is_running(self) -> bool:
         """Whether the process runs."""
         return self.process is not None and self.process.poll() is None
 
-    def _read(self, process: subprocess.Popen[str]) -> None:
-        base_ready = False
+    def _read(self, process: subprocess.Popen[str], ready: Event) -> None:
+        """Read the output. ready: set when base and page are ready, or the process has exited."""
+        missing = {'Ready: ', 'Open http'}
         for line in process.stdout or ():
             self.lines = [*self.lines[1 - LINES:], COLOR.sub('', line).strip('=\n')]
-            if self.ready.is_set() and re.search('process has (died|finished)', line):
+            if ready.is_set() and re.search('process has (died|finished)', line):
                 self.report(f'seat {self.number}: {self.lines[-1]}')
-            self.page = self.page or ''.join(re.findall(r'Open (http\S+)', line))
-            base_ready = base_ready or 'Ready: ' in line
-            if self.page and base_ready:
-                self.ready.set()
-        self.ready.set()
+            missing = {each for each in missing if each not in line}
+            if not missing:
+                ready.set()
+        process.wait()
+        ready.set()
 
     def stop(self) -> None:
         """Stop the process as Ctrl-C does; does not wait."""
