@@ -8,8 +8,7 @@ import time
 import rospy
 from geometry_msgs.msg import Twist
 
-# m/s and rad/s for the arrow keys: up, down, left and right send three bytes, the last of which is A, B, D or C
-SPEEDS = {'A': (0.2, 0.0), 'B': (-0.2, 0.0), 'D': (0.0, 1.0), 'C': (0.0, -1.0)}
+SPEEDS = {'A': (0.2, 0.0), 'B': (-0.2, 0.0), 'D': (0.0, 1.0), 'C': (0.0, -1.0)}     # up, down, left, right: m/s, rad/s
 
 
 def shutdown():
