@@ -87,8 +87,10 @@ def main():
         surface = load_surface(arguments.surface, resources.surfaces())
         seeds = range(arguments.seed, arguments.seed + arguments.runs)
         robot = load_robot(arguments.config)
-        print(f'{arguments.runs} runs of each method on {arguments.surface}, seeds {seeds[0]} to {seeds[-1]}. Mean and '
-              f'standard deviation of the end poses:\n{HEADER}')
+        runs, of = (('1 run', f'seed {seeds[0]}') if len(seeds) == 1
+                    else (f'{len(seeds)} runs', f'seeds {seeds[0]} to {seeds[-1]}'))
+        print(f'{runs} of each method on {arguments.surface}, {of}. Mean and standard deviation of the end poses:\n'
+              f'{HEADER}')
         results = {}
         for method in arguments.method:
             results[method], took = run_all(method, robot, surface, seeds, arguments)

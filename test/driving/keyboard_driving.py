@@ -1,5 +1,8 @@
 #!/usr/bin/python3
-"""examples/keyboard.py drives the robot by the keys typed in its terminal, and restores the terminal on Ctrl-C."""
+"""examples/keyboard.py drives the robot by the keys typed in its terminal, and restores the terminal on Ctrl-C.
+
+Without a terminal, it exits with a one-line error.
+"""
 import os
 import pty
 import subprocess
@@ -11,6 +14,7 @@ import rospkg
 import support
 
 KEYBOARD = os.path.join(rospkg.RosPack().get_path('rbx1_nav'), 'examples', 'keyboard.py')
+UP, DOWN, RIGHT, LEFT = (b'\x1b[' + key for key in (b'A', b'B', b'C', b'D'))
 
 
 class TestKeyboardDriving(unittest.TestCase):
@@ -36,18 +40,26 @@ class TestKeyboardDriving(unittest.TestCase):
         os.write(self.ours, keys)
 
     def test_each_key(self):
-        for keys, linear, angular in [(b'i', 0.2, 0.0), (b'j', 0.0, 1.0), (b'\x1b[C', 0.0, -1.0), (b',', -0.2, 0.0),
-                                      (b'\x1b[A', 0.2, 0.0), (b' ', 0.0, 0.0), (b'lllli', 0.2, 0.0)]:
+        for keys, linear, angular in [(UP, 0.2, 0.0), (LEFT, 0.0, 1.0), (RIGHT, 0.0, -1.0), (DOWN, -0.2, 0.0),
+                                      (UP, 0.2, 0.0), (b' ', 0.0, 0.0), (4 * LEFT + UP, 0.2, 0.0)]:
             self.type(keys)
             self.odom.wait_for_twist(linear, angular)
 
     def test_ctrl_c(self):
-        self.type(b'i')
+        self.type(UP)
         self.odom.wait_for_twist(0.2)
         self.type(b'\x03')
         self.assertEqual(self.process.wait(support.LIMIT), 0)
         self.odom.wait_for_twist(0.0)
         self.assertEqual(termios.tcgetattr(self.terminal), self.before)
+
+    def test_without_a_terminal(self):
+        result = subprocess.run(['/usr/bin/python3', KEYBOARD, '__name:=piped'], stdin=subprocess.DEVNULL,
+                                capture_output=True, text=True, timeout=support.LIMIT)
+        self.assertEqual(result.returncode, 1)
+        lines = (result.stdout + result.stderr).splitlines()
+        self.assertEqual(len(lines), 1, lines)
+        self.assertIn('expected a terminal as standard input', lines[0])
 
 
 if __name__ == '__main__':

@@ -66,7 +66,8 @@ def draw(file: str, surface: str, results: Mapping[str, Sequence[SimulationResul
     for (above, below), method in zip(panels.T, results):
         draw_paths(above, results[method])
         distances, errors = numpy.hypot(*ends[method].T[:2]), ends[method][:, 2]
-        above.set_title(f'{TITLES[method]}: {100 * distances.mean():.1f} cm from the start, '
+        mean = 'mean ' if len(seeds) > 1 else ''
+        above.set_title(f'{TITLES[method]}: {mean}{100 * distances.mean():.1f} cm from the start, '
                         f'{errors.mean():.1f} degrees off', fontsize='medium')
         points = draw_ends(below, ends[method], extent, norm)
     if norm:

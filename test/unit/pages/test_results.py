@@ -55,6 +55,10 @@ QUOTED = [
      [(HARD, method, MISSES, unit) for unit in (CM, DEGREES) for method in ('odom', 'ekf')]),
     (TUTORIAL, 'the mean distance from the start is # cm when timed, # cm with odometry, and # cm with odometry and',
      [(CARPET, method, MISSES, CM) for method in ('timed', 'odom', 'ekf')]),
+    (FIGURES, 'the mean distance from the start is # cm straight ahead', [(CARPET, 'ekf', MISSES, CM)]),
+    (ANSWERS, '| with odometry and gyro: distance from the start | # cm |', [(CARPET, 'ekf', MISSES, CM)]),
+    (ANSWERS, '| angle from the initial heading | # degrees |', [(CARPET, 'ekf', MISSES, DEGREES)]),
+    (ANSWERS, '| with odometry alone: distance from the start | # cm | # cm |', 2 * [(CARPET, 'odom', MISSES, CM)]),
 ]
 
 

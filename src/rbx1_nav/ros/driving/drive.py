@@ -89,5 +89,7 @@ class TimedDrive(Drive):
 
     def finish(self) -> None:
         self.listeners.check_delivery()
-        rospy.loginfo('Done: commanded %.2f m forward and %.2f rad to the left. To see where the robot is now, run: '
-                      'rosrun rbx1_nav pose.py', self.distance, self.angle)
+        # a script that does not use progress() has commanded something else
+        commanded = f': commanded {self.distance:.2f} m forward and {self.angle:.2f} rad to the left'
+        rospy.loginfo('Done%s. To see where the robot is now, run: rosrun rbx1_nav pose.py',
+                      commanded if self.distance or self.angle else '')

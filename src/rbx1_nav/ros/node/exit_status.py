@@ -17,14 +17,16 @@ PACKAGE = os.path.realpath(os.path.join(os.path.dirname(__file__), '..', '..')) 
 def exit_status() -> Iterator[None]:
     """Run a `with` block and exit the process.
 
-    The exit status is 0, also after an interrupt; or the status of sys.exit(); or 1 after an error, which is logged in
-    one line. If the mistake is in the script itself, the line contains its position.
+    The exit status is 0, also after an interrupt; or the status of sys.exit(), whose text is logged; or 1 after an
+    error, which is logged in one line. If the mistake is in the script itself, the line contains its position.
     """
     status = 0
     try:
         yield
     except SystemExit as error:
         status = error.code if isinstance(error.code, int) else int(error.code is not None)
+        if isinstance(error.code, str):
+            rospy.logerr('%s', error.code)
     except rospy.ROSInterruptException:     # shutdown was requested
         pass
     except (rospy.ROSException, ValueError, OSError) as error:  # StuckError; the master does not answer

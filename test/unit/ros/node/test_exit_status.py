@@ -21,6 +21,7 @@ with exit_status():
     ("raise rospy.ROSException('no base')", 1, 'no base'),
     ('raise rospy.ROSInterruptException()', 0, None),
     ('raise SystemExit(3)', 3, None),
+    ("raise SystemExit('100 % wrong')", 1, '100 % wrong'),
     ('pass', 0, None),
 ])
 def test_what_is_logged(monkeypatch, statement, status, logged):
