@@ -49,7 +49,7 @@ class TestBrowserRealRobot(unittest.TestCase):
         self.assertEqual(page.find('#hand').get_attribute('aria-pressed'), 'false')
         self.assertEqual(self.odom.position(), (0, 0))
 
-        # Let it move
+        # Allow motion
         page.click('.run[data-method=timed]')
         page.click('#confirm-move')
         self.odom.wait_for_twist(SPEED)
