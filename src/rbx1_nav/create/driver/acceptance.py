@@ -11,10 +11,11 @@ from rbx1_nav.create.driver.contact import Contact
 from rbx1_nav.create.driver.parameters import Settings
 from rbx1_nav.create.driver.sender import wheel_speeds
 from rbx1_nav.create.driver.supervisor import BUMPS, CLIFFS, WHEEL_DROPS, Supervisor
-from rbx1_nav.create.driver.travel import TOO_BAD, Expected, Travel
+from rbx1_nav.create.driver.travel import Expected, Travel
 from rbx1_nav.units import SECOND
 
 OUTAGE = 3 * SECOND // 10   # longest harmless time in which the robot does not answer or obey
+TOO_BAD = 0.5               # share of lost replies at which the robot is stopped
 BLOCKED = 0.1               # m, commanded travel of a wheel without a turn of any wheel
 TURNED = 0.1                # fraction of the commanded travel from which the wheels count as turning
 AT_CLIFF = 1 << 8       # a bit that bumps and wheel drops do not use

@@ -19,8 +19,7 @@ from rbx1_nav.create.driver.parameters import Settings
 from rbx1_nav.create.driver.queries import Queries
 from rbx1_nav.create.driver.sender import Sender, is_too_fast
 from rbx1_nav.create.driver.supervisor import WHEEL_DROPS, Supervisor, causes
-from rbx1_nav.create.driver.travel import (
-    TOO_BAD, Counter, CounterTravel, EncoderTravel, Implausible, Travel, reach, unknown, unsure)
+from rbx1_nav.create.driver.travel import Counter, CounterTravel, EncoderTravel, Implausible, Travel, unknown
 from rbx1_nav.robot.readings import Reading
 from rbx1_nav.schedule import Schedule
 from rbx1_nav.units import SECOND
@@ -204,15 +203,13 @@ class Driver:
         if reset:
             self.counter.restart()
         try:
-            travel = self.counter.update(reading, elapsed, expected)
+            travel = self.counter.update(reading, elapsed, expected, queries.lost_share)
         except Implausible:
             self.implausible += 1
             queries.lose_reply()
             return
         if reset:
             travel = unknown(expected, self.model.wheel_separation)
-        elif queries.lost_share > TOO_BAD:      # this reading may be corrupted, too
-            travel = unsure(travel, reach(elapsed), self.model.wheel_separation)
         if self.contact.hear():
             self._recover(elapsed, reset)
         queries.accept()

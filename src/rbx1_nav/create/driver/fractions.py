@@ -51,10 +51,13 @@ class Turn(NamedTuple):
 NO_TURN = Turn(0.0, 0.0)
 
 
-def is_included(lost: float, after: float, reading: float, uncertain: float) -> bool:
-    """Return whether a reading includes a motion before a lost reply, because the query was lost instead. lost, after:
-    commanded motion before and after this query; uncertain: a smaller `lost` does not show, and is not included."""
-    return abs(lost) > uncertain and abs(reading - after - lost) < abs(reading - after)
+def lost_part(lost: float, after: float, reading: float, uncertain: float) -> tuple[float, float]:
+    """Return (motion, 1 sigma): the motion before a lost reply that the next reading does not include. It includes all
+    of it if the query was lost instead. lost, after: commanded motion before and after this query; uncertain: a smaller
+    `lost` does not show in the reading."""
+    if abs(lost) <= uncertain:
+        return lost, abs(lost)
+    return (0.0, 0.0) if abs(reading - after - lost) < abs(reading - after) else (lost, UNSURE * abs(lost))
 
 
 class Fractions:
@@ -136,13 +139,9 @@ class Fractions:
 
     def _read(self, angle: int) -> Turn:
         """Return the Turn since the last reading."""
-        turn, variance = float(angle), 0.0
-        if self._lost and not is_included(self._lost, self.turn - self._lost, angle, UNCERTAIN):
-            turn += self._lost
-            variance = (UNSURE * self._lost) ** 2
-        if angle:
-            turn += copysign(MEAN_LOSS[self.kind], angle)
-        return Turn(turn, variance + (LOSS_VARIANCE if self.kind != KEPT and (angle or self.turn) else 0.0))
+        lost, sigma = lost_part(self._lost, self.turn - self._lost, angle, UNCERTAIN)
+        turn = angle + lost + (copysign(MEAN_LOSS[self.kind], angle) if angle else 0.0)
+        return Turn(turn, sigma ** 2 + (LOSS_VARIANCE if self.kind != KEPT and (angle or self.turn) else 0.0))
 
     def _test(self, commanded: float, angle: int) -> Turn:
         """Add a reading before which the robot has turned by less than a degree."""

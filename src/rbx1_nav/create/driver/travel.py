@@ -1,17 +1,16 @@
 """Converts the robot's counters to travel, and handles wraps, gaps and implausible readings."""
 from __future__ import annotations
 
-from math import degrees, radians
+from math import degrees, hypot, radians
 from typing import Mapping, NamedTuple, Union
 
-from rbx1_nav.create.driver.fractions import UNSURE, Fractions, is_included
+from rbx1_nav.create.driver.fractions import UNSURE, Fractions, lost_part
 from rbx1_nav.create.protocol import MAX_SPEED, Model
 
 WHEEL_LIMIT = 1.3 * MAX_SPEED / 1000    # m/s: faster than any wheel
 MARGIN = 0.015          # m of wheel travel that one reading may miss and the next one include
 AGREED = 3              # consecutive implausible readings, which show that the robot was reset
-LOST_SHARE = 0.1        # 1 sigma of an expected travel that was never read, as a fraction of it
-TOO_BAD = 0.5           # share of lost replies at which the robot is stopped
+DOUBT = 0.5             # 1 sigma of a reading if all replies around it are lost, as a fraction of reach(); measured
 ANYWHERE = 10.0         # m, 1 sigma of the travel of a robot that has stopped counting
 ROUND = 1 / 12 ** 0.5   # 1 sigma of rounding to a whole number
 
@@ -55,12 +54,6 @@ def unknown(expected: Expected, width: float) -> Travel:
     return Travel(0.0, 0.0, ((left + right) / 2) ** 2 / 3, ((right - left) / width) ** 2 / 3)
 
 
-def unsure(travel: Travel, sigma: float, width: float) -> Travel:
-    """Return a Travel of which the travel of each wheel is wrong by `sigma` (m)."""
-    return travel._replace(distance_variance=travel.distance_variance + sigma ** 2 / 2,
-                           angle_variance=travel.angle_variance + 2 * (sigma / width) ** 2)
-
-
 class EncoderTravel:
     """Travel of the Create 2, from 16-bit encoders that wrap. A lost reply loses no travel."""
 
@@ -82,9 +75,9 @@ class EncoderTravel:
         self.counts: tuple[int, int] | None = None
         self.rejected = 0       # number of consecutive implausible counts
 
-    def update(self, reading: Mapping[str, int], elapsed: float, expected: Expected) -> Travel:
-        """Return the Travel since the last good reading, `elapsed` s ago. expected: commanded travel in this time.
-        Raises Implausible."""
+    def update(self, reading: Mapping[str, int], elapsed: float, expected: Expected, lost_share: float) -> Travel:
+        """Return the Travel since the last good reading, `elapsed` s ago. expected: commanded travel in this time;
+        lost_share: share of the last replies that were lost. Raises Implausible."""
         counts = reading['left_encoder'], reading['right_encoder']
         if self.counts is None:
             self.counts = counts
@@ -97,9 +90,10 @@ class EncoderTravel:
                 self.restart()
             raise Implausible(f'encoders: {counts[0]} and {counts[1]} after {before[0]} and {before[1]}')
         self.counts, self.rejected = counts, 0
-        travel, wrap = Travel((left + right) / 2, (right - left) / self.width, 0.0, 0.0), self.WRAP * self.scale
         # from half a wrap on, the encoders may have wrapped
-        return unsure(travel, wrap, self.width) if max(abs(each) for each in expected) > wrap / 2 else travel
+        wrap = self.WRAP * self.scale
+        sigma = wrap if max(abs(each) for each in expected) > wrap / 2 else 0.0
+        return Travel((left + right) / 2, (right - left) / self.width, sigma ** 2, (2 / self.width * sigma) ** 2)
 
     def is_reset(self, reading: Mapping[str, int]) -> bool:
         """Return whether this may be the reading of a robot that counts from 0 again."""
@@ -159,17 +153,19 @@ class CounterTravel:
         self.asks_angle = self.first or self.fractions.is_due(self._turn(expected), elapsed)
         return self.asks_angle
 
-    def update(self, reading: Mapping[str, int], elapsed: float, expected: Expected) -> Travel:
+    def update(self, reading: Mapping[str, int], elapsed: float, expected: Expected, lost_share: float) -> Travel:
         if self.first:
             self.restart()
             self.first = False
             return NOWHERE
         distance, angle = reading['distance'] / 1000, reading['angle'] if self.asks_angle else None
-        half = radians(angle or 0) * self.width / 2
-        if abs(distance) > reach(elapsed) or abs(half) > reach(self.fractions.time + elapsed):
+        time = self.fractions.time + elapsed        # in which the angle was counted
+        turn = radians(angle or 0) * (elapsed / time if time else 1.0)
+        if abs(distance) + abs(turn) * self.width / 2 > reach(elapsed):
             raise Implausible(f"distance: {reading['distance']} mm, angle: {reading.get('angle')} degrees in "
                               f'{elapsed:.3f} s')
         lost, sigma = self._lost_distance(distance, elapsed, expected)
+        sigma = hypot(sigma, DOUBT * lost_share ** 1.5 * reach(elapsed))    # this reading may be corrupted, too
         if max(abs(reading['distance']), abs(angle or 0)) >= self.CAP:
             sigma = ANYWHERE
         turned = self.fractions.update(self._turn(expected), elapsed, angle)
@@ -178,16 +174,14 @@ class CounterTravel:
                       (2 / self.width * sigma) ** 2 + radians(1) ** 2 * turned.variance)
 
     def _lost_distance(self, distance: float, elapsed: float, expected: Expected) -> tuple[float, float]:
-        """Return (distance, 1 sigma) of the travel before a lost reply. If the query was lost instead, the distance
-        that was read afterwards includes it. Fractions handles the angle in the same way."""
-        if not any(self.lost):
-            return 0.0, 0.0
+        """Return (distance, 1 sigma): the travel before a lost reply that the reading does not include."""
         lost, total = ((each.left + each.right) / 2 for each in (self.lost, expected))
-        if is_included(lost, total - lost, distance, 2 * (self.rounding[0] + LOST_SHARE * abs(total - lost))):
+        lost, sigma = lost_part(lost, total - lost, distance, 2 * (self.rounding[0] + UNSURE * abs(total - lost)))
+        if not lost:
             return 0.0, 0.0
         # where the wheels do not follow the commands, either the commands or the reading are closer to the truth
         follow = distance * self.lost_time / max(elapsed - self.lost_time, self.lost_time)
-        return lost, LOST_SHARE * max(abs(self.lost.left), abs(self.lost.right)) + abs(lost - follow)
+        return lost, sigma + abs(lost - follow)
 
     @staticmethod
     def is_reset(reading: Mapping[str, int]) -> bool:
