@@ -19,7 +19,7 @@ from rbx1_nav.create.driver.parameters import Settings
 from rbx1_nav.create.driver.queries import Queries
 from rbx1_nav.create.driver.sender import Sender, is_too_fast
 from rbx1_nav.create.driver.supervisor import WHEEL_DROPS, Supervisor, causes
-from rbx1_nav.create.driver.travel import Counter, CounterTravel, EncoderTravel, Implausible, Travel, unknown
+from rbx1_nav.create.driver.travel import Counter, CounterTravel, EncoderTravel, Expected, Implausible, Travel, unknown
 from rbx1_nav.robot.readings import Reading
 from rbx1_nav.schedule import Schedule
 from rbx1_nav.units import SECOND
@@ -215,19 +215,20 @@ class Driver:
         queries.accept()
         self.reading, self.is_new = reading, True
         self.acceptance.follow(elapsed, expected, travel, self.model.wheel_separation)
-        travel, turn = self.motion.add(time, travel), (expected.right - expected.left) / self.model.wheel_separation
+        travel = self.motion.add(time, travel)
         if self.gyro:
-            self.gyro_reading = self.gyro.update(reading['analog_input'], self._step(elapsed, travel, turn, reading))
+            step = self._step(elapsed, travel, expected, reading)
+            self.gyro_reading = self.gyro.update(reading['analog_input'], step)
         if self.leaving is None:
             self._supervise(time, reading)
         elif time >= self.leaving and self.supervisor.is_passive(reading):
             self.left = True
 
-    def _step(self, elapsed: float, travel: Travel, commanded: float, reading: Mapping[str, int]) -> Step:
-        """Return the Step for the gyro."""
+    def _step(self, elapsed: float, travel: Travel, expected: Expected, reading: Mapping[str, int]) -> Step:
+        """Return the Step for the gyro. expected: travel according to the commands."""
         bits = reading['bumps_and_wheel_drops']
         variance = travel.angle_variance + self.settings.errors.variances(travel)[1] + self.counter.rounding[1] ** 2
-        return Step(elapsed, travel.angle, variance, commanded,
+        return Step(elapsed, travel.angle, variance, (expected.right - expected.left) / self.model.wheel_separation,
                     self.motion.stands and not bits & WHEEL_DROPS,      # a lifted robot may be turned by hand
                     self.supervisor.in_control and self.settings.operation_mode != protocol.PASSIVE, bool(bits),
                     elapsed * self.settings.update_rate > GAP)

@@ -78,9 +78,12 @@ class Supervisor:
             self.clear_since, self.failures = None, 0
             return None
         found, docked = causes(reading), bool(reading['charging_sources'] & DOCK)
-        reasons = found + ['on the dock: lift it off if it does not follow a command'] * docked
-        self.failures = 0 if reasons else self.failures
-        if self.failures > ATTEMPTS_BEFORE_LOG:
+        reasons = list(found)
+        if docked:
+            reasons.append('on the dock: lift it off if it does not follow a command')
+        if reasons:
+            self.failures = 0
+        elif self.failures > ATTEMPTS_BEFORE_LOG:
             reasons.append(f'it reports mode {reported} after it was asked for {protocol.MODE_NAMES[self.wanted]} '
                            f'mode: expected {self.wanted + self.plus_one}, or oi_mode_workaround:='
                            f'{str(not self.plus_one).lower()}')
