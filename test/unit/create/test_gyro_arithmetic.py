@@ -53,24 +53,6 @@ def test_the_rate_is_what_create_node_computes(count, correction):
     assert reading.rate_variance == pytest.approx((radians(150) * correction / 500) ** 2)       # one count
 
 
-def test_the_offset_is_the_mean_of_the_last_1000_readings():
-    gyro = calibrated(510, 1000)
-    feed(gyro, 514, 500, rest=True)
-    assert gyro.offset == 512
-    feed(gyro, 514, 500, rest=True)
-    assert gyro.offset == 514
-    feed(gyro, 510, 1, rest=True)
-    assert gyro.offset == pytest.approx(514 - 4 / 1000)
-
-
-@pytest.mark.parametrize('count, offset', [(527, 512.5), (497, 511.5), (528, 512), (496, 512)])
-def test_a_reading_at_rest_that_differs_by_more_than_15_counts_is_not_included(count, offset):
-    gyro = calibrated(times=29)
-    feed(gyro, count, 1, rest=True)
-    assert gyro.offset == pytest.approx(offset, abs=1e-9 if offset == 512 else 1e-3 + abs(offset - 512) / 2)
-    assert (gyro.offset == 512) == (offset == 512)
-
-
 def test_readings_that_jump_for_more_than_1_s_are_a_new_offset():
     gyro = calibrated()
     feed(gyro, 540, 16, rest=True)

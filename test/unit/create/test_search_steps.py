@@ -70,33 +70,6 @@ def test_the_rates_are_tried_in_turn_the_expected_one_first(baud, order):
     assert tuple(searching.line.rates) == order * 2 + order[:1] and searching.search.rounds == 2
 
 
-def test_the_number_of_start_bytes_grows_after_two_rounds():
-    """Many Start bytes soon complete a command that garbage has begun."""
-    searching = Searching()
-    for _ in range(8):
-        searching.step()
-    assert [len(each) for each in searching.line.apart] == [8] * 6 + [64] * 3
-    assert set(b''.join(searching.line.apart)) == {128}
-
-
-def test_a_reply_is_awaited_for_0_12_s_after_its_transmission():
-    searching = Searching((19200,))
-    # 8 Start bytes, 2 ms apart; a query of 3 bytes and a reply of 10 bytes of 10 bits
-    seconds = 8 * 0.002 + 13 * 10 / 19200 + 0.12
-    assert searching.search._deadline - SECOND == pytest.approx(seconds * 1e9, abs=1)
-    assert searching.search.missing == 10
-    # a complete reply counts after 20 ms without another byte
-    searching.search.receive(SECOND, battery()[:9])
-    assert searching.search.missing == 1 and searching.search._deadline > SECOND * 11 // 10
-    searching.search.receive(SECOND, battery()[9:])
-    assert searching.search.missing == 0 and searching.search._deadline == SECOND + SECOND // 50
-    searching.search.receive(SECOND, b'\0')
-    assert searching.search.missing == 0
-    searching.now = searching.search._deadline
-    searching.search.tick(searching.now)
-    assert searching.search.rounds == 1     # one byte too many
-
-
 def test_a_late_byte_does_not_extend_the_deadline():
     searching = Searching()
     deadline = searching.search._deadline
@@ -170,17 +143,6 @@ def test_a_stream_shows_the_rate():
     assert searching.line.sent[-1] == MODEL_QUERY
 
 
-def test_a_stream_is_found_in_the_last_4096_bytes():
-    frame = protocol.encode_frame(protocol.CREATE_2, (35,), {'mode': 1})
-    searching = Searching()
-    searching.search.receive(searching.now, frame + bytes(4096 - len(frame)))
-    searching.search.receive(searching.now, frame + frame)
-    assert searching.line.sent[-1] == sequences.PAUSE_STREAM
-    search = Searching().search
-    search.receive(0, bytes(5000))
-    assert len(search._buffer) == 4096
-
-
 def test_a_search_that_begins_again_starts_with_its_first_round():
     searching = Searching()
     for _ in range(7):
@@ -231,27 +193,6 @@ def test_a_line_that_cannot_wake_a_robot_is_asked_once():
     for _ in range(5):
         search.tick(search._deadline)
     assert line.levels == [False] and len(line.rates) == 6 and not search.wake
-
-
-def test_the_lines_change_0_75_s_after_the_last_query_failed():
-    line, search = WakeLine(True), Search((57600,), wake=True)
-    search.begin(0, line)
-    failed = search._deadline
-    search.tick(failed)
-    assert search._deadline == failed + SECOND * 3 // 4
-    search.tick(search._deadline)
-    assert search._deadline == failed + 2 * (SECOND * 3 // 4)
-
-
-def test_the_model_is_known_20_ms_after_a_reply_of_one_or_three_bytes():
-    searching = Searching()
-    searching.find_battery()
-    assert searching.search.missing == 3
-    for size in 1, 2, 3:
-        searching.search.receive(searching.now + size, b'\0')
-        assert searching.search.missing == 3 - size
-        # the first byte may be the whole reply; the deadline does not move back
-        assert searching.search._deadline == searching.now + 1 + SECOND // 50
 
 
 def test_replies_of_an_earlier_search_do_not_count():
