@@ -17,7 +17,7 @@ class TestCreatePort(unittest.TestCase):
         robot = DrivenRobot(self, 'create2')
         pid = support.pid_of('/turtlebot_node')
         second = robot.start_node('__name:=second')
-        second.wait_for_line(rf'{robot.link}: in use by \S+ \(process \d+\): expected a port that is not in use')
+        second.wait_for_line(rf'{robot.link}: in use by another process: expected a port that is not in use')
         # the first node is not disturbed
         robot.wait_for_motion()
         # when the port is free, the second one uses it

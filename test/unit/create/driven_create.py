@@ -36,7 +36,7 @@ class DrivenCreate:
                                     lambda time, data: self.commands.append((time, data)))
         self.connected = False
         self.states = []
-        self.found = None       # a Found
+        self.found = None       # the Model of the robot that the guardian may stop
         self.refusals = []      # texts
         self.velocity = None    # m/s and rad/s: command to repeat, or None
 
@@ -65,9 +65,9 @@ class DrivenCreate:
         """Set the rate of the host."""
         self.line.host_baud = baud
 
-    def confirm(self, found):
+    def confirm(self, model):
         """Record the robot that the guardian may stop."""
-        self.found = found
+        self.found = model
 
     def pull(self):
         """Unplug the cable. Bytes in transit are lost."""

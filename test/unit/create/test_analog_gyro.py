@@ -3,14 +3,14 @@ from math import degrees, pi, radians
 
 import pytest
 
-from rbx1_nav.create.driver.gyro_check import FEW, FEW_AT_REST
+from rbx1_nav.create.driver.analog_gyro import FEW
 from rbx1_nav.create.emulator.body import BodyErrors, Quirks
 from rbx1_nav.simulation.surfaces import load_surface
 
 from driven_create import SURFACES, DrivenCreate, started
 
 PERIOD = 1 / 30     # s between two readings
-PROOF, PROOF_AT_REST = (FEW + 2) * PERIOD, (FEW_AT_REST + 2) * PERIOD     # s until enough readings have arrived
+PROOF = (FEW + 2) * PERIOD      # s until enough readings have arrived
 
 
 def calibrated(seconds=4.0, **params):
@@ -33,7 +33,7 @@ def read(driven, seconds, count):
     seen = []
     while driven.now < start + seconds * 1e9:
         driven.run(0.01)
-        if driven.driver.gyro.check.problem:
+        if driven.driver.gyro.problem:
             seen.append((driven.now - start) / 1e9)
     # this reading was made before the input changed
     states = driven.states[first + 1:]
@@ -117,7 +117,7 @@ def test_a_gyro_that_never_has_power(mode, errors):
 def test_a_gyro_that_jumps_at_rest_is_noticed_at_once_however_long_it_was_right(rest, count):
     driven = calibrated(rest)
     rates, first, _ = read(driven, 2, count)
-    assert rates == [] and first < PROOF_AT_REST
+    assert rates == [] and first < PROOF
     assert lines(driven) == driven.errors == [
         'Gyro: %d counts at rest: expected 425 to 575; using the wheels alone for the heading' % count]
     assert driven.driver.gyro.yaw == pytest.approx(0, abs=0.001)
@@ -167,7 +167,7 @@ def test_a_wrong_reading_in_motion_is_noticed_at_the_next_stop(count):
     driven.command_zero()
     _, first, _ = read(driven, 2, count)
     # half a second until the robot counts as stationary
-    assert first < 0.7 + PROOF_AT_REST and len(lines(driven)) == 1
+    assert first < 0.7 + PROOF and len(lines(driven)) == 1
 
 
 @pytest.mark.parametrize('event', ['bumped', 'wheel_dropped'])
@@ -203,7 +203,7 @@ def test_a_gyro_that_works_is_never_taken_for_broken(surface, sensitivity, drops
 def test_it_works_again_after_a_second_at_rest_with_a_new_offset(rest, broken, repaired):
     driven = calibrated(rest)
     read(driven, 8, broken)
-    assert driven.driver.gyro.check.problem
+    assert driven.driver.gyro.problem
     rates, _, last = read(driven, 5, repaired)
     assert 0.9 < last < 1.2
     # 0 from the first reading on: the offset does not include any faulty reading
@@ -216,9 +216,9 @@ def test_from_one_fault_to_another_it_does_not_work_again():
     driven = calibrated()
     for _ in range(3):
         read(driven, 2, 12)
-        assert '12 counts' in driven.driver.gyro.check.problem
+        assert '12 counts' in driven.driver.gyro.problem
         read(driven, 4, 900)
-        assert '900 counts' in driven.driver.gyro.check.problem
+        assert '900 counts' in driven.driver.gyro.problem
     # only the first one is logged
     assert len(lines(driven)) == len(driven.errors) == 1
 
@@ -228,7 +228,7 @@ def test_in_motion_it_does_not_work_again():
     driven.velocity = 0.2, 0
     read(driven, 1, 12)
     rates, _, _ = read(driven, 5, -1)
-    assert rates == [] and driven.driver.gyro.check.problem
+    assert rates == [] and driven.driver.gyro.problem
     driven.velocity = None
     driven.command_zero()
     driven.run(2.5)

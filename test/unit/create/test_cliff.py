@@ -65,12 +65,12 @@ def test_in_full_mode_a_cliff_stops_nothing(robot_type):
 def test_one_corrupted_reading_is_no_cliff(robot_type):
     driven = started(robot_type)
     driven.drive(0.2, 0, 1)
-    driven.driver.acceptance.feel(driven.now, dict(driven.driver.reading, cliff_left=1))
+    driven.driver.acceptance.feel(dict(driven.driver.reading, cliff_left=1))
     driven.command(0.2, 0)
     driven.drive(0.2, 0, 0.3)
     assert not driven.refusals and driven.speeds == (200, 200)
     # two are a cliff
     for _ in range(2):
-        driven.driver.acceptance.feel(driven.now, dict(driven.driver.reading, cliff_left=1))
+        driven.driver.acceptance.feel(dict(driven.driver.reading, cliff_left=1))
     driven.command(0.2, 0)
     assert driven.refusals == [REFUSAL]

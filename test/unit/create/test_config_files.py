@@ -39,4 +39,5 @@ def test_a_calibration_is_accepted_and_complete(path, robot_type):
 
 def test_the_neutral_calibration_corrects_nothing():
     settings, _ = read_settings(load('calibration', 'neutral.yaml'))
-    assert settings.gyro_correction == settings.linear_correction == settings.angular_correction == 1
+    assert settings.gyro_scale_correction == 1
+    assert settings.odom_linear_scale_correction == settings.odom_angular_scale_correction == 1

@@ -8,9 +8,9 @@ from rbx1_nav.create.driver.parameters import read_settings
 
 def test_the_defaults():
     settings, robot = read_settings({})
-    assert settings.model is protocol.CREATE and settings.port == 'auto' and settings.mode == protocol.SAFE
-    assert settings.has_gyro and settings.gyro_correction == 1.35 and settings.gyro_range == 150
-    assert settings.linear_correction == settings.angular_correction == 1
+    assert settings.model is protocol.CREATE and settings.port == 'auto' and settings.operation_mode == protocol.SAFE
+    assert settings.has_gyro and settings.gyro_scale_correction == 1.35 and settings.gyro_measurement_range == 150
+    assert settings.odom_linear_scale_correction == settings.odom_angular_scale_correction == 1
     assert robot.timeout == 600000000 and robot.rate == 30 and robot.publish_tf
     assert (robot.odom_frame_id, robot.base_frame_id, robot.base_width) == ('odom', 'base_footprint', 0.26)
     assert robot.wheel_joints == ('base_l_wheel_joint', 'base_r_wheel_joint')
@@ -30,8 +30,8 @@ def test_own_names_of_the_wheels():
     ({'robot_type': ['create']}, "robot_type: ['create']: expected one of auto, create, create2"),
     ({'port': 3}, 'port: 3: expected the absolute path of a device, or auto'),
     ({'port': 'COM1'}, "port: 'COM1': expected the absolute path of a device, or auto"),
-    ({'operation_mode': 0}, 'operation_mode: 0: expected 1 (passive), 2 (safe) or 3 (full)'),
-    ({'operation_mode': True}, 'operation_mode: True: expected 1 (passive), 2 (safe) or 3 (full)'),
+    ({'operation_mode': 0}, 'operation_mode: 0: expected one of 1, 2, 3'),
+    ({'operation_mode': True}, 'operation_mode: True: expected one of 1, 2, 3'),
     ({'drive_mode': 'turtle'}, "drive_mode: 'turtle': expected one of twist"),
     ({'robot_type': 'create2', 'has_gyro': True},
      'has_gyro: True: expected false, because a create2 has no analog input for a gyro'),

@@ -77,16 +77,6 @@ def test_a_command_that_is_not_finite_stops_the_robot(robot_type):
 
 
 @BOTH
-def test_the_mean_speed_is_what_was_asked_for(robot_type):
-    driven = started(robot_type)
-    driven.drive(0.1234, 0.0, 1)
-    start, time = driven.truth.x, driven.now
-    driven.drive(0.1234, 0.0, 5)
-    # an error of 1 mm/s would be 5 mm
-    assert driven.truth.x - start == pytest.approx(0.1234 * (driven.now - time) / SECOND, abs=0.0005)
-
-
-@BOTH
 def test_a_flood_of_commands_does_not_fill_the_line(robot_type):
     driven = started(robot_type)
     for index in range(1000):

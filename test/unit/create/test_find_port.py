@@ -1,5 +1,5 @@
 """Which port is opened: the default, and an adapter that was unplugged and returns under another number."""
-import os
+from types import SimpleNamespace
 
 import pytest
 
@@ -20,11 +20,12 @@ def make_usb(tmp_path, monkeypatch):
         (tmp_path / name).unlink()
         return str(tmp_path / name)
 
-    def describe(path):
-        return open(path, encoding='utf-8').read() if os.path.exists(path) else path
-    monkeypatch.setattr(port, 'ADAPTERS', (str(tmp_path / 'ttyUSB*'), str(tmp_path / 'ttyACM*')))
+    def ports():
+        for path in tmp_path.iterdir():
+            manufacturer, _, product = path.read_text().partition(' ')
+            yield SimpleNamespace(device=str(path), manufacturer=manufacturer, product=product, serial_number=None)
     monkeypatch.setattr(port, 'DEFAULT', (str(tmp_path / 'create'), str(tmp_path / 'ttyUSB0')))
-    monkeypatch.setattr(port, 'describe_adapter', describe)
+    monkeypatch.setattr(port.list_ports, 'comports', ports)
     return plug, unplug
 
 
@@ -51,10 +52,10 @@ def test_another_adapter_with_this_description_is_not_the_robots(usb):
     assert find_port(path, FTDI, {other}) == third and find_port(path, FTDI, set()) == path
 
 
-@pytest.mark.parametrize('adapter', ['', port.PSEUDO_TERMINAL, '/dev/ttyS0'])
+@pytest.mark.parametrize('adapter', ['', 'a pseudo-terminal', '/dev/ttyS0'])
 def test_only_usb_adapters_are_searched(usb, adapter):
     plug, _ = usb
-    plug('ttyUSB1', adapter)
+    plug('ttyS0', '')       # no text identifies it
     assert find_port('/dev/none', adapter, set()) == '/dev/none'
 
 

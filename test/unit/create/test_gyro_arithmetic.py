@@ -3,8 +3,8 @@ from math import radians
 
 import pytest
 
-from rbx1_nav.create.driver.analog_gyro import AnalogGyro
-from rbx1_nav.create.driver.gyro_check import Step
+from rbx1_nav.create.driver.analog_gyro import AnalogGyro, Step
+from rbx1_nav.create.driver.parameters import read_settings
 
 PERIOD = 1 / 16     # s between two readings: sums of this number are exact
 SCALE = radians(150) / 512      # rad/s per count
@@ -25,7 +25,7 @@ def feed(gyro, count, times, **options):
 def make_gyro(correction=1.0):
     """Return (gyro, its log)."""
     log = []
-    return AnalogGyro(150, correction, log.append, log.append), log
+    return AnalogGyro(read_settings({'gyro_scale_correction': correction})[0], log.append, log.append), log
 
 
 def calibrated(count=512, times=100):
@@ -53,24 +53,6 @@ def test_the_rate_is_what_create_node_computes(count, correction):
     assert reading.rate_variance == pytest.approx((radians(150) * correction / 500) ** 2)       # one count
 
 
-def test_the_offset_is_the_mean_of_the_last_1000_readings():
-    gyro = calibrated(510, 1000)
-    feed(gyro, 514, 500, rest=True)
-    assert gyro.offset == 512
-    feed(gyro, 514, 500, rest=True)
-    assert gyro.offset == 514
-    feed(gyro, 510, 1, rest=True)
-    assert gyro.offset == pytest.approx(514 - 4 / 1000)
-
-
-@pytest.mark.parametrize('count, offset', [(527, 512.5), (497, 511.5), (528, 512), (496, 512)])
-def test_a_reading_at_rest_that_differs_by_more_than_15_counts_is_not_included(count, offset):
-    gyro = calibrated(times=29)
-    feed(gyro, count, 1, rest=True)
-    assert gyro.offset == pytest.approx(offset, abs=1e-9 if offset == 512 else 1e-3 + abs(offset - 512) / 2)
-    assert (gyro.offset == 512) == (offset == 512)
-
-
 def test_readings_that_jump_for_more_than_1_s_are_a_new_offset():
     gyro = calibrated()
     feed(gyro, 540, 16, rest=True)
@@ -85,13 +67,13 @@ def test_readings_that_jump_for_more_than_1_s_are_a_new_offset():
 
 def test_the_heading_and_its_variance_grow_with_each_reading():
     gyro = calibrated(times=50)
-    before = gyro.variance
+    before = gyro._variance
     reading = feed(gyro, 412, 32)       # 2 s
     turn = 100 * SCALE * 2
     assert reading.yaw == pytest.approx(turn)
     # the noise of each reading and of the offset, and 1 % of the turn
     noise = 32 * SCALE ** 2 * (1 + 1 / 50) * PERIOD ** 2
-    assert gyro.variance - before == pytest.approx(noise)
+    assert gyro._variance - before == pytest.approx(noise)
     assert reading.yaw_variance == pytest.approx(before + noise + (0.01 * turn) ** 2)
     # a turn back does not reduce the scale error
     reading = feed(gyro, 612, 32)
@@ -101,17 +83,17 @@ def test_the_heading_and_its_variance_grow_with_each_reading():
 
 def test_a_new_gyro_has_the_variance_of_a_good_measurement():
     gyro, _ = make_gyro()
-    assert gyro.variance == 1e-6        # 1 mrad
+    assert gyro._variance == 1e-6        # 1 mrad
     feed(gyro, 512, 3, variance=0.25, turn=0.5)
     # without an offset, the heading is that of the wheels
-    assert gyro.yaw == 1.5 and gyro.variance == pytest.approx(0.75 + 1e-6)
+    assert gyro.yaw == 1.5 and gyro._variance == pytest.approx(0.75 + 1e-6)
 
 
 def test_a_reading_that_shows_no_velocity_leaves_the_heading_to_the_wheels():
     gyro = calibrated()
-    yaw, variance = gyro.yaw, gyro.variance
+    yaw, variance = gyro.yaw, gyro._variance
     assert gyro.update(1023, step(turn=0.2, variance=0.01)) is None
-    assert gyro.yaw == pytest.approx(yaw + 0.2) and gyro.variance == pytest.approx(variance + 0.01)
+    assert gyro.yaw == pytest.approx(yaw + 0.2) and gyro._variance == pytest.approx(variance + 0.01)
 
 
 def test_at_rest_a_wrong_reading_counts_only_while_the_robot_is_touched():
@@ -122,15 +104,15 @@ def test_at_rest_a_wrong_reading_counts_only_while_the_robot_is_touched():
 
 def test_in_a_gap_the_heading_follows_the_wheels():
     gyro = calibrated()
-    yaw, variance = gyro.yaw, gyro.variance
+    yaw, variance = gyro.yaw, gyro._variance
     reading = gyro.update(412, step(elapsed=0.5, turn=0.3, variance=0.02, missing=True))
     assert reading.rate == pytest.approx(100 * SCALE)
-    assert gyro.yaw == pytest.approx(yaw + 0.3) and gyro.variance == pytest.approx(variance + 0.02)
+    assert gyro.yaw == pytest.approx(yaw + 0.3) and gyro._variance == pytest.approx(variance + 0.02)
 
 
 def test_after_a_fault_the_offset_is_measured_again():
     gyro = calibrated()
     feed(gyro, 900, 10, rest=True)
-    assert gyro.check.problem
+    assert gyro.problem
     feed(gyro, 530, 17, rest=True)
-    assert gyro.offset == 530 and not gyro.check.problem
+    assert gyro.offset == 530 and not gyro.problem

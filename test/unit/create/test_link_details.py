@@ -1,6 +1,5 @@
-"""The retries, heartbeats and settings of the line, and the texts of a port that cannot be opened."""
+"""The heartbeats and settings of the line, and the texts of a port that cannot be opened."""
 import errno
-import fcntl
 import os
 import pty
 from types import SimpleNamespace
@@ -10,7 +9,7 @@ import pytest
 import rbx1_nav.create.driver.link as link_module
 from rbx1_nav.create import protocol
 from rbx1_nav.create.driver.link import LineLost, Link
-from rbx1_nav.create.driver.port import command_of, describe_adapter, reason, user_of
+from rbx1_nav.create.driver.port import describe_adapter, reason
 from rbx1_nav.create.emulator.pseudo_terminal import PseudoTerminal
 from rbx1_nav.create.line_settings import read_rate, read_settings
 from rbx1_nav.units import SECOND
@@ -28,12 +27,10 @@ class Guardian:
         self.lives = True
         self.alive = os.memfd_create('guardian')     # never used by these tests
 
-    def beat(self):
+    def beat(self, stop=b''):
         self.beats += 1
-        return self.lives
-
-    def confirm(self, stop):
         self.confirmed = stop
+        return self.lives
 
     def release(self):
         self.released = True
@@ -52,20 +49,6 @@ def make_line(monkeypatch):
     yield link, log
     link.close()
     os.close(robot)
-
-
-def test_the_port_is_tried_five_times_per_second(tmp_path, monkeypatch):
-    attempts = []
-
-    def fail(path, baud):
-        attempts.append((path, baud))
-        raise OSError(errno.ENOENT, 'none')
-    monkeypatch.setattr(link_module, 'open_port', fail)
-    link = Link(SimpleNamespace(model=protocol.CREATE, baud=19200, port='/dev/none'), lambda text: None)
-    for millisecond in range(1000):
-        assert not link.open(millisecond * SECOND // 1000)
-    assert attempts == [('/dev/none', 19200)] * 5
-    assert link.problem == '/dev/none: [Errno 2] none' and link.lost_at == 0
 
 
 def test_a_problem_that_is_gone_is_logged_again_when_it_returns(line):
@@ -93,7 +76,7 @@ def test_the_guardian_gets_ten_heartbeats_per_second(line):
     assert link.is_guarded(2 * SECOND - 1) and not link.is_guarded(2 * SECOND)
     link.guardian.lives = True
     assert not link.is_guarded(5 * SECOND)      # a dead guardian remains dead
-    link.confirm(SimpleNamespace(model=protocol.CREATE_2))
+    link.confirm(protocol.CREATE_2)
     assert link.guardian.confirmed.endswith(bytes((145, 0, 0, 0, 0, 128)))      # a stop, and Start
 
 
@@ -140,40 +123,9 @@ def test_why_a_port_cannot_be_opened(number, text, tmp_path):
     assert reason(str(tmp_path / 'none'), number, OSError('some error')).startswith(text)
 
 
-def test_a_port_that_nobody_uses(tmp_path):
-    path = tmp_path / 'file'
-    path.write_text('')
-    with open(path, encoding='utf-8') as file:      # open in this process, without a lock and with one
-        assert user_of(str(path)) == ''
-        fcntl.flock(file, fcntl.LOCK_EX)
-        assert user_of(str(path)) == ''
-
-
-def test_the_name_of_a_process():
-    assert command_of(str(os.getpid())) != '?'
-
-
 def test_the_adapter_of_a_port(tmp_path):
     terminal = PseudoTerminal(str(tmp_path / 'robot'))
     assert describe_adapter(terminal.link) == 'a pseudo-terminal'
     terminal.unplug()
     (tmp_path / 'tty').write_text('')
     assert describe_adapter(str(tmp_path / 'tty')) == str(tmp_path / 'tty')
-
-
-def test_the_adapter_is_found_in_the_folder_of_its_usb_device(tmp_path, monkeypatch):
-    """ttyUSB0 -> interface -> device with the texts, up to three levels above `device`."""
-    for level, expected in ((1, 'Prolific USB-Serial 42'), (3, 'Prolific USB-Serial 42'), (4, '/dev/ttyUSB0')):
-        parts = [str(each) for each in range(5)]
-        device = tmp_path / str(level) / os.path.join(*parts)
-        device.mkdir(parents=True)
-        folder = device.parents[level - 1]
-        for name, text in ('manufacturer', 'Prolific\n'), ('product', 'USB-Serial'), ('serial', '42\n'):
-            (folder / name).write_text(text)
-        real = os.path.realpath
-
-        def realpath(path, start='/sys/class/tty/ttyUSB0/device', target=str(device)):
-            return real(target + path[len(start):]) if path.startswith(start) else real(path)
-        monkeypatch.setattr(os.path, 'realpath', realpath)
-        assert describe_adapter('/dev/ttyUSB0') == expected
-        monkeypatch.undo()

@@ -103,16 +103,6 @@ def test_while_it_is_commanded_to_move_the_velocity_of_a_robot_without_travel_is
     assert motion.state(None).variances == pytest.approx((2 * 0.002 ** 2 * 4 + MEASURED, 2 * 0.03 ** 2 * 4 + MEASURED))
 
 
-def test_a_state_is_new_until_it_is_reported():
-    motion = make_motion()
-    motion.add(SECOND, NOWHERE)
-    assert motion.is_new
-    motion.state(None)
-    assert not motion.is_new
-    motion.add(2 * SECOND, NOWHERE)
-    assert motion.is_new
-
-
 def test_the_variance_of_the_heading_of_create_node():
     motion, state = moved(moving_yaw_variance=1000.0)
     assert state.covariance[2, 2] == state.variances[1] == 1000

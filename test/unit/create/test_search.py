@@ -40,7 +40,8 @@ def names(driven):
 def test_any_robot_is_found_at_any_rate(robot, baud):
     driven = searching(robot, baud)
     driven.run(2)
-    assert driven.found == (protocol.MODELS[robot], baud) and driven.driver.supervisor.in_control
+    assert driven.found == protocol.MODELS[robot] and driven.driver.contact.found.baud == baud
+    assert driven.driver.supervisor.in_control
     assert driven.log[0] == 'The robot answers: %s at %d baud' % (robot, baud)
     driven.drive(0.2, 0, 0.5)
     assert driven.speeds == (200, 200)
@@ -63,8 +64,8 @@ def test_nothing_moves_while_the_robot_is_not_known(robot, baud, robot_type):
 def test_a_robot_of_the_wrong_type_is_reported_once_and_not_driven(robot, robot_type):
     driven = searching(robot, robot_type=robot_type)
     driven.drive(0.2, 0, 10)
-    assert driven.log == ['robot_type: %s: a %s answers at %d baud: expected robot_type:=%s, or auto'
-                          % (robot_type, robot, protocol.MODELS[robot].baud, robot)]
+    assert driven.log == ['A %s answers at %d baud: expected a %s; to drive it, restart this node with robot_type:=%s, '
+                          'or auto' % (robot, protocol.MODELS[robot].baud, robot_type, robot)]
     assert not driven.body.moving and 'the robot does not answer' in driven.refusals
 
 

@@ -21,92 +21,108 @@ def counters(distance, angle):
 
 def encoder_travel(left, right):
     counter = EncoderTravel(protocol.CREATE_2)
-    assert counter.update(encoders(left, right), 0.0, STILL) == NOWHERE
+    assert counter.update(encoders(left, right), 0.0, STILL, 0.0) == NOWHERE
     return counter
 
 
 def counter_travel():
     counter = CounterTravel(protocol.CREATE, Fractions(KEPT))
-    assert counter.update(counters(500, 90), 0.0, STILL) == NOWHERE     # counted before
+    assert counter.update(counters(500, 90), 0.0, STILL, 0.0) == NOWHERE     # counted before
     return counter
 
 
 @given(strategies.integers(0, 65535), strategies.integers(-2000, 2000), strategies.integers(-2000, 2000))
 def test_encoders_wrap(start, left, right):
-    travel = encoder_travel(start, start).update(encoders(start + left, start + right), 3.0, STILL)
+    travel = encoder_travel(start, start).update(encoders(start + left, start + right), 3.0, STILL, 0.0)
     assert travel.distance == pytest.approx((left + right) / 2 * COUNT)
     assert travel.angle == pytest.approx((right - left) * COUNT / 0.235)
     assert travel.distance_variance == travel.angle_variance == 0
 
 
-def test_after_a_long_gap_the_command_says_how_often_they_wrapped():
-    counts = round(20 / COUNT)      # 20 m, more than half of 29 m
-    travel = encoder_travel(0, 0).update(encoders(counts, counts), 60.0, Expected(19.0, 19.0))
-    assert travel.distance == pytest.approx(20, abs=0.001)
-    # or the robot was stationary
-    assert travel.distance_variance > 10 ** 2
-
-
 def test_one_implausible_reading_is_dropped():
     counter = encoder_travel(1000, 1000)
     with pytest.raises(Implausible):
-        counter.update(encoders(5000, 1000), 0.015, STILL)
-    assert counter.update(encoders(1010, 1010), 0.030, STILL).distance == pytest.approx(10 * COUNT)
+        counter.update(encoders(5000, 1000), 0.015, STILL, 0.0)
+    assert counter.update(encoders(1010, 1010), 0.030, STILL, 0.0).distance == pytest.approx(10 * COUNT)
 
 
 def test_three_implausible_readings_in_a_row_are_a_new_beginning():
     counter = encoder_travel(1000, 1000)
     for count in range(3):
         with pytest.raises(Implausible):
-            counter.update(encoders(20000 + count, 0), 0.015, STILL)
-    assert counter.update(encoders(20002, 0), 0.015, STILL) == NOWHERE
-    assert counter.update(encoders(20012, 10), 0.015, STILL).distance == pytest.approx(10 * COUNT)
+            counter.update(encoders(20000 + count, 0), 0.015, STILL, 0.0)
+    assert counter.update(encoders(20002, 0), 0.015, STILL, 0.0) == NOWHERE
+    assert counter.update(encoders(20012, 10), 0.015, STILL, 0.0).distance == pytest.approx(10 * COUNT)
 
 
 def test_the_counters_of_a_create():
-    travel = counter_travel().update(counters(100, -10), 1.0, STILL)
+    travel = counter_travel().update(counters(100, -10), 1.0, STILL, 0.0)
     assert (travel.distance, travel.angle) == (0.1, pytest.approx(radians(-10)))
 
 
 @pytest.mark.parametrize('distance, angle', [(100, 0), (-100, 0), (0, 20), (0, -20)])
 def test_an_implausible_reading_of_a_create(distance, angle):
     with pytest.raises(Implausible):
-        counter_travel().update(counters(distance, angle), 0.033, STILL)
+        counter_travel().update(counters(distance, angle), 0.033, STILL, 0.0)
 
 
 def test_a_lost_reply_is_bridged_by_the_command():
     counter = counter_travel()
-    counter.update(counters(20, 0), 0.1, Expected(0.02, 0.02))         # 0.2 m/s
-    counter.miss(True, 0.1, Expected(0.02, 0.02))
-    travel = counter.update(counters(20, 0), 0.2, Expected(0.02, 0.02))
+    counter.miss(0.1, Expected(0.02, 0.02))
+    travel = counter.update(counters(20, 0), 0.2, Expected(0.04, 0.04), 0.0)
     assert travel.distance == pytest.approx(0.04)
     sure = travel.distance_variance
     # wheels that do not follow the command
-    counter.miss(True, 0.1, Expected(-0.03, -0.03))
-    assert counter.update(counters(20, 0), 0.2, Expected(0.02, 0.02)).distance_variance > 100 * sure
+    counter.miss(0.1, Expected(-0.03, -0.03))
+    assert counter.update(counters(20, 0), 0.2, Expected(-0.01, -0.01), 0.0).distance_variance > 100 * sure
     # the loss counts only once
-    assert counter.update(counters(20, 0), 0.1, Expected(0.02, 0.02)).distance_variance < 1e-6
+    assert counter.update(counters(20, 0), 0.1, Expected(0.02, 0.02), 0.0) == pytest.approx((0.02, 0, 0, 0))
 
 
-def test_where_no_byte_arrived_the_query_may_be_lost():
+def test_a_query_that_was_lost_is_included_in_the_next_reading():
     counter = counter_travel()
-    counter.miss(False, 0.1, Expected(0.02, 0.02))
-    # the reading includes the travel before the query: the query was lost
-    assert counter.update(counters(40, 0), 0.2, Expected(0.02, 0.02)).distance == pytest.approx(0.04)
-    counter.miss(False, 0.1, Expected(0.02, 0.02))
-    # the reading does not include it: the reply was lost
-    assert counter.update(counters(20, 0), 0.2, Expected(0.02, 0.02)).distance == pytest.approx(0.04)
-    # after a long gap, this cannot be determined
-    counter.miss(False, 0.1, Expected(0.02, 0.02))
-    travel = counter.update(counters(800, 0), 4.0, Expected(0.8, 0.8))
-    assert travel.distance == pytest.approx(0.81) and travel.distance_variance == pytest.approx(0.01 ** 2, rel=0.5)
+    counter.miss(0.1, Expected(0.02, 0.02))
+    assert counter.update(counters(40, 0), 0.2, Expected(0.04, 0.04), 0.0) == pytest.approx((0.04, 0, 0, 0))
+    # the angle, too: a quarter turn in each half of the time
+    wheel = radians(45) * 0.13
+    counter.miss(1.0, Expected(-wheel, wheel))
+    for angle in 90, 45:
+        assert counter.update(counters(0, angle), 2.0, Expected(-2 * wheel, 2 * wheel), 0.0).angle == pytest.approx(
+            radians(90))
+        counter.miss(1.0, Expected(-wheel, wheel))
 
 
 def test_the_first_reading_after_a_silence_is_not_doubted():
     counter = counter_travel()
-    counter.update(counters(7, 0), 0.033, Expected(0.0066, 0.0066))
-    for _ in range(3):
-        counter.miss(False, 0.2, Expected(0.04, 0.04))
+    counter.update(counters(7, 0), 0.033, Expected(0.0066, 0.0066), 0.0)
+    for number in range(1, 4):
+        counter.miss(0.2 * number, Expected(0.04, 0.04))
     # the robot continued for 2 s with its last command, which the stop sent during the silence did not stop
-    travel = counter.update(counters(400, 0), 2.0, STILL)
+    travel = counter.update(counters(400, 0), 2.0, Expected(0.04, 0.04), 0.0)
     assert travel.distance == pytest.approx(0.4)
+
+
+def test_what_was_lost_before_the_first_reading_is_no_travel():
+    counter = CounterTravel(protocol.CREATE, Fractions(KEPT))
+    counter.miss(0.1, Expected(0.02, 0.02))
+    assert counter.update(counters(500, 90), 0.0, STILL, 0.0) == NOWHERE
+    assert counter.update(counters(20, 0), 0.1, Expected(0.02, 0.02), 0.0) == pytest.approx((0.02, 0, 0, 0))
+
+
+@pytest.mark.parametrize('before, after, reset', [
+    ((500, 500), (0, 0), True), ((20, 20), (0, 0), False), ((500, 0), (30, 30), True), ((500, 500), (0, 40), False)])
+def test_encoders_near_0_after_others_are_a_reset(before, after, reset):
+    """A reading may miss 15 mm: 33 counts."""
+    assert encoder_travel(*before).is_reset(encoders(*after)) == reset
+
+
+def test_encoders_may_have_wrapped_after_15_m():
+    assert encoder_travel(0, 0).update(encoders(0, 0), 60.0, Expected(14.0, 14.0), 0.0).distance_variance == 0
+    assert encoder_travel(0, 0).update(encoders(0, 0), 60.0, Expected(15.0, 15.0), 0.0).distance_variance > 15 ** 2
+
+
+def test_a_create_that_has_stopped_counting_may_be_anywhere():
+    """The robot counts up to 32,767 mm."""
+    travel = counter_travel().update(counters(32767, 0), 1e4, STILL, 0.0)
+    assert travel.distance_variance >= 100 and travel.angle_variance >= 100
+    assert counter_travel().update(counters(32766, 0), 1e4, STILL, 0.0).distance_variance == 0

@@ -9,7 +9,7 @@ from rbx1_nav.control.lockout import Lockout
 from rbx1_nav.create import protocol
 from rbx1_nav.create.driver.contact import Contact
 from rbx1_nav.create.driver.parameters import Settings
-from rbx1_nav.create.driver.speeds import wheel_speeds
+from rbx1_nav.create.driver.sender import wheel_speeds
 from rbx1_nav.create.driver.supervisor import BUMPS, CLIFFS, WHEEL_DROPS, Supervisor
 from rbx1_nav.create.driver.travel import Expected, Travel
 from rbx1_nav.units import SECOND
@@ -31,16 +31,14 @@ class Acceptance:
         self.contact = contact
         self.supervisor = supervisor
         self.lockout = Lockout(gate.timeout)
-        self.reading_time: int | None = None    # time at which the robot made the last reading
         self._ran: int | None = None    # time at which the driver last ran
         # bumps, wheel drops and AT_CLIFF: in the last reading, and in both of the last two readings
         self._bits = self._felt = 0
         self._blocked = 0.0         # m, see BLOCKED
         self._ignored_since: int | None = None  # time of the first motion command that the robot does not follow
 
-    def feel(self, time: int, reading: Mapping[str, int]) -> bool:
+    def feel(self, reading: Mapping[str, int]) -> bool:
         """Process a reading. Returns whether two readings show a dropped wheel, since one may be corrupted."""
-        self.reading_time = time
         bits = reading['bumps_and_wheel_drops'] | (AT_CLIFF if any(reading[name] for name in CLIFFS) else 0)
         self._felt, self._bits = bits & self._bits, bits
         return bool(self._felt & WHEEL_DROPS)
@@ -51,11 +49,6 @@ class Acceptance:
         by_commands = max(abs(each) for each in expected)
         turns = abs(travel.distance) + abs(travel.angle) * width / 2 > TURNED * by_commands
         self._blocked = 0.0 if turns or elapsed > OUTAGE / SECOND else self._blocked + by_commands
-
-    def lose_robot(self) -> None:
-        """Handle a robot that no longer answers."""
-        self.gate.halt()
-        self._felt = 0
 
     def lock(self, reason: str, unobserved: int = 0) -> None:
         """Halt, and lock out senders that have not noticed the stop: see Lockout."""
@@ -70,8 +63,9 @@ class Acceptance:
         if stall >= max(self.gate.timeout, OUTAGE):
             self.lock(f'this node did not run for {stall / SECOND:.1f} s', stall)
 
-    def notice_losses(self, share: float) -> None:
+    def notice_losses(self) -> None:
         """Lock if the robot is driven on a line that loses too large a share of the last replies."""
+        share = self.contact.queries.lost_share
         if self.gate.moving and share > TOO_BAD:
             self.lock(f'{100 * share:.0f} % of the replies of the robot are lost or corrupted')
 
@@ -83,9 +77,9 @@ class Acceptance:
 
     def check_obedience(self, now: int) -> None:
         """Raise RefusedCommand if the robot does not follow the command in force, and will not do so shortly."""
-        if self._is_bumped(self._felt):
+        if self._is_obeyed and self._is_bumped(self._felt):
             raise RefusedCommand('a bumper is pressed')
-        if self._is_at_edge(self._felt) and self._is_obeyed:
+        if self._is_obeyed and self._is_at_edge(self._felt):
             raise RefusedCommand(BACK_UP)
         obstacle = self._obstacle(now)
         if obstacle:
@@ -99,12 +93,12 @@ class Acceptance:
         if not self._is_obeyed or bits & WHEEL_DROPS or self._is_bumped(bits) or self._is_at_edge(bits):
             return 0.0, 0.0
         if angular:
-            angular = copysign(max(abs(angular), self.settings.min_yaw_speed), angular)
+            angular = copysign(max(abs(angular), self.settings.min_abs_yaw_vel), angular)
         return wheel_speeds(linear, angular, model.wheel_separation)
 
     @property
     def _is_obeyed(self) -> bool:
-        return self.contact.answers and self.supervisor.in_control and self.settings.mode != protocol.PASSIVE
+        return self.contact.answers and self.supervisor.in_control and self.settings.operation_mode != protocol.PASSIVE
 
     @property
     def backs(self) -> bool:
@@ -113,22 +107,22 @@ class Acceptance:
         return self.gate.linear < 0 and -self.gate.linear >= abs(self.gate.angular) * protocol.ROBOT_RADIUS
 
     def _is_at_edge(self, bits: int) -> bool:
-        return (bool(bits & AT_CLIFF) and self.settings.mode == protocol.SAFE and self.gate.moving
+        return (bool(bits & AT_CLIFF) and self.settings.operation_mode == protocol.SAFE and self.gate.moving
                 and not self.backs)
 
     def _is_bumped(self, bits: int) -> bool:
-        return self.gate.linear > 0 and self.settings.stop_on_bump and bool(bits & BUMPS)
+        return self.gate.linear > 0 and self.settings.stop_motors_on_bump and bool(bits & BUMPS)
 
     def _obstacle(self, now: int) -> str:
         """Return why the robot has not followed the command in force for some time; else ''."""
         if not self.gate.moving or self._is_obeyed:
             self._ignored_since = None
             if self.gate.moving and self._blocked > BLOCKED:
-                return 'its wheels do not turn: expected wheels that can turn freely, and oi_mode_workaround: auto'
+                return 'its wheels do not turn: expected wheels that can turn freely'
             return ''
         if not self.contact.answers:
-            lost = self.reading_time is None or now - self.reading_time > OUTAGE
-            return 'the robot does not answer' if lost else ''
+            read = self.contact.queries.read
+            return 'the robot does not answer' if read is None or now - read.time > OUTAGE else ''
         self._ignored_since = self._ignored_since or now
         if now - self._ignored_since < OUTAGE:
             return ''

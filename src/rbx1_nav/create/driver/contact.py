@@ -1,14 +1,14 @@
 """Finds and starts the robot, detects when it stops responding, and reconnects to it. All times are in ns."""
 from __future__ import annotations
 
-from enum import Enum
 from typing import Callable
 
 from rbx1_nav.config import AUTO
 from rbx1_nav.create.driver import sequences
+from rbx1_nav.create.driver.link import Link
 from rbx1_nav.create.driver.parameters import Settings
 from rbx1_nav.create.driver.queries import Queries
-from rbx1_nav.create.driver.search import RATES, Found, Line, Search
+from rbx1_nav.create.driver.search import RATES, Found, Search
 from rbx1_nav.create.driver.sender import Sender
 from rbx1_nav.create.driver.supervisor import Supervisor
 from rbx1_nav.units import SECOND
@@ -18,12 +18,6 @@ FLUSH_WAIT = SECOND // 10       # time without an answer after which garbage may
 FIRST_WAIT = 3 * SECOND // 10   # time that a robot that is on may need to answer; after it, the robot is started
 START_WAIT = SECOND             # time that a robot may need to start; after it, the search begins
 ROUNDS_BEFORE_WARNING = 2       # rounds of the search before the first warning
-
-
-class Event(Enum):
-    """What tick() has noticed."""
-
-    NONE, LOST, FOUND = range(3)
 
 
 class Contact:
@@ -37,20 +31,19 @@ class Contact:
         self.queries = queries
         self.supervisor = supervisor
         self.warn = warn
-        self.line: Line | None = None
+        self.line: Link | None = None
         self.found: Found | None = None         # the robot on this line, kept while it does not answer
         self.answers = False        # whether readings arrive
         self.started = False        # whether the robot was started since it last answered
         self.dropouts = 0           # number of times that the robot stopped answering
-        self.search = Search((settings.baud,) if settings.baud else RATES, settings.wake)
+        self.search = Search((settings.baud,) if settings.baud else RATES, settings.wake_robot)
         self.searching = False
         self._flushed = False
-        self._baud = settings.model.baud        # rate of the robot that was found last, or is expected
         self._attempt = 0           # time of the last attempt to get an answer
         self._refused: Found | None = None      # robot of the wrong type
         self._warned = False        # whether the warning that no robot answers was logged
 
-    def attach(self, now: int, line: Line) -> None:
+    def attach(self, now: int, line: Link) -> None:
         """Start using a line that was opened. Sends a stop if the robot is known; otherwise begins the search."""
         self.line = line
         self.answers = False
@@ -58,7 +51,7 @@ class Contact:
             self._begin_search(now, line)
             return
         self.searching = False
-        line.confirm(self.found)
+        line.confirm(self.found.model)
         self._begin_asking(now, line)
 
     def detach(self) -> None:
@@ -67,26 +60,24 @@ class Contact:
         self._lose()
         self.queries.give_up()
 
-    def receive(self, now: int, data: bytes) -> None:
-        """Process bytes that arrive during the search."""
-        self.search.receive(now, data)
-
-    def tick(self, now: int, reading_time: int | None) -> Event:
-        """Do what is due. reading_time: when the robot made the last reading. After FOUND, call start()."""
-        line = self.line
+    def tick(self, now: int) -> Found | None:
+        """Do what is due. Returns a robot that was just found: use its model, then call start()."""
+        line, read = self.line, self.queries.read
         if line is None:
-            return Event.NONE
+            return None
         if self.searching:
             found = self.search.tick(now)
             self._warn_of_silence()
-            if found and self._accepts(now, found):
-                self.searching, self._refused, self.found, self._baud = False, None, found, found.baud
-                line.confirm(found)
-                return Event.FOUND
+            if found and self._accepts(now, line, found):
+                self.searching, self._refused, self.found = False, None, found
+                line.confirm(found.model)
+                return found
         elif self.answers:
-            if reading_time is not None and now - reading_time > SILENCE:
-                self._fall_silent(now, line)
-                return Event.LOST
+            if read and now - read.time > SILENCE:
+                self._lose()
+                self.warn('The robot has stopped responding. If it is still moving, stop it by hand: it keeps '
+                          'executing its last command')
+                self._begin_asking(now, line)
         elif self.started:
             if now - self._attempt > START_WAIT:
                 self._begin_search(now, line)
@@ -94,9 +85,13 @@ class Contact:
             self.start(now)
         elif now - self._attempt > FLUSH_WAIT and not self._flushed:
             self._flushed = True
-            line.write(sequences.FLUSH)
-            self._stop_and_ask(now)
-        return Event.NONE
+            self._stop_and_ask(now, sequences.FLUSH + sequences.STOP)
+        return None
+
+    @property
+    def baud(self) -> int:
+        """The rate of the robot that was found last, or is expected."""
+        return (self.found or self.settings.model).baud
 
     @property
     def may_ask(self) -> bool:
@@ -113,48 +108,37 @@ class Contact:
         self.answers = False
         self.supervisor.forget()
 
-    def _begin_asking(self, now: int, line: Line) -> None:
+    def _begin_asking(self, now: int, line: Link) -> None:
         self._attempt, self.started, self._flushed = now, False, False
-        line.set_rate(self._baud)       # another process may have changed it
+        line.set_rate(self.baud)        # another process may have changed it
         self._stop_and_ask(now)
 
-    def _stop_and_ask(self, now: int, start: bool = False) -> None:
-        self.sender.stop(now)
-        self.queries.ask(now, start)
+    def _stop_and_ask(self, now: int, stop: bytes = sequences.STOP) -> None:
+        self.sender.stop(now, stop)
+        self.queries.ask(now)
 
     def start(self, now: int) -> None:
         """Start the robot that was found."""
         self._attempt, self.started = now, True
-        self.supervisor.restart(now)
-        self._stop_and_ask(now, start=True)
-
-    def _fall_silent(self, now: int, line: Line) -> None:
-        self._lose()
-        self.warn('The robot has stopped responding. If it is still moving, stop it by hand: it keeps executing its '
-                  'last command')
-        self._begin_asking(now, line)
+        self.supervisor.restart()
+        self._stop_and_ask(now, sequences.STOP + sequences.START)
 
     # the search
 
-    def _begin_search(self, now: int, line: Line) -> None:
+    def _begin_search(self, now: int, line: Link) -> None:
         self.searching = True
-        self.search.begin(now, line, self._baud)
+        self.search.begin(now, line, self.baud)
 
-    def _accepts(self, now: int, found: Found) -> bool:
+    def _accepts(self, now: int, line: Link, found: Found) -> bool:
         """Return whether this robot may be driven; otherwise, the search continues."""
         before = self.found.model.name if self.found else self.settings.robot_type
         if before in (AUTO, found.model.name):
             return True
-        self.search.begin_later(now, START_WAIT)
-        if found == self._refused:
-            return False
-        self._refused = found
-        if self.found:
-            self.warn(f'A {found.model.name} answers at {found.baud} baud instead of a {before}: restart this node '
-                      'to drive it')
-        else:
-            self.warn(f'robot_type: {before}: a {found.model.name} answers at {found.baud} baud: expected '
-                      f'robot_type:={found.model.name}, or auto')
+        self.search.begin(now, line, found.baud)
+        if found != self._refused:
+            self._refused = found
+            self.warn(f'A {found.model.name} answers at {found.baud} baud: expected a {before}; to drive it, restart '
+                      f'this node with robot_type:={found.model.name}, or auto')
         return False
 
     def _warn_of_silence(self) -> None:

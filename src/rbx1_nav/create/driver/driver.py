@@ -10,19 +10,16 @@ from rbx1_nav.control.gate import CommandGate
 from rbx1_nav.create import protocol
 from rbx1_nav.create.driver import sequences
 from rbx1_nav.create.driver.acceptance import OUTAGE, Acceptance
-from rbx1_nav.create.driver.analog_gyro import AnalogGyro
-from rbx1_nav.create.driver.contact import Contact, Event
+from rbx1_nav.create.driver.analog_gyro import AnalogGyro, Step
+from rbx1_nav.create.driver.contact import Contact
 from rbx1_nav.create.driver.fractions import Fractions
-from rbx1_nav.create.driver.gyro_check import Step
+from rbx1_nav.create.driver.link import Link
 from rbx1_nav.create.driver.motion_report import MotionReport, State
 from rbx1_nav.create.driver.parameters import Settings
 from rbx1_nav.create.driver.queries import Queries
-from rbx1_nav.create.driver.replies import ReplyReader
-from rbx1_nav.create.driver.search import Line, Search
-from rbx1_nav.create.driver.sender import Sender
-from rbx1_nav.create.driver.speeds import is_too_fast
+from rbx1_nav.create.driver.sender import Sender, is_too_fast
 from rbx1_nav.create.driver.supervisor import WHEEL_DROPS, Supervisor, causes
-from rbx1_nav.create.driver.travel import Expected, Implausible, Travel, travel_of, unknown
+from rbx1_nav.create.driver.travel import Counter, CounterTravel, EncoderTravel, Expected, Implausible, Travel, unknown
 from rbx1_nav.robot.readings import Reading
 from rbx1_nav.schedule import Schedule
 from rbx1_nav.units import SECOND
@@ -43,21 +40,18 @@ class Driver:
         self.warn = warn
         self.error = error
         self.sender = Sender()
-        self.commanded = self.sender.commanded
         self.queries = Queries(self.sender)
-        self.supervisor = Supervisor(settings.mode, settings.mode_plus_one, info, warn)
+        self.supervisor = Supervisor(settings.operation_mode, settings.oi_mode_workaround, info, warn)
         self.contact = Contact(settings, self.sender, self.queries, self.supervisor, warn)
         self.acceptance = Acceptance(settings, gate, self.contact, self.supervisor)
         self.schedule = Schedule(settings.update_rate)
-        self.due: int | None = None     # ns: report the State of the first reading that arrives after this
+        self.due = False            # whether to report the State of the next reading
         # the robot
         self.reading: Mapping[str, int] | None = None   # the last reading
-        self.reading_time: int | None = None            # ns, when the robot made it
-        self.received = 0           # ns, when it arrived
+        self.is_new = False         # whether it has arrived since the State was due
         self.gyro_reading: Reading | None = None        # not reported yet
         self.leaving: int | None = None     # ns, when the final stop was requested
         self.left = False           # whether the robot has confirmed the final stop
-        self.told = 0               # ns, when the final stop was last sent
         self.saturated = 0          # commands, for /diagnostics
         self.implausible = 0        # readings, for /diagnostics
         self.use(settings.model)
@@ -65,27 +59,27 @@ class Driver:
     def use(self, model: protocol.Model) -> None:
         """Drive a robot of this Model. The Model can no longer change after the first reading."""
         self.model = model
-        self.baud = (self.contact.found or model).baud
-        self.sender.byte = 10 * SECOND // self.baud
+        self.sender.byte = 10 * SECOND // self.contact.baud
         if self.reading is None:
-            self.counter = travel_of(model, Fractions(self.settings.angle_fractions, self.warn))
+            fractions = Fractions(self.settings.angle_fractions, self.warn)
+            self.counter: Counter = EncoderTravel(model) if model.counts_per_metre else CounterTravel(model, fractions)
             self.motion = MotionReport(self.settings, model, self.counter.rounding)
-            self.gyro = (AnalogGyro(self.settings.gyro_range, self.settings.gyro_correction, self.error, self.info)
-                         if model is protocol.CREATE and self.settings.has_gyro else None)
+            has_gyro = model is protocol.CREATE and self.settings.has_gyro
+            self.gyro = AnalogGyro(self.settings, self.error, self.info) if has_gyro else None
         self.queries.use(model, self.counter)
 
     # the line
 
-    def attach(self, now: int, line: Line) -> None:
+    def attach(self, now: int, line: Link) -> None:
         """Start using a line that was opened: see Contact. Raises OSError."""
-        self.sender.open(line.write)
+        self.sender.use_line(line.write)
         self.contact.attach(now, line)
 
     def detach(self) -> None:
         """Handle the loss of the line. The robot is out of control: it keeps executing the last command."""
         self.contact.detach()
-        self.acceptance.lose_robot()
-        self.sender.close()
+        self.gate.halt()
+        self.sender.use_line(None)
 
     def stop(self, now: int, reason: str) -> None:
         """Stop the robot, and lock out senders that have not noticed the stop."""
@@ -96,9 +90,8 @@ class Driver:
     def restore(self, now: int) -> None:
         """Stop anything that the robot may have started when another process changed the settings of the port."""
         if self.leaving is None and self.contact.may_ask:
-            mode = (sequences.take_control(self.model, self.settings.mode) if self.supervisor.in_control
-                    else sequences.START)
-            self.sender.stop(now, after=sequences.STOP + mode)
+            mode = self.settings.operation_mode if self.supervisor.in_control else protocol.PASSIVE
+            self.sender.stop(now, sequences.STOP + sequences.take_control(self.model, mode))
 
     def leave(self, now: int) -> None:
         """Stop the robot and leave it in passive mode. `left` becomes true once the robot has confirmed this, if it
@@ -107,20 +100,14 @@ class Driver:
         if not self.contact.found:      # nothing that moves the robot was sent
             self.left = True
             return
-        self.leaving = self.told = now
+        self.leaving = now
         self.left = not self.contact.answers and self.motion.stands
         if self.contact.may_ask:
             self._leave(now)
 
     def _leave(self, now: int, before: bytes = b'') -> None:
-        self.told = now + len(before) * self.sender.byte
-        self.sender.stop(now, before, sequences.leave(self.model))
+        self.sender.stop(now, before + sequences.leave(self.model))
         self.queries.ask(now)
-
-    def _insist(self, now: int) -> None:
-        """Repeat the final stop, after bytes that complete whatever may have swallowed the previous one."""
-        if not self.left and now - self.told > INSIST_WAIT:
-            self._leave(now, sequences.FLUSH)
 
     # commands
 
@@ -140,12 +127,12 @@ class Driver:
         return clamped
 
     def _must_stop(self) -> bool:
-        return self.commanded.moving and not any(self.acceptance.speeds(self.model))
+        return any(self.sender.speeds) and not any(self.acceptance.speeds(self.model))
 
     def _send_speeds(self, now: int) -> None:
         if self.contact.may_ask and (not self.sender.is_busy(now) or self._must_stop()):
             self.sender.drive(now, self.acceptance.speeds(self.model))
-            if self.commanded.moving:
+            if any(self.sender.speeds):
                 self.motion.command(now)
 
     @property
@@ -163,19 +150,21 @@ class Driver:
         if timed_out:
             self.gate.halt()
         if self.leaving is not None and not self.contact.searching:     # the Start bytes of the search stop any motion
-            self._insist(now)
+            if not self.left and now - self.sender.line_free > INSIST_WAIT:
+                self._leave(now, sequences.FLUSH)       # completes whatever may have swallowed the previous stop
             return False
-        event = self.contact.tick(now, self.reading_time)
-        if event is Event.LOST:
-            self.acceptance.lose_robot()
-        elif event is Event.FOUND and self.contact.found:
-            self.use(self.contact.found.model)
+        answered, found = self.contact.answers, self.contact.tick(now)
+        if answered and not self.contact.answers:
+            self.gate.halt()
+        if found:
+            self.use(found.model)
             self.contact.start(now)
         if self.leaving is not None:
             return False
-        self.acceptance.notice_losses(self.counter.bad)
+        self.acceptance.notice_losses()
         due = self.schedule.due(now)
-        self.due = now if due and self.due is None else self.due
+        if due and not self.due:
+            self.due, self.is_new = True, False
         if due or self._must_stop():
             self._send_speeds(now)
         if self.contact.may_ask and (due or self.counter.hurries) and not self.queries.awaits_reply(now):
@@ -184,57 +173,52 @@ class Driver:
 
     def until_tick(self, now: int) -> float:
         """Return the time (s) until tick() has something to do."""
-        time = self.schedule.next
-        if self.contact.searching:
-            time = min(time, self.contact.search.next_time)
-        return max(0, time - now) / SECOND
+        return max(0, self.schedule.next - now) / SECOND
 
     @property
-    def awaited(self) -> Search | ReplyReader | None:
-        """The reader for the data that is due now; None before the next tick."""
+    def missing(self) -> int | None:
+        """The number of bytes that complete the data that is due now; None before the next tick."""
         if self.contact.searching:
-            return self.contact.search
-        return None if self.due is None and self.leaving is None and not self.counter.hurries else self.queries.reader
+            return self.contact.search.missing
+        waits = self.due or self.leaving is not None or self.counter.hurries
+        return self.queries.missing if waits else None
 
     # readings
 
     def receive(self, now: int, data: bytes) -> None:
         """Process bytes from the robot."""
         if self.contact.searching:
-            self.contact.receive(now, data)
+            self.contact.search.receive(now, data)
             return
         reading = self.queries.receive(now, data)
         if reading:
-            self.commanded.advance(now)
-            self.received = now
             self._accept(reading)
 
     def _accept(self, reading: Mapping[str, int]) -> None:
-        commanded = self.commanded
-        time, part = commanded.asked_time, commanded.asked      # the robot senses when it receives the query
-        elapsed = (time - self.reading_time) / SECOND if self.reading_time is not None else 0.0
+        queries, time = self.queries, self.queries.asked.time
+        elapsed, expected = queries.since_reading()
         # a robot that was just switched on and started is in passive mode, and counts from 0
         reset = (self.contact.started and self.reading is not None
                  and self.supervisor.is_passive(reading) and self.counter.is_reset(reading))
         if reset:
             self.counter.restart()
         try:
-            travel = self.counter.update(reading, elapsed, part)
+            travel = self.counter.update(reading, elapsed, expected, queries.lost_share)
         except Implausible:
             self.implausible += 1
-            self.queries.lose_reply(True)
+            queries.lose_reply()
             return
         if reset:
-            travel = unknown(commanded.since_reading, self.model.wheel_separation)
+            travel = unknown(expected, self.model.wheel_separation)
         if self.contact.hear():
             self._recover(elapsed, reset)
-        commanded.start(time, part)
-        commanded.read()
-        self.reading, self.reading_time = reading, time
-        self.acceptance.follow(elapsed, part, travel, self.model.wheel_separation)
+        queries.accept()
+        self.reading, self.is_new = reading, True
+        self.acceptance.follow(elapsed, expected, travel, self.model.wheel_separation)
         travel = self.motion.add(time, travel)
         if self.gyro:
-            self.gyro_reading = self.gyro.update(reading['analog_input'], self._step(elapsed, travel, part, reading))
+            step = self._step(elapsed, travel, expected, reading)
+            self.gyro_reading = self.gyro.update(reading['analog_input'], step)
         if self.leaving is None:
             self._supervise(time, reading)
         elif time >= self.leaving and self.supervisor.is_passive(reading):
@@ -246,29 +230,29 @@ class Driver:
         variance = travel.angle_variance + self.settings.errors.variances(travel)[1] + self.counter.rounding[1] ** 2
         return Step(elapsed, travel.angle, variance, (expected.right - expected.left) / self.model.wheel_separation,
                     self.motion.stands and not bits & WHEEL_DROPS,      # a lifted robot may be turned by hand
-                    self.supervisor.in_control and self.settings.mode != protocol.PASSIVE, bool(bits),
+                    self.supervisor.in_control and self.settings.operation_mode != protocol.PASSIVE, bool(bits),
                     elapsed * self.settings.update_rate > GAP)
 
     def _supervise(self, time: int, reading: Mapping[str, int]) -> None:
         before = self.supervisor.in_control
         if (mode := self.supervisor.update(time, reading, self.gate.moving, self.acceptance.backs)) is not None:
             self.sender.send(time, sequences.take_control(self.model, mode))
-        if self.acceptance.feel(time, reading) or (before and not self.supervisor.in_control):
+        if self.acceptance.feel(reading) or (before and not self.supervisor.in_control):
             self.acceptance.lock(', '.join(causes(reading)) or 'the robot left the mode in which it is driven')
 
     def _recover(self, elapsed: float, reset: bool) -> None:
         if self.reading is None:
-            self.info(f'The robot answers: {self.model.name} at {self.baud} baud')
+            self.info(f'The robot answers: {self.model.name} at {self.contact.baud} baud')
             return
-        what = 'the robot was switched off or reset' if reset else f'the robot did not answer for {elapsed:.1f} s'
-        self.warn(f"The robot answers again, after {elapsed:.1f} s{': it was switched off or reset' if reset else ''}")
+        what = 'was switched off or reset' if reset else f'did not answer for {elapsed:.1f} s'
+        self.warn(f'The robot answers again: it {what}')
         if reset or elapsed > OUTAGE / SECOND:
-            self.acceptance.lock(what)
+            self.acceptance.lock(f'the robot {what}')
 
     def state(self) -> State | None:
         """Return the State if one is due and there is a new reading for it; else None."""
-        if not self.contact.answers or self.due is None or self.received <= self.due or not self.motion.is_new:
+        if not (self.contact.answers and self.due and self.is_new):
             return None
-        self.due = None
+        self.due = False
         gyro, self.gyro_reading = self.gyro_reading, None
         return self.motion.state(gyro, self.counter.unread_variance)

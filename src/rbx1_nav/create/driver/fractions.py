@@ -26,22 +26,19 @@ BELOW = 0.95            # maximum number of degrees between two readings of the 
 ENOUGH = 4.0            # degrees of such readings that show which kind of robot this is, if they are all zeros
 ROUNDS = 2              # number of times that this must happen: the wheels may have been blocked for a while
 TURNS = 0.3             # part of the commanded turn from which the robot turns: on carpet, slow wheels lag
-UNCLEAR = 12.0          # degrees after which a test without a result begins again
-SLOW = 3                # number of readings that come too late, after which the test waits for a slower turn
+SLOWER = 0.8            # factor for the rate of the test after a reading that came too late
 CHECK_ANGLE = 10.0      # degrees after which a reading shows whether a robot that reported zeros turns
-MIN_CHECK = 4.0         # minimum, if the robot stops before
+MIN_CHECK = 4.0         # degrees: minimum, if the robot stops before
 COARSE_ANGLE = {AUTO: 45.0, LOST: 14.0}     # degrees between two readings: the fewer readings, the less is dropped
 COARSE_TIME = 0.9       # s between two readings of a robot that is not commanded to turn
 VARIATION = 0.3         # relative variation of both: with equal intervals, each could drop the same fraction
 GOLDEN = (5 ** 0.5 - 1) / 2     # its multiples are spread evenly between whole numbers
-RETEST = 360.0          # degrees after which a robot that drops fractions is tested again
-MISSING = 0.9           # a robot that reports less than this part of a turn is tested again
-COMPARED = 30.0         # degrees of such a turn, doubled with each test
 MEAN_LOSS = {KEPT: 0.0, AUTO: 0.25, LOST: 0.5}     # degrees of a reading: a fraction is uniformly distributed
 LOSS_VARIANCE = 1 / 6    # degrees^2, of a reading that drops a fraction, or may do so
 MAX_CORRECTION = 120.0  # degrees/s: a filter would mistake a large jump of the heading for a change of place
 GAP = 0.3               # s without a reading after which the angle is read
 UNSURE = 0.1            # 1 sigma of a commanded turn that was not read, as a part of it
+UNCERTAIN = 1.0         # degrees: a lost turn of this size does not show in the next reading
 
 
 class Turn(NamedTuple):
@@ -54,38 +51,41 @@ class Turn(NamedTuple):
 NO_TURN = Turn(0.0, 0.0)
 
 
+def lost_part(lost: float, after: float, reading: float, uncertain: float) -> tuple[float, float]:
+    """Return (motion, 1 sigma): the motion before a lost reply that the next reading does not include. It includes all
+    of it if the query was lost instead. lost, after: commanded motion before and after this query; uncertain: a smaller
+    `lost` does not show in the reading."""
+    if abs(lost) <= uncertain:
+        return lost, abs(lost)
+    return (0.0, 0.0) if abs(reading - after - lost) < abs(reading - after) else (lost, UNSURE * abs(lost))
+
+
 class Fractions:
     """Decides when to read the angle, and converts the readings to turns. Angles are in degrees."""
 
     def __init__(self, kind: str = AUTO, warn: Callable[[str], None] = lambda text: None) -> None:
         """kind: one of KINDS; warn: logs a line."""
         self.kind = kind
-        self._fixed = kind != AUTO
         self._warn = warn
         self._count = 0                         # number of readings
-        self._rate, self._steady = 0.0, 0.0     # commanded rate (degrees/s), and for how long (s)
+        self._rate = self._steady = 0.0         # commanded rate (degrees/s), and for how long (s)
         self.turn = self.time = 0.0             # commanded turn and time (s) since the last reading of the angle
-        self._doubtful = 0.0                    # the part of `turn` before a query that may not have arrived
-        self._compared = self._reported = 0.0   # commanded turn and readings of a robot that keeps fractions
-        self._enough = COMPARED
+        self._lost = 0.0                        # the part of `turn` before a lost reply
         self._owed = 0.0                        # correction of the commanded turn that was not returned yet
         self._fastest = BELOW / UPDATE_PERIOD   # degrees/s up to which this line allows the test
         self._begin_test()
 
     def _begin_test(self) -> None:
         self._checking = False
-        self._since_test = 0.0              # commanded turn since the last test
         self._tested = self._tested_turn = 0.0      # absolute and signed commanded turn between readings of the test
         self._rounds = 0                    # number of checks that have shown that the robot turns
         self._shown = self._shown_turn = 0.0    # what these readings show
-        self._slow = 0                      # number of readings that came too late
 
     @property
     def hurries(self) -> bool:
         """Whether to query the robot again as soon as it has replied."""
-        return (not self._fixed and not self._checking and self._steady > STEADY
-                and 0 < abs(self._rate) <= self._fastest
-                and (self.kind == AUTO or (self.kind == LOST and self._since_test > RETEST)))
+        return (self.kind == AUTO and not self._checking and self._steady > STEADY
+                and 0 < abs(self._rate) <= self._fastest)
 
     @property
     def unread(self) -> float:
@@ -100,30 +100,25 @@ class Fractions:
         angle = CHECK_ANGLE if self._checking else COARSE_ANGLE[self.kind]
         return abs(self.turn + turn) >= factor * angle or (not turn and self.time + time >= factor * COARSE_TIME)
 
-    def lose(self, doubtful: bool) -> None:
-        """Handle a reading of the angle that was lost. doubtful: whether the query may not have arrived."""
-        if doubtful:
-            self._doubtful = self.turn
-        else:       # the commands replace it
-            self._finish_reading()
+    def lose(self, turn: float) -> None:
+        """Handle a lost reply with an angle. turn: commanded turn from the last update to the query."""
+        self._lost = self.turn + turn
 
-    def _finish_reading(self) -> None:
-        self.turn = self.time = self._doubtful = 0.0
+    def finish_reading(self) -> None:
+        """Note that the robot starts to count the angle from 0."""
+        self.turn = self.time = self._lost = 0.0
 
     def update(self, commanded: float, elapsed: float, angle: int | None) -> Turn:
         """Return the turn since the last update. commanded: commanded turn; elapsed: s; angle: the reading, or None."""
         rate = commanded / elapsed if elapsed > 0 else 0.0
         self._steady = self._steady + elapsed if abs(rate - self._rate) <= 0.2 * abs(rate) else 0.0
         self._rate = rate
-        self._since_test += abs(commanded)
         ahead = self.turn
         self.turn += commanded
         self.time += elapsed
         variance = 0.0
         if angle is not None:
             turn, variance = self._add(commanded, elapsed, angle)
-            if self.kind == KEPT and not ahead and not self._owed:
-                return Turn(turn, variance)
             self._owed += turn - commanded - ahead
         part = clamp(self._owed, MAX_CORRECTION * elapsed)
         self._owed -= part
@@ -132,29 +127,21 @@ class Fractions:
     def _add(self, commanded: float, elapsed: float, angle: int) -> Turn:
         """Return the Turn since the last reading of the angle."""
         self._count += 1
-        if self.hurries and self.time == elapsed and not self._doubtful:
+        if self.hurries and self.time == elapsed and not self._lost:
             if abs(self._rate) * UPDATE_PERIOD * ceil(elapsed / UPDATE_PERIOD) <= BELOW:
-                self._finish_reading()
+                self.finish_reading()
                 return self._test(commanded, angle)
-            self._slow += 1
-            if self._slow >= SLOW:
-                self._fastest, self._slow = abs(self._rate) / 2, 0
+            self._fastest *= SLOWER
         tested = self._check(angle) if self._checking else NO_TURN
-        if self.kind == KEPT:
-            self._compare(commanded, angle)
         turn, variance = self._read(angle)
-        self._finish_reading()
+        self.finish_reading()
         return Turn(turn + tested.angle, variance + tested.variance)
 
     def _read(self, angle: int) -> Turn:
         """Return the Turn since the last reading."""
-        turn, variance = float(angle), 0.0
-        if abs(angle - self.turn + self._doubtful) < abs(angle - self.turn):
-            turn += self._doubtful      # an earlier reply was lost
-            variance = (UNSURE * self._doubtful) ** 2
-        if angle:
-            turn += copysign(MEAN_LOSS[self.kind], angle)
-        return Turn(turn, variance + (LOSS_VARIANCE if self.kind != KEPT and (angle or self.turn) else 0.0))
+        lost, sigma = lost_part(self._lost, self.turn - self._lost, angle, UNCERTAIN)
+        turn = angle + lost + (copysign(MEAN_LOSS[self.kind], angle) if angle else 0.0)
+        return Turn(turn, sigma ** 2 + (LOSS_VARIANCE if self.kind != KEPT and (angle or self.turn) else 0.0))
 
     def _test(self, commanded: float, angle: int) -> Turn:
         """Add a reading before which the robot has turned by less than a degree."""
@@ -165,21 +152,13 @@ class Fractions:
         part = self._tested - ENOUGH * self._rounds
         if not -1 <= self._shown <= 1.5 * self._tested + 2:     # the robot is pushed
             self._steady = 0.0
-            return self._give_up(commanded)
-        if part >= ENOUGH:
-            if self._shown == 0:
-                self._checking = True
-            elif self._shown >= TURNS * part:
-                return self._finish_test(KEPT, commanded, 0.0)
-            elif part >= UNCLEAR:   # its wheels were blocked for a part of the time
-                return self._give_up(commanded)
-        return Turn(commanded, 0.0)
-
-    def _give_up(self, commanded: float) -> Turn:
-        """Finish a test that has no result. If a check has shown that the robot turns, zeros before it prove nothing.
-        """
-        self._shown_turn += self._tested_turn * self._rounds * ENOUGH / self._tested
-        return self._finish_test(self.kind, commanded, (UNSURE * self._tested_turn) ** 2)
+            self._shown_turn += self._tested_turn * self._rounds * ENOUGH / self._tested    # a check has replaced zeros
+            return self._finish_test(self.kind, commanded)
+        if part < ENOUGH or self._shown == 0:
+            self._checking = part >= ENOUGH
+            return Turn(commanded, 0.0)
+        # fewer: its wheels were blocked for a part of the time
+        return self._finish_test(KEPT if self._shown >= TURNS * part else self.kind, commanded)
 
     def _check(self, angle: int) -> Turn:
         """Check whether a robot that reported zeros turns. angle: the reading after them."""
@@ -187,31 +166,22 @@ class Fractions:
         if abs(self.turn) < MIN_CHECK or share > 1.5:
             return NO_TURN
         if share < TURNS:   # the wheels are blocked
-            return self._give_up(0.0)
+            return self._finish_test(self.kind, 0.0)
         self._checking = False
         self._rounds += 1
         if self._rounds < ROUNDS:
             return NO_TURN
         self._shown_turn = share * self._tested_turn
-        return self._finish_test(LOST, 0.0, (UNSURE * self._tested_turn) ** 2)
+        return self._finish_test(LOST, 0.0)
 
-    def _finish_test(self, kind: str, commanded: float, variance: float) -> Turn:
-        """Return the Turn that replaces the commands during the test by what was read."""
+    def _finish_test(self, kind: str, commanded: float) -> Turn:
+        """Return the Turn that replaces the commands during the test by what was read. kind: the result, if any."""
         if kind != self.kind:
             self.kind = kind
             if kind == LOST:
                 self._warn('The robot loses fractions of a degree: correcting the odometry. Set '
                            'angle_fractions:=lost to correct it from the start')
-        turn = Turn(commanded + self._shown_turn - self._tested_turn, variance)
+        turn = Turn(commanded + self._shown_turn - self._tested_turn,
+                    0.0 if kind == KEPT else (UNSURE * self._tested_turn) ** 2)
         self._begin_test()
         return turn
-
-    def _compare(self, commanded: float, angle: int) -> None:
-        """Look for a robot that reports too small a part of a steady turn, and test it again."""
-        if self._fixed or self._steady <= STEADY or self._compared >= self._enough:
-            self._compared = self._reported = 0.0
-        self._compared += abs(commanded)
-        self._reported += angle if commanded > 0 else -angle
-        if self._compared >= self._enough and self._reported < MISSING * self._compared:
-            self.kind = AUTO
-            self._enough *= 2

@@ -26,7 +26,7 @@ class Guardian:
     """The node's interface to the guardian process."""
 
     def __init__(self, line: int, stop: bytes) -> None:
-        """line: file descriptor of the port; stop: the bytes to send until confirm() sets others. Raises OSError if the
+        """line: file descriptor of the port; stop: the bytes to send until beat() sets others. Raises OSError if the
         process does not start."""
         self.process = subprocess.Popen(
             [sys.executable, '-E', '-S', os.path.abspath(__file__), str(line), stop.hex()],
@@ -38,17 +38,11 @@ class Guardian:
             self.process.kill()
             raise OSError('the guardian process did not start')
 
-    def beat(self) -> bool:
-        """Send a heartbeat. Returns whether the guardian is alive."""
-        return self._send('')
-
-    def confirm(self, stop: bytes) -> None:
-        """Set the bytes that stop the robot, which is now known, at the current rate of the port."""
-        self._send(stop.hex())
-
-    def _send(self, text: str) -> bool:
+    def beat(self, stop: bytes = b'') -> bool:
+        """Send a heartbeat. stop: the bytes that stop the robot at the current rate of the port, if they have changed.
+        Returns whether the guardian is alive."""
+        data = stop.hex().encode() + b'\n'
         try:
-            data = text.encode() + b'\n'
             return os.write(self.beats.fileno(), data) == len(data) and self.process.poll() is None
         except OSError:
             return False

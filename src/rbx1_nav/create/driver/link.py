@@ -10,16 +10,14 @@ from typing import Callable, Iterable
 
 import serial
 
+from rbx1_nav.create import protocol
 from rbx1_nav.create.driver import sequences
 from rbx1_nav.create.driver.guardian import Guardian
 from rbx1_nav.create.driver.parameters import Settings
 from rbx1_nav.create.driver.port import PortError, describe_adapter, find_port, list_adapters, open_port
-from rbx1_nav.create.driver.replies import ReplyReader
-from rbx1_nav.create.driver.search import Found, NoWakeLines, Search
 from rbx1_nav.create.line_settings import rate_in, read_settings
 from rbx1_nav.units import SECOND
 
-RETRY = SECOND // 5     # ns between two attempts to open the port
 PORT_WARN_TIME = SECOND       # ns that a port may be unavailable before a warning: an old guardian may still be exiting
 BEAT = SECOND // 10     # ns between two heartbeats to the guardian
 
@@ -49,17 +47,13 @@ class Link:
         self.adapter = ''           # description of the last adapter
         self.others: set[str] = set()       # ports of other adapters at that time
         self.is_same = True         # whether the previous line had the same adapter
-        self.attempt: int | None = None
         self.beat_time = 0
         self.settings: bytes | None = None  # of the port, as read_settings() returns them
         self.changes = 0            # number of changes of the settings by other processes
         self.disturbed = False      # whether there was a change since a caller cleared this
 
     def open(self, now: int) -> bool:
-        """Try to open the port if a retry is due. Returns whether it is open."""
-        if self.attempt is not None and now - self.attempt < RETRY:
-            return False
-        self.attempt = now
+        """Try to open the port. Returns whether it is open."""
         self.path = find_port(self.configured, self.adapter, self.others)
         try:
             self.port = open_port(self.path, self.baud)
@@ -77,16 +71,13 @@ class Link:
         self.problem, self.logged, self.lost_at = '', '', None
         self.guarded = True
         self.beat_time = now - BEAT
-        self._compare_adapters()
-        return True
-
-    def _compare_adapters(self) -> None:
         before, self.adapter = self.adapter, describe_adapter(self.path)
-        self.others = list_adapters() - {os.path.realpath(self.path)}
+        self.others = list_adapters().keys() - {os.path.realpath(self.path)}
         self.is_same = before in ('', self.adapter)
         if not self.is_same:
             self.warn(f'{self.path} is now {self.adapter} (previously {before}): check that the same robot is '
                       'connected')
+        return True
 
     def close(self) -> None:
         """Close the port. The guardian sends a final stop if the line is still connected."""
@@ -105,21 +96,22 @@ class Link:
             raise LineLost(f'{self.path}: {error}') from None
         self.settings = read_settings(self.port.fd)
 
-    def set_wake_lines(self, on: bool) -> None:
-        """Set or clear RTS and DTR. Raises NoWakeLines and LineLost."""
+    def set_wake_lines(self, on: bool) -> bool:
+        """Set or clear RTS and DTR. Returns whether the port has these lines. Raises LineLost."""
         try:
             self.port.rts = self.port.dtr = on
+            return True
         except OSError as error:
             if error.errno not in (errno.ENOTTY, errno.EINVAL):
                 raise LineLost(f'{self.path}: RTS and DTR: {error.strerror}') from None
             self.warn(f'wake_robot:=true: {self.path} has no RTS and DTR: expected an adapter that has these lines; '
                       'searching without waking the robot')
-            raise NoWakeLines(error.errno, error.strerror) from None
+            return False
 
-    def confirm(self, found: Found) -> None:
+    def confirm(self, model: protocol.Model) -> None:
         """Allow the guardian to stop the robot, which is now known."""
         assert self.guardian
-        self.guardian.confirm(sequences.guardian_stop(found.model))
+        self.guardian.beat(sequences.guardian_stop(model))
 
     def is_guarded(self, now: int) -> bool:
         """Check the guardian and the settings if a heartbeat is due. Returns whether the guardian is alive."""
@@ -158,18 +150,18 @@ class Link:
             self.write(bytes((byte,)))
             time.sleep(sequences.PAUSE / SECOND)
 
-    def read(self, duration: float, reader: ReplyReader | Search | None) -> bytes:
+    def read(self, duration: float, missing: int | None) -> bytes:
         """Return the bytes that arrive. Returns at once if the guardian has died. Raises LineLost.
 
-        duration: s until the next tick; reader: if it is set, return when its next reading is complete. Waiting for all
-        of its bytes avoids waking up for each one.
+        duration: s until the next tick; missing: number of bytes to return for, None to return at the next tick.
+        Waiting for all of them avoids waking up for each one.
         """
-        if reader is None:
+        if missing is None:
             self._wait((), duration)
             return self._read(0)
         data = self._read(duration)
         if data:
-            time.sleep(max(0, reader.missing - len(data)) * 10 / self.baud)
+            time.sleep(max(0, missing - len(data)) * 10 / self.baud)
             data += self._read(0)
         return data
 

@@ -33,7 +33,7 @@ class MotionReport:
     def __init__(self, settings: Settings, model: Model, rounding: tuple[float, float]) -> None:
         """rounding: see travel.py."""
         self.width = model.wheel_separation
-        self.corrections = settings.linear_correction, settings.angular_correction
+        self.corrections = settings.odom_linear_scale_correction, settings.odom_angular_scale_correction
         self.rounding = rounding
         self.moving_yaw_variance = settings.moving_yaw_variance
         self.odometry = UncertainOdometry(self.width, settings.errors, rounding)
@@ -66,11 +66,6 @@ class MotionReport:
     def stands(self) -> bool:
         """Whether the robot has neither moved nor been commanded to move for STANDSTILL."""
         return self.time is not None and self.moved_time is not None and self.time - self.moved_time >= STANDSTILL
-
-    @property
-    def is_new(self) -> bool:
-        """Whether there is a reading since the last State."""
-        return self.time != self.reported
 
     def state(self, gyro: Reading | None, unread_variance: float = 0.0) -> State:
         """Return the State, with the gyro's last Reading or None. unread_variance: see CounterTravel. Call it after

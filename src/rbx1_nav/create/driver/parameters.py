@@ -22,13 +22,6 @@ def _check_port(port: YamlValue) -> str:
     return port
 
 
-def _check_mode(mode: YamlValue) -> int:
-    if (not isinstance(mode, (int, float)) or isinstance(mode, bool)
-            or mode not in (protocol.PASSIVE, protocol.SAFE, protocol.FULL)):
-        raise ConfigError(f'operation_mode: {show(mode)}: expected 1 (passive), 2 (safe) or 3 (full)')
-    return int(mode)
-
-
 _CALIBRATED = 'see [calibration files](files.md#calibration-files)'
 
 PARAMETERS = (
@@ -38,11 +31,10 @@ PARAMETERS = (
     choice('baud', (AUTO, *protocol.BAUD_RATES), AUTO, 'rate of the serial port', 'bits per second',
            note='auto tries 57600, 115200 and 19200'),
     number('update_rate', 30.0, 'Hz', 'rate of sensor readings, odometry and repeated commands', 5, 60, 'a rate'),
-    custom('operation_mode', protocol.SAFE,
+    choice('operation_mode', (protocol.PASSIVE, protocol.SAFE, protocol.FULL), protocol.SAFE,
            'mode in which the robot is driven; 1: passive, the robot is not driven; 2: safe; 3: full, where neither a '
-           'cliff nor a wheel drop stops the robot', _check_mode, range='1, 2, 3'),
-    choice('oi_mode_workaround', (AUTO, True, False), AUTO,
-           'whether the robot reports its mode plus one, as some Roombas do; auto: detect it'),
+           'cliff nor a wheel drop stops the robot'),
+    flag('oi_mode_workaround', False, 'whether the robot reports its mode plus one, as some Roombas do'),
     flag('wake_robot', False, 'whether to wake a robot that does not answer, using RTS and DTR',
          note='if the port has no RTS and DTR, the node warns once and searches without waking the robot'),
     number('cmd_vel_timeout', 0.6, 's', 'age at which a command expires and the robot stops', 0.05, 10, 'a time'),
@@ -76,26 +68,26 @@ PARAMETERS = (
 
 
 class Settings(NamedTuple):
-    """The settings of the driver."""
+    """The settings of the driver: the parameters with these names, and what follows from them."""
 
     robot_type: str             # name of a Model, or AUTO
     model: protocol.Model       # expected model
     port: str                   # path, or AUTO
     baud: int | None            # bits per second; None: detect it
-    wake: bool                  # whether to wake the robot using RTS and DTR
+    wake_robot: bool
     update_rate: float          # Hz
-    mode: int                   # mode in which the robot is driven
-    mode_plus_one: bool | None  # whether the robot reports its mode plus one; None: detect it
+    operation_mode: int
+    oi_mode_workaround: bool
     has_gyro: bool
-    gyro_range: float           # degrees/s
-    gyro_correction: float
-    linear_correction: float
-    angular_correction: float
+    gyro_measurement_range: float   # degrees/s
+    gyro_scale_correction: float
+    odom_linear_scale_correction: float
+    odom_angular_scale_correction: float
     angle_fractions: str        # see fractions.KINDS
     errors: OdometryErrors
     moving_yaw_variance: float  # rad^2, 0 for none
-    stop_on_bump: bool
-    min_yaw_speed: float        # rad/s
+    stop_motors_on_bump: bool
+    min_abs_yaw_vel: float      # rad/s
 
 
 def read_settings(params: YamlValue) -> tuple[Settings, Robot]:
@@ -107,19 +99,12 @@ def read_settings(params: YamlValue) -> tuple[Settings, Robot]:
     has_gyro = model is protocol.CREATE if values['has_gyro'] is None else values['has_gyro']
     if has_gyro and model is not protocol.CREATE:
         raise ConfigError(f'has_gyro: True: expected false, because a {name} has no analog input for a gyro')
-    settings = Settings(
-        robot_type=name, model=model, port=values['port'], baud=None if values['baud'] == AUTO else values['baud'],
-        wake=values['wake_robot'], update_rate=values['update_rate'], mode=values['operation_mode'],
-        mode_plus_one=None if values['oi_mode_workaround'] == AUTO else values['oi_mode_workaround'],
-        has_gyro=has_gyro, gyro_range=values['gyro_measurement_range'], gyro_correction=values['gyro_scale_correction'],
-        linear_correction=values['odom_linear_scale_correction'],
-        angular_correction=values['odom_angular_scale_correction'], angle_fractions=values['angle_fractions'],
-        errors=OdometryErrors(values['odom_linear_error'], values['odom_angular_error'], values['odom_heading_error']),
-        moving_yaw_variance=values['moving_yaw_variance'], stop_on_bump=values['stop_motors_on_bump'],
-        min_yaw_speed=values['min_abs_yaw_vel'])
+    values.update(model=model, has_gyro=has_gyro, baud=None if values['baud'] == AUTO else values['baud'],
+                  errors=OdometryErrors(*(values[f'odom_{each}_error'] for each in OdometryErrors._fields)))
+    settings = Settings(**{name: values[name] for name in Settings._fields})
     max_yaw_speed = values['max_abs_yaw_vel'] or inf    # 0 means no limit, as in create_node
-    if settings.min_yaw_speed > max_yaw_speed:
-        raise ConfigError(f'min_abs_yaw_vel: {settings.min_yaw_speed!r}: expected at most max_abs_yaw_vel, '
+    if settings.min_abs_yaw_vel > max_yaw_speed:
+        raise ConfigError(f'min_abs_yaw_vel: {settings.min_abs_yaw_vel!r}: expected at most max_abs_yaw_vel, '
                           f'{max_yaw_speed!r}')
     robot = Robot(
         name=name, odom_frame_id=values['odom_frame'], base_frame_id=values['base_frame'],

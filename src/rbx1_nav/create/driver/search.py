@@ -6,10 +6,12 @@ receiver can mistake for another command: Start, and a battery query. At the rig
 """
 from __future__ import annotations
 
-from typing import Callable, NamedTuple, Optional, Protocol, Sequence
+from typing import Callable, NamedTuple, Optional, Sequence
 
 from rbx1_nav.create import protocol
 from rbx1_nav.create.driver import sequences
+from rbx1_nav.create.driver.link import Link
+from rbx1_nav.create.driver.queries import Layout
 from rbx1_nav.units import SECOND
 
 RATES = (57600, 115200, 19200)      # of a Create, of a Create 2, and of either after its buttons were held
@@ -23,9 +25,7 @@ FEW_ROUNDS = 2                      # number of rounds with few Start bytes
 MAX_BUFFER = 4096                   # bytes
 WAKE_TIME = SECOND * 3 // 4         # ns at each level: 0.5 s wakes a robot, three shorter pulses change its rate
 
-_BATTERY = protocol.single_packets(protocol.CREATE, [sequences.BATTERY])
-_HEADER = bytes((protocol.FRAME_HEADER,))
-_BATTERY_FORMAT = protocol.packets_format(_BATTERY)
+_BATTERY = Layout(protocol.CREATE, (sequences.BATTERY,))
 
 
 class Found(NamedTuple):
@@ -37,17 +37,14 @@ class Found(NamedTuple):
 
 def is_battery(data: bytes) -> bool:
     """Return whether bytes are the reply to a battery query: the right number of bytes, with plausible values."""
-    if len(data) != _BATTERY_FORMAT.size:
-        return False
-    values = dict(zip((packet.name for packet in _BATTERY), _BATTERY_FORMAT.unpack(data)))
-    return bool(values['charging_state'] <= 5 and protocol.MIN_VOLTAGE <= values['voltage'] <= protocol.MAX_VOLTAGE
-            and -40 <= values['temperature'] <= 100)
+    values = _BATTERY.decode(data)
+    return bool(values and -40 <= values['temperature'] <= 100)
 
 
 def has_frames(data: bytes) -> bool:
     """Return whether bytes contain two consecutive frames of a stream, which an earlier driver left on."""
     def end_of_frame(start: int) -> int | None:
-        if data[start:start + 1] != _HEADER or start + 1 == len(data):
+        if start + 1 >= len(data) or data[start] != protocol.FRAME_HEADER:
             return None
         end = start + 3 + data[start + 1]
         return end if end <= len(data) and not sum(data[start:end]) & 0xff else None
@@ -57,33 +54,6 @@ def has_frames(data: bytes) -> bool:
 
 # the action due at a time (ns); returns the robot once it is known
 Step = Callable[[int], Optional[Found]]
-
-
-class NoWakeLines(OSError):
-    """The line has no RTS and DTR."""
-
-
-class Line(Protocol):
-    """The line to the robot. All methods may raise OSError."""
-
-    @property
-    def is_same(self) -> bool:
-        """Whether the line uses the same adapter as the previous line."""
-
-    def set_rate(self, baud: int) -> None:
-        """Set the rate, bits per second."""
-
-    def set_wake_lines(self, on: bool) -> None:
-        """Set or clear RTS and DTR. Raises NoWakeLines if the line has none."""
-
-    def write(self, data: bytes) -> None:
-        """Send bytes."""
-
-    def write_apart(self, data: bytes) -> None:
-        """Send bytes with a pause after each."""
-
-    def confirm(self, found: Found) -> None:
-        """Allow the guardian to stop the robot that was found."""
 
 
 class Search:
@@ -96,32 +66,22 @@ class Search:
         self.rounds = 0         # completed rounds without an answer
         self.battery_rates: list[int] = []  # rates at which a robot answered nothing but the query of its battery
         self.baud = rates[0]    # rate being tried
-        self._line: Line
+        self._line: Link
         self._order: list[int] = []         # rates still to be tried in this round
         self._buffer = bytearray()
         self._sizes: Sequence[int] = ()     # possible sizes of the reply in bytes, the largest last
-        self._then: Step                    # action at the deadline
+        self._then: Step        # action at the deadline
         self._deadline = 0
         self._agreed = 0        # consecutive plausible replies
         # the model according to each reply so far; None for an inconclusive reply
         self._models: list[protocol.Model | None] = []
 
-    def begin(self, now: int, line: Line, baud: int | None = None) -> None:
+    def begin(self, now: int, line: Link, baud: int | None = None) -> None:
         """Begin to search on a line. baud: the rate to try first, one of `rates`."""
         self._line = line
         self.rates = tuple(sorted(self.rates, key=lambda rate: rate != baud))
-        self.rounds, self._order = 0, list(self.rates)
-        self.battery_rates.clear()
+        self.rounds, self.battery_rates, self._order = 0, [], list(self.rates)
         self._next_rate(now)
-
-    def begin_later(self, now: int, duration: int) -> None:
-        """Try the next rate after `duration`."""
-        self._plan(now + duration, self._next_rate)
-
-    @property
-    def next_time(self) -> int:
-        """The time at which tick() next has something to do."""
-        return self._deadline
 
     @property
     def missing(self) -> int:
@@ -150,21 +110,13 @@ class Search:
         if not self._order:
             self.rounds += 1
             self._order = list(self.rates)
-            if self._begin_wake(now):
+            self.wake = self.wake and self._line.set_wake_lines(False)
+            if self.wake:
+                self._plan(now + WAKE_TIME, self._end_wake)
                 return
         self.baud = self._order.pop(0)
         self._line.set_rate(self.baud)
         self._ask_battery(now)
-
-    def _begin_wake(self, now: int) -> bool:
-        """Begin to wake the robot, if this is enabled and possible. Returns whether waking has begun."""
-        if self.wake:
-            try:
-                self._line.set_wake_lines(False)
-                self._plan(now + WAKE_TIME, self._end_wake)
-            except NoWakeLines:
-                self.wake = False
-        return self.wake
 
     def _end_wake(self, now: int) -> None:
         self._line.set_wake_lines(True)
@@ -178,10 +130,10 @@ class Search:
     def _ask_battery(self, now: int) -> None:
         count = STARTS if self.rounds < FEW_ROUNDS else MANY_STARTS
         self._line.write_apart(sequences.START * count)
-        self._send(now + count * sequences.PAUSE, sequences.ASK_BATTERY, self._judge_battery, _BATTERY_FORMAT.size)
+        self._send(now + count * sequences.PAUSE, sequences.ASK_BATTERY, self._judge_battery, _BATTERY.format.size)
 
     def _judge_battery(self, now: int) -> None:
-        if not is_battery(self._buffer):
+        if not is_battery(bytes(self._buffer)):
             self._next_rate(now)
             return
         self._agreed += 1
@@ -211,13 +163,10 @@ class Search:
         elif any(self._models):
             return Found(protocol.CREATE_2 if self.baud == protocol.CREATE_2.baud else protocol.CREATE, self.baud)
         else:
-            self._send(now, sequences.ASK_BATTERY, self._judge_silence, _BATTERY_FORMAT.size)
+            self._send(now, sequences.ASK_BATTERY, self._judge_silence, _BATTERY.format.size)
         return None
 
     def _judge_silence(self, now: int) -> None:
         """Judge a robot that has answered the battery query, and no query of its model: it may have fallen silent."""
-        if is_battery(self._buffer):
-            self.battery_rates.append(self.baud)
-        else:
-            self.battery_rates.clear()
+        self.battery_rates = self.battery_rates + [self.baud] if is_battery(bytes(self._buffer)) else []
         self._next_rate(now)

@@ -1,61 +1,74 @@
-"""Sends bytes and speeds to the robot, and records the speeds. All times are in ns."""
+"""Sends bytes and wheel speeds to the robot, and integrates the travel that they command. All times are in ns."""
 from __future__ import annotations
 
 from typing import Callable
 
 from rbx1_nav.create import protocol
 from rbx1_nav.create.driver import sequences
-from rbx1_nav.create.driver.commanded import Commanded
-from rbx1_nav.create.driver.speeds import Rounding
+from rbx1_nav.create.driver.travel import STILL, Expected
 from rbx1_nav.units import SECOND
 
 BACKLOG = SECOND // 100     # backlog of bytes on the line beyond which only a stop is sent at once
 
 
+def is_too_fast(linear: float, angular: float, width: float) -> bool:
+    """Return whether a velocity in m/s and rad/s exceeds the speed limit of a wheel."""
+    return 1000 * (abs(linear) + abs(angular) * width / 2) > protocol.MAX_SPEED
+
+
+def wheel_speeds(linear: float, angular: float, width: float) -> tuple[float, float]:
+    """Return (left, right) in mm/s for m/s and rad/s. Above the limit, both are reduced by one factor, which preserves
+    the curvature."""
+    difference = angular * width / 2
+    left, right = 1000 * (linear - difference), 1000 * (linear + difference)
+    excess = max(abs(left), abs(right)) / protocol.MAX_SPEED
+    return (left / excess, right / excess) if excess > 1 else (left, right)
+
+
 class Sender:
-    """The sending side of the line on the host."""
+    """The sending side of the line on the host. The robot always keeps executing the last command."""
 
     def __init__(self) -> None:
         self.write: Callable[[bytes], None] | None = None   # sends bytes; None without a line
         self.error: OSError | None = None           # error that disconnected the line
-        self.commanded = Commanded()
         self.byte = 0               # transmission time of a byte
-        self._rounding = Rounding(), Rounding()
-        self._line_free = 0         # time at which all bytes have been transmitted
-        self._drive_time = 0        # time at which speeds were last sent
+        self.speeds = 0, 0          # left, right: mm/s, sent last
+        self._travel = STILL        # total travel at the speeds that were sent
+        self._time = 0              # end of the integration so far
+        self.line_free = 0         # time at which all bytes have been transmitted
 
-    def open(self, write: Callable[[bytes], None]) -> None:
-        """Start using a line that was opened. write(data): may raise OSError."""
+    def use_line(self, write: Callable[[bytes], None] | None) -> None:
+        """Start using a line that was opened. write(data): may raise OSError; None: the line has disconnected."""
         self.write, self.error = write, None
-
-    def close(self) -> None:
-        """Stop using a line that disconnected. The robot keeps executing the last command."""
-        self.write = None
 
     def is_busy(self, now: int) -> bool:
         """Return whether the backlog on the line is so long that speeds should wait."""
-        return self._line_free - now > BACKLOG
+        return self.line_free - now > BACKLOG
+
+    def travel(self, now: int) -> Expected:
+        """Return the total commanded travel up to `now`."""
+        self._travel = self._travel.plus(Expected(*self.speeds), max(0, now - self._time) / SECOND / 1000)
+        self._time = now
+        return self._travel
 
     def send(self, now: int, data: bytes) -> None:
         """Send bytes, if there is a line. After an error the line is no longer used."""
         if self.write is None:
             return
-        self._line_free = max(now, self._line_free) + len(data) * self.byte
+        self.line_free = max(now, self.line_free) + len(data) * self.byte
         try:
             self.write(data)
         except OSError as error:
             self.write, self.error = None, error
 
-    def stop(self, now: int, before: bytes = b'', after: bytes = sequences.STOP) -> None:
-        """Send a stop. before: bytes to send first; after: the bytes that stop the robot."""
-        self.commanded.send(now, (0, 0))
-        for rounding in self._rounding:
-            rounding.reset()
-        self.send(now, before + after)
+    def stop(self, now: int, stop: bytes = sequences.STOP) -> None:
+        """Send a stop: bytes that stop the robot."""
+        self.travel(now)
+        self.speeds = 0, 0
+        self.send(now, stop)
 
     def drive(self, now: int, speeds: tuple[float, float]) -> None:
-        """Send wheel speeds (left, right; mm/s), rounded so that their means over time are right."""
-        elapsed, self._drive_time = (now - self._drive_time) / SECOND, now
-        left, right = (rounding.next(speed, elapsed) for rounding, speed in zip(self._rounding, speeds))
-        self.commanded.send(now, (left, right))
+        """Send wheel speeds (left, right; mm/s), rounded to whole numbers."""
+        self.travel(now)
+        left, right = self.speeds = round(speeds[0]), round(speeds[1])
         self.send(now, protocol.drive_direct(right, left))

@@ -8,7 +8,6 @@ from rbx1_nav.units import SECOND
 
 HOLD = SECOND           # ns without the cause before the driver takes control again
 RETRY = SECOND // 2     # ns between two attempts
-SETTLE = SECOND // 10   # ns after which a reading shows the effect of a Start
 ATTEMPTS_BEFORE_LOG = 3            # number of attempts that fail without a known cause before the failure is logged
 CLIFFS = ('cliff_left', 'cliff_front_left', 'cliff_front_right', 'cliff_right')
 WHEEL_DROPS = protocol.WHEEL_DROP_LEFT | protocol.WHEEL_DROP_RIGHT | protocol.WHEEL_DROP_CASTOR
@@ -30,27 +29,18 @@ def causes(reading: Mapping[str, int]) -> list[str]:
 
 
 class Supervisor:
-    """Decides which mode to request, and when.
+    """Decides which mode to request, and when. A robot that reports its mode plus one may seem to be in the wanted mode
+    before it was requested, so the mode counts only afterwards."""
 
-    Some Roombas report their mode plus one (create_robot, issue 64). Start puts a robot into passive mode, so what it
-    reports after Start shows this offset. Only then is the mode requested in which the robot is driven.
-    """
-
-    def __init__(self, mode: int, plus_one: bool | None, info: Callable[[str], None],
-                 warn: Callable[[str], None]) -> None:
-        """mode: wanted value of packet 35; plus_one: whether the robot reports its mode plus one, None to detect it;
-        info(text), warn(text): log a line."""
+    def __init__(self, mode: int, plus_one: bool, info: Callable[[str], None], warn: Callable[[str], None]) -> None:
+        """mode: wanted value of packet 35; plus_one: whether the robot reports its mode plus one (create_robot, issue
+        64); info(text), warn(text): log a line."""
         self.wanted = mode
         self.plus_one = plus_one
         self.info = info
         self.warn = warn
-        self.mode: int | None = None    # mode in the last two readings
         self.reason = ''            # why the robot is not in the wanted mode
-        self.had_control = False
-        self.offset = int(plus_one or False)        # of the reported mode
-        self.observed = plus_one is not None        # whether the offset is known
-        self.offset_logged = False
-        self.forget()
+        self.restart()
 
     @property
     def in_control(self) -> bool:
@@ -59,22 +49,20 @@ class Supervisor:
 
     def forget(self) -> None:
         """Handle a robot that sends no more readings."""
-        self.mode = None
+        self.mode: int | None = None            # mode in the last two readings
         self.latest: int | None = None          # mode in the last reading
         self.clear_since: int | None = None     # ns, since when nothing prevents the robot from being driven
         self.attempt: int | None = None         # ns, time of the last request
         self.failures = 0           # consecutive requests that failed without a known cause
 
-    def restart(self, now: int) -> None:
-        """Handle a Start that is sent to a robot, which may be a different robot."""
+    def restart(self) -> None:
+        """Handle a Start that is sent to the robot."""
         self.forget()
-        self.had_control = False
-        if self.plus_one is None:
-            self.observed, self.attempt = False, now
+        self.asked = self.had_control = False       # whether the mode was requested and reached since then
 
     def is_passive(self, reading: Mapping[str, int]) -> bool:
-        """Return whether a robot from which passive mode was requested may be in passive mode."""
-        return reading['mode'] - protocol.PASSIVE in ((self.offset,) if self.observed else (0, 1))
+        """Return whether a robot is in passive mode."""
+        return reading['mode'] - self.plus_one == protocol.PASSIVE
 
     def update(self, now: int, reading: Mapping[str, int], wants_motion: bool, backs: bool = False) -> int | None:
         """Return the mode to request at `now` (ns), or None. wants_motion: whether a motion command is in force; backs:
@@ -84,23 +72,24 @@ class Supervisor:
         self.latest = reported
         if reported != before:      # one reading may be corrupted, so the second one counts
             return None
-        if not self.observed:
-            self._observe(now, reported)
-        if self.observed:
-            self._note(min(reported - self.offset, protocol.FULL))
+        if self.asked:
+            self._note(min(reported - self.plus_one, protocol.FULL))
         if self.in_control:
             self.clear_since, self.failures = None, 0
             return None
-        found = causes(reading)
-        docked = bool(reading['charging_sources'] & DOCK)
-        if found or docked:
-            self.failures = 0
+        found, docked = causes(reading), bool(reading['charging_sources'] & DOCK)
         reasons = list(found)
         if docked:
             reasons.append('on the dock: lift it off if it does not follow a command')
-        if self.failures > ATTEMPTS_BEFORE_LOG:
-            reasons.append(self._contradiction(reported))
-        self._explain(', '.join(reasons))
+        if reasons:
+            self.failures = 0
+        elif self.failures > ATTEMPTS_BEFORE_LOG:
+            reasons.append(f'it reports mode {reported} after it was asked for {protocol.MODE_NAMES[self.wanted]} '
+                           f'mode: expected {self.wanted + self.plus_one}, or oi_mode_workaround:='
+                           f'{str(not self.plus_one).lower()}')
+        explained, self.reason = self.reason, ', '.join(reasons)
+        if self.reason not in ('', explained):
+            self.warn(f'The robot cannot be driven: {self.reason}')
         leaves_cliff = backs and found == [CLIFF]
         if (found and not leaves_cliff) or (docked and not wants_motion):
             self.clear_since = None
@@ -110,28 +99,9 @@ class Supervisor:
         if (self.had_control and now - self.clear_since < HOLD and not leaves_cliff) or (
                 self.attempt is not None and now - self.attempt < RETRY):
             return None
-        if self.attempt is not None and self.failures > ATTEMPTS_BEFORE_LOG:
-            self.observed = self.plus_one is not None       # a Start may have been lost
-        self.attempt = now
+        self.attempt, self.asked = now, True
         self.failures += 1
-        return self.wanted if self.observed else protocol.PASSIVE
-
-    def _observe(self, now: int, reported: int) -> None:
-        """Determine the offset if the last request, a Start, has had its effect."""
-        if self.attempt is None or now - self.attempt < SETTLE or reported - protocol.PASSIVE not in (0, 1):
-            return
-        self.offset, self.observed, self.attempt = reported - protocol.PASSIVE, True, None
-        if self.offset and not self.offset_logged:
-            self.offset_logged = True
-            self.warn('The robot reports its mode plus one: expected a mode from 0 to 3; corrected, as with '
-                      'oi_mode_workaround:=true')
-
-    def _contradiction(self, reported: int) -> str:
-        """Return the reason for a robot that seems to disobey without a cause. reported: the reported mode."""
-        workaround = '' if self.plus_one is None else (
-            f' with oi_mode_workaround:={str(self.plus_one).lower()}; without this parameter the base detects it')
-        return (f'it reports mode {reported} after it was asked for {protocol.MODE_NAMES[self.wanted]} mode: expected '
-                f'{self.wanted + self.offset}{workaround}')
+        return self.wanted
 
     def _note(self, mode: int) -> None:
         before, self.mode = self.mode, mode
@@ -142,8 +112,3 @@ class Supervisor:
             self.reason = ''
             self.warn(f'Lost control of the robot: it changed from {protocol.MODE_NAMES[self.wanted]} to '
                       f'{protocol.MODE_NAMES[mode]} mode')
-
-    def _explain(self, reason: str) -> None:
-        before, self.reason = self.reason, reason
-        if reason and reason != before:
-            self.warn(f'The robot cannot be driven: {reason}')

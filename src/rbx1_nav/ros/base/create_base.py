@@ -22,7 +22,7 @@ from rbx1_nav.ros.base.publisher import BasePublisher
 from rbx1_nav.ros.node import life
 from rbx1_nav.schedule import Schedule
 
-RETRY = 0.05        # s between two attempts to open the line
+WAIT = 0.05         # s to sleep while the line is not open
 LEAVE_TIME = 0.6    # s in which the robot must confirm that it has stopped
 
 
@@ -35,6 +35,7 @@ class CreateBase:
         self.lock = threading.Lock()
         self.driver = Driver(settings, gate, rospy.loginfo, rospy.logwarn, rospy.logerr)
         self.link = Link(settings, rospy.logwarn)
+        self.open_schedule = Schedule(5)
         self.joint_schedule = Schedule(10)
         self.diagnostics_schedule = Schedule(1)
         self.publisher = BasePublisher(robot)
@@ -61,8 +62,9 @@ class CreateBase:
     def step(self) -> None:
         """Process the received data, or try to open the line. Raises OSError if the line is disconnected."""
         if not self.link.port:
-            if not self.link.open(self.clock.now()):
-                life.sleep(RETRY)
+            now = self.clock.now()
+            if not (self.open_schedule.due(now) and self.link.open(now)):
+                life.sleep(WAIT)
                 return
             rospy.loginfo('Serial port: %s', self.link.path)
             with self.lock:
@@ -89,7 +91,7 @@ class CreateBase:
     def exchange(self) -> tuple[bool, State | None]:
         """Receive data and advance the driver; return whether the command has timed out, and the State to publish.
         Raises OSError."""
-        data = self.link.read(self.driver.until_tick(self.clock.now()), self.driver.awaited)
+        data = self.link.read(self.driver.until_tick(self.clock.now()), self.driver.missing)
         with self.lock:
             now = self.clock.now()
             self.driver.receive(now, data)

@@ -84,8 +84,8 @@ class CreateStatus:
             status.add('Fractions of a degree', driver.counter.fractions.kind)
         mode = supervisor.mode
         status.add('Mode', 'unknown' if mode is None else protocol.MODE_NAMES[mode])
-        status.add('Speed of the left wheel (mm/s)', driver.commanded.speeds[0])
-        status.add('Speed of the right wheel (mm/s)', driver.commanded.speeds[1])
+        status.add('Speed of the left wheel (mm/s)', driver.sender.speeds[0])
+        status.add('Speed of the right wheel (mm/s)', driver.sender.speeds[1])
         self.commands.diagnose(status)
         status.add('Commands above the wheel speed limit', driver.saturated)
         return status
@@ -134,8 +134,8 @@ class CreateStatus:
         if not gyro:
             return status
         offset = gyro.offset
-        if gyro.check.problem:
-            status.summary(ERROR, gyro.check.problem)
+        if gyro.problem:
+            status.summary(ERROR, gyro.problem)
         elif offset is None:
             status.summary(WARN, 'Not calibrated: keep the robot stationary')
         else:
@@ -158,8 +158,7 @@ class CreateStatus:
         status.add('Adapter', self.link.adapter or 'unknown')
         status.add('Rate (baud)', self.link.baud)
         status.add('Settings changed by other processes', self.link.changes)
-        status.add('Corrupted readings', driver.queries.reader.rejected)
-        status.add('Bytes outside readings', driver.queries.reader.skipped)
+        status.add('Corrupted readings', driver.queries.rejected)
         status.add('Implausible readings', driver.implausible)
         status.add('Lost replies', driver.queries.missed)
         status.add('Dropouts', driver.contact.dropouts)
