@@ -34,7 +34,7 @@ def meet(case, robot, robot_type, kill_after):
     case.addCleanup(node.kill)
     support.wait_for(robot.received, f'the search: {node.output}')
     end = time.monotonic() + (SEARCH if kill_after is None else kill_after)
-    while time.monotonic() < end and 'The robot answers' not in node.output:
+    while time.monotonic() < end and 'Connected to a' not in node.output:
         time.sleep(0.005)
     if kill_after is not None:
         os.kill(support.pid_of('/turtlebot_node'), signal.SIGKILL)
@@ -42,7 +42,7 @@ def meet(case, robot, robot_type, kill_after):
         time.sleep(0.5)     # for the guardian
     matches = robot_type in ('auto', robot.model.name)
     if kill_after is None:
-        assert ('The robot answers' in node.output) == matches, node.output
+        assert ('Connected to a' in node.output) == matches, node.output
         node.signal(signal.SIGINT)
         assert node.wait() == 0, node.output
     received = [data for _, data in robot.received()]

@@ -157,4 +157,4 @@ def test_the_robot_that_was_found_is_logged_with_its_rate():
     driven.line.baud = 19200
     driven.connect()
     driven.run(3)
-    assert driven.log == ['The robot answers: create2 at 19200 baud', 'The robot is in safe mode']
+    assert driven.log == ['Connected to a create2 at 19200 baud', 'The robot is in safe mode']

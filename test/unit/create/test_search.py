@@ -42,7 +42,7 @@ def test_any_robot_is_found_at_any_rate(robot, baud):
     driven.run(2)
     assert driven.found == protocol.MODELS[robot] and driven.driver.contact.found.baud == baud
     assert driven.driver.supervisor.in_control
-    assert driven.log[0] == 'The robot answers: %s at %d baud' % (robot, baud)
+    assert driven.log[0] == 'Connected to a %s at %d baud' % (robot, baud)
     driven.drive(0.2, 0, 0.5)
     assert driven.speeds == (200, 200)
 

@@ -242,7 +242,7 @@ class Driver:
 
     def _recover(self, elapsed: float, reset: bool) -> None:
         if self.reading is None:
-            self.info(f'The robot answers: {self.model.name} at {self.contact.baud} baud')
+            self.info(f'Connected to a {self.model.name} at {self.contact.baud} baud')
             return
         what = 'was switched off or reset' if reset else f'did not answer for {elapsed:.1f} s'
         self.warn(f'The robot answers again: it {what}')
