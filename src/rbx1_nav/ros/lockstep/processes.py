@@ -69,10 +69,13 @@ class Thread:
         """Return whether the thread is waiting or has exited."""
         if self.waits_in().startswith(INTERRUPTIBLE):
             return True
-        # state S alone may belong to a thread that is about to wait and may still find that it need not wait;
-        # the name in parentheses may contain any characters
-        state = os.pread(self.files[0], 512, 0).rpartition(b') ')[2][:1]
+        # state S alone may belong to a thread that is about to wait and may still find that it need not wait
+        state = self.state()
         return self.waits_in() != b'0' if state == b'S' else state in ENDED
+
+    def state(self) -> bytes:
+        """Return the letter of the state of the thread."""
+        return os.pread(self.files[0], 512, 0).rpartition(b') ')[2][:1]     # the name in () may contain any characters
 
     def waits_for_thread(self) -> bool:
         """Return whether the thread waits for another one of its process, as in rospy.Rate.sleep()."""
@@ -94,7 +97,7 @@ class Thread:
         now = time.monotonic()      # before the look: on a busy machine, the caller may be suspended in between
         self.look()
         self.is_poller = self.is_poller and now - self.changed < POLL
-        return now - self.changed < POLL or self.waits_in() == b'0'
+        return now - self.changed < POLL or self.waits_in() == b'0' and self.state() not in ENDED
 
 
 Runs = List[Tuple[Thread, int]]     # how often threads have run

@@ -167,6 +167,8 @@ def test_a_polling_thread_that_has_not_looked_since(start):
     wait_for(lambda: still_polling(wait_for(process.polling)))
     threads = wait_for(process.polling)
     child.kill()
+    wait_for(lambda: not still_polling(threads))
+    wait_for(lambda: not process.polling())     # also before its parent has noticed
     child.wait()
     assert not still_polling(threads)
 
