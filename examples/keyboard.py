@@ -21,7 +21,7 @@ with exit_status():
     init_node('keyboard', __doc__)
     if not os.isatty(0):
         raise rospy.ROSException('keyboard.py: expected a terminal as standard input')
-    cmd_vel = rospy.Publisher('/cmd_vel', Twist, queue_size=5)
+    cmd_vel = rospy.Publisher('cmd_vel', Twist, queue_size=5)
     with TimedDrive(cmd_vel, 20, shutdown) as drive:    # 20 commands per second
         os.system('stty -icanon -echo min 0')           # read() returns each key at once, and does not wait for a key
         print(__doc__)

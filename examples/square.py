@@ -18,7 +18,7 @@ def shutdown():
 
 with exit_status():
     init_node('square', __doc__)
-    cmd_vel = rospy.Publisher('/cmd_vel', Twist, queue_size=5)
+    cmd_vel = rospy.Publisher('cmd_vel', Twist, queue_size=5)
     with TimedDrive(cmd_vel, 50, shutdown) as drive:    # 50 commands per second
         for side in range(4):
             # Fill this in: drive forward, stop and rest; turn left, stop and rest.

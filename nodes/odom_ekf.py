@@ -28,7 +28,7 @@ class OdomEkf:
         life.init_node('odom_ekf', __doc__)
         self.frames = None      # (frame_id, child_frame_id) of the wheel odometry
         self.last = None        # PoseWithCovarianceStamped
-        self.publisher = rospy.Publisher('/odom_ekf', Odometry, NoDelay(), queue_size=10)
+        self.publisher = rospy.Publisher('odom_ekf', Odometry, NoDelay(), queue_size=10)
         rospy.Subscriber('odom', Odometry, self.on_odom)
         rospy.Subscriber('odom_combined', PoseWithCovarianceStamped, self.on_pose)
 

@@ -41,7 +41,7 @@ class OutAndBack:
         init_node('out_and_back', __doc__, PARAMETERS)
 
         # The base subscribes to this topic. With a queue, a slow subscriber does not hold up the others.
-        self.cmd_vel = rospy.Publisher('/cmd_vel', Twist, queue_size=5)
+        self.cmd_vel = rospy.Publisher('cmd_vel', Twist, queue_size=5)
 
         # Check the pose and publish a command at this rate (Hz).
         rate = param('rate')

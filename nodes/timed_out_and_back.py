@@ -31,7 +31,7 @@ class OutAndBack:
         init_node('out_and_back', __doc__, PARAMETERS)
 
         # The base subscribes to this topic. With a queue, a slow subscriber does not hold up the others.
-        self.cmd_vel = rospy.Publisher('/cmd_vel', Twist, queue_size=5)
+        self.cmd_vel = rospy.Publisher('cmd_vel', Twist, queue_size=5)
 
         # Publish commands at this rate (Hz). Many robots stop unless they receive a steady stream of commands.
         rate = param('rate')

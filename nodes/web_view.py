@@ -40,34 +40,61 @@ def remappings():
     return {name: new for name, new in get_resolved_mappings().items() if not name.startswith('__')}
 
 
+class RobotView:
+    """The view of one robot."""
+
+    def __init__(self, name, token):
+        """name: namespace of the robot, '' for that of this node; token: needed to move the robot."""
+        namespace = f'/{name}/' if name else ''
+        self.state, publisher = State(), CommandPublisher(namespace)
+        self.state.set_status(title=param('title'), robots=robot_names(), spacing=param('spacing'))
+        self.hand, self.system = HandDrive(publisher), System(self.state, publisher.connected, namespace)
+        self.runs = Runs(os.path.dirname(os.path.abspath(sys.argv[0])),
+                         lambda name, outcome: self.state.set_status(started=name, outcome=outcome),
+                         self.system.forget_frame, remappings(), namespace)
+        controls = Controls(self.state, self.system, self.hand, self.runs,
+                            (param('linear_speed'), param('angular_speed')), in_background, log=rospy.loginfo,
+                            stop_needs_token=param('stop_needs_token'))
+        self.connections = Connections(self.state, controls, token, time.monotonic)
+
+    def start(self):
+        """Start the threads."""
+        self.hand.start()
+        self.system.start()
+
+    def stop(self):
+        """Stop what the page has started."""
+        self.runs.stop()
+        self.hand.end()
+
+
+def robot_names():
+    """Return the names of the robots of a fleet; [''] for one robot in the namespace of this node."""
+    return [f'robot{number}' for number in range(1, round(param('robots')) + 1)] or ['']
+
+
 def main():
     """Serve the page until the node shuts down; return the exit status."""
     # the page takes its time from the odometry, so the node need not read /clock
     life.init_node('web_view', __doc__, PARAMETERS, wall_time=True)
-    state, publisher, address = State(), CommandPublisher(), param('address')
-    token = os.environ.get(TOKEN_VARIABLE) or make_token()
-    state.set_status(title=param('title'))
-    hand, system = HandDrive(publisher), System(state, publisher.connected)
-    runs = Runs(os.path.dirname(os.path.abspath(sys.argv[0])),
-                lambda name, outcome: state.set_status(started=name, outcome=outcome), system.forget_frame,
-                remappings())
-    controls = Controls(state, system, hand, runs, (param('linear_speed'), param('angular_speed')), in_background,
-                        log=rospy.loginfo, stop_needs_token=param('stop_needs_token'))
-    connections = Connections(state, controls, token, time.monotonic)
+    address, token = param('address'), os.environ.get(TOKEN_VARIABLE) or make_token()
+    views = {f'/socket/{name}': RobotView(name, token) for name in robot_names()}
+    views['/socket'] = next(iter(views.values()))
     try:
-        server = Server(resources.path('web'), HostCheck(address, machine_names()), connections, address, param('port'))
+        server = Server(resources.path('web'), HostCheck(address, machine_names()),
+                        {path: view.connections for path, view in views.items()}, address, param('port'))
     except (ConfigError, OSError) as error:
         rospy.logfatal('address %s, port %s: %s: expected an address of this machine and a free port', address,
                        param('port'), error)
         return 1
-    hand.start()
-    system.start()
+    for view in set(views.values()):
+        view.start()
     server.start()
     # printed instead of logged, because everyone who can reach the master can read the log
     print(f'[INFO] [{time.time():.6f}]: Open {page_address(address, server.port, token)}')
     life.end_requested.wait()
-    runs.stop()
-    hand.end()
+    for view in set(views.values()):
+        view.stop()
     server.stop()
     return 0
 

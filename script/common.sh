@@ -23,7 +23,7 @@ dependencies() {        # KIND...: print the Debian packages of these kinds of d
   for kind in "$@"; do
     sed -n "s,.*<${kind}_depend>\(.*\)</.*,\1,p" "$source_dir/package.xml" | while read -r name; do
       case $name in
-        python3-*|rosout|rviz) echo "$name";;
+        python3-*|rosbash|rosout|rviz) echo "$name";;
         robot_state_publisher) echo ros-robot-state-publisher;;
         roscpp) echo libroscpp-dev;;
         *) echo "python3-${name//_/-}";;

@@ -9,15 +9,17 @@ function readToken() {
   const given = location.hash.slice(1);
   if (given) {
     sessionStorage.setItem('token', given);
-    history.replaceState(null, '', location.pathname);
+    history.replaceState(null, '', location.pathname + location.search);
   }
   return sessionStorage.getItem('token') || '';
 }
 
 export class Connection extends EventTarget {
   // Events: welcome, frame, refused, stopping, stopped (detail: the message), lost, silent (no frame for a while), heard.
-  constructor() {
+  // robot: its name in a fleet, '' for the only robot.
+  constructor(robot) {
     super();
+    this.path = robot ? `/socket/${robot}` : '/socket';
     this.token = readToken();
     this.failures = 0;
     this.clock = 0;         // s, clock of the node in the last frame: a request carries it, and so its age
@@ -33,7 +35,7 @@ export class Connection extends EventTarget {
 
   connect() {
     const protocol = location.protocol === 'https:' ? 'wss' : 'ws';
-    this.socket = new WebSocket(`${protocol}://${location.host}/socket`);
+    this.socket = new WebSocket(`${protocol}://${location.host}${this.path}`);
     this.socket.onopen = () => this.send({type: 'hello', token: this.token});
     this.socket.onmessage = event => {
       const message = JSON.parse(event.data);

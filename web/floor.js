@@ -72,6 +72,10 @@ class Trace {
   }
 }
 
+function lineOf(points) {
+  return points.map(([x, y], index) => `${index ? 'L' : 'M'}${x} ${y}`).join('');
+}
+
 export class Floor {
   constructor(svg) {
     this.svg = svg;
@@ -91,11 +95,13 @@ export class Floor {
     this.following = false;
     this.touched = false;       // whether the user has moved the view
     this.cleared = -1;
+    this.others = {};       // other robots of a fleet, by name
+    this.places = [];       // their starts
     new ResizeObserver(() => this.touched ? this.project() : this.fit()).observe(svg);
   }
 
-  makeRobot(source) {
-    const robot = element('g', {class: `robot ${source}`, id: `robot-${source}`}, this.world);
+  makeRobot(source, parent = this.world) {
+    const robot = element('g', {class: `robot ${source}`, ...source && {id: `robot-${source}`}}, parent);
     element('circle', {r: RADIUS, 'vector-effect': 'non-scaling-stroke'}, robot);
     element('path', {d: `M${-0.4 * RADIUS} ${0.5 * RADIUS}L${0.8 * RADIUS} 0L${-0.4 * RADIUS} ${-0.5 * RADIUS}`,
       fill: 'none', 'vector-effect': 'non-scaling-stroke'}, robot);
@@ -137,13 +143,38 @@ export class Floor {
     }
   }
 
+  // Another robot of a fleet, with its name at its start; offset: m to the left of the selected robot.
+  drawOther(name, index, offset, model) {
+    const source = 'truth' in model.poses ? 'truth' : 'odometry', pose = model.poses[source];
+    this.others[name] = this.others[name] || this.makeOther(name, index, offset);
+    const {robot, path} = this.others[name];
+    robot.style.display = pose && near(pose) ? '' : 'none';
+    if (pose && near(pose)) {
+      robot.setAttribute('transform', `translate(${pose[0]} ${pose[1]}) rotate(${pose[2] * 180 / Math.PI})`);
+    }
+    path.setAttribute('d', lineOf(model.paths[source].filter(near)));
+  }
+
+  makeOther(name, index, offset) {
+    const group = element('g', {class: `other robot-${index % 5}`, transform: `translate(0 ${offset})`}, this.world);
+    const path = element('path', {class: 'path', 'vector-effect': 'non-scaling-stroke'}, group);
+    const robot = this.makeRobot('', group);
+    element('text', {transform: 'translate(-.5 -.03) scale(1 -1)'}, group).textContent = name;
+    group.onclick = () => { location.search = `?robot=${name}`; };
+    this.places.push([0, offset]);
+    if (!this.touched) {
+      this.fit();
+    }
+    return {robot, path};
+  }
+
   // The paths of earlier runs, each with its number at the end.
   drawEarlier(runs) {
     this.earlier.classList.toggle('many', runs.length > MANY);
     this.earlier.replaceChildren(...runs.filter(run => run.shown && run.points.some(near)).map(({number, name, points}) => {
       const group = element('g', {class: 'truth', 'data-run': name}), drawn = points.filter(near);
       element('path', {class: 'path', 'vector-effect': 'non-scaling-stroke',
-        d: drawn.map(([x, y], index) => `${index ? 'L' : 'M'}${x} ${y}`).join('')}, group);
+        d: lineOf(drawn)}, group);
       const [x, y] = drawn[drawn.length - 1];
       const label = element('text', {transform: `translate(${x} ${y}) scale(1 -1)`}, group);
       label.textContent = number;
@@ -171,7 +202,7 @@ export class Floor {
   // Show the start, all robots and all paths, except for poses that are not drawn.
   fit() {
     const box = {...SEEN}, margin = 0.35;
-    const poses = [...Object.values(this.poses || {}), ...Object.values(this.points || {}).flat()];
+    const poses = [...this.places, ...Object.values(this.poses || {}), ...Object.values(this.points || {}).flat()];
     for (const [x, y] of poses.filter(near)) {
       box.left = Math.min(box.left, x - margin);
       box.right = Math.max(box.right, x + margin);

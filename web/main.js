@@ -2,6 +2,7 @@
 
 import {Connection} from './connection.js';
 import {Drive} from './drive.js';
+import {Fleet} from './fleet.js';
 import {Floor} from './floor.js';
 import {LogView} from './log.js';
 import {Model, SOURCES} from './model.js';
@@ -21,8 +22,10 @@ function notify(text, alarm = false) {
 }
 
 const model = new Model();
-const connection = new Connection();
+const robot = new URLSearchParams(location.search).get('robot') || '';
+const connection = new Connection(robot);
 const floor = new Floor(byId('floor'));
+const fleet = new Fleet(floor, robot);
 const tables = new Tables(byId('tables'));
 const log = new LogView(byId('lines'));
 const drive = new Drive(connection, model, notify);
@@ -73,6 +76,7 @@ function draw() {
   drive.draw();
   drawFacts();
   drawEarlier();
+  fleet.update(model.status);
   const end = byId('end'), live = Number(end.value) >= Number(end.max);
   end.max = Math.max(0.1, model.time || 0);
   if (live) {

@@ -50,7 +50,7 @@ def shutdown():
 if __name__ == '__main__':
     with exit_status():
         init_node('out_and_back', __doc__)
-        cmd_vel = rospy.Publisher('/cmd_vel', Twist, queue_size=5)
+        cmd_vel = rospy.Publisher('cmd_vel', Twist, queue_size=5)
         poses = PoseListener('odom_combined', None, 0.2, 1.0)       # frames; highest speeds, m/s and rad/s
         with OdomDrive(cmd_vel, 50, shutdown, poses, 5) as drive:   # 50 commands per second
             drive_out_and_back(cmd_vel, drive)

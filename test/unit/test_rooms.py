@@ -42,6 +42,8 @@ ALLOWED = {
     'ros.base.parameters': {'config', 'create', 'create.emulator', 'parameters', 'robot', 'ros.base', 'ros.node',
                             'schedule', 'simulation'},
     'ros.base.simulated_clock': {'config', 'ros.base', 'ros.lockstep', 'ros.network', 'ros.node', 'schedule', 'units'},
+    'ros.base.simulated_robot': {'robot', 'ros', 'ros.base', 'ros.network', 'ros.node', 'schedule', 'simulation',
+                                 'simulation.base'},
     'ros.base.robot_faults': {'config', 'create.emulator', 'parameters', 'ros.base.parameters', 'ros.node'},
     'ros.filter': {'arrays', 'config', 'estimation', 'parameters', 'robot', 'ros', 'ros.network', 'ros.node',
                    'schedule', 'simulation', 'units'},

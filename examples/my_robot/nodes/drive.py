@@ -6,7 +6,7 @@ from geometry_msgs.msg import Twist
 
 def main():
     rospy.init_node('drive')
-    publisher = rospy.Publisher('/cmd_vel', Twist, queue_size=10)
+    publisher = rospy.Publisher('cmd_vel', Twist, queue_size=10)
     # commands that are sent before the base is connected are lost
     while not publisher.get_num_connections():
         rospy.sleep(0.1)

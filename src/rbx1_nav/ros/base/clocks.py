@@ -45,6 +45,9 @@ class Inbox(Protocol):
     def add(self, subscriber: Any) -> None:
         """Wait for the publishers that a subscriber to commands is connected to."""
 
+    def remove(self, subscriber: Any) -> None:
+        """Undo add()."""
+
     def receive(self, target: Any, header: dict[str, str], command: Any) -> None:
         """Accept a command that just arrived; target: its apply() is called later; header: of the connection."""
 

@@ -41,25 +41,36 @@ class Base(Protocol):
 class VelocityCommands:
     """Subscribes to cmd_vel, logs what the gate does with a command, and informs the sender of a refused command."""
 
-    def __init__(self, base: Base, gate: CommandGate, clock: Clock, lock: Lock) -> None:
-        """gate, lock: the CommandGate and the lock of the base."""
+    def __init__(self, base: Base, gate: CommandGate, clock: Clock, lock: Lock, namespace: str = '',
+                 refusals: Refusals | None = None) -> None:
+        """gate, lock: the CommandGate and the lock of the base; namespace: of the topic, with a slash at the end, ''
+        for that of this node; refusals: of this node, if it has several bases."""
         self.base = base
         self.gate = gate
         self.clock = clock
         self.lock = lock
-        self.topic = rospy.resolve_name('cmd_vel')
+        self.namespace = namespace
+        self.topic = rospy.resolve_name(f'{namespace}cmd_vel')
         self.senders = Senders()
         # the connection header of the last command that is not zero, and its time, ns
         self.moving: tuple[object, int] | None = None
         self.subscriber: rospy.Subscriber | None = None
-        self.refusals = Refusals()
+        self.refusals = refusals or Refusals()
 
     def subscribe(self) -> None:
         """Accept commands from now on."""
         if not self.subscriber:
-            self.subscriber = rospy.Subscriber('cmd_vel', Twist, self.on_twist, queue_size=None, tcp_nodelay=True)
+            self.subscriber = rospy.Subscriber(f'{self.namespace}cmd_vel', Twist, self.on_twist, queue_size=None,
+                                               tcp_nodelay=True)
             if self.clock.inbox:
                 self.clock.inbox.add(self.subscriber)
+
+    def close(self) -> None:
+        """Accept no more commands."""
+        if self.subscriber:
+            if self.clock.inbox:
+                self.clock.inbox.remove(self.subscriber)
+            self.subscriber.unregister()
 
     # Any: rospy has no types
     def connections(self) -> list[Any]:
@@ -129,10 +140,12 @@ class VelocityCommands:
         status.add('Contradictory commands', self.senders.contradictions)
 
 
-def subscribe_joints(joints: Iterable[Joint], lock: Lock) -> None:
-    """Subscribe to the goals of joints: <joint>/command, in rad. lock: held while a goal is set."""
-    for joint in joints:
-        rospy.Subscriber(f'{joint.name}/command', Float64, _on_goal, (joint, lock), queue_size=10)
+# Any: rospy has no types
+def subscribe_joints(joints: Iterable[Joint], lock: Lock, namespace: str = '') -> list[Any]:
+    """Subscribe to the goals of joints: <joint>/command, in rad. lock: held while a goal is set; namespace: see
+    VelocityCommands."""
+    return [rospy.Subscriber(f'{namespace}{joint.name}/command', Float64, _on_goal, (joint, lock), queue_size=10)
+            for joint in joints]
 
 
 def _on_goal(message: Float64, joint_and_lock: tuple[Joint, Lock]) -> None:

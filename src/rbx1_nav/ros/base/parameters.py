@@ -1,14 +1,14 @@
 """The parameters of the simulated robots."""
 from __future__ import annotations
 
-from rbx1_nav.config import ConfigError, YamlValue, show
+from rbx1_nav.config import ConfigError, Section, YamlValue, show
 from rbx1_nav.create.emulator.body import BodyErrors, Quirks
 from rbx1_nav.create.protocol import BAUD_RATES, CREATE, CREATE_2, MODELS
-from rbx1_nav.parameters import Parameter, choice, custom, elsewhere, flag, number
+from rbx1_nav.parameters import Parameter, choice, custom, elsewhere, flag, number, read
 from rbx1_nav.robot.description import DRIVER_KEYS, PARAMETERS as ROBOT
 from rbx1_nav.ros.node import resources
 from rbx1_nav.schedule import CLOCK_STEP
-from rbx1_nav.simulation.surfaces import MAX_SEED, RANDOM, known_surfaces, load_surface, read_seed
+from rbx1_nav.simulation.surfaces import MAX_SEED, RANDOM, Surface, known_surfaces, load_surface, read_seed
 
 
 def _surface_names() -> str:
@@ -26,17 +26,35 @@ def _seed(text: str) -> Parameter:
                   note='the log shows it')
 
 
-FAKE_BASE = (
-    *ROBOT,
-    SURFACE,
-    _seed('slip and gyro errors'),
+_CLOCK = (
     number('real_time_factor', None, '', 'highest speed of simulated time, relative to real time', 0.01, 1000,
            shown='real time', note='see [Simulated time](frames_and_time.md#simulated-time)'),
     number('clock_step', CLOCK_STEP, 's', 'step of simulated time', 0.001, 0.1, 'a time'),
     flag('strict', False, 'whether this node exits if a driver is not in step with simulated time',
-         note='see [Simulated time](frames_and_time.md#simulated-time)'),
+         note='see [Simulated time](frames_and_time.md#simulated-time)'))
+
+FAKE_BASE = (
+    *ROBOT,
+    SURFACE,
+    _seed('slip and gyro errors'),
+    *_CLOCK,
     *(elsewhere(name, 'ArbotiX parameter, accepted and ignored')
       for name in sorted({'diagnostic_period', *DRIVER_KEYS})))
+
+
+def read_floor(section: Section) -> tuple[Surface | None, int]:
+    """Return the surface (None: ideal) and the seed of a simulated base. Raises ConfigError."""
+    values = read([each for each in FAKE_BASE if each.name in ('surface', 'seed')], section)
+    return values['surface'], values['seed']
+
+
+FLEET = (
+    number('robots', 0, '', 'number of robots at the beginning: robot1, robot2 and so on; the parameters of a base are '
+           'below robot1/arbotix', 0, 1000, 'a number'),
+    number('spacing', 1.0, 'm', 'distance between the origins of the odometry of neighbors, in the frame map', 0, 1000,
+           'a distance'),
+    number('rate', 50.0, 'Hz', 'rate at which the bases are updated; odometry at most', 1, 1000, 'a rate'),
+    *_CLOCK)
 
 
 def _check_link(link: YamlValue) -> str:

@@ -14,6 +14,7 @@ from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.robot.readings import Reading, Uncertainty
 from rbx1_nav.ros import messages
 from rbx1_nav.ros.network.no_delay import NoDelay
+from rbx1_nav.ros.node.frames import resolve_frame
 
 
 class BasePublisher:
@@ -22,16 +23,18 @@ class BasePublisher:
 
     # Any: rospy has no types
     def __init__(self, robot: Robot, publish: Callable[[rospy.Publisher, Any], None] = rospy.Publisher.publish,
-                 greet: Callable[[str, Callable[[Any], None]], None] | None = None) -> None:
-        """publish(publisher, message): publishes a message; greet: of new subscribers of odom and tf, see NoDelay."""
+                 greet: Callable[[str, Callable[[Any], None]], None] | None = None, namespace: str = '') -> None:
+        """publish(publisher, message): publishes a message; greet: of new subscribers of odom and tf, see NoDelay;
+        namespace: of the topics, with a slash at the end, '' for that of this node."""
         self.robot = robot
         self.publish = publish
         # simulated time may produce many messages at once
-        self.odom = rospy.Publisher('odom', Odometry, NoDelay(greet), queue_size=100)
-        self.imu = rospy.Publisher('imu/data', Imu, NoDelay(), queue_size=100)
+        self.odom = rospy.Publisher(f'{namespace}odom', Odometry, NoDelay(greet), queue_size=100)
+        self.imu = rospy.Publisher(f'{namespace}imu/data', Imu, NoDelay(), queue_size=100)
         # the broadcaster of tf2_ros does only this, and needs 5 MB more
         self.tf = rospy.Publisher('/tf', TFMessage, NoDelay(greet), queue_size=100)
-        self.joint_states = rospy.Publisher('joint_states', JointState, queue_size=10)
+        self.joint_states = rospy.Publisher(f'{namespace}joint_states', JointState, queue_size=10)
+        self.publishers = self.odom, self.imu, self.tf, self.joint_states
 
     def publish_odometry(self, stamp: rospy.Time, pose: Pose, velocity: tuple[float, float], uncertainty: Uncertainty,
                          covariance: Array | None = None) -> None:
@@ -63,3 +66,9 @@ class BasePublisher:
         wheels = [(name, distance / self.robot.wheel_radius, speed / self.robot.wheel_radius) for name, distance, speed
                   in zip(self.robot.wheel_joints, travel, (linear - difference, linear + difference))]
         self.publish(self.joint_states, messages.joint_states(stamp, self.robot.joints, wheels))
+
+
+def with_frames_resolved(robot: Robot) -> Robot:
+    """Return a Robot whose frames have the tf_prefix. Raises ROSException with one line."""
+    return robot._replace(odom_frame_id=resolve_frame(robot.odom_frame_id),
+                          base_frame_id=resolve_frame(robot.base_frame_id))

@@ -6,6 +6,7 @@ from typing import Any, Callable
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticStatus
+import rosgraph
 from rosgraph_msgs.msg import Clock as ClockMessage
 from rospy.impl import simtime
 
@@ -13,6 +14,7 @@ from rbx1_nav.config import ConfigError
 from rbx1_nav.ros.base.clocks import Clock, FollowedClock, RealTimeClock
 from rbx1_nav.ros.lockstep.lockstep import Lockstep
 from rbx1_nav.ros.lockstep.watch import Watch
+from rbx1_nav.ros.network.master import call, is_alive
 from rbx1_nav.ros.network.no_delay import NoDelay
 from rbx1_nav.ros.node import life
 from rbx1_nav.ros.node.params import param
@@ -34,7 +36,21 @@ def read_clock(rate: float) -> Clock:
     if strict or rospy.has_param('~clock_step'):
         given = 'strict: true' if strict else f'clock_step: {step:g}'
         raise ConfigError(f'{given}: expected a simulated clock of this node: real_time_factor is not set')
-    return RealTimeClock(rate) if rospy.rostime.is_wallclock() else FollowedClock(rate)
+    if rospy.rostime.is_wallclock():
+        return RealTimeClock(rate)
+    rospy.logwarn('Following the time on /clock, not in step with the drivers of this base: the end pose of the robot '
+                  'depends on the speed of the machine. fleet.launch simulates several robots on one clock')
+    return FollowedClock(rate)
+
+
+def earlier_clock() -> str | None:
+    """Return the name of a live node that registered as a publisher of /clock before this node, or None.
+
+    The master keeps the order, so of two nodes that start at the same time, only the second one finds the other.
+    """
+    publishers, _, _ = call(rosgraph.get_master_uri(), 'getSystemState')
+    names = dict(publishers).get('/clock', [])
+    return next((name for name in names[:names.index(rospy.get_name())] if is_alive(name)), None)
 
 
 class OwnClock(FollowedClock):
@@ -42,7 +58,7 @@ class OwnClock(FollowedClock):
 
     def __init__(self, factor: float, rate: float, period: int, strict: bool) -> None:
         """factor, rate: see read_clock(); period: clock period, ns; strict: whether a driver that is not in step is an
-        error."""
+        error. Raises ConfigError if there is another clock."""
         super().__init__(rate)
         self.factor = factor
         self.period = period
@@ -50,6 +66,10 @@ class OwnClock(FollowedClock):
         # rospy subscribes each node to /clock. This node sets the time, and receiving it would take a sixth of a tick.
         simtime._clock_sub.unregister()
         self.publisher = rospy.Publisher('/clock', ClockMessage, NoDelay(self.greet), queue_size=10)
+        other = earlier_clock()
+        if other:
+            raise ConfigError(f'real_time_factor: {factor:g}: expected no other clock, but {other} publishes /clock: '
+                              'fleet.launch simulates several robots on one clock')
         self.inbox: Lockstep = Lockstep(Watch(self.publisher), self.report, life.end_requested.is_set)
         self.not_in_step: dict[str, str] = {}   # reasons, by the name of the node
 

@@ -104,7 +104,7 @@ class CalibrationDrive(PoseDrive):
     """A PoseDrive with its own publisher and shutdown function, for the calibration scripts."""
 
     def __init__(self, rate: float, poses: PoseListener) -> None:
-        super().__init__(rospy.Publisher('/cmd_vel', Twist, queue_size=5), rate, self.shutdown, poses)
+        super().__init__(rospy.Publisher('cmd_vel', Twist, queue_size=5), rate, self.shutdown, poses)
 
     def shutdown(self) -> None:
         """Stop the robot, and give it time to stop."""

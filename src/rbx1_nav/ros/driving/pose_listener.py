@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from math import atan2
 import time
-from typing import Callable, Sequence
+from typing import Callable
 
 import rospy
 from geometry_msgs.msg import TransformStamped
@@ -13,6 +13,7 @@ import yaml
 
 from rbx1_nav.control.legs import is_reachable
 from rbx1_nav.robot.kinematics import Pose
+from rbx1_nav.ros.node.frames import resolve_frame
 from rbx1_nav.ros.node.life import end_requested, sleep
 from rbx1_nav.units import wrap_angle
 
@@ -34,10 +35,11 @@ class PoseListener:
     """Looks up the pose of the robot's base in a frame."""
 
     def __init__(self, odom_frame: str, base_frame: str | None, linear_speed: float, angular_speed: float) -> None:
-        """base_frame: a name, or None for the first of BASE_FRAMES that exists; speeds of the robot: m/s, rad/s."""
+        """odom_frame, base_frame: names, to which the tf_prefix of the robot is added; base_frame may be None, for the
+        first of BASE_FRAMES that exists; speeds of the robot: m/s, rad/s. Raises ROSException."""
         self.speeds = linear_speed, angular_speed
-        self.odom_frame = odom_frame
-        self.base_frames: Sequence[str] = [base_frame] if base_frame else BASE_FRAMES
+        self.odom_frame = resolve_frame(odom_frame)
+        self.base_frames = [resolve_frame(each) for each in ([base_frame] if base_frame else BASE_FRAMES)]
         self.buffer = tf2_ros.Buffer()
         self.listener = tf2_ros.TransformListener(self.buffer)
         self.reset = False  # whether the base was reset
@@ -133,6 +135,6 @@ class PoseListener:
         if not frames or self.odom_frame in frames and frames.intersection(self.base_frames):
             return ''
         existing = f"; frames that exist: {', '.join(sorted(frames))}"
-        if self.odom_frame == COMBINED_FRAME and self.odom_frame not in frames:
+        if self.odom_frame == resolve_frame(COMBINED_FRAME) and self.odom_frame not in frames:
             existing += f'. To start the filter that publishes {COMBINED_FRAME}: roslaunch rbx1_bringup odom_ekf.launch'
         return existing

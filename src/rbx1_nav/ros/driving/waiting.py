@@ -10,6 +10,7 @@ import rospy
 
 from rbx1_nav.ros.driving.watching import Listeners, Peer
 from rbx1_nav.ros.network import refusals
+from rbx1_nav.ros.network.bases import namespaces_of_bases
 from rbx1_nav.ros.network.master import Server, call
 from rbx1_nav.ros.node.life import end_requested, sleep
 
@@ -25,6 +26,7 @@ class _SubscriberMonitor(threading.Thread):
         self.dead: set[str | None] = set()      # addresses
         self.publishers: dict[str, list[str]] = {}      # names of the nodes that publish a topic
         self.odometry: list[str] = []   # topics
+        self.others: list[str] = []     # namespaces of other bases
         self.rounds = 0         # number of complete updates of these values
         self.done = threading.Event()
 
@@ -36,6 +38,9 @@ class _SubscriberMonitor(threading.Thread):
                 self.publishers = dict(publishers)
                 self.odometry = [topic for topic, kind in call(master, 'getTopicTypes') if kind == 'nav_msgs/Odometry']
                 names = {name for topic, nodes in subscribers if topic == self.topic for name in nodes}
+                namespace, commands = self.topic.rpartition('/')[::2]
+                self.others = sorted(namespaces_of_bases(self.publishers, dict(subscribers), self.odometry,
+                                                         commands).keys() - {namespace or '/'})
                 live = {name: self.find(master, name) for name in names}
                 self.live = {name: found for name, found in live.items() if found}
                 self.rounds += 1
@@ -57,6 +62,12 @@ class _SubscriberMonitor(threading.Thread):
             rospy.logwarn('%s is registered as a subscriber of %s but does not answer: ignored '
                           '(`rosnode cleanup` removes it)', name, self.topic)
         return None
+
+    def missing_base(self) -> str:
+        """Return what is missing if nothing subscribes to the topic."""
+        others = (f". Bases exist in other namespaces: {', '.join(self.others)}. To drive one, set "
+                  f'ROS_NAMESPACE={self.others[0]}' if self.others else '')
+        return f'a base that subscribes to {self.topic}{others}'
 
     def peer(self, name: str) -> Peer:
         """Return the Peer of this name."""
@@ -99,7 +110,7 @@ def wait_for_subscribers(publisher: rospy.Publisher, timeout: float) -> Listener
             what = (f'the master to list the subscribers of {topic}'
                     if monitor.live is None or connected and monitor.rounds < known
                     else f'{missing} to connect to {topic}' if missing
-                    else f'a base that subscribes to {topic}' if not connected else 'the time on /clock')
+                    else monitor.missing_base() if not connected else 'the time on /clock')
             if time.monotonic() > deadline:
                 raise rospy.ROSException(f'Timed out after {timeout:g} s waiting for {what}')
             if time.monotonic() > log_time:

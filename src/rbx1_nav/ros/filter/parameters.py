@@ -1,9 +1,10 @@
 """The parameters of the filter node, and the floor that it assumes initially."""
 from __future__ import annotations
 
+from functools import partial
 from math import degrees, radians
 import time
-from typing import Any, Callable, NamedTuple
+from typing import Callable, NamedTuple
 import xmlrpc.client
 
 from nav_msgs.msg import Odometry
@@ -17,8 +18,10 @@ from rbx1_nav.estimation.inputs import check
 from rbx1_nav.estimation.limits import Limits
 from rbx1_nav.estimation.priors import UNKNOWN_FLOOR, Priors, priors
 from rbx1_nav.parameters import custom, flag, frame, number, read
+from rbx1_nav.ros.network.bases import private_namespace
 from rbx1_nav.ros.network.master import call
 from rbx1_nav.ros.node import resources
+from rbx1_nav.ros.node.frames import check_prefix, search_value, with_prefix
 from rbx1_nav.ros.node.params import stored_params
 from rbx1_nav.simulation.surfaces import load_surface
 from rbx1_nav.units import SECOND
@@ -45,10 +48,6 @@ def _check_surface(name: YamlValue) -> str:
     return str(name)
 
 
-def _check_prefix(prefix: YamlValue) -> str:
-    return Section({'tf_prefix': prefix}).frame('tf_prefix', '') if prefix else ''
-
-
 PARAMETERS = (
     number('freq', 30.0, 'Hz', 'publish rate of ~odom_combined and its transform', 0.1, 1000, 'a rate',
            note='`odom_ekf.launch` sets 10'),
@@ -61,7 +60,7 @@ PARAMETERS = (
     frame('output_frame', 'odom_combined', 'frame of the estimated pose'),
     frame('base_footprint_frame', None, 'frame of the robot',
           shown='child_frame_id of odom, or base_footprint if that is empty'),
-    custom('tf_prefix', '', 'prefix of both frame names, unless they begin with a slash', _check_prefix, shown='none',
+    custom('tf_prefix', '', 'prefix of both frame names, unless they begin with a slash', check_prefix, shown='none',
            note='may also be set in a namespace around the node, as in tf'),
     custom('surface', AUTO,
            f'initially assumed floor: a name or path, {ANY}, or {AUTO}, the surface of a simulated base',
@@ -151,23 +150,9 @@ def frames_of(message: Odometry, parameters: FilterParameters) -> tuple[str, str
     return frames
 
 
-# Any: the type depends on the parameter
-def search_value(key: str, node: str, get: Callable[[str, None], Any]) -> Any:
-    """Return the value of a parameter of a node or of the nearest namespace around it; None if there is none.
-
-    Unlike rospy.search_param(), it skips a namespace that has the name of the parameter. get: rospy.get_param.
-    """
-    while node:
-        value = get(rosgraph.names.ns_join(node, key), None)
-        if value is not None and not isinstance(value, dict):
-            return value
-        node = '' if node == '/' else rosgraph.names.namespace(node).rstrip('/') or '/'
-    return None
-
-
 def _resolve(prefix: str, frame: str, given: YamlValue) -> str:
     """Return a frame with the prefix. given: the value of the parameter; a leading slash means no prefix."""
-    return f'{prefix}/{frame}' if prefix and not str(given).startswith('/') else frame
+    return frame if str(given).startswith('/') else with_prefix(prefix, frame)
 
 
 Log = Callable[[Callable[..., None], str], None]     # a function of rospy, such as loginfo, and a text
@@ -181,9 +166,10 @@ def find_prior(name: str, base: str, log: Log) -> Priors:
     """
     try:
         if name == AUTO:
-            key, master = f'{base}/surface', rosgraph.get_master_uri()
             # not with rospy, which waits for a frozen master indefinitely
-            name = call(master, 'getParam', key) if call(master, 'hasParam', key) else ANY
+            ask = partial(call, rosgraph.get_master_uri())
+            key = f"{private_namespace(base, rospy.resolve_name('odom'), ask)}/surface"
+            name = ask('getParam', key) if ask('hasParam', key) else ANY
         prior = UNKNOWN_FLOOR if name == ANY else priors(load_surface(name, resources.surfaces()))
     except (ConfigError, OSError, xmlrpc.client.Error) as error:     # or no answer from the master
         log(rospy.logwarn, f'{base}/{error}; using {ANY} instead')

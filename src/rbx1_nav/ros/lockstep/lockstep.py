@@ -91,6 +91,7 @@ class Lockstep:
     def __init__(self, processes: Watch, report: Callable[[str, str], None], ended: Callable[[], bool]) -> None:
         """report(name, reason): reports a node that is not in step; ended(): whether to stop waiting."""
         self.processes = processes
+        self.add, self.remove = processes.add, processes.remove     # a subscriber to commands
         self.report = report
         self.ended = ended
         # by the id of the header, which stays unique because the Driver keeps the header alive
@@ -106,10 +107,6 @@ class Lockstep:
         self.suspects: dict[str, set[Any]] = {}
         self.tick = 0
         self.random = Random(0)
-
-    def add(self, subscriber: rospy.Subscriber) -> None:
-        """Keep the clock in step with the publishers that a Subscriber is connected to."""
-        self.processes.add(subscriber)
 
     def receive(self, target: Target, header: dict[str, str], command: Any) -> None:
         """Accept a command that just arrived, in any thread. header: see Received."""

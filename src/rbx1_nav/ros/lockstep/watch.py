@@ -57,6 +57,10 @@ class Watch:
         """Watch the publishers that a subscriber to commands is connected to."""
         self.commands.append(subscriber.impl)
 
+    def remove(self, subscriber: rospy.Subscriber) -> None:
+        """Undo add()."""
+        self.commands.remove(subscriber.impl)
+
     def update(self) -> bool:
         """Update the set of watched processes; return whether it may have changed. Call this often."""
         now = [self.clock.connections] + [each.connections for each in self.commands]

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 from http.client import HTTPConnection
+import socket
 import threading
 import time
 from typing import Any, Callable
@@ -52,6 +53,18 @@ def call(uri: str, method: str, *args: str, timeout: float = TIMEOUT) -> Any:
     """Return the result of one call, like Server.call()."""
     with Server(uri, timeout) as server:
         return server.call(method, *args)
+
+
+def is_alive(name: str) -> bool:
+    """Return whether a registered node answers, or does not refuse the connection. Raises OSError, HTTPException or
+    xmlrpc.client.Error if the master does not answer."""
+    address = call(rosgraph.get_master_uri(), 'lookupNode', name)
+    try:
+        return bool(call(address, 'getPid'))
+    except socket.timeout:      # it is suspended, or its host drops packets
+        return True
+    except (OSError, xmlrpc.client.Error):
+        return False
 
 
 def require_master() -> None:

@@ -43,6 +43,9 @@ PARAMETERS = (
            note='0.0.0.0: all addresses of this machine; see [Security](web_view.md#security)'),
     custom('port', 8080, 'TCP port at which the page is served; 0: any free port', check_port,
            range='0, 1024 to 65535'),
+    number('robots', 0, '', 'number of robots of a fleet: robot1, robot2 and so on; 0: the robot in the namespace of '
+           'this node', 0, 20, 'a number'),
+    number('spacing', 1.0, 'm', 'distance between the starts of neighbors in a fleet', 0, 1000, 'a distance'),
     custom('title', 'Out and back', 'title of the page', check_title),
     flag('stop_needs_token', False, 'whether Stop needs the token, for a machine that is shared with strangers'),
     number('linear_speed', 0.2, 'm/s', 'speed while an arrow key drives forward or backward', 0.01, 1),

@@ -20,13 +20,14 @@ class Runs:
     """At most one run at a time."""
 
     def __init__(self, folder: str, on_change: Callable[[str, str], None], after: Callable[[], None],
-                 remappings: Mapping[str, str] = MappingProxyType({})) -> None:
+                 remappings: Mapping[str, str] = MappingProxyType({}), namespace: str = '') -> None:
         """folder: directory of the scripts; on_change(name, outcome): called with the outcome '' when a run begins, and
         with its outcome when it has finished; after(): called before the second of these calls; remappings: of names,
-        for the scripts."""
+        for the scripts; namespace: of the robot, '' for that of this node."""
         self.folder = folder
         self.on_change = on_change
         self.after = after
+        self.environment = {**os.environ, 'ROS_NAMESPACE': namespace} if namespace else None
         self.remappings = [f'{name}:={new}' for name, new in remappings.items()]
         self.lock = Lock()
         self.busy = False
@@ -70,7 +71,7 @@ class Runs:
             # pdeathsig: if this process is killed, its Stop button no longer works, so the script must stop the robot
             self.process = process = subprocess.Popen(
                 ['setpriv', '--pdeathsig', 'INT', *command], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
-                start_new_session=True)
+                start_new_session=True, env=self.environment)
         status = process.wait()
         with self.lock:
             self.process = None

@@ -5,7 +5,7 @@ import asyncio
 import logging
 import os
 from threading import Event, Thread
-from typing import Any
+from typing import Any, Mapping
 
 from tornado.httpserver import HTTPServer
 from tornado.ioloop import PeriodicCallback
@@ -150,13 +150,15 @@ class BoundedServer(HTTPServer):
 class Server:
     """Serves the page."""
 
-    def __init__(self, folder: str, hosts: HostCheck, connections: Connections, address: str, port: int) -> None:
-        """folder: directory of the page's files; port: 0 for any free port. Raises OSError."""
-        self.connections = connections
+    def __init__(self, folder: str, hosts: HostCheck, connections: Mapping[str, Connections], address: str,
+                 port: int) -> None:
+        """folder: directory of the page's files; connections: by the path of the socket; port: 0 for any free port.
+        Raises OSError."""
+        self.connections = set(connections.values())
         self.sockets = bind_sockets(port, address)
         self.port = int(self.sockets[0].getsockname()[1])
         self.application = Application(
-            [('/socket', SocketHandler, dict(hosts=hosts, connections=connections)),
+            [*((path, SocketHandler, dict(hosts=hosts, connections=each)) for path, each in connections.items()),
              ('.*', FileHandler, dict(hosts=hosts, files=read_files(folder)))],
             websocket_ping_interval=PING_PERIOD, websocket_max_message_size=MAX_MESSAGE,
             log_function=lambda handler: None)
@@ -177,15 +179,19 @@ class Server:
         server = BoundedServer(self.application, max_header_size=MAX_HEADER, max_body_size=MAX_HEADER,
                                idle_connection_timeout=IDLE_TIMEOUT, body_timeout=IDLE_TIMEOUT)
         server.add_sockets(self.sockets)
-        frames = PeriodicCallback(self.connections.send_frames, FRAME_PERIOD)
+        frames = PeriodicCallback(self._send_frames, FRAME_PERIOD)
         frames.start()
         self.ready.set()
         await self.end.wait()
         frames.stop()
         server.stop()
-        for socket in list(self.connections.browsers):
+        for socket in [socket for each in self.connections for socket in each.browsers]:
             socket.close(1001, 'the web view has shut down')
         await asyncio.sleep(0.05)   # until the close frames have been sent
+
+    def _send_frames(self) -> None:
+        for each in self.connections:
+            each.send_frames()
 
     def stop(self) -> None:
         """Close the connections and stop the thread; wait for at most 0.5 s."""

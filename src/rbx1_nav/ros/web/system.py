@@ -9,6 +9,7 @@ import rosgraph
 import rospy
 from std_srvs.srv import Empty
 
+from rbx1_nav.ros.network.bases import private_namespace
 from rbx1_nav.ros.network.master import Server, call
 from rbx1_nav.ros.node import life
 from rbx1_nav.ros.web.state import State
@@ -21,13 +22,14 @@ RESET_TIMEOUT = 5.0  # s
 class System:
     """Queries the master once per PERIOD, and updates the status of the page."""
 
-    def __init__(self, state: State, connected: Callable[[], set[str]]) -> None:
-        """connected(): returns the names of the nodes that receive the commands of this node."""
+    def __init__(self, state: State, connected: Callable[[], set[str]], namespace: str = '') -> None:
+        """connected(): returns the names of the nodes that receive the commands of this node; namespace: see Topics."""
         self.state = state
+        self.namespace = namespace
         self.connected = connected
         self.lock = Lock()
         self.drawn: tuple[str, str] | None = None   # surface and seed, from /diagnostics
-        self.topics = Topics(state, self.on_seed)
+        self.topics = Topics(state, self.on_seed, namespace)
         self.reset_service = ''     # '' if there is none
         self.searching = False      # whether the master is being asked for driving nodes
         self.shutting_down: set[str] = set()    # nodes that have not answered yet
@@ -68,7 +70,9 @@ class System:
         self.state.set_status(master='' if known else 'restarted')
         services = {name for name, _ in offered}
         base = self.topics.base if self.state.hears('odometry') else None
-        name = f'{base}/reset'
+        odom = rospy.resolve_name(f'{self.namespace}odom')
+        private = private_namespace(base, odom, master.call) if base else ''
+        name = f'{private}/reset'
         self.reset_service = name if base and name in services else ''
         self.state.set_status(base=base or '', simulated=self.simulated,
                               can_reset=bool(self.simulated and self.reset_service))
@@ -76,8 +80,9 @@ class System:
         if base:
             values['simulated_time'] = bool(_param(master, '/use_sim_time', False))
         if self.simulated and self.topics.truth:
-            values['surface'] = str(_param(master, f'{self.topics.truth}/surface', 'ideal')).rpartition('/')[2]
-            values['seed'] = str(_param(master, f'{self.topics.truth}/seed', 'random'))
+            private = private_namespace(self.topics.truth, odom, master.call)
+            values['surface'] = str(_param(master, f'{private}/surface', 'ideal')).rpartition('/')[2]
+            values['seed'] = str(_param(master, f'{private}/seed', 'random'))
             if self.drawn and self.topics.truth == base:    # the base itself has reported them
                 del values['surface'], values['seed']
         else:
@@ -91,10 +96,9 @@ class System:
         rospy.wait_for_service(self.reset_service, RESET_TIMEOUT)
         rospy.ServiceProxy(self.reset_service, Empty)()
 
-    @staticmethod
-    def forget_frame() -> None:
+    def forget_frame(self) -> None:
         """Delete the parameter of a run that the page has started, so that it does not affect later runs."""
-        call(rosgraph.get_master_uri(), 'deleteParam', rospy.resolve_name('out_and_back/odom_frame'))
+        call(rosgraph.get_master_uri(), 'deleteParam', rospy.resolve_name(f'{self.namespace}out_and_back/odom_frame'))
 
     @property
     def pending(self) -> bool:
@@ -120,7 +124,7 @@ class System:
                                       f'{error}')
             with self.lock:
                 self.silent.add('the master')
-        topic, base = rospy.resolve_name(COMMANDS), self.topics.base or ''
+        topic, base = rospy.resolve_name(f'{self.namespace}{COMMANDS}'), self.topics.base or ''
         names = set(dict(publishers).get(topic, ())) - {rospy.get_name()}
         listening = base in dict(subscribers).get(topic, ())
         with self.lock:

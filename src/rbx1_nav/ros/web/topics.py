@@ -17,7 +17,7 @@ from rbx1_nav.ros.web.state import BY_HAND, Motion, State
 
 TOPICS = {'truth': 'ground_truth', 'odometry': 'odom', 'estimate': 'odom_ekf'}
 PERIOD = 0.02       # s: only the latest of the messages that arrive in this time is read
-COMMANDS = '/cmd_vel'    # rospy.resolve_name() applies a remapping
+COMMANDS = 'cmd_vel'     # rospy.resolve_name() applies the namespace and a remapping
 COMMAND_PERIOD = 0.01   # s; short, because a driving script detects a subscriber that does not read
 LOG_PERIOD = 0.02   # s
 BUFFER = 2 ** 20    # bytes: more than arrives in PERIOD at 50 times real time
@@ -26,17 +26,19 @@ BUFFER = 2 ** 20    # bytes: more than arrives in PERIOD at 50 times real time
 class Topics:
     """The subscriptions."""
 
-    def __init__(self, state: State, on_seed: Callable[[str, str], None]) -> None:
-        """on_seed(surface, seed): called with the values that a simulated base publishes in /diagnostics."""
+    def __init__(self, state: State, on_seed: Callable[[str, str], None], namespace: str = '') -> None:
+        """on_seed(surface, seed): called with the values that a simulated base publishes in /diagnostics; namespace: of
+        the robot, with a slash at the end, '' for that of this node."""
         self.state = state
+        self.namespace = namespace or rospy.get_namespace()
         self.on_seed = on_seed
         self.base: str | None = None    # the node that publishes the odometry
         self.connections: deque[object] = deque(maxlen=10)  # the latest ones to publishers of odometry
         self.truth: str | None = None   # the node that publishes the ground truth
         self.subscribers = [
-            *(subscribe(topic, Odometry, self.on_odometry, source) for source, topic in TOPICS.items()),
-            subscribe(COMMANDS, Twist, self.on_command),
-            subscribe('reset_odometry', Empty, self.on_reset),
+            *(subscribe(f'{namespace}{topic}', Odometry, self.on_odometry, source) for source, topic in TOPICS.items()),
+            subscribe(f'{namespace}{COMMANDS}', Twist, self.on_command),
+            subscribe(f'{namespace}reset_odometry', Empty, self.on_reset),
             subscribe('/diagnostics', DiagnosticArray, self.on_diagnostics, queue_size=5),
             # the log of all nodes, over one connection to rosout instead of one to each node
             subscribe('/rosout_agg', Log, self.on_log, queue_size=50)]
@@ -72,6 +74,8 @@ class Topics:
     def on_diagnostics(self, array: DiagnosticArray) -> None:
         """Process the diagnostics of a base, which arrive once per second."""
         for status in array.status:
+            if f"/{status.name.rpartition('/')[0]}".rstrip('/') != self.namespace.rstrip('/'):
+                continue        # it belongs to another robot
             values = {each.key: each.value for each in status.values}
             if 'Surface' in values and 'Seed' in values:
                 self.on_seed(values['Surface'], values['Seed'])
@@ -95,8 +99,9 @@ class CommandPublisher:
     """Publishes /cmd_vel. It stays registered, because a subscriber of rospy that connects while a publisher
     unregisters may keep a dead connection to it."""
 
-    def __init__(self) -> None:
-        self.publisher = rospy.Publisher(COMMANDS, Twist, queue_size=5, tcp_nodelay=True)
+    def __init__(self, namespace: str = '') -> None:
+        """namespace: see Topics."""
+        self.publisher = rospy.Publisher(f'{namespace}{COMMANDS}', Twist, queue_size=5, tcp_nodelay=True)
 
     def publish(self, linear: float, angular: float) -> None:
         """Send a command, m/s and rad/s."""

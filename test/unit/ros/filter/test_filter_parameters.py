@@ -5,7 +5,8 @@ import pytest
 
 from rbx1_nav.config import ConfigError
 from rbx1_nav.estimation.limits import Limits
-from rbx1_nav.ros.filter.parameters import read_parameters, search_value
+from rbx1_nav.ros.filter.parameters import read_parameters
+from rbx1_nav.ros.node.frames import search_value
 
 
 def test_the_defaults_of_the_limits():

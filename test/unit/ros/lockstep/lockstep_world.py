@@ -27,6 +27,7 @@ class Processes:
 
     def __init__(self):
         self.drivers = {'a', 'b'}
+        self.add = self.remove = None
         self.work = []          # functions, one called at each look; while there are any, a node is awake
         self.never_sleeps = None
         self.looks = 0

@@ -39,7 +39,7 @@ class Connections:
 
 @pytest.fixture(name='server')
 def start():
-    server = Server(FOLDER, HostCheck('localhost'), Connections(), 'localhost', 0)
+    server = Server(FOLDER, HostCheck('localhost'), {'/socket': Connections()}, 'localhost', 0)
     server.start()
     yield server
     server.stop()
@@ -81,7 +81,7 @@ def test_each_file_is_served_with_its_type_and_the_headers(server):
 def test_the_page_needs_nothing_of_other_hosts():
     for path, (_, content) in read_files(FOLDER).items():
         text = content.decode().replace('http://www.w3.org/', '')      # names, not addresses
-        assert '://' not in text.replace('`${protocol}://${location.host}/socket`', ''), path
+        assert '://' not in text.replace('`${protocol}://${location.host}${this.path}`', ''), path
 
 
 @pytest.mark.parametrize('path', ['/../setup.py', '/..%2fsetup.py', '//etc/passwd', '/web', '/.', '/socket/', '/A.js'])
@@ -118,9 +118,9 @@ def test_a_socket(server):
         assert await connection.read_message() == 'echo'
         connection.close()
     asyncio.run(talk())
-    assert server.connections.messages == ['text']
+    assert list(server.connections)[0].messages == ['text']
     end = time.monotonic() + LIMIT
-    while server.connections.browsers:
+    while list(server.connections)[0].browsers:
         assert time.monotonic() < end
 
 
@@ -130,11 +130,11 @@ def test_a_foreign_socket_is_refused(server, headers):
         with pytest.raises(HTTPClientError, match='403'):
             await connect(server, **headers)
     asyncio.run(talk())
-    assert not server.connections.browsers
+    assert not list(server.connections)[0].browsers
 
 
 def test_no_socket_when_there_are_too_many(server):
-    server.connections.full = True
+    list(server.connections)[0].full = True
 
     async def talk():
         with pytest.raises(HTTPClientError, match='503'):
@@ -148,7 +148,7 @@ def test_a_large_message_ends_the_socket(server):
         await connection.write_message(5000 * 'x')
         assert await connection.read_message() is None
     asyncio.run(talk())
-    assert not server.connections.messages
+    assert not list(server.connections)[0].messages
 
 
 def test_a_large_request_is_refused(server):
@@ -174,7 +174,7 @@ def test_a_new_connection_replaces_the_oldest(server):
 
 def test_a_connection_that_sends_nothing_is_closed(monkeypatch):
     monkeypatch.setattr(module, 'IDLE_TIMEOUT', 0.2)
-    server = Server(FOLDER, HostCheck('localhost'), Connections(), 'localhost', 0)
+    server = Server(FOLDER, HostCheck('localhost'), {'/socket': Connections()}, 'localhost', 0)
     server.start()
     assert exchange(server, b'') == '' and exchange(server, b'GET / HT') == ''
     server.stop()
@@ -182,4 +182,4 @@ def test_a_connection_that_sends_nothing_is_closed(monkeypatch):
 
 def test_a_port_that_is_taken_is_an_error(server):
     with pytest.raises(OSError):
-        Server(FOLDER, HostCheck('localhost'), Connections(), 'localhost', server.port)
+        Server(FOLDER, HostCheck('localhost'), {'/socket': Connections()}, 'localhost', server.port)

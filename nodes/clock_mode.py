@@ -1,0 +1,31 @@
+#!/usr/bin/env python3
+"""Prints a value for /use_sim_time, or refuses it because a robot is running with the other value.
+
+usage: clock_mode.py true|false NAME      used by launch files; NAME: the name of the base that the launch file starts
+
+A node reads /use_sim_time only once, when it starts. Exits with 1 before anything is set if a live base other than NAME
+uses the other value.
+"""
+import sys
+
+from rbx1_nav.ros.network import bases
+
+
+def main():
+    """Print the value; return the exit status."""
+    if len(sys.argv) != 3 or sys.argv[1].lower() not in ('true', 'false'):
+        print(__doc__.strip(), file=sys.stderr)
+        return 2
+    value, name = sys.argv[1].lower(), sys.argv[2]
+    running = bases.on_other_clock(value == 'true', name)
+    if running:
+        now, then = ('simulated', 'real') if value == 'false' else ('real', 'simulated')
+        print(f"/use_sim_time: {value}: expected that no robot is running in {now} time, but {', '.join(running)} is: "
+              f'stop it first, or start this robot in {now} time as well', file=sys.stderr)
+        return 1
+    print(value)
+    return 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())

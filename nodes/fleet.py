@@ -1,0 +1,118 @@
+#!/usr/bin/env python3
+"""Simulates several bases in one process, in real time or on one simulated clock; each robot has its own namespace.
+
+usage: fleet.py [_parameter:=value ...]      usually started by fleet.launch
+
+Robots can be added and removed while others drive: rosservice call /fleet/add robot6
+"""
+import rbx1_nav.ros.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
+
+from concurrent.futures import Future
+import queue
+import re
+
+from diagnostic_msgs.srv import AddDiagnostics, AddDiagnosticsResponse
+import rospy
+from tf2_msgs.msg import TFMessage
+
+from rbx1_nav.config import ConfigError, Section
+from rbx1_nav.robot.description import read_robot
+from rbx1_nav.robot.kinematics import Pose
+from rbx1_nav.ros import messages
+from rbx1_nav.ros.base.parameters import FLEET as PARAMETERS, read_floor
+from rbx1_nav.ros.base.simulated_clock import read_clock
+from rbx1_nav.ros.base.simulated_robot import SimulatedRobot
+from rbx1_nav.ros.network.refusals import Refusals
+from rbx1_nav.ros.node import life
+from rbx1_nav.ros.node.frames import with_prefix
+from rbx1_nav.ros.node.params import param
+from rbx1_nav.schedule import Schedule
+
+
+class Fleet:
+    """All robots. They are added and removed by the thread that runs the clock, between two ticks."""
+
+    def __init__(self, clock):
+        """clock: see ros/base/clocks.py."""
+        self.clock = clock
+        self.refusals = Refusals()
+        self.robots = {}        # (SimulatedRobot, Schedule) by name
+        self.requests = queue.Queue()       # (function, name, Future for its result)
+        self.places = []        # transforms from map to the odometry of each robot, also of those that were removed
+        self.place_pub = rospy.Publisher('/tf_static', TFMessage, latch=True, queue_size=1)
+
+    def serve(self):
+        """Offer the services. The request is AddDiagnostics, which has one text: the name of the robot."""
+        for name in 'add', 'remove':
+            rospy.Service(f'~{name}', AddDiagnostics, lambda request, name=name: AddDiagnosticsResponse(
+                *self.request(getattr(self, name), request.load_namespace.strip('/'))))
+
+    def request(self, function, name):
+        """Let the thread of the clock call a function; return whether this was possible, and a text."""
+        done = Future()
+        self.requests.put((function, name, done))
+        while not (done.done() or life.end_requested.is_set()):
+            life.sleep(0.001)
+        return done.result() if done.done() else (False, 'the node is shutting down')
+
+    def add(self, name):
+        """Add a robot with the parameters below NAME/arbotix; return whether this was possible, and a text."""
+        key = f'/{name}/arbotix'
+        try:
+            if name in self.robots or not re.fullmatch(r'[A-Za-z]\w{0,49}', name, re.ASCII):
+                raise ConfigError('expected the name of a robot that does not exist yet: letters, digits and _')
+            params = rospy.get_param(key, {})
+            robot, floor = read_robot(params), read_floor(Section(params))
+        except ConfigError as error:
+            text = f'{key}: {error}'
+            rospy.logerr('%s', text)
+            return False, text
+        robot = robot._replace(odom_frame_id=with_prefix(name, robot.odom_frame_id),
+                               base_frame_id=with_prefix(name, robot.base_frame_id))
+        self.robots[name] = SimulatedRobot(robot, *floor, self.clock, self.refusals, name), Schedule(robot.rate)
+        self.place(robot.odom_frame_id)
+        return True, f'{name}: added'
+
+    def place(self, frame):
+        """Publish where in the frame map the odometry of a new robot begins: to the right of the one before."""
+        pose = Pose(0.0, -param('spacing') * len(self.places), 0.0)
+        self.places.append(messages.transform(rospy.Time(), 'map', frame, pose))
+        self.place_pub.publish(TFMessage(self.places))
+
+    def remove(self, name):
+        """Remove a robot; return whether there was one of this name, and a text."""
+        if name not in self.robots:
+            return False, f"{name}: expected one of {', '.join(self.robots) or 'no robots'}"
+        robot, _ = self.robots.pop(name)
+        robot.close()
+        rospy.loginfo('%s: removed', name)
+        return True, f'{name}: removed'
+
+    def step(self):
+        """Do what was requested, and publish the state of each robot."""
+        while not self.requests.empty():
+            function, name, done = self.requests.get()
+            done.set_result(function(name))
+        for robot, schedule in self.robots.values():
+            if schedule.due(self.clock.now()):
+                robot.step()
+
+
+def main():
+    """Run the fleet; return the exit status."""
+    life.init_node('fleet', __doc__, PARAMETERS)
+    try:
+        fleet = Fleet(read_clock(param('rate')))
+    except ConfigError as error:
+        rospy.logfatal('%s/%s', rospy.get_name(), error)
+        return 1
+    if not all(fleet.add(f'robot{number}')[0] for number in range(1, round(param('robots')) + 1)):
+        return 1
+    fleet.serve()
+    rospy.loginfo('Ready: %d robots', len(fleet.robots))
+    fleet.clock.run(fleet.step)
+    return 0
+
+
+if __name__ == '__main__':
+    life.run(main)
