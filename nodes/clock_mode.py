@@ -6,6 +6,7 @@ usage: clock_mode.py true|false NAME      used by launch files; NAME: the name o
 A node reads /use_sim_time only once, when it starts. Exits with 1 before anything is set if a live base other than NAME
 uses the other value.
 """
+import re
 import sys
 
 from rbx1_nav.ros.network import bases
@@ -13,14 +14,19 @@ from rbx1_nav.ros.network import bases
 
 def main():
     """Print the value; return the exit status."""
-    if len(sys.argv) != 3 or sys.argv[1].lower() not in ('true', 'false'):
+    if len(sys.argv) < 3 or sys.argv[1].lower() not in ('true', 'false'):
         print(__doc__.strip(), file=sys.stderr)
         return 2
-    value, name = sys.argv[1].lower(), sys.argv[2]
+    value, name = sys.argv[1].lower(), ' '.join(sys.argv[2:])
+    if not re.fullmatch(r'(/[A-Za-z]\w*)+', name, re.ASCII):
+        robot = name.rpartition('/')[0].lstrip('/')
+        print(f'robot: {robot!r}: expected a name of letters, digits and underscores that begins with a letter',
+              file=sys.stderr)
+        return 2
     running = bases.on_other_clock(value == 'true', name)
     if running:
         now, then = ('simulated', 'real') if value == 'false' else ('real', 'simulated')
-        print(f"/use_sim_time: {value}: expected that no robot is running in {now} time, but {', '.join(running)} is: "
+        print(f"/use_sim_time: {value}: expected no robot in {now} time, but {', '.join(running)} runs: "
               f'stop it first, or start this robot in {now} time as well', file=sys.stderr)
         return 1
     print(value)

@@ -22,6 +22,7 @@ from rbx1_nav.ros import messages
 from rbx1_nav.ros.base.parameters import FLEET as PARAMETERS, read_floor
 from rbx1_nav.ros.base.simulated_clock import read_clock
 from rbx1_nav.ros.base.simulated_robot import SimulatedRobot
+from rbx1_nav.ros.network.master import is_alive
 from rbx1_nav.ros.network.refusals import Refusals
 from rbx1_nav.ros.node import life
 from rbx1_nav.ros.node.frames import with_prefix
@@ -61,7 +62,11 @@ class Fleet:
         try:
             if name in self.robots or not re.fullmatch(r'[A-Za-z]\w{0,49}', name, re.ASCII):
                 raise ConfigError('expected the name of a robot that does not exist yet: letters, digits and _')
-            params = rospy.get_param(key, {})
+            if is_alive(key):
+                raise ConfigError('expected the name of a robot that is not simulated by another node')
+            params = rospy.get_param(key, None)
+            if not params:
+                raise ConfigError('no parameters: expected those of a base, see docs/several_robots.md')
             robot, floor = read_robot(params), read_floor(Section(params))
         except ConfigError as error:
             text = f'{key}: {error}'

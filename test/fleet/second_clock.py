@@ -44,9 +44,16 @@ class TestSecondClock(unittest.TestCase):
         self.assertFalse(buffer.can_transform('robot1/odom', 'robot2/odom', rospy.Time(0)))
         refused = self.launch('robot3', SIMULATED)
         self.assertEqual(refused.wait(), 1)
-        self.assertIn('/use_sim_time: true: expected that no robot is running in real time, but /robot1/arbotix, '
-                      '/robot2/arbotix is', refused.output)
+        self.assertIn('/use_sim_time: true: expected no robot in real time, but /robot1/arbotix, /robot2/arbotix runs',
+                      refused.output)
+        refused = support.Process('roslaunch', 'rbx1_nav', 'fleet.launch', 'n:=1', 'model:=none')
+        self.addCleanup(refused.kill)
+        refused.wait()
+        self.assertIn('/robot1/arbotix: expected the name of a robot that is not simulated by another', refused.output)
         self.assertIs(rospy.get_param('/use_sim_time'), False)
+        refused = self.launch('robot-3')
+        self.assertEqual(refused.wait(), 1)
+        self.assertIn("robot: 'robot-3': expected a name of letters", refused.output)
 
     def test_a_second_clock_is_refused(self):
         first, second = (self.launch(robot, 'model:=none', SIMULATED) for robot in ('robot1', 'robot2'))

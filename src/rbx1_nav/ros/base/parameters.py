@@ -53,6 +53,7 @@ FLEET = (
            'below robot1/arbotix', 0, 1000, 'a number'),
     number('spacing', 1.0, 'm', 'distance between the origins of the odometry of neighbors, in the frame map', 0, 1000,
            'a distance'),
+    choice('method', ('none', 'timed', 'odometry'), 'none', 'script that fleet.launch starts for each robot'),
     number('rate', 50.0, 'Hz', 'rate at which the bases are updated; odometry at most', 1, 1000, 'a rate'),
     *_CLOCK)
 
