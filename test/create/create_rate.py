@@ -17,14 +17,14 @@ class TestCreateRate(unittest.TestCase):
         for robot_type in 'create', 'create2':
             robot = DrivenRobot(self, robot_type)
             robot.wait_for_motion()
-            subprocess.run(['stty', '-F', robot.link, '9600', 'sane'], check=True)
+            subprocess.run(['stty', '-F', robot.link, '9600', 'sane'], check=False)   # 1 if the node was faster
             robot.node.wait_for_line('%s: another process has changed the rate to 9600 baud: expected %d; restored'
                                      % (robot.link, robot.model.baud))
             robot.wait_for_status('Stationary')
             robot.commander.send(0.0, 0.0)
             robot.wait_for_motion()
             # immediately before the exit: the stop also needs the right rate
-            subprocess.run(['stty', '-F', robot.link, '9600'], check=True)
+            subprocess.run(['stty', '-F', robot.link, '9600'], check=False)
             count = len(robot.received())
             robot.node.signal(signal.SIGTERM)
             self.assertEqual(robot.node.wait(), 0, robot.node.output)
