@@ -25,7 +25,7 @@ def main():
         return 2
     running = bases.on_other_clock(value == 'true', name)
     if running:
-        now, then = ('simulated', 'real') if value == 'false' else ('real', 'simulated')
+        now = 'simulated' if value == 'false' else 'real'
         print(f"/use_sim_time: {value}: expected no robot in {now} time, but {', '.join(running)} runs: "
               f'stop it first, or start this robot in {now} time as well', file=sys.stderr)
         return 1

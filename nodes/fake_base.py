@@ -10,11 +10,12 @@ import rospy
 from rbx1_nav.config import ConfigError
 from rbx1_nav.robot.description import read_robot
 from rbx1_nav.ros.base.parameters import FAKE_BASE as PARAMETERS
-from rbx1_nav.ros.base.publisher import with_frames_resolved
+from rbx1_nav.ros.base.publisher import with_frames
 from rbx1_nav.ros.base.simulated_clock import read_clock
 from rbx1_nav.ros.base.simulated_robot import SimulatedRobot
 from rbx1_nav.ros.network.refusals import Refusals
 from rbx1_nav.ros.node import life
+from rbx1_nav.ros.node.frames import resolve_frame
 from rbx1_nav.ros.node.params import param, stored_params
 
 
@@ -27,7 +28,7 @@ def main():
     except ConfigError as error:
         rospy.logfatal('%s/%s', rospy.get_name(), error)
         return 1
-    simulated = SimulatedRobot(with_frames_resolved(robot), param('surface'), param('seed'), clock, Refusals())
+    simulated = SimulatedRobot(with_frames(robot, resolve_frame), param('surface'), param('seed'), clock, Refusals())
     clock.run(simulated.step)
     return 0
 

@@ -8,6 +8,7 @@ Robots can be added and removed while others drive: rosservice call /fleet/add r
 import rbx1_nav.ros.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
 
 from concurrent.futures import Future
+from functools import partial
 import queue
 import re
 
@@ -20,6 +21,7 @@ from rbx1_nav.robot.description import read_robot
 from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.ros import messages
 from rbx1_nav.ros.base.parameters import FLEET as PARAMETERS, read_floor
+from rbx1_nav.ros.base.publisher import with_frames
 from rbx1_nav.ros.base.simulated_clock import read_clock
 from rbx1_nav.ros.base.simulated_robot import SimulatedRobot
 from rbx1_nav.ros.network.master import is_alive
@@ -72,8 +74,7 @@ class Fleet:
             text = f'{key}: {error}'
             rospy.logerr('%s', text)
             return False, text
-        robot = robot._replace(odom_frame_id=with_prefix(name, robot.odom_frame_id),
-                               base_frame_id=with_prefix(name, robot.base_frame_id))
+        robot = with_frames(robot, partial(with_prefix, name))
         self.robots[name] = SimulatedRobot(robot, *floor, self.clock, self.refusals, name), Schedule(robot.rate)
         self.place(robot.odom_frame_id)
         return True, f'{name}: added'

@@ -12,8 +12,9 @@ import rospy
 from rbx1_nav.config import ConfigError
 from rbx1_nav.create.driver.parameters import PARAMETERS, read_settings
 from rbx1_nav.ros.base.create_base import CreateBase
-from rbx1_nav.ros.base.publisher import with_frames_resolved
+from rbx1_nav.ros.base.publisher import with_frames
 from rbx1_nav.ros.node import life
+from rbx1_nav.ros.node.frames import resolve_frame
 from rbx1_nav.ros.node.params import stored_params
 
 
@@ -28,7 +29,7 @@ def main():
     except ConfigError as error:
         rospy.logfatal('%s/%s', rospy.get_name(), error)
         return 1
-    return 0 if CreateBase(settings, with_frames_resolved(robot)).run() else 1
+    return 0 if CreateBase(settings, with_frames(robot, resolve_frame)).run() else 1
 
 
 if __name__ == '__main__':

@@ -35,7 +35,7 @@ class Sender:
         self.speeds = 0, 0          # left, right: mm/s, sent last
         self._travel = STILL        # total travel at the speeds that were sent
         self._time = 0              # end of the integration so far
-        self.line_free = 0         # time at which all bytes have been transmitted
+        self.line_free = 0          # time at which all bytes have been transmitted
 
     def use_line(self, write: Callable[[bytes], None] | None) -> None:
         """Start using a line that was opened. write(data): may raise OSError; None: the line has disconnected."""

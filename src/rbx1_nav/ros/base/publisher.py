@@ -14,7 +14,6 @@ from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.robot.readings import Reading, Uncertainty
 from rbx1_nav.ros import messages
 from rbx1_nav.ros.network.no_delay import NoDelay
-from rbx1_nav.ros.node.frames import resolve_frame
 
 
 class BasePublisher:
@@ -68,7 +67,6 @@ class BasePublisher:
         self.publish(self.joint_states, messages.joint_states(stamp, self.robot.joints, wheels))
 
 
-def with_frames_resolved(robot: Robot) -> Robot:
-    """Return a Robot whose frames have the tf_prefix. Raises ROSException with one line."""
-    return robot._replace(odom_frame_id=resolve_frame(robot.odom_frame_id),
-                          base_frame_id=resolve_frame(robot.base_frame_id))
+def with_frames(robot: Robot, resolve: Callable[[str], str]) -> Robot:
+    """Return a Robot whose frames have the names that resolve(frame) returns."""
+    return robot._replace(odom_frame_id=resolve(robot.odom_frame_id), base_frame_id=resolve(robot.base_frame_id))
