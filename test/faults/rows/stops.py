@@ -23,7 +23,7 @@ rospy.init_node('driver', anonymous=True)
 publisher = rospy.Publisher('/cmd_vel', Twist, queue_size=5)
 command = Twist()
 command.linear.x = 0.2
-while publisher.get_num_connections() < 2:
+while not {'/arbotix', '/web_view'} <= {each.endpoint_id for each in publisher.impl.connections}:
     rospy.sleep(0.02)
 publisher.publish(command)
 sys.stdin.readline()
