@@ -152,7 +152,6 @@ class Fractions:
         part = self._tested - ENOUGH * self._rounds
         if not -1 <= self._shown <= 1.5 * self._tested + 2:     # the robot is pushed
             self._steady = 0.0
-            self._shown_turn += self._tested_turn * self._rounds * ENOUGH / self._tested    # a check has replaced zeros
             return self._finish_test(self.kind, commanded)
         if part < ENOUGH or self._shown == 0:
             self._checking = part >= ENOUGH
@@ -176,6 +175,8 @@ class Fractions:
 
     def _finish_test(self, kind: str, commanded: float) -> Turn:
         """Return the Turn that replaces the commands during the test by what was read. kind: the result, if any."""
+        if kind == AUTO and self._rounds:   # a check has shown that the robot turned
+            self._shown_turn += self._tested_turn * self._rounds * ENOUGH / self._tested
         if kind != self.kind:
             self.kind = kind
             if kind == LOST:
