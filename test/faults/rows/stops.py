@@ -23,10 +23,9 @@ rospy.init_node('driver', anonymous=True)
 publisher = rospy.Publisher('/cmd_vel', Twist, queue_size=5)
 command = Twist()
 command.linear.x = 0.2
-while not {'/arbotix', '/web_view'} <= {each.endpoint_id for each in publisher.impl.connections}:
-    rospy.sleep(0.02)
-publisher.publish(command)
+timer = rospy.Timer(rospy.Duration(0.05), lambda event: publisher.publish(command))
 sys.stdin.readline()
+timer.shutdown()
 publisher.publish(Twist())
 publisher.unregister()
 sys.stdin.readline()
@@ -45,7 +44,8 @@ def leaving_driver(row, view, client):
     """Another driver unregisters just before or after a Stop."""
     count = len(view.odom.messages)
     driver = row.start(sys.executable, '-c', DRIVER)
-    view.odom.wait_for_twist(0.2, since=count)      # its only command expires after 1 s
+    # until then, its commands are mixed with the zeros of the view, which go on for 1 s after driving by hand
+    view.odom.wait_for_twist(0.2, since=count)
     delay = row.random.uniform(-MARGIN, MARGIN)
     if delay < 0:
         driver.type('')
