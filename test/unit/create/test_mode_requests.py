@@ -44,22 +44,24 @@ def test_why_a_robot_leaves_safe_mode(changes, text):
     assert causes(reading(SAFE, **changes)) == text
 
 
-def test_the_mode_is_requested_twice_per_second():
+def test_the_mode_is_requested_until_the_robot_reports_it():
     # of two equal readings, the second one counts
-    assert Supervised().feed(PASSIVE, 20) == [2, 7, 12, 17]
+    requests = Supervised().feed(PASSIVE, 20)
+    assert requests[0] == 2 and 1 < len(requests) < 10
     robot = Supervised()
     assert [robot.feed(mode) for mode in (PASSIVE, SAFE, PASSIVE, OFF, PASSIVE)] == [[]] * 5
 
 
-def test_control_is_taken_again_a_second_after_the_cause_is_gone():
+def test_control_is_taken_again_some_time_after_the_cause_is_gone():
     robot = Supervised()
     robot.feed(PASSIVE, 2)
     assert robot.feed(SAFE, 2) == [] and robot.supervisor.in_control
     assert robot.feed(PASSIVE, 20, **CLIFF) == [] and robot.supervisor.reason == 'a cliff'
-    assert robot.feed(PASSIVE, 17) == [11, 16]
-    # the second starts again at the next cause
+    wait = robot.feed(PASSIVE, 20)[0]
+    assert wait > 3
+    # the time starts again at the next cause
     assert robot.feed(PASSIVE, **CLIFF) == []
-    assert robot.feed(PASSIVE, 11) == [11]
+    assert robot.feed(PASSIVE, 20)[0] == wait
 
 
 def test_a_robot_that_was_never_in_control_is_asked_when_the_cause_is_gone():
@@ -70,23 +72,30 @@ def test_a_robot_that_was_never_in_control_is_asked_when_the_cause_is_gone():
 @pytest.mark.parametrize('wants_motion', [False, True])
 def test_on_the_dock_the_mode_is_requested_only_for_a_command(wants_motion):
     robot = Supervised()
-    assert robot.feed(PASSIVE, 12, wants_motion, **DOCK) == ([2, 7, 12] if wants_motion else [])
+    assert bool(robot.feed(PASSIVE, 12, wants_motion, **DOCK)) == wants_motion
     assert robot.supervisor.reason == 'on the dock: lift it off if it does not follow a command'
     assert robot.log == ['The robot cannot be driven: on the dock: lift it off if it does not follow a command']
 
 
-def test_after_three_attempts_without_a_cause_the_modes_are_logged():
+def attempts(robot):
+    """Return the number of requests until the reason is known."""
+    count = 0
+    while not robot.supervisor.reason:
+        count += len(robot.feed(PASSIVE))
+        assert count < 10
+    return count
+
+
+def test_after_some_attempts_without_a_cause_the_modes_are_logged():
     robot = Supervised()
-    assert robot.feed(PASSIVE, 17) == [2, 7, 12, 17] and robot.supervisor.reason == '' and not robot.log
-    robot.feed(PASSIVE, 1)
-    assert robot.supervisor.reason == (
-        'it reports mode 1 after it was asked for safe mode: expected 2, or oi_mode_workaround:=true')
+    needed = attempts(robot)
+    assert needed > 1 and robot.log == ['The robot cannot be driven: it reports mode 1 after it was asked for safe '
+                                        'mode: expected 2, or oi_mode_workaround:=true']
     # a cause explains it, and the attempts are counted again
     robot.feed(PASSIVE, 1, **WHEEL)
     assert robot.supervisor.reason == 'a wheel dropped'
-    assert robot.feed(PASSIVE, 18) == [3, 8, 13, 18] and robot.supervisor.reason == ''
     robot.feed(PASSIVE, 1)
-    assert 'it reports mode 1' in robot.supervisor.reason
+    assert attempts(robot) == needed
 
 
 def test_a_charger_that_is_plugged_in_is_not_the_dock():
@@ -96,10 +105,9 @@ def test_a_charger_that_is_plugged_in_is_not_the_dock():
 
 def test_success_starts_the_count_of_attempts_again():
     robot = Supervised()
-    robot.feed(PASSIVE, 13)     # three attempts
+    assert len(robot.feed(PASSIVE, 10)) > 1 and not robot.supervisor.reason
     robot.feed(SAFE, 2)
-    # held for a second, then three attempts
-    assert robot.feed(PASSIVE, 27) == [12, 17, 22, 27] and robot.supervisor.reason == ''
+    assert attempts(robot) == attempts(Supervised())
 
 
 def test_what_is_logged_when_control_is_gained_and_lost():
