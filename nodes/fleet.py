@@ -98,7 +98,10 @@ class Fleet:
         """Do what was requested, and publish the state of each robot."""
         while not self.requests.empty():
             function, name, done = self.requests.get()
-            done.set_result(function(name))
+            try:
+                done.set_result(function(name))
+            except (OSError, rospy.ROSException) as error:      # of the master
+                done.set_result((False, f'{name}: {error}'))
         for robot, schedule in self.robots.values():
             if schedule.due(self.clock.now()):
                 robot.step()

@@ -57,8 +57,12 @@ def main():
     life.init_node('pose', __doc__, requires_master=True)
     latest = receive()
     if not any(latest.values()):
-        rospy.logerr('No message on %s for %g s: expected a running base',
-                     ', '.join(map(rospy.resolve_name, TOPICS)), TIMEOUT)
+        others = sorted(name[:-len('/odom')] for name, _ in rospy.get_published_topics() if name.endswith('/odom')
+                        and name != rospy.resolve_name('odom'))
+        rospy.logerr('No message on %s for %g s: expected a running base%s',
+                     ', '.join(map(rospy.resolve_name, TOPICS)), TIMEOUT,
+                     f". Bases exist in other namespaces: {', '.join(others)}. To see one, set "
+                     f'ROS_NAMESPACE={others[0]}' if others else '')
         return 1
     print(f"{'':24} {'x (m)':>7} {'y (m)':>7} {'heading (degrees)':>19} {'from the start (m)':>20}")
     for topic in TOPICS:

@@ -56,6 +56,7 @@ class TestFleet(unittest.TestCase):
         drivers['robot6'] = self.drive('robot6')
         for seed, (name, driver) in zip((7, 8, 9, 12), drivers.items()):
             self.assertEqual(driver.wait(), 0, driver.output)
+            self.assertIn(f'run: ROS_NAMESPACE=/{name} rosrun rbx1_nav pose.py', driver.output)
             self.assert_end(name, seed)
         self.assertEqual(removed.wait(), 1, removed.output)
         self.assertIn('/robot4/cmd_vel', removed.output)
@@ -72,6 +73,9 @@ class TestFleet(unittest.TestCase):
         driver = self.drive('', '_wait_timeout:=3')
         self.assertEqual(driver.wait(), 1, driver.output)
         self.assertIn('a base that subscribes to /cmd_vel. Bases exist in other namespaces: /robot1, ', driver.output)
+        pose = support.Process('rosrun', 'rbx1_nav', 'pose.py')
+        self.assertEqual(pose.wait(), 1, pose.output)
+        self.assertIn('expected a running base. Bases exist in other namespaces: /robot1, ', pose.output)
 
 
 if __name__ == '__main__':

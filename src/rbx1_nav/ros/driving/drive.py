@@ -91,5 +91,7 @@ class TimedDrive(Drive):
         self.listeners.check_delivery()
         # a script that does not use progress() has commanded something else
         commanded = f': commanded {self.distance:.2f} m forward and {self.angle:.2f} rad to the left'
-        rospy.loginfo('Done%s. To see where the robot is now, run: rosrun rbx1_nav pose.py',
-                      commanded if self.distance or self.angle else '')
+        namespace = rospy.get_namespace().rstrip('/')
+        rospy.loginfo('Done%s. To see where the robot is now, run: %srosrun rbx1_nav pose.py',
+                      commanded if self.distance or self.angle else '',
+                      f'ROS_NAMESPACE={namespace} ' if namespace else '')
