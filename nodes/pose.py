@@ -40,9 +40,14 @@ def receive():
     return latest
 
 
+def width():
+    """Return the width of the column of topics."""
+    return max(len(rospy.resolve_name(topic)) for topic in TOPICS) + 1
+
+
 def row(topic, latest):
     """Return one line of the table."""
-    text = f'{TOPICS[topic]:9} {rospy.resolve_name(topic):14}'
+    text = f'{TOPICS[topic]:9} {rospy.resolve_name(topic):{width()}}'
     if topic not in latest:
         return f'{text} not published'
     if latest[topic] is None:
@@ -64,7 +69,7 @@ def main():
                      f". Bases exist in other namespaces: {', '.join(others)}. To see one, set "
                      f'ROS_NAMESPACE={others[0]}' if others else '')
         return 1
-    print(f"{'':24} {'x (m)':>7} {'y (m)':>7} {'heading (degrees)':>19} {'from the start (m)':>20}")
+    print(f"{'':{10 + width()}} {'x (m)':>7} {'y (m)':>7} {'heading (degrees)':>19} {'from the start (m)':>20}")
     for topic in TOPICS:
         print(row(topic, latest))
     return 0

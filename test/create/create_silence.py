@@ -28,7 +28,7 @@ class TestCreateSilence(unittest.TestCase):
 
         before = robot.odom.position()
         robot.power_cycle()
-        robot.node.wait_for_line('it was switched off or reset')
+        robot.node.wait_for_line('it was switched off, reset, or silent at rest')
         robot.wait_for_status('Stationary')
         robot.odom.next()
         self.assertEqual(robot.odom.position(), before)

@@ -138,8 +138,8 @@ def test_what_is_logged_when_the_robot_answers_again(robot_type):
     driven.drive(0.2, 0, 1)
     driven.robot.switch_on(driven.now)
     driven.run(3)
-    assert 'The robot answers again: it was switched off or reset' in driven.log
-    assert driven.driver.acceptance.lockout.reason == 'the robot was switched off or reset'
+    assert 'The robot answers again: it was switched off, reset, or silent at rest' in driven.log
+    assert driven.driver.acceptance.lockout.reason == 'the robot was switched off, reset, or silent at rest'
 
 
 def test_a_short_silence_locks_nobody_out():

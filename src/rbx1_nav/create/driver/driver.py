@@ -244,7 +244,7 @@ class Driver:
         if self.reading is None:
             self.info(f'Connected to a {self.model.name} at {self.contact.baud} baud')
             return
-        what = 'was switched off or reset' if reset else f'did not answer for {elapsed:.1f} s'
+        what = 'was switched off, reset, or silent at rest' if reset else f'did not answer for {elapsed:.1f} s'
         self.warn(f'The robot answers again: it {what}')
         if reset or elapsed > OUTAGE / SECOND:
             self.acceptance.lock(f'the robot {what}')
