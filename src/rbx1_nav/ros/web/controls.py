@@ -132,7 +132,10 @@ class Controls:
 
     def answers(self) -> dict[Any, Answer]:
         """Return the answers to Stop that are due, by browser. To be called periodically."""
-        return self.stopper.answers(self.runs.busy, self.clock())
+        answers = self.stopper.answers(self.runs.busy, self.clock())
+        if answers:     # a command of a driver may have arrived after the request
+            self.state.forget_driver()
+        return answers
 
     def _stop(self) -> None:
         self.runs.stop()

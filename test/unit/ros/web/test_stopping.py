@@ -37,6 +37,17 @@ def test_the_answer_waits_until_the_robot_is_stationary(view):
     assert len(answer(view, socket)) == 1
 
 
+def test_after_the_answer_no_other_node_drives(view):
+    socket = view.connect(TOKEN)
+    view.send(socket, type='stop')
+    view.state.command(0.2, 0.0, '/out_and_back', view.now)     # its last one, which was on its way
+    view.now += 0.1
+    view.move(0.2, 0.0)
+    assert answer(view, socket)
+    view.send(socket, type='hand', on=True)
+    assert 'refused' not in socket.kinds and view.hand.drivers
+
+
 @pytest.mark.parametrize('silent, not_connected, speed, text', [
     ([], '', None, 'Zero commands were sent. There is no odometry: the robot may still be moving.'),
     ([], '', 0.2, 'Zero commands were sent. The robot is still moving.'),
