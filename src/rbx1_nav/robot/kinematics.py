@@ -32,10 +32,12 @@ def arc(pose: Pose, distance: float, angle: float) -> Pose:
     heading plus half the angle (plane geometry; the closed form of Siegwart, Nourbakhsh and Scaramuzza, Introduction to
     Autonomous Mobile Robots, 2nd ed., section 5.2.4, without its straight-line approximation).
     """
+    x, y, yaw = pose
     half = angle / 2
     # below 1e-4 rad the next term of the series is below the resolution of a float
     chord = distance * (sin(half) / half if abs(half) > 1e-4 else 1 - half * half / 6)
-    return Pose(pose.x + chord * cos(pose.yaw + half), pose.y + chord * sin(pose.yaw + half), pose.yaw + angle)
+    direction = yaw + half
+    return Pose(x + chord * cos(direction), y + chord * sin(direction), yaw + angle)
 
 
 class Odometry:
@@ -48,7 +50,7 @@ class Odometry:
 
     def update(self, left: float, right: float) -> None:
         """Add the travel (m) of both wheels, each driven at a constant speed."""
-        self.move((left + right) / 2, (right - left) / self.base_width)
+        self.pose = arc(self.pose, (left + right) / 2, (right - left) / self.base_width)
 
     def move(self, distance: float, angle: float) -> None:
         """Add an arc of length `distance` (m) through `angle` (rad)."""

@@ -93,13 +93,14 @@ class Simulation:
         """Advance by one tick."""
         self.now += TICK
         self.base.advance(self.now)
-        messages = self._messages() if self.filter or self.listen else None
-        if self.filter and messages:
-            feed(self.filter, messages)
+        if self.filter or self.listen:
+            messages = self._messages()
+            if self.filter:
+                feed(self.filter, messages)
+            if self.listen:
+                self.listen(self.snapshot(), messages)
         if self.path is not None:
             self.path.append(self.snapshot())
-        if self.listen and messages:
-            self.listen(self.snapshot(), messages)
 
     def _messages(self) -> Messages:
         reading, uncertainty = self.base.read_gyro(), self.base.wheels.uncertainty
