@@ -156,7 +156,7 @@ def simulate(method: str, robot: Robot, surface: Surface | None, seed: int, filt
     for drive in _drives(simulation, method):
         drive()
         simulation.rest(REST)
-        distances.append(simulation.base.wheels.truth.pose.x)
+        distances.append(simulation.base.wheels.truth.x)
     estimate = simulation.filter.estimate if simulation.filter else None
     return SimulationResult(simulation.snapshot(), distances[0], estimate.covariance if estimate else None,
                             simulation.path)
