@@ -133,8 +133,7 @@ class Filter:
         if gyro:
             angle = gyro[0] - self.bias * duration
             if by_wheels and wheels:
-                if (gyro[1] > ROUNDING ** 2
-                        and gyro[1] > by_wheels.variance + (self.sigma(SLIP_TURNING) * wheels[0]) ** 2):
+                if gyro[1] > max(ROUNDING ** 2, by_wheels.variance + (self.sigma(SLIP_TURNING) * wheels[0]) ** 2):
                     return by_wheels
                 if duration < WINDOW_TIME:      # a longer step is no part of a window
                     compared = Sums(duration, wheels[0], by_wheels.angle, angle, forward, by_wheels.variance)

@@ -117,9 +117,8 @@ class Simulation:
 
     def snapshot(self) -> Snapshot:
         """Return the current Snapshot."""
-        estimate = self.filter.estimate if self.filter else None
         return Snapshot(self.now / SECOND, self.base.wheels.truth.pose, self.base.odometry.pose,
-                        estimate.pose if estimate else None)
+                        self.filter.pose if self.filter else None)
 
     def drive_by_time(self, motion: Motion) -> None:
         """Drive one motion of timed_out_and_back.py."""
@@ -169,8 +168,8 @@ def _drives(simulation: Simulation, method: str) -> list[Callable[[], None]]:
     combined = simulation.filter if method == 'ekf' else None
 
     def get_pose() -> Pose:
-        estimate = combined.estimate if combined else None
-        return estimate.pose if estimate else simulation.base.odometry.pose
+        estimate = combined.pose if combined else None
+        return estimate or simulation.base.odometry.pose
     return [partial(simulation.drive_by_pose, leg, get_pose)
             for leg in out_and_back_by_odometry(**EXERCISE, **MIN_SPEEDS)]
 
