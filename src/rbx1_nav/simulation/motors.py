@@ -80,8 +80,9 @@ class Delay:
     def over(self, linear: float, angular: float, duration: float) -> Iterator[tuple[float, float, float]]:
         """Yield (linear, angular, duration) of the delayed commands while a command is in force for `duration` (s)."""
         parts = self.parts
-        if parts[-1][:2] == [linear, angular]:
-            parts[-1][2] += duration
+        last = parts[-1]
+        if last[0] == linear and last[1] == angular:
+            last[2] += duration
         else:
             parts.append([linear, angular, duration])
         while duration > 0:
