@@ -33,19 +33,11 @@ class CommandGate:
         self.timeout = timeout
         self.linear = 0.0       # m/s, in force
         self.angular = 0.0      # rad/s, in force
+        self.moving = False     # whether the command in force moves the robot
         self.command_time: int | None = None    # ns, arrival of the last command
+        self.expiry: float = inf        # ns, when the command in force times out; infinite without a timeout
         self.rejected = 0
         self.clamped = 0
-
-    @property
-    def moving(self) -> bool:
-        """Whether the command in force moves the robot."""
-        return self.linear != 0 or self.angular != 0
-
-    @property
-    def expiry(self) -> float:
-        """The time at which the command in force times out, ns; infinite without a timeout."""
-        return self.command_time + self.timeout if self.timeout and self.command_time is not None else inf
 
     def command(self, now: int, linear: float, angular: float, others: Iterable[float] = ()) -> bool:
         """Put a command in force at `now` (ns), and return whether a limit clamped it.
@@ -54,6 +46,9 @@ class CommandGate:
         which must also be finite. Raises RejectedCommand, and halts, if a value is not finite or above MAX_COMMAND.
         """
         self.command_time = now
+        self.expiry = now + self.timeout if self.timeout else inf
+        if linear == self.linear and angular == self.angular and not others:    # repeated, so it was checked before
+            return False
         for value in (linear, angular, *others):
             if not abs(value) <= MAX_COMMAND:   # written so that nan is rejected too
                 self.rejected += 1
@@ -61,6 +56,7 @@ class CommandGate:
                 raise RejectedCommand(f'{value}: expected finite numbers of at most {MAX_COMMAND:g}')
         self.linear = clamp(linear, self.limits.linear)
         self.angular = clamp(angular, self.limits.angular)
+        self.moving = bool(self.linear or self.angular)
         clamped = (self.linear, self.angular) != (linear, angular)
         if clamped:
             self.clamped += 1
@@ -69,8 +65,9 @@ class CommandGate:
     def halt(self) -> None:
         """Stop the motion until the next command."""
         self.linear = self.angular = 0.0
+        self.moving = False
 
     def forget(self) -> None:
         """Halt, and discard the arrival time of the last command: for a clock that jumped back."""
         self.halt()
-        self.command_time = None
+        self.command_time, self.expiry = None, inf

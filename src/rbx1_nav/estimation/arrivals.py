@@ -13,6 +13,11 @@ MAX_AGE = 60 * SECOND   # ns that a stamp may be behind; simulated time may be a
 MAX_WAIT = 5 * SECOND   # ns that odometry waits for a gyro that is late but not silent
 
 
+def rejection(stamp: int, expected: str, time: int) -> RejectedMessage:
+    """Return the error for a stamp (ns) that is not as expected, compared with a time (ns)."""
+    return RejectedMessage(f'header.stamp: {stamp / SECOND:.9f}: expected {expected}, {time / SECOND:.9f}')
+
+
 class Arrivals:
     """Stamps and arrivals of messages by sensor, and the sensors that have timed out. All times are in ns."""
 
@@ -49,11 +54,12 @@ class Arrivals:
         """
         self.now = now
         before = self.last_stamp[sensor]
-        for good, expected, time in ((stamp <= now + self.max_lead, 'a stamp not later than now', now),
-                                     (stamp >= now - MAX_AGE, 'a stamp not much older than now', now),
-                                     (before is None or stamp > before, 'a stamp later than the last', before or 0)):
-            if not good:
-                raise RejectedMessage(f'header.stamp: {stamp / SECOND:.9f}: expected {expected}, {time / SECOND:.9f}')
+        if stamp > now + self.max_lead:
+            raise rejection(stamp, 'a stamp not later than now', now)
+        if stamp < now - MAX_AGE:
+            raise rejection(stamp, 'a stamp not much older than now', now)
+        if before is not None and stamp <= before:
+            raise rejection(stamp, 'a stamp later than the last', before)
         self.last_stamp[sensor] = stamp
         self._count(sensor, self.clock() if self.clock else now)
         other = self.last_stamp[ODOM if sensor == IMU else IMU]

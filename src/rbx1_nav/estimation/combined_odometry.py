@@ -76,7 +76,7 @@ class CombinedOdometry:
         self.start = 0              # ns, stamp of the first message that counts
         self.learned = self.filter or self.learned      # about the sensors, which a restart does not change
         self.filter = None
-        self.estimate: Estimate | None = None       # the latest one
+        self._estimate: Estimate | None = None      # the latest one, once it was requested
         self.pending: Deque[tuple[int, Odom]] = deque()     # with arrival times (ns), until the gyro has caught up
         self.readings.waiting.clear()
         self.time = 0               # ns, time after the last step
@@ -89,6 +89,23 @@ class CombinedOdometry:
         self.placed_at = 0          # ns, the time of the last set_pose() that counts
         self.suspect: Odom | None = None    # odometry that has jumped, until the next message confirms it
         self.arrivals.restart()
+
+    @property
+    def pose(self) -> Pose | None:
+        """The pose of the filter; None before the first odometry."""
+        return Pose(*self.filter.state[:3]) if self.filter else None
+
+    @property
+    def estimate(self) -> Estimate | None:
+        """The latest Estimate, the same object until the next step; None before the first odometry."""
+        ekf, odom = self.filter, self.odom
+        if not self._estimate and ekf and odom:
+            covariance = ekf.covariance
+            unknown_travel = DROPOUT_SPEED * (self.time - odom.stamp) / SECOND
+            covariance[X, X] += unknown_travel ** 2
+            covariance[Y, Y] += unknown_travel ** 2
+            self._estimate = Estimate(self.time, Pose(*ekf.state[:3]), covariance, odom)
+        return self._estimate
 
     @property
     def timed_out(self) -> dict[str, bool]:
@@ -106,9 +123,7 @@ class CombinedOdometry:
         sensor is missing."""
         if not self.filter or not self.gyro_used or self.suspect or any(self.timed_out.values()):
             return None
-        if self.standstill.case:
-            return self.standstill.case
-        return 'contradiction' if self.contradicts else 'agreement'
+        return self.standstill.case or ('contradiction' if self.contradicts else 'agreement')
 
     # input
 
@@ -118,7 +133,7 @@ class CombinedOdometry:
         self.placed = now, pose, covariance
         if self.filter and self.time >= now:
             self._place(self.filter)
-            self._finish(self.filter, self.time)
+            self._finish(self.time)
 
     def add_odom(self, now: int, odom: Odom) -> None:
         """Process an Odom that arrived at `now` (ns). Raises RejectedMessage."""
@@ -186,10 +201,9 @@ class CombinedOdometry:
             self.standstill.add(Part(duration, *gyro), ekf)
             self.odom_yaw = ekf.state[YAW]
         else:
-            if self.standstill.case:
-                self._leave_standstill(ekf)
+            self._leave_standstill(ekf)
             self._drive(ekf, last, odom, duration, gyro)
-        self._finish(ekf, max(odom.stamp, self.time), odom)
+        self._finish(max(odom.stamp, self.time), odom)
 
     def _begin(self, odom: Odom) -> None:
         """Begin at the pose of the first Odom."""
@@ -198,13 +212,12 @@ class CombinedOdometry:
         self.odom_yaw = odom.pose.yaw
         if self.placed:
             self._place(ekf)
-        self._finish(ekf, odom.stamp, odom)
+        self._finish(odom.stamp, odom)
 
     def _is_outlier(self, last: Odom, odom: Odom) -> bool:
         """Return whether to ignore an Odom, a single jump. If a second one agrees, the filter restarts there."""
         suspect, self.suspect = self.suspect, None
-        if (suspect and not has_jumped(suspect, odom, self.limits)
-                and distance(suspect, odom) <= distance(last, odom)):
+        if suspect and not has_jumped(suspect, odom, self.limits) and distance(suspect, odom) <= distance(last, odom):
             self.restart(f'odom: jumped from {format_pose(last)} to {format_pose(odom)}')
         elif has_jumped(last, odom, self.limits):
             self.warn(f'odom: {format_pose(odom)} is too far from {format_pose(last)} for the '
@@ -213,8 +226,7 @@ class CombinedOdometry:
         return self.suspect is not None
 
     def _drive(self, ekf: Filter, last: Odom, odom: Odom, duration: float, gyro: Measurement | None) -> None:
-        """Move the robot from one Odom to the next. duration: time since the last step, s; gyro: its turn since then.
-        """
+        """Move the robot from one Odom to the next. duration: since the last step, s; gyro: its turn in that time."""
         elapsed = (odom.stamp - last.stamp) / SECOND
         # if set_pose() took effect since the last odometry, only the rest of the distance counts
         share = min(1.0, max(0, odom.stamp - self.placed_at) / (odom.stamp - last.stamp))
@@ -244,9 +256,9 @@ class CombinedOdometry:
             self.doubts.check(verdict, ekf, odom.stamp)
 
     def _leave_standstill(self, ekf: Filter) -> None:
-        """Use the gyro's turn in the last part at rest, in which the robot may have begun to turn."""
-        last = self.standstill.leave(ekf)
-        if last.time:
+        """After a rest, use the gyro's turn in its last part, in which the robot may have begun to turn."""
+        last = self.standstill.leave(ekf) if self.standstill.case else None
+        if last and last.time:
             before = ekf.state[YAW]
             ekf.step(last.time, ekf.turn(last.time, None, (last.angle, last.variance)))
             self.odom_yaw += ekf.state[YAW] - before
@@ -254,18 +266,16 @@ class CombinedOdometry:
     def _step_by_gyro(self, ekf: Filter, end: int) -> None:
         """Make a step up to `end` (ns) without odometry."""
         duration = (end - self.time) / SECOND
-        if duration > 0:
-            if self.placed and end > self.placed[0]:
-                self._place(ekf)
-            gyro = self._gyro_turn(end)
-            if not gyro:    # the wheels will measure this turn
-                return
-            if self.standstill.case:
-                self._leave_standstill(ekf)
-            self.yaws.add(self.time, ekf.state[YAW])
-            ekf.step(duration, ekf.turn(duration, None, gyro))
-            self._finish(ekf, end)
-            self.yaws.add(end, ekf.state[YAW])
+        if self.placed and end > self.placed[0]:
+            self._place(ekf)
+        gyro = self._gyro_turn(end) if duration > 0 else None
+        if not gyro:        # the wheels will measure this turn
+            return
+        self._leave_standstill(ekf)
+        self.yaws.add(self.time, ekf.state[YAW])
+        ekf.step(duration, ekf.turn(duration, None, gyro))
+        self._finish(end)
+        self.yaws.add(end, ekf.state[YAW])
 
     def _gyro_turn(self, end: int) -> Measurement | None:
         """Return the turn since the last step, see Readings.turn()."""
@@ -275,22 +285,16 @@ class CombinedOdometry:
         """Move the filter to the pose of set_pose()."""
         assert self.placed
         (self.placed_at, pose, covariance), self.placed = self.placed, None
+        self._estimate = self.estimate      # calculated before the filter moves; valid until the next step
         turned = pose.yaw - ekf.state[YAW]
         ekf.place(pose, covariance)
         self.odom_yaw += turned
         self.yaws.turn(turned)
 
-    def _finish(self, ekf: Filter, time: int, odom: Odom | None = None) -> None:
-        """Store the result of a step up to a time (ns), with an Odom if it has one."""
-        self.time = time
+    def _finish(self, time: int, odom: Odom | None = None) -> None:
+        """Finish a step up to a time (ns), with an Odom if it has one."""
+        self.time, self._estimate = time, None
         if odom:
             self.odom = odom
             if odom.stamp >= time:
                 self.yaws = PastYaws()
-        assert self.odom
-        covariance = ekf.covariance
-        if time > self.odom.stamp:
-            unknown_travel = DROPOUT_SPEED * (time - self.odom.stamp) / SECOND
-            covariance[X, X] += unknown_travel ** 2
-            covariance[Y, Y] += unknown_travel ** 2
-        self.estimate = Estimate(time, Pose(*ekf.state[:3]), covariance, self.odom)

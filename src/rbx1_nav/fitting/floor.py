@@ -47,7 +47,7 @@ def integrate(distance: Array, angle: Array) -> tuple[Array, Array, Array]:
     """Return (x, y, yaw) after each step, along the last axis, of a robot that starts at the origin."""
     yaw = numpy.cumsum(angle, axis=-1)
     middle = yaw - angle / 2
-    chord = distance * numpy.sinc(angle / 2 / numpy.pi)     # see kinematics.arc()
+    chord = distance * numpy.sinc(angle / 2 / numpy.pi)     # see Odometry.move()
     return numpy.cumsum(chord * numpy.cos(middle), axis=-1), numpy.cumsum(chord * numpy.sin(middle), axis=-1), yaw
 
 

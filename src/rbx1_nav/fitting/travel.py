@@ -54,4 +54,4 @@ def reported_travel(odometry: Track, times: Array) -> Steps:
     turn = numpy.diff(yaw)
     middle = yaw[:-1] + turn / 2
     chord = numpy.diff(x) * numpy.cos(middle) + numpy.diff(y) * numpy.sin(middle)
-    return Steps(times, chord / numpy.sinc(turn / 2 / numpy.pi), turn)      # the inverse of kinematics.arc()
+    return Steps(times, chord / numpy.sinc(turn / 2 / numpy.pi), turn)      # the inverse of Odometry.move()

@@ -91,7 +91,7 @@ class UncertainOdometry:
         along, aside, turn = self._variances(travel)
         if not (distance or angle or along or turn):
             return
-        middle = self.pose.yaw + angle / 2
+        middle = self.odometry.yaw + angle / 2
         c, s = cos(middle), sin(middle)
         # J C J' + K V K', with the Jacobians of the new pose with respect to the old pose and to the travel. This is
         # written out because numpy needs six times as long for matrices this small, and this runs at each reading

@@ -102,7 +102,7 @@ class SimulatedBase:
         last, self._gyro_time = self._gyro_time, self.now
         if last is None or self.now <= last:
             return None
-        return self.gyro.read(self.wheels.truth.pose.yaw, (self.now - last) / SECOND, self.at_rest)
+        return self.gyro.read(self.wheels.truth.yaw, (self.now - last) / SECOND, self.at_rest)
 
     def reset(self) -> None:
         """Put the base back at the origin, at rest."""

@@ -93,13 +93,14 @@ class Simulation:
         """Advance by one tick."""
         self.now += TICK
         self.base.advance(self.now)
-        messages = self._messages() if self.filter or self.listen else None
-        if self.filter and messages:
-            feed(self.filter, messages)
+        if self.filter or self.listen:
+            messages = self._messages()
+            if self.filter:
+                feed(self.filter, messages)
+            if self.listen:
+                self.listen(self.snapshot(), messages)
         if self.path is not None:
             self.path.append(self.snapshot())
-        if self.listen and messages:
-            self.listen(self.snapshot(), messages)
 
     def _messages(self) -> Messages:
         reading, uncertainty = self.base.read_gyro(), self.base.wheels.uncertainty
@@ -116,9 +117,8 @@ class Simulation:
 
     def snapshot(self) -> Snapshot:
         """Return the current Snapshot."""
-        estimate = self.filter.estimate if self.filter else None
         return Snapshot(self.now / SECOND, self.base.wheels.truth.pose, self.base.odometry.pose,
-                        estimate.pose if estimate else None)
+                        self.filter.pose if self.filter else None)
 
     def drive_by_time(self, motion: Motion) -> None:
         """Drive one motion of timed_out_and_back.py."""
@@ -155,7 +155,7 @@ def simulate(method: str, robot: Robot, surface: Surface | None, seed: int, filt
     for drive in _drives(simulation, method):
         drive()
         simulation.rest(REST)
-        distances.append(simulation.base.wheels.truth.pose.x)
+        distances.append(simulation.base.wheels.truth.x)
     estimate = simulation.filter.estimate if simulation.filter else None
     return SimulationResult(simulation.snapshot(), distances[0], estimate.covariance if estimate else None,
                             simulation.path)
@@ -168,8 +168,8 @@ def _drives(simulation: Simulation, method: str) -> list[Callable[[], None]]:
     combined = simulation.filter if method == 'ekf' else None
 
     def get_pose() -> Pose:
-        estimate = combined.estimate if combined else None
-        return estimate.pose if estimate else simulation.base.odometry.pose
+        estimate = combined.pose if combined else None
+        return estimate or simulation.base.odometry.pose
     return [partial(simulation.drive_by_pose, leg, get_pose)
             for leg in out_and_back_by_odometry(**EXERCISE, **MIN_SPEEDS)]
 

@@ -19,39 +19,43 @@ class Motor:
         self.lag = lag
         self.accel_limit = accel_limit
         self.drag = drag
+        self.limited_gap = accel_limit * lag    # m/s: if the command differs by more, the acceleration is limited
         self.speed = 0.0        # m/s
 
     def travel(self, command: float, duration: float) -> float:
         """Return the travel (m) while a speed (m/s) is commanded for `duration` (s)."""
-        travel = 0.0
+        speed, travel = self.speed, 0.0
+        if not (speed or command):      # usual for one of the two motors
+            return travel
         while duration > 0:
-            target = command - copysign(self.drag, self.speed or command)
-            if not self.speed and target * command <= 0:
+            target = command - copysign(self.drag, speed or command)
+            if not speed and target * command <= 0:
                 break       # drag holds it
-            gap = target - self.speed
-            limited = self.accel_limit * self.lag   # m/s: above this gap the acceleration is limited
-            if abs(gap) > limited + 1e-12 * (abs(self.speed) + abs(target)):    # by more than rounding errors
+            gap = target - speed
+            beyond = abs(gap) - self.limited_gap
+            if beyond > 0 and abs(gap) > self.limited_gap + 1e-12 * (abs(speed) + abs(target)):     # not by rounding
                 acceleration = copysign(self.accel_limit, gap)
-                time = (abs(gap) - limited) / self.accel_limit
-                if self.speed and (self.speed > 0) != (gap > 0):
-                    stop = -self.speed / acceleration
+                time = beyond / self.accel_limit
+                if speed and (speed > 0) != (gap > 0):
+                    stop = -speed / acceleration
                     if stop <= min(time, duration):
-                        travel += self.speed * stop / 2
-                        self.speed = 0.0
+                        travel += speed * stop / 2
+                        speed = 0.0
                         duration -= stop
                         continue
                 time = min(time, duration)
-                travel += (self.speed + acceleration * time / 2) * time
-                self.speed += acceleration * time
+                travel += (speed + acceleration * time / 2) * time
+                speed += acceleration * time
             else:
                 time = duration
-                if self.speed and target and (self.speed > 0) != (target > 0):
-                    time = min(time, self.lag * log(1 - self.speed / target))
+                if speed and target and (speed > 0) != (target > 0):
+                    time = min(time, self.lag * log(1 - speed / target))
                 closed = gap * (1 - exp(-time / self.lag))
                 travel += target * time - closed * self.lag
                 # a wheel that stops before the duration is over stops exactly
-                self.speed = self.speed + closed if time == duration else 0.0
+                speed = speed + closed if time == duration else 0.0
             duration -= time
+        self.speed = speed
         return travel
 
 
@@ -76,8 +80,9 @@ class Delay:
     def over(self, linear: float, angular: float, duration: float) -> Iterator[tuple[float, float, float]]:
         """Yield (linear, angular, duration) of the delayed commands while a command is in force for `duration` (s)."""
         parts = self.parts
-        if parts[-1][:2] == [linear, angular]:
-            parts[-1][2] += duration
+        last = parts[-1]
+        if last[0] == linear and last[1] == angular:
+            last[2] += duration
         else:
             parts.append([linear, angular, duration])
         while duration > 0:

@@ -114,7 +114,7 @@ class Wheels:
         self._rolling = bool(straight or turning or self.straight.speed or self.turning.speed)
         turn = 2 * turning / self.base_width
         distance, angle = self._on_the_floor(straight, turn)
-        if self.roughness and self._rolling:
+        if self.roughness:
             further, more = self.roughness.over(straight, turn)
             distance, angle = distance + further, angle + more
         self.truth.move(distance, angle)

@@ -37,7 +37,7 @@ def test_any_speed_other_than_0_is_a_motion(linear, angular, moving):
 
 
 @pytest.mark.parametrize('command, value', [
-    ((nan, 0.0), 'nan'), ((0.2, inf), 'inf'), ((-inf, nan), '-inf'), ((0.2, 0.0, (0.0, nan)), 'nan'),
+    ((nan, 0.0), 'nan'), ((0.2, inf), 'inf'), ((-inf, nan), '-inf'), ((0.2, 0.3, (0.0, nan)), 'nan'),
     ((1e308, 1e308), '1e+308'), ((0.0, -1.0001 * MAX_COMMAND), '-1000100.0'), ((0.0, 0.0, (-inf,)), '-inf')])
 def test_values_that_are_not_finite_or_too_large_are_rejected(command, value):
     gate = make_gate()
@@ -81,6 +81,13 @@ def test_a_command_expires_a_timeout_after_its_arrival():
     gate = make_gate(timeout=SECOND // 2)
     gate.command(3 * SECOND, 0.2, 0.0)
     assert gate.expiry == 3 * SECOND + SECOND // 2
+    gate.command(4 * SECOND, 0.2, 0.0)      # the same command again
+    assert gate.expiry == 4 * SECOND + SECOND // 2 and gate.command_time == 4 * SECOND
+
+
+def test_a_command_that_is_clamped_counts_each_time():
+    gate = make_gate(0.3, 0.5)
+    assert gate.command(0, 0.4, 0.0) and gate.command(1, 0.4, 0.0) and gate.clamped == 2
 
 
 def test_without_a_timeout_a_command_never_expires():

@@ -134,7 +134,7 @@ class Body:
         current = self._use_battery(duration, charging)
         charge = round(self.charge)
         linear, angular = self.velocity
-        rate = degrees(self.gyro.read(self.wheels.truth.pose.yaw, duration, False).rate) * self.errors.gyro_sensitivity
+        rate = degrees(self.gyro.read(self.wheels.truth.yaw, duration, False).rate) * self.errors.gyro_sensitivity
         self.values.update(
             CONSTANT,
             bumps_and_wheel_drops=(BUMP_LEFT | BUMP_RIGHT if self.bumped else 0) | (
