@@ -14,7 +14,8 @@ import processes
 PARAMETERS = '$(rospack find rbx1_nav)/config/turtlebot.yaml'
 SCRIPT = 'exec rosrun rbx1_nav timed_out_and_back.py'
 LIMIT = 120             # s of wall time for all scripts
-BEGIN, PERIOD = 3, 15   # s after the first command: when the measurement of CPU time begins, and how long it takes
+BEGIN, EACH = 2.0, 0.25     # s after the start of the scripts, and for each of them, until all of them drive
+PERIOD = 8              # s of the measurement of CPU time
 
 
 def robot(index):
@@ -38,7 +39,7 @@ def start_bases(session, count, together):
 
 
 def read(path):
-    """Return ((forward, turning) commands by robot, intervals between the odometry messages of moving robots in s)."""
+    """Return (forward, turning) commands by robot, and the stamps of its odometry from its first to its last motion."""
     import rosbag
     commands, odometry = defaultdict(lambda: [0, 0]), defaultdict(list)
     with rosbag.Bag(path) as bag:
@@ -50,12 +51,11 @@ def read(path):
                 odometry[name].append((time_.to_sec(), any(motion)))
             else:
                 commands[name] = [count + moves for count, moves in zip(commands[name], motion)]
-    intervals = []
-    for stamps in odometry.values():
+    driven = {}
+    for name, stamps in odometry.items():
         moving = [index for index, (_, moves) in enumerate(stamps) if moves] or [0]
-        driven = [stamp for stamp, _ in stamps[moving[0]:moving[-1] + 1]]
-        intervals += [after - before for before, after in zip(driven, driven[1:])]
-    return {name: tuple(counts) for name, counts in commands.items()}, intervals
+        driven[name] = [stamp for stamp, _ in stamps[moving[0]:moving[-1] + 1]]
+    return {name: tuple(counts) for name, counts in commands.items()}, driven
 
 
 def measure(count, together):
@@ -67,18 +67,24 @@ def measure(count, together):
         recorder = session.start(f'exec rosbag record --tcpnodelay -b 0 -O {path} {topics}')
         session.wait(lambda: os.path.exists(path + '.active'), 'rosbag')
         scripts = [session.start(f'ROS_NAMESPACE={robot(index)} {SCRIPT}') for index in range(count)]
-        time.sleep(BEGIN + 0.2 * count)
+        time.sleep(BEGIN + EACH * count)
+        begin = time.time()
         both = [[process.pid for process in group] for group in (bases, scripts)]
         before = [processes.sample(pids) for pids in both]
         time.sleep(PERIOD)
         after = [processes.sample(pids) for pids in both]
+        end = time.time()
         used = [100 * figures.usage(pair, 0, after[-1][0]) for pair in zip(before, after)]
         try:
             failed = sum(script.wait(LIMIT) != 0 for script in scripts)
         except subprocess.TimeoutExpired:
             raise bench.Failure(f'a script runs longer than {LIMIT} s') from None
-        processes.stop(recorder, timeout=30)
-        commands, intervals = read(path)
+        if not processes.stop(recorder, timeout=LIMIT):
+            raise bench.Failure(f'rosbag has not exited after {LIMIT} s')
+        commands, driven = read(path)
+    if any(begin < stamps[0] or stamps[-1] < end for stamps in driven.values()):
+        raise bench.Failure('not all robots drove while the CPU time was measured: expected a faster machine')
+    intervals = [after - before for stamps in driven.values() for before, after in zip(stamps, stamps[1:])]
     print(f"{count} robots, {'one process' if together else 'a process each'}: {failed} scripts failed")
     for (forward, turning), robots in Counter(commands.values()).most_common():
         print(f'  {robots} robots received {forward} forward commands and {turning} turn commands')
