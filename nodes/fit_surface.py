@@ -24,12 +24,13 @@ os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
 from tqdm import tqdm
 
 from rbx1_nav.config import ConfigError, show_name
+from rbx1_nav.files import check_writable, write_file
 from rbx1_nav.fitting.comparison import compare, shares
 from rbx1_nav.fitting.ends_file import read_ends
 from rbx1_nav.fitting.mrclam import is_commands_file, read_robot as read_text_files, truth_file
 from rbx1_nav.fitting.recording import in_force
 from rbx1_nav.plotting.fit import draw_fit
-from rbx1_nav.plotting.runs import check_picture, check_writable, write_file
+from rbx1_nav.plotting.runs import check_picture
 from rbx1_nav.robot.description import load_robot
 from rbx1_nav.ros.node import resources
 from rbx1_nav.ros.tools.bags import Topics, read_bag
