@@ -5,9 +5,10 @@ from concurrent.futures import Executor, Future
 from contextlib import contextmanager
 import logging
 import platform
+import re
 import sys
 import time
-from typing import Any, Iterator
+from typing import Any, Callable, Iterator
 import warnings
 
 from rbx1_nav.batch.cases import Case, simulate_row
@@ -31,6 +32,7 @@ class Cluster(Executor):
         self.client, self.requirements = client, requirements
         self.executor = client.get_executor(pure=False)
         self.accepted: set[str] = set()     # addresses of workers
+        self.refused: set[str] = set()
         self.counted, self.threads = 0.0, 1
         self.last_worker = time.monotonic()
 
@@ -39,14 +41,18 @@ class Cluster(Executor):
         future: Future[Any] = self.executor.submit(checked, self.requirements, function, *arguments)
         return future
 
+    def ask(self, question: Callable[[], Any]) -> Any:
+        """Return the answer of the scheduler. Raises ConnectionError."""
+        try:
+            if self.client.status == 'running':
+                return question()
+        except Exception:       # Dask has several for it
+            pass
+        raise ConnectionError(f'the scheduler at {self.client.scheduler.address} is disconnected')
+
     def workers(self) -> dict[str, int]:
         """Return the number of threads of each worker, by address. Raises ConnectionError."""
-        if self.client.status != 'running':
-            raise ConnectionError(f'the scheduler at {self.client.scheduler.address} is disconnected')
-        try:
-            found: dict[str, int] = self.client.nthreads()
-        except Exception:       # Dask has several for it
-            raise ConnectionError(f'the scheduler at {self.client.scheduler.address} is disconnected') from None
+        found: dict[str, int] = self.ask(self.client.nthreads)
         return found
 
     def count(self) -> int:
@@ -65,7 +71,7 @@ class Cluster(Executor):
 
     def refusals(self) -> Iterator[tuple[str, str]]:
         """Check the workers that are new. Yield the address of each one that is refused, and the reason."""
-        known = self.client.get_versions()['workers']
+        known = self.ask(self.client.get_versions)['workers']
         for address in self.workers():
             if address in self.accepted:
                 continue
@@ -76,32 +82,34 @@ class Cluster(Executor):
             try:
                 self.client.run(require, self.requirements, workers=[address])
                 self.accepted.add(address)
-            except ImportError as error:
-                yield address, f'{error}: expected a worker with the same rbx1_nav as here'
-            except Exception as error:      # RefusedError, or what another version of Dask raises
-                yield address, str(error)
+            except Exception as error:      # RefusedError, or what Dask makes of an ImportError
+                yield address, (f'{error}: expected a worker with the same rbx1_nav as here'
+                                if 'No module' in str(error) else str(error))
 
     def again(self, error: BaseException) -> bool:
-        """Return whether a task failed because of a new worker, which is then retired."""
+        """Return whether a task failed because of a worker that joined later, which is then retired."""
+        if isinstance(error, ValueError):       # of the simulation
+            return False
         refused = dict(self.refusals())
         for address, reason in refused.items():
             print(f'Worker {address} is refused: {reason}', file=sys.stderr)
         if refused:
+            self.refused.update(refused)
             self.client.retire_workers(list(refused), close_workers=True)
-        return bool(refused)
+        return bool(self.refused)       # other tasks may have failed there, too
 
 
 @contextmanager
 def open_cluster(address: str, robot: Robot, surface: Surface | None) -> Iterator[Place]:
     """Provide the Place of a scheduler. Raises ConfigError; see open_place()."""
+    if not re.fullmatch(r'(tcp|tls)://[^/\s]+:\d+', address):
+        raise ConfigError(f'--scheduler: {show_name(address)}: expected tcp://HOST:PORT or tls://HOST:PORT')
     try:
         import distributed
     except ImportError as error:
         raise ConfigError(f'--scheduler: {error}: expected the Debian package python3-distributed, on Debian 11 also '
                           'python3-tornado') from None
-    logging.getLogger('distributed').setLevel(logging.CRITICAL + 1)     # one line is enough, and it is ours
-    logging.getLogger('tornado').setLevel(logging.CRITICAL + 1)
-    logging.getLogger('asyncio').setLevel(logging.CRITICAL + 1)
+    logging.disable(logging.CRITICAL)   # one line is enough, and it is ours
     warnings.filterwarnings('ignore', module='distributed')
     warnings.filterwarnings('ignore', message='.*Mismatched versions')
     try:

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from collections import deque
-from concurrent.futures import Executor, Future, ProcessPoolExecutor, TimeoutError as FutureTimeout
+from concurrent.futures import Executor, Future, ProcessPoolExecutor, wait
 from contextlib import contextmanager
 import multiprocessing
 import os
@@ -15,6 +15,7 @@ from rbx1_nav.simulation.surfaces import Surface
 
 LOOK = 1.0          # s between two checks of an executor whose result is late
 AHEAD = 4           # tasks per process that are submitted before their results are needed
+ATTEMPTS = 10       # of a task, if place.again() requests them
 Task = TypeVar('Task')
 Result = TypeVar('Result')
 
@@ -55,14 +56,17 @@ def _submit(place: Place, function: Callable[[Task], Result], task: Task) -> Fut
 
 
 def _result(place: Place, function: Callable[[Task], Result], task: Task, future: Future[Result]) -> Result:
+    attempts = 1
     while True:
+        while not future.done():
+            if not wait([future], LOOK).done:
+                place.check()
         try:
-            return future.result(LOOK)
-        except FutureTimeout:
-            place.check()
+            return future.result()
         except Exception as error:
-            if not place.again(error):
+            if attempts == ATTEMPTS or not place.again(error):
                 raise
+            attempts += 1
             future = _submit(place, function, task)
 
 

@@ -1,8 +1,7 @@
-"""Computes all runs of a sweep that its file lacks, and keeps what the pictures need."""
+"""Computes all runs of a sweep that its file lacks."""
 from __future__ import annotations
 
 from array import array
-import itertools
 import time
 from typing import Iterator, NamedTuple, Sequence
 
@@ -74,39 +73,63 @@ class Sweep:
         jobs, scheduler: see open_place(); keep_truths: whether to return the true end poses; paths: number of runs with
         paths to return. Raises ConfigError, OSError, StuckError and the errors of the executor.
         """
+        kept = Kept(keep_truths)
         start = time.monotonic()
         first = simulate_row(self.chunks[0].case(self.robot), self.seeds[0])
         long = (time.monotonic() - start) * self.total > MOMENT
-        summary, truths, computed = Summary(), array('d'), 0
-        with open_place(jobs if long else 1, scheduler, self.robot, self.chunks[0].combination.surface) as place:
-            for chunk, rows, is_new in self._results(place, file):
-                if chunk is self.chunks[0] and rows[0] != first:
-                    raise ConfigError(f'{chunk.method}, seed {self.seeds[0]}: this computer has another result for the '
-                                      'run: expected a file or a cluster with equal processors and libraries')
-                for row in rows:
-                    add_row(summary, row)
-                    if keep_truths:
-                        truths.extend(row[:3])      # type: ignore[arg-type]
-                if is_new:
-                    computed += len(rows)
-                    if file:
-                        file.append(chunk, rows)
-                self.progress.add(len(rows), chunk.method, is_new)
-                if not chunk.is_last:
-                    continue
-                took, start = time.monotonic() - start, time.monotonic()
-                drawn = in_order(place, simulate_paths, [(chunk.case(self.robot), [seed])
-                                                         for seed in self.seeds[:paths]])
-                yield Finished(chunk.combination, chunk.method, summary, took, computed,
-                               numpy.array(truths).reshape(-1, 3), [result for each in drawn for result in each])
-                summary, truths, computed = Summary(), array('d'), 0
-
-    def _results(self, place: Place | None, file: RunsFile | None) -> Iterator[tuple[Chunk, list[Row], bool]]:
-        """Yield each chunk with its rows, and whether they were computed now."""
         number = 0
         for chunk, rows in file.read(self.chunks) if file else ():
+            self._check(number, rows, first)
+            kept.add(rows)
+            self.progress.add(len(rows), chunk.method, False)
             number += 1
-            yield chunk, rows, False
+            if chunk.is_last:
+                yield kept.finished(chunk, 0.0, self._paths(None, chunk, paths))
         missing = self.chunks[number:]
-        tasks = ((chunk.case(self.robot), chunk.seeds) for chunk in missing)
-        yield from zip(missing, in_order(place, simulate_rows, tasks), itertools.repeat(True))
+        if not missing:
+            return
+        start = time.monotonic()
+        with open_place(jobs if long else 1, scheduler, self.robot, self.chunks[0].combination.surface) as place:
+            tasks = ((chunk.case(self.robot), chunk.seeds) for chunk in missing)
+            for number, (chunk, rows) in enumerate(zip(missing, in_order(place, simulate_rows, tasks)), number):
+                self._check(number, rows, first)
+                kept.add(rows, computed=True)
+                if file:
+                    file.append(chunk, rows)
+                self.progress.add(len(rows), chunk.method, True)
+                if chunk.is_last:
+                    took, start = time.monotonic() - start, time.monotonic()
+                    yield kept.finished(chunk, took, self._paths(place, chunk, paths))
+
+    def _check(self, number: int, rows: Sequence[Row], first: Row) -> None:
+        if number == 0 and rows[0] != first:
+            raise ConfigError(f'{self.methods[0]}, seed {self.seeds[0]}: this computer has another result for the run: '
+                              'expected a file or a cluster with equal processors and libraries')
+
+    def _paths(self, place: Place | None, chunk: Chunk, count: int) -> list[SimulationResult]:
+        """Return the first results of a method, with their paths."""
+        tasks = [(chunk.case(self.robot), [seed]) for seed in self.seeds[:count]]
+        return [result for results in in_order(place, simulate_paths, tasks) for result in results]
+
+
+class Kept:
+    """What is kept of the runs of a method until all of them are done."""
+
+    def __init__(self, keep_truths: bool) -> None:
+        self.keep_truths = keep_truths
+        self.summary, self.truths, self.computed = Summary(), array('d'), 0
+
+    def add(self, rows: Sequence[Row], computed: bool = False) -> None:
+        """Add runs. computed: whether they were not in the file."""
+        self.computed += len(rows) if computed else 0
+        for row in rows:
+            add_row(self.summary, row)
+            if self.keep_truths:
+                self.truths.extend(row[:3])     # type: ignore[arg-type]
+
+    def finished(self, chunk: Chunk, took: float, paths: list[SimulationResult]) -> Finished:
+        """Return all runs of a method, and forget them. chunk: the last one."""
+        found = Finished(chunk.combination, chunk.method, self.summary, took, self.computed,
+                         numpy.array(self.truths).reshape(-1, 3), paths)
+        self.summary, self.truths, self.computed = Summary(), array('d'), 0
+        return found
