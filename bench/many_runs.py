@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Compare many runs on a Dask cluster of this machine, one of whose workers is killed, with local ones. See README.md."""
+"""Compare many runs on a Dask cluster, one of whose workers is killed, with local processes. See README.md."""
 import argparse
 import filecmp
 import os

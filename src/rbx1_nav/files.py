@@ -20,6 +20,13 @@ def check_writable(path: str) -> None:
         raise ConfigError(f'expected a file that can be written: {error.strerror}') from error
 
 
+def check_yaml(path: str) -> None:
+    """Check that a YAML file can be written. Raises ConfigError."""
+    if not path.endswith('.yaml'):
+        raise ConfigError('expected a file name with the extension .yaml')
+    check_writable(path)
+
+
 def write_file(path: str, content: bytes) -> None:
     """Write a file atomically: after an error, the previous content is still there. Raises OSError."""
     path = os.path.realpath(path)       # do not replace a link to the file
