@@ -17,7 +17,7 @@ COMMAND = ('--surface', 'low_ply_carpet', '--method', 'timed', '--method', 'ekf'
 
 
 @unittest.skipUnless(distributed, 'needs the Debian package python3-distributed')
-class TestManyRuns(unittest.TestCase):
+class TestTwoWorkers(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.folder = tempfile.mkdtemp()
@@ -104,4 +104,4 @@ class TestManyRuns(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('many_runs', TestManyRuns)
+    support.main('two_workers', TestTwoWorkers)
