@@ -96,7 +96,7 @@ def main():
         local, clustered = (os.path.join(folder, name) for name in ('local.csv', 'cluster.csv'))
         first, samples = simulate(local, arguments, Local())
         show('two local processes', first, samples)
-        cluster = Cluster(folder)
+        cluster = Cluster(folder, DASK_DISTRIBUTED__WORKER__PROFILE__ENABLED='False')
         try:
             watched = OnCluster(cluster)
             second, samples = simulate(clustered, arguments, watched, watched.replace_a_worker)

@@ -11,10 +11,11 @@ import time
 from typing import Any, Callable, Iterator
 import warnings
 
-from rbx1_nav.batch.cases import Case, simulate_row
+from rbx1_nav.batch.cases import Case, Row, simulate_row
 from rbx1_nav.batch.executor import Place
 from rbx1_nav.batch.worker import Requirements, checked, code_version, require, versions
 from rbx1_nav.config import ConfigError, show_name
+from rbx1_nav.control.legs import StuckError
 from rbx1_nav.robot.description import Robot
 from rbx1_nav.simulation.exercise import METHODS, PARAMETERS
 from rbx1_nav.simulation.surfaces import Surface
@@ -53,6 +54,8 @@ class Cluster(Executor):
     def workers(self) -> dict[str, int]:
         """Return the number of threads of each worker, by address. Raises ConnectionError."""
         found: dict[str, int] = self.ask(self.client.nthreads)
+        if found:
+            self.last_worker = time.monotonic()
         return found
 
     def count(self) -> int:
@@ -64,9 +67,7 @@ class Cluster(Executor):
 
     def check(self) -> None:
         """Raise ConnectionError if the scheduler is lost, or has had no worker for some time."""
-        if self.workers():
-            self.last_worker = time.monotonic()
-        elif time.monotonic() > self.last_worker + PATIENCE:
+        if not self.workers() and time.monotonic() > self.last_worker + PATIENCE:
             raise ConnectionError(f'{self.client.scheduler.address} has no worker any more')
 
     def refusals(self) -> Iterator[tuple[str, str]]:
@@ -120,9 +121,7 @@ def open_cluster(address: str, robot: Robot, surface: Surface | None) -> Iterato
     try:
         here = versions()
         check_scheduler(client, here)
-        runs = [(case, 0, simulate_row(case, 0)) for case in (Case(method, robot, surface, PARAMETERS)
-                                                              for method in METHODS)]
-        cluster = Cluster(client, Requirements(here, runs))
+        cluster = Cluster(client, Requirements(here, list(sample_runs(robot, surface))))
         for name, reason in cluster.refusals():
             raise ConfigError(f'worker {name}: {reason}')
         if not cluster.accepted:
@@ -132,6 +131,16 @@ def open_cluster(address: str, robot: Robot, surface: Surface | None) -> Iterato
         try:
             client.close(timeout=2)
         except Exception:       # the scheduler is lost; the error that says so is more useful
+            pass
+
+
+def sample_runs(robot: Robot, surface: Surface | None) -> Iterator[tuple[Case, int, Row]]:
+    """Yield a run of each method that does not get stuck on a surface, with its seed and its results."""
+    for method in METHODS:
+        case = Case(method, robot, surface, PARAMETERS)
+        try:
+            yield case, 0, simulate_row(case, 0)
+        except StuckError:
             pass
 
 
@@ -145,8 +154,10 @@ def check_scheduler(client: Any, here: dict[str, str]) -> None:
                               'as here')
     try:
         there['rbx1_nav'] = client.run_on_scheduler(code_version)
-    except ImportError:     # without it, the scheduler only passes on what the workers compute
-        return
+    except Exception as error:
+        if 'No module' in str(error):   # without it, the scheduler only passes on what the workers compute
+            return
+        raise ConfigError(f'scheduler {client.scheduler.address}: {error}') from None
     if there['rbx1_nav'] != here['rbx1_nav']:
         raise ConfigError(f"scheduler {client.scheduler.address}: rbx1_nav {there['rbx1_nav']}: expected "
                           f"{here['rbx1_nav']}, as here")
