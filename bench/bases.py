@@ -2,8 +2,6 @@
 """Compare the filter with robot_pose_ekf's arithmetic on the messages of other projects' bases. See README.md."""
 import argparse
 from bisect import bisect_right
-from concurrent.futures import ProcessPoolExecutor
-from contextlib import nullcontext
 from itertools import accumulate
 import math
 import random
@@ -16,6 +14,7 @@ from base_cases import CASES
 from floors import aligned, consistency, digits, markdown_value, misses, report, squared_errors
 from replay import replay
 from robot_pose_ekf import RobotPoseEkf
+from rbx1_nav.batch.executor import add_arguments, in_order, open_place
 from rbx1_nav.estimation.priors import UNKNOWN_FLOOR
 from rbx1_nav.estimation.inputs import Imu, Odom
 from rbx1_nav.robot.description import Limits, read_robot
@@ -237,13 +236,13 @@ def judged(row, unbiased=None):
     return dict(row, misses=misses(row, row['limits']))
 
 
-def measure(robot, names, seeds, jobs):
+def measure(robot, names, seeds, jobs, scheduler=None):
     """One row per case, in the order of `names` (of the cases)."""
     surfaces = {floor: load_surface(floor, resources.surfaces()) for floor in {CASES[name].floor for name in names}}
     tasks = [(robot, CASES[name], surfaces[CASES[name].floor], seed) for name in names for seed in range(seeds)]
     sums = dict.fromkeys(names, 0.0)
-    with ProcessPoolExecutor(jobs) if jobs > 1 else nullcontext() as pool:
-        for name, values in (pool.map if pool else map)(run, tasks):
+    with open_place(jobs, scheduler, robot, None) as place:
+        for name, values in in_order(place, run, tasks):
             sums[name] = sums[name] + values
     rows = {name: figures(name, seeds, values) for name, values in sums.items()}
     return [judged(row, rows.get(CASES[name].unbiased)) for name, row in rows.items()]
@@ -271,7 +270,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('--seeds', type=int, default=20, metavar='N', help='runs of each case; default: 20')
     parser.add_argument('--case', action='append', metavar='NAME', help='only this case; can be repeated')
-    parser.add_argument('--jobs', type=int, default=1, metavar='N', help='processes; default: 1')
+    add_arguments(parser, 1)
     parser.add_argument('--markdown', action='store_true', help='print the table in Markdown')
     parser.add_argument('--json', metavar='FILE')
     arguments = parser.parse_args()
@@ -285,9 +284,11 @@ def main():
     wanted |= {CASES[name].unbiased for name in wanted}     # limits are relative to these
     with open(resources.path('config', 'turtlebot.yaml'), encoding='utf-8') as file:
         robot = read_robot(yaml.safe_load(file))
-    rows = measure(robot, [name for name in CASES if name in wanted], arguments.seeds, arguments.jobs)
+    rows = measure(robot, [name for name in CASES if name in wanted], arguments.seeds, arguments.jobs,
+                   arguments.scheduler)
     report(rows, (markdown if arguments.markdown else table)(rows), arguments.json)
 
 
 if __name__ == '__main__':
-    main()
+    import bases     # the workers of a cluster import its functions by this name
+    bases.main()

@@ -1,13 +1,12 @@
 #!/usr/bin/env python3
 """Compare the filter with robot_pose_ekf's arithmetic for every true and every assumed floor. See README.md."""
 import argparse
-from concurrent.futures import ProcessPoolExecutor
-from contextlib import nullcontext
 
 import yaml
 
 from floors import UNKNOWN, Follower, KnownHeading, figures, limits, misses, markdown, report, table
 from robot_pose_ekf import RobotPoseEkf
+from rbx1_nav.batch.executor import add_arguments, in_order, open_place
 from rbx1_nav.control.legs import StuckError
 from rbx1_nav.estimation.combined_odometry import CombinedOdometry
 from rbx1_nav.estimation.priors import UNKNOWN_FLOOR, priors
@@ -82,11 +81,11 @@ def tasks(robot, surfaces, assumed, methods, seeds):
                     yield robot, true, surface, group, method, range(start, min(start + CHUNK, count))
 
 
-def measure(robot, surfaces, assumed, methods, seeds, jobs):
+def measure(robot, surfaces, assumed, methods, seeds, jobs, scheduler=None):
     """One dict per true floor, method and assumed floor."""
     totals = {}
-    with ProcessPoolExecutor(jobs) if jobs > 1 else nullcontext() as pool:
-        for key, sums in (pool.map if pool else map)(run_some, tasks(robot, surfaces, assumed, methods, seeds)):
+    with open_place(jobs, scheduler, robot, None) as place:
+        for key, sums in in_order(place, run_some, tasks(robot, surfaces, assumed, methods, seeds)):
             for name, values in sums.items():
                 totals[(*key, name)] = add(totals.get((*key, name), NOTHING), values)
     slips = {name: priors(surface).slip_straight for name, surface in surfaces.items()}
@@ -108,7 +107,7 @@ def main():
     parser.add_argument('--true', action='append', metavar='NAME', help='only this true floor; can be repeated')
     parser.add_argument('--assumed', action='append', metavar='NAME', help='only this assumed floor; can be repeated')
     parser.add_argument('--method', action='append', choices=METHODS, help='only this method; can be repeated')
-    parser.add_argument('--jobs', type=int, default=1, metavar='N', help='processes; default: 1')
+    add_arguments(parser, 1)
     parser.add_argument('--markdown', action='store_true', help='print the table of bench/filter_tables.md')
     parser.add_argument('--json', metavar='FILE')
     arguments = parser.parse_args()
@@ -128,10 +127,11 @@ def main():
     order = [(true, name, method) for true in surfaces for name in assumed for method in methods]
     rows = sorted(measure(robot, {name: surfaces[name] for name in arguments.true or surfaces},
                           {name: assumed[name] for name in arguments.assumed or assumed},
-                          methods, arguments.seeds, arguments.jobs),
+                          methods, arguments.seeds, arguments.jobs, arguments.scheduler),
                   key=lambda row: order.index((row['true'], row['assumed'], row['method'])))
     report(rows, (markdown if arguments.markdown else table)(rows), arguments.json)
 
 
 if __name__ == '__main__':
-    main()
+    import filter     # the workers of a cluster import its functions by this name
+    filter.main()

@@ -14,6 +14,7 @@ The --ends file has one line per bag: its name without folder, and the end pose 
 import rbx1_nav.ros.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
 
 import argparse
+from functools import partial
 import os
 import signal
 import sys
@@ -23,13 +24,15 @@ os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
 
 from tqdm import tqdm
 
+from rbx1_nav.batch.executor import add_arguments, in_order, open_place
 from rbx1_nav.config import ConfigError, show_name
+from rbx1_nav.files import check_yaml, write_file
 from rbx1_nav.fitting.comparison import compare, shares
 from rbx1_nav.fitting.ends_file import read_ends
 from rbx1_nav.fitting.mrclam import is_commands_file, read_robot as read_text_files, truth_file
 from rbx1_nav.fitting.recording import in_force
 from rbx1_nav.plotting.fit import draw_fit
-from rbx1_nav.plotting.runs import check_picture, check_writable, write_file
+from rbx1_nav.plotting.runs import check_picture
 from rbx1_nav.robot.description import load_robot
 from rbx1_nav.ros.node import resources
 from rbx1_nav.ros.tools.bags import Topics, read_bag
@@ -56,8 +59,9 @@ def read_arguments():
                         help="ArbotiX YAML file with the base's width, limits and timeout; default: the TurtleBot's")
     for name, topic in (('cmd-vel', '/cmd_vel'), ('odom', '/odom'), ('imu', '/imu/data')):
         parser.add_argument(f'--{name}', default=topic, metavar='TOPIC', help=f'default: {topic}')
+    add_arguments(parser, 1)
     arguments = parser.parse_args()
-    for name, check in (('output', check_output), ('plot', check_picture)):
+    for name, check in (('output', check_yaml), ('plot', check_picture)):
         path = getattr(arguments, name)
         try:
             if path is not None:
@@ -79,13 +83,6 @@ def read_arguments():
         parser.error(f'{show_name(text_files[0])}: a text file comes with its ground truth: expected neither bags nor '
                      '--truth nor --ends')
     return arguments
-
-
-def check_output(path):
-    """Raise ConfigError unless a surface file can be written to a path."""
-    if not path.endswith('.yaml'):
-        raise ConfigError('expected a file name with the extension .yaml')
-    check_writable(path)
 
 
 def read_runs(arguments, robot):
@@ -125,7 +122,8 @@ def main():
             result = WholeFit(recordings, robot.base_width, start, end_errors,
                               lambda part: bar.set_description(f'Fitting the {part}')).result()
             bar.set_description('Simulating the runs on the new surface')
-            comparisons = compare(result.surface, recordings, robot.base_width)
+            with open_place(max(1, arguments.jobs), arguments.scheduler, robot, start) as place:
+                comparisons = compare(result.surface, recordings, robot.base_width, compute=partial(in_order, place))
         print('\n'.join(table(result, arguments.start)))
         count, inside_50, inside_90 = shares(comparisons)
         if count:
@@ -137,7 +135,7 @@ def main():
         if arguments.plot:
             draw_fit(arguments.plot, f'Fitted: {result.description}', comparisons)
             print(f'Picture: {arguments.plot}')
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError, RuntimeError) as error:
         # the device of the output may be full, and Python would try to write to it again at exit
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         print(f"fit_surface.py: {' '.join(str(error).split())}", file=sys.stderr)

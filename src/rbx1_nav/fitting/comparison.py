@@ -1,7 +1,7 @@
 """Compares recorded runs with simulated runs of the same commands."""
 from __future__ import annotations
 
-from typing import Iterator, NamedTuple, Sequence
+from typing import Callable, Iterable, Iterator, NamedTuple, Sequence
 
 import numpy
 
@@ -46,30 +46,35 @@ def region_share(surface: Surface, recording: Recording, base_width: float, end:
     return inner_share(ends[:, :2], end[:2]), inner_share(ends, end)
 
 
-def compare(surface: Surface, recordings: Sequence[Recording], base_width: float,
-            seed: int = 1) -> list[Comparison]:
-    """Return Comparisons of Recordings with a Surface that was fitted to them; at most MAX_SHOWN."""
-    comparisons: list[Comparison] = []
-    for recording, start, end in choose(recordings):
-        run, prediction = predict(surface, recording, base_width, start, end)
-        # each run shows a different path, but equal commands have equal regions
-        number = len(comparisons)
-        paths = simulate_paths(surface, prediction, 0, ENDS, numpy.random.default_rng(seed))
-        track = recording.truth or recording.odometry
-        path: Array | None = None
-        true: Array | None = None
-        if track:
-            path = relative(*(numpy.array([numpy.interp(time, track.time, values) for values in track[1:]])
-                              for time in (run.times[0], run.times)))
-            path = numpy.concatenate([numpy.zeros((3, 1)), path], axis=1)
-        if recording.truth and path is not None:
-            true = path[:, -1]
-        elif recording.end:
-            true = numpy.array(recording.end)
-        comparisons.append(Comparison(recording.name, None if path is None else path[:2], bool(recording.truth),
-                                      numpy.concatenate([numpy.zeros((2, 1)), paths[number, :2]], axis=1),
-                                      paths[:, :, -1], true))
-    return comparisons
+def compare(surface: Surface, recordings: Sequence[Recording], base_width: float, seed: int = 1,
+            compute: Callable[..., Iterable[Comparison]] = map) -> list[Comparison]:
+    """Return Comparisons of Recordings with a Surface that was fitted to them; at most MAX_SHOWN.
+
+    compute(function, parts): yields the results for all parts, in their order, wherever they are computed.
+    """
+    return list(compute(compare_part, [(number, surface, recording, base_width, start, end, seed)
+                                       for number, (recording, start, end) in enumerate(choose(recordings))]))
+
+
+def compare_part(part: tuple[int, Surface, Recording, float, float | None, float | None, int]) -> Comparison:
+    """Return the Comparison of a run or of a part of it."""
+    number, surface, recording, base_width, start, end, seed = part
+    run, prediction = predict(surface, recording, base_width, start, end)
+    # each run shows a different path, but equal commands have equal regions
+    paths = simulate_paths(surface, prediction, 0, ENDS, numpy.random.default_rng(seed))
+    track = recording.truth or recording.odometry
+    path: Array | None = None
+    true: Array | None = None
+    if track:
+        path = relative(*(numpy.array([numpy.interp(time, track.time, values) for values in track[1:]])
+                          for time in (run.times[0], run.times)))
+        path = numpy.concatenate([numpy.zeros((3, 1)), path], axis=1)
+    if recording.truth and path is not None:
+        true = path[:, -1]
+    elif recording.end:
+        true = numpy.array(recording.end)
+    return Comparison(recording.name, None if path is None else path[:2], bool(recording.truth),
+                      numpy.concatenate([numpy.zeros((2, 1)), paths[number, :2]], axis=1), paths[:, :, -1], true)
 
 
 def choose(recordings: Sequence[Recording]) -> Iterator[tuple[Recording, float | None, float | None]]:

@@ -4,13 +4,13 @@ from __future__ import annotations
 import io
 from math import cos, sin
 import os
-import shutil
 from typing import TYPE_CHECKING, Iterable, Mapping, Sequence, Tuple
 
 import numpy
 
 from rbx1_nav.arrays import Array
 from rbx1_nav.config import ConfigError
+from rbx1_nav.files import check_writable, write_file
 from rbx1_nav.plotting.palette import TRUTH
 from rbx1_nav.robot.kinematics import ORIGIN, Pose
 from rbx1_nav.simulation.exercise import SimulationResult
@@ -37,23 +37,12 @@ def check_picture(path: str) -> None:
     check_writable(path)
 
 
-def check_writable(path: str) -> None:
-    """Check that a file can be written. Raises ConfigError."""
-    if not os.path.isdir(os.path.dirname(os.path.abspath(path))):
-        raise ConfigError('expected a folder that exists')
-    new = not os.path.lexists(path)
-    try:
-        open(path, 'ab').close()        # checking the permissions is not enough
-        if new:
-            os.remove(path)
-    except OSError as error:
-        raise ConfigError(f'expected a file that can be written: {error.strerror}') from error
-
-
-def draw(file: str, surface: str, results: Mapping[str, Sequence[SimulationResult]], seeds: range) -> None:
+def draw(file: str, surface: str, results: Mapping[str, Sequence[SimulationResult]], seeds: range,
+         truths: Mapping[str, Array] | None = None) -> None:
     """Draw a column for each method: above, true paths; below, the end poses of all runs, on one scale.
 
-    surface: name of the surface; results: by method.
+    surface: name of the surface; results: by method, at least those with a path; truths: true end poses (n, 3) of all
+    runs by method, m and rad; None: those of the results.
     """
     from matplotlib.figure import Figure
     figure = Figure(figsize=(5.6 * len(results), 9.4), constrained_layout=True)
@@ -61,7 +50,8 @@ def draw(file: str, surface: str, results: Mapping[str, Sequence[SimulationResul
     runs = (f'1 run (seed {seeds[0]})' if len(seeds) == 1
             else f'{len(seeds)} runs (seeds {seeds[0]} to {seeds[-1]})')
     figure.suptitle(f'Out and back on {surface}, {runs}')
-    ends = {method: end_poses(each) for method, each in results.items()}
+    ends = {method: with_heading_errors(truths[method]) if truths else end_poses(each)
+            for method, each in results.items()}
     extent, norm = common_extent(ends.values()), common_norm(ends.values())
     for (above, below), method in zip(panels.T, results):
         draw_paths(above, results[method])
@@ -83,27 +73,14 @@ def save(figure: Figure, path: str) -> None:
     write_file(path, picture.getvalue())
 
 
-def write_file(path: str, content: bytes) -> None:
-    """Write a file atomically: after an error, the previous content is still there. Raises OSError."""
-    path = os.path.realpath(path)       # do not replace a link to the file
-    new = os.path.join(os.path.dirname(path), f'.rbx1_nav-{os.getpid()}.tmp')
-    try:
-        with open(new, 'wb') as file:
-            file.write(content)
-            file.flush()
-            os.fsync(file.fileno())     # some file systems report a full disk only here
-        if os.path.exists(path):
-            shutil.copymode(path, new)
-        os.replace(new, path)
-    except BaseException:
-        if os.path.exists(new):
-            os.remove(new)
-        raise
-
-
 def end_poses(results: Iterable[SimulationResult]) -> Array:
     """Return an array with a row for each result: true x and y (m), and the absolute heading error (degrees)."""
-    poses = numpy.array([result.end.truth for result in results])
+    return with_heading_errors(numpy.array([result.end.truth for result in results]))
+
+
+def with_heading_errors(poses: Array) -> Array:
+    """Return poses (n, 3) with the absolute heading error (degrees) in place of the heading (rad)."""
+    poses = poses.copy()
     poses[:, 2] = abs(numpy.degrees(numpy.angle(numpy.exp(1j * poses[:, 2]))))
     return poses
 

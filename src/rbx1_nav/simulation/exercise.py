@@ -4,15 +4,9 @@ Meters, radians, seconds.
 """
 from __future__ import annotations
 
-from collections import deque
-from concurrent.futures import Future, ProcessPoolExecutor
 from functools import partial
 from math import pi
-import multiprocessing
-import os
-import signal
-import threading
-from typing import Callable, Deque, Iterator, NamedTuple, Sequence
+from typing import Callable, Iterator, Mapping, NamedTuple, Sequence
 
 from rbx1_nav.arrays import Array
 from rbx1_nav.control.legs import Leg, out_and_back_by_odometry
@@ -31,10 +25,11 @@ METHODS = ('timed', 'odom', 'ekf')
 # the tutorial's values, which are the nodes' defaults: m/s, m, rad/s, rad, Hz
 EXERCISE = dict(linear_speed=0.2, goal_distance=1.0, angular_speed=1.0, goal_angle=pi, rate=50)
 MIN_SPEEDS = dict(min_linear_speed=0.05, min_angular_speed=0.2)
+PARAMETERS: dict[str, float] = {**EXERCISE, **MIN_SPEEDS}
 TICK = round(SECOND / EXERCISE['rate'])     # ns
-REST = 50       # ticks between two motions
-TRIAL_REST = 25     # ticks at the trial stop of a leg
-CALIBRATION = 100   # ticks at rest before the first motion, during which the filter estimates the gyro's bias
+REST = 1.0          # s between two motions
+TRIAL_REST = 0.5    # s at the trial stop of a leg
+CALIBRATION = 2.0   # s at rest before the first motion, during which the filter estimates the gyro's bias
 
 
 class Snapshot(NamedTuple):
@@ -78,9 +73,9 @@ class Simulation:
     """A robot, and a filter that receives its odometry and gyro readings."""
 
     def __init__(self, robot: Robot, surface: Surface | None, seed: int, filtered: bool, keep: bool,
-                 prior: Priors | None = None, listen: Listen | None = None) -> None:
+                 prior: Priors | None = None, listen: Listen | None = None, rate: float = EXERCISE['rate']) -> None:
         """filtered: whether there is a filter; keep: whether to keep a Snapshot of each tick in `path`; prior, listen:
-        see simulate()."""
+        see simulate(); rate: ticks per second."""
         self.base = make_base(robot, surface, seed)
         self.filter = CombinedOdometry(prior or priors(surface), SECOND) if filtered else None
         self.listen = listen
@@ -88,10 +83,11 @@ class Simulation:
             self.base.read_gyro()       # readings begin now
         self.path: list[Snapshot] | None = [] if keep else None
         self.now = 0
+        self.rate, self.period = rate, round(SECOND / rate)
 
     def tick(self) -> None:
         """Advance by one tick."""
-        self.now += TICK
+        self.now += self.period
         self.base.advance(self.now)
         if self.filter or self.listen:
             messages = self._messages()
@@ -109,10 +105,10 @@ class Simulation:
                         Odom(self.now, self.base.odometry.pose, uncertainty.linear, uncertainty.angular),
                         (uncertainty.position, uncertainty.position, uncertainty.yaw))
 
-    def rest(self, ticks: int) -> None:
-        """Keep the robot at rest for a number of ticks."""
+    def rest(self, duration: float) -> None:
+        """Keep the robot at rest for a duration (s)."""
         self.base.command(self.now, 0.0, 0.0)
-        for _ in range(ticks):
+        for _ in range(round(duration * self.rate)):
             self.tick()
 
     def snapshot(self) -> Snapshot:
@@ -142,17 +138,18 @@ class Simulation:
 
 
 def simulate(method: str, robot: Robot, surface: Surface | None, seed: int, filtered: bool = False, keep: bool = False,
-             prior: Priors | None = None, listen: Listen | None = None) -> SimulationResult:
+             prior: Priors | None = None, listen: Listen | None = None,
+             parameters: Mapping[str, float] = PARAMETERS) -> SimulationResult:
     """Run the exercise with one of METHODS, and return a SimulationResult. Raises StuckError.
 
     robot: a Robot; surface: a Surface, or None; seed: seed of the run's random errors; filtered: whether to run the
     filter, which `ekf` always runs; keep: whether to keep the path; prior: Priors of the filter, if they differ from
-    the surface; listen(Snapshot, Messages): called at each tick.
+    the surface; listen(Snapshot, Messages): called at each tick; parameters: all PARAMETERS with their values.
     """
-    simulation = Simulation(robot, surface, seed, filtered or method == 'ekf', keep, prior, listen)
+    simulation = Simulation(robot, surface, seed, filtered or method == 'ekf', keep, prior, listen, parameters['rate'])
     simulation.rest(CALIBRATION)
     distances = []
-    for drive in _drives(simulation, method):
+    for drive in _drives(simulation, method, parameters):
         drive()
         simulation.rest(REST)
         distances.append(simulation.base.wheels.truth.x)
@@ -161,68 +158,29 @@ def simulate(method: str, robot: Robot, surface: Surface | None, seed: int, filt
                             simulation.path)
 
 
-def _drives(simulation: Simulation, method: str) -> list[Callable[[], None]]:
+def motions(parameters: Mapping[str, float]) -> list[Motion]:
+    """Return the motions of the timed exercise. Raises ValueError if one of them is too short or too long."""
+    return out_and_back(**{name: parameters[name] for name in EXERCISE})
+
+
+def legs(parameters: Mapping[str, float]) -> list[Leg]:
+    """Return the legs of the exercise with odometry. Raises ValueError if one of them is too short or too long."""
+    return out_and_back_by_odometry(**parameters)
+
+
+def _drives(simulation: Simulation, method: str, parameters: Mapping[str, float]) -> list[Callable[[], None]]:
     """Return four functions, each of which drives one motion of the exercise."""
     if method == 'timed':
-        return [partial(simulation.drive_by_time, motion) for motion in out_and_back(**EXERCISE)]
+        return [partial(simulation.drive_by_time, motion) for motion in motions(parameters)]
     combined = simulation.filter if method == 'ekf' else None
 
     def get_pose() -> Pose:
         estimate = combined.pose if combined else None
         return estimate or simulation.base.odometry.pose
-    return [partial(simulation.drive_by_pose, leg, get_pose)
-            for leg in out_and_back_by_odometry(**EXERCISE, **MIN_SPEEDS)]
+    return [partial(simulation.drive_by_pose, leg, get_pose) for leg in legs(parameters)]
 
 
-def simulate_many(method: str, robot: Robot, surface: Surface | None, seeds: Sequence[int], keep: int = 0,
-                  jobs: int = 1) -> Iterator[SimulationResult]:
-    """Yield the SimulationResults of all seeds, in the order of the seeds.
-
-    keep: number of paths to keep; jobs: number of processes. Closing the generator stops the processes. Raises
-    BrokenProcessPool if one of them is killed.
-    """
-    work = partial(_simulate_some, method, robot, surface)
-    tasks = [(seed, number < keep) for number, seed in enumerate(seeds)]
-    if jobs == 1:
-        for task in tasks:
-            yield from work([task])
-        return
-    size = max(1, min(50, len(tasks) // 100))
-    chunks = [tasks[start:start + size] for start in range(0, len(tasks), size)]
-    jobs = min(jobs, len(chunks))
-    with ProcessPoolExecutor(max(1, jobs), initializer=_follow_the_parent) as pool:
-        results: Deque[Future[list[SimulationResult]]] = deque()
-        try:
-            for chunk in chunks:
-                # The thread that writes to the processes inherits this mask: SIGPIPE does not reach it when they die
-                before = signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGPIPE,))
-                results.append(pool.submit(work, chunk))
-                signal.pthread_sigmask(signal.SIG_SETMASK, before)
-                if len(results) > 4 * jobs:     # enough work for all processes, but not all results in memory
-                    yield from results.popleft().result()
-            while results:
-                yield from results.popleft().result()
-        except BaseException:       # do not wait for runs whose results are not needed
-            for process in multiprocessing.active_children():
-                process.kill()
-            raise
-
-
-def _follow_the_parent() -> None:
-    """Make a new process leave Ctrl-C to its parent, and exit when its parent exits, even if the parent is killed."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    signal.signal(signal.SIGTERM, signal.SIG_DFL)
-    threading.Thread(target=_end_with_the_parent, daemon=True).start()
-
-
-def _end_with_the_parent() -> None:
-    parent = multiprocessing.parent_process()
-    if parent:
-        parent.join()
-    os._exit(1)
-
-
-def _simulate_some(method: str, robot: Robot, surface: Surface | None,
-                   tasks: Sequence[tuple[int, bool]]) -> list[SimulationResult]:
-    """Return the SimulationResults of some tasks, which are pairs of a seed and whether to keep the path."""
-    return [simulate(method, robot, surface, seed, keep=keep) for seed, keep in tasks]
+def simulate_many(method: str, robot: Robot, surface: Surface | None,
+                  seeds: Sequence[int]) -> Iterator[SimulationResult]:
+    """Yield the SimulationResults of all seeds, in the order of the seeds."""
+    return (simulate(method, robot, surface, seed) for seed in seeds)

@@ -105,13 +105,6 @@ def test_a_run_depends_on_the_seed_only(method):
     assert one == again and one.truth != other.truth
 
 
-def test_several_processes_return_the_same_runs_in_the_same_order():
-    single = list(simulate_many('timed', TURTLEBOT, CARPET, SEEDS, keep=2))
-    parallel = list(simulate_many('timed', TURTLEBOT, CARPET, SEEDS, keep=2, jobs=2))
-    assert single == parallel
-    assert [run.path is not None for run in single] == [True] * 2 + [False] * 18
-
-
 @pytest.mark.parametrize('method', METHODS)
 def test_who_listens_receives_what_the_filter_does_and_changes_nothing(method):
     other, estimates = CombinedOdometry(priors(CARPET), SECOND), []

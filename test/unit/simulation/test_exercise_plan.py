@@ -1,20 +1,12 @@
-"""What the exercise without ROS consists of: its motions and pauses, and its processes."""
-from concurrent.futures.process import BrokenProcessPool
-from contextlib import suppress
+"""What the exercise without ROS consists of: its motions and pauses."""
 from itertools import groupby
 from math import pi
-import multiprocessing
 import os
-import signal
-import subprocess
-import sys
-import time
 
 import pytest
 
 from rbx1_nav.robot.description import load_robot
-from rbx1_nav.simulation.exercise import simulate, simulate_many
-from sample_surface import SURFACE
+from rbx1_nav.simulation.exercise import PARAMETERS, simulate
 
 TURTLEBOT = load_robot(os.path.join(os.path.dirname(__file__), '..', '..', '..', 'config', 'turtlebot.yaml'))
 
@@ -69,81 +61,9 @@ def test_who_listens_is_called_at_each_tick_and_receives_the_readings_of_the_bas
     assert {round(messages.imu.rate, 9) for _, messages in heard} == {0.0, 1.0}
 
 
-@pytest.mark.parametrize('jobs', [1, 2])
-def test_no_seeds_have_no_results(jobs):
-    assert not list(simulate_many('timed', TURTLEBOT, None, [], jobs=jobs))
-
-
-def test_more_runs_than_are_submitted_in_advance_keep_their_order():
-    # with two processes, nine chunks are more than those that are submitted in advance
-    single, parallel = (simulate_many('timed', TURTLEBOT, SURFACE, range(9), jobs=jobs) for jobs in (1, 2))
-    assert list(single) == list(parallel)
-
-
-@pytest.fixture(name='many')
-def make_many():
-    """Return the results of more runs than any test waits for, after the first one."""
-    runs = simulate_many('timed', TURTLEBOT, SURFACE, range(500), jobs=2)
-    next(runs)
-    yield runs
-    runs.close()
-
-
-def test_closing_the_results_stops_the_processes(many):
-    assert multiprocessing.active_children()
-    many.close()
-    assert not multiprocessing.active_children()
-
-
-def test_a_process_that_is_killed_is_an_error(many):
-    os.kill(multiprocessing.active_children()[0].pid, signal.SIGKILL)
-    with pytest.raises(BrokenProcessPool):
-        list(many)
-
-
-@pytest.fixture(name='handler')
-def set_handler():
-    """Handle SIGTERM in this process, as the nodes do."""
-    before = signal.signal(signal.SIGTERM, lambda *_: None)
-    yield
-    signal.signal(signal.SIGTERM, before)
-
-
-def signals(pid, key):
-    """Return the mask of signals that a process ignores (SigIgn) or handles (SigCgt)."""
-    with open(f'/proc/{pid}/status', encoding='ascii') as file:
-        return next(int(line.split()[1], 16) for line in file if line.startswith(key))
-
-
-@pytest.mark.usefixtures('handler', 'many')
-def test_the_processes_leave_ctrl_c_to_their_parent_but_can_be_terminated():
-    children = [child.pid for child in multiprocessing.active_children()]
-    assert children and signals(os.getpid(), 'SigCgt') & 1 << signal.SIGTERM - 1
-    deadline = time.monotonic() + 60    # a process may still be starting
-    while time.monotonic() < deadline and not all(
-            signals(pid, 'SigIgn') & 1 << signal.SIGINT - 1 and not signals(pid, 'SigCgt') & 1 << signal.SIGTERM - 1
-            for pid in children):
-        time.sleep(0.01)
-    assert all(signals(pid, 'SigIgn') & 1 << signal.SIGINT - 1 for pid in children)
-    assert not any(signals(pid, 'SigCgt') & 1 << signal.SIGTERM - 1 for pid in children)
-
-
-KILLED = """
-import os, signal, sys
-sys.path[:0] = sys.argv[1:]
-from test_exercise_plan import SURFACE, TURTLEBOT, simulate_many
-runs = simulate_many('timed', TURTLEBOT, SURFACE, range(500), jobs=2)
-next(runs)
-os.kill(os.getpid(), signal.SIGKILL)
-"""
-
-
-def test_the_processes_exit_with_a_parent_that_is_killed():
-    with subprocess.Popen([sys.executable, '-c', KILLED, os.path.dirname(__file__), *sys.path], stdout=subprocess.PIPE,
-                          start_new_session=True) as parent:
-        try:
-            # the output is complete when the last process has exited; 20 s are enough on a busy machine
-            assert parent.communicate(timeout=20) == (b'', None) and parent.returncode == -signal.SIGKILL
-        finally:
-            with suppress(ProcessLookupError):
-                os.killpg(parent.pid, signal.SIGKILL)
+def test_the_parameters_of_the_driving_scripts_apply():
+    run = simulate('timed', TURTLEBOT, None, 0, keep=True, parameters=dict(PARAMETERS, linear_speed=0.1, rate=20))
+    # the pauses have the same duration; a turn takes pi seconds, rounded down to ticks of 50 ms
+    assert standstills(run) == [40, 20, 20, 20, 20]
+    assert len(run.path) == 40 + 2 * (200 + 62) + 4 * 20
+    assert run.first_leg == pytest.approx(1.0)

@@ -1,0 +1,107 @@
+#!/usr/bin/python3
+"""simulate.py on a Dask cluster of this machine: the file of local processes, whatever happens to a worker."""
+import os
+import shutil
+import tempfile
+import unittest
+
+import support
+from cluster import Cluster
+
+try:
+    import distributed
+except ImportError:
+    distributed = None
+
+COMMAND = ('--surface', 'low_ply_carpet', '--method', 'timed', '--method', 'ekf', '--runs', '200')
+
+
+@unittest.skipUnless(distributed, 'needs the Debian package python3-distributed')
+class TestTwoWorkers(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.mkdtemp()
+        cls.addClassCleanup(shutil.rmtree, cls.folder)
+        cls.cluster = Cluster(cls.folder)
+        cls.addClassCleanup(cls.cluster.stop)
+        _, cls.output, cls.content = cls.simulate('local.csv', '--jobs', '2')
+
+    @classmethod
+    def start(cls, name, *arguments):
+        """Start simulate.py with a file; return the Process and the path of the file."""
+        path = os.path.join(cls.folder, name)
+        return support.Process('rosrun', 'rbx1_nav', 'simulate.py', *COMMAND, '--output', path, *arguments), path
+
+    @classmethod
+    def simulate(cls, name, *arguments):
+        """Run simulate.py; return the exit status, the output, and the content of the file."""
+        return cls.wait(*cls.start(name, *arguments))
+
+    @staticmethod
+    def wait(process, path):
+        """Wait for a Process; return what simulate() returns."""
+        try:
+            status = process.wait()
+        finally:
+            process.kill()
+        with open(path, 'rb') as file:
+            return status, process.output, file.read()
+
+    def test_the_same_file_although_a_worker_is_killed_and_replaced(self):
+        process, path = self.start('killed.csv', '--scheduler', self.cluster.address)
+        support.wait_for(lambda: os.path.exists(path) and os.path.getsize(path) > 10000, 'rows')
+        self.cluster.workers.pop(0).kill()
+        self.cluster.workers.append(self.cluster.start_worker())
+        status, output, content = self.wait(process, path)
+        self.assertEqual(status, 0, output)
+        self.assertEqual(content, self.content)
+        self.assertEqual(len(content.splitlines()), 401)
+        # the same table, except for the speed and the lines of progress
+        for line in self.output.splitlines():
+            if 'real time' not in line and ' left' not in line:
+                self.assertIn(line, output)
+
+    def copy_package(self):
+        """Return a folder with another version of the package."""
+        import rbx1_nav.batch
+        folder = tempfile.mkdtemp(dir=self.folder)
+        shutil.copytree(os.path.dirname(os.path.dirname(rbx1_nav.batch.__file__)), os.path.join(folder, 'rbx1_nav'))
+        with open(os.path.join(folder, 'rbx1_nav', 'units.py'), 'a', encoding='utf-8') as file:
+            file.write('# another version\n')
+        return folder
+
+    def check_refused(self, worker, text):
+        """A worker is refused before the first run, by its address."""
+        self.addCleanup(worker.wait)
+        self.addCleanup(worker.kill)
+        status, output, _ = self.simulate(f'{worker.pid}.csv', '--scheduler', self.cluster.address)
+        self.assertEqual(status, 1, output)
+        self.assertRegex(output.splitlines()[-1], rf'^simulate.py: worker tcp://127.0.0.1:\d+: .*{text}')
+        self.assertNotIn('Traceback', output)
+
+    def test_a_worker_with_another_version_is_refused(self):
+        self.check_refused(self.cluster.start_worker(PYTHONPATH=self.copy_package()), 'rbx1_nav [0-9a-f]+: expected')
+
+    def test_a_worker_without_the_package_is_refused(self):
+        self.check_refused(self.cluster.start_worker(PYTHONPATH=''), 'expected a worker with the same rbx1_nav')
+
+    def test_a_worker_that_joins_later_is_refused_and_the_run_continues(self):
+        process, path = self.start('joined.csv', '--scheduler', self.cluster.address)
+        support.wait_for(lambda: os.path.exists(path) and os.path.getsize(path) > 10000, 'rows')
+        worker = self.cluster.start_worker(PYTHONPATH=self.copy_package())
+        self.addCleanup(worker.wait)
+        self.addCleanup(worker.kill)
+        status, output, content = self.wait(process, path)
+        self.assertEqual((status, content), (0, self.content), output)
+        self.assertRegex(output, r'(?m)^Worker tcp://127.0.0.1:\d+ is refused: rbx1_nav [0-9a-f]+: expected')
+
+    def test_no_scheduler_and_an_address_that_is_none(self):
+        for address, expected in (('tcp://127.0.0.1:1', 'the address of a Dask scheduler that runs'),
+                                  ('nonsense://', 'tcp://HOST:PORT or tls://HOST:PORT')):
+            status, output, _ = self.simulate('none.csv', '--scheduler', address)
+            self.assertEqual(status, 1, output)
+            self.assertIn(f'--scheduler: {address}: expected {expected}', output.splitlines()[-1])
+
+
+if __name__ == '__main__':
+    support.main('two_workers', TestTwoWorkers)
