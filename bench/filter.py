@@ -43,7 +43,7 @@ def run(robot, surface, assumed, method, seed):
                 pose = snapshot.estimate
             else:
                 feed(filters[name], messages)
-                pose = filters[name].estimate.pose
+                pose = filters[name].pose
             follower.compare(pose, snapshot.truth)
 
     result = simulate(method, robot, surface, seed, prior=prior, listen=listen)
