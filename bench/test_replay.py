@@ -42,11 +42,11 @@ def fixture_recording():
 
     with open(os.path.join(CONFIG, 'turtlebot.yaml'), encoding='utf-8') as file:
         simulation = Simulation(read_robot(yaml.safe_load(file)), CARPET, 3, False, False, listen=listen)
-    simulation.rest(STANDSTILL)
+    simulation.rest(STANDSTILL * TICK / SECOND)
     for motion in out_and_back(**EXERCISE):
         simulation.drive_by_time(motion)
-        simulation.rest(50)
-    simulation.rest(STANDSTILL)
+        simulation.rest(1.0)
+    simulation.rest(STANDSTILL * TICK / SECOND)
     return found
 
 
