@@ -54,7 +54,7 @@ class TestSeats(unittest.TestCase):
                                           rf'(http://localhost:{pages + number}/)#(\S+)')
             tokens.add(match.group(2))
             self.assertIn(b'Out and back', urlopen(match.group(1)).read())
-            self.assertLessEqual({'/arbotix', '/web_view', '/odom_ekf'}, answers(masters + number))
+            support.wait_for(lambda: {'/arbotix', '/web_view', '/odom_ekf'} <= answers(masters + number), 'all nodes')
         self.assertEqual(len(tokens), SEATS)
         process.signal(ending)
         self.assertEqual(process.wait(), status, process.output)
