@@ -25,6 +25,12 @@ class TestLaunchArguments(unittest.TestCase):
                                    f'{name}:={value}')
                 self.assertIn(f'/fake_create/{name}: {value}\n', params)
 
+    def test_each_launch_file_sets_the_prefix_because_any_of_them_may_be_the_first(self):
+        for package, file in (('rbx1_nav', 'fake_turtlebot.launch'), ('rbx1_bringup', 'odom_ekf.launch'),
+                              ('rbx1_bringup', 'turtlebot_minimal_create.launch')):
+            params = roslaunch('--dump-params', package, file, 'robot:=robot2')
+            self.assertIn('/robot2/tf_prefix: robot2\n', params)
+
     def test_no_model(self):
         arguments = '--nodes', 'rbx1_nav', 'fake_turtlebot.launch', 'surface:=low_ply_carpet'
         self.assertIn('/robot_state_publisher', roslaunch(*arguments))
