@@ -21,12 +21,9 @@ from rbx1_nav.create.driver.fractions import LOST
 from rbx1_nav.create.driver.parameters import GYRO_CORRECTION
 from rbx1_nav.parameters import elsewhere
 from rbx1_nav.robot.calibration import corrected, read_measured, turn_by_gyro
-from rbx1_nav.ros.driving import calibration
-from rbx1_nav.ros.driving.calibration import (
-    Diagnosis, factor_in_force, forget_run, load_run, save_run, take_measured)
-from rbx1_nav.ros.driving.pose_drive import CalibrationDrive
+from rbx1_nav.ros.driving.calibrating import (
+    COMMON, CalibrationDrive, Diagnosis, ask, factor_in_force, forget_run, load_run, save_run, take_measured)
 from rbx1_nav.ros.driving.pose_listener import PoseListener
-from rbx1_nav.ros.node.question import ask
 
 ODOM_KEY, GYRO_KEY = 'odom_angular_scale_correction', 'gyro_scale_correction'
 
@@ -34,7 +31,7 @@ PARAMETERS = [
     number('turns', 1, '', 'number of full turns to the left', 0.1, 100),
     number('angular_speed', 0.5, 'rad/s', 'turning speed'),
     number('min_angular_speed', 0.2, 'rad/s', 'lowest speed near the goal'),
-    *calibration.PARAMETERS,
+    *COMMON,
     elsewhere('measured', 'true angle of the last run, given instead of an answer; the robot does not move',
               unit='degrees', note='the total angle, 1800 for five turns')]
 

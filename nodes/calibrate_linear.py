@@ -17,11 +17,9 @@ import rospy
 from rbx1_nav.control.legs import Straight
 from rbx1_nav.parameters import elsewhere
 from rbx1_nav.robot.calibration import corrected, read_measured
-from rbx1_nav.ros.driving import calibration
-from rbx1_nav.ros.driving.calibration import factor_in_force, forget_run, load_run, save_run, take_measured
-from rbx1_nav.ros.driving.pose_drive import CalibrationDrive
+from rbx1_nav.ros.driving.calibrating import (
+    COMMON, CalibrationDrive, ask, factor_in_force, forget_run, load_run, save_run, take_measured)
 from rbx1_nav.ros.driving.pose_listener import PoseListener
-from rbx1_nav.ros.node.question import ask
 
 KEY = 'odom_linear_scale_correction'
 
@@ -29,7 +27,7 @@ PARAMETERS = [
     number('goal_distance', 1.0, 'm', 'distance to drive', 0.1, 100),
     number('linear_speed', 0.15, 'm/s', 'forward speed'),
     number('min_linear_speed', 0.05, 'm/s', 'lowest speed near the goal'),
-    *calibration.PARAMETERS,
+    *COMMON,
     elsewhere('measured', 'true distance of the last run, given instead of an answer; the robot does not move',
               unit='m', note='from half to twice the reported distance')]
 

@@ -8,18 +8,26 @@ import rbx1_nav.ros.node.early_interrupt     # first, so that Ctrl-C during the 
 import rospy
 
 from rbx1_nav.config import ConfigError
-from rbx1_nav.robot.description import read_robot
-from rbx1_nav.ros.base.parameters import FAKE_BASE as PARAMETERS
+from rbx1_nav.parameters import elsewhere
+from rbx1_nav.robot.description import DRIVER_KEYS, PARAMETERS as ROBOT, read_robot
 from rbx1_nav.ros.base.publisher import with_frames
-from rbx1_nav.ros.base.simulated_clock import read_clock
+from rbx1_nav.ros.base.simulated_clock import PARAMETERS as CLOCK, read_clock
+from rbx1_nav.ros.base.simulated_floor import FLOOR
 from rbx1_nav.ros.base.simulated_robot import SimulatedRobot
-from rbx1_nav.ros.network.refusals import Refusals
+from rbx1_nav.ros.network.bases import Refusals
 from rbx1_nav.ros.node import life
 from rbx1_nav.ros.node.frames import resolve_frame
 from rbx1_nav.ros.node.params import param, stored_params
 
+PARAMETERS = [
+    *ROBOT,
+    *FLOOR,
+    *CLOCK,
+    *(elsewhere(name, 'ArbotiX parameter, accepted and ignored')
+      for name in sorted({'diagnostic_period', *DRIVER_KEYS}))]
 
-def main():
+
+def main() -> int:
     """Read the configuration and run; return the exit status."""
     life.init_node('arbotix', __doc__, PARAMETERS, check=read_robot)
     try:

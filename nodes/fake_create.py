@@ -13,8 +13,6 @@ A pseudo-terminal has no RTS and DTR lines: a driver that requires them gets an 
 """
 import rbx1_nav.ros.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
 
-from collections import namedtuple
-from math import floor
 import time
 
 import rospy
@@ -22,15 +20,11 @@ from nav_msgs.msg import Odometry
 from std_msgs.msg import String
 
 from rbx1_nav.config import ConfigError
-from rbx1_nav.create.emulator.body import CAPACITY, Body, BodyErrors, Quirks
 from rbx1_nav.create.emulator.emulator import EmulatedCreate
 from rbx1_nav.create.emulator.pseudo_terminal import PseudoTerminal
-from rbx1_nav.create.emulator.serial_line import SerialLine
-from rbx1_nav.create.protocol import MODELS
 from rbx1_nav.ros import messages
 from rbx1_nav.ros.base.clocks import as_ros_time
-from rbx1_nav.ros.base.parameters import FAKE_CREATE as PARAMETERS
-from rbx1_nav.ros.base.robot_faults import RobotFaults
+from rbx1_nav.ros.base.emulated_create import PARAMETERS, RobotFaults, make_robot
 from rbx1_nav.ros.node import life
 from rbx1_nav.ros.node.params import param
 from rbx1_nav.schedule import Schedule
@@ -39,15 +33,13 @@ from rbx1_nav.units import SECOND
 
 TRUTH_RATE = 50     # Hz
 CLIENT_TIMEOUT = 0.7    # s: half of the time that a node has to exit
-Frames = namedtuple('Frames', 'odom_frame_id base_frame_id')
-FRAMES = Frames('odom', 'base_footprint')
+FRAMES = 'odom', 'base_footprint'
 
 
 class FakeCreate:
     """Connects an EmulatedCreate with a pseudo-terminal and with ROS. Only the main thread touches the robot."""
 
-    def __init__(self, robot, terminal):
-        """robot: an EmulatedCreate; terminal: a PseudoTerminal."""
+    def __init__(self, robot: EmulatedCreate, terminal: PseudoTerminal) -> None:
         self.robot = robot
         self.terminal = terminal
         self.truth_schedule = Schedule(TRUTH_RATE)
@@ -56,7 +48,7 @@ class FakeCreate:
         robot.on_command = self.publish_command
         self.faults = RobotFaults(robot, terminal)
 
-    def run(self):
+    def run(self) -> None:
         """Run until shutdown is requested."""
         while not life.end_requested.is_set():
             self.step()
@@ -68,7 +60,7 @@ class FakeCreate:
             life.sleep(0.005)
         self.terminal.unplug()
 
-    def step(self):
+    def step(self) -> None:
         """Advance the robot to the current time."""
         robot, terminal, now = self.robot, self.terminal, time.monotonic_ns()
         self.set_host_baud()
@@ -82,45 +74,39 @@ class FakeCreate:
         if self.truth_schedule.due(now) and self.truth_pub.get_num_connections():
             self.publish_truth(now)
 
-    def set_host_baud(self):
+    def set_host_baud(self) -> None:
         """Set the host's baud rate on the line to the rate that the client has set."""
         self.robot.line.host_baud = self.terminal.baud or self.robot.line.host_baud
 
-    def publish_truth(self, now):
+    def publish_truth(self, now: int) -> None:
         """Publish the true pose of the robot."""
         wheels = self.robot.body.wheels
         self.truth_pub.publish(messages.odometry(as_ros_time(now, time.monotonic_ns), FRAMES, wheels.truth.pose,
                                                  wheels.true_velocity(*self.robot.body.velocity),
                                                  IdealWheels.uncertainty))
 
-    def publish_command(self, now, data):
+    def publish_command(self, now: int, data: bytes) -> None:
         """Publish a command that arrived: its time in seconds of ROS time, and its bytes in hexadecimal."""
         if self.line_pub.get_num_connections():
             stamp = as_ros_time(now, time.monotonic_ns)
             self.line_pub.publish(f'{stamp.to_sec():.6f} {data.hex()}')
 
 
-def main():
+def main() -> int:
     """Read the parameters and run; return the exit status."""
     life.init_node('fake_create', __doc__, PARAMETERS)
-    model, seed = MODELS[param('robot_type')], param('seed')
-    line = SerialLine(param('baud') or model.baud, seed)
-    line.corruption = param('corruption')
-    body = Body(model, param('surface'), seed, BodyErrors(*map(param, BodyErrors._fields)),
-                param('gyro_measurement_range'), Quirks(*map(param, Quirks._fields)))
-    body.charge = CAPACITY * param('charge')
-    body.temperature, body.voltage = round(param('battery_temperature')), round(1000 * param('battery_voltage'))
-    body.gyro_stuck = floor(param('gyro_stuck'))
     try:
         terminal = PseudoTerminal(param('link') or None)
     except ConfigError as error:
         rospy.logfatal('%s/%s', rospy.get_name(), error)
         return 1
-    robot = FakeCreate(EmulatedCreate(model, body, line, time.monotonic_ns()), terminal)
+    robot = make_robot(time.monotonic_ns())
+    node = FakeCreate(robot, terminal)
+    node.faults.serve()
     # after its topics exist: rospy can miss a publisher that registers at the moment when it subscribes
-    rospy.loginfo('Emulated %s: serial port %s%s; seed:=%d recreates this robot', model.name, terminal.device,
-                  f', linked as {terminal.link}' if terminal.link else '', seed)
-    robot.run()
+    rospy.loginfo('Emulated %s: serial port %s%s; seed:=%d recreates this robot', robot.model.name, terminal.device,
+                  f', linked as {terminal.link}' if terminal.link else '', param('seed'))
+    node.run()
     return 0
 
 

@@ -35,7 +35,7 @@ from rbx1_nav.plotting.fit import draw_fit
 from rbx1_nav.plotting.runs import check_picture
 from rbx1_nav.robot.description import load_robot
 from rbx1_nav.ros.node import resources
-from rbx1_nav.ros.tools.bags import Topics, read_bag
+from rbx1_nav.ros.bags import Topics, read_bag
 from rbx1_nav.simulation.surfaces import known_surfaces, load_surface
 
 START, CREATE_START = 'low_ply_carpet', 'create_lab_floor'

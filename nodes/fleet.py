@@ -17,19 +17,29 @@ import rospy
 from tf2_msgs.msg import TFMessage
 
 from rbx1_nav.config import ConfigError, Section
+from rbx1_nav.parameters import choice, number
 from rbx1_nav.robot.description import read_robot
 from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.ros import messages
-from rbx1_nav.ros.base.parameters import FLEET as PARAMETERS, read_floor
 from rbx1_nav.ros.base.publisher import with_frames
-from rbx1_nav.ros.base.simulated_clock import read_clock
+from rbx1_nav.ros.base.simulated_clock import PARAMETERS as CLOCK, read_clock
+from rbx1_nav.ros.base.simulated_floor import read_floor
 from rbx1_nav.ros.base.simulated_robot import SimulatedRobot
 from rbx1_nav.ros.network.master import is_alive
-from rbx1_nav.ros.network.refusals import Refusals
+from rbx1_nav.ros.network.bases import Refusals
 from rbx1_nav.ros.node import life
 from rbx1_nav.ros.node.frames import with_prefix
 from rbx1_nav.ros.node.params import param
 from rbx1_nav.schedule import Schedule
+
+PARAMETERS = [
+    number('robots', 0, '', 'number of robots at the beginning: robot1, robot2 and so on; the parameters of a base are '
+           'below robot1/arbotix', 0, 1000, 'a number'),
+    number('spacing', 1.0, 'm', 'distance between the origins of the odometry of neighbors, in the frame map', 0, 1000,
+           'a distance'),
+    choice('method', ('none', 'timed', 'odometry'), 'none', 'script that fleet.launch starts for each robot'),
+    number('rate', 50.0, 'Hz', 'rate at which the bases are updated; odometry at most', 1, 1000, 'a rate'),
+    *CLOCK]
 
 
 class Fleet:

@@ -15,7 +15,7 @@ from geometry_msgs.msg import PoseWithCovarianceStamped
 from nav_msgs.msg import Odometry
 
 from rbx1_nav.ros import messages
-from rbx1_nav.ros.network.no_delay import NoDelay
+from rbx1_nav.ros.network.rospy_topics import NoDelay
 from rbx1_nav.ros.node import life
 
 MESSAGE_WARN_TIME = 5    # s of wall time without a message before a warning

@@ -16,7 +16,8 @@ from nav_msgs.msg import Odometry
 from roslib.packages import find_node
 from rosgraph_msgs.msg import Clock
 
-from rbx1_nav.ros.node import publisher_lists, resources
+from rbx1_nav.ros.network.rospy_topics import keep_publisher_lists
+from rbx1_nav.ros.node import resources
 from rbx1_nav.simulation.surfaces import known_surfaces
 
 COLOR = re.compile('\x1b\\[[0-9;]*m')
@@ -33,7 +34,7 @@ ATTEMPTS = 5
 
 def init_node(name):
     """Start a node that ignores simulated time: tests wait for conditions by the wall clock."""
-    publisher_lists.keep()
+    keep_publisher_lists()
     rospy.init_node(name, disable_rostime=True, anonymous=True)
 
 

@@ -14,7 +14,6 @@ from rbx1_nav.arrays import Array
 from rbx1_nav.config import show
 from rbx1_nav.estimation.gyro_input import ImuData
 from rbx1_nav.estimation.inputs import MAX_VARIANCE, Odom, check, check_number, check_variance
-from rbx1_nav.robot.description import Robot
 from rbx1_nav.robot.joints import Joint
 from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.robot.readings import MEASURED, Reading, Uncertainty
@@ -76,16 +75,16 @@ def planar(covariance: Array) -> list[float]:
     return matrix
 
 
-def odometry(stamp: rospy.Time, robot: Robot, pose: Pose, velocity: tuple[float, float], uncertainty: Uncertainty,
-             covariance: Array | None = None) -> Odometry:
-    """Return an Odometry message: Pose in the odom frame, velocity (m/s, rad/s) in the base frame, Uncertainty.
+def odometry(stamp: rospy.Time, frames: tuple[str, str], pose: Pose, velocity: tuple[float, float],
+             uncertainty: Uncertainty, covariance: Array | None = None) -> Odometry:
+    """Return an Odometry message: Pose in the first of the frames, velocity (m/s, rad/s) in the second,
+    Uncertainty.
 
     covariance: the 3x3 covariance of the pose; it replaces the pose variances of the Uncertainty.
     """
     message = Odometry()
     message.header.stamp = stamp
-    message.header.frame_id = robot.odom_frame_id
-    message.child_frame_id = robot.base_frame_id
+    message.header.frame_id, message.child_frame_id = frames
     message.pose.pose.position.x = pose.x
     message.pose.pose.position.y = pose.y
     message.pose.pose.orientation = quaternion(pose.yaw % (2 * pi))

@@ -1,15 +1,13 @@
-"""The clocks that a base can run on."""
+"""The clock that a base runs on, and the clocks in real time."""
 from __future__ import annotations
 
 import time
-from typing import Any, Callable, Protocol
+from typing import Any, Callable
 
 from diagnostic_msgs.msg import DiagnosticStatus
 import rospy
-from rosgraph_msgs.msg import Clock as ClockMessage
 
 from rbx1_nav.ros.node import life
-from rbx1_nav.schedule import Schedule
 from rbx1_nav.units import SECOND
 
 READING_TIME = 100_000      # ns: within this time, readings of two clocks count as simultaneous
@@ -38,26 +36,23 @@ def as_ros_time(instant: int, now: Callable[[], int]) -> rospy.Time:
     return stamp
 
 
-class Inbox(Protocol):
-    """Receives commands, and applies them later."""
-
-    # Any: rospy has no types
-    def add(self, subscriber: Any) -> None:
-        """Wait for the publishers that a subscriber to commands is connected to."""
-
-    def remove(self, subscriber: Any) -> None:
-        """Undo add()."""
-
-    def receive(self, target: Any, header: dict[str, str], command: Any) -> None:
-        """Accept a command that just arrived; target: its apply() is called later; header: of the connection."""
-
-
 class Clock:
     """Interface of all clocks."""
 
-    inbox: Inbox | None = None      # receives commands that do not take effect when they arrive
+    waits = False       # whether it waits for the nodes that drive
 
     # Any: rospy has no types
+    def watch(self, subscriber: Any) -> None:
+        """Wait for the publishers that a subscriber to commands is connected to, if this clock waits for nodes."""
+
+    def unwatch(self, subscriber: Any) -> None:
+        """Undo watch()."""
+
+    def receive(self, target: Any, header: dict[str, str], command: Any) -> None:
+        """Put a command that has just arrived in force, now or later: call target.apply(command). header: of the
+        connection."""
+        target.apply(command)
+
     def publish(self, publisher: rospy.Publisher, message: Any) -> None:
         """Publish a message."""
         publisher.publish(message)
@@ -102,25 +97,3 @@ class HardwareClock(RealTimeClock):
 
     def now(self) -> int:
         return time.clock_gettime_ns(time.CLOCK_BOOTTIME)
-
-
-class FollowedClock(Clock):
-    """Simulated time that another node publishes on /clock."""
-
-    def __init__(self, rate: float) -> None:
-        self.time = 0       # ns, the latest /clock
-        self.schedule = Schedule(rate)
-
-    def now(self) -> int:
-        return self.time
-
-    def stamp(self, instant: int) -> rospy.Time:
-        return rospy.Time(0, instant)
-
-    def run(self, step: Callable[[], None]) -> None:
-        def on_clock(message: ClockMessage) -> None:
-            self.time = message.clock.to_nsec()
-            if self.schedule.due(self.time):
-                step()
-        rospy.Subscriber('/clock', ClockMessage, on_clock, queue_size=None, tcp_nodelay=True)
-        life.end_requested.wait()

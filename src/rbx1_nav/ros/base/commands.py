@@ -15,13 +15,13 @@ from rbx1_nav.control.gate import CommandGate, RefusedCommand, RejectedCommand
 from rbx1_nav.robot.joints import Joint
 from rbx1_nav.ros import messages
 from rbx1_nav.ros.base.clocks import Clock
-from rbx1_nav.ros.network.refusals import Refusals
+from rbx1_nav.ros.network.bases import Refusals
 from rbx1_nav.units import SECOND
 
 RECENT = SECOND * 3 // 2    # ns: a node whose last motion is older is not driving; rests last 1 s
 
 
-class Command(NamedTuple):
+class VelocityCommand(NamedTuple):
     """The contents of a Twist, and who sent it."""
 
     linear: float       # m/s
@@ -62,14 +62,12 @@ class VelocityCommands:
         if not self.subscriber:
             self.subscriber = rospy.Subscriber(f'{self.namespace}cmd_vel', Twist, self.on_twist, queue_size=None,
                                                tcp_nodelay=True)
-            if self.clock.inbox:
-                self.clock.inbox.add(self.subscriber)
+            self.clock.watch(self.subscriber)
 
     def close(self) -> None:
         """Accept no more commands."""
         if self.subscriber:
-            if self.clock.inbox:
-                self.clock.inbox.remove(self.subscriber)
+            self.clock.unwatch(self.subscriber)
             self.subscriber.unregister()
 
     # Any: rospy has no types
@@ -78,21 +76,18 @@ class VelocityCommands:
         return self.subscriber.impl.connections if self.subscriber else []
 
     def on_twist(self, twist: Twist) -> None:
-        """Process a command, which takes effect now or when the clock's inbox applies it."""
+        """Process a command, which takes effect now or when the clock applies it."""
         header = twist._connection_header       # one object for each connection
-        command = Command(*messages.from_twist(twist), header['callerid'])
+        command = VelocityCommand(*messages.from_twist(twist), header['callerid'])
         if any(command[:2]):
             self.moving = header, self.clock.now()
         text = self.senders.contradiction(self.clock.now(), header, command.sender, command[:2],
                                           lambda: [connection.header for connection in self.connections()])
         if text:
             rospy.logwarn_throttle(5, f'{self.topic}: contradictory commands: {text}: expected only one driving node')
-        if self.clock.inbox:
-            self.clock.inbox.receive(self, header, command)
-        else:
-            self.apply(command)
+        self.clock.receive(self, header, command)
 
-    def apply(self, command: Command) -> None:
+    def apply(self, command: VelocityCommand) -> None:
         """Put a command in force."""
         try:
             with self.lock:

@@ -13,7 +13,7 @@ from rbx1_nav.robot.description import Robot
 from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.robot.readings import Reading, Uncertainty
 from rbx1_nav.ros import messages
-from rbx1_nav.ros.network.no_delay import NoDelay
+from rbx1_nav.ros.network.rospy_topics import NoDelay
 
 
 class BasePublisher:
@@ -26,6 +26,7 @@ class BasePublisher:
         """publish(publisher, message): publishes a message; greet: of new subscribers of odom and tf, see NoDelay;
         namespace: of the topics, with a slash at the end, '' for that of this node."""
         self.robot = robot
+        self.frames = robot.odom_frame_id, robot.base_frame_id
         self.publish = publish
         # simulated time may produce many messages at once
         self.odom = rospy.Publisher(f'{namespace}odom', Odometry, NoDelay(greet), queue_size=100)
@@ -39,7 +40,7 @@ class BasePublisher:
                          covariance: Array | None = None) -> None:
         """Publish odometry; for the arguments, see messages.odometry()."""
         if self.odom.get_num_connections():
-            self.publish(self.odom, messages.odometry(stamp, self.robot, pose, velocity, uncertainty, covariance))
+            self.publish(self.odom, messages.odometry(stamp, self.frames, pose, velocity, uncertainty, covariance))
 
     def publish_transform(self, stamp: rospy.Time, pose: Pose) -> None:
         """Publish the pose of the odometry as a transform."""
@@ -48,7 +49,7 @@ class BasePublisher:
 
     def transform(self, stamp: rospy.Time, pose: Pose) -> TFMessage:
         """Return the pose of the odometry as a transform."""
-        return TFMessage([messages.transform(stamp, self.robot.odom_frame_id, self.robot.base_frame_id, pose)])
+        return TFMessage([messages.transform(stamp, *self.frames, pose)])
 
     def publish_imu(self, stamp: rospy.Time, reading: Reading) -> None:
         """Publish a gyro's Reading."""

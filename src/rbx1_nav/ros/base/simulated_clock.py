@@ -1,4 +1,4 @@
-"""The clock of a simulated base, which advances simulated time itself, in step with its drivers."""
+"""Simulated time, which a base follows, or advances itself, in step with its drivers."""
 from __future__ import annotations
 
 import time
@@ -11,16 +11,25 @@ from rosgraph_msgs.msg import Clock as ClockMessage
 from rospy.impl import simtime
 
 from rbx1_nav.config import ConfigError
-from rbx1_nav.ros.base.clocks import Clock, FollowedClock, RealTimeClock
+from rbx1_nav.parameters import flag, number
+from rbx1_nav.ros.base.clocks import Clock, RealTimeClock
 from rbx1_nav.ros.lockstep.lockstep import Lockstep
 from rbx1_nav.ros.lockstep.watch import Watch
 from rbx1_nav.ros.network.master import call, is_alive
-from rbx1_nav.ros.network.no_delay import NoDelay
+from rbx1_nav.ros.network.rospy_topics import NoDelay
 from rbx1_nav.ros.node import life
 from rbx1_nav.ros.node.params import param
+from rbx1_nav.schedule import CLOCK_STEP, Schedule
 from rbx1_nav.units import SECOND
 
 CATCH_UP = 0.1      # s of wall time: a delay up to this is made up for
+
+PARAMETERS = (
+    number('real_time_factor', None, '', 'highest speed of simulated time, relative to real time', 0.01, 1000,
+           shown='real time', note='see [Simulated time](frames_and_time.md#simulated-time)'),
+    number('clock_step', CLOCK_STEP, 's', 'step of simulated time', 0.001, 0.1, 'a time'),
+    flag('strict', False, 'whether this node exits if a driver is not in step with simulated time',
+         note='see [Simulated time](frames_and_time.md#simulated-time)'))
 
 
 def read_clock(rate: float) -> Clock:
@@ -53,8 +62,32 @@ def earlier_clock() -> str | None:
     return next((name for name in names[:names.index(rospy.get_name())] if is_alive(name)), None)
 
 
+class FollowedClock(Clock):
+    """Simulated time that another node publishes on /clock."""
+
+    def __init__(self, rate: float) -> None:
+        self.time = 0       # ns, the latest /clock
+        self.schedule = Schedule(rate)
+
+    def now(self) -> int:
+        return self.time
+
+    def stamp(self, instant: int) -> rospy.Time:
+        return rospy.Time(0, instant)
+
+    def run(self, step: Callable[[], None]) -> None:
+        def on_clock(message: ClockMessage) -> None:
+            self.time = message.clock.to_nsec()
+            if self.schedule.due(self.time):
+                step()
+        rospy.Subscriber('/clock', ClockMessage, on_clock, queue_size=None, tcp_nodelay=True)
+        life.end_requested.wait()
+
+
 class OwnClock(FollowedClock):
     """Simulated time that this node advances: at most `factor` times as fast as real time, in step with the drivers."""
+
+    waits = True
 
     def __init__(self, factor: float, rate: float, period: int, strict: bool) -> None:
         """factor, rate: see read_clock(); period: clock period, ns; strict: whether a driver that is not in step is an
@@ -70,7 +103,7 @@ class OwnClock(FollowedClock):
         if other:
             raise ConfigError(f'real_time_factor: {factor:g}: expected no other clock, but {other} publishes /clock: '
                               'fleet.launch simulates several robots on one clock')
-        self.inbox: Lockstep = Lockstep(Watch(self.publisher), self.report, life.end_requested.is_set)
+        self.lockstep = Lockstep(Watch(self.publisher), self.report, life.end_requested.is_set)
         self.not_in_step: dict[str, str] = {}   # reasons, by the name of the node
 
     def greet(self, _: str, publish: Callable[[ClockMessage], None]) -> None:
@@ -78,8 +111,17 @@ class OwnClock(FollowedClock):
         if self.time:
             publish(ClockMessage(self.stamp(self.time)))
 
-    def publish(self, publisher: rospy.Publisher, message: Any) -> None:    # see Clock
-        self.inbox.deliver(publisher, message)
+    def watch(self, subscriber: Any) -> None:
+        self.lockstep.add(subscriber)
+
+    def unwatch(self, subscriber: Any) -> None:
+        self.lockstep.remove(subscriber)
+
+    def receive(self, target: Any, header: dict[str, str], command: Any) -> None:
+        self.lockstep.receive(target, header, command)
+
+    def publish(self, publisher: rospy.Publisher, message: Any) -> None:
+        self.lockstep.deliver(publisher, message)
 
     def report(self, name: str, reason: str) -> None:
         """Report that a node is not in step. Raises ROSException if that is an error."""
@@ -99,7 +141,7 @@ class OwnClock(FollowedClock):
     def run(self, step: Callable[[], None]) -> None:
         beat = time.monotonic()
         while not life.end_requested.is_set():
-            self.inbox.begin()
+            self.lockstep.begin()
             self.apply()
             self.time += self.period
             stamp = self.stamp(self.time)
@@ -109,9 +151,9 @@ class OwnClock(FollowedClock):
             self.publish(self.publisher, ClockMessage(stamp))
             self.apply()
             beat = max(beat + self.period / SECOND / self.factor, time.monotonic() - CATCH_UP)
-            self.inbox.listen(beat)
+            self.lockstep.listen(beat)
 
     def apply(self) -> None:
         """Put the commands that have arrived in force."""
-        for target, command in self.inbox.take():
+        for target, command in self.lockstep.take():
             target.apply(command)

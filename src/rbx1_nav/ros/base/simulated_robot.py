@@ -17,8 +17,8 @@ from rbx1_nav.ros import messages
 from rbx1_nav.ros.base.clocks import Clock
 from rbx1_nav.ros.base.commands import VelocityCommands, subscribe_joints
 from rbx1_nav.ros.base.publisher import BasePublisher
-from rbx1_nav.ros.network.no_delay import NoDelay
-from rbx1_nav.ros.network.refusals import Refusals
+from rbx1_nav.ros.network.rospy_topics import NoDelay
+from rbx1_nav.ros.network.bases import Refusals
 from rbx1_nav.ros.node.frames import with_prefix
 from rbx1_nav.schedule import Schedule
 from rbx1_nav.simulation.base import make_base
@@ -94,8 +94,8 @@ class SimulatedRobot:
         if reading:
             self.publisher.publish_imu(stamp, reading)
         if self.truth_pub.get_num_connections():
-            self.clock.publish(self.truth_pub, messages.odometry(stamp, self.robot, true_pose, true_velocity,
-                                                                 IdealWheels.uncertainty))
+            self.clock.publish(self.truth_pub, messages.odometry(
+                stamp, self.publisher.frames, true_pose, true_velocity, IdealWheels.uncertainty))
         self.publisher.publish_odometry(stamp, pose, velocity, uncertainty)
         if timed_out:
             self.commands.log_timeout()
@@ -105,13 +105,13 @@ class SimulatedRobot:
     def greet(self, topic: str, publish: Callable[[Any], None]) -> None:
         """Send the current state to a new subscriber of odom or tf: while a simulated clock waits for a node that is
         starting, no other message follows."""
-        if not self.clock.inbox or not self.last_stamp or topic == '/tf' and not self.robot.publish_tf:
+        if not self.clock.waits or not self.last_stamp or topic == '/tf' and not self.robot.publish_tf:
             return
         with self.lock:
             base, stamp = self.base, self.last_stamp
             pose, velocity, uncertainty = base.odometry.pose, base.velocity, base.wheels.uncertainty
         publish(self.publisher.transform(stamp, pose) if topic == '/tf' else
-                messages.odometry(stamp, self.robot, pose, velocity, uncertainty))
+                messages.odometry(stamp, self.publisher.frames, pose, velocity, uncertainty))
 
     def on_reset(self, _: EmptyRequest) -> EmptyResponse:
         """Put the robot back at the origin, at rest."""

@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 from math import degrees, hypot
-import time
 from typing import Callable, Iterator, Optional
 
 import rospy
@@ -11,7 +10,7 @@ from tqdm import tqdm
 
 from rbx1_nav.control.legs import Leg
 from rbx1_nav.robot.kinematics import Pose
-from rbx1_nav.ros.driving.drive import Drive
+from rbx1_nav.ros.driving.script import Drive
 from rbx1_nav.ros.driving.pose_listener import LostTransform, PoseListener
 from rbx1_nav.units import wrap_angle
 
@@ -98,16 +97,3 @@ class OdomDrive(PoseDrive):
         rospy.loginfo('Done: measured in %s, the robot is %.3f m from its start and %.1f degrees off its initial '
                       'heading', self.poses.odom_frame, hypot(end.x - start.x, end.y - start.y),
                       degrees(abs(wrap_angle(end.yaw - start.yaw))))
-
-
-class CalibrationDrive(PoseDrive):
-    """A PoseDrive with its own publisher and shutdown function, for the calibration scripts."""
-
-    def __init__(self, rate: float, poses: PoseListener) -> None:
-        super().__init__(rospy.Publisher('cmd_vel', Twist, queue_size=5), rate, self.shutdown, poses)
-
-    def shutdown(self) -> None:
-        """Stop the robot, and give it time to stop."""
-        self.cmd_vel.publish(Twist())
-        rospy.loginfo('Stopping the robot...')
-        time.sleep(1)   # wall time, since a simulated clock may have stopped

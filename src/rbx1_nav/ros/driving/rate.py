@@ -11,7 +11,7 @@ import rospy
 
 from rbx1_nav.ros.driving.watching import Listeners
 from rbx1_nav.ros.node.life import end_requested, sleep
-from rbx1_nav.ros.lockstep.lockstep import NODE_TIMEOUT
+from rbx1_nav.schedule import NODE_TIMEOUT
 from rbx1_nav.units import SECOND
 
 MAX_DELAY = SECOND      # ns

@@ -9,8 +9,7 @@ import rosgraph
 import rospy
 
 from rbx1_nav.ros.driving.watching import Listeners, Peer
-from rbx1_nav.ros.network import refusals
-from rbx1_nav.ros.network.bases import namespaces_of_bases
+from rbx1_nav.ros.network.bases import ask_refusals, namespaces_of_bases
 from rbx1_nav.ros.network.master import Server, call
 from rbx1_nav.ros.node.life import end_requested, sleep
 
@@ -56,7 +55,7 @@ class _SubscriberMonitor(threading.Thread):
             address = call(master, 'lookupNode', name)
             if address not in self.dead:
                 with Server(address) as server:
-                    return address, refusals.ask(server)[0]
+                    return address, ask_refusals(server)[0]
         except Exception:
             self.dead.add(address)
             rospy.logwarn('%s is registered as a subscriber of %s but does not answer: ignored '

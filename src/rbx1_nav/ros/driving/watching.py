@@ -14,7 +14,7 @@ from typing import Any, Iterable, NamedTuple
 import rosgraph
 import rospy
 
-from rbx1_nav.ros.network import refusals
+from rbx1_nav.ros.network.bases import ask_refusals
 from rbx1_nav.ros.network.master import Server, call
 from rbx1_nav.ros.network.tcp import CLOSED_WINDOW, AcknowledgementTimer, Connection, read_connection
 from rbx1_nav.ros.node.life import end_requested, sleep
@@ -98,7 +98,7 @@ class Listener:
         while not (self.problem or self.ended):
             start, before = time.monotonic(), rospy.get_rostime()
             try:
-                refused, reason = refusals.ask(server)
+                refused, reason = ask_refusals(server)
             except ConnectionRefusedError:      # the node has exited, and its connection will close
                 return
             except Exception:

@@ -16,7 +16,7 @@ from rbx1_nav.ros import messages
 from rbx1_nav.ros.filter.estimated_twist import EstimatedTwist, estimate_twist
 from rbx1_nav.ros.filter.frame_tree import FrameTree
 from rbx1_nav.ros.filter.parameters import FilterParameters
-from rbx1_nav.ros.network.no_delay import NoDelay
+from rbx1_nav.ros.network.rospy_topics import NoDelay
 from rbx1_nav.schedule import Schedule
 from rbx1_nav.units import SECOND
 

@@ -24,8 +24,8 @@ import rospy
 from rospy.msg import serialize_message
 
 from rbx1_nav.ros.lockstep.watch import Watch
+from rbx1_nav.schedule import NODE_TIMEOUT
 
-NODE_TIMEOUT = 5.0      # s of wall time that a tick waits for a node
 ANSWER_TIME = 3e-4      # s of wall time in which a driver usually answers
 LOOK = 2e-5, 5e-3   # s of wall time between two checks of the processes: at least, at most
 LONGEST_LOOK = 0.1  # s: if it takes longer from one check to the next, the base itself was suspended

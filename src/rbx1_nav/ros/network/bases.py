@@ -1,12 +1,20 @@
-"""The bases that are running, according to the master."""
+"""The bases that are running, according to the master, and the commands that a base has refused.
+
+A base reports refused commands to their sender when the sender checks whether it still answers. This needs no
+additional topic or connection: a driving script only publishes. The base extends the slave API of its node by one
+method, which returns how many commands of the caller were refused, and the reason for the last refusal.
+"""
 from __future__ import annotations
 
 from typing import Any, Callable
 import xmlrpc.client
 
 import rosgraph
+from rospy.impl.masterslave import ROSHandler
 
-from rbx1_nav.ros.network.master import call, is_alive
+from rbx1_nav.ros.network.master import Server, call, is_alive
+
+REFUSALS = 'getRefusals'    # method of the slave API
 
 
 def namespaces_of_bases(publishers: dict[str, list[str]], subscribers: dict[str, list[str]], odometry: list[str],
@@ -44,3 +52,33 @@ def private_namespace(base: str, topic: str, ask: Callable[..., Any]) -> str:
     """Return the namespace of the parameters and services of a simulated robot: the name of its base, or NAME/arbotix
     if the base is a fleet. topic: of the odometry; ask(method, *args): calls the master."""
     return f"{topic.rpartition('/')[0]}/arbotix" if ask('hasParam', f'{base}/robots') else base
+
+
+class Refusals:
+    """The refused commands of a base."""
+
+    def __init__(self) -> None:
+        # by the name of the sender: number of refused commands, and the reason for the last one
+        self._refused: dict[str, tuple[int, str]] = {}
+        setattr(ROSHandler, REFUSALS, lambda _, caller: (1, '', list(self._refused.get(caller, (0, '')))))
+
+    @property
+    def count(self) -> int:
+        """Number of refused commands."""
+        return sum(count for count, _ in self._refused.values())
+
+    def add(self, sender: str, reason: str) -> None:
+        """Count a refused command. sender: the name of its node; reason: a text."""
+        count, _ = self._refused.get(sender, (0, ''))
+        self._refused[sender] = count + 1, reason
+
+
+def ask_refusals(server: Server) -> tuple[int | None, str]:
+    """Return how many commands of this node another node has refused, and the reason for the last refusal; (None, '')
+    if it does not report refusals. server: the Server of that node. Raises like Server.call() if it does not answer."""
+    try:
+        count, reason = server.call(REFUSALS)
+        return int(count), ''.join(filter(str.isprintable, reason))
+    except xmlrpc.client.Fault:
+        server.call('getPid')
+        return None, ''

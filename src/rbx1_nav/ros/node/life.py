@@ -6,12 +6,14 @@ docs/decisions/how_a_node_stops.md explains why.
 """
 from __future__ import annotations
 
+from contextlib import contextmanager
 import os
 import signal
 import sys
 import threading
 import time
-from typing import Any, Callable, NoReturn, Sequence, TextIO, cast
+import traceback
+from typing import Any, Callable, Iterator, NoReturn, Sequence, TextIO, cast
 
 import rosgraph
 import rospy
@@ -20,13 +22,15 @@ from rospy.impl.paramserver import get_param_server_cache
 from rbx1_nav.config import YamlValue
 from rbx1_nav.parameters import Parameter, list_parameters
 from rbx1_nav.ros.network.master import require_master, wait_for_master
-from rbx1_nav.ros.node import publisher_lists
-from rbx1_nav.ros.node.arguments import check_command_line, report_parameters
-from rbx1_nav.ros.node.params import check_before_start, future_name, load_params, read_wait_timeout, stored_params
+from rbx1_nav.ros.network.rospy_topics import keep_publisher_lists
+from rbx1_nav.ros.node.params import (
+    check_before_start, check_command_line, future_name, load_params, read_wait_timeout, report_parameters,
+    stored_params)
 
 EXIT_DEADLINE = 1.4         # s of wall time from the request to the exit of the process, whatever hangs
 UNREGISTER_TIMEOUT = 0.25   # s of wall time for the master to unregister the node
 MAX_SLEEP = 0.05            # s
+PACKAGE = os.path.realpath(os.path.join(os.path.dirname(__file__), '..', '..')) + os.sep
 
 # rospy of Debian 11 calls Thread.isAlive() on shutdown, which Python 3.9 has removed
 if not hasattr(threading.Thread, 'isAlive'):
@@ -96,7 +100,7 @@ def init_node(name: str, usage: str, parameters: Sequence[Parameter] = (), requi
         check_before_start(name, parameters, check)
     if end_requested.is_set():
         raise rospy.ROSInterruptException('shutdown requested')
-    publisher_lists.keep()
+    keep_publisher_lists()
     try:
         rospy.init_node(name, disable_signals=True, disable_rostime=wall_time)
     except (OSError, rospy.ROSInitException) as error:
@@ -165,3 +169,39 @@ def run(main: Callable[[], int]) -> NoReturn:
         rospy.logfatal('The master at %s does not answer (%s)', rosgraph.get_master_uri(), error)
         status = 1
     leave(status)
+
+
+@contextmanager
+def exit_status() -> Iterator[None]:
+    """Run a `with` block and exit the process.
+
+    The exit status is 0, also after an interrupt; or the status of sys.exit(), whose text is logged; or 1 after an
+    error, which is logged in one line. If the mistake is in the script itself, the line contains its position.
+    """
+    status = 0
+    try:
+        yield
+    except SystemExit as error:
+        status = error.code if isinstance(error.code, int) else int(error.code is not None)
+        if isinstance(error.code, str):
+            rospy.logerr('%s', error.code)
+    except rospy.ROSInterruptException:     # shutdown was requested
+        pass
+    except (rospy.ROSException, ValueError, OSError) as error:  # StuckError; the master does not answer
+        rospy.logerr('%s%s', error, position(error))
+        status = 1
+    leave(status)
+
+
+def position(error: Exception) -> str:
+    """Return the position of a mistake in a script as text, such as ' (square.py, line 21)'.
+
+    It is empty for an error that rospy or this package has detected.
+    """
+    frames = traceback.extract_tb(error.__traceback__)[1:]      # without that of exit_status()
+    if (not frames or isinstance(error, rospy.ROSException)
+            or any(os.path.realpath(frame.filename).startswith(PACKAGE) for frame in frames)):
+        return ''
+    script = frames[0].filename
+    line = [frame.lineno for frame in frames if frame.filename == script][-1]
+    return f' ({os.path.basename(script)}, line {line})'

@@ -1,18 +1,96 @@
-"""Checks and reads the private parameters of a node."""
+"""The command line and the private parameters of a node: both are checked against the declared parameters."""
 from __future__ import annotations
 
+import difflib
+import os
 import sys
-from typing import Any, Callable, Sequence
+from typing import Any, Callable, Mapping, Sequence
 import xmlrpc.client
 
 import rosgraph
+from rosgraph.names import is_legal_name
 import rospy
+import yaml
 
-from rbx1_nav.config import ConfigError, Section, YamlValue, show
+from rbx1_nav.config import ConfigError, Section, YamlValue, show, show_name, suggestion
 from rbx1_nav.parameters import Parameter, read
 from rbx1_nav.ros.network.master import call
 
+EXPECTED = 'expected _parameter:=value or topic:=new_topic'
 _values: dict[str, Any] = {}        # parameters of this node, once it is registered
+
+
+def check_command_line(usage: str, names: Sequence[str]) -> None:
+    """Print the usage and exit if the command line requests it or has unknown arguments.
+
+    names: names of the node's parameters.
+    """
+    arguments = sys.argv[1:]
+    if '-h' in arguments or '--help' in arguments:
+        print(usage)
+        sys.exit(0)
+    for argument in arguments:
+        problem = find_problem(argument, names)
+        if problem:
+            # the error comes last, just above the prompt, as with argparse
+            print('%s\n\n%s: error: %s: %s' % (usage, os.path.basename(sys.argv[0]), show_name(argument), problem),
+                  file=sys.stderr)
+            sys.exit(2)
+
+
+def find_problem(argument: str, names: Sequence[str]) -> str | None:
+    """Return the problem with a command-line argument, or None. names: names of the node's parameters."""
+    left, assigned, right = argument.partition(':=')
+    if not assigned:
+        left, _, right = argument.partition('=')
+        return f"unknown argument{_suggestion(left, right, names, 0.6) or f': {EXPECTED}'}"
+    if left.startswith('__'):       # __name and the like, for rospy
+        return None
+    if left.startswith('_'):
+        if left[1:].split('/')[0] not in names:
+            return f'unknown parameter{_suggestion(left, right, names, 0.6)}'
+        return None if _is_value(right) else 'expected a value'
+    # a remapping: it is a mistake only if the name is very close to the name of a parameter
+    suggestion = _suggestion(left, right, names, 0.8)
+    if suggestion:
+        return f'this remaps a topic{suggestion}'
+    return None if right and is_legal_name(right) else EXPECTED
+
+
+def _suggestion(left: str, value: str, names: Sequence[str], cutoff: float) -> str:
+    close = difflib.get_close_matches(left.lstrip('-_~/').replace('-', '_'), names, 1, cutoff)
+    return f": did you mean _{close[0]}:={show_name(value or 'VALUE')}?" if close else ''
+
+
+def _is_value(text: str) -> bool:
+    """Return whether rospy can read a text as YAML and send its value to the master."""
+    try:
+        xmlrpc.client.dumps((yaml.safe_load(text),))
+    except Exception:
+        return False    # yaml raises many kinds of errors, see config.load_yaml(); integers are limited to 32 bits
+    return bool(text) and ':=' not in text
+
+
+def report_parameters(stored: Mapping[str, YamlValue], names: Sequence[str]) -> None:
+    """Log the private parameters that have no effect, and the parameters that an earlier command left on the master.
+
+    stored: the parameters on the master; names: names of the node's parameters.
+    """
+    name = rospy.get_name()
+    unknown = sorted(show_name(each) + suggestion(each, names) for each in set(stored) - set(names))
+    if any(argument.startswith('__log:=') for argument in sys.argv):    # by roslaunch, which sets parameters on purpose
+        if unknown:
+            rospy.logwarn('Ignoring unknown parameters: %s', ', '.join(unknown))
+        return
+    given = {argument.split(':=')[0][1:].split('/')[0] for argument in sys.argv[1:] if argument.startswith('_')}
+    in_force = [f'{each} = {show_name(stored[each])}' for each in sorted(set(stored) & set(names) - given)]
+    # a mapping was loaded from a file, which is also on purpose
+    if in_force and not any(isinstance(value, dict) for value in stored.values()):
+        rospy.logwarn('Parameters from an earlier run still apply: %s (`rosparam delete %s` clears them)',
+                      ', '.join(in_force), name)
+    if unknown:
+        rospy.logwarn('Ignoring parameters from an earlier run: %s (`rosparam delete %s` clears them)',
+                      ', '.join(unknown), name)
 
 
 def check_before_start(name: str, parameters: Sequence[Parameter],

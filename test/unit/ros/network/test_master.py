@@ -7,7 +7,7 @@ from xmlrpc.server import SimpleXMLRPCRequestHandler
 import pytest
 from rosgraph.xmlrpc import ThreadingXMLRPCServer
 
-from rbx1_nav.ros.network import refusals
+from rbx1_nav.ros.network.bases import ask_refusals
 from rbx1_nav.ros.network.master import Server, call
 
 
@@ -49,7 +49,7 @@ def test_calls_share_one_connection(node):
         assert [server.call('getPid') for _ in range(3)] == [7, 7, 7]
         with pytest.raises(Fault):
             server.call('noMethod')
-        assert refusals.ask(server) == (None, '')
+        assert ask_refusals(server) == (None, '')
     assert len(node.connections) == 1
     assert call(node.uri, 'getPid') == 7
     assert len(node.connections) == 2

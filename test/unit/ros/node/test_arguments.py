@@ -1,7 +1,7 @@
 """Command-line arguments that rospy would silently ignore are found, and the intended parameter is suggested."""
 import pytest
 
-from rbx1_nav.ros.node.arguments import find_problem
+from rbx1_nav.ros.node.params import find_problem
 
 NAMES = ['rate', 'goal_distance', 'odom_frame', 'odom_used', 'imu_used', 'surface']
 EXPECTED = 'expected _parameter:=value or topic:=new_topic'

@@ -2,7 +2,7 @@
 import pytest
 import rospy
 from rbx1_nav.control.motions import whole_ticks
-from rbx1_nav.ros.node import exit_status as module
+from rbx1_nav.ros.node import life as module
 
 SCRIPT = """\
 from math import sqrt
@@ -27,7 +27,7 @@ with exit_status():
 def test_what_is_logged(monkeypatch, statement, status, logged):
     lines, statuses = [], []
     monkeypatch.setattr(rospy, 'logerr', lambda text, *values: lines.append(text % values))
-    monkeypatch.setattr(module.life, 'leave', statuses.append)
+    monkeypatch.setattr(module, 'leave', statuses.append)
     code = compile(SCRIPT % statement, '/home/someone/square.py', 'exec')
     exec(code, {'exit_status': module.exit_status, 'whole_ticks': whole_ticks, 'rospy': rospy})
     assert statuses == [status]

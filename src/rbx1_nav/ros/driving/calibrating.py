@@ -1,13 +1,25 @@
-"""Data that the calibration scripts read from the master and store there: the base's factors and the last run."""
+"""What the calibration scripts share: driving, the base's factors, the last run, and the question to the user."""
 from __future__ import annotations
 
+import os
+import select
+import sys
+import time
+from typing import Callable, TypeVar
+
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from geometry_msgs.msg import Twist
 from rosgraph.names import is_legal_name
 import rospy
 
 from rbx1_nav.config import ConfigError, Section, YamlValue, show
 from rbx1_nav.parameters import custom, frame, number
 from rbx1_nav.robot.calibration import MAX_FACTOR
+from rbx1_nav.ros.driving.pose_drive import PoseDrive
+from rbx1_nav.ros.driving.pose_listener import PoseListener
+from rbx1_nav.ros.node.life import end_requested
+
+Answer = TypeVar('Answer')
 
 
 def check_node_name(value: YamlValue) -> str:
@@ -18,11 +30,24 @@ def check_node_name(value: YamlValue) -> str:
 
 
 # parameters of both scripts
-PARAMETERS = (
+COMMON = (
     number('rate', 50, 'Hz', 'commands per second', 2, 1000),
     frame('odom_frame', 'odom', 'frame of the odometry'),
     frame('base_frame', None, 'frame of the robot', shown='base_footprint or base_link, whichever exists'),
     custom('base_node', 'turtlebot_node', 'node whose parameters are calibrated', check_node_name))
+
+
+class CalibrationDrive(PoseDrive):
+    """A PoseDrive with its own publisher and shutdown function, for the calibration scripts."""
+
+    def __init__(self, rate: float, poses: PoseListener) -> None:
+        super().__init__(rospy.Publisher('cmd_vel', Twist, queue_size=5), rate, self.shutdown, poses)
+
+    def shutdown(self) -> None:
+        """Stop the robot, and give it time to stop."""
+        self.cmd_vel.publish(Twist())
+        rospy.loginfo('Stopping the robot...')
+        time.sleep(1)   # wall time, since a simulated clock may have stopped
 
 
 class Diagnosis:
@@ -105,3 +130,33 @@ def _number(section: Section, key: str, low: float, high: float, what: str = 'a 
         return section.number(key, low, high, what=what)
     except ConfigError as error:
         raise rospy.ROSException(str(error)) from None
+
+
+def ask(question: str, check: Callable[[str], Answer]) -> Answer | None:
+    """Ask on the terminal until check(text) accepts the answer; return the result of check().
+
+    check() raises ConfigError for an invalid answer. Returns None if there can be no answer: without a terminal, or at
+    the end of its input. Raises ROSInterruptException as soon as shutdown is requested, which input() would not notice.
+    """
+    source, text = sys.stdin.fileno(), b''
+    while True:
+        print(question, end=' ', flush=True)
+        while b'\n' not in text:
+            if end_requested.is_set():
+                print(flush=True)
+                raise rospy.ROSInterruptException('shutdown requested')
+            if not select.select([source], [], [], 0.05)[0]:
+                continue
+            try:
+                read = os.read(source, 4096)
+            except OSError:         # the terminal belongs to another session, as under roslaunch
+                read = b''
+            if not read:
+                print(flush=True)
+                return None
+            text += read
+        answer, _, text = text.partition(b'\n')
+        try:
+            return check(answer.decode(errors='replace').strip())
+        except ConfigError as error:
+            print(error, flush=True)

@@ -6,7 +6,7 @@ import pytest
 import rospy
 
 from rbx1_nav.config import ConfigError
-from rbx1_nav.ros.node import question
+from rbx1_nav.ros.driving import calibrating as question
 
 
 def check(text):
