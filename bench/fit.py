@@ -11,7 +11,7 @@ import yaml
 from rbx1_nav.control.motions import out_and_back
 from rbx1_nav.fitting.comparison import region_share
 from rbx1_nav.fitting.recording import Commands, Rates, Recording, Track
-from rbx1_nav.fitting.whole import WholeFit
+from rbx1_nav.fitting.surface_fit import WholeFit
 from rbx1_nav.robot.description import read_robot
 from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.ros.node import resources

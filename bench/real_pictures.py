@@ -2,11 +2,10 @@
 from matplotlib.figure import Figure
 import numpy
 
-from rbx1_nav.fitting.ensemble import simulate_paths
+from rbx1_nav.fitting.comparison import simulate_paths
 from rbx1_nav.fitting.floor import Prediction
 from rbx1_nav.fitting.recording import relative
-from rbx1_nav.plotting.fit import SIMULATED, TRUTH, draw_regions
-from rbx1_nav.plotting.runs import PATHS, save
+from rbx1_nav.plotting.plots import PATHS, SIMULATED, TRUTH, draw_regions, save
 
 QUARTILES = (0.25, 'first quartile'), (0.5, 'median'), (0.75, 'third quartile')
 HALF = 0.32     # m, half the size of a panel with end poses: the largest region fits

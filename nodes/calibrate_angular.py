@@ -18,7 +18,7 @@ from sensor_msgs.msg import Imu
 from rbx1_nav.config import ConfigError
 from rbx1_nav.control.legs import Turn
 from rbx1_nav.create.driver.fractions import LOST
-from rbx1_nav.create.driver.parameters import GYRO_CORRECTION
+from rbx1_nav.create.driver.settings import GYRO_CORRECTION
 from rbx1_nav.parameters import elsewhere
 from rbx1_nav.robot.calibration import corrected, read_measured, turn_by_gyro
 from rbx1_nav.ros.driving.calibrating import (

@@ -21,7 +21,7 @@ from std_msgs.msg import String
 
 from rbx1_nav.config import ConfigError
 from rbx1_nav.create.emulator.emulator import EmulatedCreate
-from rbx1_nav.create.emulator.pseudo_terminal import PseudoTerminal
+from rbx1_nav.create.emulator.serial_line import PseudoTerminal
 from rbx1_nav.ros import messages
 from rbx1_nav.ros.base.clocks import as_ros_time
 from rbx1_nav.ros.base.emulated_create import PARAMETERS, RobotFaults, make_robot

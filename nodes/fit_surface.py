@@ -28,11 +28,9 @@ from rbx1_nav.batch.executor import add_arguments, in_order, open_place
 from rbx1_nav.config import ConfigError, show_name
 from rbx1_nav.files import check_yaml, write_file
 from rbx1_nav.fitting.comparison import compare, shares
-from rbx1_nav.fitting.ends_file import read_ends
-from rbx1_nav.fitting.mrclam import is_commands_file, read_robot as read_text_files, truth_file
-from rbx1_nav.fitting.recording import in_force
-from rbx1_nav.plotting.fit import draw_fit
-from rbx1_nav.plotting.runs import check_picture
+from rbx1_nav.fitting.end_poses import read_ends
+from rbx1_nav.fitting.recording import in_force, is_commands_file, read_robot as read_text_files, truth_file
+from rbx1_nav.plotting.plots import check_picture, draw_fit
 from rbx1_nav.robot.description import load_robot
 from rbx1_nav.ros.node import resources
 from rbx1_nav.ros.bags import Topics, read_bag
@@ -118,7 +116,7 @@ def main():
             recordings, end_errors = read_runs(arguments, robot)
             # only now, because they import scipy, which takes longer than the checks
             from rbx1_nav.fitting.surface_file import surface_text, table
-            from rbx1_nav.fitting.whole import WholeFit
+            from rbx1_nav.fitting.surface_fit import WholeFit
             result = WholeFit(recordings, robot.base_width, start, end_errors,
                               lambda part: bar.set_description(f'Fitting the {part}')).result()
             bar.set_description('Simulating the runs on the new surface')

@@ -18,7 +18,7 @@ from rbx1_nav.batch.sweep import Sweep
 from rbx1_nav.config import ConfigError, show, show_name
 from rbx1_nav.files import check_writable
 from rbx1_nav.plotting.animation import animate, check_animation
-from rbx1_nav.plotting.runs import PATHS, check_picture, draw
+from rbx1_nav.plotting.plots import PATHS, check_picture, draw
 from rbx1_nav.robot.description import load_robot
 from rbx1_nav.ros.node import resources
 from rbx1_nav.simulation.exercise import METHODS, PARAMETERS

@@ -10,7 +10,7 @@ import rbx1_nav.ros.node.early_interrupt     # first, so that Ctrl-C during the 
 import rospy
 
 from rbx1_nav.config import ConfigError
-from rbx1_nav.create.driver.parameters import PARAMETERS, read_settings
+from rbx1_nav.create.driver.settings import PARAMETERS, read_settings
 from rbx1_nav.ros.base.create_base import CreateBase
 from rbx1_nav.ros.base.publisher import with_frames
 from rbx1_nav.ros.node import life

@@ -57,8 +57,7 @@ ALLOWED['nodes'] = set(ALLOWED) - {'__init__'}
 WITH_ROS = {room for room in ALLOWED if room.split('.')[0] == 'ros'} | {'nodes'}
 # what the other rooms may import in addition to Python's own modules
 THIRD_PARTY = {'PIL', 'matplotlib', 'numpy', 'scipy', 'serial', 'yaml'}
-OF_MODULE = {'rbx1_nav.batch.cluster': {'distributed'}, 'rbx1_nav.batch.worker': {'dask', 'distributed'},
-             'rbx1_nav.batch.progress': {'tqdm'}}
+OF_MODULE = {'rbx1_nav.batch.cluster': {'dask', 'distributed'}, 'rbx1_nav.batch.sweep': {'tqdm'}}
 MAX_NODE_LINES, MAX_LINES = 150, 300
 
 
@@ -185,9 +184,9 @@ def test_a_real_base_needs_nothing_of_the_simulation():
     ('rbx1_nav.estimation.filter', 'from diagnostic_updater import Updater'),
     ('rbx1_nav.simulation.exercise', 'def path():\n    import rospkg'),
     ('rbx1_nav.units', 'import rosgraph'),
-    ('rbx1_nav.plotting.runs', 'import importlib\nimportlib.import_module("rospy")'),
-    ('rbx1_nav.plotting.runs', '__import__("rospy")'),
-    ('rbx1_nav.plotting.runs', 'name = "rospy"\n__import__(name)'),
+    ('rbx1_nav.plotting.plots', 'import importlib\nimportlib.import_module("rospy")'),
+    ('rbx1_nav.plotting.plots', '__import__("rospy")'),
+    ('rbx1_nav.plotting.plots', 'name = "rospy"\n__import__(name)'),
     ('rbx1_nav.simulation.wheels', 'from rbx1_nav.control.gate import CommandGate'),
     ('rbx1_nav.simulation.wheels', 'from rbx1_nav import control'),
     ('rbx1_nav.simulation.wheels', 'from ..control import gate'),
@@ -200,7 +199,7 @@ def test_a_real_base_needs_nothing_of_the_simulation():
     ('rbx1_nav.simulation.wheels', 'from rbx1_nav.ros import messages'),
     ('rbx1_nav.estimation.filter', 'from rbx1_nav.control.gate import CommandGate'),
     ('rbx1_nav.estimation.filter', 'from rbx1_nav.simulation.exercise import simulate'),
-    ('rbx1_nav.estimation.filter', 'from rbx1_nav.plotting.runs import draw'),
+    ('rbx1_nav.estimation.filter', 'from rbx1_nav.plotting.plots import draw'),
     ('rbx1_nav.control.legs', 'from rbx1_nav.estimation.filter import Filter'),
     ('rbx1_nav.robot.odometry', 'from rbx1_nav.control.gate import CommandGate'),
     ('rbx1_nav.units', 'from rbx1_nav.config import Section'),

@@ -1,28 +1,91 @@
-"""The executor on a Dask cluster, all of whose workers compute the same results."""
+"""The executor on a Dask cluster, all of whose workers compute the same results: what a worker must have in common with
+the program that uses it.
+"""
 from __future__ import annotations
 
 from concurrent.futures import Executor, Future
 from contextlib import contextmanager
+import hashlib
 import logging
+import os
 import platform
 import re
 import sys
 import time
-from typing import Any, Callable, Iterator
+from typing import Any, Callable, Iterator, NamedTuple, Sequence, TypeVar
 import warnings
 
 from rbx1_nav.batch.cases import Case, Row, simulate_row
 from rbx1_nav.batch.executor import Place
-from rbx1_nav.batch.worker import Requirements, checked, code_version, require, versions
 from rbx1_nav.config import ConfigError, show_name
 from rbx1_nav.control.legs import StuckError
 from rbx1_nav.robot.description import Robot
 from rbx1_nav.simulation.exercise import METHODS, PARAMETERS
 from rbx1_nav.simulation.surfaces import Surface
 
+Task = TypeVar('Task')
+Result = TypeVar('Result')
+
 CONNECT = 10.0      # s until a scheduler must answer
 PATIENCE = 60.0     # s without a worker after which the cluster counts as lost
 COUNT = 1.0         # s between two counts of the workers
+
+_passed: list[Requirements] = []    # what this process, a worker, has already met
+
+
+class Requirements(NamedTuple):
+    """The versions of the program, and runs with their results."""
+
+    versions: dict[str, str]
+    runs: Sequence[tuple[Case, int, Row]]   # with the seed
+
+
+class RefusedError(RuntimeError):
+    """Raised on a worker that would not compute the same results."""
+
+
+def versions() -> dict[str, str]:
+    """Return the version of Python and of all packages on which the results depend. The version of rbx1_nav is a
+    digest of its code."""
+    import dask
+    import distributed
+    import numpy
+    return {'Python': platform.python_version(), 'dask': dask.__version__, 'distributed': distributed.__version__,
+            'numpy': numpy.__version__, 'rbx1_nav': code_version()}
+
+
+def code_version() -> str:
+    """Return a digest of the code of this package."""
+    digest = hashlib.sha256()
+    folder = os.path.realpath(os.path.join(os.path.dirname(__file__), '..'))
+    for path, folders, names in os.walk(folder):
+        folders.sort()
+        for name in sorted(names):
+            if name.endswith('.py'):
+                with open(os.path.join(path, name), 'rb') as file:
+                    digest.update(file.read())
+    return digest.hexdigest()[:12]
+
+
+def require(requirements: Requirements) -> None:
+    """Raise RefusedError unless this process meets Requirements. Computes the runs only the first time."""
+    if requirements in _passed:
+        return
+    here = versions()
+    for name, version in requirements.versions.items():
+        if here[name] != version:
+            raise RefusedError(f'{name} {here[name]}: expected {version}, as in the program that uses the cluster')
+    for case, seed, row in requirements.runs:
+        if simulate_row(case, seed) != row:
+            raise RefusedError(f'the {case.method} run with seed {seed} has another result there, although the '
+                               'versions are equal: expected a processor and libraries that compute the same')
+    _passed.append(requirements)
+
+
+def checked(requirements: Requirements, function: Callable[[Task], Result], task: Task) -> Result:
+    """Return function(task) if this process meets Requirements. Raises RefusedError."""
+    require(requirements)
+    return function(task)
 
 
 class Cluster(Executor):

@@ -10,12 +10,9 @@ from rbx1_nav.arrays import Array
 from rbx1_nav.estimation.arrivals import IMU, MAX_LEAD, MAX_WAIT, ODOM, Arrivals
 from rbx1_nav.estimation.doubts import Doubts
 from rbx1_nav.estimation.filter import X, Y, YAW, Filter, Measurement
-from rbx1_nav.estimation.inputs import Imu, Odom, check_imu, check_odom
-from rbx1_nav.estimation.jumps import distance, format_pose, has_jumped
-from rbx1_nav.estimation.limits import Limits
-from rbx1_nav.estimation.past_yaws import PastYaws
-from rbx1_nav.estimation.priors import UNKNOWN_FLOOR, Priors
-from rbx1_nav.estimation.readings import Readings
+from rbx1_nav.estimation.gyro_turns import PastYaws, Readings
+from rbx1_nav.estimation.inputs import Imu, Odom, check_imu, check_odom, distance, format_pose, has_jumped
+from rbx1_nav.estimation.priors import UNKNOWN_FLOOR, Limits, Priors
 from rbx1_nav.estimation.standstill import STANDSTILL, Part, Standstill
 from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.units import SECOND, wrap_angle

@@ -1,7 +1,7 @@
 """The arithmetic of the combined odometry: a planar extended Kalman filter of wheel odometry and a gyro.
 
 The gyro measures how the robot turns, and the wheels measure how far it moves. The wheels measure the turn only if the
-gyro cannot (readings.py).
+gyro cannot (gyro_turns.py).
 
 - The state is the pose x, y (m), yaw (rad), the bias of the gyro (rad/s), and the curvature that unequal wheels drive
   (rad/m). The bias is learned at rest (standstill.py). Until the first rest it is 0, with the uncertainty of any gyro.
@@ -25,8 +25,7 @@ from typing import NamedTuple, Tuple
 import numpy
 
 from rbx1_nav.arrays import Array
-from rbx1_nav.estimation.limits import Limits
-from rbx1_nav.estimation.priors import UNKNOWN_FLOOR, Priors
+from rbx1_nav.estimation.priors import UNKNOWN_FLOOR, Limits, Priors
 from rbx1_nav.estimation.window import WINDOW_TIME, WINDOW_TURN, Sums, Window
 from rbx1_nav.robot.kinematics import Pose
 

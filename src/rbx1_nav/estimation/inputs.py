@@ -1,16 +1,20 @@
-"""The inputs of the filter: odometry and gyro readings, and the checks that reject invalid messages."""
+"""The inputs of the filter: odometry and gyro readings, and the checks that find invalid messages and jumps."""
 from __future__ import annotations
 
+from math import hypot
 from typing import NamedTuple
 
+from rbx1_nav.estimation.priors import Limits
 from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.robot.readings import MIN_VARIANCE
+from rbx1_nav.units import SECOND, wrap_angle
 
 MAX_NUMBER = 1e6        # m or rad/s: above this, sums lose small terms
 MAX_VARIANCE = 1 / MIN_VARIANCE
 NUMBER = f'a number of at most {MAX_NUMBER:g}'
 VARIANCE = f'a variance above 0, from {MIN_VARIANCE:g} to {MAX_VARIANCE:g}'
 POSE_FIELDS = 'pose.pose.position.x', 'pose.pose.position.y', 'pose.pose.orientation'
+JUMP_TOLERANCE = 0.02   # m and rad that are allowed in addition
 
 
 class Odom(NamedTuple):
@@ -64,3 +68,21 @@ def check_imu(imu: Imu) -> None:
     """Raise RejectedMessage if an Imu cannot be used."""
     check_number('angular_velocity.z', imu.rate)
     check_variance('angular_velocity_covariance[8]', imu.variance)
+
+
+def format_pose(odom: Odom) -> str:
+    """Return the pose of an Odom as text."""
+    x, y, yaw = odom.pose
+    return f'({x:.3f} m, {y:.3f} m, {yaw:.3f} rad)'
+
+
+def distance(one: Odom, other: Odom) -> float:
+    """Return the distance between two Odoms, m."""
+    return hypot(other.pose.x - one.pose.x, other.pose.y - one.pose.y)
+
+
+def has_jumped(before: Odom, odom: Odom, limits: Limits) -> bool:
+    """Return whether no robot within its Limits can have moved from one Odom to another in the time between them."""
+    elapsed = (odom.stamp - before.stamp) / SECOND
+    return (distance(before, odom) > limits.max_speed * elapsed + JUMP_TOLERANCE
+            or abs(wrap_angle(odom.pose.yaw - before.pose.yaw)) > limits.max_turn_rate * elapsed + JUMP_TOLERANCE)

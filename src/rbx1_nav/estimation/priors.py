@@ -1,14 +1,21 @@
-"""The filter's assumptions about the floor and the gyro before the first message."""
+"""What the filter assumes before the first message: the limits of a robot, and the errors of the floor and the gyro."""
 from __future__ import annotations
 
-from math import inf
+from math import inf, radians
 from typing import NamedTuple, Protocol
-
-from rbx1_nav.estimation.limits import Limits
 
 # least 1 sigma of the errors on a floor with a surface file, which is never the floor itself: the gyro's scale error,
 # slip in turns and straight on, curvature (rad/m)
 MIN_SPREADS = dict(gyro_scale_error=0.003, slip_turning_spread=0.05, slip_straight_spread=0.02, curvature_spread=0.02)
+
+
+class Limits(NamedTuple):
+    """The limits of a robot; the defaults suit robots up to 5 m/s, with a margin for the noise of the odometry."""
+    max_speed: float = 6.0                  # m/s: odometry that moves faster has jumped
+    max_turn_rate: float = 6.0              # rad/s: odometry that turns faster has jumped
+    max_angular_acceleration: float = 10.0  # rad/s^2: how fast the turn rate may change while gyro readings are lost
+    gyro_bias: float = radians(10)          # rad/s: the largest bias of a gyro, in either direction
+    gyro_scale_error: float = 0.007         # 1 sigma of the gyro's scale error if the floor is unknown; 3 sigma: 2 %
 
 
 class Priors(NamedTuple):

@@ -6,7 +6,7 @@ from typing import Sequence
 import numpy
 
 from rbx1_nav.config import as_yaml_number, show_name
-from rbx1_nav.fitting.whole import FitResult, Value, limits_of
+from rbx1_nav.fitting.surface_fit import FitResult, Value, limits_of
 from rbx1_nav.simulation.surfaces import KEYS
 
 PARTS = (

@@ -11,8 +11,7 @@ import numpy
 
 from rbx1_nav.config import ConfigError
 from rbx1_nav.files import check_writable, write_file
-from rbx1_nav.plotting.palette import ESTIMATE, ODOMETRY, TRUTH
-from rbx1_nav.plotting.runs import TITLES
+from rbx1_nav.plotting.plots import ESTIMATE, ODOMETRY, TITLES, TRUTH
 from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.simulation.exercise import SimulationResult, Snapshot
 

@@ -1,14 +1,13 @@
-"""Reads the description of a robot from parameters in the format of the ArbotiX driver."""
+"""Reads the description of a robot from parameters in the format of the ArbotiX driver, with its joints."""
 from __future__ import annotations
 
-from math import inf, radians
+from math import inf, isfinite, radians
 import re
-from typing import Container, NamedTuple
+from typing import Container, NamedTuple, Sequence
 
 from rbx1_nav.config import ConfigError, Section, YamlValue, load_yaml, show, show_name
 from rbx1_nav.parameters import elsewhere, flag, frame, number, read
-from rbx1_nav.robot.joints import Joint
-from rbx1_nav.units import SECOND
+from rbx1_nav.units import SECOND, clamp
 
 # keys that only the hardware needs: accepted and ignored
 DRIVER_KEYS = {'port', 'baud', 'rate', 'sync_write', 'sync_read', 'read_rate', 'write_rate'}
@@ -50,6 +49,50 @@ JOINT = (
     number('min_angle', -150.0, 'degrees', 'lower limit', -MAX_ANGLE, MAX_ANGLE, 'an angle'),
     number('max_angle', 150.0, 'degrees', 'upper limit', -MAX_ANGLE, MAX_ANGLE, 'an angle'),
     number('max_speed', 90.0, 'degrees/s', 'speed at which the joint moves to its goal', 0.01, MAX_ANGLE, 'a speed'))
+
+
+class Joint:
+    """A joint that moves toward its goal at its maximum speed and stays within its limits.
+
+    Radians and seconds.
+    """
+
+    def __init__(self, name: str, lower: float, upper: float, max_speed: float) -> None:
+        """lower, upper: limits, rad; max_speed: rad/s."""
+        self.name = name
+        self.lower = lower
+        self.upper = upper
+        self.max_speed = max_speed
+        self.position = self.goal = min(max(0.0, lower), upper)
+        self.velocity = 0.0
+
+    def command(self, goal: float) -> None:
+        """Set the goal (rad), limited to the joint's range. Raises ValueError if it is not finite."""
+        if not isfinite(goal):
+            raise ValueError(f'{goal}: expected a finite angle in rad')
+        self.goal = min(max(goal, self.lower), self.upper)
+
+    def advance(self, duration: float) -> None:
+        """Move for `duration` seconds."""
+        step = clamp(self.goal - self.position, self.max_speed * duration)
+        self.velocity = step / duration if duration > 0 else 0.0
+        # stop exactly at the goal, without a rounding error
+        self.position = self.goal if step == self.goal - self.position else self.position + step
+
+
+class JointGroup:
+    """Advances several joints on one clock, in ns."""
+
+    def __init__(self, joints: Sequence[Joint]) -> None:
+        self.joints = joints
+        self.now: int | None = None
+
+    def advance(self, now: int) -> None:
+        """Advance the joints to `now`. If the clock jumped back, no joint moves."""
+        elapsed = max(0, now - self.now) if self.now is not None else 0
+        self.now = now
+        for joint in self.joints:
+            joint.advance(elapsed / SECOND)
 
 
 class Limits(NamedTuple):

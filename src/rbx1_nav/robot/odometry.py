@@ -53,7 +53,7 @@ class UncertainOdometry:
     """
 
     def __init__(self, width: float, errors: OdometryErrors, rounding: tuple[float, float]) -> None:
-        """width: distance between the wheels, m; rounding: see travel.py."""
+        """width: distance between the wheels, m; rounding: see motion.py."""
         self.odometry = Odometry(width)
         self.errors = errors
         self.rounding = rounding[0] ** 2, rounding[1] ** 2      # m^2, rad^2

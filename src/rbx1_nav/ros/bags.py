@@ -12,8 +12,8 @@ from sensor_msgs.msg import Imu
 
 from rbx1_nav.arrays import Array
 from rbx1_nav.config import ConfigError, show_name
-from rbx1_nav.estimation.jumps import JUMP_TOLERANCE
-from rbx1_nav.estimation.limits import Limits
+from rbx1_nav.estimation.inputs import JUMP_TOLERANCE
+from rbx1_nav.estimation.priors import Limits
 from rbx1_nav.fitting.recording import Commands, Rates, Recording, Track, check_recording
 from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.ros.messages import yaw_of

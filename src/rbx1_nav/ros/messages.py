@@ -14,7 +14,7 @@ from rbx1_nav.arrays import Array
 from rbx1_nav.config import show
 from rbx1_nav.estimation.gyro_input import ImuData
 from rbx1_nav.estimation.inputs import MAX_VARIANCE, Odom, check, check_number, check_variance
-from rbx1_nav.robot.joints import Joint
+from rbx1_nav.robot.description import Joint
 from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.robot.readings import MEASURED, Reading, Uncertainty
 from rbx1_nav.units import wrap_angle

@@ -1,15 +1,30 @@
 """Simulated wheels: how they follow commands, what their encoders count, and how they move the robot."""
 from __future__ import annotations
 
-from math import copysign, hypot
+from math import copysign, floor, hypot
 from typing import Protocol
 
 from rbx1_nav.robot.kinematics import ORIGIN, Odometry
 from rbx1_nav.robot.readings import MEASURED, Uncertainty
-from rbx1_nav.simulation.encoders import Encoder
 from rbx1_nav.simulation.floor_noise import Roughness
 from rbx1_nav.simulation.motors import Delay, Motor
 from rbx1_nav.simulation.surfaces import RandomErrors, Surface
+
+
+class Encoder:
+    """Counts whole ticks, rounded to the nearest tick."""
+
+    def __init__(self, ticks_meter: float) -> None:
+        """ticks_meter: ticks per meter."""
+        self.ticks_meter = ticks_meter
+        self.total = 0.0    # m, total travel of the wheel
+        self.ticks = 0
+
+    def count(self, travel: float) -> float:
+        """Return the travel (m) that is counted while the wheel travels `travel` (m)."""
+        self.total += travel
+        before, self.ticks = self.ticks, floor(self.total * self.ticks_meter + 0.5)
+        return (self.ticks - before) / self.ticks_meter
 
 
 class AnyWheels(Protocol):

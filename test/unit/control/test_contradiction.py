@@ -1,7 +1,7 @@
 """Commands of several senders contradict each other if they alternate and differ."""
 import pytest
 
-from rbx1_nav.control.contradiction import Senders
+from rbx1_nav.control.gate import Senders
 from rbx1_nav.units import SECOND
 
 TICK = SECOND // 50

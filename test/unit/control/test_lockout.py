@@ -3,7 +3,7 @@ import weakref
 
 import pytest
 
-from rbx1_nav.control.lockout import Lockout
+from rbx1_nav.create.driver.acceptance import Lockout
 
 SILENCE = 600       # ns; any value works
 

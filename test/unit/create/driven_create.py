@@ -3,7 +3,7 @@ import os
 
 from rbx1_nav.control.gate import CommandGate, RefusedCommand
 from rbx1_nav.create.driver.driver import Driver
-from rbx1_nav.create.driver.parameters import read_settings
+from rbx1_nav.create.driver.settings import read_settings
 from rbx1_nav.create.emulator.body import Body, Quirks
 from rbx1_nav.create.emulator.emulator import EmulatedCreate
 from rbx1_nav.create.emulator.serial_line import SerialLine

@@ -5,7 +5,7 @@ import os
 import pytest
 import yaml
 
-from rbx1_nav.create.driver.parameters import read_settings
+from rbx1_nav.create.driver.settings import read_settings
 
 FOLDER = os.path.join(os.path.dirname(__file__), '..', '..', '..', 'config', 'create')
 CALIBRATIONS = sorted(glob.glob(os.path.join(FOLDER, 'calibration', '*.yaml')))

@@ -3,7 +3,7 @@ import pytest
 
 from rbx1_nav.config import ConfigError
 from rbx1_nav.create import protocol
-from rbx1_nav.create.driver.parameters import read_settings
+from rbx1_nav.create.driver.settings import read_settings
 
 
 def test_the_defaults():

@@ -3,8 +3,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from rbx1_nav.create.driver import port
-from rbx1_nav.create.driver.port import find_port
+from rbx1_nav.create.driver import link as module
+from rbx1_nav.create.driver.link import find_port
 
 FTDI = 'FTDI USB-Serial 42'
 
@@ -24,8 +24,8 @@ def make_usb(tmp_path, monkeypatch):
         for path in tmp_path.iterdir():
             manufacturer, _, product = path.read_text().partition(' ')
             yield SimpleNamespace(device=str(path), manufacturer=manufacturer, product=product, serial_number=None)
-    monkeypatch.setattr(port, 'DEFAULT', (str(tmp_path / 'create'), str(tmp_path / 'ttyUSB0')))
-    monkeypatch.setattr(port.list_ports, 'comports', ports)
+    monkeypatch.setattr(module, 'DEFAULT', (str(tmp_path / 'create'), str(tmp_path / 'ttyUSB0')))
+    monkeypatch.setattr(module.list_ports, 'comports', ports)
     return plug, unplug
 
 

@@ -11,8 +11,8 @@ import pytest
 
 from rbx1_nav.create.driver import guardian
 from rbx1_nav.create.driver.guardian import Guardian
-from rbx1_nav.create.driver.port import PortError, open_port
-from rbx1_nav.create.emulator.pseudo_terminal import PseudoTerminal
+from rbx1_nav.create.driver.link import PortError, open_port
+from rbx1_nav.create.emulator.serial_line import PseudoTerminal
 
 STOP = b'\0\0\x91\0\0\0\0\x80'
 LIMIT = 30      # s after which a wait fails
@@ -22,7 +22,7 @@ GUARDED = '''
 import sys, time
 sys.path.insert(0, sys.argv[1])
 from rbx1_nav.create.driver.guardian import Guardian
-from rbx1_nav.create.driver.port import open_port
+from rbx1_nav.create.driver.link import open_port
 port = open_port(sys.argv[2], 115200)
 guardian = Guardian(port.fileno(), bytes.fromhex(sys.argv[3]))
 port.write(bytes.fromhex(sys.argv[4]))

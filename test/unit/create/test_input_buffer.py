@@ -2,7 +2,7 @@
 import pytest
 
 from rbx1_nav.create.emulator.emulator import INPUT_SIZE
-from rbx1_nav.create.emulator.scripts import MAX_SCRIPT
+from rbx1_nav.create.emulator.programs import MAX_SCRIPT
 from rbx1_nav.create.protocol import COUNTED, CREATE, MODELS, NOTES, PASSIVE, SAFE, command
 from robots import Robot
 

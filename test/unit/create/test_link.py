@@ -12,7 +12,7 @@ import rbx1_nav.create.driver.link
 from rbx1_nav.create import protocol
 from rbx1_nav.create.driver.link import BEAT, LineLost, Link
 from rbx1_nav.create.driver.search import Search
-from rbx1_nav.create.emulator.pseudo_terminal import PseudoTerminal
+from rbx1_nav.create.emulator.serial_line import PseudoTerminal
 from rbx1_nav.create.line_settings import read_rate
 from rbx1_nav.units import SECOND
 

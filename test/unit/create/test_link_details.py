@@ -9,9 +9,8 @@ import pytest
 import rbx1_nav.create.driver.link as link_module
 from rbx1_nav.create import protocol
 from rbx1_nav.create.driver.guardian import HANG
-from rbx1_nav.create.driver.link import LineLost, Link
-from rbx1_nav.create.driver.port import describe_adapter, reason
-from rbx1_nav.create.emulator.pseudo_terminal import PseudoTerminal
+from rbx1_nav.create.driver.link import LineLost, Link, describe_adapter, reason
+from rbx1_nav.create.emulator.serial_line import PseudoTerminal
 from rbx1_nav.create.line_settings import read_rate, read_settings
 from rbx1_nav.units import SECOND
 

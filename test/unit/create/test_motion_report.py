@@ -1,9 +1,8 @@
 """The reported motion: corrected pose, mean velocity, wheel travel, standstill and variances."""
 import pytest
 
-from rbx1_nav.create.driver.motion_report import MotionReport
-from rbx1_nav.create.driver.parameters import read_settings
-from rbx1_nav.create.driver.travel import NOWHERE, Travel
+from rbx1_nav.create.driver.motion import NOWHERE, MotionReport, Travel
+from rbx1_nav.create.driver.settings import read_settings
 from rbx1_nav.create.protocol import CREATE
 from rbx1_nav.units import SECOND
 

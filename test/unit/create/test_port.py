@@ -5,9 +5,9 @@ import sys
 
 import pytest
 
-from rbx1_nav.create.driver import port as module
-from rbx1_nav.create.driver.port import PortError, open_port, reason
-from rbx1_nav.create.emulator.pseudo_terminal import PseudoTerminal
+from rbx1_nav.create.driver import link as module
+from rbx1_nav.create.driver.link import PortError, open_port, reason
+from rbx1_nav.create.emulator.serial_line import PseudoTerminal
 
 
 @pytest.fixture(name='terminal')

@@ -7,7 +7,7 @@ import pytest
 import serial
 
 from rbx1_nav.config import ConfigError
-from rbx1_nav.create.emulator.pseudo_terminal import PseudoTerminal
+from rbx1_nav.create.emulator.serial_line import PseudoTerminal
 
 
 @pytest.fixture(name='terminal')

@@ -3,10 +3,9 @@ import pytest
 
 from rbx1_nav.create import protocol
 from rbx1_nav.create.driver import sequences
+from rbx1_nav.create.driver.exchange import Queries, Sender
 from rbx1_nav.create.driver.fractions import KEPT, Fractions
-from rbx1_nav.create.driver.queries import Queries
-from rbx1_nav.create.driver.sender import Sender
-from rbx1_nav.create.driver.travel import CounterTravel
+from rbx1_nav.create.driver.motion import CounterTravel
 
 
 def asked():

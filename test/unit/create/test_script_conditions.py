@@ -2,7 +2,7 @@
 import pytest
 
 from rbx1_nav.create.emulator.body import Body
-from rbx1_nav.create.emulator.scripts import Scripts, event
+from rbx1_nav.create.emulator.programs import Scripts, event
 from rbx1_nav.create.protocol import CREATE, FULL, OFF, PASSIVE, SAFE
 from rbx1_nav.units import SECOND
 

@@ -6,7 +6,7 @@ import pytest
 
 from rbx1_nav.create import protocol
 from rbx1_nav.create.driver.fractions import KEPT, Fractions
-from rbx1_nav.create.driver.travel import NOWHERE, STILL, CounterTravel, EncoderTravel, Expected, Implausible
+from rbx1_nav.create.driver.motion import NOWHERE, STILL, CounterTravel, EncoderTravel, Expected, Implausible
 
 COUNT = 1 / protocol.CREATE_2.counts_per_metre      # m
 

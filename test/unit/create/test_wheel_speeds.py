@@ -2,7 +2,7 @@
 from hypothesis import given, strategies
 import pytest
 
-from rbx1_nav.create.driver.sender import is_too_fast, wheel_speeds
+from rbx1_nav.create.driver.exchange import is_too_fast, wheel_speeds
 
 SPEEDS = strategies.floats(-10, 10)
 

@@ -6,7 +6,7 @@ import pytest
 
 from rbx1_nav.estimation.filter import BIAS, YAW
 from rbx1_nav.estimation.inputs import Imu, Odom
-from rbx1_nav.estimation.limits import Limits
+from rbx1_nav.estimation.priors import Limits
 from rbx1_nav.robot.kinematics import ORIGIN, Pose, arc
 from rbx1_nav.units import SECOND
 from sample_priors import IDEAL

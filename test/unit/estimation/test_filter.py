@@ -8,8 +8,7 @@ from hypothesis import strategies as st
 
 from rbx1_nav.estimation.doubts import CONTRADICTION, Doubts
 from rbx1_nav.estimation.filter import BIAS, CURVATURE, FIRST_BIAS, SCALE, SLIP_TURNING, WINDOW, X, Y, YAW, Filter
-from rbx1_nav.estimation.limits import Limits
-from rbx1_nav.estimation.priors import UNKNOWN_FLOOR
+from rbx1_nav.estimation.priors import UNKNOWN_FLOOR, Limits
 from rbx1_nav.estimation.window import Sums
 from rbx1_nav.robot.kinematics import ORIGIN, Pose
 from rbx1_nav.units import SECOND

@@ -3,9 +3,8 @@ from math import pi
 
 import pytest
 
-from rbx1_nav.estimation.inputs import Odom
-from rbx1_nav.estimation.jumps import distance, format_pose, has_jumped
-from rbx1_nav.estimation.limits import Limits
+from rbx1_nav.estimation.inputs import Odom, distance, format_pose, has_jumped
+from rbx1_nav.estimation.priors import Limits
 from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.units import SECOND
 

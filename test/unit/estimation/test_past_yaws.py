@@ -1,7 +1,7 @@
 """Past yaws of the filter are interpolated."""
 import pytest
 
-from rbx1_nav.estimation.past_yaws import PastYaws
+from rbx1_nav.estimation.gyro_turns import PastYaws
 
 
 def past(*yaws):

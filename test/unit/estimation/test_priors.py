@@ -6,8 +6,7 @@ import pytest
 
 from rbx1_nav.estimation.combined_odometry import CombinedOdometry
 from rbx1_nav.estimation.filter import BIAS, CURVATURE, FIRST_BIAS, SCALE, SLIP_STRAIGHT, SLIP_TURNING, Filter
-from rbx1_nav.estimation.limits import Limits
-from rbx1_nav.estimation.priors import MIN_SPREADS, UNKNOWN_FLOOR, Priors, priors
+from rbx1_nav.estimation.priors import MIN_SPREADS, UNKNOWN_FLOOR, Limits, Priors, priors
 from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.simulation.surfaces import load_surface
 from rbx1_nav.units import SECOND

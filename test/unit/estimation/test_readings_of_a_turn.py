@@ -3,9 +3,9 @@ from math import inf
 
 import pytest
 
+from rbx1_nav.estimation.gyro_turns import Readings
 from rbx1_nav.estimation.inputs import Imu
-from rbx1_nav.estimation.limits import Limits
-from rbx1_nav.estimation.readings import Readings
+from rbx1_nav.estimation.priors import Limits
 from rbx1_nav.units import SECOND
 
 START = 100 * SECOND

@@ -4,7 +4,7 @@ from math import radians
 import pytest
 
 from rbx1_nav.config import ConfigError
-from rbx1_nav.fitting.ends_file import read_ends
+from rbx1_nav.fitting.end_poses import read_ends
 
 
 def read(tmp_path, text, bags=('/runs/run1.bag', 'run2.bag')):

@@ -6,7 +6,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rbx1_nav.fitting.ensemble import cell_noise, energy_score, inner_share, mahalanobis, simulate_ends, simulate_paths
+from rbx1_nav.fitting.comparison import (
+    cell_noise, energy_score, inner_share, mahalanobis, simulate_ends, simulate_paths)
 from rbx1_nav.fitting.floor import NOISES, SPREADS, Covariance, Prediction, Windows
 from rbx1_nav.fitting.recording import Commands
 from rbx1_nav.fitting.travel import STEP, commanded_travel, grid

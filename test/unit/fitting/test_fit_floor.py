@@ -4,9 +4,9 @@ import numpy
 import pytest
 
 from rbx1_nav.fitting import floor
-from rbx1_nav.fitting.ensemble import cell_noise, simulate_ends
-from rbx1_nav.fitting.fit import MEANS, Fitter
+from rbx1_nav.fitting.comparison import cell_noise, simulate_ends
 from rbx1_nav.fitting.floor import Covariance, Prediction, Windows, cell_covariance
+from rbx1_nav.fitting.floor_fit import MEANS, Fitter
 from rbx1_nav.fitting.run import PreparedRun
 from sample_runs import DRIVE, EXERCISE, FLOOR, FORWARD, REST, record
 

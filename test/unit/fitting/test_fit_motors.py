@@ -3,7 +3,7 @@ from hypothesis import Phase, given, settings, strategies as st
 import numpy
 import pytest
 
-from rbx1_nav.fitting.motors import INTERVAL, KEYS, Intervals, fit_motors, standard_errors
+from rbx1_nav.fitting.motor_fit import INTERVAL, KEYS, Intervals, fit_motors, standard_errors
 from sample_runs import DRIVE, EXERCISE, FLOOR, FORWARD, REST, record
 
 START = FLOOR._replace(lag=0.1, accel_limit=1.0, drag_straight=0.002, drag_turning=0.003, delay=0.0)

@@ -3,7 +3,7 @@ from math import radians
 
 import pytest
 
-from rbx1_nav.fitting.gyro_errors import fit_gyro, root_mean_square, rests_at
+from rbx1_nav.fitting.gyro_fit import fit_gyro, rests_at, root_mean_square
 from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.simulation.surfaces import draw_run
 from sample_runs import DRIVE, EXERCISE, FLOOR, FORWARD, record, wrapped

@@ -3,7 +3,7 @@ import numpy
 import pytest
 
 from rbx1_nav.config import ConfigError
-from rbx1_nav.fitting.mrclam import read_set
+from rbx1_nav.fitting.recording import read_set
 
 COMMANDS = '# time v w\n10.0\t0.1\t0.0\n10.5 0.1 0.5\n11 0.0 0.0\n'
 TRUTH = '10.0 1.0 2.0 3.1\n10.5 1.1 2.0 -3.1\n11.0 1.2 2.0 -3.0\n'

@@ -5,7 +5,7 @@ from hypothesis import given, settings, strategies as st
 import yaml
 
 from rbx1_nav.fitting.surface_file import PARTS, surface_text, table
-from rbx1_nav.fitting.whole import FitResult, Value, limits_of
+from rbx1_nav.fitting.surface_fit import FitResult, Value, limits_of
 from rbx1_nav.simulation.surfaces import KEYS, Surface, read_surface
 
 VALUES = {key: st.floats(*limits_of(key)) | st.sampled_from(limits_of(key)) for key in KEYS}      # in SI units

@@ -5,9 +5,9 @@ import numpy
 import pytest
 
 from rbx1_nav.config import ConfigError
-from rbx1_nav.fitting.gyro_errors import rests_at
+from rbx1_nav.fitting.gyro_fit import rests_at
 from rbx1_nav.fitting.recording import Commands
-from rbx1_nav.fitting.whole import WholeFit, truth_errors
+from rbx1_nav.fitting.surface_fit import WholeFit, truth_errors
 from rbx1_nav.robot.kinematics import Pose
 from sample_runs import DRIVE, EXERCISE, FLOOR, FORWARD, REST, record, wrapped
 

@@ -4,7 +4,7 @@ import re
 
 import pytest
 import yaml
-from rbx1_nav.plotting.palette import ESTIMATE, ODOMETRY, TRUTH
+from rbx1_nav.plotting.plots import ESTIMATE, ODOMETRY, TRUTH
 
 ROOT = os.path.join(os.path.dirname(__file__), '..', '..', '..')
 BY_TOPIC = {'/ground_truth': TRUTH, '/odom': ODOMETRY, '/odom_ekf': ESTIMATE}

@@ -10,7 +10,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from rbx1_nav.config import ConfigError
-from rbx1_nav.plotting.runs import check_picture, common_extent, common_norm, draw, draw_ends, end_poses
+from rbx1_nav.plotting.plots import check_picture, common_extent, common_norm, draw, draw_ends, end_poses
 from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.simulation.exercise import SimulationResult, Snapshot
 

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rbx1_nav.robot.joints import Joint, JointGroup
+from rbx1_nav.robot.description import Joint, JointGroup
 from rbx1_nav.units import SECOND
 
 

@@ -3,9 +3,8 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from rbx1_nav.simulation.encoders import Encoder
 from rbx1_nav.simulation.motors import Motor
-from rbx1_nav.simulation.wheels import Wheels
+from rbx1_nav.simulation.wheels import Encoder, Wheels
 from sample_surface import RUN, SURFACE
 
 speeds = st.floats(-1, 1)

@@ -5,7 +5,7 @@ from collections import deque
 from math import radians
 from typing import Callable, NamedTuple
 
-from rbx1_nav.create.driver.parameters import Settings
+from rbx1_nav.create.driver.settings import Settings
 from rbx1_nav.robot.readings import MEASURED, Reading
 
 MAX_REST = 1000         # maximum number of readings at rest in the offset: half a minute, as in create_node

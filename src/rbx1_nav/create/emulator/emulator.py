@@ -6,12 +6,11 @@ from struct import Struct
 from typing import Callable, Sequence
 
 from rbx1_nav.create.emulator.body import Body
-from rbx1_nav.create.emulator.programs import CIRCLE, Programs
-from rbx1_nav.create.emulator.scripts import MAX_SCRIPT, Scripts
+from rbx1_nav.create.emulator.programs import CIRCLE, MAX_SCRIPT, Programs, Scripts
 from rbx1_nav.create.emulator.serial_line import SerialLine
 from rbx1_nav.create.protocol import (
-    BAUD_RATES, COUNTED, CREATE, IN_PLACE_LEFT, IN_PLACE_RIGHT, MAX_SPEED, OFF, PASSIVE, ROBOT_RADIUS, SAFE,
-    STRAIGHT, UPDATE_PERIOD, Command, Model, encode_frame, frame_format, packets_format, single_packets)
+    BAUD_RATES, COUNTED, CREATE, IN_PLACE_LEFT, IN_PLACE_RIGHT, MAX_SPEED, OFF, PASSIVE, ROBOT_RADIUS, SAFE, STRAIGHT,
+    UPDATE_PERIOD, Command, Model, encode_frame, frame_format, packets_format, single_packets)
 from rbx1_nav.units import SECOND, clamp
 
 TICK = round(UPDATE_PERIOD * SECOND)

@@ -10,9 +10,8 @@ from diagnostic_updater import DiagnosticStatusWrapper
 from geometry_msgs.msg import Twist
 from std_msgs.msg import Float64
 
-from rbx1_nav.control.contradiction import Senders
-from rbx1_nav.control.gate import CommandGate, RefusedCommand, RejectedCommand
-from rbx1_nav.robot.joints import Joint
+from rbx1_nav.control.gate import CommandGate, RefusedCommand, RejectedCommand, Senders
+from rbx1_nav.robot.description import Joint
 from rbx1_nav.ros import messages
 from rbx1_nav.ros.base.clocks import Clock
 from rbx1_nav.ros.network.bases import Refusals

@@ -11,8 +11,8 @@ import rospy
 from rbx1_nav.control.gate import CommandGate
 from rbx1_nav.create.driver.driver import Driver
 from rbx1_nav.create.driver.link import Link
-from rbx1_nav.create.driver.motion_report import State
-from rbx1_nav.create.driver.parameters import Settings
+from rbx1_nav.create.driver.motion import State
+from rbx1_nav.create.driver.settings import Settings
 from rbx1_nav.robot.description import Robot
 from rbx1_nav.robot.readings import Uncertainty
 from rbx1_nav.ros.base.clocks import HardwareClock

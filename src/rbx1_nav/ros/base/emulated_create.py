@@ -15,8 +15,7 @@ from std_srvs.srv import SetBool, SetBoolResponse, Trigger, TriggerResponse
 from rbx1_nav.config import ConfigError, Section, YamlValue, show
 from rbx1_nav.create.emulator.body import CAPACITY, Body, BodyErrors, Quirks
 from rbx1_nav.create.emulator.emulator import EmulatedCreate
-from rbx1_nav.create.emulator.pseudo_terminal import PseudoTerminal
-from rbx1_nav.create.emulator.serial_line import SerialLine
+from rbx1_nav.create.emulator.serial_line import PseudoTerminal, SerialLine
 from rbx1_nav.create.protocol import BAUD_RATES, CREATE, CREATE_2, MODELS
 from rbx1_nav.parameters import Parameter, choice, custom, flag, number, read
 from rbx1_nav.ros.base.simulated_floor import SURFACE, seed

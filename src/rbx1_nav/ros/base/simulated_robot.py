@@ -11,8 +11,7 @@ from nav_msgs.msg import Odometry
 from std_msgs.msg import Empty
 from std_srvs.srv import Empty as EmptyService, EmptyRequest, EmptyResponse
 
-from rbx1_nav.robot.description import Robot
-from rbx1_nav.robot.joints import JointGroup
+from rbx1_nav.robot.description import JointGroup, Robot
 from rbx1_nav.ros import messages
 from rbx1_nav.ros.base.clocks import Clock
 from rbx1_nav.ros.base.commands import VelocityCommands, subscribe_joints

@@ -15,8 +15,7 @@ from rbx1_nav.config import ConfigError, Section, YamlValue, show
 from rbx1_nav.estimation.arrivals import MAX_AGE, MAX_LEAD
 from rbx1_nav.estimation.combined_odometry import CombinedOdometry
 from rbx1_nav.estimation.inputs import check
-from rbx1_nav.estimation.limits import Limits
-from rbx1_nav.estimation.priors import UNKNOWN_FLOOR, Priors, priors
+from rbx1_nav.estimation.priors import UNKNOWN_FLOOR, Limits, Priors, priors
 from rbx1_nav.parameters import custom, flag, frame, number, read
 from rbx1_nav.ros.network.bases import private_namespace
 from rbx1_nav.ros.network.master import call

@@ -1,4 +1,4 @@
-"""Fits a surface to recorded runs.
+"""Fits the floor of a surface to recorded runs.
 
 The end poses of windows are compared with the predictions of a surface. Slip and the other systematic errors are fitted
 by least squares, weighted by the predicted covariance. The noise is fitted to the residuals by maximum likelihood. Both

@@ -7,19 +7,17 @@ from typing import Callable, NamedTuple, Sequence
 import numpy
 
 from rbx1_nav.config import ConfigError
-from rbx1_nav.fitting import tape
-from rbx1_nav.fitting.fit import BOUNDS, MEANS, MIN_STRENGTH, Fitter, fit_floor
+from rbx1_nav.fitting.end_poses import TYPICAL, fit_ends
 from rbx1_nav.fitting.floor import NOISES, SPREADS, Covariance, with_values
-from rbx1_nav.fitting.gyro_errors import fit_gyro, rests_at
-from rbx1_nav.fitting.motors import KEYS as MOTOR_KEYS, LIMITS, fit_motors
-from rbx1_nav.fitting.recording import Recording
+from rbx1_nav.fitting.floor_fit import BOUNDS, MEANS, MIN_STRENGTH, Fitter, fit_floor
+from rbx1_nav.fitting.gyro_fit import fit_gyro, rests_at
+from rbx1_nav.fitting.motor_fit import KEYS as MOTOR_KEYS, LIMITS, fit_motors
+from rbx1_nav.fitting.recording import CAMERAS, Recording
 from rbx1_nav.fitting.run import PreparedRun
-from rbx1_nav.fitting.tape import TYPICAL
 from rbx1_nav.simulation.surfaces import KEYS, Surface
 
 FLOOR = ('slip_straight', 'slip_turning', 'curvature', 'turning_loss')
 RESOLUTION = 0.0003, 0.0003, 0.001  # m, m, rad: resolution of encoders, the smallest error of an end pose
-CAMERAS = 0.001, 0.001, 0.003       # m, m, rad: 1 sigma of a motion capture system, if the runs do not determine it
 SHORTEST, LONGEST = 2.0, 10.0       # s: limits of the length of a window
 WINDOWS = 100       # number of windows in the total time, within these limits
 WIDEST = 10.0       # largest ratio of the error of an end pose in motion to the error of the truth at rest
@@ -200,7 +198,7 @@ class WholeFit:
         runs = [PreparedRun(recording, self.base_width) for recording in self.recordings]
         self.description = (f"floor, from {'odometry' if self.has_odometry else 'commands'} and {len(runs)} end poses "
                             'measured by hand')
-        fit = tape.fit_ends(runs, self.surface, self.end_errors)
+        fit = fit_ends(runs, self.surface, self.end_errors)
         self.surface = with_values(self.surface, fit.values)
         self.errors.update(fit.errors)
         self.reasons.update(fit.reasons)

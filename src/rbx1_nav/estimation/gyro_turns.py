@@ -1,4 +1,4 @@
-"""Stores gyro readings until the odometry arrives, and integrates them into a turn."""
+"""Turns from gyro readings: readings wait here until the odometry arrives, and yaws if the gyro is ahead of it."""
 from __future__ import annotations
 
 from collections import deque
@@ -6,7 +6,7 @@ from typing import Deque, NamedTuple
 
 from rbx1_nav.estimation.filter import Measurement
 from rbx1_nav.estimation.inputs import Imu
-from rbx1_nav.estimation.limits import Limits
+from rbx1_nav.estimation.priors import Limits
 from rbx1_nav.units import SECOND
 
 SHORT = SECOND // 20    # ns between two readings in which the rate hardly changes
@@ -88,3 +88,27 @@ class Readings:
             if imu.stamp <= end:
                 self.waiting.popleft()
         return (angle, variance) if good and time == end and variance else None
+
+
+class PastYaws:
+    """Past yaws (rad) of the filter, with their times (ns)."""
+
+    def __init__(self) -> None:
+        self.yaws: Deque[tuple[int, float]] = deque()
+
+    def add(self, time: int, yaw: float) -> None:
+        """Add the latest yaw, if there is none for its time."""
+        if not self.yaws or self.yaws[-1][0] < time:
+            self.yaws.append((time, yaw))
+
+    def turn(self, angle: float) -> None:
+        """Add an angle (rad) to all yaws."""
+        self.yaws = deque((time, yaw + angle) for time, yaw in self.yaws)
+
+    def at(self, time: int) -> float:
+        """Return the yaw at a time between the first and the last yaw, and discard the yaws before it."""
+        yaws = self.yaws
+        while yaws[1][0] < time:
+            yaws.popleft()
+        (start, before), (end, after) = yaws[0], yaws[1]
+        return before + (after - before) * (time - start) / (end - start)
