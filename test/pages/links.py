@@ -11,6 +11,7 @@ TARGET = r'<?(?P<target>(?:[^()\s<>]|\([^()\s]*\))+)>?(?: +"[^"]*")?\)'
 LINK = re.compile(r'\]\(' + TARGET + r'|^ {0,3}\[[^\]]+\]: *<?(?P<defined>[^\s>]+)'
                   r'|<a [^>]*href="(?P<html>[^"]+)"|<(?P<auto>\w[\w+.-]*:[^\s>]*)>')
 IMAGE = re.compile(r'!\[[^\]]*\]\(' + TARGET + r'|<img [^>]*src="(?P<html>[^"]+)"')
+MOVED = re.compile(r'# .*\n\nThis page has moved:\n')      # the beginning of a page that only leads to other pages
 PICTURES = ('.png', '.svg', '.jpg', '.jpeg', '.gif')
 
 
@@ -34,6 +35,11 @@ def anchors(text):
             found.add(name)
         found.update(ANCHOR.findall(line))
     return found
+
+
+def has_moved(text):
+    """Whether a page only leads to the new places of what it contained."""
+    return MOVED.match(text) is not None
 
 
 def prose(text):
@@ -64,17 +70,19 @@ def trouble(root, page, target):
         return 'leads out of the repository'
     if not os.path.exists(os.path.join(root, path)):
         return 'no such file'
-    if not url.fragment:
-        return None
     if not path.endswith('.md'):
-        return 'expected an anchor in a Markdown page only'
-    return None if url.fragment in anchors(markdown.read(root, path)) else 'no such heading'
+        return 'expected an anchor in a Markdown page only' if url.fragment else None
+    text = markdown.read(root, path)
+    if has_moved(text):
+        return 'leads to a page that has moved'
+    return None if not url.fragment or url.fragment in anchors(text) else 'no such heading'
 
 
 def problems(root):
     """All problems in a repository, one line each.
 
-    These are broken links, pages in docs/ that README.md does not lead to, and pictures that no page shows.
+    These are broken links, pages in docs/ that README.md does not lead to unless they have moved, and pictures that no
+    page shows.
     """
     found, graph, shown = [], {}, set()
     for page in markdown.files(root, '.md'):
@@ -93,6 +101,6 @@ def problems(root):
             reached.add(page)
             ahead.extend(graph.get(page, ()))
     found += [f'{page}: README.md does not lead to this page' for page in graph
-              if page.startswith('docs/') and page not in reached]
+              if page.startswith('docs/') and page not in reached and not has_moved(markdown.read(root, page))]
     found += [f'{each}: no page shows this picture' for each in markdown.files(root, PICTURES) if each not in shown]
     return found

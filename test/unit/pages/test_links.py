@@ -55,6 +55,16 @@ def test_broken(tmp_path, link, trouble):
     assert found.startswith('CONTRIBUTING.md:2: ') and found.endswith(f': {trouble}')
 
 
+def test_a_page_that_has_moved(tmp_path):
+    """No page leads to it, and none has to; its own links are checked."""
+    moved = '# Old\n\nThis page has moved:\n\n- [Part](a.md#part)\n'
+    assert problems(tmp_path, **{'docs/old.md': moved}) == []
+    assert problems(tmp_path, **{'docs/old.md': moved, 'OTHER.md': '[old](docs/old.md)'}) == [
+        'OTHER.md:1: docs/old.md: leads to a page that has moved']
+    found, = problems(tmp_path, **{'docs/old.md': moved.replace('part', 'none'), 'OTHER.md': ''})
+    assert found == 'docs/old.md:5: a.md#none: no such heading'
+
+
 def test_out_of_reach(tmp_path):
     """Pages that only link each other, and a picture that is linked but not shown."""
     lost = {'docs/lost.md': '[too](lost_too.md) [q](q.png)', 'docs/lost_too.md': '[lost](lost.md)', 'docs/q.png': ''}

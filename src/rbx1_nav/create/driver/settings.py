@@ -22,7 +22,7 @@ def _check_port(port: YamlValue) -> str:
     return port
 
 
-_CALIBRATED = 'see [calibration files](files.md#calibration-files)'
+_CALIBRATED = 'see [calibration files](reference.md#calibration-files)'
 
 PARAMETERS = (
     custom('port', AUTO, 'serial port, or a link to it; auto: /dev/create if it exists, else /dev/ttyUSB0',

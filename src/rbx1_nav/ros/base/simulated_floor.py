@@ -10,7 +10,7 @@ SURFACE = custom(
     'surface', 'ideal', 'name of the floor, or absolute path of a surface file',
     lambda name: load_surface(name, resources.surfaces()),
     range=lambda: ', '.join(known_surfaces(resources.surfaces())),
-    note='see [surface files](files.md#surface-files)')
+    note='see [surface files](reference.md#surface-files)')
 
 
 def seed(text: str) -> Parameter:

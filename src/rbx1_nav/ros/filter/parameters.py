@@ -63,7 +63,7 @@ PARAMETERS = (
            note='may also be set in a namespace around the node, as in tf'),
     custom('surface', AUTO,
            f'initially assumed floor: a name or path, {ANY}, or {AUTO}, the surface of a simulated base',
-           _check_surface, note='see [surface files](files.md#surface-files)'),
+           _check_surface, note='see [surface files](reference.md#surface-files)'),
     number('max_speed', DEFAULT.max_speed, 'm/s', 'highest speed of the odometry; above it, the odometry has jumped',
            0.01, 1000, 'a speed'),
     number('max_turn_rate', DEFAULT.max_turn_rate, 'rad/s',
