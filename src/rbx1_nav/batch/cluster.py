@@ -176,6 +176,14 @@ def open_cluster(address: str, robot: Robot, surface: Surface | None) -> Iterato
     logging.disable(logging.CRITICAL)   # one line is enough, and it is ours
     warnings.filterwarnings('ignore', module='distributed')
     warnings.filterwarnings('ignore', message='.*Mismatched versions')
+    if address.startswith('tls:'):
+        try:        # Dask itself would wait for 20 s and print a traceback
+            certificate, reason = distributed.Security().get_connection_args('client')['ssl_context'], ''
+        except OSError as error:
+            certificate, reason = None, f': {error}'
+        if not certificate:
+            raise ConfigError(f'--scheduler: {show_name(address)}: expected a certificate and its key in the '
+                              f'configuration of Dask (distributed.comm.tls){reason}')
     try:
         client = distributed.Client(address, timeout=CONNECT, set_as_default=False)
     except Exception as error:
