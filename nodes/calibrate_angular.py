@@ -7,6 +7,8 @@ example: rosrun rbx1_nav calibrate_angular.py _turns:=3
 Mark the robot's heading on the floor. When the robot faces the mark again, it has turned 360 degrees; when it is 10
 degrees short of the mark, it has turned 350 degrees. The gyro is calibrated on the same turn.
 """
+from __future__ import annotations
+
 from rbx1_nav.ros.driving.script import exit_status, init_node, number, param
 
 from math import degrees, pi
@@ -36,7 +38,7 @@ PARAMETERS = [
               unit='degrees', note='the total angle, 1800 for five turns')]
 
 
-def measure():
+def measure() -> dict[str, float]:
     """Turn once; return the angles that odometry and gyro reported (degrees) and the factors in force."""
     rate, angular_speed = param('rate'), param('angular_speed')
     leg = Turn('turn left', 2 * pi * param('turns'), angular_speed, param('min_angular_speed'), rate)
@@ -69,12 +71,12 @@ def measure():
     return run
 
 
-def warn_of_gyro(error):
+def warn_of_gyro(error: ConfigError) -> None:
     """Log why the gyro is not calibrated."""
     rospy.logwarn('The gyro is not calibrated: %s. See /diagnostics of the base', error)
 
 
-def calibrate():
+def calibrate() -> None:
     """Turn, ask, and print the factors."""
     init_node('calibrate_angular', __doc__, PARAMETERS)
     measured = take_measured()
@@ -90,7 +92,7 @@ def calibrate():
     if 'gyro' in run:
         print(f"The gyro reports {run['gyro']:.1f} degrees.")
 
-    def check(answer):
+    def check(answer: object) -> float:
         return read_measured('measured', answer, run['reported'], 'an angle', 'degrees')
 
     measured = ask('How far has the robot turned, in degrees?', check) if measured is None else check(measured)

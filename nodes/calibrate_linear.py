@@ -7,6 +7,8 @@ example: rosrun rbx1_nav calibrate_linear.py _goal_distance:=2
 Put a tape measure on the floor with its zero at a mark on the robot. The odometry should report the distance that you
 measure. If the true distance is shorter than the reported one, the factor decreases.
 """
+from __future__ import annotations
+
 from rbx1_nav.ros.driving.script import exit_status, init_node, number, param
 
 from math import hypot
@@ -32,7 +34,7 @@ PARAMETERS = [
               unit='m', note='from half to twice the reported distance')]
 
 
-def measure():
+def measure() -> dict[str, float]:
     """Drive once; return the distance that the odometry reported (m) and the factor in force."""
     rate, linear_speed = param('rate'), param('linear_speed')
     leg = Straight('forward', param('goal_distance'), linear_speed, param('min_linear_speed'), rate)
@@ -46,7 +48,7 @@ def measure():
     return {'reported': hypot(leg.last.x - leg.start.x, leg.last.y - leg.start.y), KEY: factor}
 
 
-def calibrate():
+def calibrate() -> None:
     """Drive, ask, and print the factor."""
     init_node('calibrate_linear', __doc__, PARAMETERS)
     measured = take_measured()
@@ -57,7 +59,7 @@ def calibrate():
         run = load_run('linear', 'reported', KEY)
     print(f"The odometry reports {run['reported']:.3f} m.")
 
-    def check(answer):
+    def check(answer: object) -> float:
         return read_measured('measured', answer, run['reported'], 'a distance', 'm')
 
     measured = ask('How far is the robot from its start, in m?', check) if measured is None else check(measured)

@@ -12,7 +12,7 @@ import sys
 from rbx1_nav.ros.network import bases
 
 
-def main():
+def main() -> int:
     """Print the value; return the exit status."""
     if len(sys.argv) < 3 or sys.argv[1].lower() not in ('true', 'false'):
         print(__doc__.strip(), file=sys.stderr)

@@ -3,6 +3,8 @@
 
 usage: ekf.py [_parameter:=value ...] [topic:=new_topic ...]      usually started by odom_ekf.launch
 """
+from __future__ import annotations
+
 import rbx1_nav.ros.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
 
 from functools import partial

@@ -3,6 +3,8 @@
 
 usage: fake_base.py [_parameter:=value ...] [topic:=new_topic ...]      usually started by fake_turtlebot.launch
 """
+from __future__ import annotations
+
 import rbx1_nav.ros.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
 
 import rospy

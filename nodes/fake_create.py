@@ -11,6 +11,8 @@ Events and faults of the robot:
 It publishes the true pose on /ground_truth, and each command that it receives, with its time, on /line.
 A pseudo-terminal has no RTS and DTR lines: a driver that requires them gets an error.
 """
+from __future__ import annotations
+
 import rbx1_nav.ros.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
 
 import time

@@ -11,6 +11,8 @@ The --ends file has one line per bag: its name without folder, and the end pose 
   position_error: 0.01          # standard deviation of a measured position, m (default)
   heading_error: 2              # standard deviation of a measured heading, degrees (default)
 """
+from __future__ import annotations
+
 import rbx1_nav.ros.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
 
 import argparse
@@ -39,7 +41,7 @@ from rbx1_nav.simulation.surfaces import known_surfaces, load_surface
 START, CREATE_START = 'low_ply_carpet', 'create_lab_floor'
 
 
-def read_arguments():
+def read_arguments() -> argparse.Namespace:
     """Return the checked command-line arguments."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('runs', nargs='+', metavar='RUN', help='a bag, or a text file NAME_Odometry.dat')
@@ -83,7 +85,7 @@ def read_arguments():
     return arguments
 
 
-def read_runs(arguments, robot):
+def read_runs(arguments: argparse.Namespace, robot: Robot) -> tuple[list[Recording], EndErrors | None]:
     """Return (Recordings, errors of the hand-measured end poses or None). Raises ConfigError."""
     if is_commands_file(arguments.runs[0]):
         return [read_text_files(path, truth_file(path)) for path in arguments.runs], None
@@ -93,7 +95,7 @@ def read_runs(arguments, robot):
     return [each._replace(commands=in_force(each.commands, robot)) for each in recordings], errors
 
 
-def load_files(arguments):
+def load_files(arguments: argparse.Namespace) -> tuple[Robot, Surface]:
     """Return (Robot, starting Surface). Raises ConfigError."""
     robot = load_robot(arguments.config)
     start = load_surface(arguments.start, resources.surfaces())
@@ -102,7 +104,7 @@ def load_files(arguments):
     return robot, start
 
 
-def main():
+def main() -> int:
     """Read the runs, fit, print and write the result; return the exit status."""
     signal.signal(signal.SIGPIPE, signal.SIG_DFL)               # the reader of a pipe may stop reading early
     for number in (signal.SIGINT, signal.SIGTERM):

@@ -5,14 +5,18 @@ usage: fleet.py [_parameter:=value ...]      usually started by fleet.launch
 
 Robots can be added and removed while others drive: rosservice call /fleet/add robot6
 """
+from __future__ import annotations
+
 import rbx1_nav.ros.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
 
 from concurrent.futures import Future
 from functools import partial
 import queue
 import re
+from typing import Callable, Tuple
 
 from diagnostic_msgs.srv import AddDiagnostics, AddDiagnosticsResponse
+from geometry_msgs.msg import TransformStamped
 import rospy
 from tf2_msgs.msg import TFMessage
 
@@ -21,6 +25,7 @@ from rbx1_nav.parameters import choice, number
 from rbx1_nav.robot.description import read_robot
 from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.ros import messages
+from rbx1_nav.ros.base.clocks import Clock
 from rbx1_nav.ros.base.publisher import with_frames
 from rbx1_nav.ros.base.simulated_clock import PARAMETERS as CLOCK, read_clock
 from rbx1_nav.ros.base.simulated_floor import read_floor
@@ -40,27 +45,29 @@ PARAMETERS = [
     choice('method', ('none', 'timed', 'odometry'), 'none', 'script that fleet.launch starts for each robot'),
     number('rate', 50.0, 'Hz', 'rate at which the bases are updated; odometry at most', 1, 1000, 'a rate'),
     *CLOCK]
+Result = Tuple[bool, str]   # whether something was possible, and a text
 
 
 class Fleet:
     """All robots. They are added and removed by the thread that runs the clock, between two ticks."""
 
-    def __init__(self, clock):
-        """clock: see ros/base/clocks.py."""
+    def __init__(self, clock: Clock) -> None:
         self.clock = clock
         self.refusals = Refusals()
-        self.robots = {}        # (SimulatedRobot, Schedule) by name
-        self.requests = queue.Queue()       # (function, name, Future for its result)
-        self.places = []        # transforms from map to the odometry of each robot, also of those that were removed
+        self.robots: dict[str, tuple[SimulatedRobot, Schedule]] = {}    # by name
+        # (function, name, Future for its result)
+        self.requests: queue.Queue[tuple[Callable[[str], Result], str, Future[Result]]] = queue.Queue()
+        # transforms from map to the odometry of each robot, also of those that were removed
+        self.places: list[TransformStamped] = []
         self.place_pub = rospy.Publisher('/tf_static', TFMessage, latch=True, queue_size=1)
 
-    def serve(self):
+    def serve(self) -> None:
         """Offer the services. The request is AddDiagnostics, which has one text: the name of the robot."""
         for name in 'add', 'remove':
             rospy.Service(f'~{name}', AddDiagnostics, lambda request, name=name: AddDiagnosticsResponse(
                 *self.request(getattr(self, name), request.load_namespace.strip('/'))))
 
-    def request(self, function, name):
+    def request(self, function: Callable[[str], Result], name: str) -> Result:
         """Let the thread of the clock call a function; return whether this was possible, and a text."""
         done = Future()
         self.requests.put((function, name, done))
@@ -68,7 +75,7 @@ class Fleet:
             life.sleep(0.001)
         return done.result() if done.done() else (False, 'the node is shutting down')
 
-    def add(self, name):
+    def add(self, name: str) -> Result:
         """Add a robot with the parameters below NAME/arbotix; return whether this was possible, and a text."""
         key = f'/{name}/arbotix'
         try:
@@ -89,13 +96,13 @@ class Fleet:
         self.place(robot.odom_frame_id)
         return True, f'{name}: added'
 
-    def place(self, frame):
+    def place(self, frame: str) -> None:
         """Publish where in the frame map the odometry of a new robot begins: to the right of the one before."""
         pose = Pose(0.0, -param('spacing') * len(self.places), 0.0)
         self.places.append(messages.transform(rospy.Time(), 'map', frame, pose))
         self.place_pub.publish(TFMessage(self.places))
 
-    def remove(self, name):
+    def remove(self, name: str) -> Result:
         """Remove a robot; return whether there was one of this name, and a text."""
         if name not in self.robots:
             return False, f"{name}: expected one of {', '.join(self.robots) or 'no robots'}"
@@ -104,7 +111,7 @@ class Fleet:
         rospy.loginfo('%s: removed', name)
         return True, f'{name}: removed'
 
-    def step(self):
+    def step(self) -> None:
         """Do what was requested, and publish the state of each robot."""
         while not self.requests.empty():
             function, name, done = self.requests.get()
@@ -117,7 +124,7 @@ class Fleet:
                 robot.step()
 
 
-def main():
+def main() -> int:
     """Run the fleet; return the exit status."""
     life.init_node('fleet', __doc__, PARAMETERS)
     try:

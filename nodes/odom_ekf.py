@@ -5,6 +5,8 @@ usage: odom_ekf.py [topic:=new_topic ...]      usually started by odom_ekf.launc
 
 /odom and /odom_ekf both start at the robot's initial pose, so /odom_ekf uses the frames of odom: RViz shows both.
 """
+from __future__ import annotations
+
 import rbx1_nav.ros.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
 
 from math import inf
@@ -24,25 +26,24 @@ MESSAGE_WARN_TIME = 5    # s of wall time without a message before a warning
 class OdomEkf:
     """Republishes each pose."""
 
-    def __init__(self):
-        life.init_node('odom_ekf', __doc__)
-        self.frames = None      # (frame_id, child_frame_id) of the wheel odometry
-        self.last = None        # PoseWithCovarianceStamped
+    def __init__(self) -> None:
+        self.frames: tuple[str, str] | None = None      # (frame_id, child_frame_id) of the wheel odometry
+        self.last: PoseWithCovarianceStamped | None = None
         self.publisher = rospy.Publisher('odom_ekf', Odometry, NoDelay(), queue_size=10)
         rospy.Subscriber('odom', Odometry, self.on_odom)
         rospy.Subscriber('odom_combined', PoseWithCovarianceStamped, self.on_pose)
 
-    def on_odom(self, odom):
+    def on_odom(self, odom: Odometry) -> None:
         """Take the names of the frames from the wheel odometry."""
         self.frames = odom.header.frame_id.lstrip('/'), odom.child_frame_id.lstrip('/')
 
-    def on_pose(self, pose):
+    def on_pose(self, pose: PoseWithCovarianceStamped) -> None:
         """Republish a combined pose, with the mean velocity since the previous one."""
         if self.frames and not life.end_requested.is_set():     # topics are closed during shutdown
             self.publisher.publish(messages.odometry_of_pose(pose, self.last, *self.frames))
         self.last = pose
 
-    def run(self):
+    def run(self) -> None:
         """Run until shutdown is requested; warn once if there is nothing to republish."""
         deadline = time.monotonic() + MESSAGE_WARN_TIME
         while not (self.frames and self.last):
@@ -59,8 +60,9 @@ class OdomEkf:
         life.end_requested.wait()
 
 
-def main():
+def main() -> int:
     """Run the node; return the exit status."""
+    life.init_node('odom_ekf', __doc__)
     OdomEkf().run()
     return 0
 

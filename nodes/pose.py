@@ -6,10 +6,13 @@ usage: pose.py [topic:=new_topic ...]      it has no parameters
 The start is the origin of the odom frame. A simulated base is there after launch and after each reset. Only a
 simulated base publishes /ground_truth, and only odom_ekf.launch starts a publisher of /odom_ekf.
 """
+from __future__ import annotations
+
 import rbx1_nav.ros.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
 
 from math import degrees, hypot
 import time
+from typing import Mapping
 
 import rospy
 from nav_msgs.msg import Odometry
@@ -22,9 +25,9 @@ TOPICS = {'ground_truth': 'truth', 'odom': 'odometry', 'odom_ekf': 'estimate'}
 TIMEOUT = 5.0       # s of wall time to wait for a base, and for a message on each topic that is published
 
 
-def receive():
+def receive() -> dict[str, Odometry | None]:
     """Return the latest Odometry by topic: None without a message; topics without a publisher are absent."""
-    latest = {}
+    latest: dict[str, Odometry | None] = {}
     subscribers = {}
     deadline = time.monotonic() + TIMEOUT
     while time.monotonic() < deadline and not life.end_requested.is_set():
@@ -40,12 +43,12 @@ def receive():
     return latest
 
 
-def width():
+def width() -> int:
     """Return the width of the column of topics."""
     return max(len(rospy.resolve_name(topic)) for topic in TOPICS) + 1
 
 
-def row(topic, latest):
+def row(topic: str, latest: Mapping[str, Odometry | None]) -> str:
     """Return one line of the table."""
     text = f'{TOPICS[topic]:9} {rospy.resolve_name(topic):{width()}}'
     if topic not in latest:
@@ -57,7 +60,7 @@ def row(topic, latest):
     return f'{text} {rounded(x, 3):7.3f} {rounded(y, 3):7.3f} {rounded(degrees(yaw), 1):19.1f} {hypot(x, y):20.3f}'
 
 
-def main():
+def main() -> int:
     """Print a table; return the exit status."""
     life.init_node('pose', __doc__, requires_master=True)
     latest = receive()

@@ -4,6 +4,8 @@
 Prints the address of each page, which contains the token of the seat, and the ROS_MASTER_URI for terminals of the
 learner. Ctrl-C stops all seats.
 """
+from __future__ import annotations
+
 import rbx1_nav.ros.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
 
 import argparse
@@ -12,6 +14,7 @@ import socket
 import subprocess
 import sys
 import time
+from typing import Sequence
 
 from rbx1_nav.config import ConfigError
 from rbx1_nav.ros.node import resources
@@ -22,7 +25,7 @@ STOP_TIMEOUT = 20.0     # s for all seats to stop
 MAX_SEATS = 100
 
 
-def read_arguments():
+def read_arguments() -> argparse.Namespace:
     """Return the checked command-line arguments."""
     parser = argparse.ArgumentParser(description=__doc__.split('\n')[0])
     parser.add_argument('seats', type=int, help=f'number of seats, 1 to {MAX_SEATS}')
@@ -52,18 +55,18 @@ def read_arguments():
     return arguments
 
 
-def launch_arguments(arguments):
+def launch_arguments(arguments: argparse.Namespace) -> list[str]:
     """Return the arguments of seat.launch that are the same for all seats."""
     model = resources.path('urdf', 'turtlebot.urdf') if arguments.rviz else 'none'
     return [f'model:={model}', f'surface:={arguments.surface}', f'seed:={arguments.seed}']
 
 
-def report(text):
+def report(text: str) -> None:
     """Report what has happened to a seat."""
     print(text, file=sys.stderr)
 
 
-def check_ports(seats, address):
+def check_ports(seats: Sequence[Seat], address: str) -> None:
     """Exit with a message if a seat cannot use its ports."""
     for host, port in [each for seat in seats for each in (('', seat.master_port), (address, seat.web_port))]:
         with socket.socket() as test:
@@ -75,7 +78,7 @@ def check_ports(seats, address):
                          'machine and free ports; see --address, --master-port and --web-port')
 
 
-def run(seats):
+def run(seats: Sequence[Seat]) -> int:
     """Start the seats, and start those again that exit, with the same addresses. Returns 1 when none is left."""
     print('seat  ROS_MASTER_URI            page')
     for seat in seats:
@@ -94,7 +97,7 @@ def run(seats):
     return 1
 
 
-def main():
+def main() -> int:
     """Run until Ctrl-C; return the exit status."""
     arguments = read_arguments()
     shared = launch_arguments(arguments)
@@ -111,11 +114,11 @@ def main():
         for seat in seats:
             seat.stop()
         end = time.monotonic() + STOP_TIMEOUT
-        for seat in filter(lambda each: each.process, seats):
+        for process in filter(None, [seat.process for seat in seats]):
             try:
-                seat.process.wait(max(0.0, end - time.monotonic()))
+                process.wait(max(0.0, end - time.monotonic()))
             except subprocess.TimeoutExpired:
-                seat.process.kill()
+                process.kill()
 
 
 if __name__ == '__main__':

@@ -3,6 +3,8 @@
 
 It uses the same motions, base and filter as the nodes.
 """
+from __future__ import annotations
+
 import rbx1_nav.ros.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
 
 import argparse
@@ -25,7 +27,7 @@ from rbx1_nav.simulation.exercise import METHODS, PARAMETERS
 from rbx1_nav.simulation.surfaces import KEYS, MAX_SEED, known_surfaces, load_surface
 
 
-def read_arguments():
+def read_arguments() -> argparse.Namespace:
     """Return the checked command-line arguments."""
     parser = argparse.ArgumentParser(description=__doc__.split('\n')[0])
     parser.add_argument('--surface', action='append', metavar='NAME',
@@ -67,7 +69,7 @@ def read_arguments():
     return arguments
 
 
-def read_combinations(arguments):
+def read_combinations(arguments: argparse.Namespace) -> tuple[list[Combination], list[str]]:
     """Return (Combinations of the sweep, titles of its columns). Raises ConfigError."""
     declared = []
     if arguments.set:   # only then, because it imports rospy
@@ -82,7 +84,7 @@ def read_combinations(arguments):
     return combinations, units(list(values), declared)
 
 
-def simulate_all(sweep, arguments, file):
+def simulate_all(sweep: Sweep, arguments: argparse.Namespace, file: RunsFile | None) -> None:
     """Simulate, print and draw."""
     print(sweep.title(), flush=True)
     results, truths = {}, {}
@@ -103,15 +105,15 @@ def simulate_all(sweep, arguments, file):
         print(f'Animation: {arguments.animate}')
 
 
-def main():
+def main() -> int:
     """Simulate, print and draw; return the exit status."""
     signal.signal(signal.SIGPIPE, signal.SIG_DFL)               # the reader of a pipe may stop reading early
     sweep = file = None
 
-    def missing():
+    def missing() -> str:
         return f'{arguments.output} lacks {sweep.total - sweep.progress.done} of {sweep.total} runs' if file else ''
 
-    def interrupt(*_):      # immediately; the other processes follow
+    def interrupt(*_: object) -> None:      # immediately; the other processes follow
         if file:
             os.write(sys.stderr.fileno(), f'simulate.py: interrupted: {missing()}\n'.encode())
         os._exit(130)

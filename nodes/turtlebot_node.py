@@ -5,6 +5,8 @@ usage: turtlebot_node.py [_parameter:=value ...] [topic:=new_topic ...]  started
 
 The parameters are named as in create_node.
 """
+from __future__ import annotations
+
 import rbx1_nav.ros.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
 
 import rospy
@@ -18,7 +20,7 @@ from rbx1_nav.ros.node.frames import resolve_frame
 from rbx1_nav.ros.node.params import stored_params
 
 
-def main():
+def main() -> int:
     """Read the parameters and run; return the exit status."""
     life.init_node('turtlebot_node', __doc__, PARAMETERS, check=read_settings)
     if not rospy.rostime.is_wallclock():

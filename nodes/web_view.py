@@ -5,37 +5,64 @@ usage: web_view.py [_parameter:=value ...] [topic:=new_topic ...]      usually s
 
 Prints the address to open. It contains the token that is needed to move the robot. docs/web_view.md describes the page.
 """
+from __future__ import annotations
+
 import rbx1_nav.ros.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
 
 import os
 import sys
 import threading
 import time
+from typing import Callable
 
 import rospy
 from rospy.names import get_resolved_mappings
 
-from rbx1_nav.config import ConfigError
+from rbx1_nav.config import ConfigError, YamlValue, show
+from rbx1_nav.parameters import custom, flag, number
 from rbx1_nav.ros.node import life, resources
 from rbx1_nav.ros.node.params import param
-from rbx1_nav.ros.web.checks import TOKEN_VARIABLE, HostCheck, machine_names, make_token, page_address
+from rbx1_nav.ros.web.checks import (
+    LOCALHOST, TOKEN_VARIABLE, HostCheck, check_address, check_port, machine_names, make_token, page_address)
 from rbx1_nav.ros.web.connections import Connections
 from rbx1_nav.ros.web.controls import Controls
-from rbx1_nav.ros.web.hand_drive import HandDrive
-from rbx1_nav.ros.web.parameters import PARAMETERS
-from rbx1_nav.ros.web.runs import Runs
-from rbx1_nav.ros.web.server import Server
-from rbx1_nav.ros.web.state import State
+from rbx1_nav.ros.web.hand_drive import CommandPublisher, HandDrive
+from rbx1_nav.ros.web.page_runs import Runs
+from rbx1_nav.ros.web.server import PageServer
+from rbx1_nav.ros.web.state import PageState
 from rbx1_nav.ros.web.system import System
-from rbx1_nav.ros.web.topics import CommandPublisher
 
 
-def in_background(function):
+MAX_TITLE = 60
+
+
+def check_title(value: YamlValue) -> str:
+    """Return the value of ~title. Raises ConfigError."""
+    if isinstance(value, str) and 0 < len(value) <= MAX_TITLE:
+        return value
+    raise ConfigError(f'title: {show(value)}: expected a text of 1 to {MAX_TITLE} characters')
+
+
+PARAMETERS = [
+    custom('address', LOCALHOST, 'address at which the page is served; localhost: for this machine only', check_address,
+           note='0.0.0.0: all addresses of this machine; see [Security](web_view.md#security)'),
+    custom('port', 8080, 'TCP port at which the page is served; 0: any free port', check_port,
+           range='0, 1024 to 65535'),
+    number('robots', 0, '', 'number of robots of a fleet: robot1, robot2 and so on; 0: the robot in the namespace of '
+           'this node', 0, 20, 'a number'),
+    number('spacing', 1.0, 'm', 'distance between the starts of neighbors in a fleet', 0, 1000, 'a distance'),
+    custom('title', 'Out and back', 'title of the page', check_title),
+    flag('stop_needs_token', False, 'whether Stop needs the token, for a machine that is shared with strangers'),
+    number('linear_speed', 0.2, 'm/s', 'speed while an arrow key drives forward or backward', 0.01, 1),
+    number('angular_speed', 1.0, 'rad/s', 'speed while an arrow key turns the robot', 0.01, 4)]
+
+
+def in_background(function: Callable[[], None]) -> None:
     """Call a function in another thread, because a service call may block."""
     threading.Thread(target=function, daemon=True).start()
 
 
-def remappings():
+def remappings() -> dict[str, str]:
     """Return the remappings of this node, for the scripts that the page starts; without __name and the like."""
     return {name: new for name, new in get_resolved_mappings().items() if not name.startswith('__')}
 
@@ -43,10 +70,10 @@ def remappings():
 class RobotView:
     """The view of one robot."""
 
-    def __init__(self, name, token):
+    def __init__(self, name: str, token: str) -> None:
         """name: namespace of the robot, '' for that of this node; token: needed to move the robot."""
         namespace = f'/{name}/' if name else ''
-        self.state, publisher = State(), CommandPublisher(namespace)
+        self.state, publisher = PageState(), CommandPublisher(namespace)
         self.state.set_status(title=param('title'), robots=robot_names(), spacing=param('spacing'))
         self.hand, self.system = HandDrive(publisher), System(self.state, publisher.connected, namespace)
         self.runs = Runs(os.path.dirname(os.path.abspath(sys.argv[0])),
@@ -57,23 +84,23 @@ class RobotView:
                             stop_needs_token=param('stop_needs_token'))
         self.connections = Connections(self.state, controls, token, time.monotonic)
 
-    def start(self):
+    def start(self) -> None:
         """Start the threads."""
         self.hand.start()
         self.system.start()
 
-    def stop(self):
+    def stop(self) -> None:
         """Stop what the page has started."""
         self.runs.stop()
         self.hand.end()
 
 
-def robot_names():
+def robot_names() -> list[str]:
     """Return the names of the robots of a fleet; [''] for one robot in the namespace of this node."""
     return [f'robot{number}' for number in range(1, round(param('robots')) + 1)] or ['']
 
 
-def main():
+def main() -> int:
     """Serve the page until the node shuts down; return the exit status."""
     # the page takes its time from the odometry, so the node need not read /clock
     life.init_node('web_view', __doc__, PARAMETERS, wall_time=True)
@@ -81,7 +108,7 @@ def main():
     views = {f'/socket/{name}': RobotView(name, token) for name in robot_names()}
     views['/socket'] = next(iter(views.values()))
     try:
-        server = Server(resources.path('web'), HostCheck(address, machine_names()),
+        server = PageServer(resources.path('web'), HostCheck(address, machine_names()),
                         {path: view.connections for path, view in views.items()}, address, param('port'))
     except (ConfigError, OSError) as error:
         rospy.logfatal('address %s, port %s: %s: expected an address of this machine and a free port', address,

@@ -1,4 +1,4 @@
-"""Checks of who may connect: the Host and Origin headers of a request, the token, and the rate of messages.
+"""Checks of who may connect: address and port, the Host and Origin headers of a request, the token, the message rate.
 
 A page from another site can send requests to this server, but the browser adds the Origin of that site. If the host
 name of that site resolves to 127.0.0.1 (DNS rebinding), Origin and Host match, but the Host is the foreign name.
@@ -8,16 +8,38 @@ from __future__ import annotations
 
 import hmac
 import ipaddress
+import re
 import secrets
 import socket
 from typing import Iterable
 from urllib.parse import urlsplit
 
-from rbx1_nav.ros.web.parameters import LOCALHOST
+from rbx1_nav.config import ConfigError, YamlValue, show
 
+LOCALHOST = 'localhost'
 LOOPBACK = frozenset((LOCALHOST, '127.0.0.1', '::1'))
 TOKEN_BYTES = 16
 TOKEN_VARIABLE = 'RBX1_NAV_TOKEN'   # environment variable with the token, if several processes must agree on it
+
+
+def check_address(value: YamlValue) -> str:
+    """Return the value of ~address: localhost, an IP address, or a host name of this machine. Raises ConfigError."""
+    if isinstance(value, str):
+        try:
+            return str(ipaddress.ip_address(value))
+        except ValueError:
+            # a name that consists only of digits and dots is a mistyped IP address
+            name = re.fullmatch(r'[A-Za-z0-9]([A-Za-z0-9.-]{0,251}[A-Za-z0-9])?', value)
+            if name and not re.fullmatch(r'[\d.]+', value):
+                return value.lower()
+    raise ConfigError(f'address: {show(value)}: expected localhost, or an IP address or host name of this machine')
+
+
+def check_port(value: YamlValue) -> int:
+    """Return the value of ~port. Raises ConfigError."""
+    if isinstance(value, int) and not isinstance(value, bool) and (value == 0 or 1024 <= value <= 65535):
+        return value
+    raise ConfigError(f'port: {show(value)}: expected a TCP port from 1024 to 65535, or 0 for any free port')
 
 
 def make_token() -> str:

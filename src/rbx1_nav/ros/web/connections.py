@@ -6,8 +6,8 @@ from typing import Callable, Protocol
 
 from rbx1_nav.ros.web.checks import RateLimit, same_token
 from rbx1_nav.ros.web.controls import Controls
-from rbx1_nav.ros.web.protocol import Hello, InvalidMessage, Stop, encode, parse
-from rbx1_nav.ros.web.state import State
+from rbx1_nav.ros.web.page_messages import Hello, InvalidMessage, StopRequest, encode, kind_of, parse
+from rbx1_nav.ros.web.state import PageState
 
 MAX_SOCKETS = 100       # maximum number of browsers
 MAX_WATCHERS = 60       # maximum without the token, so that browsers with the token can connect
@@ -59,7 +59,7 @@ class Browser:
 class Connections:
     """All connected browsers. The methods may only be called from the server thread."""
 
-    def __init__(self, state: State, controls: Controls, token: str, clock: Callable[[], float]) -> None:
+    def __init__(self, state: PageState, controls: Controls, token: str, clock: Callable[[], float]) -> None:
         """clock(): returns the monotonic time, s."""
         self.state = state
         self.controls = controls
@@ -105,10 +105,10 @@ class Connections:
             self._greet(browser, message)
             return
         refused = self.controls.handle(browser, browser.trusted, message)
-        if isinstance(message, Stop) and not refused:
+        if isinstance(message, StopRequest) and not refused:
             browser.send(encode('stopping', number=message.number))
         if refused:
-            browser.send(encode('refused', what=type(message).__name__.lower(), reason=refused))
+            browser.send(encode('refused', what=kind_of(message), reason=refused))
 
     def _greet(self, browser: Browser, hello: Hello) -> None:
         browser.trusted = same_token(self.token, hello.token)

@@ -6,19 +6,38 @@ from __future__ import annotations
 
 from threading import Condition, Thread
 import time
-from typing import Callable, Protocol
+from typing import Callable
 
+from geometry_msgs.msg import Twist
+import rospy
+
+COMMANDS = 'cmd_vel'     # rospy.resolve_name() applies the namespace and a remapping
 KEY_TIMEOUT = 0.3   # s after the last message of the driving browser; the robot must stop within 0.5 s
 PERIOD = 0.05       # s between commands
 LINGER = 1.0        # s during which zero commands are sent after the last command, and after Stop
 QUIET = 1.6         # s after the last motion: the base counts a node as driving for 1.5 s
 
 
-class Publisher(Protocol):
-    """Sends commands to the base."""
+class CommandPublisher:
+    """Publishes /cmd_vel. It stays registered, because a subscriber of rospy that connects while a publisher
+    unregisters may keep a dead connection to it."""
+
+    def __init__(self, namespace: str = '') -> None:
+        """namespace: of the robot, with a slash at the end, '' for that of this node."""
+        self.publisher = rospy.Publisher(f'{namespace}{COMMANDS}', Twist, queue_size=5, tcp_nodelay=True)
 
     def publish(self, linear: float, angular: float) -> None:
         """Send a command, m/s and rad/s."""
+        command = Twist()
+        command.linear.x, command.angular.z = linear, angular
+        try:
+            self.publisher.publish(command)
+        except rospy.ROSException:
+            pass    # closed by the shutdown of the node, which sends its own stop
+
+    def connected(self) -> set[str]:
+        """Return the names of the nodes that receive the commands."""
+        return {connection.endpoint_id for connection in self.publisher.impl.connections}
 
 
 class Keys:
@@ -51,7 +70,7 @@ class Keys:
 class HandDrive:
     """Sends the commands in a separate thread, so that nothing else in the server can delay a stop."""
 
-    def __init__(self, publisher: Publisher, clock: Callable[[], float] = time.monotonic) -> None:
+    def __init__(self, publisher: CommandPublisher, clock: Callable[[], float] = time.monotonic) -> None:
         """clock(): returns the monotonic time, s."""
         self.publisher = publisher
         self.clock = clock

@@ -16,7 +16,7 @@ from tornado.websocket import WebSocketHandler
 
 from rbx1_nav.ros.web.checks import HostCheck
 from rbx1_nav.ros.web.connections import Connections
-from rbx1_nav.ros.web.protocol import MAX_MESSAGE
+from rbx1_nav.ros.web.page_messages import MAX_MESSAGE
 
 FRAME_PERIOD = 50       # ms
 MAX_CONNECTIONS = 160   # TCP connections that are not WebSockets yet, including idle ones
@@ -147,7 +147,7 @@ class BoundedServer(HTTPServer):
         super().on_close(server_conn)
 
 
-class Server:
+class PageServer:
     """Serves the page."""
 
     def __init__(self, folder: str, hosts: HostCheck, connections: Mapping[str, Connections], address: str,

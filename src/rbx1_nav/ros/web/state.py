@@ -6,7 +6,7 @@ from threading import Lock
 from typing import Any, Mapping, NamedTuple, Sequence
 
 from rbx1_nav.ros.web.history import Counter, Log, Path, Series, Speeds
-from rbx1_nav.ros.web.protocol import encode
+from rbx1_nav.ros.web.page_messages import encode
 
 SOURCES = ('truth', 'odometry', 'estimate')     # sources of poses
 BY_HAND = 'by hand'   # sender of the commands of this node
@@ -23,7 +23,7 @@ FACTOR_PERIOD = 2.0     # s of wall time
 PoseRow = Sequence[float]   # x, y, yaw: m, rad
 
 
-class Motion(NamedTuple):
+class PoseAndSpeed(NamedTuple):
     """Pose and velocity from an Odometry message."""
 
     time: float         # s, stamp of the message
@@ -66,7 +66,7 @@ class TimeFactor:
         self.begin = self.begin or (stamp, now)
 
 
-class State:
+class PageState:
     """The state that the page shows. ROS threads write it, and the server thread reads it."""
 
     def __init__(self) -> None:
@@ -87,7 +87,7 @@ class State:
         self.status: dict[str, Any] = {}
         self.status_number = self.counter.next()
 
-    def move(self, source: str, motion: Motion, now: float) -> None:
+    def move(self, source: str, motion: PoseAndSpeed, now: float) -> None:
         """Process a pose from a source. now: s, monotonic clock. Values that are not finite are ignored."""
         if not all(map(isfinite, (motion.time, *motion.pose, motion.linear, motion.angular))):
             return
@@ -111,7 +111,7 @@ class State:
                 name = 'true' if source == 'truth' else 'reported'
                 run.speeds[name].sample(time, motion.linear, motion.angular)
 
-    def _keep_time(self, motion: Motion, now: float) -> None:
+    def _keep_time(self, motion: PoseAndSpeed, now: float) -> None:
         last = self.run.poses.get('odometry')
         jumped = last is not None and hypot(motion.pose[0] - last[0], motion.pose[1] - last[1]) > JUMP
         if self.last is None or motion.time < self.last[0] - BACK or jumped:

@@ -1,28 +1,114 @@
-"""The running system, as known to the master: the base, its surface and reset service, and the driving nodes."""
+"""The running system: what its topics and the master report of the base, its surface and the driving nodes.
+
+The load from each topic is bounded.
+"""
 from __future__ import annotations
 
+from collections import deque
 from threading import Lock, Thread
 import time
 from typing import Any, Callable
 
+from diagnostic_msgs.msg import DiagnosticArray
+from geometry_msgs.msg import Twist
+from nav_msgs.msg import Odometry
 import rosgraph
+from rosgraph_msgs.msg import Log
 import rospy
-from std_srvs.srv import Empty
+from std_msgs.msg import Empty
+from std_srvs.srv import Empty as EmptyService
 
+from rbx1_nav.ros import messages
 from rbx1_nav.ros.network.bases import private_namespace
 from rbx1_nav.ros.network.master import Server, call
 from rbx1_nav.ros.node import life
-from rbx1_nav.ros.web.state import State
-from rbx1_nav.ros.web.topics import COMMANDS, Topics
+from rbx1_nav.ros.web.hand_drive import COMMANDS
+from rbx1_nav.ros.web.state import BY_HAND, PageState, PoseAndSpeed
 
+TOPICS = {'truth': 'ground_truth', 'odometry': 'odom', 'estimate': 'odom_ekf'}
+MIN_PERIOD = 0.02   # s: only the latest of the messages that arrive in this time is read
+COMMAND_PERIOD = 0.01   # s; short, because a driving script detects a subscriber that does not read
+BUFFER = 2 ** 20    # bytes: more than arrives in MIN_PERIOD at 50 times real time
 PERIOD = 2.0        # s
 RESET_TIMEOUT = 5.0  # s
+
+
+class Topics:
+    """The subscriptions."""
+
+    def __init__(self, state: PageState, on_seed: Callable[[str, str], None], namespace: str = '') -> None:
+        """on_seed(surface, seed): called with the values that a simulated base publishes in /diagnostics; namespace: of
+        the robot, with a slash at the end, '' for that of this node."""
+        self.state = state
+        self.namespace = namespace or rospy.get_namespace()
+        self.on_seed = on_seed
+        self.base: str | None = None    # the node that publishes the odometry
+        self.connections: deque[object] = deque(maxlen=10)  # the latest ones to publishers of odometry
+        self.truth: str | None = None   # the node that publishes the ground truth
+        self.subscribers = [
+            *(subscribe(f'{namespace}{topic}', Odometry, self.on_odometry, source) for source, topic in TOPICS.items()),
+            subscribe(f'{namespace}{COMMANDS}', Twist, self.on_command),
+            subscribe(f'{namespace}reset_odometry', Empty, self.on_reset),
+            subscribe('/diagnostics', DiagnosticArray, self.on_diagnostics, queue_size=5),
+            # the log of all nodes, over one connection to rosout instead of one to each node
+            subscribe('/rosout_agg', Log, self.on_log, queue_size=50)]
+
+    def on_odometry(self, message: Odometry, source: str) -> None:
+        """Process a pose and a velocity."""
+        pose, twist = message.pose.pose, message.twist.twist
+        sender = message._connection_header['callerid']
+        if source == 'odometry':
+            self.base = sender
+            connection = message._connection_header     # one object per connection
+            if all(connection is not each for each in self.connections):
+                self.connections.append(connection)
+                self.state.connected()
+        elif source == 'truth':
+            self.truth = sender
+        self.state.move(source, PoseAndSpeed(
+            message.header.stamp.to_sec(), (pose.position.x, pose.position.y, messages.yaw_of(pose.orientation)),
+            twist.linear.x, twist.angular.z), time.monotonic())
+        time.sleep(MIN_PERIOD)
+
+    def on_command(self, twist: Twist) -> None:
+        """Process a command to the base."""
+        sender = twist._connection_header['callerid']
+        self.state.command(twist.linear.x, twist.angular.z, BY_HAND if sender == rospy.get_name() else sender,
+                           time.monotonic())
+        time.sleep(COMMAND_PERIOD)
+
+    def on_reset(self, _: Empty) -> None:
+        """Process a reset of the base."""
+        self.state.reset(time.monotonic())
+
+    def on_diagnostics(self, array: DiagnosticArray) -> None:
+        """Process the diagnostics of a base, which arrive once per second."""
+        for status in array.status:
+            if f"/{status.name.rpartition('/')[0]}".rstrip('/') != self.namespace.rstrip('/'):
+                continue        # it belongs to another robot
+            values = {each.key: each.value for each in status.values}
+            if 'Surface' in values and 'Seed' in values:
+                self.on_seed(values['Surface'], values['Seed'])
+        time.sleep(MIN_PERIOD)
+
+    def on_log(self, line: Log) -> None:
+        """Process a log message."""
+        if line.level >= Log.INFO:
+            self.state.log_line(line.level, line.header.stamp.to_sec(), line.name, line.msg)
+        time.sleep(MIN_PERIOD)
+
+
+def subscribe(topic: str, kind: type, callback: Callable[..., None], args: Any = None,
+              queue_size: int = 1) -> rospy.Subscriber:
+    """Subscribe to a topic. The callbacks may sleep: rospy has one thread for each connection, and drops messages
+    that are not read in time, so neither other topics nor the publishers are delayed."""
+    return rospy.Subscriber(topic, kind, callback, args, queue_size=queue_size, buff_size=BUFFER, tcp_nodelay=True)
 
 
 class System:
     """Queries the master once per PERIOD, and updates the status of the page."""
 
-    def __init__(self, state: State, connected: Callable[[], set[str]], namespace: str = '') -> None:
+    def __init__(self, state: PageState, connected: Callable[[], set[str]], namespace: str = '') -> None:
         """connected(): returns the names of the nodes that receive the commands of this node; namespace: see Topics."""
         self.state = state
         self.namespace = namespace
@@ -94,7 +180,7 @@ class System:
         if not self.reset_service:
             raise rospy.ROSException('the base has no reset service')
         rospy.wait_for_service(self.reset_service, RESET_TIMEOUT)
-        rospy.ServiceProxy(self.reset_service, Empty)()
+        rospy.ServiceProxy(self.reset_service, EmptyService)()
 
     def forget_frame(self) -> None:
         """Delete the parameter of a run that the page has started, so that it does not affect later runs."""

@@ -2,8 +2,8 @@
 import pytest
 
 from rbx1_nav.config import ConfigError
-from rbx1_nav.ros.web.checks import HostCheck, RateLimit, make_token, same_token, split_host
-from rbx1_nav.ros.web.parameters import check_address, check_port
+from rbx1_nav.ros.web.checks import (
+    HostCheck, RateLimit, check_address, check_port, make_token, same_token, split_host)
 
 LOCAL = HostCheck('localhost', {'desk'})
 EVERYWHERE = HostCheck('0.0.0.0', {'desk', 'desk.local'})

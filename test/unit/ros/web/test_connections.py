@@ -6,7 +6,7 @@ import pytest
 
 from rbx1_nav.ros.web.connections import BURST, HELLO_TIMEOUT, MAX_SOCKETS, MAX_WATCHERS, Connections
 from rbx1_nav.ros.web.controls import Controls
-from rbx1_nav.ros.web.state import Motion, State
+from rbx1_nav.ros.web.state import PoseAndSpeed, PageState
 
 TOKEN = 'the token'
 MOVES = dict(type='run', method='timed'), dict(type='hand', on=True), dict(type='reset')
@@ -113,7 +113,7 @@ class View:
 
     def __init__(self):
         self.now = 100.0
-        self.state, self.system, self.hand, self.runs = State(), System(), Hand(), Runs()
+        self.state, self.system, self.hand, self.runs = PageState(), System(), Hand(), Runs()
         self.log = []
         self.controls = Controls(self.state, self.system, self.hand, self.runs, (0.2, 1.0), lambda call: call(),
                                  lambda: self.now, self.log.append)
@@ -130,7 +130,7 @@ class View:
         self.connections.received(socket, json.dumps({'clock': self.now, **fields}))
 
     def move(self, x, speed=0.2):
-        self.state.move('odometry', Motion(self.now + x, (x, 0.0, 0.0), speed, 0.0), self.now)
+        self.state.move('odometry', PoseAndSpeed(self.now + x, (x, 0.0, 0.0), speed, 0.0), self.now)
 
 
 @pytest.fixture(name='view')

@@ -10,7 +10,7 @@ from tornado.websocket import websocket_connect
 
 from rbx1_nav.ros.web import server as module
 from rbx1_nav.ros.web.checks import HostCheck
-from rbx1_nav.ros.web.server import MAX_CONNECTIONS, Server, read_files
+from rbx1_nav.ros.web.server import MAX_CONNECTIONS, PageServer, read_files
 
 FOLDER = os.path.join(os.path.dirname(__file__), '..', '..', '..', '..', 'web')
 LIMIT = 60      # s, after which a wait fails
@@ -39,7 +39,7 @@ class Connections:
 
 @pytest.fixture(name='server')
 def start():
-    server = Server(FOLDER, HostCheck('localhost'), {'/socket': Connections()}, 'localhost', 0)
+    server = PageServer(FOLDER, HostCheck('localhost'), {'/socket': Connections()}, 'localhost', 0)
     server.start()
     yield server
     server.stop()
@@ -174,7 +174,7 @@ def test_a_new_connection_replaces_the_oldest(server):
 
 def test_a_connection_that_sends_nothing_is_closed(monkeypatch):
     monkeypatch.setattr(module, 'IDLE_TIMEOUT', 0.2)
-    server = Server(FOLDER, HostCheck('localhost'), {'/socket': Connections()}, 'localhost', 0)
+    server = PageServer(FOLDER, HostCheck('localhost'), {'/socket': Connections()}, 'localhost', 0)
     server.start()
     assert exchange(server, b'') == '' and exchange(server, b'GET / HT') == ''
     server.stop()
@@ -182,4 +182,4 @@ def test_a_connection_that_sends_nothing_is_closed(monkeypatch):
 
 def test_a_port_that_is_taken_is_an_error(server):
     with pytest.raises(OSError):
-        Server(FOLDER, HostCheck('localhost'), {'/socket': Connections()}, 'localhost', server.port)
+        PageServer(FOLDER, HostCheck('localhost'), {'/socket': Connections()}, 'localhost', server.port)

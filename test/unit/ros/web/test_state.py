@@ -4,15 +4,15 @@ from math import inf, nan
 
 import pytest
 
-from rbx1_nav.ros.web.state import COMMAND_TIMEOUT, SILENCE, Motion, State
+from rbx1_nav.ros.web.state import COMMAND_TIMEOUT, SILENCE, PoseAndSpeed, PageState
 
 
 def motion(time, x=0.0, y=0.0, yaw=0.0, linear=0.0, angular=0.0):
-    return Motion(time, (x, y, yaw), linear, angular)
+    return PoseAndSpeed(time, (x, y, yaw), linear, angular)
 
 
 class Browser:
-    """Reads all frames of a State."""
+    """Reads all frames of a PageState."""
 
     def __init__(self, state):
         self.state = state
@@ -25,7 +25,7 @@ class Browser:
 
 @pytest.fixture(name='state')
 def make_state():
-    return State()
+    return PageState()
 
 
 def drive(state, start=100.0, seconds=1.0, speed=0.2):

@@ -1,8 +1,7 @@
 """A Stop is answered when the odometry reports that the robot is stationary, or with what is missing."""
 import pytest
 
-from rbx1_nav.ros.web.controls import STOP_NEEDS_TOKEN
-from rbx1_nav.ros.web.stopping import LIMIT, LOG_PERIOD
+from rbx1_nav.ros.web.controls import LIMIT, LOG_PERIOD, STOP_NEEDS_TOKEN
 from test_connections import TOKEN, View
 
 

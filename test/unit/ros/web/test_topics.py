@@ -2,15 +2,15 @@
 from nav_msgs.msg import Odometry
 import pytest
 
-from rbx1_nav.ros.web import topics
-from rbx1_nav.ros.web.state import State
+from rbx1_nav.ros.web import system
+from rbx1_nav.ros.web.state import PageState
 
 
 @pytest.fixture(name='view')
 def make_view(monkeypatch):
-    monkeypatch.setattr(topics, 'subscribe', lambda *_, **__: None)
-    monkeypatch.setattr(topics, 'PERIOD', 0)
-    return topics.Topics(State(), lambda surface, seed: None)
+    monkeypatch.setattr(system, 'subscribe', lambda *_, **__: None)
+    monkeypatch.setattr(system, 'MIN_PERIOD', 0)
+    return system.Topics(PageState(), lambda surface, seed: None)
 
 
 def receive(view, connection):

@@ -4,18 +4,19 @@ import json
 from hypothesis import given, strategies
 import pytest
 
-from rbx1_nav.ros.web.protocol import Drive, Hand, Hello, InvalidMessage, Reset, Run, Stop, encode, parse
+from rbx1_nav.ros.web.page_messages import (
+    DriveRequest, HandRequest, Hello, InvalidMessage, ResetRequest, RunRequest, StopRequest, encode, parse)
 
 
 @pytest.mark.parametrize('fields, message', [
     ({'type': 'hello', 'token': 'abc'}, Hello('abc')),
     ({'type': 'hello'}, Hello('')),
-    ({'type': 'run', 'method': 'gyro', 'reset': True}, Run('gyro', True, False, 0.0)),
-    ({'type': 'hand', 'on': True, 'confirmed': True, 'clock': 2.5}, Hand(True, True, 2.5)),
-    ({'type': 'drive', 'forward': 1, 'left': -0.5}, Drive(1.0, -0.5, 0.0)),
-    ({'type': 'drive'}, Drive(0.0, 0.0, 0.0)),
-    ({'type': 'reset'}, Reset(0.0)),
-    ({'type': 'stop', 'more': 1}, Stop())])
+    ({'type': 'run', 'method': 'gyro', 'reset': True}, RunRequest('gyro', True, False, 0.0)),
+    ({'type': 'hand', 'on': True, 'confirmed': True, 'clock': 2.5}, HandRequest(True, True, 2.5)),
+    ({'type': 'drive', 'forward': 1, 'left': -0.5}, DriveRequest(1.0, -0.5, 0.0)),
+    ({'type': 'drive'}, DriveRequest(0.0, 0.0, 0.0)),
+    ({'type': 'reset'}, ResetRequest(0.0)),
+    ({'type': 'stop', 'more': 1}, StopRequest())])
 def test_a_message(fields, message):
     assert parse(json.dumps(fields)) == message
 

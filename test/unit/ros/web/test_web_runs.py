@@ -7,8 +7,8 @@ import time
 
 import pytest
 
-from rbx1_nav.ros.web import runs as module
-from rbx1_nav.ros.web.runs import Runs
+from rbx1_nav.ros.web import page_runs as module
+from rbx1_nav.ros.web.page_runs import Runs
 
 SOURCE = os.path.join(os.path.dirname(__file__), '..', '..', '..', '..', 'src')
 LIMIT = 60      # s, after which a wait fails
@@ -121,7 +121,7 @@ def test_a_reset_that_fails(started):
 def test_a_run_ends_with_a_view_that_is_killed(started):
     runs, _, pid_file, _ = started
     code = ('import sys, time; sys.path.insert(0, sys.argv[1])\n'
-            'from rbx1_nav.ros.web import runs\n'
+            'from rbx1_nav.ros.web import page_runs as runs\n'
             'runs.SCRIPTS = {"timed": ("timed", "script.py", (sys.argv[3],))}\n'
             'runs.Runs(sys.argv[2], lambda *_: None, lambda: None).start("timed", lambda _: None)\n'
             'time.sleep(600)')

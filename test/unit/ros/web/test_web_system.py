@@ -5,8 +5,7 @@ import time
 import rospy
 
 from rbx1_nav.ros.web import system as module
-from rbx1_nav.ros.web import topics
-from rbx1_nav.ros.web.state import State
+from rbx1_nav.ros.web.state import PageState
 
 LIMIT = 60      # s, after which a wait fails
 PUBLISHERS = [['/cmd_vel', ['/stranger']], ['/other/cmd_vel', ['/driver', '/unnamed']]]
@@ -25,8 +24,8 @@ def test_stop_shuts_down_the_drivers_of_the_remapped_topic(monkeypatch):
     monkeypatch.setattr(rospy.names, '_resolved_mappings', {'/cmd_vel': '/other/cmd_vel'})
     monkeypatch.setattr(rospy, 'get_name', lambda: '/unnamed')
     monkeypatch.setattr(module, 'call', call)
-    monkeypatch.setattr(topics, 'subscribe', lambda *_, **__: None)
-    system = module.System(State(), lambda: {'/recorder'})
+    monkeypatch.setattr(module, 'subscribe', lambda *_, **__: None)
+    system = module.System(PageState(), lambda: {'/recorder'})
     system.topics.base = '/base'
     system.shut_down_drivers()
     end = time.monotonic() + LIMIT
