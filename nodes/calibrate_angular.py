@@ -11,13 +11,13 @@ from __future__ import annotations
 
 from rbx1_nav.ros.driving.script import exit_status, init_node, number, param
 
-from math import degrees, pi
+from math import degrees, isnan, nan, pi
 import sys
 
 import rospy
 from sensor_msgs.msg import Imu
 
-from rbx1_nav.config import ConfigError
+from rbx1_nav.config import ConfigError, YamlValue
 from rbx1_nav.control.legs import Turn
 from rbx1_nav.create.driver.fractions import LOST
 from rbx1_nav.create.driver.settings import GYRO_CORRECTION
@@ -44,20 +44,20 @@ def measure() -> dict[str, float]:
     leg = Turn('turn left', 2 * pi * param('turns'), angular_speed, param('min_angular_speed'), rate)
     base_node = param('base_node')
     poses = PoseListener(param('odom_frame'), param('base_frame'), 0.0, angular_speed)
-    readings = []       # gyro readings: (s, rad/s)
+    readings: list[tuple[float, float]] = []    # of the gyro: s, rad/s
     rospy.Subscriber('imu/data', Imu, lambda message: readings.append((message.header.stamp.to_sec(),
                                                                        message.angular_velocity.z)))
     base, gyro = Diagnosis(base_node, 'Base'), Diagnosis(base_node, 'Gyro')
     forget_run('angular')
     with CalibrationDrive(rate, poses) as drive:
-        run = {ODOM_KEY: factor_in_force(base_node, ODOM_KEY), GYRO_KEY: factor_in_force(base_node, GYRO_KEY, None)}
+        run = {ODOM_KEY: factor_in_force(base_node, ODOM_KEY, 1.0), GYRO_KEY: factor_in_force(base_node, GYRO_KEY, nan)}
         # The gyro reports its bias while the robot is stationary.
         drive.rest(2)
         start = rospy.get_time()
         drive.drive(leg)
         end = rospy.get_time()
     run['reported'] = degrees(leg.done())
-    if run[GYRO_KEY] is None:   # use the default of the Create driver
+    if isnan(run[GYRO_KEY]):    # use the default of the Create driver
         run[GYRO_KEY] = GYRO_CORRECTION if gyro.last else 1.0
     try:
         if gyro.error:
@@ -92,18 +92,18 @@ def calibrate() -> None:
     if 'gyro' in run:
         print(f"The gyro reports {run['gyro']:.1f} degrees.")
 
-    def check(answer: object) -> float:
+    def check(answer: YamlValue) -> float:
         return read_measured('measured', answer, run['reported'], 'an angle', 'degrees')
 
-    measured = ask('How far has the robot turned, in degrees?', check) if measured is None else check(measured)
-    if measured is None:
+    true_value = ask('How far has the robot turned, in degrees?', check) if measured is None else check(measured)
+    if true_value is None:
         print('Measure how far the robot has turned, in degrees. Then: rosrun rbx1_nav calibrate_angular.py '
               '_measured:=DEGREES')
         return
-    factors = {ODOM_KEY: corrected(ODOM_KEY, run[ODOM_KEY], measured, run['reported'])}
+    factors = {ODOM_KEY: corrected(ODOM_KEY, run[ODOM_KEY], true_value, run['reported'])}
     if 'gyro' in run:
         try:
-            factors[GYRO_KEY] = corrected(GYRO_KEY, run[GYRO_KEY], measured, run['gyro'])
+            factors[GYRO_KEY] = corrected(GYRO_KEY, run[GYRO_KEY], true_value, run['gyro'])
         except ConfigError as error:
             warn_of_gyro(error)
     before = ', '.join(f'{run[key]:.4f}' for key in factors)

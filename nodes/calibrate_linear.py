@@ -16,6 +16,7 @@ import sys
 
 import rospy
 
+from rbx1_nav.config import YamlValue
 from rbx1_nav.control.legs import Straight
 from rbx1_nav.parameters import elsewhere
 from rbx1_nav.robot.calibration import corrected, read_measured
@@ -42,7 +43,7 @@ def measure() -> dict[str, float]:
     poses = PoseListener(param('odom_frame'), param('base_frame'), linear_speed, 0.0)
     forget_run('linear')
     with CalibrationDrive(rate, poses) as drive:
-        factor = factor_in_force(base_node, KEY)
+        factor = factor_in_force(base_node, KEY, 1.0)
         drive.drive(leg)
     # A tape measures from mark to mark, not along the robot's initial heading.
     return {'reported': hypot(leg.last.x - leg.start.x, leg.last.y - leg.start.y), KEY: factor}
@@ -59,15 +60,15 @@ def calibrate() -> None:
         run = load_run('linear', 'reported', KEY)
     print(f"The odometry reports {run['reported']:.3f} m.")
 
-    def check(answer: object) -> float:
+    def check(answer: YamlValue) -> float:
         return read_measured('measured', answer, run['reported'], 'a distance', 'm')
 
-    measured = ask('How far is the robot from its start, in m?', check) if measured is None else check(measured)
-    if measured is None:
+    true_value = ask('How far is the robot from its start, in m?', check) if measured is None else check(measured)
+    if true_value is None:
         print('Measure how far the robot is from its start, in m. Then: rosrun rbx1_nav calibrate_linear.py '
               '_measured:=METERS')
         return
-    factor = corrected(KEY, run[KEY], measured, run['reported'])
+    factor = corrected(KEY, run[KEY], true_value, run['reported'])
     print(f'The factor was {run[KEY]:.4f}. Now it should be:\n{KEY}: {factor:.4f}')
 
 

@@ -10,6 +10,7 @@ import rbx1_nav.ros.node.early_interrupt     # first, so that Ctrl-C during the 
 from functools import partial
 import threading
 import time
+from typing import Any, Callable
 
 import rospy
 from geometry_msgs.msg import PoseWithCovarianceStamped
@@ -17,104 +18,111 @@ from nav_msgs.msg import Odometry
 from sensor_msgs.msg import Imu
 from std_msgs.msg import Empty
 
+from rbx1_nav.estimation.combined_odometry import CombinedOdometry
 from rbx1_nav.estimation.inputs import RejectedMessage, check
 from rbx1_nav.ros import messages
+from rbx1_nav.ros.filter.ekf_parameters import (
+    PARAMETERS, FilterParameters, load_parameters, make_filter, read_parameters)
 from rbx1_nav.ros.filter.estimate_publisher import EstimatePublisher
-from rbx1_nav.ros.filter.frame_tree import FrameTree
-from rbx1_nav.ros.filter.imu_input import ImuInput
-from rbx1_nav.ros.filter.parameters import PARAMETERS, frames_of, load_parameters, make_filter, read_parameters
-from rbx1_nav.ros.filter.sensor_status import Diagnostics
-from rbx1_nav.ros.filter.single_publisher import OneSender
+from rbx1_nav.ros.filter.filter_status import Diagnostics, LimitedLog
+from rbx1_nav.ros.filter.sensor_inputs import FrameTree, ImuInput, OneSender, frames_of
 from rbx1_nav.ros.node import life
-from rbx1_nav.ros.node.limited_log import LimitedLog
 from rbx1_nav.schedule import Schedule
 
 
 class Ekf:
     """Connects a CombinedOdometry with ROS."""
 
-    def __init__(self, parameters):
+    def __init__(self, parameters: FilterParameters) -> None:
         self.parameters = parameters
         self.lock = threading.Lock()
-        self.combined = None        # CombinedOdometry for the current publisher of odometry
+        self.combined: CombinedOdometry | None = None       # for the current publisher of odometry
         self.log = LimitedLog()
         self.warn = partial(self.log.add, rospy.logwarn)
         self.sender = OneSender('odom', parameters.sensor_timeout, self.warn, self.restart)
-        self.frames = None          # frames of its odometry and of the robot
+        self.frames: tuple[str, str] | None = None          # frames of its odometry and of the robot
         self.tree = FrameTree()
         self.publisher = EstimatePublisher(parameters, self.tree, partial(self.log.add, rospy.loginfo))
         self.imu = ImuInput('imu_data', self.tree, partial(self.log.add, rospy.loginfo))
         self.diagnostics = Diagnostics(('odom', 'imu_data')[:1 + parameters.imu_used], parameters.sensor_timeout,
                                        self.lock, lambda: (self.combined, self.publisher.published))
         self.tree.listen(True)
-        self.odom_sub = None    # a message may arrive before the next assignment
+        self.odom_sub: rospy.Subscriber | None = None   # a message may arrive before the next assignment
         self.odom_sub = rospy.Subscriber('odom', Odometry, self.on_odom, queue_size=None, tcp_nodelay=True)
         if parameters.imu_used:
             rospy.Subscriber('imu_data', Imu, self.on_imu, queue_size=None, tcp_nodelay=True)
         rospy.Subscriber('reset_odometry', Empty, self.on_reset)
         rospy.Subscriber('set_pose', PoseWithCovarianceStamped, self.on_set_pose)
 
-    def on_odom(self, message):
+    def on_odom(self, message: Odometry) -> None:
         """Process an odometry message."""
         with self.lock:
             connections = self.odom_sub.impl.connections if self.odom_sub else []
             if self.sender.accepts(message._connection_header, connections, rospy.Time.now()):
                 self.process('odom', self.add_odom, message)
 
-    def on_imu(self, message):
+    def on_imu(self, message: Imu) -> None:
         """Process an IMU message."""
         with self.lock:
             if self.frames:
-                self.process('imu_data', lambda now, imu: self.imu.read(
-                    imu, self.frames[1], partial(self.combined.add_imu, now)), message)
+                self.process('imu_data', self.add_imu, message)
 
-    def on_reset(self, _):
+    def on_reset(self, _: Empty) -> None:
         """Restart the filter because the base was reset."""
         with self.lock:
             if self.combined:
                 self.log.add(rospy.loginfo, 'Odometry was reset: restarting the filter at the odometry pose')
                 self.combined.reset(rospy.Time.now().to_nsec())
 
-    def on_set_pose(self, message):
+    def on_set_pose(self, message: PoseWithCovarianceStamped) -> None:
         """Set the pose of the robot."""
         with self.lock:
             self.process('set_pose', self.place, message)
 
-    def place(self, now, message):
+    def place(self, combined: CombinedOdometry | None, now: int, message: PoseWithCovarianceStamped) -> None:
         """Pass a pose to the filter, with the time of the last odometry, whose clock may differ from this node's."""
-        check('odom', None, self.combined, 'a message before this one')
-        self.combined.set_pose(self.combined.arrivals.last_stamp['odom'] or now,
-                               *messages.from_set_pose(message, self.parameters.output_frame))
+        check('odom', None, combined, 'a message before this one')
+        if combined:
+            combined.set_pose(combined.arrivals.last_stamp['odom'] or now,
+                              *messages.from_set_pose(message, self.parameters.output_frame))
 
-    def add_odom(self, now, message):
+    def add_imu(self, combined: CombinedOdometry, now: int, message: Imu) -> None:
+        """Pass an Imu to the filter."""
+        if self.frames:
+            self.imu.read(message, self.frames[1], partial(combined.add_imu, now))
+
+    def add_odom(self, combined: CombinedOdometry, now: int, message: Odometry) -> None:
         """Pass an Odometry to the filter."""
         frames = frames_of(message, self.parameters)
-        self.combined.add_odom(now, messages.from_odometry(message))
+        combined.add_odom(now, messages.from_odometry(message))
         self.frames = frames
 
-    def restart(self, sender):
+    def restart(self, sender: str) -> None:
         """Restart with the odometry of another node, which may belong to another robot."""
         if self.combined:
             self.warn('odom comes from another node: restarting')
             self.publisher.restart()
         self.combined = make_filter(self.parameters, sender, self.log.add, self.warn)
 
-    def process(self, topic, add, message):
+    # Any: rospy has no types
+    def process(self, topic: str, add: Callable[[Any, int, Any], None], message: Any) -> None:
         """Pass a message to the filter, and publish the result."""
         now = rospy.Time.now()
         if not now:     # simulated time has not started
             return
         try:
-            add(now.to_nsec(), message)
+            add(self.combined, now.to_nsec(), message)
         except RejectedMessage as error:
             self.diagnostics.rejected[topic] += 1
             self.log.add(rospy.logerr, f'{rospy.resolve_name(topic)}: {error}; rejected')
+            return
+        if not (self.combined and self.frames):
             return
         self.diagnostics.count(topic, now, self.combined)
         if self.combined.estimate and not life.end_requested.is_set():      # topics are closed during shutdown
             self.publisher.update(self.combined, *self.frames)
 
-    def run(self):
+    def run(self) -> None:
         """Run until shutdown is requested."""
         schedule = Schedule(1 / self.parameters.diagnostic_period)
         while not life.end_requested.is_set():
@@ -125,7 +133,7 @@ class Ekf:
             life.sleep(0.05)
 
 
-def main():
+def main() -> int:
     """Read the parameters and run; return the exit status."""
     life.init_node('robot_pose_ekf', __doc__, PARAMETERS, check=read_parameters)
     Ekf(load_parameters()).run()

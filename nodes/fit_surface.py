@@ -16,7 +16,7 @@ from __future__ import annotations
 import rbx1_nav.ros.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
 
 import argparse
-from functools import partial
+from itertools import zip_longest
 import os
 import signal
 import sys
@@ -31,12 +31,13 @@ from rbx1_nav.config import ConfigError, show_name
 from rbx1_nav.files import check_yaml, write_file
 from rbx1_nav.fitting.comparison import compare, shares
 from rbx1_nav.fitting.end_poses import read_ends
-from rbx1_nav.fitting.recording import in_force, is_commands_file, read_robot as read_text_files, truth_file
+from rbx1_nav.fitting.recording import (
+    Recording, in_force, is_commands_file, read_robot as read_text_files, truth_file)
 from rbx1_nav.plotting.plots import check_picture, draw_fit
-from rbx1_nav.robot.description import load_robot
+from rbx1_nav.robot.description import Robot, load_robot
 from rbx1_nav.ros.node import resources
 from rbx1_nav.ros.bags import Topics, read_bag
-from rbx1_nav.simulation.surfaces import known_surfaces, load_surface
+from rbx1_nav.simulation.surfaces import Surface, known_surfaces, load_surface
 
 START, CREATE_START = 'low_ply_carpet', 'create_lab_floor'
 
@@ -85,13 +86,14 @@ def read_arguments() -> argparse.Namespace:
     return arguments
 
 
-def read_runs(arguments: argparse.Namespace, robot: Robot) -> tuple[list[Recording], EndErrors | None]:
+def read_runs(arguments: argparse.Namespace,
+              robot: Robot) -> tuple[list[Recording], tuple[float, float, float] | None]:
     """Return (Recordings, errors of the hand-measured end poses or None). Raises ConfigError."""
     if is_commands_file(arguments.runs[0]):
         return [read_text_files(path, truth_file(path)) for path in arguments.runs], None
-    ends, errors = read_ends(arguments.ends, arguments.runs) if arguments.ends else ([None] * len(arguments.runs), None)
+    ends, errors = read_ends(arguments.ends, arguments.runs) if arguments.ends else ([], None)
     topics = Topics(arguments.cmd_vel, arguments.odom, arguments.imu, arguments.truth)
-    recordings = [read_bag(path, topics, end) for path, end in zip(arguments.runs, ends)]
+    recordings = [read_bag(path, topics, end) for path, end in zip_longest(arguments.runs, ends)]
     return [each._replace(commands=in_force(each.commands, robot)) for each in recordings], errors
 
 
@@ -112,8 +114,7 @@ def main() -> int:
     try:
         arguments = read_arguments()
         robot, start = load_files(arguments)
-        # shown only in a terminal
-        with tqdm(disable=None, leave=False, bar_format='{desc}...') as bar:
+        with tqdm(disable=None, leave=False, bar_format='{desc}...') as bar:    # shown only in a terminal
             bar.set_description('Reading the runs')
             recordings, end_errors = read_runs(arguments, robot)
             # only now, because they import scipy, which takes longer than the checks
@@ -123,7 +124,8 @@ def main() -> int:
                               lambda part: bar.set_description(f'Fitting the {part}')).result()
             bar.set_description('Simulating the runs on the new surface')
             with open_place(max(1, arguments.jobs), arguments.scheduler, robot, start) as place:
-                comparisons = compare(result.surface, recordings, robot.base_width, compute=partial(in_order, place))
+                comparisons = compare(result.surface, recordings, robot.base_width,
+                                      compute=lambda function, parts: in_order(place, function, parts))
         print('\n'.join(table(result, arguments.start)))
         count, inside_50, inside_90 = shares(comparisons)
         if count:

@@ -69,7 +69,7 @@ class Fleet:
 
     def request(self, function: Callable[[str], Result], name: str) -> Result:
         """Let the thread of the clock call a function; return whether this was possible, and a text."""
-        done = Future()
+        done: Future[Result] = Future()
         self.requests.put((function, name, done))
         while not (done.done() or life.end_requested.is_set()):
             life.sleep(0.001)

@@ -53,9 +53,10 @@ def row(topic: str, latest: Mapping[str, Odometry | None]) -> str:
     text = f'{TOPICS[topic]:9} {rospy.resolve_name(topic):{width()}}'
     if topic not in latest:
         return f'{text} not published'
-    if latest[topic] is None:
+    message = latest[topic]
+    if message is None:
         return f'{text} no message for {TIMEOUT:g} s'
-    pose = latest[topic].pose.pose
+    pose = message.pose.pose
     x, y, yaw = pose.position.x, pose.position.y, messages.yaw_of(pose.orientation)
     return f'{text} {rounded(x, 3):7.3f} {rounded(y, 3):7.3f} {rounded(degrees(yaw), 1):19.1f} {hypot(x, y):20.3f}'
 

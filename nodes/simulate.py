@@ -14,11 +14,13 @@ import os
 import signal
 import sys
 
-from rbx1_nav.batch.cases import combine, read_sweep, units
+from rbx1_nav.batch.cases import Combination, combine, read_sweep, units
 from rbx1_nav.batch.executor import add_arguments
+from rbx1_nav.batch.runs_file import RunsFile
 from rbx1_nav.batch.sweep import Sweep
 from rbx1_nav.config import ConfigError, show, show_name
 from rbx1_nav.files import check_writable
+from rbx1_nav.parameters import Parameter
 from rbx1_nav.plotting.animation import animate, check_animation
 from rbx1_nav.plotting.plots import PATHS, check_picture, draw
 from rbx1_nav.robot.description import load_robot
@@ -71,7 +73,7 @@ def read_arguments() -> argparse.Namespace:
 
 def read_combinations(arguments: argparse.Namespace) -> tuple[list[Combination], list[str]]:
     """Return (Combinations of the sweep, titles of its columns). Raises ConfigError."""
-    declared = []
+    declared: list[Parameter] = []
     if arguments.set:   # only then, because it imports rospy
         sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
         from odom_out_and_back import PARAMETERS as declared
@@ -108,10 +110,13 @@ def simulate_all(sweep: Sweep, arguments: argparse.Namespace, file: RunsFile | N
 def main() -> int:
     """Simulate, print and draw; return the exit status."""
     signal.signal(signal.SIGPIPE, signal.SIG_DFL)               # the reader of a pipe may stop reading early
-    sweep = file = None
+    sweep: Sweep | None = None
+    file: RunsFile | None = None
 
     def missing() -> str:
-        return f'{arguments.output} lacks {sweep.total - sweep.progress.done} of {sweep.total} runs' if file else ''
+        if not (sweep and file):
+            return ''
+        return f'{arguments.output} lacks {sweep.total - sweep.progress.done} of {sweep.total} runs'
 
     def interrupt(*_: object) -> None:      # immediately; the other processes follow
         if file:

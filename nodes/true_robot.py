@@ -36,8 +36,9 @@ LIFETIME = 10       # s: a robot that is no longer updated disappears
 
 def matrix(position: Point | Vector3, rotation: Quaternion) -> Array:
     """Return the 4x4 matrix of a position (m) and a rotation."""
-    return concatenate_matrices(translation_matrix((position.x, position.y, position.z)),
-                                quaternion_matrix((rotation.x, rotation.y, rotation.z, rotation.w)))
+    found: Array = concatenate_matrices(translation_matrix((position.x, position.y, position.z)),
+                                        quaternion_matrix((rotation.x, rotation.y, rotation.z, rotation.w)))
+    return found
 
 
 def robot_markers(odometry: Odometry, visuals: Sequence[Visual],

@@ -9,7 +9,7 @@ import yaml
 
 from rbx1_nav.config import ConfigError
 from rbx1_nav.robot.description import read_robot
-from rbx1_nav.ros.filter.parameters import read_parameters
+from rbx1_nav.ros.filter.ekf_parameters import read_parameters
 from rbx1_nav.schedule import Schedule
 from rbx1_nav.simulation.base import make_base, make_wheels_and_gyro
 from rbx1_nav.simulation.surfaces import KEYS, draw_run, read_seed, read_surface

@@ -218,7 +218,7 @@ def test_an_import_that_is_not_allowed_is_found(module, source):
     ('rbx1_nav.simulation.wheels', 'from . import kinematics\nfrom .gyro import Gyro\nfrom ..units import SECOND'),
     ('rbx1_nav.simulation.wheels', 'from rbx1_nav import config, units'),
     ('rbx1_nav.estimation.filter', 'import os.path, numpy.linalg\nfrom math import pi\nimport importlib'),
-    ('rbx1_nav.ros.filter.parameters', 'import rospy\nfrom rbx1_nav.ros import messages'),
+    ('rbx1_nav.ros.filter.ekf_parameters', 'import rospy\nfrom rbx1_nav.ros import messages'),
     ('nodes.ekf', 'import rospy\nfrom rbx1_nav.simulation.exercise import simulate\nfrom tqdm import tqdm'),
 ])
 def test_an_import_that_is_allowed_is_not_reported(module, source):

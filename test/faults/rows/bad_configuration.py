@@ -10,7 +10,7 @@ from bad_values import TEXTS, VALUES, mutate, shown
 from rbx1_nav.config import ConfigError, Section
 from rbx1_nav.parameters import number, read
 from rbx1_nav.robot.description import read_robot
-from rbx1_nav.ros.filter.parameters import read_parameters
+from rbx1_nav.ros.filter.ekf_parameters import read_parameters
 from rbx1_nav.simulation.base import make_base
 from rbx1_nav.simulation.surfaces import load_surface, read_seed, read_surface
 from rbx1_nav.units import SECOND

@@ -72,7 +72,7 @@ class Diagnosis:
         return self.last.message if self.last and self.last.level == DiagnosticStatus.ERROR else ''
 
 
-def factor_in_force(base_node: str, key: str, default: float | None = 1.0) -> float | None:
+def factor_in_force(base_node: str, key: str, default: float) -> float:
     """Return the correction factor `key` from the parameters of the base node; the default if it is not set.
 
     Raises ROSException if the value is not a valid factor.
@@ -112,9 +112,9 @@ def load_run(name: str, *keys: str) -> dict[str, float]:
     return {key: _number(section, key, -1e6, 1e6) for key in {*keys, *run}}
 
 
-def take_measured() -> object:
+def take_measured() -> YamlValue:
     """Return the parameter ~measured, or None, and delete it from the master, because it is valid for one run only."""
-    measured = rospy.get_param('~measured', None)
+    measured: YamlValue = rospy.get_param('~measured', None)
     if measured is not None:
         rospy.delete_param('~measured')
     return measured

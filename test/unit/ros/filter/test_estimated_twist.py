@@ -7,7 +7,7 @@ from rbx1_nav.estimation.combined_odometry import DROPOUT_SPEED, CombinedOdometr
 from rbx1_nav.estimation.priors import UNKNOWN_FLOOR, priors
 from rbx1_nav.estimation.inputs import Imu, Odom
 from rbx1_nav.robot.kinematics import ORIGIN, arc
-from rbx1_nav.ros.filter.estimated_twist import estimate_twist
+from rbx1_nav.ros.filter.estimate_publisher import estimate_twist
 from rbx1_nav.units import SECOND
 
 STEP = SECOND // 50

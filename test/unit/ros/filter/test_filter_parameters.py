@@ -5,7 +5,7 @@ import pytest
 
 from rbx1_nav.config import ConfigError
 from rbx1_nav.estimation.priors import Limits
-from rbx1_nav.ros.filter.parameters import read_parameters
+from rbx1_nav.ros.filter.ekf_parameters import read_parameters
 from rbx1_nav.ros.node.frames import search_value
 
 

@@ -1,7 +1,7 @@
 """A log of at most two lines per second counts each line that it drops, and no kind of line hides another one."""
 import re
 
-from rbx1_nav.ros.node.limited_log import LimitedLog
+from rbx1_nav.ros.filter.filter_status import LimitedLog
 
 
 class Log:

@@ -7,14 +7,12 @@ import time
 from typing import Callable, NamedTuple
 import xmlrpc.client
 
-from nav_msgs.msg import Odometry
 import rosgraph
 import rospy
 
 from rbx1_nav.config import ConfigError, Section, YamlValue, show
 from rbx1_nav.estimation.arrivals import MAX_AGE, MAX_LEAD
 from rbx1_nav.estimation.combined_odometry import CombinedOdometry
-from rbx1_nav.estimation.inputs import check
 from rbx1_nav.estimation.priors import UNKNOWN_FLOOR, Limits, Priors, priors
 from rbx1_nav.parameters import custom, flag, frame, number, read
 from rbx1_nav.ros.network.bases import private_namespace
@@ -28,7 +26,6 @@ from rbx1_nav.units import SECOND
 AUTO = 'auto'       # the surface of a simulated base, otherwise ANY
 ANY = 'unknown'     # any floor
 DEFAULT = Limits()
-
 
 # parameters of robot_pose_ekf, each with a log line that explains why it has no effect
 UNSUPPORTED = {
@@ -105,14 +102,13 @@ def read_parameters(params: dict[str, YamlValue]) -> FilterParameters:
         raise ConfigError('odom_used: False: expected true, because nothing else measures the distance')
     base_frame = _resolve(given['tf_prefix'], given['base_footprint_frame'] or 'base_footprint',
                           params.get('base_footprint_frame'))
-    values = FilterParameters(
-        **{name: given[name] for name in ('freq', 'sensor_timeout', 'diagnostic_period', 'publish_tf', 'imu_used',
-                                          'surface')},
+    given.update(
         limits=Limits(**{**{name: given[name] for name in Limits._fields}, 'gyro_bias': radians(given['gyro_bias'])}),
         output_frame=_resolve(given['tf_prefix'], given['output_frame'], params.get('output_frame')),
         base_footprint_frame=base_frame if 'base_footprint_frame' in params else '',
         default_base_frame=base_frame,
         unsupported=[f'{name}: {reason}' for name, reason in UNSUPPORTED.items() if given[name]])
+    values = FilterParameters(**{name: given[name] for name in FilterParameters._fields})
     if values.base_footprint_frame and values.base_footprint_frame == values.output_frame:
         raise ConfigError(f'base_footprint_frame: {show(values.output_frame)}: expected a frame other than '
                           'output_frame')
@@ -133,20 +129,6 @@ def load_parameters() -> FilterParameters:
     for line in values.unsupported:
         rospy.logwarn('%s', line)
     return values
-
-
-def frames_of(message: Odometry, parameters: FilterParameters) -> tuple[str, str]:
-    """Return the frames of an Odometry message and of the robot, without leading slashes. Raises RejectedMessage.
-
-    The frame of the robot must differ from output_frame.
-    """
-    base_frame = parameters.base_footprint_frame or message.child_frame_id.lstrip('/') or (
-        parameters.default_base_frame)
-    frames = message.header.frame_id.lstrip('/'), base_frame
-    for field, name in zip(('header.frame_id', 'child_frame_id'), frames):
-        check(field, show(name), name, 'the name of a frame')
-    check('child_frame_id', show(frames[1]), frames[1] != parameters.output_frame, 'a frame other than output_frame')
-    return frames
 
 
 def _resolve(prefix: str, frame: str, given: YamlValue) -> str:
