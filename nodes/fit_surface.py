@@ -36,7 +36,7 @@ from rbx1_nav.fitting.recording import (
 from rbx1_nav.plotting.plots import check_picture, draw_fit
 from rbx1_nav.robot.description import Robot, load_robot
 from rbx1_nav.ros.node import resources
-from rbx1_nav.ros.bags import Topics, read_bag
+from rbx1_nav.ros.bags import TopicNames, read_bag
 from rbx1_nav.simulation.surfaces import Surface, known_surfaces, load_surface
 
 START, CREATE_START = 'low_ply_carpet', 'create_lab_floor'
@@ -92,7 +92,7 @@ def read_runs(arguments: argparse.Namespace,
     if is_commands_file(arguments.runs[0]):
         return [read_text_files(path, truth_file(path)) for path in arguments.runs], None
     ends, errors = read_ends(arguments.ends, arguments.runs) if arguments.ends else ([], None)
-    topics = Topics(arguments.cmd_vel, arguments.odom, arguments.imu, arguments.truth)
+    topics = TopicNames(arguments.cmd_vel, arguments.odom, arguments.imu, arguments.truth)
     recordings = [read_bag(path, topics, end) for path, end in zip_longest(arguments.runs, ends)]
     return [each._replace(commands=in_force(each.commands, robot)) for each in recordings], errors
 

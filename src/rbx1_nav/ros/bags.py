@@ -19,7 +19,7 @@ from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.ros.messages import yaw_of
 
 
-class Topics(NamedTuple):
+class TopicNames(NamedTuple):
     """Names of topics."""
 
     cmd_vel: str
@@ -37,7 +37,7 @@ for _types in TYPES.values():
         rosbag.bag._message_types[_type._md5sum] = _type
 
 
-class Series:
+class TopicMessages:
     """The messages of one topic."""
 
     def __init__(self, topic: str, types: tuple[type[Message], ...]) -> None:
@@ -75,10 +75,10 @@ class Series:
         return numpy.array(self.rows, float).reshape(-1, width).T
 
 
-def read_bag(path: str, topics: Topics, end: Pose | None = None) -> Recording:
+def read_bag(path: str, topics: TopicNames, end: Pose | None = None) -> Recording:
     """Return the Recording of a bag; end: end pose measured by hand. Raises ConfigError."""
     name = show_name(path)
-    series = {field: Series(topic, TYPES[field]) for field, topic in topics._asdict().items() if topic}
+    series = {field: TopicMessages(topic, TYPES[field]) for field, topic in topics._asdict().items() if topic}
     by_topic = {f"/{one.topic.lstrip('/')}": one for one in series.values()}
     found: set[str] = set()
 
@@ -110,7 +110,7 @@ def read_bag(path: str, topics: Topics, end: Pose | None = None) -> Recording:
     return recording
 
 
-def check(name: str, series: Series) -> None:
+def check(name: str, series: TopicMessages) -> None:
     """Raise ConfigError for messages of another type, or from two robots."""
     if series.other_types and not series.rows:
         raise ConfigError(f"{name}: {series.topic}: {', '.join(sorted(series.other_types))}: expected "
@@ -122,8 +122,8 @@ def check(name: str, series: Series) -> None:
         raise ConfigError(f'{name}: {series.topic}: published by {senders}: expected one robot')
 
 
-def track(series: Series | None) -> Track | None:
-    """Return the Track of a Series with poses; None without messages."""
+def track(series: TopicMessages | None) -> Track | None:
+    """Return the Track of a TopicMessages with poses; None without messages."""
     if not (series and series.rows):
         return None
     time, x, y, yaw = series.columns(4)

@@ -7,11 +7,11 @@ import rosbag
 from std_msgs.msg import String
 
 from rbx1_nav.config import ConfigError
-from rbx1_nav.ros.bags import Topics, read_bag
+from rbx1_nav.ros.bags import TopicNames, read_bag
 import sample_bags
 from sample_bags import odometry, pose_stamped, run_messages, twist, write_bag
 
-TOPICS = Topics('/cmd_vel', '/odom', '/imu/data', '/ground_truth')
+TOPICS = TopicNames('/cmd_vel', '/odom', '/imu/data', '/ground_truth')
 
 
 @pytest.fixture(name='path')
