@@ -11,6 +11,7 @@ import tarfile
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+MOVED = '\n\nThis page has moved:\n'      # in a page that only leads to other pages
 
 
 def python_files(folder):
@@ -44,8 +45,9 @@ def measure(root):
         room = path.relative_to(root / 'src/rbx1_nav').parts[0]
         rooms[f'logical lines of {room}/' if not room.endswith('.py') else 'logical lines beside the rooms'] += (
             logical_lines(tree))
-    documents = list((root / 'docs').glob('*.md'))
-    records = list((root / 'docs/decisions').glob('*.md'))
+    documents, records = (
+        [path for path in folder.glob('*.md') if MOVED not in path.read_text(encoding='utf-8')]
+        for folder in (root / 'docs', root / 'docs/decisions'))
     return {
         'modules of src': len(modules),
         'logical lines of src': sum(rooms.values()),

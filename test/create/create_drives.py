@@ -43,7 +43,7 @@ class TestCreateDrives(unittest.TestCase):
         return robot, support.yaw(robot.truth.last)
 
     def test_a_create(self):
-        # 0.7 % of the turn and 1 degree, see docs/decisions/create_readings.md
+        # 0.7 % of the turn and 1 degree, see docs/decisions/create.md
         robot, turned = self.check('create', 0.032, 0.02)
         imu = support.Watch('/imu/data', Imu)
         rotation = imu.next().orientation

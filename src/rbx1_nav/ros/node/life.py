@@ -2,7 +2,7 @@
 
 Signals never interrupt the main thread. A thread waits for them and sets `end_requested`; so does every other kind of
 shutdown request. The main thread checks it, does its final work, and calls leave().
-docs/decisions/how_a_node_stops.md explains why.
+docs/decisions/nodes.md explains why.
 """
 from __future__ import annotations
 
