@@ -1,13 +1,15 @@
 """Which rooms of the package may import which, where ROS may be imported, and the maximum length of a file."""
-import ast
 import importlib.util
 import os
+import sys
 import sysconfig
 
 import pytest
 
 ROOT = os.path.normpath(os.path.join(os.path.dirname(__file__), '..', '..'))
-SOURCE = os.path.join(ROOT, 'src')
+sys.path.insert(0, os.path.join(ROOT, 'script'))
+import rooms
+from rooms import imported_modules, modules, python_files
 
 # room (a folder or a module of rbx1_nav): the rooms that it may import in addition to itself. A module belongs to the
 # innermost room that contains it
@@ -31,7 +33,7 @@ ALLOWED = {
     'plotting': {'arrays', 'config', 'files', 'fitting', 'robot', 'simulation.exercise', 'units'},
     'batch': {'arrays', 'config', 'control', 'files', 'parameters', 'robot', 'simulation', 'simulation.exercise',
               'simulation.summary'},
-    'create': {'config', 'units'},
+    'create': set(),
     'create.driver': {'arrays', 'config', 'control', 'create', 'parameters', 'robot', 'schedule', 'units'},
     'create.emulator': {'config', 'create', 'simulation', 'simulation.base', 'units'},
     'ros': {'arrays', 'config', 'estimation', 'robot', 'units'},
@@ -39,8 +41,8 @@ ALLOWED = {
     'ros.node': {'config', 'parameters', 'ros.network'},
     'ros.lockstep': {'ros.network', 'schedule'},
     'ros.driving': {'config', 'control', 'parameters', 'robot', 'ros.network', 'ros.node', 'schedule', 'units'},
-    'ros.base': {'arrays', 'config', 'control', 'create', 'create.driver', 'parameters', 'robot', 'ros', 'ros.network',
-                 'ros.node', 'schedule', 'units'},
+    'ros.base': {'arrays', 'control', 'create', 'create.driver', 'robot', 'ros', 'ros.network', 'ros.node', 'schedule',
+                 'units'},
     'ros.base.simulated_floor': {'config', 'parameters', 'ros.node', 'simulation'},
     'ros.base.simulated_clock': {'config', 'parameters', 'ros.base', 'ros.lockstep', 'ros.network', 'ros.node',
                                  'schedule', 'units'},
@@ -48,9 +50,9 @@ ALLOWED = {
                                  'simulation.base'},
     'ros.base.emulated_create': {'config', 'create', 'create.emulator', 'parameters', 'ros.base.simulated_floor',
                                  'ros.node'},
-    'ros.filter': {'arrays', 'config', 'estimation', 'parameters', 'robot', 'ros', 'ros.network', 'ros.node',
+    'ros.filter': {'config', 'estimation', 'parameters', 'robot', 'ros', 'ros.network', 'ros.node',
                    'schedule', 'simulation', 'units'},
-    'ros.web': {'config', 'parameters', 'ros', 'ros.network', 'ros.node', 'units'},
+    'ros.web': {'config', 'ros', 'ros.network', 'ros.node', 'units'},
     'ros.bags': {'arrays', 'config', 'estimation', 'fitting', 'robot', 'ros'},
 }
 ALLOWED['nodes'] = set(ALLOWED) - {'__init__'}
@@ -61,43 +63,11 @@ OF_MODULE = {'rbx1_nav.batch.cluster': {'dask', 'distributed'}, 'rbx1_nav.batch.
 MAX_NODE_LINES, MAX_LINES = 150, 300
 
 
-def python_files(folder):
-    """The paths of all Python files below a folder."""
-    return sorted(os.path.join(parent, file) for parent, _, files in os.walk(folder)
-                  for file in files if file.endswith('.py'))
-
-
 def room_of(module):
     """The room of a module or package below rbx1_nav; its first folder if it is in no room of the table."""
     parts = module.split('.')[1:] or ['__init__']
     rooms = ['.'.join(parts[:length]) for length in range(len(parts), 0, -1)]
     return next((room for room in rooms if room in ALLOWED), parts[0])
-
-
-def is_module(name):
-    """Whether a full name refers to a module or a package in SOURCE."""
-    path = os.path.join(SOURCE, *name.split('.'))
-    return os.path.isdir(path) or os.path.isfile(f'{path}.py')
-
-
-def imported_modules(source, module, is_package):
-    """The full names of all modules that a source imports; '?' for a dynamic import without a literal name."""
-    package = module if is_package else module.rpartition('.')[0]
-    for node in ast.walk(ast.parse(source)):
-        if isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names)
-        elif isinstance(node, ast.ImportFrom):
-            parent = node.module or ''
-            if node.level:
-                parent = importlib.util.resolve_name('.' * node.level + parent, package)
-            # the imported name may itself be a module: `from rbx1_nav import units`
-            yield from {name if is_module(name) else parent for name in (
-                f'{parent}.{alias.name}' for alias in node.names)}
-        elif isinstance(node, ast.Call):
-            function = getattr(node.func, 'attr', getattr(node.func, 'id', None))
-            if function in ('__import__', 'import_module'):
-                name = node.args[0].value if node.args and isinstance(node.args[0], ast.Constant) else '?'
-                yield importlib.util.resolve_name(name, package)
 
 
 def is_standard(module):
@@ -125,16 +95,6 @@ def violations(source, module, is_package=False):
     return found
 
 
-def modules():
-    """(path, full name, whether it is a package) of all modules and nodes."""
-    for path in python_files(SOURCE):
-        parts = os.path.relpath(path, SOURCE)[:-len('.py')].split(os.sep)
-        is_package = parts[-1] == '__init__'
-        yield path, '.'.join(parts[:-1] if is_package else parts), is_package
-    for path in python_files(os.path.join(ROOT, 'nodes')):
-        yield path, f"nodes.{os.path.basename(path)[:-len('.py')]}", False
-
-
 @pytest.mark.parametrize('path, module, is_package', [pytest.param(*each, id=each[1]) for each in modules()])
 def test_a_module_imports_only_what_its_room_may(path, module, is_package):
     with open(path, encoding='utf-8') as file:
@@ -145,6 +105,35 @@ def test_every_module_is_found_and_every_room_is_in_the_table():
     names = {module for _, module, _ in modules()}
     assert {'rbx1_nav', 'rbx1_nav.units', 'rbx1_nav.control.gate', 'rbx1_nav.ros.node.life', 'nodes.fake_base'} <= names
     assert {room_of(name) for name in names if name.startswith('rbx1_nav')} == set(ALLOWED) - {'nodes'}
+
+
+def test_a_room_may_import_only_what_it_imports():
+    """So the arrows of the diagram in docs/design.md are those of ALLOWED."""
+    used = {room: set() for room in ALLOWED}
+    for path, module, is_package in modules():
+        room = room_of(module) if module.startswith('rbx1_nav') else 'nodes'
+        with open(path, encoding='utf-8') as file:
+            names = imported_modules(file.read(), module, is_package)
+            used[room].update(room_of(name) for name in names if name.startswith('rbx1_nav'))
+    unused = {room: allowed - used[room] for room, allowed in ALLOWED.items() if room != 'nodes'}
+    assert {room: names for room, names in unused.items() if names} == {}
+
+
+def test_the_diagram_of_the_rooms_is_up_to_date():
+    with open(rooms.PAGE, encoding='utf-8') as file:
+        page = file.read()
+    assert rooms.DIAGRAM.search(page) and rooms.filled_in(page) == page, 'run script/rooms.py'
+
+
+def test_no_arrows_of_the_diagram_lead_back():
+    arrows = rooms.arrows()
+    assert [room for room, _ in arrows if room in rooms.reachable(arrows, room)] == []
+
+
+def test_the_diagram_leaves_out_an_arrow_if_others_lead_to_the_same_room(monkeypatch):
+    monkeypatch.setattr(rooms, 'arrows', lambda: {('a/', 'b/c/'), ('b/c/', 'd/'), ('a/', 'd/')})
+    assert rooms.diagram().splitlines() == ['flowchart TD', '    a["a/"]', '    b_c["b/c/"]', '    d["d/"]',
+                                            '    a --> b_c', '    b_c --> d']
 
 
 def test_no_two_rooms_import_each_other():
