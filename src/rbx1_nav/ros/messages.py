@@ -2,9 +2,9 @@
 from __future__ import annotations
 
 from math import atan2, cos, isnan, nan, pi, sin, sqrt
-from typing import Sequence
+from typing import Any, Mapping, Sequence
 
-from geometry_msgs.msg import PoseWithCovarianceStamped, Quaternion, TransformStamped, Twist
+from geometry_msgs.msg import Pose as PoseMessage, PoseWithCovarianceStamped, Quaternion, TransformStamped, Twist
 from nav_msgs.msg import Odometry
 import numpy
 import rospy
@@ -75,6 +75,20 @@ def planar(covariance: Array) -> list[float]:
     return matrix
 
 
+# Any: a message with a header
+def _stamped(message: Any, stamp: rospy.Time, frame_id: str, child_frame_id: str | None = None) -> Any:
+    """Return a message after filling in its header, and its child frame."""
+    message.header.stamp, message.header.frame_id = stamp, frame_id
+    if child_frame_id is not None:
+        message.child_frame_id = child_frame_id
+    return message
+
+
+def _set_pose(message: PoseMessage, pose: Pose) -> None:
+    message.position.x, message.position.y = pose.x, pose.y
+    message.orientation = quaternion(pose.yaw % (2 * pi))
+
+
 def odometry(stamp: rospy.Time, frames: tuple[str, str], pose: Pose, velocity: tuple[float, float],
              uncertainty: Uncertainty, covariance: Array | None = None) -> Odometry:
     """Return an Odometry message: Pose in the first of the frames, velocity (m/s, rad/s) in the second,
@@ -82,12 +96,8 @@ def odometry(stamp: rospy.Time, frames: tuple[str, str], pose: Pose, velocity: t
 
     covariance: the 3x3 covariance of the pose; it replaces the pose variances of the Uncertainty.
     """
-    message = Odometry()
-    message.header.stamp = stamp
-    message.header.frame_id, message.child_frame_id = frames
-    message.pose.pose.position.x = pose.x
-    message.pose.pose.position.y = pose.y
-    message.pose.pose.orientation = quaternion(pose.yaw % (2 * pi))
+    message = _stamped(Odometry(), stamp, *frames)
+    _set_pose(message.pose.pose, pose)
     position, yaw, linear, angular = uncertainty
     message.pose.covariance = (diagonal(position, position, UNKNOWN, UNKNOWN, UNKNOWN, yaw) if covariance is None
                                else planar(covariance))
@@ -99,9 +109,7 @@ def odometry(stamp: rospy.Time, frames: tuple[str, str], pose: Pose, velocity: t
 
 def imu(stamp: rospy.Time, frame_id: str, reading: Reading) -> Imu:
     """Return an Imu message with the Reading of a gyro, which measures only the vertical axis."""
-    message = Imu()
-    message.header.stamp = stamp
-    message.header.frame_id = frame_id
+    message = _stamped(Imu(), stamp, frame_id)
     message.orientation = quaternion(reading.yaw % (2 * pi))
     message.orientation_covariance = [UNKNOWN, 0, 0, 0, UNKNOWN, 0, 0, 0, reading.yaw_variance]
     message.angular_velocity.z = reading.rate
@@ -112,12 +120,8 @@ def imu(stamp: rospy.Time, frame_id: str, reading: Reading) -> Imu:
 
 def transform(stamp: rospy.Time, frame_id: str, child_frame_id: str, pose: Pose) -> TransformStamped:
     """Return a TransformStamped with the Pose of the child frame."""
-    message = TransformStamped()
-    message.header.stamp = stamp
-    message.header.frame_id = frame_id
-    message.child_frame_id = child_frame_id
-    message.transform.translation.x = pose.x
-    message.transform.translation.y = pose.y
+    message = _stamped(TransformStamped(), stamp, frame_id, child_frame_id)
+    message.transform.translation.x, message.transform.translation.y = pose.x, pose.y
     message.transform.rotation = quaternion(pose.yaw % (2 * pi))
     return message
 
@@ -155,12 +159,8 @@ def from_imu(message: Imu) -> ImuData:
 
 def planar_pose(stamp: rospy.Time, frame_id: str, pose: Pose, covariance: Array) -> PoseWithCovarianceStamped:
     """Return a PoseWithCovarianceStamped with a Pose and the 3x3 covariance of x, y (m) and yaw (rad)."""
-    message = PoseWithCovarianceStamped()
-    message.header.stamp = stamp
-    message.header.frame_id = frame_id
-    message.pose.pose.position.x = pose.x
-    message.pose.pose.position.y = pose.y
-    message.pose.pose.orientation = quaternion(pose.yaw % (2 * pi))
+    message = _stamped(PoseWithCovarianceStamped(), stamp, frame_id)
+    _set_pose(message.pose.pose, pose)
     message.pose.covariance = planar(covariance)
     return message
 
@@ -195,12 +195,9 @@ def odometry_of_pose(pose: PoseWithCovarianceStamped, before: PoseWithCovariance
                      child_frame_id: str) -> Odometry:
     """Return an Odometry message with the pose of a PoseWithCovarianceStamped. Its velocity is the mean since the pose
     `before`, which may be None, with an unknown variance."""
-    message = Odometry()
-    message.header.stamp = pose.header.stamp
-    message.header.frame_id = frame_id
-    message.child_frame_id = child_frame_id
+    message = _stamped(Odometry(), pose.header.stamp, frame_id, child_frame_id)
     message.pose = pose.pose
-    message.twist.covariance = diagonal(UNKNOWN, UNKNOWN, UNKNOWN, UNKNOWN, UNKNOWN, UNKNOWN)
+    message.twist.covariance = diagonal(*[UNKNOWN] * 6)
     elapsed = (pose.header.stamp - before.header.stamp).to_sec() if before else 0.0
     if before and elapsed > 0:
         yaw = yaw_of(pose.pose.pose.orientation)
@@ -211,3 +208,13 @@ def odometry_of_pose(pose: PoseWithCovarianceStamped, before: PoseWithCovariance
         message.twist.twist.linear.x = (x * cos(middle) + y * sin(middle)) / elapsed
         message.twist.twist.angular.z = turned / elapsed
     return message
+
+
+# Any: a DiagnosticStatusWrapper
+def fill_status(status: Any, level: int | None, text: str, values: Mapping[str, object]) -> Any:
+    """Return a DiagnosticStatus after setting its level and text, and adding values. level: None keeps both."""
+    if level is not None:
+        status.summary(level, text)
+    for key, value in values.items():
+        status.add(key, value)
+    return status

@@ -123,15 +123,14 @@ class VelocityCommands:
         gate, now = self.gate, self.clock.now()
         age = 'never' if gate.command_time is None else f'{(now - gate.command_time) / SECOND:.3f}'
         text = self.senders.recent(now, RECENT)
-        if text:
-            status.summary(DiagnosticStatus.WARN, f'Contradictory commands: {text}')
-        status.add('dX', gate.linear)
-        status.add('dR', gate.angular)
-        status.add('Age of the last command (s)', age)
-        status.add('Rejected commands', gate.rejected)
-        status.add('Refused commands', self.refusals.count)
-        status.add('Clamped commands', gate.clamped)
-        status.add('Contradictory commands', self.senders.contradictions)
+        messages.fill_status(status, DiagnosticStatus.WARN if text else None, f'Contradictory commands: {text}', {
+            'dX': gate.linear,
+            'dR': gate.angular,
+            'Age of the last command (s)': age,
+            'Rejected commands': gate.rejected,
+            'Refused commands': self.refusals.count,
+            'Clamped commands': gate.clamped,
+            'Contradictory commands': self.senders.contradictions})
 
 
 # Any: rospy has no types

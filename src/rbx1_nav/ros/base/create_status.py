@@ -13,6 +13,7 @@ from rbx1_nav.create.driver.link import Link
 from rbx1_nav.create.driver.motion import CounterTravel
 from rbx1_nav.create.driver.supervisor import BUMPS, CLIFFS, WHEEL_DROPS
 from rbx1_nav.ros.base.commands import VelocityCommands
+from rbx1_nav.ros.messages import fill_status
 
 LOW, EMPTY = 0.2, 0.05      # levels of the battery's charge, fractions of its capacity
 OVERFULL = 1.1      # the capacity is an estimate of the robot, so a full battery may exceed it a little
@@ -20,7 +21,11 @@ HOT = 60            # degrees C, usual limit of NiMH and lithium-ion cells durin
 FLAT = 10800        # mV: 12 NiMH cells with 0.9 V each, which are empty
 FAULT = 5           # charging state
 CHARGING_STATES = ('not charging', 'reconditioning', 'charging', 'trickle charging', 'waiting', 'charging fault')
+SWITCHES = {'Bumper left': protocol.BUMP_LEFT, 'Bumper right': protocol.BUMP_RIGHT,
+            'Wheel drop left': protocol.WHEEL_DROP_LEFT, 'Wheel drop right': protocol.WHEEL_DROP_RIGHT,
+            'Wheel drop castor': protocol.WHEEL_DROP_CASTOR}
 OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR
+NO_ANSWER = ERROR, 'The robot does not answer'
 
 
 def charge_of(reading: Mapping[str, int]) -> float | None:
@@ -71,21 +76,21 @@ class CreateStatus:
         """Fill in the status of mode and commands."""
         driver, supervisor = self.driver, self.driver.supervisor
         if self.link.problem:
-            status.summary(ERROR, self.link.problem)
+            summary = ERROR, self.link.problem
         elif not driver.contact.answers:
-            status.summary(ERROR, 'The robot does not answer')
+            summary = NO_ANSWER
         elif not supervisor.in_control:
-            status.summary(WARN, f"Not driven: {supervisor.reason or 'changing the mode'}")
+            summary = WARN, f"Not driven: {supervisor.reason or 'changing the mode'}"
         else:
-            status.summary(OK, 'Stationary' if driver.motion.stands else 'Moving')
-        found = driver.contact.found
-        status.add('Robot type', found.model.name if found else 'unknown')
-        if isinstance(driver.counter, CounterTravel):
-            status.add('Fractions of a degree', driver.counter.fractions.kind)
-        mode = supervisor.mode
-        status.add('Mode', 'unknown' if mode is None else protocol.MODE_NAMES[mode])
-        status.add('Speed of the left wheel (mm/s)', driver.sender.speeds[0])
-        status.add('Speed of the right wheel (mm/s)', driver.sender.speeds[1])
+            summary = OK, 'Stationary' if driver.motion.stands else 'Moving'
+        found, mode = driver.contact.found, supervisor.mode
+        fill_status(status, *summary, {
+            'Robot type': found.model.name if found else 'unknown',
+            **({'Fractions of a degree': driver.counter.fractions.kind} if isinstance(driver.counter, CounterTravel)
+               else {}),
+            'Mode': 'unknown' if mode is None else protocol.MODE_NAMES[mode],
+            'Speed of the left wheel (mm/s)': driver.sender.speeds[0],
+            'Speed of the right wheel (mm/s)': driver.sender.speeds[1]})
         self.commands.diagnose(status)
         status.add('Commands above the wheel speed limit', driver.saturated)
         return status
@@ -99,15 +104,14 @@ class CreateStatus:
         if level > self.battery_level:
             rospy.logwarn('Battery: %s%s', text, ': charge it soon' if text.startswith('Low') else '')
         self.battery_level = level
-        status.summary(level, text)
-        status.add('Voltage (V)', reading['voltage'] / 1000)
-        status.add('Current (A)', reading['current'] / 1000)
-        status.add('Charge (Ah)', reading['charge'] / 1000)
-        status.add('Capacity (Ah)', reading['capacity'] / 1000)
-        status.add('Temperature (degrees C)', reading['temperature'])
-        status.add('Charging state', CHARGING_STATES[reading['charging_state']])
-        status.add('Charging sources', reading['charging_sources'])
-        return status
+        return fill_status(status, level, text, {
+            'Voltage (V)': reading['voltage'] / 1000,
+            'Current (A)': reading['current'] / 1000,
+            'Charge (Ah)': reading['charge'] / 1000,
+            'Capacity (Ah)': reading['capacity'] / 1000,
+            'Temperature (degrees C)': reading['temperature'],
+            'Charging state': CHARGING_STATES[reading['charging_state']],
+            'Charging sources': reading['charging_sources']})
 
     def sensors(self, status: DiagnosticStatusWrapper) -> DiagnosticStatusWrapper:
         """Fill in the status of bumpers, wheel drops and cliff sensors."""
@@ -115,57 +119,41 @@ class CreateStatus:
         if not reading:
             return status
         bits = reading['bumps_and_wheel_drops']
-        cliffs = [name for name in CLIFFS if reading[name]]
-        found = [name for name, mask in (('bumper', BUMPS), ('wheel drop', WHEEL_DROPS)) if bits & mask] + cliffs
-        status.summary(WARN if found else OK, ', '.join(found).replace('_', ' ') or 'No bump, wheel drop or cliff')
-        for name, bit in (('Bumper left', protocol.BUMP_LEFT), ('Bumper right', protocol.BUMP_RIGHT),
-                          ('Wheel drop left', protocol.WHEEL_DROP_LEFT),
-                          ('Wheel drop right', protocol.WHEEL_DROP_RIGHT),
-                          ('Wheel drop castor', protocol.WHEEL_DROP_CASTOR)):
-            status.add(name, bool(bits & bit))
-        for name in CLIFFS + ('wall', 'virtual_wall'):
-            status.add(name.replace('_', ' ').capitalize(), bool(reading[name]))
-        status.add('Overcurrents', reading['overcurrents'])
-        return status
+        found = [name for name, mask in (('bumper', BUMPS), ('wheel drop', WHEEL_DROPS)) if bits & mask]
+        found += [name.replace('_', ' ') for name in CLIFFS if reading[name]]
+        return fill_status(status, WARN if found else OK, ', '.join(found) or 'No bump, wheel drop or cliff', {
+            **{name: bool(bits & bit) for name, bit in SWITCHES.items()},
+            **{name.replace('_', ' ').capitalize(): bool(reading[name]) for name in (*CLIFFS, 'wall', 'virtual_wall')},
+            'Overcurrents': reading['overcurrents']})
 
     def gyro(self, status: DiagnosticStatusWrapper) -> DiagnosticStatusWrapper:
         """Fill in the status of the gyro: its current reading and its offset."""
-        gyro = self.driver.gyro
+        gyro, reading = self.driver.gyro, self.driver.reading
         if not gyro:
             return status
-        offset = gyro.offset
-        if gyro.problem:
-            status.summary(ERROR, gyro.problem)
-        elif offset is None:
-            status.summary(WARN, 'Not calibrated: keep the robot stationary')
-        else:
-            status.summary(OK, 'Calibrated')
-        if self.driver.reading:
-            status.add('Reading (counts)', self.driver.reading['analog_input'])
-        if offset is not None:
-            status.add('Offset (counts)', f'{offset:.2f}')
-        status.add('Readings at rest', len(gyro.rest))
-        return status
+        summary = ((ERROR, gyro.problem) if gyro.problem else
+                   (WARN, 'Not calibrated: keep the robot stationary') if gyro.offset is None else (OK, 'Calibrated'))
+        return fill_status(status, *summary, {
+            **({'Reading (counts)': reading['analog_input']} if reading else {}),
+            **({} if gyro.offset is None else {'Offset (counts)': f'{gyro.offset:.2f}'}),
+            'Readings at rest': len(gyro.rest)})
 
     def line(self, status: DiagnosticStatusWrapper) -> DiagnosticStatusWrapper:
         """Fill in the status of the serial line: the errors on it."""
-        driver = self.driver
-        if self.link.problem:
-            status.summary(ERROR, self.link.problem)
-        else:
-            status.summary(OK if driver.contact.answers else ERROR, 'Open')
-        status.add('Port', self.link.path)
-        status.add('Adapter', self.link.adapter or 'unknown')
-        status.add('Rate (baud)', self.link.baud)
-        status.add('Settings changed by other processes', self.link.changes)
-        status.add('Corrupted readings', driver.queries.rejected)
-        status.add('Implausible readings', driver.implausible)
-        status.add('Lost replies', driver.queries.missed)
-        status.add('Dropouts', driver.contact.dropouts)
-        return status
+        driver, link = self.driver, self.link
+        level = ERROR if link.problem or not driver.contact.answers else OK
+        return fill_status(status, level, link.problem or 'Open', {
+            'Port': link.path,
+            'Adapter': link.adapter or 'unknown',
+            'Rate (baud)': link.baud,
+            'Settings changed by other processes': link.changes,
+            'Corrupted readings': driver.queries.rejected,
+            'Implausible readings': driver.implausible,
+            'Lost replies': driver.queries.missed,
+            'Dropouts': driver.contact.dropouts})
 
     def _reading(self, status: DiagnosticStatusWrapper) -> Mapping[str, int] | None:
         if not self.driver.contact.answers:
-            status.summary(ERROR, 'The robot does not answer')
+            status.summary(*NO_ANSWER)
             return None
         return self.driver.reading

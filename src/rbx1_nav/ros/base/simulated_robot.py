@@ -130,6 +130,4 @@ class SimulatedRobot:
         status.summary(DiagnosticStatus.OK, 'Stationary' if self.base.at_rest else 'Moving')
         self.commands.diagnose(status)
         self.clock.diagnose(status)
-        for key, value in zip(('Surface', 'Seed'), self.floor):
-            status.add(key, value)
-        return status
+        return messages.fill_status(status, None, '', dict(zip(('Surface', 'Seed'), self.floor)))

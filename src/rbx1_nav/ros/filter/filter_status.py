@@ -13,6 +13,7 @@ from diagnostic_updater import DiagnosticStatusWrapper, Updater
 
 from rbx1_nav.estimation.combined_odometry import CombinedOdometry
 from rbx1_nav.estimation.filter import BIAS, Filter
+from rbx1_nav.ros.messages import fill_status
 
 INTERVAL = 0.5      # s between two log lines
 KIND_INTERVAL = 1.0     # s between two lines of one kind
@@ -71,47 +72,37 @@ class Diagnostics:
             combined, published = self.get_filter()
             ekf, estimate = (combined.filter, combined.estimate) if combined else (None, None)
             case = combined.case if combined else None
-            if not combined or not ekf:
-                status.summary(WARN, 'No estimate yet')
-            elif case:
-                status.summary(*SUMMARIES[case])
-            elif any(combined.timed_out.values()):
-                status.summary(WARN, 'A sensor has timed out')
-            elif combined.suspect:
-                status.summary(*JUMPED)
-            else:
-                status.summary(OK, 'The gyro is not used')
-            status.add('Case', case or 'none')
-            status.add('Gyro bias (degrees/s)',
-                       f'{degrees(ekf.bias):.4f} +- {degrees(ekf.sigma(BIAS)):.4f}' if ekf else 'unknown')
-            status.add('Doubted', combined.doubts.doubted if combined else 'nothing')
-            status.add('Standard deviation of the heading (degrees)',
-                       f'{degrees(sqrt(estimate.covariance[2, 2])):.2f}' if estimate else 'unknown')
-            status.add('Contradictions', self.counts['contradiction'])
-            status.add('Times carried', self.counts['carried'])
-            status.add('Restarts', max(0, self.starts - 1))
-            status.add('Poses published', published)
-            status.add('Rejected messages on set_pose', self.rejected['set_pose'])
-        return status
+            summary = ((WARN, 'No estimate yet') if not combined or not ekf else
+                       SUMMARIES[case] if case else
+                       (WARN, 'A sensor has timed out') if any(combined.timed_out.values()) else
+                       JUMPED if combined.suspect else
+                       (OK, 'The gyro is not used'))
+            return fill_status(status, *summary, {
+                'Case': case or 'none',
+                'Gyro bias (degrees/s)':
+                    f'{degrees(ekf.bias):.4f} +- {degrees(ekf.sigma(BIAS)):.4f}' if ekf else 'unknown',
+                'Doubted': combined.doubts.doubted if combined else 'nothing',
+                'Standard deviation of the heading (degrees)':
+                    f'{degrees(sqrt(estimate.covariance[2, 2])):.2f}' if estimate else 'unknown',
+                'Contradictions': self.counts['contradiction'],
+                'Times carried': self.counts['carried'],
+                'Restarts': max(0, self.starts - 1),
+                'Poses published': published,
+                'Rejected messages on set_pose': self.rejected['set_pose']})
 
     def _diagnose_sensor(self, sensor: str, status: DiagnosticStatusWrapper) -> DiagnosticStatusWrapper:
         with self.lock:
             combined, received = self.get_filter()[0], self.received[sensor]
             age = None if received is None else (rospy.Time.now() - received).to_sec()
-            if age is None or not combined:
-                status.summary(WARN, 'No message yet')
-            # below 0: the clock has jumped back since the message
-            elif not -1 <= age <= self.timeout or combined.timed_out[sensor]:
-                status.summary(WARN, 'Timed out, not used')
-            elif sensor == 'odom' and combined.suspect:
-                status.summary(*JUMPED)
-            elif combined.case == 'contradiction':
-                status.summary(*CONTRADICTION)
-            else:
-                status.summary(OK, 'Used')
-            status.add('Age of the last message (s)', 'never' if age is None else f'{age:.3f}')
-            status.add('Rejected messages', self.rejected[sensor])
-        return status
+            summary = ((WARN, 'No message yet') if age is None or not combined else
+                       # below 0: the clock has jumped back since the message
+                       (WARN, 'Timed out, not used') if not -1 <= age <= self.timeout or combined.timed_out[sensor] else
+                       JUMPED if sensor == 'odom' and combined.suspect else
+                       CONTRADICTION if combined.case == 'contradiction' else
+                       (OK, 'Used'))
+            return fill_status(status, *summary, {
+                'Age of the last message (s)': 'never' if age is None else f'{age:.3f}',
+                'Rejected messages': self.rejected[sensor]})
 
 
 class LimitedLog:

@@ -16,7 +16,7 @@ import select
 import socket
 from threading import Event, Lock
 from time import monotonic, sleep
-from typing import Any, Callable, NamedTuple, Protocol
+from typing import Any, Callable, NamedTuple
 
 from genpy import Message
 from rosgraph_msgs.msg import Clock
@@ -41,27 +41,13 @@ TEST, TESTS = 0.005, 4  # s of wall time in which a thread that polls usually ru
 SLEEP = 0.05        # s: the longest sleep between two checks for a shutdown request
 
 
-class Command(Protocol):
-    """A velocity command."""
-
-    @property
-    def linear(self) -> float: ...          # m/s
-    @property
-    def angular(self) -> float: ...         # rad/s
-
-
-class Target(Protocol):
-    """A base that follows commands."""
-
-    def apply(self, command: Any) -> None: ...
-
-
 class Received(NamedTuple):
     """A command that has arrived."""
 
-    target: Target
+    # Any: a base, whose apply(command) is called later, and a velocity with `linear` (m/s) and `angular` (rad/s)
+    target: Any
     header: dict[str, str]      # of the connection; one object for each connection
-    command: Command
+    command: Any
     time: float                 # s of the monotonic clock
     idle: bool                  # whether it arrived although everything was asleep
 
@@ -70,8 +56,8 @@ class Received(NamedTuple):
         return bool(self.command.linear or self.command.angular)
 
 
-class Driver:
-    """What is known of a connection on which commands arrive."""
+class DriverConnection:
+    """A connection on which commands arrive, and what is known of its node."""
 
     def __init__(self, header: dict[str, str]) -> None:
         self.header = header
@@ -94,12 +80,12 @@ class Lockstep:
         self.add, self.remove = processes.add, processes.remove     # a subscriber to commands
         self.report = report
         self.ended = ended
-        # by the id of the header, which stays unique because the Driver keeps the header alive
-        self.drivers: dict[int, Driver] = {}
+        # by the id of the header, which stays unique because the DriverConnection keeps the header alive
+        self.drivers: dict[int, DriverConnection] = {}
         self.lock = Lock()
         self.heard = Event()    # set when a command arrives
         self.arrived: list[Received] = []       # commands that settle() has not ordered yet
-        self.ready: list[tuple[Target, Any]] = []   # commands in the order in which they take effect
+        self.ready: list[tuple[Any, Any]] = []   # commands in the order in which they take effect
         self.idle = True        # whether everything was asleep, and nothing has been delivered since
         self.held = False       # whether the clock was held after the last tick
         self.mixed: set[str] = set()        # drivers whose last commands arrived together and differed
@@ -108,7 +94,7 @@ class Lockstep:
         self.tick = 0
         self.random = Random(0)
 
-    def receive(self, target: Target, header: dict[str, str], command: Any) -> None:
+    def receive(self, target: Any, header: dict[str, str], command: Any) -> None:
         """Accept a command that just arrived, in any thread. header: see Received."""
         with self.lock:
             self.arrived.append(Received(target, header, command, monotonic(), self.idle))
@@ -141,7 +127,7 @@ class Lockstep:
                 self._settle(isinstance(message, Clock))
                 self._check_threads(runs)
 
-    def take(self) -> list[tuple[Target, Any]]:
+    def take(self) -> list[tuple[Any, Any]]:
         """Return the commands that take effect now, each with its target."""
         ready, self.ready = self.ready, []
         return ready
@@ -167,7 +153,7 @@ class Lockstep:
         while monotonic() < until and not self.ended():
             sleep(max(0.0, min(until - monotonic(), SLEEP)))
 
-    def _hold(self, driver: Driver) -> float:
+    def _hold(self, driver: DriverConnection) -> float:
         """Return for how long to hold the clock after this tick because of a driver, s of wall time."""
         if not (driver.moving and driver.name in self.processes.drivers):
             return 0.0
@@ -222,15 +208,15 @@ class Lockstep:
                     self._report(name, f'did not become idle within {NODE_TIMEOUT:g} s')
             sleep(min(max(LOOK[0], LOOK_LATER * (now - begin)), LOOK[1]))
 
-    def _driver_of(self, header: dict[str, str]) -> Driver:
-        """Return the Driver of a connection."""
+    def _driver_of(self, header: dict[str, str]) -> DriverConnection:
+        """Return the DriverConnection of a connection."""
         if id(header) not in self.drivers:
             self.drivers = {key: driver for key, driver in self.drivers.items()
                             if self.processes.is_connected(driver.header)}
-            self.drivers[id(header)] = Driver(header)
+            self.drivers[id(header)] = DriverConnection(header)
         return self.drivers[id(header)]
 
-    def _check(self, driver: Driver, received: Received, count: int) -> None:
+    def _check(self, driver: DriverConnection, received: Received, count: int) -> None:
         """Update what is known of a driver with a command, and report it if the command is not in step. count: of the
         moving commands that have arrived together."""
         first = not driver.moving

@@ -1,6 +1,7 @@
 """Observes the processes of the nodes that drive bases on a simulated clock: whether they have finished their work."""
 from __future__ import annotations
 
+from operator import is_
 import socket
 from time import monotonic
 from typing import Any, Iterable, Sequence
@@ -64,7 +65,7 @@ class Watch:
     def update(self) -> bool:
         """Update the set of watched processes; return whether it may have changed. Call this often."""
         now = [self.clock.connections] + [each.connections for each in self.commands]
-        if len(now) == len(self.known) and all(map(_is, now, self.known)) and not self.new:
+        if len(now) == len(self.known) and all(map(is_, now, self.known)) and not self.new:
             return False
         self.known = now
         listeners = {each.endpoint_id: each for each in self.clock.connections}
@@ -249,10 +250,6 @@ class Watch:
 
 
 MASTER = 'the master'
-
-
-def _is(one: object, other: object) -> bool:
-    return one is other
 
 
 def is_complete(connection: Any) -> bool:
