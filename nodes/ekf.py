@@ -10,6 +10,7 @@ import rbx1_nav.ros.node.early_interrupt     # first, so that Ctrl-C during the 
 from functools import partial
 import threading
 import time
+from types import SimpleNamespace
 from typing import Any, Callable
 
 import rospy
@@ -21,8 +22,7 @@ from std_msgs.msg import Empty
 from rbx1_nav.estimation.combined_odometry import CombinedOdometry
 from rbx1_nav.estimation.inputs import RejectedMessage, check
 from rbx1_nav.ros import messages
-from rbx1_nav.ros.filter.ekf_parameters import (
-    PARAMETERS, FilterParameters, load_parameters, make_filter, read_parameters)
+from rbx1_nav.ros.filter.ekf_parameters import PARAMETERS, load_parameters, make_filter, read_parameters
 from rbx1_nav.ros.filter.estimate_publisher import EstimatePublisher
 from rbx1_nav.ros.filter.filter_status import Diagnostics, LimitedLog
 from rbx1_nav.ros.filter.sensor_inputs import FrameTree, ImuInput, OneSender, frames_of
@@ -33,7 +33,7 @@ from rbx1_nav.schedule import Schedule
 class Ekf:
     """Connects a CombinedOdometry with ROS."""
 
-    def __init__(self, parameters: FilterParameters) -> None:
+    def __init__(self, parameters: SimpleNamespace) -> None:
         self.parameters = parameters
         self.lock = threading.Lock()
         self.combined: CombinedOdometry | None = None       # for the current publisher of odometry

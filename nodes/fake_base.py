@@ -7,9 +7,6 @@ from __future__ import annotations
 
 import rbx1_nav.ros.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
 
-import rospy
-
-from rbx1_nav.config import ConfigError
 from rbx1_nav.parameters import elsewhere
 from rbx1_nav.robot.description import DRIVER_KEYS, PARAMETERS as ROBOT, read_robot
 from rbx1_nav.ros.base.publisher import with_frames
@@ -32,12 +29,8 @@ PARAMETERS = [
 def main() -> int:
     """Read the configuration and run; return the exit status."""
     life.init_node('arbotix', __doc__, PARAMETERS, check=read_robot)
-    try:
-        robot = read_robot(stored_params())
-        clock = read_clock(robot.rate)
-    except ConfigError as error:
-        rospy.logfatal('%s/%s', rospy.get_name(), error)
-        return 1
+    robot = read_robot(stored_params())
+    clock = read_clock(robot.rate)
     simulated = SimulatedRobot(with_frames(robot, resolve_frame), param('surface'), param('seed'), clock, Refusals())
     clock.run(simulated.step)
     return 0

@@ -21,7 +21,6 @@ import rospy
 from nav_msgs.msg import Odometry
 from std_msgs.msg import String
 
-from rbx1_nav.config import ConfigError
 from rbx1_nav.create.emulator.emulator import EmulatedCreate
 from rbx1_nav.create.emulator.serial_line import PseudoTerminal
 from rbx1_nav.ros import messages
@@ -97,11 +96,7 @@ class FakeCreate:
 def main() -> int:
     """Read the parameters and run; return the exit status."""
     life.init_node('fake_create', __doc__, PARAMETERS)
-    try:
-        terminal = PseudoTerminal(param('link') or None)
-    except ConfigError as error:
-        rospy.logfatal('%s/%s', rospy.get_name(), error)
-        return 1
+    terminal = PseudoTerminal(param('link') or None)
     robot = make_robot(time.monotonic_ns())
     node = FakeCreate(robot, terminal)
     node.faults.serve()

@@ -127,11 +127,7 @@ class Fleet:
 def main() -> int:
     """Run the fleet; return the exit status."""
     life.init_node('fleet', __doc__, PARAMETERS)
-    try:
-        fleet = Fleet(read_clock(param('rate')))
-    except ConfigError as error:
-        rospy.logfatal('%s/%s', rospy.get_name(), error)
-        return 1
+    fleet = Fleet(read_clock(param('rate')))
     if not all(fleet.add(f'robot{number}')[0] for number in range(1, round(param('robots')) + 1)):
         return 1
     fleet.serve()

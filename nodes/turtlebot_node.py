@@ -11,7 +11,6 @@ import rbx1_nav.ros.node.early_interrupt     # first, so that Ctrl-C during the 
 
 import rospy
 
-from rbx1_nav.config import ConfigError
 from rbx1_nav.create.driver.settings import PARAMETERS, read_settings
 from rbx1_nav.ros.base.create_base import CreateBase
 from rbx1_nav.ros.base.publisher import with_frames
@@ -26,11 +25,7 @@ def main() -> int:
     if not rospy.rostime.is_wallclock():
         rospy.logfatal('/use_sim_time: true: expected false, because a robot on a serial line runs in real time')
         return 1
-    try:
-        settings, robot = read_settings(stored_params())
-    except ConfigError as error:
-        rospy.logfatal('%s/%s', rospy.get_name(), error)
-        return 1
+    settings, robot = read_settings(stored_params())
     return 0 if CreateBase(settings, with_frames(robot, resolve_frame)).run() else 1
 
 

@@ -1,10 +1,10 @@
 """The parameters of the filter node, and the floor that it assumes initially."""
 from __future__ import annotations
 
-from functools import partial
 from math import degrees, radians
 import time
-from typing import Callable, NamedTuple
+from types import SimpleNamespace
+from typing import Callable
 import xmlrpc.client
 
 import rosgraph
@@ -16,10 +16,10 @@ from rbx1_nav.estimation.combined_odometry import CombinedOdometry
 from rbx1_nav.estimation.priors import UNKNOWN_FLOOR, Limits, Priors, priors
 from rbx1_nav.parameters import custom, flag, frame, number, read
 from rbx1_nav.ros.network.bases import private_namespace
-from rbx1_nav.ros.network.master import call
+from rbx1_nav.ros.network.master import Server
 from rbx1_nav.ros.node import resources
 from rbx1_nav.ros.node.frames import check_prefix, search_value, with_prefix
-from rbx1_nav.ros.node.params import stored_params
+from rbx1_nav.ros.node.params import named_errors, stored_params
 from rbx1_nav.simulation.surfaces import load_surface
 from rbx1_nav.units import SECOND
 
@@ -79,24 +79,12 @@ PARAMETERS = (
     *(flag(name, False, 'robot_pose_ekf parameter; true is accepted and has no effect') for name in UNSUPPORTED))
 
 
-class FilterParameters(NamedTuple):
-    """All parameters of the node, with the names of robot_pose_ekf."""
+def read_parameters(params: dict[str, YamlValue]) -> SimpleNamespace:
+    """Return the values of all parameters, by name, if `params` are set. Raises ConfigError.
 
-    freq: float                 # Hz
-    sensor_timeout: float       # s
-    diagnostic_period: float    # s
-    limits: Limits
-    publish_tf: bool
-    imu_used: bool
-    output_frame: str
-    base_footprint_frame: str   # '' unless it is set
-    default_base_frame: str
-    surface: str
-    unsupported: list[str]      # a log line for each parameter that requests an unsupported feature
-
-
-def read_parameters(params: dict[str, YamlValue]) -> FilterParameters:
-    """Return the FilterParameters for the parameters that are set. Raises ConfigError."""
+    The frames have the prefix; base_footprint_frame is '' unless it is set, and default_base_frame is its default. The
+    Limits are `limits`. `unsupported` has a log line for each parameter that requests an unsupported feature.
+    """
     given = read(PARAMETERS, Section(params))
     if not given['odom_used']:
         raise ConfigError('odom_used: False: expected true, because nothing else measures the distance')
@@ -108,24 +96,21 @@ def read_parameters(params: dict[str, YamlValue]) -> FilterParameters:
         base_footprint_frame=base_frame if 'base_footprint_frame' in params else '',
         default_base_frame=base_frame,
         unsupported=[f'{name}: {reason}' for name, reason in UNSUPPORTED.items() if given[name]])
-    values = FilterParameters(**{name: given[name] for name in FilterParameters._fields})
-    if values.base_footprint_frame and values.base_footprint_frame == values.output_frame:
-        raise ConfigError(f'base_footprint_frame: {show(values.output_frame)}: expected a frame other than '
+    if given['base_footprint_frame'] == given['output_frame']:
+        raise ConfigError(f"base_footprint_frame: {show(given['output_frame'])}: expected a frame other than "
                           'output_frame')
-    return values
+    return SimpleNamespace(**given)
 
 
-def load_parameters() -> FilterParameters:
+def load_parameters() -> SimpleNamespace:
     """Read the parameters of this node. As in tf, tf_prefix may also be set in a namespace around it.
 
     Logs requests for unsupported features. Raises ROSException with one line.
     """
     params = stored_params()
     prefix = search_value('tf_prefix', rospy.get_name(), rospy.get_param)
-    try:
+    with named_errors(rospy.get_name()):
         values = read_parameters(params if prefix is None else dict(params, tf_prefix=prefix))
-    except ConfigError as error:
-        raise rospy.ROSException(f'{rospy.get_name()}/{error}') from None
     for line in values.unsupported:
         rospy.logwarn('%s', line)
     return values
@@ -147,10 +132,9 @@ def find_prior(name: str, base: str, log: Log) -> Priors:
     """
     try:
         if name == AUTO:
-            # not with rospy, which waits for a frozen master indefinitely
-            ask = partial(call, rosgraph.get_master_uri())
-            key = f"{private_namespace(base, rospy.resolve_name('odom'), ask)}/surface"
-            name = ask('getParam', key) if ask('hasParam', key) else ANY
+            with Server(rosgraph.get_master_uri()) as master:   # rospy waits for a frozen master indefinitely
+                namespace = private_namespace(base, rospy.resolve_name('odom'), master)
+                name = master.param(f'{namespace}/surface', ANY)
         prior = UNKNOWN_FLOOR if name == ANY else priors(load_surface(name, resources.surfaces()))
     except (ConfigError, OSError, xmlrpc.client.Error) as error:     # or no answer from the master
         log(rospy.logwarn, f'{base}/{error}; using {ANY} instead')
@@ -159,7 +143,7 @@ def find_prior(name: str, base: str, log: Log) -> Priors:
     return prior
 
 
-def make_filter(parameters: FilterParameters, base: str, log: Log, warn: Callable[[str], None]) -> CombinedOdometry:
+def make_filter(parameters: SimpleNamespace, base: str, log: Log, warn: Callable[[str], None]) -> CombinedOdometry:
     """Return the CombinedOdometry for the odometry of the node `base`. warn(text): logs a warning."""
     return CombinedOdometry(find_prior(parameters.surface, base, log), round(SECOND * parameters.sensor_timeout),
                             parameters.imu_used, warn, time.monotonic_ns,

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 from math import cos, sin
 import time
+from types import SimpleNamespace
 from typing import Callable, NamedTuple
 
 import rospy
@@ -16,7 +17,6 @@ from rbx1_nav.estimation.filter import BIAS, SCALE, SLIP_STRAIGHT, SLIP_TURNING,
 from rbx1_nav.robot.kinematics import relative_frame
 from rbx1_nav.robot.readings import MEASURED
 from rbx1_nav.ros import messages
-from rbx1_nav.ros.filter.ekf_parameters import FilterParameters
 from rbx1_nav.ros.filter.sensor_inputs import FrameTree
 from rbx1_nav.ros.network.rospy_topics import NoDelay
 from rbx1_nav.schedule import Schedule
@@ -115,8 +115,8 @@ class EstimatePublisher:
     another node publishes a transform to the robot's frame, this transform is to the odometry frame instead.
     """
 
-    def __init__(self, parameters: FilterParameters, tree: FrameTree, log: Callable[[str], None]) -> None:
-        """log(text): logs a line."""
+    def __init__(self, parameters: SimpleNamespace, tree: FrameTree, log: Callable[[str], None]) -> None:
+        """parameters: see read_parameters(); log(text): logs a line."""
         self.output_frame = parameters.output_frame
         self.publish_tf = parameters.publish_tf
         self.tree = tree

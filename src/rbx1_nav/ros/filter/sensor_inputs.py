@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from math import acos, degrees
 import time
+from types import SimpleNamespace
 from typing import Callable, Iterable, Tuple
 
 from nav_msgs.msg import Odometry
@@ -18,7 +19,6 @@ from rbx1_nav.config import show
 from rbx1_nav.estimation.gyro_input import UPRIGHT, GyroInput, Vector, inverse, multiply, vertical_axis
 from rbx1_nav.estimation.inputs import Imu, check
 from rbx1_nav.ros import messages
-from rbx1_nav.ros.filter.ekf_parameters import FilterParameters
 
 TRANSFORM_WARN_TIME = 1.0      # s of wall time to wait for a transform before a line is logged
 
@@ -54,10 +54,10 @@ class OneSender:
         return True
 
 
-def frames_of(message: Odometry, parameters: FilterParameters) -> tuple[str, str]:
+def frames_of(message: Odometry, parameters: SimpleNamespace) -> tuple[str, str]:
     """Return the frames of an Odometry message and of the robot, without leading slashes. Raises RejectedMessage.
 
-    The frame of the robot must differ from output_frame.
+    parameters: see read_parameters(). The frame of the robot must differ from output_frame.
     """
     base_frame = parameters.base_footprint_frame or message.child_frame_id.lstrip('/') or (
         parameters.default_base_frame)

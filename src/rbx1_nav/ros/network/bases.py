@@ -6,13 +6,12 @@ method, which returns how many commands of the caller were refused, and the reas
 """
 from __future__ import annotations
 
-from typing import Any, Callable
 import xmlrpc.client
 
 import rosgraph
 from rospy.impl.masterslave import ROSHandler
 
-from rbx1_nav.ros.network.master import Server, call, is_alive
+from rbx1_nav.ros.network.master import Server, is_alive
 
 REFUSALS = 'getRefusals'    # method of the slave API
 
@@ -35,23 +34,22 @@ def on_other_clock(simulated: bool, but: str) -> list[str]:
 
     but: the name of a base that is not listed. Returns [] without a master.
     """
-    master = rosgraph.get_master_uri()
+    master = Server(rosgraph.get_master_uri())
     try:
-        if bool(call(master, 'hasParam', '/use_sim_time') and call(master, 'getParam', '/use_sim_time')) == simulated:
+        if bool(master.param('/use_sim_time', False)) == simulated:
             return []
-        publishers, subscribers, _ = call(master, 'getSystemState')
-        odometry = [topic for topic, kind in call(master, 'getTopicTypes') if kind == 'nav_msgs/Odometry']
+        publishers, subscribers, _ = master.call('getSystemState')
+        odometry = [topic for topic, kind in master.call('getTopicTypes') if kind == 'nav_msgs/Odometry']
         names = set().union(*namespaces_of_bases(dict(publishers), dict(subscribers), odometry).values())
         return sorted(name for name in names - {but} if is_alive(name))
     except (OSError, xmlrpc.client.Error):
         return []
 
 
-# Any: what a call returns depends on its method
-def private_namespace(base: str, topic: str, ask: Callable[..., Any]) -> str:
+def private_namespace(base: str, topic: str, master: Server) -> str:
     """Return the namespace of the parameters and services of a simulated robot: the name of its base, or NAME/arbotix
-    if the base is a fleet. topic: of the odometry; ask(method, *args): calls the master."""
-    return f"{topic.rpartition('/')[0]}/arbotix" if ask('hasParam', f'{base}/robots') else base
+    if the base is a fleet. topic: of the odometry."""
+    return f"{topic.rpartition('/')[0]}/arbotix" if master.call('hasParam', f'{base}/robots') else base
 
 
 class Refusals:

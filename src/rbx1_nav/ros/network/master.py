@@ -48,6 +48,10 @@ class Server:
         """Return the result of a call. Raises OSError, http.client.HTTPException or xmlrpc.client.Error if it fails."""
         return getattr(self._proxy, method)(rospy.get_name(), *args)[2]
 
+    def param(self, name: str, default: object) -> Any:
+        """Return the value of a parameter, or the default if it is not set. Raises like call()."""
+        return self.call('getParam', name) if self.call('hasParam', name) else default
+
 
 def call(uri: str, method: str, *args: str, timeout: float = TIMEOUT) -> Any:
     """Return the result of one call, like Server.call()."""
@@ -76,24 +80,16 @@ def require_master() -> None:
                                  'expected a running roscore') from error
 
 
-class _MasterProbe(threading.Thread):
-    """Calls the master until it answers, in a thread, so that a host that drops packets does not delay Ctrl-C."""
-
-    def __init__(self) -> None:
-        super().__init__(daemon=True)
-        self.answered = threading.Event()
-        self.failed = threading.Event()     # at least once
-        self.done = threading.Event()
-
-    def run(self) -> None:
-        while not self.done.is_set():
-            try:
-                require_master()
-                self.answered.set()
-                return
-            except Exception:
-                self.failed.set()       # another server at this port causes other errors
-            time.sleep(PERIOD)
+def _probe_master(answered: threading.Event, failed: threading.Event, done: threading.Event) -> None:
+    """Call the master until it has answered, or `done` is set; `failed` is set after the first failure."""
+    while not done.is_set():
+        try:
+            require_master()
+            answered.set()
+            return
+        except Exception:
+            failed.set()        # another server at this port causes other errors
+        time.sleep(PERIOD)
 
 
 def wait_for_master(name: str, read_limit: Callable[[], float | None], is_ended: Callable[[], bool],
@@ -106,21 +102,22 @@ def wait_for_master(name: str, read_limit: Callable[[], float | None], is_ended:
     uri = rosgraph.get_master_uri()
     if urlsplit(uri).scheme != 'http':      # rospy reports it
         return
-    probe = _MasterProbe()
+    answered, failed, done = (threading.Event() for _ in range(3))
     start = time.monotonic()
-    probe.start()
+    # in a thread, so that a host that drops packets does not delay Ctrl-C
+    threading.Thread(target=_probe_master, args=(answered, failed, done), daemon=True).start()
     try:
-        while not (probe.answered.is_set() or probe.failed.is_set() or is_ended()):
+        while not (answered.is_set() or failed.is_set() or is_ended()):
             sleep(0.002)
-        if probe.answered.is_set() or is_ended():
+        if answered.is_set() or is_ended():
             return
         rospy.core.configure_logging(name)      # as init_node() would, so that the line has the usual format
         limit = read_limit()
         rospy.loginfo('Waiting for the master at %s', uri)
-        while not (probe.answered.is_set() or is_ended()):
+        while not (answered.is_set() or is_ended()):
             if limit is not None and time.monotonic() > start + limit:
                 raise rospy.ROSException(f'The master at {uri} does not answer (timed out after {limit:g} s): '
                                          'expected a running roscore')
             sleep(0.02)
     finally:
-        probe.done.set()
+        done.set()

@@ -6,7 +6,8 @@ from typing import Any, Callable
 import rosgraph
 import rospy
 
-from rbx1_nav.config import ConfigError, Section, YamlValue
+from rbx1_nav.config import Section, YamlValue
+from rbx1_nav.ros.node.params import named_errors
 
 
 # Any: the type depends on the parameter
@@ -37,7 +38,5 @@ def resolve_frame(frame: str) -> str:
     """Return the name of a frame with the tf_prefix of this node, which may also be set in a namespace around the node.
     Raises ROSException with one line."""
     prefix = search_value('tf_prefix', rospy.get_name(), rospy.get_param)
-    try:
+    with named_errors(rospy.get_name()):
         return with_prefix(check_prefix(prefix), frame)
-    except ConfigError as error:
-        raise rospy.ROSException(f'{rospy.get_name()}/{error}') from None

@@ -19,7 +19,7 @@ import rosgraph
 import rospy
 from rospy.impl.paramserver import get_param_server_cache
 
-from rbx1_nav.config import YamlValue
+from rbx1_nav.config import ConfigError, YamlValue
 from rbx1_nav.parameters import Parameter, list_parameters
 from rbx1_nav.ros.network.master import require_master, wait_for_master
 from rbx1_nav.ros.network.rospy_topics import keep_publisher_lists
@@ -162,6 +162,9 @@ def run(main: Callable[[], int]) -> NoReturn:
         status = main()
     except rospy.ROSInterruptException:     # before the node was registered
         status = 0
+    except ConfigError as error:        # in a parameter
+        rospy.logfatal('%s/%s', rospy.get_name(), error)
+        status = 1
     except rospy.ROSException as error:
         rospy.logfatal('%s', error)
         status = 1

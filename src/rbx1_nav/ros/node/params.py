@@ -1,10 +1,11 @@
 """The command line and the private parameters of a node: both are checked against the declared parameters."""
 from __future__ import annotations
 
+from contextlib import contextmanager
 import difflib
 import os
 import sys
-from typing import Any, Callable, Mapping, Sequence
+from typing import Any, Callable, Iterator, Mapping, Sequence
 import xmlrpc.client
 
 import rosgraph
@@ -93,6 +94,15 @@ def report_parameters(stored: Mapping[str, YamlValue], names: Sequence[str]) -> 
                       ', '.join(unknown), name)
 
 
+@contextmanager
+def named_errors(name: str) -> Iterator[None]:
+    """Turn a ConfigError into a ROSException that begins with the name of the node."""
+    try:
+        yield
+    except ConfigError as error:
+        raise rospy.ROSException(f'{name}/{error}') from None
+
+
 def check_before_start(name: str, parameters: Sequence[Parameter],
                        check: Callable[[dict[str, YamlValue]], object] | None = None) -> None:
     """Check the private parameters that a node of this name will have: each individually, and all with check(params).
@@ -130,11 +140,8 @@ def read_wait_timeout(name: str, parameters: Sequence[Parameter]) -> float | Non
     For a node that has no master yet. Raises ROSException with one line for an invalid value.
     """
     declared = [each for each in parameters if each.name == 'wait_timeout']
-    try:
-        values = read(declared, Section(rospy.client.load_command_line_node_params(sys.argv)))
-    except ConfigError as error:
-        raise rospy.ROSException(f'{future_name(name)}/{error}') from None
-    return values.get('wait_timeout')
+    with named_errors(future_name(name)):
+        return read(declared, Section(rospy.client.load_command_line_node_params(sys.argv))).get('wait_timeout')
 
 
 def stored_params() -> dict[str, YamlValue]:
@@ -147,10 +154,8 @@ def stored_params() -> dict[str, YamlValue]:
 
 def load_params(parameters: Sequence[Parameter], stored: dict[str, YamlValue]) -> None:
     """Check the private parameters of this node and keep them for param(). Raises ROSException with one line."""
-    try:
+    with named_errors(rospy.get_name()):
         _values.update(read(parameters, Section(stored)))
-    except ConfigError as error:
-        raise rospy.ROSException(f'{rospy.get_name()}/{error}') from None
 
 
 def param(name: str) -> Any:

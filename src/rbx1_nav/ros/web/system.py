@@ -157,18 +157,18 @@ class System:
         services = {name for name, _ in offered}
         base = self.topics.base if self.state.hears('odometry') else None
         odom = rospy.resolve_name(f'{self.namespace}odom')
-        private = private_namespace(base, odom, master.call) if base else ''
+        private = private_namespace(base, odom, master) if base else ''
         name = f'{private}/reset'
         self.reset_service = name if base and name in services else ''
         self.state.set_status(base=base or '', simulated=self.simulated,
                               can_reset=bool(self.simulated and self.reset_service))
         values: dict[str, Any] = {'surface': '', 'seed': '', 'simulated_time': False}
         if base:
-            values['simulated_time'] = bool(_param(master, '/use_sim_time', False))
+            values['simulated_time'] = bool(master.param('/use_sim_time', False))
         if self.simulated and self.topics.truth:
-            private = private_namespace(self.topics.truth, odom, master.call)
-            values['surface'] = str(_param(master, f'{private}/surface', 'ideal')).rpartition('/')[2]
-            values['seed'] = str(_param(master, f'{private}/seed', 'random'))
+            private = private_namespace(self.topics.truth, odom, master)
+            values['surface'] = str(master.param(f'{private}/surface', 'ideal')).rpartition('/')[2]
+            values['seed'] = str(master.param(f'{private}/seed', 'random'))
             if self.drawn and self.topics.truth == base:    # the base itself has reported them
                 del values['surface'], values['seed']
         else:
@@ -244,7 +244,3 @@ class System:
             self.stopped.clear()
             self.silent.clear()
         return found
-
-
-def _param(master: Server, name: str, default: object) -> Any:
-    return master.call('getParam', name) if master.call('hasParam', name) else default

@@ -1,4 +1,6 @@
 """The bases that the master lists."""
+from types import SimpleNamespace
+
 from rbx1_nav.ros.network.bases import namespaces_of_bases, private_namespace
 
 PUBLISHERS = {'/odom': ['/arbotix'], '/r1/odom': ['/fleet'], '/r2/odom': ['/fleet'],
@@ -14,9 +16,7 @@ def test_a_base_publishes_odometry_and_subscribes_to_commands():
 
 def test_private_names_of_a_fleet_are_those_of_its_robots():
     parameters = {'/fleet/robots'}
-
-    def ask(_, key):
-        return key in parameters
-    assert private_namespace('/fleet', '/r1/odom', ask) == '/r1/arbotix'
-    assert private_namespace('/r1/arbotix', '/r1/odom', ask) == '/r1/arbotix'
-    assert private_namespace('/turtlebot_node', '/odom', ask) == '/turtlebot_node'
+    master = SimpleNamespace(call=lambda _, key: key in parameters)
+    assert private_namespace('/fleet', '/r1/odom', master) == '/r1/arbotix'
+    assert private_namespace('/r1/arbotix', '/r1/odom', master) == '/r1/arbotix'
+    assert private_namespace('/turtlebot_node', '/odom', master) == '/turtlebot_node'
