@@ -1,6 +1,8 @@
 """A driver and an emulated robot on one clock, without a serial port, shared by the unit tests."""
 import os
 
+import pytest
+
 from rbx1_nav.control.gate import CommandGate, RefusedCommand
 from rbx1_nav.create.driver.driver import Driver
 from rbx1_nav.create.driver.settings import read_settings
@@ -12,6 +14,7 @@ from rbx1_nav.units import SECOND
 
 SURFACES = os.path.join(os.path.dirname(__file__), '..', '..', '..', 'config', 'surfaces')
 STEP = SECOND // 500
+BOTH = pytest.mark.parametrize('robot_type', ['create', 'create2'])
 
 
 class DrivenCreate:

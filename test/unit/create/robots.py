@@ -1,13 +1,16 @@
 """An emulated robot for the unit tests."""
+import pytest
+
 from rbx1_nav.create.emulator.body import Body, BodyErrors
 from rbx1_nav.create.emulator.emulator import EmulatedCreate
 from rbx1_nav.create.emulator.serial_line import SerialLine
-from rbx1_nav.create.protocol import FULL, OFF, PASSIVE, SAFE, command, packets_format, single_packets
+from rbx1_nav.create.protocol import FULL, MODELS, OFF, PASSIVE, SAFE, command, packets_format, single_packets
 from rbx1_nav.units import SECOND
 
 # commands from off to each mode
 ENTER = {OFF: b'', PASSIVE: command('start'), SAFE: command('start') + command('safe'),
          FULL: command('start') + command('full')}
+both = pytest.mark.parametrize('model', MODELS.values(), ids=MODELS)
 
 
 class Robot:

@@ -51,14 +51,6 @@ def test_gyro_sensitivity_is_what_the_signal_shows_of_the_true_rate(factor, gyro
     assert radians(-(adc - 512) / 512 * gyro_range) == pytest.approx(-0.5 * factor, abs=radians(gyro_range / 512))
 
 
-def test_a_gyro_at_the_end_of_its_scale():
-    robot = Robot(CREATE, gyro_range=10.0)
-    robot.send(command('start'), command('full'), drive_direct(500, -500))
-    assert robot.read(33) == {'analog_input': 0}
-    robot.send(drive_direct(-500, 500))
-    assert robot.read(33) == {'analog_input': 1023}
-
-
 def test_on_a_surface_the_robot_rolls_out_slips_and_its_gyro_is_noisy():
     robot = Robot(CREATE, SURFACE)
     robot.send(command('start'), command('full'))

@@ -3,9 +3,8 @@ import pytest
 
 from rbx1_nav.create import protocol
 
-from driven_create import started
+from driven_create import BOTH, started
 
-BOTH = pytest.mark.parametrize('robot_type', ['create', 'create2'])
 REFUSAL = 'a cliff: expected a command that backs up'
 
 

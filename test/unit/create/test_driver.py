@@ -7,19 +7,10 @@ from rbx1_nav.control.gate import RejectedCommand
 from rbx1_nav.create import protocol
 from rbx1_nav.units import SECOND
 
-from driven_create import DrivenCreate, started
+from driven_create import BOTH, DrivenCreate, started
 
-BOTH = pytest.mark.parametrize('robot_type', ['create', 'create2'])
 # rounding of the encoders; rounding of the Create's angle: 1 degree, which shifts the end of 1 m sideways
 POSITION, ANGLE = {'create': 0.02, 'create2': 0.001}, {'create': 0.02, 'create2': 0.002}
-
-
-@BOTH
-def test_it_starts_a_robot_that_was_just_switched_on(robot_type):
-    driven = started(robot_type)
-    assert driven.robot.mode == protocol.SAFE
-    assert driven.driver.contact.answers and driven.driver.supervisor.in_control
-    assert driven.speeds == (0, 0)
 
 
 @BOTH
@@ -87,19 +78,6 @@ def test_a_flood_of_commands_does_not_fill_the_line(robot_type):
     assert driven.speeds == (0, 0)
 
 
-@BOTH
-def test_a_bump_stops_forward_motion_only(robot_type):
-    driven = started(robot_type)
-    driven.drive(0.2, 0, 0.5)
-    driven.body.bumped = True
-    driven.drive(0.2, 0, 0.2)
-    assert driven.speeds == (0, 0)
-    driven.drive(-0.2, 0, 0.2)
-    assert driven.speeds == (-200, -200)
-    driven.drive(0, 1, 0.2)
-    assert driven.speeds[0] < 0 < driven.speeds[1]
-
-
 def test_a_bump_does_not_stop_if_it_should_not():
     driven = started('create', stop_motors_on_bump=False)
     driven.body.bumped = True
@@ -112,36 +90,6 @@ def test_slow_turns_are_commanded_at_the_least_speed():
     for asked, speed in ((0.1, 65), (-0.1, -65), (0.7, 91), (2.0, 130), (0.0, 0)):
         driven.drive(0, asked, 0.1)
         assert driven.speeds == (-speed, speed)
-
-
-@BOTH
-def test_scale_corrections_apply_to_the_odometry(robot_type):
-    driven = started(robot_type, odom_linear_scale_correction=2.0, odom_angular_scale_correction=0.5)
-    driven.drive(0.2, 0, 2)
-    driven.run(2)
-    assert driven.pose.x == pytest.approx(2 * driven.truth.x, abs=0.003)
-    driven.drive(0, 1, 1)
-    driven.run(2)
-    assert driven.pose.yaw == pytest.approx(driven.truth.yaw / 2, abs=ANGLE[robot_type])
-
-
-def test_the_gyro_reports_the_turn_after_its_offset_is_known():
-    driven = started('create', gyro_scale_correction=1.0)
-    assert driven.driver.gyro.offset == pytest.approx(512, abs=1)
-    driven.drive(0, 1, 3)
-    driven.run(1)
-    # a count is 0.3 degrees/s
-    assert driven.driver.gyro.yaw == pytest.approx(driven.truth.yaw, abs=0.03)
-
-
-@BOTH
-def test_on_leaving_the_robot_stands_in_passive_mode(robot_type):
-    driven = started(robot_type)
-    driven.drive(0.2, 0, 1)
-    driven.driver.leave(driven.now)
-    driven.connected = False
-    driven.run(0.1)
-    assert driven.speeds == (0, 0) and driven.robot.mode == protocol.PASSIVE
 
 
 @BOTH
@@ -158,3 +106,26 @@ def test_without_a_line_nothing_is_reported():
     driven.driver.tick(driven.now)
     driven.command(0.2, 0)
     assert driven.driver.state() is None and driven.commands == []
+
+
+def test_a_slow_line_at_the_highest_update_rate_loses_no_reply():
+    """A reply takes 16 ms, so the next query is due while it arrives."""
+    driven = DrivenCreate('create', update_rate=60, baud=19200)
+    driven.line.baud = 19200
+    driven.connect()
+    driven.run(3)
+    driven.drive(0.2, 0.5, 2)
+    queries = driven.driver.queries
+    assert queries.missed == queries.rejected == 0
+
+
+@BOTH
+def test_a_base_is_ready_when_the_robot_can_be_driven_or_the_reason_is_known(robot_type):
+    driven = DrivenCreate(robot_type, robot=robot_type)
+    driven.body.wheel_dropped = True
+    assert not driven.driver.is_ready
+    driven.connect()
+    assert not driven.driver.is_ready
+    driven.run(3)
+    assert driven.driver.is_ready and not driven.driver.supervisor.in_control
+    assert started(robot_type).driver.is_ready

@@ -8,9 +8,8 @@ from rbx1_nav.create import protocol
 from rbx1_nav.simulation.surfaces import load_surface
 from rbx1_nav.units import wrap_angle
 
-from driven_create import SURFACES, DrivenCreate, started
+from driven_create import BOTH, SURFACES, DrivenCreate, started
 
-BOTH = pytest.mark.parametrize('robot_type', ['create', 'create2'])
 STOP = protocol.drive_direct(0, 0)
 NO_ERRORS = {'odom_linear_error': 0.0, 'odom_angular_error': 0.0, 'odom_heading_error': 0.0}
 CHI_SQUARE = 16.3       # 99.9 % quantile for 3 degrees of freedom
@@ -157,37 +156,6 @@ def test_each_cause_is_reported_once(robot_type):
     assert len(driven.log) == 4 and 'safe' in driven.log[3]
 
 
-@BOTH
-def test_a_cause_that_comes_back_is_reported_again(robot_type):
-    driven = started(robot_type)
-    for _ in range(2):
-        driven.log.clear()
-        driven.body.wheel_dropped = True
-        driven.run(1)
-        assert len([line for line in driven.log if 'a wheel dropped' in line]) == 1
-        driven.body.wheel_dropped = False
-        driven.run(2)
-        assert driven.robot.mode == protocol.SAFE
-
-
-@BOTH
-def test_on_the_dock_it_stays_passive_until_a_command(robot_type):
-    driven = started(robot_type)
-    driven.body.docked = True
-    driven.run(3)
-    assert driven.robot.mode == protocol.PASSIVE
-    assert 'dock' in driven.driver.supervisor.reason
-
-
-@BOTH
-def test_a_wheel_drop_stops_the_robot_in_full_mode_too(robot_type):
-    driven = started(robot_type, operation_mode=3)
-    driven.drive(0.2, 0, 0.5)
-    driven.body.wheel_dropped = True
-    driven.drive(0.2, 0, 0.2)
-    assert driven.speeds == (0, 0)
-
-
 @pytest.mark.parametrize('seed', range(4))
 def test_a_corrupted_line_leaves_the_odometry_as_it_is(seed):
     driven = started('create2', seed=seed)
@@ -239,13 +207,21 @@ def test_a_clock_that_went_on_while_the_computer_was_suspended_stops_the_robot()
     assert normalized_error(driven) < CHI_SQUARE
 
 
-def test_encoders_wrap():
-    driven = started('create2')
-    driven.drive(0.5, 0, 32)
+@BOTH
+def test_what_is_logged_when_the_robot_answers_again(robot_type):
+    driven = started(robot_type)
+    driven.drive(0.2, 0, 1)
+    driven.line.silent = True
     driven.run(1)
-    assert driven.truth.x > 65536 / driven.settings.model.counts_per_metre / 2
-    driven.pull()
+    driven.line.silent = False
     driven.run(1)
-    driven.connect()
-    driven.run(1)
-    assert driven.pose.x == pytest.approx(driven.truth.x, abs=0.001)
+    line, = [line for line in driven.log if 'answers again' in line]
+    # a second of silence, and the time until the robot has answered a query
+    assert 1.0 <= float(line[len('The robot answers again: it did not answer for '):-len(' s')]) <= 1.6
+    assert driven.driver.acceptance.lockout.reason.startswith('the robot did not answer for 1.')
+    driven.command_zero()
+    driven.drive(0.2, 0, 1)
+    driven.robot.switch_on(driven.now)
+    driven.run(3)
+    assert 'The robot answers again: it was switched off, reset, or silent at rest' in driven.log
+    assert driven.driver.acceptance.lockout.reason == 'the robot was switched off, reset, or silent at rest'

@@ -5,9 +5,8 @@ from hypothesis import strategies as st
 
 from rbx1_nav.create.emulator.emulator import BOOT_TEXT
 from rbx1_nav.create.protocol import CREATE, CREATE_2, FULL, MODELS, OFF, PASSIVE, SAFE, command, drive_direct
-from robots import Robot, robot_in
+from robots import Robot, robot_in, both
 
-both = pytest.mark.parametrize('model', list(MODELS.values()), ids=list(MODELS))
 COMMANDS = [pytest.param(model, each, id=f'{model.name}-{each.name}')
             for model in MODELS.values() for each in model.commands.values()]
 
@@ -193,10 +192,11 @@ def test_the_outer_wheel_of_an_arc_does_not_exceed_the_limit():
     assert (robot.body.right, robot.body.left) == (500, 0)
 
 
-def test_drive_pwm():
+@pytest.mark.parametrize('pwm, speed', [(255, 500), (-255, -500), (51, 100), (300, 500), (0, 0)])
+def test_pwm_is_a_fraction_of_255(pwm, speed):
     robot = robot_in(FULL, CREATE_2)
-    robot.send(command('drive_pwm', 0, 255, 255, 1))
-    assert (robot.body.right, robot.body.left) == (500, -500)
+    robot.send(command('drive_pwm', *pwm.to_bytes(2, 'big', signed=True), 255, 205))    # left: -51
+    assert (robot.body.right, robot.body.left) == pytest.approx((speed, -100))
 
 
 def test_a_command_takes_effect_when_its_last_byte_has_arrived():
@@ -208,17 +208,6 @@ def test_a_command_takes_effect_when_its_last_byte_has_arrived():
     (time, data), = robot.commands
     assert data == drive_direct(200, 200) and time - start == pytest.approx(5 * 10 / 115200 * 1e9, abs=10)
     assert robot.pose.x == pytest.approx(0.2 * (robot.now - time) / 1e9)
-
-
-@both
-def test_the_robot_senses_every_15_ms(model):
-    robot = robot_in(FULL, model)
-    robot.run(0.31)     # up to 0.36 s, an update
-    robot.robot.receive(drive_direct(400, 400), robot.now)
-    robot.run(0.014)
-    assert robot.pose.x > 0.004 and robot.body.distance.pending == 0
-    robot.run(0.001)
-    assert robot.body.distance.pending == round(1000 * robot.pose.x)
 
 
 @both

@@ -6,14 +6,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rbx1_nav.create.protocol import (
-    CREATE, CREATE_2, FULL, MODELS, OFF, PASSIVE, SAFE, command, drive_direct, encode_frame, packets_format,
-    single_packets)
-from robots import robot_in
+    CREATE, CREATE_2, FULL, OFF, PASSIVE, SAFE, command, drive_direct, encode_frame, packets_format, single_packets)
+from robots import robot_in, both
 
-both = pytest.mark.parametrize('model', list(MODELS.values()), ids=list(MODELS))
 
 # sensors
-
 
 @both
 def test_every_packet_and_group_is_answered(model):
@@ -79,16 +76,6 @@ def test_distance_and_angle_are_those_since_the_last_reading(model):
     assert robot.read(19) == {'distance': 0} and robot.read(20) == {'angle': 0}
 
 
-@both
-def test_a_frame_of_the_stream_reads_distance_too(model):
-    robot = robot_in(FULL, model)
-    robot.send(command('stream', 1, 19), drive_direct(100, 100))
-    received = robot.run(1)
-    frames = [received[index:index + 6] for index in range(0, len(received) - 5, 6)]
-    total = sum(int.from_bytes(frame[3:5], 'big') for frame in frames)
-    assert total == pytest.approx(100, abs=2)       # 15 ms at the start and at the end
-
-
 def test_distance_is_capped():
     robot = robot_in(FULL, CREATE)
     robot.send(drive_direct(500, 500))
@@ -133,15 +120,6 @@ def test_baud(model):
     robot.robot.line.host_baud = 19200
     robot.run(1)
     assert robot.read(35) == {'mode': PASSIVE}
-
-
-def test_outputs_are_kept():
-    robot = robot_in(SAFE, CREATE)
-    robot.send(command('leds', 8, 0, 255), command('low_side_drivers', 3), command('digital_outputs', 1))
-    assert robot.robot.outputs == {'leds': bytes((8, 0, 255)), 'low_side_drivers': bytes((3,)),
-                                   'digital_outputs': bytes((1,))}
-    robot.send(command('safe'))
-    assert 'leds' not in robot.robot.outputs
 
 
 # battery

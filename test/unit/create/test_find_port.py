@@ -4,7 +4,8 @@ from types import SimpleNamespace
 import pytest
 
 from rbx1_nav.create.driver import link as module
-from rbx1_nav.create.driver.link import find_port
+from rbx1_nav.create.driver.link import describe_adapter, find_port
+from rbx1_nav.create.emulator.serial_line import PseudoTerminal
 
 FTDI = 'FTDI USB-Serial 42'
 
@@ -65,3 +66,11 @@ def test_the_name_from_the_udev_rules_is_the_default(usb):
     assert find_port('auto', '', set()) == link
     unplug('create')
     assert find_port('auto', '', set()) == link.replace('create', 'ttyUSB0')
+
+
+def test_the_adapter_of_a_port(tmp_path):
+    terminal = PseudoTerminal(str(tmp_path / 'robot'))
+    assert describe_adapter(terminal.link) == 'a pseudo-terminal'
+    terminal.unplug()
+    (tmp_path / 'tty').write_text('')
+    assert describe_adapter(str(tmp_path / 'tty')) == str(tmp_path / 'tty')

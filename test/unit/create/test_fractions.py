@@ -66,14 +66,6 @@ def test_one_steady_turn_shows_what_the_robot_does_with_fractions(drops, rate):
     assert robot.readings <= 2 if drops else robot.readings == 32
 
 
-def test_a_robot_that_may_lag_is_not_tested():
-    robot = Turning()
-    robot.run(0.3)
-    assert set(robot.intervals) == {PERIOD}
-    robot.run(0.1)
-    assert FAST in robot.intervals
-
-
 @pytest.mark.parametrize('drops', [False, True])
 def test_blocked_wheels_show_nothing(drops):
     robot = Turning(drops=drops)
@@ -85,34 +77,6 @@ def test_blocked_wheels_show_nothing(drops):
     assert 0 <= robot.error < 4.5 and robot.fractions.unread == pytest.approx(robot.error)
 
 
-@pytest.mark.parametrize('drops', [False, True])
-def test_wheels_that_are_blocked_during_a_part_of_the_test(drops):
-    for blocked in range(1, 20):
-        robot = Turning(drops=drops)
-        robot.run(0.5)
-        robot.wheels = 0.0
-        robot.run(0.05 * blocked)
-        robot.wheels = robot.rate
-        robot.run(3.0)
-        assert robot.fractions.kind == (LOST if drops else KEPT), blocked
-        robot.stop()
-        assert abs(robot.error) < 7, blocked      # a part of the test, and the fractions
-
-
-@pytest.mark.parametrize('push', [100.0, -100.0])
-@pytest.mark.parametrize('drops', [False, True])
-def test_a_hand_that_turns_the_robot_during_the_test(drops, push):
-    robot = Turning(drops=drops)
-    robot.run(0.5)
-    robot.wheels += push
-    robot.run(0.5)
-    robot.wheels = robot.rate
-    robot.run(4.0)
-    assert robot.fractions.kind == (LOST if drops else KEPT)
-    robot.stop()
-    assert abs(robot.error) < 10        # between readings, the heading follows the commands
-
-
 def test_a_turn_that_is_too_fast_is_not_tested_and_read_rarely():
     robot = Turning(drops=True, rate=150.0)
     robot.run(10.0)
@@ -120,17 +84,6 @@ def test_a_turn_that_is_too_fast_is_not_tested_and_read_rarely():
     robot.stop()
     # 45 degrees or more per reading, each of which drops less than 1
     assert robot.readings < 40 and abs(robot.error) < 0.015 * robot.true + 1
-
-
-def test_a_slow_line_is_tested_in_a_slow_turn():
-    robot = Turning(drops=True, rate=40.0)
-    robot.run(5.0, fast=0.03)       # two updates of the robot: 1.2 degrees
-    assert robot.fractions.kind == AUTO
-    robot.rate = robot.wheels = 10.0
-    robot.run(8.0, fast=0.03)
-    assert robot.fractions.kind == LOST
-    robot.stop()
-    assert abs(robot.error) < 0.015 * robot.true + 1
 
 
 @pytest.mark.parametrize('kind', [KEPT, LOST])

@@ -125,28 +125,6 @@ def test_the_port_is_in_use_until_the_stop_is_sent(terminal):
     assert read_until(terminal, STOP) == STOP
 
 
-def test_a_guardian_that_does_not_start_is_killed(monkeypatch):
-    class Hanging(subprocess.Popen):
-        def __init__(self, _, **options):
-            super().__init__(['sleep', '1000'], **options)
-            processes.append(self)
-    processes = []
-    monkeypatch.setattr(guardian.subprocess, 'Popen', Hanging)
-    monkeypatch.setattr(guardian, 'START_TIMEOUT', 0.1)
-    with pytest.raises(OSError, match='the guardian process did not start'):
-        Guardian(2, STOP)
-    assert processes[0].wait(LIMIT) == -signal.SIGKILL
-
-
-def test_a_guardian_that_is_gone_is_noticed(terminal):
-    with open_port(terminal.link, 115200) as port:
-        watcher = Guardian(port.fileno(), STOP)
-        assert watcher.beat()
-        watcher.process.kill()
-        watcher.process.wait()
-        assert not watcher.beat()
-
-
 def test_a_process_that_dies_while_its_guardian_starts_is_stopped_too(terminal):
     """The pipe on which the guardian reports its start is broken by then."""
     with open_port(terminal.link, 115200) as port:

@@ -2,8 +2,7 @@
 import pytest
 
 from rbx1_nav.create.emulator.emulator import INPUT_SIZE
-from rbx1_nav.create.emulator.programs import MAX_SCRIPT
-from rbx1_nav.create.protocol import COUNTED, CREATE, MODELS, NOTES, PASSIVE, SAFE, command
+from rbx1_nav.create.protocol import COUNTED, CREATE, MODELS, NOTES, PASSIVE, command
 from robots import Robot
 
 LONG = [pytest.param(model, bytes((each.opcode, 255)) + bytes(255) if each.size == COUNTED else
@@ -23,19 +22,6 @@ def test_the_longest_command_can_be_completed(model, data):
     assert robot.read(35) == {'mode': PASSIVE}
 
 
-@pytest.mark.parametrize('count', range(500, 530))
-def test_the_longest_command_behind_a_wait(count):
-    robot = Robot(CREATE)
-    robot.send(command('start'), command('wait_time', 10))
-    data = command('safe') + command('song', 0, 255)
-    robot.robot.receive(data + bytes(count - len(data)), robot.now)
-    robot.run(2)
-    assert robot.mode == SAFE
-    robot.robot.receive(bytes(513), robot.now)      # completes the command
-    robot.run(1)
-    assert robot.read(35) == {'mode': SAFE}
-
-
 def test_what_waits_is_limited():
     robot = Robot(CREATE)
     robot.send(command('start'), command('wait_time', 50))
@@ -46,12 +32,3 @@ def test_what_waits_is_limited():
     robot.run(10)
     robot.send(bytes(3))    # completes the last command
     assert len(robot.robot._input) == 0 and robot.read(35) == {'mode': PASSIVE}
-
-
-def test_a_script_that_plays_itself_before_its_end_does_not_grow():
-    robot = Robot(CREATE)
-    script = command('play_script') + command('wait_time', 0) + bytes((128,)) * 90
-    robot.send(command('start'), command('script', len(script), *script), command('play_script'))
-    robot.run(3)
-    assert robot.robot._scripts.waiting or robot.robot._scripts._due
-    assert len(robot.robot._input) <= INPUT_SIZE + MAX_SCRIPT

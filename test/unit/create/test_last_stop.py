@@ -3,9 +3,7 @@ import pytest
 
 from rbx1_nav.create import protocol
 
-from driven_create import DrivenCreate, started
-
-BOTH = pytest.mark.parametrize('robot_type', ['create', 'create2'])
+from driven_create import BOTH, DrivenCreate, started
 
 
 @BOTH

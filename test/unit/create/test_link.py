@@ -110,15 +110,6 @@ def test_an_echo_that_another_process_has_set_is_cleared(line):
     assert not select.select([robot], [], [], 0)[0]
 
 
-def test_bytes_that_are_sent_apart_arrive_all(line):
-    robot, link, _ = line
-    link.write_apart(b'\x80' * 3)
-    received = b''
-    while len(received) < 3:    # a read returns what has arrived so far
-        received += os.read(robot, 10)
-    assert received == b'\x80' * 3
-
-
 def test_a_line_without_rts_and_dtr_is_searched_without_waking(line):
     robot, link, log = line
     search = Search((57600,), wake=True)
@@ -131,14 +122,6 @@ def test_a_line_without_rts_and_dtr_is_searched_without_waking(line):
     assert log == ['wake_robot:=true: %s has no RTS and DTR: expected an adapter that has these lines; searching '
                    'without '
                    'waking the robot' % link.path]
-
-
-def test_an_adapter_that_disconnects_while_its_lines_are_set_is_lost(line):
-    robot, link, log = line
-    os.close(robot)
-    with pytest.raises(LineLost, match=link.path):
-        link.set_wake_lines(True)
-    assert not log
 
 
 def test_another_device_is_reported(tmp_path, monkeypatch):

@@ -3,8 +3,6 @@ from math import degrees, pi
 
 import pytest
 
-from rbx1_nav.create import protocol
-from rbx1_nav.create.driver import sequences
 from rbx1_nav.create.driver.fractions import KEPT, LOST
 from rbx1_nav.create.emulator.body import Quirks
 from rbx1_nav.simulation.surfaces import load_surface
@@ -35,15 +33,6 @@ def test_a_turn_is_reported_whatever_the_robot_does_with_fractions(surface, lost
     assert reported == pytest.approx(true, rel=0.03)
 
 
-def test_a_robot_that_keeps_fractions_is_asked_for_the_angle_each_time():
-    driven = started('create')
-    turn(driven, 1.0, pi / 2)
-    driven.commands.clear()
-    turn(driven, 1.0, 2 * pi)
-    queries = [data for _, data in driven.commands if data[0] == protocol.OPCODES['query_list']]
-    assert set(queries) == {sequences.query(sequences.QUERIED)}
-
-
 @pytest.mark.parametrize('drops', [False, True])
 def test_the_base_logs_once_that_fractions_are_lost(drops):
     driven = started('create', quirks=Quirks(drops_fractions=drops))
@@ -52,9 +41,3 @@ def test_the_base_logs_once_that_fractions_are_lost(drops):
     lines = [line for line in driven.log if 'fractions' in line]
     assert lines == ['The robot loses fractions of a degree: correcting the odometry. Set angle_fractions:=lost to '
                      'correct it from the start'] * drops
-
-
-def test_what_is_known_of_fractions_is_not_logged():
-    driven = started('create', quirks=Quirks(drops_fractions=True), angle_fractions=LOST)
-    turn(driven, 0.5, 2 * pi)
-    assert not any('fractions' in line for line in driven.log)

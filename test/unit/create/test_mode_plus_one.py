@@ -4,9 +4,8 @@ import pytest
 from rbx1_nav.create import protocol
 from rbx1_nav.create.emulator.body import Quirks
 
-from driven_create import started
+from driven_create import BOTH, started
 
-BOTH = pytest.mark.parametrize('robot_type', ['create', 'create2'])
 MODES = pytest.mark.parametrize('mode', [protocol.PASSIVE, protocol.SAFE, protocol.FULL])
 
 
@@ -45,9 +44,3 @@ def test_a_wrong_workaround_is_named_and_the_robot_is_not_driven(robot_type, mod
     driven.drive(0.2, 0, 1)
     assert not driven.body.moving or plus_one       # in that case, it is in safe mode
     assert any('oi_mode_workaround' in text for text in driven.refusals)
-
-
-@BOTH
-def test_full_mode_needs_no_workaround(robot_type):
-    driven = started(robot_type, 5, quirks=Quirks(mode_plus_one=True), operation_mode=protocol.FULL)
-    assert driven.log[1:] == ['The robot is in full mode'] and driven.driver.supervisor.in_control

@@ -52,62 +52,12 @@ def test_the_mode_is_requested_until_the_robot_reports_it():
     assert [robot.feed(mode) for mode in (PASSIVE, SAFE, PASSIVE, OFF, PASSIVE)] == [[]] * 5
 
 
-def test_control_is_taken_again_some_time_after_the_cause_is_gone():
-    robot = Supervised()
-    robot.feed(PASSIVE, 2)
-    assert robot.feed(SAFE, 2) == [] and robot.supervisor.in_control
-    assert robot.feed(PASSIVE, 20, **CLIFF) == [] and robot.supervisor.reason == 'a cliff'
-    wait = robot.feed(PASSIVE, 20)[0]
-    assert wait > 3
-    # the time starts again at the next cause
-    assert robot.feed(PASSIVE, **CLIFF) == []
-    assert robot.feed(PASSIVE, 20)[0] == wait
-
-
-def test_a_robot_that_was_never_in_control_is_asked_when_the_cause_is_gone():
-    robot = Supervised()
-    assert robot.feed(PASSIVE, 9, **WHEEL) == [] and robot.feed(PASSIVE, 3) == [1]
-
-
 @pytest.mark.parametrize('wants_motion', [False, True])
 def test_on_the_dock_the_mode_is_requested_only_for_a_command(wants_motion):
     robot = Supervised()
     assert bool(robot.feed(PASSIVE, 12, wants_motion, **DOCK)) == wants_motion
     assert robot.supervisor.reason == 'on the dock: lift it off if it does not follow a command'
     assert robot.log == ['The robot cannot be driven: on the dock: lift it off if it does not follow a command']
-
-
-def attempts(robot):
-    """Return the number of requests until the reason is known."""
-    count = 0
-    while not robot.supervisor.reason:
-        count += len(robot.feed(PASSIVE))
-        assert count < 10
-    return count
-
-
-def test_after_some_attempts_without_a_cause_the_modes_are_logged():
-    robot = Supervised()
-    needed = attempts(robot)
-    assert needed > 1 and robot.log == ['The robot cannot be driven: it reports mode 1 after it was asked for safe '
-                                        'mode: expected 2, or oi_mode_workaround:=true']
-    # a cause explains it, and the attempts are counted again
-    robot.feed(PASSIVE, 1, **WHEEL)
-    assert robot.supervisor.reason == 'a wheel dropped'
-    robot.feed(PASSIVE, 1)
-    assert attempts(robot) == needed
-
-
-def test_a_charger_that_is_plugged_in_is_not_the_dock():
-    robot = Supervised()
-    assert robot.feed(PASSIVE, 3, **CHARGER) == [] and robot.supervisor.reason == 'the charger is plugged in'
-
-
-def test_success_starts_the_count_of_attempts_again():
-    robot = Supervised()
-    assert len(robot.feed(PASSIVE, 10)) > 1 and not robot.supervisor.reason
-    robot.feed(SAFE, 2)
-    assert attempts(robot) == attempts(Supervised())
 
 
 def test_what_is_logged_when_control_is_gained_and_lost():
@@ -125,26 +75,3 @@ def test_a_mode_above_full_is_full():
     robot = Supervised(FULL)
     robot.feed(4, 3)
     assert robot.supervisor.in_control
-
-
-def test_a_robot_that_reports_its_mode_plus_one_is_not_taken_for_one_in_safe_mode():
-    robot = Supervised()
-    assert robot.feed(SAFE, 2) == [2] and not robot.supervisor.in_control      # it is in passive mode
-    robot.feed(FULL, 20)
-    assert robot.supervisor.reason == 'it reports mode 3 after it was asked for safe mode: expected 2, or ' \
-                                      'oi_mode_workaround:=true'
-    robot = Supervised(plus_one=True)
-    assert robot.feed(SAFE, 2) == [2]
-    robot.feed(FULL, 2)
-    assert robot.supervisor.in_control and robot.supervisor.is_passive(reading(SAFE))
-
-
-def test_after_a_silence_the_mode_is_known_and_after_a_start_it_is_requested():
-    robot = Supervised()
-    robot.feed(PASSIVE, 2)
-    robot.feed(SAFE, 2)
-    robot.supervisor.forget()
-    assert robot.feed(SAFE) == [] and not robot.supervisor.in_control     # the reading before does not count
-    assert robot.feed(SAFE) == [] and robot.supervisor.in_control
-    robot.supervisor.restart()
-    assert robot.feed(SAFE, 3) == [2] and robot.supervisor.in_control

@@ -85,13 +85,6 @@ def test_a_robot_stands_half_a_second_after_its_last_travel_or_command(travel):
     assert motion.stands
 
 
-def test_a_robot_that_was_never_read_is_not_known_to_stand():
-    motion = make_motion()
-    assert not motion.stands
-    motion.command(0)
-    assert not motion.stands
-
-
 def test_while_it_is_commanded_to_move_the_velocity_of_a_robot_without_travel_is_uncertain():
     motion = make_motion()
     motion.add(0, NOWHERE)

@@ -1,7 +1,7 @@
 """The node does not run for a while, in motion: commands that have waited in a queue do not drive the robot."""
 import pytest
 
-from driven_create import STEP, started
+from driven_create import BOTH, STEP, started
 
 DRIVING = 0.2, 0.3
 REFUSAL = 'expected a zero command, or none for 0.6 s, before it is driven again'
@@ -24,7 +24,7 @@ def stall(driven, seconds, command_first):
     driven.run(1.0)
 
 
-@pytest.mark.parametrize('robot_type', ['create', 'create2'])
+@BOTH
 @pytest.mark.parametrize('command_first', [True, False])
 @pytest.mark.parametrize('seconds', [0.6, 0.9, 60])
 def test_after_a_stall_a_sender_is_refused(robot_type, command_first, seconds):
@@ -38,7 +38,7 @@ def test_after_a_stall_a_sender_is_refused(robot_type, command_first, seconds):
     assert any(driven.speeds)
 
 
-@pytest.mark.parametrize('robot_type', ['create', 'create2'])
+@BOTH
 @pytest.mark.parametrize('seconds, params', [(0.25, {'cmd_vel_timeout': 0.1}), (0.4, {})])
 def test_a_stall_in_which_no_command_expires_has_no_effect(robot_type, seconds, params):
     driven = driving(robot_type, **params)
@@ -46,7 +46,7 @@ def test_a_stall_in_which_no_command_expires_has_no_effect(robot_type, seconds, 
     assert any(driven.speeds) and not driven.refusals
 
 
-@pytest.mark.parametrize('robot_type', ['create', 'create2'])
+@BOTH
 def test_when_the_guardian_dies_a_sender_is_refused(robot_type):
     driven = driving(robot_type)
     driven.driver.stop(driven.now, 'the guardian process died')

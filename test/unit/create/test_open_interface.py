@@ -106,9 +106,3 @@ def test_the_constants_of_the_documents():
 @pytest.mark.parametrize('data, checksum', [(b'', 0), (b'\0', 0), (b'\1', 255), (b'\xff', 1), (b'\x80\x80', 0)])
 def test_a_checksum(data, checksum):
     assert protocol.checksum(data) == checksum
-
-
-def test_packets_that_do_not_exist():
-    for model, number in (CREATE, 43), (CREATE, 100), (CREATE_2, 59), (CREATE_2, 102):
-        with pytest.raises(KeyError):
-            protocol.single_packets(model, [number])

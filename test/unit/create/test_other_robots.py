@@ -3,12 +3,8 @@ import pytest
 
 from rbx1_nav.create import protocol
 from rbx1_nav.create.driver import sequences
-from rbx1_nav.create.emulator.emulator import EmulatedCreate
-from rbx1_nav.create.emulator.serial_line import SerialLine
 
-from driven_create import DrivenCreate, started
-
-BOTH = pytest.mark.parametrize('robot_type', ['create', 'create2'])
+from driven_create import BOTH, DrivenCreate, started
 
 
 def drop_a_wheel(driven):
@@ -77,19 +73,6 @@ def test_a_bump_refuses_forward_motion_at_once_and_no_longer_than_it_lasts(robot
     assert driven.speeds == (200, 200) and len(driven.refusals) == count
 
 
-@BOTH
-def test_a_create_at_the_slowest_rate_is_driven(robot_type):
-    driven = DrivenCreate(robot_type)
-    driven.robot = EmulatedCreate(driven.robot.model, driven.body, SerialLine(19200), driven.now)
-    driven.line = driven.robot.line
-    driven.connect()
-    driven.run(2)
-    driven.drive(0.2, 0.5, 10)
-    driven.run(1)
-    assert driven.driver.contact.dropouts == driven.driver.queries.rejected == 0
-    assert driven.pose.x == pytest.approx(driven.truth.x, abs=0.01) and len(driven.states) > 200
-
-
 def test_another_robot_at_another_adapter_gets_no_command_before_it_is_known():
     driven = started('auto', robot='create')
     driven.pull()
@@ -142,16 +125,6 @@ def test_a_robot_whose_settings_were_restored_drives_on(robot_type):
 
 
 @BOTH
-def test_a_command_is_refused_if_the_wheels_do_not_turn(robot_type):
-    driven = started(robot_type)
-    driven.body.wheels.travel = lambda linear, angular, duration: (0.0, 0.0)
-    driven.drive(0.2, 0, 0.4)
-    assert not driven.refusals
-    driven.drive(0.2, 0, 0.4)
-    assert driven.refusals[0] == 'its wheels do not turn: expected wheels that can turn freely'
-
-
-@BOTH
 def test_a_robot_that_stood_while_it_was_out_of_reach_has_wheels_that_turn(robot_type):
     driven = started(robot_type)
     driven.drive(0.2, 0, 0.5)
@@ -165,13 +138,3 @@ def test_a_robot_that_stood_while_it_was_out_of_reach_has_wheels_that_turn(robot
     driven.refusals.clear()
     driven.drive(0.2, 0, 0.5)
     assert not driven.refusals and driven.speeds == (200, 200)
-
-
-def test_a_create_2_that_was_not_reset_while_it_stood_is_not_said_to_be():
-    driven = started('create2')
-    driven.pull()
-    driven.run(1)
-    driven.is_same = False
-    driven.connect()
-    driven.run(2)
-    assert not any('reset' in line for line in driven.log)

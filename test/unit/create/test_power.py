@@ -1,10 +1,8 @@
 """Power-off, reset, and the initial baud rate of the robot."""
 import pytest
 
-from rbx1_nav.create.protocol import BAUD_RATES, CREATE, MODELS, OFF, PASSIVE, command, drive_direct
-from robots import Robot
-
-both = pytest.mark.parametrize('model', list(MODELS.values()), ids=list(MODELS))
+from rbx1_nav.create.protocol import BAUD_RATES, CREATE, OFF, PASSIVE, command, drive_direct
+from robots import Robot, both
 
 
 def driving(model, **options):
@@ -39,23 +37,6 @@ def test_a_robot_that_was_switched_off_does_nothing_until_it_is_switched_on(mode
     assert robot.mode == PASSIVE and robot.read(19) == {'distance': 0}
 
 
-@both
-def test_an_interface_that_is_off_does_not_switch_the_robot_off(model):
-    robot = Robot(model)
-    robot.send(command('power'), command('start'))
-    assert robot.mode == PASSIVE
-
-
-@both
-def test_a_charged_battery_does_not_switch_the_robot_on(model):
-    robot = driving(model)
-    robot.send(command('power'))
-    for charge in 0, 3000:
-        robot.body.charge = charge
-        robot.run(0.1)
-    check_it_is_off(robot)
-
-
 def test_reset_restarts_a_create_without_a_word():
     robot = driving(CREATE)
     robot.send(command('baud', 7), command('pause_resume_stream', 0))
@@ -69,12 +50,6 @@ def test_reset_restarts_a_create_without_a_word():
     robot.run(0.15)
     robot.send(command('start'))
     assert robot.mode == PASSIVE and robot.read(19) == {'distance': 0} and robot.run(1) == b''
-
-
-def test_an_interface_that_is_off_does_not_reset_a_create():
-    robot = Robot(CREATE)
-    robot.send(command('reset'), command('start'))
-    assert robot.mode == PASSIVE
 
 
 @both

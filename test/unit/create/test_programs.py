@@ -3,10 +3,9 @@ from math import hypot
 
 import pytest
 
-from rbx1_nav.create.protocol import CREATE, CREATE_2, MODELS, OFF, OPCODES, PASSIVE, command, drive_direct
-from robots import Robot
+from rbx1_nav.create.protocol import CREATE, CREATE_2, MODELS, OPCODES, PASSIVE, command, drive_direct
+from robots import Robot, both
 
-both = pytest.mark.parametrize('model', list(MODELS.values()), ids=list(MODELS))
 CLEANING = {CREATE.name: ['spot', 'cover', 'dock'], CREATE_2.name: ['spot', 'cover', 'max', 'dock']}
 CLEANING_OF = [pytest.param(model, name, id=f'{model.name}-{name}')
                for model in MODELS.values() for name in CLEANING[model.name]]
@@ -39,13 +38,6 @@ def test_a_cleaning_program_drives_the_robot_in_passive_mode(model, name):
     assert robot.read(39) == {'requested_velocity': 0}      # the motion was not requested
     # 5 s at 0.2 m/s, from the first update on, read within 50 ms of the next
     assert robot.read(19)['distance'] == pytest.approx(1000, abs=25)
-
-
-@both
-def test_an_interface_that_is_off_starts_no_program(model):
-    robot = Robot(model)
-    robot.send(command('spot'), command('cover'), command('dock'))
-    assert not robot.body.moving and robot.mode == OFF and robot.robot.programs.started == 0
 
 
 @pytest.mark.parametrize('model, name', [
@@ -99,11 +91,6 @@ def test_a_demo_takes_the_place_of_another_one_until_it_is_aborted():
     robot.send(command('demo', 255))
     check_it_is_over(robot)
     assert robot.mode == PASSIVE and robot.robot.programs.started == 2
-
-
-def test_a_demo_that_does_not_exist_is_not_started():
-    robot = demo(10)
-    assert not robot.body.moving and robot.robot.programs.started == 0
 
 
 @both

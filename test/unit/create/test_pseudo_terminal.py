@@ -1,7 +1,6 @@
 """A real pseudo-terminal, which pyserial opens like a driver."""
 import os
 import select
-import stat
 
 import pytest
 import serial
@@ -101,35 +100,11 @@ def test_a_link_of_somebody_else_stays(terminal):
     assert os.readlink(terminal.link) == terminal.device
 
 
-def test_after_a_link_could_not_be_made_the_cable_is_out(terminal):
-    terminal.unplug()
-    os.mkdir(terminal.link)
-    with pytest.raises(ConfigError):
-        terminal.plug()
-    assert terminal.device is None
-    os.rmdir(terminal.link)
-    terminal.plug()
-    assert os.readlink(terminal.link) == terminal.device
-
-
-def test_no_link():
-    terminal = PseudoTerminal()
-    assert stat.S_ISCHR(os.stat(terminal.device).st_mode)
-    terminal.unplug()
-
-
 @pytest.mark.parametrize('name, text', [('file', 'exists, and is not a link'), ('none/port', 'No such file')])
 def test_a_link_that_cannot_be_made(tmp_path, name, text):
     (tmp_path / 'file').write_text('')
     with pytest.raises(ConfigError, match=f'link: .*{text}.*expected'):
         PseudoTerminal(str(tmp_path / name))
-
-
-def test_waiting_ends_when_the_client_sends(terminal):
-    with serial.Serial(terminal.device) as port:
-        port.write(b'x')
-        terminal.wait(3600)
-        assert terminal.read() == b'x'
 
 
 def test_it_knows_whether_it_has_a_client(terminal):

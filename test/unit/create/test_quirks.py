@@ -2,10 +2,9 @@
 import pytest
 
 from rbx1_nav.create.emulator.body import Quirks
-from rbx1_nav.create.protocol import CREATE, CREATE_2, FULL, MODELS, PASSIVE, SAFE, command, drive_direct
-from robots import Robot
+from rbx1_nav.create.protocol import CREATE, FULL, PASSIVE, SAFE, command, drive_direct
+from robots import Robot, both
 
-both = pytest.mark.parametrize('model', list(MODELS.values()), ids=list(MODELS))
 PLUS_ONE, DROPPING = Quirks(mode_plus_one=True), Quirks(drops_fractions=True)
 
 
@@ -21,16 +20,6 @@ def test_a_robot_that_reports_its_mode_plus_one(model):
     assert bytes((19, 2, 35, FULL + 1)) in robot.run(0.1)
     # 4 is an allowed value of the packet
     assert FULL + 1 <= model.packets[35].high
-
-
-def test_a_script_waits_for_the_mode_itself():
-    robot = Robot(CREATE, quirks=PLUS_ONE)
-    robot.send(command('start'), command('full'), command('wait_event', 22), command('leds', 1, 0, 0))
-    robot.run(1)
-    assert robot.robot._scripts.waiting
-    robot.robot._enter(PASSIVE)
-    robot.run(0.1)
-    assert not robot.robot._scripts.waiting
 
 
 def streamed(robot, number, right, left, seconds=1.5):
@@ -83,10 +72,3 @@ def test_a_gyro_that_is_stuck():
     robot.body.gyro_stuck = -1
     robot.run(0.02)
     assert robot.read(33) == turning
-
-
-def test_a_create_2_has_no_gyro_that_could_be_stuck():
-    robot = Robot(CREATE_2)
-    robot.body.gyro_stuck = 700
-    robot.send(command('start'))
-    assert robot.read(33) == {'analog_input': 0}

@@ -118,31 +118,3 @@ def test_a_command_to_stop_is_never_refused():
     base.supervisor.in_control = False
     base.command(0.2, 0)
     assert base.command(0, 0, NOW + SECOND) == '' and base.command(0.2, 0, NOW + SECOND) == ''
-
-
-def test_passive_mode_is_not_a_mode_in_which_the_robot_is_driven():
-    base = Base(operation_mode=1)
-    base.command(0.2, 0)
-    assert base.speeds == (0, 0)
-    assert base.command(0.2, 0, NOW + SECOND) == 'operation_mode: 1: the robot is not driven in passive mode'
-
-
-def test_what_locks_out_a_sender():
-    base = Base(cmd_vel_timeout=0.5)
-    base.acceptance.check_sender(NOW, 'script', True)
-    base.gate.command(NOW, 0.2, 0, ())
-    base.acceptance.lock('a cliff')
-    assert base.gate.linear == 0
-    with pytest.raises(RefusedCommand) as caught:
-        base.acceptance.check_sender(NOW + SECOND // 2, 'script', True)
-    assert str(caught.value) == ('a cliff; expected a zero command, or none for 0.5 s, before it is driven again')
-    base.acceptance.check_sender(NOW + SECOND // 2, 'script', False)
-    base.acceptance.check_sender(NOW + SECOND // 2, 'script', True)
-
-
-def test_the_minimum_turning_speed():
-    base = Base(min_abs_yaw_vel=0.5)
-    for asked, speed in ((0.1, 0.5), (-0.1, -0.5), (0.6, 0.6), (0, 0)):
-        base.command(0.1, asked)
-        # half of the track is 0.13 m
-        assert base.speeds == pytest.approx((100 - 130 * speed, 100 + 130 * speed))

@@ -75,17 +75,3 @@ def test_a_wait_for_a_distance_or_an_angle(scripts, what, goal, before, after):
 def test_a_goal_of_0_is_reached_at_once(scripts):
     scripts.do_wait_distance(bytes(2))
     assert not waits(scripts, 0)
-
-
-def test_a_script_is_played_once_at_the_next_update(scripts):
-    scripts.do_script(bytes((2, 7, 8)))
-    assert scripts.update(1) == b''
-    scripts.do_play_script(b'')
-    assert scripts.update(2) == bytes((7, 8)) and scripts.update(3) == b''
-
-
-def test_a_script_has_up_to_100_bytes(scripts):
-    scripts.do_script(bytes((100,)) + bytes(100))
-    assert scripts.stored == bytes(100)
-    scripts.do_script(bytes((101,)) + bytes(101))
-    assert scripts.stored == bytes(100)

@@ -5,7 +5,7 @@ import pytest
 
 from rbx1_nav.create import protocol
 from rbx1_nav.create.driver import sequences
-from rbx1_nav.create.driver.search import RATES, WAKE_TIME, Search, has_frames, is_battery
+from rbx1_nav.create.driver.search import RATES, WAKE_TIME, Search, is_battery
 from rbx1_nav.create.emulator.emulator import EmulatedCreate
 from rbx1_nav.create.emulator.serial_line import misread
 from rbx1_nav.units import SECOND
@@ -135,15 +135,6 @@ def test_no_byte_of_the_search_is_a_command_at_another_rate(sent_at, read_at):
                 assert set(received(data, ratio, patient)) & OPCODES <= HARMLESS, (error, patient)
 
 
-def test_the_other_receiver_finds_what_the_line_model_does_not():
-    """In a mode query read at twice its rate, the line model finds no command, but this receiver finds spot cleaning.
-    """
-    query = protocol.command('sensors', 35)
-    assert not set(misread(query, 57600, 115200)) & OPCODES
-    assert protocol.OPCODES['spot'] in {byte for error in range(-50, 51) for patient in (False, True)
-                                        for byte in received(query, 0.5 * (1 + error / 1000), patient)}
-
-
 class Line:
     """Records the actions of a Search on a line without a robot."""
 
@@ -182,12 +173,6 @@ def test_a_robot_that_sleeps_is_woken_only_if_that_is_wanted(wake):
     ('02 3f80 fed4 19 0bb8 0bb8 00', False), ('02 3f80 fed4 d0 0bb8 0bb8', False), ('', False)])
 def test_a_reply_about_the_battery(data, whole):
     assert is_battery(bytes.fromhex(data)) == whole
-
-
-def test_two_frames_in_a_row_are_a_stream_and_one_may_be_chance():
-    frame = protocol.encode_frame(protocol.CREATE_2, (35,), {'mode': 1})
-    assert not has_frames(b'\x13' + frame + b'\0' + frame[:-1])
-    assert has_frames(b'\x13' + frame + frame + b'\x13')
 
 
 class SciRobot(EmulatedCreate):

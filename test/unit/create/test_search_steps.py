@@ -70,13 +70,6 @@ def test_the_rates_are_tried_in_turn_the_expected_one_first(baud, order):
     assert tuple(searching.line.rates) == order * 2 + order[:1] and searching.search.rounds == 2
 
 
-def test_a_late_byte_does_not_extend_the_deadline():
-    searching = Searching()
-    deadline = searching.search._deadline
-    searching.search.receive(deadline - 1, battery())
-    assert searching.search._deadline == deadline
-
-
 def test_two_replies_in_a_row_are_required():
     searching = Searching()
     searching.answer(battery())
@@ -97,12 +90,6 @@ def test_two_equal_replies_show_the_model(size, model):
     searching.find_battery()
     assert searching.answer(bytes(size)) is None and searching.line.sent[-1] == MODEL_QUERY
     assert searching.answer(bytes(size)) == (model, 57600)
-
-
-def test_replies_that_differ_need_not_follow_each_other():
-    searching = Searching()
-    searching.find_battery()
-    assert [searching.answer(bytes(size)) for size in (1, 3, 1)] == [None, None, (protocol.CREATE, 57600)]
 
 
 @pytest.mark.parametrize('baud, model', [
@@ -132,73 +119,9 @@ def test_only_a_robot_that_answers_the_battery_query_again_counts_as_one_that_an
         assert len(searching.search.battery_rates) == count
 
 
-def test_a_stream_shows_the_rate():
-    frame = protocol.encode_frame(protocol.CREATE_2, (35,), {'mode': 1})
-    searching = Searching()
-    searching.search.receive(searching.now, frame + frame)
-    assert searching.line.sent[-1] == sequences.PAUSE_STREAM
-    searching.step()
-    # while the model is determined, it is no longer looked for
-    searching.search.receive(searching.now, frame + frame)
-    assert searching.line.sent[-1] == MODEL_QUERY
-
-
-def test_a_search_that_begins_again_starts_with_its_first_round():
-    searching = Searching()
-    for _ in range(7):
-        searching.step()
-    searching.answer(battery())
-    searching.search.begin(searching.now, searching.line, 19200)
-    assert searching.search.rounds == 0 and searching.line.rates[-1] == searching.search.baud == 19200
-    searching.answer(battery())     # the first of two
-    assert searching.line.sent[-1] == sequences.ASK_BATTERY
-
-
 @pytest.mark.parametrize('data, found', [
     (b'\x13\x02\x23\x01', False), (b'\x13\x02\x23\x01\xc7', False), (b'\x13\x02\x23\x01\xc7' * 2, True),
     (b'\x13\x02\x23\x01\xc6' + b'\x13\x02\x23\x01\xc7', False), (b'\x13\x02\x23\x01\xc7\x13', False),
     (b'\x13\x00\xed\x13\x00\xed', True), (b'\x14\x00\xec\x14\x00\xec', False)])
 def test_frames_of_a_stream(data, found):
     assert has_frames(data) == found
-
-
-class WakeLine(Line):
-    """A line with RTS and DTR, or without them."""
-
-    def __init__(self, has_lines):
-        super().__init__()
-        self.has_lines, self.levels = has_lines, []
-
-    def set_wake_lines(self, on):
-        self.levels.append(on)
-        return self.has_lines
-
-
-def test_before_each_further_round_a_robot_is_woken():
-    line, search = WakeLine(True), Search((57600,), wake=True)
-    search.begin(0, line)
-    for rounds in 1, 2:
-        search.tick(search._deadline)
-        assert search.rounds == rounds and line.levels[-1] is False and search.missing == 0
-        for level in False, True:
-            assert line.levels[-1] is level and len(line.rates) == rounds
-            search.tick(search._deadline)
-        assert len(line.rates) == rounds + 1 and line.sent[-1] == sequences.ASK_BATTERY
-    assert line.levels == [False, True] * 2
-
-
-def test_a_line_that_cannot_wake_a_robot_is_asked_once():
-    line, search = WakeLine(False), Search((57600,), wake=True)
-    search.begin(0, line)
-    for _ in range(5):
-        search.tick(search._deadline)
-    assert line.levels == [False] and len(line.rates) == 6 and not search.wake
-
-
-def test_replies_of_an_earlier_search_do_not_count():
-    searching = Searching()
-    searching.find_battery()
-    searching.answer(b'\0')
-    searching.search.begin(searching.now, searching.line, 57600)
-    searching.find_battery()
-    assert searching.answer(b'\0') is None and searching.answer(b'\0') == (protocol.CREATE, 57600)

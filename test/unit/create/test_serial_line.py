@@ -107,23 +107,3 @@ def test_1024_bytes_wait_to_be_sent_and_the_next_are_lost():
     line.from_robot(b'c' * 30, 10 * period)     # ten bytes have left
     assert line.received(SECOND) == bytes(1000) + b'a' * 24 + b'c' * 10
     assert line.next_to_host is None
-
-
-def test_a_pause_of_the_robot_delays_no_byte():
-    line, period = SerialLine(57600), 10 * SECOND // 57600
-    line.from_robot(b'a', 0)
-    line.from_robot(b'b', SECOND)
-    assert line.received(period) == b'a' and line.next_to_host == SECOND + period
-    line.from_host(b'a', 0)
-    line.from_host(b'b', SECOND)
-    assert line.next_to_robot == period and line.receive_byte() == 0x61 and line.next_to_robot == SECOND + period
-
-
-def test_the_bytes_of_different_seeds_are_corrupted_differently():
-    received = []
-    for seed in (1, 1, 2):
-        line = SerialLine(57600, seed)
-        line.corruption = 0.5
-        line.from_robot(bytes(100), 0)
-        received.append(line.received(SECOND))
-    assert received[0] == received[1] != received[2]

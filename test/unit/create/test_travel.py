@@ -102,13 +102,6 @@ def test_the_first_reading_after_a_silence_is_not_doubted():
     assert travel.distance == pytest.approx(0.4)
 
 
-def test_what_was_lost_before_the_first_reading_is_no_travel():
-    counter = CounterTravel(protocol.CREATE, Fractions(KEPT))
-    counter.miss(0.1, Expected(0.02, 0.02))
-    assert counter.update(counters(500, 90), 0.0, STILL, 0.0) == NOWHERE
-    assert counter.update(counters(20, 0), 0.1, Expected(0.02, 0.02), 0.0) == pytest.approx((0.02, 0, 0, 0))
-
-
 @pytest.mark.parametrize('before, after, reset', [
     ((500, 500), (0, 0), True), ((20, 20), (0, 0), False), ((500, 0), (30, 30), True), ((500, 500), (0, 40), False)])
 def test_encoders_near_0_after_others_are_a_reset(before, after, reset):

@@ -4,9 +4,7 @@ from math import cos, pi, sin
 import numpy
 import pytest
 
-from rbx1_nav.estimation.filter import BIAS, YAW
 from rbx1_nav.estimation.inputs import Imu, Odom
-from rbx1_nav.estimation.priors import Limits
 from rbx1_nav.robot.kinematics import ORIGIN, Pose, arc
 from rbx1_nav.units import SECOND
 from sample_priors import IDEAL
@@ -19,21 +17,6 @@ def test_the_estimate_follows_sensors_without_errors_exactly():
     robot.send(100, 0.2, 0.5)
     robot.send(100, -0.1, -1.0)
     assert exact(robot.combined.estimate, robot.pose)
-
-
-def test_the_estimate_starts_at_the_pose_of_the_odometry():
-    robot = Robot()
-    robot.pose = Pose(3.0, -2.0, 1.0)
-    assert exact(robot.send(), robot.pose)
-
-
-def test_the_bias_is_estimated_at_standstill():
-    robot = Robot()
-    robot.send(100, bias=0.01)
-    state = robot.combined.filter.state
-    assert state[BIAS] == pytest.approx(0.01, abs=1e-4)
-    # it turned as little as the wheels report, not by the gyro's 0.02 rad
-    assert abs(state[YAW]) < 1e-4
 
 
 # the order of messages
@@ -77,29 +60,6 @@ def test_a_gyro_may_have_another_rate(rate):
 
 # restarts
 
-def test_messages_from_before_a_reset_do_not_count():
-    robot = Robot()
-    robot.send(100, 0.2)
-    late = [(robot.now - STEP, robot.odom()), (robot.now, robot.odom())]
-    robot.combined.arrivals.last_stamp['odom'] -= 2 * STEP       # as if they had not arrived yet
-    robot.combined.reset(robot.now - 10 * STEP)
-    for stamp, odom in late:
-        robot.combined.add_odom(robot.now, odom._replace(stamp=stamp - 1))
-    assert robot.combined.filter is None
-    robot.pose = ORIGIN
-    assert exact(robot.send(2), ORIGIN) and not robot.warnings
-
-
-def test_on_simulated_time_a_stamp_may_be_far_ahead_of_the_clock():
-    robot = Robot(IDEAL, max_lead=60 * SECOND)
-    for _ in range(100):
-        robot.now += STEP
-        robot.pose = arc(robot.pose, 0.004, 0.01)
-        robot.combined.add_imu(robot.now - 50 * SECOND, Imu(robot.now, 0.5, 3e-6))
-        robot.combined.add_odom(robot.now - 50 * SECOND, robot.odom())
-    assert exact(robot.combined.estimate, robot.pose) and not robot.warnings
-
-
 @pytest.mark.parametrize('there', [Pose(-1.0, 2.0, pi / 2), Pose(0.4, 0.0, 0.0), Pose(0.2, 0.0, 0.5)])
 def test_odometry_that_jumps_restarts_the_filter_there(there):
     robot = Robot()
@@ -119,30 +79,6 @@ def test_a_single_jump_is_an_outlier():
     undisturbed.send()
     undisturbed.send(50, 0.2)
     assert exact(robot.combined.estimate, undisturbed.combined.estimate.pose) and 'ignored' in robot.warnings[0]
-
-
-def test_a_clock_that_jumps_back_restarts_the_filter():
-    robot = Robot()
-    robot.send(50, 0.2)
-    robot.now, robot.pose = SECOND, ORIGIN
-    assert exact(robot.send(), ORIGIN) and 'The clock jumped back' in robot.warnings[0]
-    robot.send(50, 0.2)
-    assert robot.combined.estimate.pose.x == pytest.approx(0.2 * 0.98, rel=1e-3)
-
-
-def test_a_robot_at_3_metres_per_second_is_followed():
-    robot = Robot(IDEAL)
-    robot.send(50)
-    robot.send(200, 3.0, 0.5)
-    assert exact(robot.combined.estimate, robot.pose) and not robot.warnings
-
-
-def test_the_limits_are_parameters():
-    robot = Robot(IDEAL, limits=Limits(max_speed=2.0))
-    robot.send(50)
-    before = robot.send(0)
-    robot.send(1, 4.0)
-    assert exact(robot.combined.estimate, before.pose) and 'ignored' in robot.warnings[0]
 
 
 # set_pose
@@ -175,21 +111,6 @@ def test_set_pose_while_the_odometry_has_timed_out():
     assert exact(robot.combined.estimate, Pose(0.0, 0.0, pi / 2), abs=1e-6)
     # the first of 10 ticks was before the new pose
     assert exact(robot.send(1, 0.2), Pose(0.0, 9 * 0.004, pi / 2), abs=1e-6)
-
-
-def test_set_pose_does_not_change_an_estimate_before_the_next_step():
-    robot = Robot(IDEAL)
-    robot.send(50)
-    robot.now += STEP
-    robot.combined.add_imu(robot.now, Imu(robot.now, 0.0, 3e-6))
-    robot.combined.add_odom(robot.now, robot.odom())        # a step whose estimate nobody has requested yet
-    robot.combined.set_pose(robot.now + STEP, Pose(5.0, 0.0, 0.0), 0.01 * numpy.eye(3))
-    for dropout in range(1, 7):     # the odometry times out, and single readings between dropouts do not make a step
-        later = robot.now + dropout * 6 * SECOND // 5
-        robot.combined.add_imu(later, Imu(later, 0.0, 3e-6))
-    estimate = robot.combined.estimate
-    assert robot.combined.placed is None and estimate.stamp == robot.now and exact(estimate, ORIGIN)
-    assert estimate.covariance[0, 0] < 1e-3
 
 
 def test_set_pose_before_any_odometry_gives_the_initial_pose():

@@ -134,25 +134,6 @@ def test_wheels_and_gyro_do_not_change_the_errors_that_are_considered():
     numpy.testing.assert_allclose(ekf.P[SCALE:, SCALE:], before, rtol=1e-12)
 
 
-def test_a_filter_at_another_pose_knows_the_bias():
-    ekf = Filter(UNKNOWN_FLOOR, ORIGIN)
-    ekf.learn_bias(0.03, 1e-9)
-    turn_by_gyro(ekf, 1.0, 10)
-    deviation = ekf.sigma(BIAS)
-    ekf.place(Pose(1.0, 2.0, 3.0))
-    assert ekf.state == [1.0, 2.0, 3.0, ekf.bias, 0.0] and ekf.rested and ekf.sigma(BIAS) == deviation
-    assert numpy.trace(ekf.covariance) < 1e-8 and not ekf.P[:3, 3:].any()
-
-
-def test_place_sets_the_covariance_and_ends_a_doubt():
-    ekf = Filter(UNKNOWN_FLOOR, ORIGIN)
-    drive(ekf, 6.0, factor=-1.0)
-    covariance = numpy.diag([0.01, 0.02, 0.03])
-    assert any(ekf.doubt)
-    ekf.place(Pose(1.0, 2.0, 3.0), covariance)
-    assert ekf.covariance == pytest.approx(covariance)
-
-
 def test_an_unknown_heading_is_half_a_turn_and_the_position_anywhere_around_the_start():
     ekf = Filter(UNKNOWN_FLOOR, ORIGIN)
     for _ in range(600):
@@ -225,14 +206,6 @@ def test_a_drift_while_the_robot_drives_straight_is_found_and_corrected():
     assert 'imu_data' in doubts and doubts[-1] == ''
     assert ekf.bias == pytest.approx(0.006, abs=0.001) and abs(ekf.state[YAW]) < 0.01   # uncorrected: 0.18
     assert abs(ekf.state[Y]) < 0.05
-
-
-def test_a_difference_that_no_steady_drift_explains_is_none():
-    """A drift would have been taken for a curvature that is now, at three times the speed, as large as the drift."""
-    ekf, _ = straight_on([0.0] * 2000)
-    ekf.drift[CURVATURE] = -75.0    # rad/m: 450 rad in 10 s, 6 m; the drift since the rest, 40 s ago: 10 s * 45 rad/s
-    assert move(ekf, [((0.0, 0.0), (0.005 * 0.02, 1e-10))] * 500, 0.012) == ['both']
-    assert abs(ekf.bias) < 1e-9 and ekf.sigma(BIAS) < 1e-3
 
 
 def test_a_constant_curve_is_no_drift():

@@ -1,5 +1,5 @@
 """The turn rate comes from an IMU with any mounting, or from an IMU that sends an orientation only."""
-from math import cos, inf, nan, pi, radians, sin
+from math import cos, inf, nan, pi, sin
 
 from hypothesis import assume, given, strategies
 import pytest
@@ -58,13 +58,6 @@ def test_a_gyro_with_one_axis_measures_its_share(mounting, tilt, rate):
     assert imu.variance == pytest.approx(1e-6 / cos(tilt) ** 2, rel=1e-6)
 
 
-def test_a_roll_of_3_14_in_the_urdf_file_is_upside_down():
-    mounting = about('x', 3.1416)
-    message = data(0.5, mounting, (UNKNOWN, UNKNOWN, 1e-6))
-    imu = GyroInput().read(message, vertical_axis(mounting))
-    assert imu.rate == pytest.approx(0.5, abs=MARGIN) and imu.variance == pytest.approx(1e-6, rel=1e-6)
-
-
 def test_without_a_mounting_the_z_axis_is_used_unchanged():
     message = ImuData(7, (nan, inf, 0.1), (nan, -1.0, 0.3), None, nan)
     assert GyroInput().read(message) == Imu(7, 0.1, 0.3)
@@ -79,21 +72,6 @@ def test_without_a_mounting_the_z_axis_is_used_unchanged():
 def test_invalid_rates_are_rejected_by_the_axis_that_measures(vertical, field, rates, variances):
     with pytest.raises(RejectedMessage, match=field.replace('[', r'\[')):
         GyroInput().read(ImuData(0, rates, variances, None, 1.0), vertical)
-
-
-def test_the_variance_of_robot_pose_ekf():
-    assert DEFAULT_VARIANCE == pytest.approx(0.00017 ** 2, rel=1e-12)
-
-
-@pytest.mark.parametrize('share, used', [(0.00101, True), (0.00099, False)])
-def test_an_axis_that_measures_less_than_a_thousandth_of_the_rate_is_not_used(share, used):
-    vertical = (share, 0.0, (1 - share ** 2) ** 0.5)
-    message = ImuData(0, (nan, 0.0, 0.5), VARIANCES, None, 1.0)
-    if used:
-        with pytest.raises(RejectedMessage, match='angular_velocity.x: nan'):
-            GyroInput().read(message, vertical)
-    else:
-        assert GyroInput().read(message, vertical).rate == pytest.approx(0.5)
 
 
 @pytest.mark.parametrize('kept', [0, 1, 2])
@@ -111,12 +89,6 @@ def test_rates_without_a_covariance_get_the_one_of_robot_pose_ekf():
     for _ in range(3):
         assert gyro.read(data(0.5, variances=(0.0, 0.0, 0.0))) == Imu(0, 0.5, DEFAULT_VARIANCE)
     assert notes == ['no angular velocity covariance: assuming 0.00017 rad/s']
-
-
-def test_an_axis_without_a_variance_is_left_out_if_another_has_one():
-    mounting = about('x', radians(30))
-    message = data(0.5, mounting, (0.0, 0.0, 1e-6))._replace(rates=(0.0, 0.0, 0.5 * cos(radians(30))))
-    assert GyroInput().read(message, vertical_axis(mounting)).rate == pytest.approx(0.5)
 
 
 @given(mountings, angles, strategies.floats(-3, 3), strategies.floats(0.001, 1.0))
@@ -152,11 +124,6 @@ def test_after_rates_an_orientation_is_rejected():
     expected = r'^angular_velocity_covariance\[0\]: -1: expected an angular velocity, as before'
     with pytest.raises(RejectedMessage, match=expected):
         gyro.read(data(heading=0.1, stamp=0.1)._replace(rates=None))
-
-
-def test_an_orientation_without_a_covariance_gets_the_one_of_robot_pose_ekf():
-    assert [imu.variance for imu in orientations_only(
-        (data(heading=0.0, yaw_variance=0.0), (0.0, 0.0, 1.0)))] == [DEFAULT_VARIANCE]
 
 
 def test_notes_about_the_orientation_are_logged_once():

@@ -3,7 +3,7 @@ from math import pi
 
 import pytest
 
-from rbx1_nav.estimation.inputs import Odom, distance, format_pose, has_jumped
+from rbx1_nav.estimation.inputs import Odom, has_jumped
 from rbx1_nav.estimation.priors import Limits
 from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.units import SECOND
@@ -30,11 +30,3 @@ def test_the_limits_and_the_time_decide(limits, speed, turn_rate, elapsed):
 def test_a_whole_turn_of_the_yaw_is_no_jump():
     assert not has_jumped(odom(0.0, yaw=pi), odom(0.02, yaw=-pi), Limits())
     assert not has_jumped(odom(0.0, yaw=0.0), odom(0.02, yaw=4 * pi), Limits())
-
-
-def test_the_distance_of_two_messages():
-    assert distance(odom(0.0, 1.0, 2.0, 1.0), odom(1.0, 4.0, -2.0)) == 5.0
-
-
-def test_a_pose_as_text():
-    assert format_pose(odom(0.0, 1.0, -2.34567, 0.5)) == '(1.000 m, -2.346 m, 0.500 rad)'

@@ -1,13 +1,10 @@
 """The assumptions of the filter about a floor."""
 from math import inf
 
-import numpy
 import pytest
 
 from rbx1_nav.estimation.combined_odometry import CombinedOdometry
-from rbx1_nav.estimation.filter import BIAS, CURVATURE, FIRST_BIAS, SCALE, SLIP_STRAIGHT, SLIP_TURNING, Filter
 from rbx1_nav.estimation.priors import MIN_SPREADS, UNKNOWN_FLOOR, Limits, Priors, priors
-from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.simulation.surfaces import load_surface
 from rbx1_nav.units import SECOND
 from sample_priors import IDEAL, SURFACES
@@ -39,26 +36,9 @@ def test_an_unknown_floor_has_the_noise_of_a_lab_floor_and_any_slip():
     assert (UNKNOWN_FLOOR.slip_straight_spread, UNKNOWN_FLOOR.slip_turning_spread) == (0.05, 0.3)
 
 
-def test_the_limits_of_a_robot():
-    # the defaults that docs/filter.md lists
-    assert Limits()._replace(gyro_bias=0.0) == (6.0, 6.0, 10.0, 0.0, 0.007)
-    assert Limits().gyro_bias == pytest.approx(0.1745, abs=1e-4)    # 10 degrees/s
-
-
 def test_on_an_unknown_floor_the_limits_are_the_errors_of_the_gyro():
     limits = Limits(max_turn_rate=2.0, gyro_scale_error=0.03)
     assert CombinedOdometry(UNKNOWN_FLOOR, SECOND, limits=limits).prior == UNKNOWN_FLOOR._replace(
         gyro_scale_error=0.03, gyro_measurement_range=2.0)
     known = UNKNOWN_FLOOR._replace(slip_straight=0.01)
     assert CombinedOdometry(known, SECOND, limits=limits).prior == known
-
-
-def test_the_filter_begins_as_uncertain_as_its_priors():
-    prior = Priors(0.02, 0.06, 0.03, 0.07, 0.0, 0.02, inf, 0.0, 0.0, 0.0, 0.04)
-    ekf = Filter(prior, Pose(1.0, 2.0, 3.0), 0.1)
-    assert ekf.state == [1.0, 2.0, 3.0, 0.0, 0.0]
-    assert [ekf.sigma(index) for index in (BIAS, SCALE, SLIP_TURNING, CURVATURE, SLIP_STRAIGHT)] == pytest.approx(
-        [FIRST_BIAS * 0.1, 0.02, 0.07, 0.04, 0.06])
-    # 0.03 mm and 0.03 mrad: the frame begins at this pose
-    assert ekf.covariance == pytest.approx(1e-9 * numpy.eye(3))
-    assert ekf.bias == 0.0 and not ekf.rested

@@ -69,13 +69,6 @@ def test_readings_that_do_not_cover_the_whole_time_measure_no_turn(start, end):
     assert Gyro().report((0.02, 0.5), (0.04, 0.5)).readings.turn(ns(start), ns(end), inf, inf) is None
 
 
-def test_readings_with_a_gap_measure_no_turn():
-    gyro = Gyro().report((0.02, 0.5))
-    gyro.readings.last = Imu(ns(0.04), 0.5, NOISE)      # the one before it was not stored
-    gyro.report((0.06, 0.5))
-    assert gyro.turn(0.0, 0.06) is None
-
-
 @pytest.mark.parametrize('rate, measured', [(1.99, True), (-1.99, True), (2.0, False), (-2.0, False)])
 def test_a_rate_at_the_limit_of_the_measurement_range_is_not_measured(rate, measured):
     gyro = Gyro().report((0.02, rate), (0.04, 0.0))
@@ -94,10 +87,6 @@ def test_after_a_long_interval_the_rate_was_anywhere_between_two_readings(interv
     # usual for this gyro, so that no reading was lost; a uniform distribution has a variance of range^2 / 12
     assert Gyro(rate=0.3).report((interval, 0.9)).turn(0.0, interval) == pytest.approx(
         (0.6 * interval, (NOISE + 0.6 ** 2 / 12) * interval ** 2))
-
-
-def test_after_50_milliseconds_the_rate_has_hardly_changed():
-    assert Gyro(rate=0.3).report((0.05, 0.9)).turn(0.0, 0.05) == pytest.approx((0.9 * 0.05, NOISE * 0.05 ** 2))
 
 
 def test_a_mean_is_the_turn_of_a_long_interval():
@@ -128,22 +117,6 @@ def test_a_gap_that_is_not_within_one_step_is_uncertain_without_the_wheels(befor
     # the error of the rate is the same in all parts of the gap
     assert gyro.turn(start + before, start + gap - after) == pytest.approx(
         (0.0, (NOISE + error ** 2 / gap ** 2 / 3) * part * gap))
-
-
-@pytest.mark.parametrize('gap, lost', [(0.06, False), (0.061, True)])
-def test_readings_are_lost_in_an_interval_of_more_than_one_and_a_half_times_the_usual_one(gap, lost):
-    gyro, start = steady(0.04)
-    gyro.report((start + gap, 0.0))
-    assert (gyro.turn(start, start + gap)[1] > 1e-5) == lost
-
-
-@pytest.mark.parametrize('gap, lost', [(0.0899, False), (0.0901, True)])
-def test_the_usual_interval_is_a_running_mean_over_16_readings(gap, lost):
-    gyro, start = steady(0.04)
-    # the usual interval becomes 0.04 s + 0.32 s / 16
-    gyro.report((start + 0.36, 0.0), (start + 0.36 + gap, 0.0))
-    gyro.readings.turn(ns(start), ns(start + 0.36), inf, inf)
-    assert (gyro.turn(start + 0.36, start + 0.36 + gap)[1] > 1e-5) == lost
 
 
 def moving(rates, at_rest):

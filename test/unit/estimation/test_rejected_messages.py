@@ -1,14 +1,27 @@
 """Messages that the filter rejects have no effect."""
+from math import inf, nan
+
 import numpy
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rbx1_nav.estimation.inputs import Imu, Odom, RejectedMessage
+from rbx1_nav.estimation.inputs import MAX_NUMBER, Imu, Odom, RejectedMessage, check_imu, check_odom
 from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.units import SECOND
 from sample_robot import STEP, Robot
-from test_inputs import BAD_ODOMETRY, BAD_READINGS, with_field
+
+# the fields of an Odometry message in an Odom
+POSE = {'pose.pose.position.x': 'x', 'pose.pose.position.y': 'y', 'pose.pose.orientation': 'yaw'}
+BAD_ODOMETRY = [(field, value) for field in POSE for value in (nan, inf, -inf, 1.001 * MAX_NUMBER)]
+BAD_READINGS = [('angular_velocity.z', nan, 1e-6), ('angular_velocity.z', inf, 1e-6),
+                ('angular_velocity_covariance[8]', 0.1, 0.0), ('angular_velocity_covariance[8]', 0.1, -1.0),
+                ('angular_velocity_covariance[8]', 0.1, nan)]
+
+
+def with_field(odom, field, value):
+    """Return the Odom with one field of the message set to a value."""
+    return odom._replace(pose=odom.pose._replace(**{POSE[field]: value}))
 
 
 def check_rejected(make_message, text, same_time=False):
@@ -89,3 +102,10 @@ def test_no_sequence_of_messages_makes_the_estimate_infinite(messages):
     estimate = robot.combined.estimate
     if estimate:
         assert numpy.isfinite(estimate.pose).all() and numpy.isfinite(estimate.covariance).all()
+
+
+@pytest.mark.parametrize('variance', [1e-12, 1e12])
+@pytest.mark.parametrize('number', [1e6, -1e6])
+def test_numbers_and_variances_at_their_limits_are_accepted(variance, number):
+    check_odom(Odom(0, Pose(number, number, number)))
+    check_imu(Imu(0, number, variance))

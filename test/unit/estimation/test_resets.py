@@ -2,7 +2,7 @@
 import numpy
 import pytest
 
-from rbx1_nav.estimation.inputs import Imu, Odom
+from rbx1_nav.estimation.inputs import Odom
 from rbx1_nav.robot.kinematics import ORIGIN, Pose
 from rbx1_nav.units import SECOND
 from sample_priors import IDEAL
@@ -16,17 +16,6 @@ def test_odometry_from_the_time_of_a_reset_counts(offset, counts):
     robot.combined.reset(robot.now + STEP)
     robot.combined.add_odom(robot.now + STEP, Odom(robot.now + STEP + offset, ORIGIN))
     assert bool(robot.combined.estimate) == counts
-
-
-def test_after_a_reset_odometry_counts_from_the_last_stamp_of_the_gyro_on():
-    robot = Robot(IDEAL)
-    robot.send(10)
-    robot.combined.add_imu(robot.now, Imu(robot.now + 13 * STEP, 0.0, 1e-6))
-    robot.combined.reset(robot.now)
-    robot.send(12, imu=False)
-    assert robot.combined.filter is None and robot.combined.estimate is None
-    robot.pose = Pose(1.0, 0.0, 0.0)
-    assert exact(robot.send(1, imu=False), robot.pose) and not robot.warnings
 
 
 def test_a_reset_forgets_what_was_waited_for_but_not_the_bias():
@@ -78,20 +67,3 @@ def test_jumps_that_do_not_agree_with_each_other_are_outliers():
     robot.pose = ORIGIN
     assert exact(robot.send(2), ORIGIN) and robot.combined.case == 'standstill'
     assert len(robot.warnings) == 3 and all('ignored' in text for text in robot.warnings)
-
-
-def test_a_restart_without_a_reason_is_not_reported():
-    robot = Robot(IDEAL)
-    robot.send(50)
-    robot.combined.restart()
-    assert not robot.warnings and robot.combined.estimate is None
-    robot.combined.restart('another base')
-    assert robot.warnings == ['another base: restarting at the odometry pose']
-
-
-def test_readings_from_before_a_restart_do_not_count():
-    robot = Robot(IDEAL)
-    robot.send(50)
-    robot.send(5, angular=1.0, odom=False)
-    robot.combined.restart()
-    assert not robot.combined.readings.waiting

@@ -5,7 +5,6 @@ import numpy
 import pytest
 
 from rbx1_nav.estimation.combined_odometry import CombinedOdometry
-from rbx1_nav.estimation.filter import BIAS_WALK
 from rbx1_nav.estimation.priors import UNKNOWN_FLOOR
 from rbx1_nav.estimation.inputs import Imu, Odom
 from rbx1_nav.robot.kinematics import ORIGIN, arc
@@ -98,12 +97,6 @@ def test_standstill_wheels_that_report_later_than_the_gyro_are_not_carried():
         error, sigma = robot.go(1.5 + 0.02 * number)
     # 0.04 s of 0.5 rad/s are 1.1 degrees each time
     assert not robot.combined.filter.carried and abs(error) < 3.0 and sigma < 15.0
-
-
-def test_standstill_noise_is_no_drift():
-    robot = Robot()
-    robot.go(60.0)
-    assert robot.combined.filter.walk == BIAS_WALK ** 2
 
 
 def test_a_drifting_bias_makes_the_heading_as_uncertain_as_it_is_wrong():
