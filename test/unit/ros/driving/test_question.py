@@ -36,13 +36,6 @@ def test_it_asks_until_the_answer_makes_sense(terminal, capsys):
     assert capsys.readouterr().out == 'What? wrong: expected right\nWhat? : expected right\nWhat? '
 
 
-def test_a_line_may_arrive_in_pieces_and_in_any_encoding(terminal, capsys):
-    os.write(terminal, b'\xff\nri')
-    threading.Timer(0.2, os.write, [terminal, b'ght\n']).start()
-    assert question.ask('What?', check) == 'right'
-    assert '\ufffd: expected right' in capsys.readouterr().out
-
-
 def test_nobody_answers(terminal):
     os.write(terminal, b'wrong\nri')
     os.close(terminal)

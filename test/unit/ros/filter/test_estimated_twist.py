@@ -108,9 +108,3 @@ def test_a_robot_that_is_carried_may_move_anywhere():
     twist = robot.drive(150, 0.0, 0.0, 1.0)
     assert robot.combined.case == 'carried'
     assert twist.forward_variance == twist.left_variance == DROPOUT_SPEED ** 2
-
-
-def test_no_time_between_two_estimates():
-    robot = Robot(UNKNOWN_FLOOR)
-    robot.drive(50, 0.3, 0.0, 0.0)
-    assert estimate_twist(robot.combined, robot.combined.estimate) is None

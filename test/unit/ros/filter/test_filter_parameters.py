@@ -4,13 +4,8 @@ from math import degrees
 import pytest
 
 from rbx1_nav.config import ConfigError
-from rbx1_nav.estimation.priors import Limits
 from rbx1_nav.ros.filter.ekf_parameters import read_parameters
 from rbx1_nav.ros.node.frames import search_value
-
-
-def test_the_defaults_of_the_limits():
-    assert read_parameters({}).limits == pytest.approx(Limits())
 
 
 def test_each_limit_has_its_unit():

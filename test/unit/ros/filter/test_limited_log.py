@@ -40,10 +40,3 @@ def test_many_kinds_are_two_lines_a_second_and_all_get_their_turn():
     assert 38 <= len(log.lines) <= 41
     assert all(second[0] - first[0] > 0.99 for first, second in zip(log.lines, log.lines[2:]))
     assert all(sum(line.startswith(kind[:2]) for _, line in log.lines) >= 4 for kind in kinds)
-
-
-def test_any_number_of_kinds_needs_little_memory():
-    log = Log()
-    for number in range(10 ** 4):
-        log.limited.add(print, 'x' * number)
-    assert len(log.limited.pending) <= 100

@@ -64,17 +64,6 @@ def test_a_command_between_two_ticks_belongs_to_the_tick_before(world):
     assert [command for _, command in world.lockstep.take()] == [STOP]
 
 
-def test_a_tick_begins_without_a_look_if_all_drivers_wait_for_it(world):
-    world.processes.drivers = {'a'}
-    world.drive(6)      # until the clock is no longer held
-    world.processes.looks = 0
-    world.lockstep.begin()
-    assert not world.processes.looks
-    world.processes.drivers = {'a', 'b'}
-    world.lockstep.begin()
-    assert world.processes.looks
-
-
 def test_a_thread_that_polls_the_time_is_waited_for(world):
     world.lockstep.begin()
     world.processes.poll = [lambda: world.processes.work.append(lambda: world.send('b', MOVE))]
@@ -97,15 +86,6 @@ def test_a_node_that_never_sleeps_is_given_up(world):
     assert len(world.reports) == 1
 
 
-def test_only_the_node_that_does_not_sleep_is_given_up(world):
-    """Not one that happens to be awake when the time is over, such as the base itself."""
-    world.processes.never_sleeps = 'a'
-    end = world.now + 5
-    world.processes.awake = lambda: world.processes.never_sleeps and ('base' if abs(world.now - end) < 0.05 else 'a')
-    world.tick()
-    assert world.reports == [('a', 'did not become idle within 5 s')]
-
-
 def test_a_base_that_was_suspended_itself_gives_nobody_up(world):
     world.processes.work = [lambda: setattr(world, 'now', world.now + 10)]
     world.tick()
@@ -120,54 +100,6 @@ def test_nobody_is_waited_for_at_the_end(world):
     assert world.lockstep.tick == 2 and not world.reports and not world.sleeps
 
 
-def test_the_clock_is_held_at_the_start_of_a_motion_and_now_and_then(world, monkeypatch):
-    def holds(*intervals):
-        """Check the sleeps since the last call; intervals between two commands, which also have a few looks."""
-        times = [seconds for seconds in world.sleeps if seconds > 0.002]
-        world.sleeps.clear()
-        return times == pytest.approx([lockstep.HOLD * interval for interval in intervals], abs=0.001)
-    world.drive(1)
-    assert holds(lockstep.FIRST_HOLD / lockstep.HOLD)
-    world.now += 0.003
-    for _ in range(2):
-        world.tick()                # not without a command
-        world.drive(1)
-    world.drive(5)
-    assert holds(0.005, 0.005)      # the longer one
-    world.tick(('a', STOP))
-    world.drive(1)
-    world.now += 0.003
-    world.drive(2)
-    assert holds(0.004, 0.004)      # a later motion
-    world.tick(('a', STOP))
-    world.drive(5, listen=0.003)
-    world.sleeps.clear()
-    monkeypatch.setattr(world.lockstep.random, 'random', lambda: 0.0)
-    world.drive(1)
-    assert holds(0.003)
-    world.tick(('a', STOP))
-    world.tick()
-    assert holds()
-
-
-def test_the_first_holds_are_not_part_of_the_interval_between_two_commands(world):
-    world.drive(1)
-    world.drive(1, listen=lockstep.FIRST_HOLD + 0.01)
-    world.drive(1)
-    driver, = world.lockstep.drivers.values()
-    assert driver.intervals == pytest.approx([0.001, lockstep.FIRST_HOLD + 0.01], abs=0.001)
-
-
-def test_a_late_clock_changes_nothing_about_the_intervals(world):
-    world.drive(1)
-    for _ in range(4):
-        world.now += 0.02
-        world.tick(listen=-0.01)
-    world.drive(1)
-    driver, = world.lockstep.drivers.values()
-    assert driver.intervals == pytest.approx([0.08], abs=0.002)
-
-
 def test_a_driver_that_sends_while_the_clock_is_held_is_named(world):
     world.drive(2)
     world.send('a', MOVE)
@@ -177,14 +109,6 @@ def test_a_driver_that_sends_while_the_clock_is_held_is_named(world):
         world.send('a', TURN)
         world.tick()
     assert len(world.reports) == 1 and len(world.applied) == 6
-
-
-def test_a_driver_that_wakes_while_the_clock_is_held_is_named_although_it_is_slow(world):
-    world.processes.drivers = {'a'}
-    world.drive(3)
-    world.processes.work.append(lambda: world.send('a', MOVE))      # it is awake, and waits for the processor
-    world.tick()
-    assert world.reports == [('a', UNPROMPTED)]
 
 
 def test_the_first_motion_and_every_stop_need_no_tick(world):
@@ -217,14 +141,6 @@ def test_a_driver_that_never_lets_the_tick_end_is_named(world):
     assert not world.reports
     world.tick(*[('a', MOVE)] * (lockstep.COMMANDS + 1))
     assert world.reports == [('a', 'sends more than 3 commands at once')]
-
-
-def test_one_driver_that_is_named_does_not_affect_another(world):
-    world.tick(('a', MOVE), ('b', MOVE))
-    world.send('a', MOVE)
-    world.tick(('b', FASTER))
-    world.tick(('b', MOVE))
-    assert [name for name, _ in world.reports] == ['a'] and world.applied[-1] == (3, MOVE)
 
 
 def test_a_driver_that_cannot_be_in_step_is_named_if_it_drives(world):

@@ -1,5 +1,4 @@
 """The information of the kernel about other processes, tested with real processes."""
-import itertools
 import os
 import signal
 import socket
@@ -10,9 +9,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from rbx1_nav.ros.lockstep import processes
 from rbx1_nav.ros.lockstep.peers import own_process
-from rbx1_nav.ros.lockstep.processes import Process, awake, runs_since, still_polling
+from rbx1_nav.ros.lockstep.processes import Process, awake, still_polling
 
 LIMIT = 60      # s
 BEGIN = 'import socket, sys, threading, time\nprint("up", flush=True)\n'
@@ -46,48 +44,10 @@ def make_start():
         child.communicate()
 
 
-def test_a_process_that_waits_for_input_sleeps(start):
-    process = Process(start('sys.stdin.read()').pid)
-    wait_for(lambda: not awake([process]))
-
-
 def test_a_process_that_computes_is_awake(start):
     process = Process(start('while True: pass').pid)
     for _ in range(1000):
         assert awake([process]) is process
-
-
-def test_a_thread_that_is_started_later_is_seen(start):
-    child = start('sys.stdin.readline()\nthreading.Thread(target=exec, args=("while True: pass",)).start()\n'
-                  'print("computes", flush=True)\nsys.stdin.read()')
-    process = Process(child.pid)
-    wait_for(lambda: not awake([process]))
-    child.stdin.write(b'\n')
-    child.stdin.flush()
-    child.stdout.readline()
-    for _ in range(1000):
-        assert awake([process]) is process
-    assert len(process.threads) == 2
-
-
-def test_a_thread_that_has_ended_does_not_count(start):
-    child = start('thread = threading.Thread(target=sys.stdin.readline)\nthread.start()\nprint("two", flush=True)\n'
-                  'thread.join()\ntime.sleep(1000)')
-    child.stdout.readline()
-    process = Process(child.pid)
-    wait_for(lambda: len(process.threads) == 2 and not awake([process]))
-    child.stdin.write(b'\n')
-    child.stdin.flush()
-    wait_for(lambda: not awake([process]) and len(process.threads) == 1)
-
-
-def test_the_first_of_several_that_is_awake(start):
-    waits, computes = Process(start('sys.stdin.read()').pid), Process(start('while True: pass').pid)
-    wait_for(lambda: not awake([waits]))
-    for _ in range(100):
-        assert awake([waits, computes]) is computes
-        assert awake([computes, waits]) is computes
-    assert awake([]) is None
 
 
 def test_what_has_been_woken_is_awake_until_it_has_answered(start):
@@ -159,20 +119,6 @@ def test_a_thread_that_polls(start):
         assert not process.polling()
 
 
-def test_a_polling_thread_that_has_not_looked_since(start):
-    child = start('while True: time.sleep(0.001)')
-    process = Process(child.pid)
-
-    # usually immediately
-    wait_for(lambda: still_polling(wait_for(process.polling)))
-    threads = wait_for(process.polling)
-    child.kill()
-    wait_for(lambda: not still_polling(threads))
-    wait_for(lambda: not process.polling())     # also before its parent has noticed
-    child.wait()
-    assert not still_polling(threads)
-
-
 def test_messages_in_transit(start):
     child = start('for line in sys.stdin: print("read", flush=True)')
     process = Process(child.pid)
@@ -191,39 +137,6 @@ def test_messages_in_transit(start):
     assert awake([process], SimpleNamespace(busy=run_and_sleep)) is process
 
 
-def test_a_polling_thread_is_found_although_the_caller_is_suspended(start, monkeypatch):
-    process = Process(start('while True: time.sleep(0.001)').pid)
-    thread, = process.threads.values()
-    ran = thread.ran
-    wait_for(lambda: os.pread(thread.files[2], 64, 0) != ran)
-    times = itertools.count()       # a second between any two steps of the caller
-    monkeypatch.setattr(processes.time, 'monotonic', lambda: next(times))
-    assert thread.polls()
-
-
-def test_a_runnable_thread_polls_however_long_it_has_not_run(start):
-    process = Process(start('while True: pass').pid)
-    thread, = process.threads.values()
-    thread.look = lambda: thread.ran    # as if it had been waiting for the processor
-    thread.changed = -1000.0
-    assert wait_for(thread.polls)
-
-
-def test_how_often_threads_have_run(start):
-    child = start('for line in sys.stdin: print("read", flush=True)')
-    process = Process(child.pid)
-    assert process.has_new_threads() and not process.has_new_threads()
-    wait_for(lambda: not awake([process]))
-    (thread, _), = before = process.runs()
-    assert runs_since(before) == [(thread, 0)]
-    child.stdin.write(b'\n')
-    child.stdin.flush()
-    child.stdout.readline()
-    assert runs_since(before)[0][1] > 0
-    process.close()
-    assert runs_since(before) == []
-
-
 def test_a_thread_that_waits_for_another_one(start):
     process = Process(start('threading.Thread(target=sys.stdin.read).start()\nthreading.Event().wait()').pid)
     wait_for(lambda: not awake([process]) and len(process.threads) == 2)
@@ -236,21 +149,6 @@ def test_a_main_thread_on_wall_time(start):
         process = Process(start(code + rest).pid)
         wait_for(lambda: not awake([process]) and len(process.threads) == 2)
         assert process.main_sleeps_briefly() == expected
-
-
-def test_a_thread_that_was_found_to_poll(start):
-    """As ros::Timer does: it waits for a condition for a millisecond, again and again."""
-    process = Process(start('condition = threading.Condition()\nwith condition:\n'
-                            '    while True: condition.wait(0.001)').pid)
-    wait_for(lambda: not awake([process]))
-    thread, = process.threads.values()
-    thread.is_poller = True
-    thread.look()
-    wait_for(process.polling)
-    thread.look = lambda: thread.ran        # as if it had not run for long
-    thread.is_poller, thread.changed = True, -1000.0
-    wait_for(lambda: not thread.polls())
-    assert not thread.is_poller
 
 
 def test_the_thread_that_looks_does_not_count():
@@ -282,18 +180,3 @@ def test_a_process_that_ran_while_another_one_was_looked_at_is_awake():
     # it is asleep when it is checked; then the sender wakes it, and is itself asleep when it is checked
     woken = SimpleNamespace(cpu_time=lambda: 7, sleeps=lambda: times.append(6) is None, ended=lambda: False)
     assert awake([woken, sender]) is sender
-
-
-def test_a_thread_that_has_run_since_does_not_poll_any_more():
-    thread = SimpleNamespace(polls=lambda: True, ran=b'2')
-    assert still_polling([(thread, b'2')]) and still_polling([(thread, b'1'), (thread, b'2')])
-    assert not still_polling([(thread, b'1')]) and not still_polling([])
-
-
-def test_all_files_are_closed(start):
-    child = start('sys.stdin.read()')
-    before = len(os.listdir('/proc/self/fd'))
-    process = Process(child.pid)
-    assert len(os.listdir('/proc/self/fd')) > before
-    process.close()
-    assert len(os.listdir('/proc/self/fd')) == before

@@ -169,17 +169,6 @@ def test_a_node_that_starts_is_watched_until_it_waits(world):
     assert world.watch.awake() is None
 
 
-def test_a_node_that_starts_may_sleep_by_the_wall_clock(world, monkeypatch):
-    world.listen(world.connect('/node', 'time.sleep(1000)'))
-    process = world.watch.processes['/node']
-    wait_for(process.main_sleeps_briefly)
-    for _ in range(10):
-        assert world.watch.awake() == '/node'
-    monkeypatch.setattr(watch, 'START_SLEEP', 0)
-    world.watch.starting = {'/node': None}      # as if it had begun now
-    world.settle()
-
-
 def test_a_publisher_that_has_registered_is_waited_for(world, monkeypatch):
     monkeypatch.setattr(watch, 'call', lambda *_: ([['/cmd_vel', ['/node', '/old']]], [], []))
     node = world.connect('/node')
@@ -192,13 +181,6 @@ def test_a_publisher_that_has_registered_is_waited_for(world, monkeypatch):
     assert not world.watch.starting
 
 
-def test_a_publisher_that_never_connects_is_given_up(world, monkeypatch):
-    monkeypatch.setattr(watch, 'call', lambda *_: ([['/cmd_vel', ['/node']]], [], []))
-    monkeypatch.setattr(watch, 'CONNECT_TIME', 0)
-    world.listen(world.connect('/node'))
-    world.settle()
-
-
 def test_a_driver_that_is_forgotten_holds_the_clock_no_more(world):
     """There is no update() in between: Lockstep forgets a node while it waits for it, and then looks again."""
     world.drive(world.connect('/driver', 'while True: pass'))
@@ -208,37 +190,3 @@ def test_a_driver_that_is_forgotten_holds_the_clock_no_more(world):
     # until it connects again
     world.drive(world.connect('/driver'))
     assert world.watch.drivers == {'/driver'}
-
-
-def test_a_node_that_only_starts_is_forgotten_without_a_word(world):
-    world.listen(world.connect('/node', 'while True: pass'))
-    wait_for(lambda: world.watch.awake() == '/node')
-    assert not world.watch.forget('/node')
-    assert world.watch.awake() is None
-
-
-def test_a_driver_that_has_been_started_again_is_watched(world):
-    world.drive(world.connect('/driver'))
-    world.drive(world.connect('/driver', 'while True: pass'))
-    assert world.watch.processes['/driver'].folder == '/proc/%d/task/' % world.children[1].pid
-
-
-def test_each_connection_has_its_own_header(world):
-    world.drive(world.connect('/driver'), world.connect('/driver'))
-    header = world.commands.connections[0].header
-    assert world.watch.is_connected(header)
-    world.drive(world.commands.connections[1])
-    assert not world.watch.is_connected(header)
-
-
-def test_threads_that_run_although_nothing_was_delivered(world):
-    world.drive(world.connect('/timer', 'import threading\nc = threading.Condition()\nwith c:\n'
-                                        '    while True: c.wait(0.001)'))
-    assert world.watch.have_new_threads() and not world.watch.have_new_threads()
-    world.settle()
-    runs = world.watch.runs()
-    assert world.watch.runs('/timer') and not world.watch.runs('/other')
-    (thread, count), = runs
-    wait_for(lambda: thread.runs() > count + 1)
-    assert not world.watch.find_pollers(runs) and thread.is_poller
-    wait_for(lambda: world.watch.senders(runs) == {thread})    # it may be running

@@ -61,17 +61,3 @@ def test_a_connection_that_the_node_has_closed_is_made_again(node):
         node.connections[0].shutdown(socket.SHUT_RDWR)
         assert server.call('getPid') == 7
     assert len(node.connections) == 2
-
-
-def test_a_node_that_does_not_answer_is_called_by_a_new_connection():
-    with socket.socket() as listener:
-        listener.bind(('127.0.0.1', 0))
-        listener.listen()
-        with Server('http://127.0.0.1:%d/' % listener.getsockname()[1], timeout=0.05) as server:
-            for _ in range(2):
-                with pytest.raises(OSError):
-                    server.call('getPid')
-                listener.accept()[0].close()
-            listener.close()
-            with pytest.raises(ConnectionRefusedError):
-                server.call('getPid')

@@ -51,15 +51,6 @@ def test_a_peer_that_does_not_read_closes_its_window(pair):
     assert read_connection(sender).unacknowledged > 0
 
 
-def test_a_peer_that_has_gone(pair):
-    sender, receiver = pair
-    receiver.close()
-    wait_for(lambda: not read_connection(sender).established)
-    sender.close()
-    with pytest.raises(OSError):
-        read_connection(sender)
-
-
 def test_silence_begins_when_something_is_to_be_acknowledged_and_ends_with_an_acknowledgement():
     timer = AcknowledgementTimer()
     for now, unacknowledged, acknowledged, silence in ((10, 0, 100, 0), (11, 52, 100, 0), (11.5, 104, 100, 0.5),

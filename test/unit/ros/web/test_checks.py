@@ -2,8 +2,7 @@
 import pytest
 
 from rbx1_nav.config import ConfigError
-from rbx1_nav.ros.web.checks import (
-    HostCheck, RateLimit, check_address, check_port, make_token, same_token, split_host)
+from rbx1_nav.ros.web.checks import HostCheck, RateLimit, check_address, check_port, make_token, same_token
 
 LOCAL = HostCheck('localhost', {'desk'})
 EVERYWHERE = HostCheck('0.0.0.0', {'desk', 'desk.local'})
@@ -36,15 +35,6 @@ def test_all_addresses_of_the_machine():
         assert EVERYWHERE.accepts(host, f'http://{host}')
     # a name of which this machine knows nothing may have been rebound to its address
     assert not EVERYWHERE.accepts('evil.example', None)
-
-
-def test_the_given_address():
-    check = HostCheck('192.168.1.5')
-    assert check.accepts('192.168.1.5:8080', None) and not check.accepts('192.168.1.6:8080', None)
-
-
-def test_a_port_is_not_part_of_the_host():
-    assert split_host('localhost:8080') == 'localhost' and split_host('[::1]:8080') == '::1'
 
 
 def test_a_token():

@@ -1,5 +1,5 @@
 """Paths, speeds and log lines, thinned out and bounded."""
-from rbx1_nav.ros.web.history import LOG_LINES, LOG_TEXT, PATH_POINTS, Counter, Log, Path, Speeds
+from rbx1_nav.ros.web.history import PATH_POINTS, Counter, Log, Path, Speeds
 
 
 def test_a_path_has_points_at_a_distance():
@@ -42,19 +42,3 @@ def test_a_steady_speed_is_thinned_out_and_its_end_kept():
     speeds.sample(2.6, 0.1, 0.0)
     # a sample a second; and the last one before the change, for the line between the two to be right
     assert speeds.since(0) == [[0.0, 0.2, 0.0], [1.0, 0.2, 0.0], [2.0, 0.2, 0.0], [2.5, 0.2, 0.0], [2.6, 0.1, 0.0]]
-
-
-def test_a_command_holds_until_the_next():
-    speeds = Speeds(Counter(), steps=True)
-    speeds.sample(1.0, 0.0, 0.0)
-    speeds.sample(5.0, 0.2, 0.0)
-    assert speeds.since(0) == [[1.0, 0.0, 0.0], [5.0, 0.0, 0.0], [5.0, 0.2, 0.0]]
-
-
-def test_the_log_is_bounded():
-    log = Log(Counter())
-    for number in range(2 * LOG_LINES):
-        log.line(2, number, '/node', 10 * LOG_TEXT * 'x')
-    lines = log.since(0)
-    assert len(lines) == LOG_LINES and lines[-1][1] == 2 * LOG_LINES - 1
-    assert all(len(line[3]) <= LOG_TEXT for line in lines)

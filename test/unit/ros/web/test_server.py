@@ -100,12 +100,6 @@ def test_foreign_requests_are_refused(server, path, headers):
     assert status(get(server, path, **headers)) == 403
 
 
-def test_two_hosts_are_refused(server):
-    answer = exchange(server, f'GET / HTTP/1.1\r\nHost: localhost:{server.port}\r\nHost: evil.example\r\n'
-                              'Connection: close\r\n\r\n'.encode())
-    assert status(answer) in (400, 403)
-
-
 def connect(server, **headers):
     """A WebSocket to the server."""
     return websocket_connect(HTTPRequest(f'ws://localhost:{server.port}/socket', headers=headers))
@@ -124,15 +118,6 @@ def test_a_socket(server):
         assert time.monotonic() < end
 
 
-@pytest.mark.parametrize('headers', [{'Host': 'evil.example'}, {'Origin': 'http://evil.example'}])
-def test_a_foreign_socket_is_refused(server, headers):
-    async def talk():
-        with pytest.raises(HTTPClientError, match='403'):
-            await connect(server, **headers)
-    asyncio.run(talk())
-    assert not list(server.connections)[0].browsers
-
-
 def test_no_socket_when_there_are_too_many(server):
     list(server.connections)[0].full = True
 
@@ -149,13 +134,6 @@ def test_a_large_message_ends_the_socket(server):
         assert await connection.read_message() is None
     asyncio.run(talk())
     assert not list(server.connections)[0].messages
-
-
-def test_a_large_request_is_refused(server):
-    try:
-        assert status(get(server, '/', X=20000 * 'x')) in (400, 431, None)
-    except ConnectionError:
-        pass    # closed before it has read all of it
 
 
 def test_a_new_connection_replaces_the_oldest(server):
@@ -178,8 +156,3 @@ def test_a_connection_that_sends_nothing_is_closed(monkeypatch):
     server.start()
     assert exchange(server, b'') == '' and exchange(server, b'GET / HT') == ''
     server.stop()
-
-
-def test_a_port_that_is_taken_is_an_error(server):
-    with pytest.raises(OSError):
-        PageServer(FOLDER, HostCheck('localhost'), {'/socket': Connections()}, 'localhost', server.port)

@@ -48,15 +48,6 @@ def test_a_frame(state):
     assert frame['speeds']['commanded'][0] == [0.02, 0.2, 0]
 
 
-def test_a_second_frame_has_only_what_is_new(state):
-    drive(state)
-    browser = Browser(state)
-    browser.frame()
-    state.move('odometry', motion(101.1, 0.21, linear=0.2), 101.1)
-    frame = browser.frame()
-    assert 'status' not in frame and 'paths' not in frame and frame['poses']['odometry'] == [0.21, 0, 0]
-
-
 def test_a_browser_that_slept_gets_all_of_it(state):
     awake, asleep = Browser(state), Browser(state)
     asleep.frame()
@@ -91,23 +82,6 @@ def test_late_messages_of_before_a_reset_are_ignored(state):
     state.move('odometry', motion(101.02), 101.02)
     state.move('odometry', motion(101.04, 0.1), 101.04)     # fast simulated time
     assert Browser(state).frame()['paths']['odometry'] == [[0, 0, 0], [0.1, 0, 0]]
-
-
-def test_a_run_that_leads_back_to_its_start_is_kept(state):
-    drive(state)
-    for source in 'odometry', 'truth':
-        state.move(source, motion(102.0, y=0.002), 102.0)
-    state.reset(102.1)
-    state.move('odometry', motion(102.2), 102.2)
-    assert Browser(state).frame()['status']['before']['truth'] == [0, 0.002, 0]
-
-
-def test_a_reset_at_the_start_keeps_the_run_before(state):
-    drive(state)
-    state.reset(101.1)
-    state.move('odometry', motion(101.2), 101.2)
-    state.reset(105.0)
-    assert Browser(state).frame()['status']['before']['odometry'] == [0.2, 0, 0]
 
 
 @pytest.mark.parametrize('first', [motion(5.0), motion(101.1, x=-3.0)], ids=['time goes back', 'the pose jumps'])
@@ -156,17 +130,6 @@ def test_a_source_that_is_silent_vanishes(state):
     assert state.hears('odometry') and not state.hears('truth')
 
 
-def test_a_source_is_heard_after_a_reset_but_not_of_another_base(state):
-    drive(state)
-    state.reset(101.0)
-    assert Browser(state).frame()['poses'] == {} and state.hears('truth')
-    state.tick(101.0 + SILENCE + 0.1)
-    assert not state.hears('truth')
-    drive(state, 110.0)
-    state.connected()
-    assert not state.hears('truth')
-
-
 @pytest.mark.parametrize('wrong', [motion(1.0, x=nan), motion(nan), motion(1.0, linear=inf), motion(1.0, yaw=-inf)])
 def test_what_is_not_finite_is_ignored(state, wrong):
     state.move('odometry', wrong, 0.0)
@@ -178,12 +141,3 @@ def test_simulated_time_is_measured(state):
     for tick in range(300):
         state.move('odometry', motion(tick * 0.2), tick * 0.02)
     assert state.factor.value == pytest.approx(10)
-
-
-def test_the_status_is_sent_when_it_changes(state):
-    browser = Browser(state)
-    browser.frame()
-    state.set_status(surface='hard_floor')
-    assert browser.frame()['status']['surface'] == 'hard_floor'
-    state.set_status(surface='hard_floor')
-    assert 'status' not in browser.frame()

@@ -1,7 +1,7 @@
 """A Stop is answered when the odometry reports that the robot is stationary, or with what is missing."""
 import pytest
 
-from rbx1_nav.ros.web.controls import LIMIT, LOG_PERIOD, STOP_NEEDS_TOKEN
+from rbx1_nav.ros.web.controls import LIMIT, STOP_NEEDS_TOKEN
 from test_connections import TOKEN, View
 
 
@@ -74,16 +74,6 @@ def test_stops_are_one_while_one_is_pending(view):
     view.connections.send_frames()      # a node may have begun to drive since the first search
     assert view.system.calls == 2 * ['shut down']
     assert all(len(answer(view, socket)) == 1 for socket in sockets)
-
-
-def test_the_log_names_who_stops_again_and_again(view):
-    socket = view.connect('')
-    view.connections.browsers[socket].address = '192.168.1.7'
-    for _ in range(20):
-        view.send(socket, type='stop')
-        view.now += LOG_PERIOD / 10
-        answer(view, socket)
-    assert view.log == 2 * ['Stop from 192.168.1.7']
 
 
 def test_stop_needs_the_token_if_the_parameter_says_so(view):

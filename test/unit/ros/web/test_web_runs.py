@@ -53,17 +53,6 @@ def begun(pid_file):
     return pid_file.exists() and pid_file.read_text()
 
 
-def test_the_script_gets_the_remappings(started, tmp_path):
-    _, _, pid_file, _ = started
-    runs = Runs(str(tmp_path), lambda *_: None, lambda: None, {'/cmd_vel': '/other/cmd_vel'})
-    runs.start('timed', lambda _: None)
-    wait_for(lambda: begun(pid_file))
-    with open(f'/proc/{begun(pid_file)}/cmdline', encoding='utf-8') as file:
-        assert file.read().split('\0')[-2] == '/cmd_vel:=/other/cmd_vel'
-    runs.stop()
-    wait_for(lambda: not runs.busy)
-
-
 def test_a_run(started):
     runs, changes, pid_file, _ = started
     assert runs.start('timed', lambda _: None)
@@ -105,16 +94,6 @@ def test_stop_before_the_script_is_started(started):
     runs, changes, pid_file, _ = started
     runs.start('timed', lambda _: runs.stop())      # while the robot is put back
     wait_for(lambda: changes[1:] == [('timed', 'stopped')])
-    assert not pid_file.exists()
-
-
-def test_a_reset_that_fails(started):
-    runs, changes, pid_file, _ = started
-
-    def fail(_):
-        raise OSError('no such service')
-    runs.start('timed', fail)
-    wait_for(lambda: changes[1:] == [('timed', 'not started: no such service')])
     assert not pid_file.exists()
 
 
