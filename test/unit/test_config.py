@@ -3,7 +3,7 @@ from math import inf, nan
 
 import pytest
 
-from rbx1_nav.config import ConfigError, Section, load_yaml, show, show_name, suggestion
+from rbx1_nav.config import ConfigError, Section, load_yaml, show_name, suggestion
 
 
 def rejection(function, *arguments, **options):
@@ -34,12 +34,6 @@ def test_other_text_gets_no_hint(text):
 @pytest.mark.parametrize('value', [0, 0.49, 11, -1, nan, inf, -inf, 1e-320, True, None, [1.0]])
 def test_a_number_is_in_its_range(value):
     assert rejection(number, 'rate', value) == f'rate: {value!r}: expected a width from 0.5 to 10 in m'
-
-
-@pytest.mark.parametrize('value', [10 ** 400, -10 ** 400, 1 << 20000, 'x' * 10 ** 6, '1' * 400, [[1] * 10 ** 6] * 1000],
-                         ids=lambda value: type(value).__name__)
-def test_a_huge_value_is_shown_in_short(value):
-    assert len(rejection(number, 'rate', value)) < 400
 
 
 def test_a_number_is_a_float_and_both_ends_belong_to_the_range():
@@ -103,12 +97,6 @@ def test_a_section_is_a_mapping(values):
 def test_a_key_is_shown_in_one_line(key, shown):
     assert Section({key: 1}, 'base').unknown() == [f'base/{shown}'] and show_name(key) == shown
     assert rejection(Section({key: 0}).flag, key, True).startswith(f'{shown}: 0: ')
-
-
-def test_a_mapping_that_contains_itself_is_shown():
-    values = {}
-    values['self'] = [values]
-    assert len(show(values)) < 200
 
 
 @pytest.mark.parametrize('text', ['a: [', '\0', '!!bool x', "!!int ''", '!!timestamp x', '? {a: b}', '[' * 10 ** 5,

@@ -65,33 +65,6 @@ def test_a_process_that_is_killed_is_an_error(many):
         list(many)
 
 
-@pytest.fixture(name='handler')
-def set_handler():
-    """Handle SIGTERM in this process, as the nodes do."""
-    before = signal.signal(signal.SIGTERM, lambda *_: None)
-    yield
-    signal.signal(signal.SIGTERM, before)
-
-
-def signals(pid, key):
-    """Return the mask of signals that a process ignores (SigIgn) or handles (SigCgt)."""
-    with open(f'/proc/{pid}/status', encoding='ascii') as file:
-        return next(int(line.split()[1], 16) for line in file if line.startswith(key))
-
-
-@pytest.mark.usefixtures('handler', 'many')
-def test_the_processes_leave_ctrl_c_to_their_parent_but_can_be_terminated():
-    children = [child.pid for child in multiprocessing.active_children()]
-    assert children and signals(os.getpid(), 'SigCgt') & 1 << signal.SIGTERM - 1
-    deadline = time.monotonic() + 60    # a process may still be starting
-    while time.monotonic() < deadline and not all(
-            signals(pid, 'SigIgn') & 1 << signal.SIGINT - 1 and not signals(pid, 'SigCgt') & 1 << signal.SIGTERM - 1
-            for pid in children):
-        time.sleep(0.01)
-    assert all(signals(pid, 'SigIgn') & 1 << signal.SIGINT - 1 for pid in children)
-    assert not any(signals(pid, 'SigCgt') & 1 << signal.SIGTERM - 1 for pid in children)
-
-
 KILLED = """
 import os, signal, sys
 sys.path[:0] = sys.argv[1:]

@@ -7,7 +7,7 @@ import signal
 
 import pytest
 
-from rbx1_nav.batch.cases import RESULTS, chunks, combine, read_sweep
+from rbx1_nav.batch.cases import RESULTS, chunks, combine
 from rbx1_nav.batch.runs_file import RunsFile
 from rbx1_nav.config import ConfigError
 
@@ -103,17 +103,3 @@ def test_a_full_disk_leaves_complete_chunks(tmp_path):
     left = path.read_bytes()
     assert 2000 < len(left) <= 3000 and content.startswith(left) and left.count(b'\n') % 2 == 1
     assert not [name for name in os.listdir(tmp_path) if name not in ('a.csv', 'a.csv.json')]
-
-
-def test_each_column_of_a_sweep_is_part_of_the_name_of_a_run(tmp_path):
-    combinations = combine({'ideal': None}, read_sweep([], []) or {'linear_speed': [0.1, 0.2]})
-    sweep = list(chunks(combinations, ['timed'], range(2)))
-    file = RunsFile(str(tmp_path / 'a.csv'), COMMAND, ['linear_speed (m/s)'])
-    assert not list(file.read(sweep))
-    for chunk in sweep:
-        file.append(chunk, rows(chunk))
-    file.file.close()
-    lines = (tmp_path / 'a.csv').read_text().splitlines()
-    assert [line.split(',')[:4] for line in lines] == [
-        ['method', 'surface', 'linear_speed (m/s)', 'seed'], *(['timed', 'ideal', speed, seed]
-                                                               for speed in ('0.1', '0.2') for seed in '01')]

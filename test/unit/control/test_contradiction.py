@@ -1,6 +1,4 @@
 """Commands of several senders contradict each other if they alternate and differ."""
-import pytest
-
 from rbx1_nav.control.gate import Senders
 from rbx1_nav.units import SECOND
 
@@ -59,53 +57,3 @@ def test_a_clock_that_jumps_back():
     base = Base()
     base.send('a', 0.2, 0.0, after=100 * SECOND), base.send('b', 0.0, 1.0)
     assert base.send('a', 0.2, 0.0, after=-50 * SECOND) is None
-
-
-def test_commands_of_the_same_moment():
-    base = Base()
-    assert [base.send(name, float(name == 'a'), 0.0, after=0) for name in 'ab'] == [None] * 2
-    assert base.send('a', 1.0, 0.0, after=0) == 'a sends 1 m/s, 0 rad/s, b sends 0 m/s, 0 rad/s'
-    assert base.send('b', 0.0, 0.0) and base.senders.contradictions == 2
-
-
-@pytest.mark.parametrize('silence, contradicts', [(SECOND // 2, True), (SECOND // 2 + 1, False)])
-def test_a_sender_gives_up_control_after_half_a_second_of_silence(silence, contradicts):
-    base = Base()
-    base.send('a', 0.2, 0.0), base.send('b', 0.0, 1.0)
-    assert bool(base.send('a', 0.2, 0.0, after=silence - TICK)) is contradicts
-
-
-def test_the_text_names_the_sender_of_the_latest_command():
-    base = Base()
-    for name in 'abc':
-        assert base.send(name, float(ord(name)), 0.0) is None
-    assert base.send('a', 0.0, 0.0) == 'a sends 0 m/s, 0 rad/s, c sends 99 m/s, 0 rad/s'
-    assert base.send('b', 0.0, 0.5) == 'b sends 0 m/s, 0.5 rad/s, a sends 0 m/s, 0 rad/s'
-
-
-def test_a_third_sender_does_not_hide_a_contradiction():
-    base = Base()
-    for name in 'abc':
-        base.send(name, float(name == 'a'), 0.0)
-    assert base.send('a', 1.0, 0.0) and base.send('b', 0.0, 0.0)
-
-
-def test_a_first_command_counts_although_its_connection_is_not_listed_yet():
-    base = Base()
-    live = base.live
-    base.send('a', 0.2, 0.0)
-    base.live = {'b': live['b']}
-    base.senders.contradiction(base.now, base.live['b'], 'b', (0.0, 1.0), lambda: [live['a']])
-    base.live = live
-    base.send('a', 0.2, 0.0)
-    assert base.send('b', 0.0, 1.0)
-
-
-def test_how_long_a_contradiction_is_recent():
-    base = Base()
-    assert base.senders.recent(0, SECOND) is None
-    for name in 'aba':
-        text = base.send(name, float(name == 'a'), 0.0)
-    assert [base.senders.recent(base.now + age, SECOND) for age in (0, SECOND)] == [text] * 2
-    assert base.senders.recent(base.now + SECOND + 1, SECOND) is None
-    assert base.senders.recent(base.now - 1, SECOND) is None    # the clock jumped back

@@ -16,24 +16,11 @@ def make_gate(linear=inf, angular=inf, timeout=SECOND):
     return CommandGate(Limits(linear, angular), timeout)
 
 
-def test_a_gate_begins_without_a_command():
-    gate = make_gate()
-    assert (gate.linear, gate.angular) == (0.0, 0.0) and not gate.moving
-    assert gate.command_time is None and gate.rejected == gate.clamped == 0
-
-
 def test_a_command_within_the_limits_is_in_force_unchanged():
     gate = make_gate(0.3, 0.5)
     assert not gate.command(5, -0.3, 0.5)
     assert (gate.linear, gate.angular, gate.command_time) == (-0.3, 0.5, 5)
     assert gate.moving and gate.clamped == 0
-
-
-@pytest.mark.parametrize('linear, angular, moving', [(0.1, 0.0, True), (0.0, -0.1, True), (0.0, 0.0, False)])
-def test_any_speed_other_than_0_is_a_motion(linear, angular, moving):
-    gate = make_gate()
-    gate.command(0, linear, angular)
-    assert gate.moving is moving
 
 
 @pytest.mark.parametrize('command, value', [
@@ -47,12 +34,6 @@ def test_values_that_are_not_finite_or_too_large_are_rejected(command, value):
     assert str(error.value) == f'{value}: expected finite numbers of at most 1e+06'
     assert (gate.linear, gate.angular) == (0.0, 0.0) and not gate.moving
     assert (gate.rejected, gate.command_time) == (1, 7)
-
-
-def test_the_largest_command_is_accepted():
-    gate = make_gate()
-    assert not gate.command(0, MAX_COMMAND, -MAX_COMMAND, (MAX_COMMAND,))
-    assert (gate.linear, gate.angular) == (MAX_COMMAND, -MAX_COMMAND)
 
 
 def test_velocities_that_the_base_cannot_follow_do_not_change_the_command():
@@ -85,26 +66,7 @@ def test_a_command_expires_a_timeout_after_its_arrival():
     assert gate.expiry == 4 * SECOND + SECOND // 2 and gate.command_time == 4 * SECOND
 
 
-def test_a_command_that_is_clamped_counts_each_time():
-    gate = make_gate(0.3, 0.5)
-    assert gate.command(0, 0.4, 0.0) and gate.command(1, 0.4, 0.0) and gate.clamped == 2
-
-
 def test_without_a_timeout_a_command_never_expires():
     gate = make_gate(timeout=0)
     gate.command(3 * SECOND, 0.2, 0.0)
     assert gate.expiry == inf
-
-
-def test_halt_ends_the_motion_and_keeps_the_age_of_the_command():
-    gate = make_gate()
-    gate.command(7, 0.2, 0.3)
-    gate.halt()
-    assert (gate.linear, gate.angular, gate.command_time) == (0.0, 0.0, 7)
-
-
-def test_forget_ends_the_motion_and_drops_the_age_of_the_command():
-    gate = make_gate()
-    gate.command(7, 0.2, 0.3)
-    gate.forget()
-    assert (gate.linear, gate.angular, gate.command_time) == (0.0, 0.0, None)

@@ -17,11 +17,6 @@ def make_locked():
     return lockout
 
 
-def test_everybody_is_obeyed_before_an_event():
-    lockout = Lockout(SILENCE)
-    assert not any(lockout.refuses(time, name, True) for time in range(5) for name in 'ab')
-
-
 def test_a_sender_that_goes_on_is_refused_for_as_long_as_it_does(locked):
     assert all(locked.refuses(time, 'driver', True) for time in range(100, 5000, 20))
     assert locked.reason == 'a wheel dropped'
@@ -48,16 +43,6 @@ def test_the_next_event_concerns_everybody_again(locked):
     assert not locked.refuses(120, 'driver', False)
     locked.lock('the robot was reset')
     assert locked.refuses(140, 'driver', True) and locked.reason == 'the robot was reset'
-
-
-def test_there_is_no_reason_before_the_first_event():
-    assert Lockout(SILENCE).reason == ''
-
-
-def test_a_sender_is_not_forgotten_among_many_until_it_has_been_silent_for_longer(locked):
-    for number in range(30):
-        assert not locked.refuses(90 + SILENCE, f'other {number}', True)
-    assert locked.refuses(90 + SILENCE, 'driver', True)
 
 
 class Name(str):

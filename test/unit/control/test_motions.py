@@ -12,10 +12,6 @@ def test_motions_have_the_numbers_of_the_tutorial():
     assert [(m.linear, m.angular) for m in motions] == [(0.2, 0.0), (0.0, 1.0)] * 2
 
 
-def test_half_the_turning_speed_takes_twice_the_ticks():
-    assert out_and_back(0.2, 1.0, 0.5, pi, 50)[1].ticks == 314
-
-
 @pytest.mark.parametrize('goal, speed, rate, expected', [(0.3, 0.1, 50, 150), (1.0, 0.3, 50, 166), (0.1, 0.5, 5, 1)])
 def test_ticks_are_rounded_down_but_float_error_costs_none(goal, speed, rate, expected):
     assert ticks(goal, speed, rate) == expected
@@ -25,12 +21,6 @@ def test_ticks_are_rounded_down_but_float_error_costs_none(goal, speed, rate, ex
 def test_a_motion_shorter_than_a_tick_or_longer_than_a_day_is_rejected(goal, speed):
     with pytest.raises(ValueError, match='expected from 1 to 100000000'):
         ticks(goal, speed, 50)
-
-
-def test_the_longest_motion_is_accepted():
-    assert ticks(1e8, 1.0, 1) == 10 ** 8
-    with pytest.raises(ValueError):
-        ticks(1e8 + 1, 1.0, 1)
 
 
 @pytest.mark.parametrize('change, text', [

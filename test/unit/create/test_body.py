@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rbx1_nav.create.emulator.body import BodyErrors, Tally
+from rbx1_nav.create.emulator.body import BodyErrors
 from rbx1_nav.create.protocol import CREATE, CREATE_2, command, drive_direct
 from robots import Robot
 from sample_surface import SURFACE
@@ -64,12 +64,3 @@ def test_on_a_surface_the_robot_rolls_out_slips_and_its_gyro_is_noisy():
     counted = robot.read(19)['distance'] / 1000
     assert robot.pose.x > at_stop + 0.01
     assert counted * (1 - robot.body.wheels.run.slip_straight) == pytest.approx(robot.pose.x, abs=1e-3)
-
-
-@given(st.lists(st.floats(-3, 3), max_size=50))
-def test_a_tally_loses_no_fraction(steps):
-    tally, total = Tally(), 0
-    for step in steps:
-        tally.total += step
-        total += tally.take()
-    assert abs(total - sum(steps)) <= 0.5 + 1e-9

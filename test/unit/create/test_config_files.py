@@ -21,13 +21,6 @@ def test_the_files_have_the_defaults_of_the_node():
     assert read_settings({**load('parameters.yaml'), **load('calibration', 'default.yaml')}) == read_settings({})
 
 
-def test_a_comment_with_a_parameter_has_its_default_too():
-    with open(os.path.join(FOLDER, 'parameters.yaml'), encoding='utf-8') as file:
-        lines = [line[2:] for line in file if line.startswith('# ') and ': ' in line.split('  ')[0]]
-    params = yaml.safe_load(''.join(lines))
-    assert len(params) == 10 and read_settings(params) == read_settings({})
-
-
 @pytest.mark.parametrize('path', CALIBRATIONS, ids=os.path.basename)
 @pytest.mark.parametrize('robot_type', ['create', 'create2'])
 def test_a_calibration_is_accepted_and_complete(path, robot_type):

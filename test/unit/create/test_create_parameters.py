@@ -2,27 +2,12 @@
 import pytest
 
 from rbx1_nav.config import ConfigError
-from rbx1_nav.create import protocol
 from rbx1_nav.create.driver.settings import read_settings
-
-
-def test_the_defaults():
-    settings, robot = read_settings({})
-    assert settings.model is protocol.CREATE and settings.port == 'auto' and settings.operation_mode == protocol.SAFE
-    assert settings.has_gyro and settings.gyro_scale_correction == 1.35 and settings.gyro_measurement_range == 150
-    assert settings.odom_linear_scale_correction == settings.odom_angular_scale_correction == 1
-    assert robot.timeout == 600000000 and robot.rate == 30 and robot.publish_tf
-    assert (robot.odom_frame_id, robot.base_frame_id, robot.base_width) == ('odom', 'base_footprint', 0.26)
-    assert robot.wheel_joints == ('base_l_wheel_joint', 'base_r_wheel_joint')
 
 
 def test_a_create_2_has_no_gyro():
     settings, robot = read_settings({'robot_type': 'create2'})
     assert not settings.has_gyro and robot.base_width == 0.235
-
-
-def test_own_names_of_the_wheels():
-    assert read_settings({'left_wheel': 'l', 'right_wheel': 'r'})[1].wheel_joints == ('l', 'r')
 
 
 @pytest.mark.parametrize('params, text', [

@@ -45,12 +45,3 @@ def test_a_bad_battery_is_reported(changes, level, text):
     reading = {'charging_state': 0, 'charging_sources': 0, 'charge': 3000, 'capacity': 3000, 'temperature': 25,
                'voltage': 16000}
     assert battery_status({**reading, **changes}) == (level, text)
-
-
-def test_the_emulated_robot_shows_a_charging_fault():
-    driven = DrivenCreate('create2')
-    driven.body.docked = driven.body.charging_fault = True
-    driven.connect()
-    driven.run(3)
-    battery = statuses(driven)['Battery']
-    assert (battery.level, battery.message) == (ERROR, 'charging fault')

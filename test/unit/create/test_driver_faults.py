@@ -105,16 +105,6 @@ def test_the_position_of_a_robot_that_was_reset_while_disconnected_is_as_uncerta
     assert grown[0, 0] == pytest.approx(0.8 ** 2 / 3, rel=0.02)
 
 
-def test_encoders_that_start_again_within_a_frame_are_no_travel():
-    driven = started('create2')
-    driven.drive(0.2, 0, 3)
-    driven.run(1)
-    before = driven.pose
-    driven.body.reset_counters()
-    driven.run(1)
-    assert driven.pose == before
-
-
 @BOTH
 @pytest.mark.parametrize('fault', ['wheel_dropped', 'cliff'])
 def test_control_comes_back_when_the_cause_is_gone(robot_type, fault):

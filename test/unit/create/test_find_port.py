@@ -53,13 +53,6 @@ def test_another_adapter_with_this_description_is_not_the_robots(usb):
     assert find_port(path, FTDI, {other}) == third and find_port(path, FTDI, set()) == path
 
 
-@pytest.mark.parametrize('adapter', ['', 'a pseudo-terminal', '/dev/ttyS0'])
-def test_only_usb_adapters_are_searched(usb, adapter):
-    plug, _ = usb
-    plug('ttyS0', '')       # no text identifies it
-    assert find_port('/dev/none', adapter, set()) == '/dev/none'
-
-
 def test_the_name_from_the_udev_rules_is_the_default(usb):
     plug, unplug = usb
     link = plug('create', FTDI)

@@ -66,26 +66,6 @@ def test_one_steady_turn_shows_what_the_robot_does_with_fractions(drops, rate):
     assert robot.readings <= 2 if drops else robot.readings == 32
 
 
-@pytest.mark.parametrize('drops', [False, True])
-def test_blocked_wheels_show_nothing(drops):
-    robot = Turning(drops=drops)
-    robot.wheels = 0.0
-    robot.run(3.0)
-    assert robot.fractions.kind == AUTO
-    robot.stop()
-    # the last test is not finished: one of its steps is still open
-    assert 0 <= robot.error < 4.5 and robot.fractions.unread == pytest.approx(robot.error)
-
-
-def test_a_turn_that_is_too_fast_is_not_tested_and_read_rarely():
-    robot = Turning(drops=True, rate=150.0)
-    robot.run(10.0)
-    assert robot.fractions.kind == AUTO and set(robot.intervals) == {PERIOD}
-    robot.stop()
-    # 45 degrees or more per reading, each of which drops less than 1
-    assert robot.readings < 40 and abs(robot.error) < 0.015 * robot.true + 1
-
-
 @pytest.mark.parametrize('kind', [KEPT, LOST])
 def test_a_known_robot_is_not_tested(kind):
     robot = Turning(kind, drops=kind == LOST, rate=41.3)

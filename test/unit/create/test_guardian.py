@@ -104,15 +104,6 @@ def test_a_process_that_hangs_is_stopped_once(terminal):
     wait_for_end(pid)
 
 
-@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
-def test_signals_do_not_end_the_guardian(terminal, number):
-    process, pid = start(terminal)
-    os.kill(pid, number)
-    process.kill()
-    assert read_until(terminal, STOP) == STOP
-    process.communicate()
-
-
 def test_the_port_is_in_use_until_the_stop_is_sent(terminal):
     process, pid = start(terminal)
     os.kill(pid, signal.SIGSTOP)

@@ -3,7 +3,7 @@ import pytest
 
 from rbx1_nav.create import protocol
 
-from driven_create import BOTH, DrivenCreate, started
+from driven_create import BOTH, started
 
 
 @BOTH
@@ -51,12 +51,3 @@ def test_only_a_robot_that_may_still_move_must_confirm_the_last_stop(robot_type,
     driven.driver.leave(driven.now)
     driven.run(0.6)
     assert driven.driver.left == (not drives) and driven.body.moving == drives
-
-
-def test_a_line_without_a_robot_needs_no_confirmation():
-    driven = DrivenCreate('auto', robot='create')
-    driven.line.silent = True
-    driven.connect()
-    driven.run(1)
-    driven.driver.leave(driven.now)
-    assert driven.driver.left

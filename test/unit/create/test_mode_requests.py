@@ -69,9 +69,3 @@ def test_what_is_logged_when_control_is_gained_and_lost():
     robot.feed(FULL, 2)
     robot.feed(OFF, 2)
     assert robot.log[2:] == ['The robot is in full mode', 'Lost control of the robot: it changed from full to off mode']
-
-
-def test_a_mode_above_full_is_full():
-    robot = Supervised(FULL)
-    robot.feed(4, 3)
-    assert robot.supervisor.in_control

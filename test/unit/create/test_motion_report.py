@@ -54,18 +54,6 @@ def test_the_scale_corrections_apply_to_the_pose_and_not_to_the_wheels():
     assert motion.state(None).travel == pytest.approx((2 * (0.1 - 0.2 * 0.13), 2 * (0.1 + 0.2 * 0.13)))
 
 
-def test_at_a_standstill_velocity_and_variances_are_those_of_a_good_measurement():
-    motion = make_motion()
-    motion.add(0, NOWHERE)
-    for quarter in (1, 2, 3):
-        motion.add(quarter * SECOND // 4, NOWHERE)
-        state = motion.state(None)
-        # half a second after the first reading, the robot is stationary
-        assert motion.stands == (quarter >= 2)
-        # the first State has no earlier one to compare with
-        assert state.velocity == (0, 0) and state.variances == (MEASURED, MEASURED)
-
-
 @pytest.mark.parametrize('travel', [Travel(0.01, 0, 0, 0), Travel(0, 0.01, 0, 0)])
 def test_a_robot_stands_half_a_second_after_its_last_travel_or_command(travel):
     motion = make_motion()

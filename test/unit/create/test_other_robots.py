@@ -88,22 +88,6 @@ def test_another_robot_at_another_adapter_gets_no_command_before_it_is_known():
                               'with robot_type:=create2, or auto')
 
 
-def test_a_stop_is_not_sent_to_another_robot_before_it_is_known():
-    driven = started('auto', robot='create')
-    driven.pull()
-    driven.is_same = False
-    sent, write = [], driven.write
-    driven.write = lambda data: (sent.append(data), write(data))
-    driven.connect()
-    driven.run(0.1)
-    sent.clear()
-    driven.driver.stop(driven.now, 'test')      # as when the guardian dies
-    assert not sent
-    driven.run(2)
-    driven.driver.stop(driven.now, 'test')
-    assert sequences.STOP in b''.join(sent)
-
-
 @BOTH
 @pytest.mark.parametrize('seconds', [0.0, 0.05, 0.3])
 def test_a_program_that_another_process_has_started_ends(robot_type, seconds):
@@ -113,28 +97,3 @@ def test_a_program_that_another_process_has_started_ends(robot_type, seconds):
     driven.driver.restore(driven.now)
     driven.run(0.03)
     assert driven.robot.programs.started == 1 and driven.speeds == (0, 0)
-
-
-@BOTH
-def test_a_robot_whose_settings_were_restored_drives_on(robot_type):
-    driven = started(robot_type)
-    driven.drive(0.2, 0, 0.5)
-    driven.driver.restore(driven.now)
-    driven.drive(0.2, 0, 0.5)
-    assert not driven.refusals and driven.speeds == (200, 200)
-
-
-@BOTH
-def test_a_robot_that_stood_while_it_was_out_of_reach_has_wheels_that_turn(robot_type):
-    driven = started(robot_type)
-    driven.drive(0.2, 0, 0.5)
-    driven.pull()
-    driven.body.wheel_dropped = True
-    driven.run(2)
-    driven.body.wheel_dropped = False
-    driven.connect()
-    driven.run(2)
-    driven.command_zero()
-    driven.refusals.clear()
-    driven.drive(0.2, 0, 0.5)
-    assert not driven.refusals and driven.speeds == (200, 200)

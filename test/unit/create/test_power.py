@@ -1,7 +1,7 @@
 """Power-off, reset, and the initial baud rate of the robot."""
 import pytest
 
-from rbx1_nav.create.protocol import BAUD_RATES, CREATE, OFF, PASSIVE, command, drive_direct
+from rbx1_nav.create.protocol import CREATE, OFF, PASSIVE, command, drive_direct
 from robots import Robot, both
 
 
@@ -50,13 +50,6 @@ def test_reset_restarts_a_create_without_a_word():
     robot.run(0.15)
     robot.send(command('start'))
     assert robot.mode == PASSIVE and robot.read(19) == {'distance': 0} and robot.run(1) == b''
-
-
-@both
-@pytest.mark.parametrize('baud', BAUD_RATES[4:])
-def test_the_baud_rate_that_a_robot_starts_with(model, baud):
-    robot = driving(model, baud=baud)
-    assert robot.mode == 3 and robot.robot.line.baud == baud
 
 
 @both

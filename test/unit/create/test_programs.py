@@ -18,10 +18,6 @@ def running(model, *commands):
     return robot
 
 
-def demo(number):
-    return running(CREATE, command('demo', number))
-
-
 def check_it_is_over(robot):
     """Check that the robot is stationary and remains so."""
     stopped = robot.pose
@@ -81,31 +77,3 @@ def test_a_second_cleaning_command_pauses(model, name):
     robot.send(command(name))
     robot.run(1)
     assert robot.body.moving and robot.robot.programs.started == 2
-
-
-def test_a_demo_takes_the_place_of_another_one_until_it_is_aborted():
-    robot = demo(3)
-    robot.run(1)
-    robot.send(command('demo', 6))
-    assert robot.body.moving and robot.robot.programs.started == 2
-    robot.send(command('demo', 255))
-    check_it_is_over(robot)
-    assert robot.mode == PASSIVE and robot.robot.programs.started == 2
-
-
-@both
-def test_a_program_takes_over_from_a_driver(model):
-    robot = running(model, command('full'), drive_direct(-300, -300))
-    robot.send(command('spot'))
-    robot.run(0.02)
-    assert robot.mode == PASSIVE and robot.body.velocity[0] > 0
-    assert robot.read(41) == {'requested_right_velocity': 0}
-
-
-@both
-def test_an_empty_battery_ends_it(model):
-    robot = running(model, command('cover'))
-    robot.body.charge = 0
-    robot.run(0.1)
-    robot.body.charge = 3000
-    check_it_is_over(robot)

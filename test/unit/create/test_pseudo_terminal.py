@@ -1,6 +1,5 @@
 """A real pseudo-terminal, which pyserial opens like a driver."""
 import os
-import select
 
 import pytest
 import serial
@@ -54,24 +53,6 @@ def test_without_a_client_bytes_are_lost_and_nothing_echoes(terminal):
         terminal.wait(0)
 
 
-def test_nothing_is_echoed_or_interpreted_for_a_client_that_leaves_the_terminal_as_it_is(terminal):
-    client = os.open(terminal.device, os.O_RDWR | os.O_NOCTTY)
-    try:
-        terminal.write(b'\x03\r\n\x11')
-        assert os.read(client, 10) == b'\x03\r\n\x11'
-        assert terminal.read() == b''
-    finally:
-        os.close(client)
-
-
-def test_a_client_that_does_not_read_loses_bytes(terminal):
-    with serial.Serial(terminal.device) as port:
-        for _ in range(1000):
-            terminal.write(bytes(100))
-        assert select.select([port], [], [], 10)[0]     # the kernel passes the bytes on a little later
-        assert 0 < port.in_waiting < 100000
-
-
 def test_a_pulled_cable_is_an_error_at_the_client_and_the_link_is_gone(terminal):
     port = serial.Serial(terminal.link, timeout=10)
     first = terminal.device
@@ -105,15 +86,3 @@ def test_a_link_that_cannot_be_made(tmp_path, name, text):
     (tmp_path / 'file').write_text('')
     with pytest.raises(ConfigError, match=f'link: .*{text}.*expected'):
         PseudoTerminal(str(tmp_path / name))
-
-
-def test_it_knows_whether_it_has_a_client(terminal):
-    assert not terminal.has_client
-    with serial.Serial(terminal.link, 57600) as port:
-        assert terminal.has_client
-        port.write(b'unread')
-        assert terminal.has_client
-    assert received(terminal, 6) == b'unread'
-    assert not terminal.has_client
-    terminal.unplug()
-    assert not terminal.has_client

@@ -44,23 +44,6 @@ def test_an_angle_whose_fractions_are_kept(speed, rate):
     assert sum(values) == pytest.approx(1.5 * rate, abs=2)      # a degree at the start and at the end
 
 
-@both
-def test_an_angle_that_is_read_rarely_loses_little(model):
-    robot = Robot(model, quirks=DROPPING)
-    robot.send(command('start'), command('full'))
-    robot.send(drive_direct(100, -100))
-    robot.run(2)
-    robot.send(drive_direct(0, 0))
-    whole = robot.body.angle.total
-    assert robot.read(20) == {'angle': int(whole)}
-    assert robot.read(20) == {'angle': 0}
-
-
-def test_the_distance_keeps_its_fractions():
-    values = streamed(Robot(CREATE, quirks=DROPPING), 19, 20, 20)       # 0.3 mm per frame
-    assert sum(values) == pytest.approx(30, abs=2)
-
-
 def test_a_gyro_that_is_stuck():
     robot = Robot(CREATE)
     robot.send(command('start'), command('full'), drive_direct(130, -130))

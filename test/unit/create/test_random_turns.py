@@ -70,15 +70,3 @@ def test_the_odometry_reports_the_turns(drops, share):
         assert abs(error) < share * turned + 1, seed
         squares.append((error / sigma) ** 2)
     assert 0.05 < sum(squares) / len(squares) < 8      # of 15 drives
-
-
-@pytest.mark.parametrize('turns, angle, rate', [(8, 90, 1.0), (16, 45, 0.5), (20, 28.6, 1.0)])
-def test_short_turns_with_stops_in_between(turns, angle, rate):
-    driven = started('create', quirks=Quirks(drops_fractions=True))
-    for _ in range(turns):
-        driven.drive(0, rate, radians(angle) / rate)
-        driven.command_zero()
-        driven.run(0.5)
-    driven.run(2)
-    true = driven.body.angle.total
-    assert degrees(driven.pose.yaw) == pytest.approx(true, abs=0.015 * true + 1)

@@ -82,13 +82,6 @@ def test_wheels_that_do_not_turn_in_a_tenth_of_a_metre(metres, refused):
     assert base.command(0.2, 0) == ''
 
 
-def test_a_travel_after_an_outage_does_not_show_whether_the_wheels_turn():
-    for elapsed, refused in ((0.29, True), (0.31, False)):
-        base = Base()
-        base.follow(0.2, elapsed=elapsed)
-        assert bool(base.command(0.2, 0)) == refused
-
-
 def test_a_robot_that_does_not_answer_for_0_3_s():
     base = Base()
     base.contact.answers = False

@@ -35,11 +35,6 @@ def test_the_event_of_passive_mode():
         assert event(22)({'mode': mode}) == (mode == PASSIVE) and event(234)({'mode': mode}) == (mode != PASSIVE)
 
 
-@pytest.mark.parametrize('number', [0, 23, 127, 128, 233])
-def test_there_are_no_other_events(number):
-    assert event(number) is None
-
-
 @pytest.fixture(name='scripts')
 def make_scripts():
     return Scripts(Body(CREATE), dict)
@@ -70,8 +65,3 @@ def test_a_wait_for_a_distance_or_an_angle(scripts, what, goal, before, after):
     assert waits(scripts, 1)
     tally.total = 1000.0 + after
     assert not waits(scripts, 2)
-
-
-def test_a_goal_of_0_is_reached_at_once(scripts):
-    scripts.do_wait_distance(bytes(2))
-    assert not waits(scripts, 0)

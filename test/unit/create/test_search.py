@@ -69,15 +69,6 @@ def test_a_robot_of_the_wrong_type_is_reported_once_and_not_driven(robot, robot_
     assert not driven.body.moving and 'the robot does not answer' in driven.refusals
 
 
-def test_a_given_rate_is_the_only_one_that_is_tried():
-    driven = searching('create2', 19200, baud=19200)
-    rates = set()
-    while not driven.found and driven.now < 5 * SECOND:
-        driven.run(0.002)
-        rates.add(driven.line.host_baud)
-    assert driven.found and rates == {19200}
-
-
 @ROBOTS
 def test_a_robot_whose_stream_was_left_on_is_found(robot):
     driven = searching(robot)

@@ -101,14 +101,6 @@ def test_after_four_unclear_replies_the_rate_decides(baud, model):
     assert searching.answer(bytes(3)) == (model, baud)
 
 
-def test_a_robot_that_falls_silent_is_searched_for_at_the_next_rate():
-    searching = Searching()
-    searching.find_battery()
-    assert [searching.answer(b'') for _ in range(5)] == [None] * 5
-    assert searching.line.rates == [57600, 115200] and searching.line.sent[-1] == sequences.ASK_BATTERY
-    assert not searching.search.battery_rates
-
-
 def test_only_a_robot_that_answers_the_battery_query_again_counts_as_one_that_answers_nothing_else():
     """A Create that is silent for half a second, twice, is not a Roomba 400."""
     searching = Searching((57600,))

@@ -40,36 +40,6 @@ def test_a_stamp_is_later_than_the_last_one_of_its_sensor():
     assert arrivals.add(ODOM, NOW + 1, NOW + 1) == NOW and arrivals.add(IMU, NOW + 1, NOW - 4) == NOW - 5
 
 
-def test_a_clock_may_jump_back_by_half_a_second():
-    arrivals, _ = make()
-    arrivals.add(ODOM, NOW, NOW)
-    arrivals.add(IMU, NOW, NOW)
-    assert arrivals.step_back(NOW - SECOND // 2) == 0 and arrivals.step_back(NOW + 5 * SECOND) == 0
-    assert arrivals.last_stamp == {ODOM: NOW, IMU: NOW}
-    assert arrivals.step_back(NOW - SECOND // 2 - 1) == SECOND // 2 + 1
-    # stamps of the new time are not compared with the ones before
-    assert arrivals.add(ODOM, NOW - SECOND, NOW - SECOND) is None
-    assert arrivals.add(IMU, NOW - SECOND, NOW - SECOND) is None
-
-
-def test_a_sensor_is_silent_after_more_than_the_timeout():
-    times = [NOW]
-    arrivals, _ = make(clock=lambda: times[-1])
-    arrivals.add(ODOM, NOW, NOW)
-    start = arrivals.time
-    for step in range(1, 12):
-        times.append(NOW + step * SECOND // 10)
-        arrivals.add(IMU, NOW + step, NOW + step)
-        assert arrivals.is_silent(ODOM, 0) == (step > 10) and not arrivals.is_silent(IMU, 0)
-    # a sensor that has sent nothing yet is silent from a given time on
-    other, _ = make(clock=lambda: times[-1])
-    for step in range(12):
-        times.append(NOW + step * SECOND // 10)
-        other.add(IMU, NOW + step, NOW + step)
-        start = start if step else other.time
-        assert other.is_silent(ODOM, start) == (step > 10)
-
-
 def test_a_time_out_and_a_recovery_are_each_reported_once():
     arrivals, warnings = make(timeout=SECOND // 2)
     for _ in range(3):

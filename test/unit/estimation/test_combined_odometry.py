@@ -21,23 +21,6 @@ def test_the_estimate_follows_sensors_without_errors_exactly():
 
 # the order of messages
 
-def test_a_gyro_may_be_later_than_the_odometry():
-    in_step, late = Robot(), Robot()
-    in_step.send(100, 0.2, 0.5)
-    stamps = []
-    for _ in range(100):
-        late.now += STEP
-        late.pose = arc(late.pose, 0.004, 0.01)
-        late.combined.add_odom(late.now, late.odom())
-        stamps.append(late.now)
-        if len(stamps) == 10:     # 0.2 s late
-            for stamp in stamps:
-                late.combined.add_imu(late.now, Imu(stamp, 0.5, 3e-6))
-            stamps.clear()
-    # except for the first reading, whose start is unknown
-    assert exact(late.combined.estimate, in_step.combined.estimate.pose, abs=1e-4)
-
-
 @pytest.mark.parametrize('rate', [20, 73, 100])
 def test_a_gyro_may_have_another_rate(rate):
     robot = Robot(IDEAL)
@@ -111,12 +94,6 @@ def test_set_pose_while_the_odometry_has_timed_out():
     assert exact(robot.combined.estimate, Pose(0.0, 0.0, pi / 2), abs=1e-6)
     # the first of 10 ticks was before the new pose
     assert exact(robot.send(1, 0.2), Pose(0.0, 9 * 0.004, pi / 2), abs=1e-6)
-
-
-def test_set_pose_before_any_odometry_gives_the_initial_pose():
-    robot = Robot()
-    robot.combined.set_pose(robot.now, Pose(3.0, -2.0, 1.0), 0.01 * numpy.eye(3))
-    assert exact(robot.send(), Pose(3.0, -2.0, 1.0))
 
 
 def test_set_pose_does_not_depend_on_the_order_of_the_messages():

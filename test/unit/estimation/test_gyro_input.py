@@ -112,12 +112,6 @@ def test_rates_of_0_without_a_covariance_are_no_angular_velocity_until_one_is_me
     assert gyro.read(data(variances=zero, heading=0.2, stamp=0.2)).rate == 0.0
 
 
-def test_rates_are_used_rather_than_the_orientation():
-    gyro = GyroInput()
-    gyro.accepted(data(heading=0.0))
-    assert gyro.read(data(0.0, heading=0.1, stamp=0.1)) == Imu(SECOND // 10, 0.0, 1e-6)
-
-
 def test_after_rates_an_orientation_is_rejected():
     gyro = GyroInput()
     gyro.accepted(data(0.5, heading=0.0))
@@ -148,11 +142,6 @@ def test_a_second_message_with_the_same_stamp_has_no_rate():
 def test_an_invalid_covariance_of_the_orientation_is_rejected(variance):
     with pytest.raises(RejectedMessage, match=r'orientation_covariance\[8\]'):
         orientations_only((data(heading=0.0, yaw_variance=variance), (0.0, 0.0, 1.0)))
-
-
-def test_neither_an_angular_velocity_nor_an_orientation_is_rejected():
-    with pytest.raises(RejectedMessage, match=r'angular_velocity_covariance\[0\]: -1: expected an angular velocity or'):
-        orientations_only((data(), (0.0, 0.0, 1.0)))
 
 
 def test_a_rejected_reading_and_one_from_the_past_change_nothing():

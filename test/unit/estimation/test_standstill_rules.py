@@ -74,19 +74,3 @@ def test_the_end_of_a_standstill_contains_the_parts_that_were_not_used():
     for rate in 0.5, 1.0:
         standstill.add(Part(0.0625, 0.0625 * rate, 1e-6), recorder)
     assert standstill.leave(recorder) == (0.125, 0.09375, 2e-6) and recorder.calls == []
-
-
-# the noise of the gyro
-
-def test_the_noise_is_the_mean_of_the_last_100_differences():
-    first = [0.01 * (-1) ** number for number in range(41)]
-    # after 40 differences, 40 without noise
-    assert rest(first + [0.01] * 40, bias=0.0)[0].density == pytest.approx(0.01 ** 2 / 4 / 2)
-    first = [0.01 * (-1) ** number for number in range(201)]
-    # then each one has a weight of a hundredth
-    assert rest(first + [0.01] * 2, bias=0.0)[0].density == pytest.approx(0.01 ** 2 / 4 * 0.99 ** 2)
-
-
-def test_a_hand_is_no_noise():
-    standstill, _ = rest([0.01, 0.01, 0.2, 0.012, 0.012], bias=0.01)
-    assert standstill.samples == 2 and standstill.density == 0.0

@@ -72,13 +72,6 @@ def test_without_noise_path_and_end_are_those_of_the_simulated_robot(parts):
     assert paths == pytest.approx(numpy.stack([path] * 3), abs=1e-9)
 
 
-def test_half_way_the_paths_are_spread_like_those_of_the_simulated_robot():
-    half = round(sum(duration for _, _, duration in SEQUENCE[:2]) / STEP)
-    paths = simulate_paths(NOISY, predict(NOISY, SEQUENCE), 0, 10 * RUNS, numpy.random.default_rng(1))
-    poses = numpy.array([list(drive(NOISY, SEQUENCE[:2], seed))[-1] for seed in range(RUNS)])
-    assert spreads_agree(numpy.cov(poses.T), numpy.cov(paths[:, :, half - 1].T))
-
-
 def test_the_ensemble_is_that_of_the_simulated_robot():
     ends = simulated(NOISY)
     ensemble = simulate_ends(NOISY, predict(NOISY, SEQUENCE), 0, 10 * RUNS, numpy.random.default_rng(1))

@@ -56,13 +56,6 @@ def test_a_bad_file_is_rejected_with_one_line(tmp_path, commands, truth, text):
     assert str(error.value).isprintable()
 
 
-def test_a_folder_in_the_place_of_a_file_is_rejected(tmp_path):
-    write(tmp_path, truth=None)
-    (tmp_path / 'D6R1_Groundtruth.dat').mkdir()
-    with pytest.raises(ConfigError, match='Groundtruth.dat: expected a text file of numbers'):
-        read_set(str(tmp_path), 6)
-
-
 @pytest.mark.parametrize('name', ['', 'none', 'a[b', 'two\nlines'])
 def test_a_folder_without_files_of_the_set_is_rejected(tmp_path, name):
     write(tmp_path, number=7)

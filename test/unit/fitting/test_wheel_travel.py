@@ -57,15 +57,6 @@ def test_commands_before_the_first_step_count(parts, delay, missing):
     assert part.turn == pytest.approx(whole.turn[skipped:], abs=1e-12)
 
 
-def test_a_command_that_is_repeated_changes_nothing():
-    few = Commands(numpy.array([0.0, 1.0]), numpy.array([0.2, 0.0]), numpy.array([0.5, 0.0]))
-    times = numpy.arange(0, 1.5, 0.02)
-    many = Commands(times, numpy.where(times < 0.999, 0.2, 0.0), numpy.where(times < 0.999, 0.5, 0.0))
-    steps = [commanded_travel(SURFACE, WIDTH, each, grid(0.0, 3.0)) for each in (few, many)]
-    assert steps[0].straight == pytest.approx(steps[1].straight, abs=1e-12)
-    assert steps[0].turn == pytest.approx(steps[1].turn, abs=1e-12)
-
-
 # less than a full turn per step, because the arc of a full turn has no chord
 @given(st.lists(st.tuples(st.floats(-1, 1), st.floats(-3, 3)), min_size=1, max_size=30),
        st.tuples(st.floats(-5, 5), st.floats(-5, 5), st.floats(-10, 10)))

@@ -7,7 +7,7 @@ import pytest
 from rbx1_nav.config import ConfigError
 from rbx1_nav.fitting.gyro_fit import rests_at
 from rbx1_nav.fitting.recording import Commands
-from rbx1_nav.fitting.surface_fit import WholeFit, truth_errors
+from rbx1_nav.fitting.surface_fit import WholeFit
 from rbx1_nav.robot.kinematics import Pose
 from sample_runs import DRIVE, EXERCISE, FLOOR, FORWARD, REST, record, wrapped
 
@@ -134,11 +134,3 @@ def test_a_truth_that_is_worse_in_motion_is_not_taken_for_noise_of_the_floor():
     assert len(result.notes) == 1 and result.notes[0].startswith('The end poses of the windows have ')
     exact, _ = fit([record(DRIVE, seed) for seed in range(4)])
     assert exact.notes == []
-
-
-def test_the_error_of_the_truth_is_that_at_rest():
-    run = record((REST, FORWARD, REST, REST))
-    noise = numpy.random.default_rng(2).normal(0, 0.01, len(run.truth.x))
-    errors = truth_errors([run._replace(truth=run.truth._replace(x=run.truth.x + noise))], 0.75)
-    assert errors[0] == pytest.approx(0.01, rel=0.2)        # nearly 200 values: 5 %
-    assert errors[1:] == pytest.approx((0.0003, 0.001), rel=0.01)

@@ -37,45 +37,6 @@ def test_keys_that_are_given_replace_the_defaults():
     assert joint.position == radians(10)
 
 
-LIMITS = [('base_width', 0.001, 100, 'm'), ('rate', 0.1, 1000, 'Hz'), ('max_linear_speed', 0.001, 1000, 'm/s'),
-          ('max_angular_speed', 0.001, 1000, 'rad/s'), ('wheel_radius', 0.001, 100, 'm')]
-
-
-@pytest.mark.parametrize('key, low, high, unit', LIMITS + [('timeout', 0, 1e6, 's')])
-def test_the_limits_of_a_controller(key, low, high, unit):
-    for value in low, high:
-        describe({key: value})
-    for value in low - 1e-4, high * 1.001:
-        with pytest.raises(ConfigError, match=f'^controllers/base/{key}: .* from {low} to .* in {unit}'):
-            describe({key: value})
-
-
-@pytest.mark.parametrize('key, low, high, unit', [
-    ('min_angle', -36000, 100, 'degrees'), ('max_angle', -100, 36000, 'degrees'),
-    ('max_speed', 0.01, 36000, 'degrees/s')])
-def test_the_limits_of_a_joint(key, low, high, unit):
-    for value in low, high:
-        describe(joint={key: value})
-    with pytest.raises(ConfigError, match=f'^joints/pan/{key}: .* in {unit}$'):
-        describe(joint={key: 36000.1})
-    with pytest.raises(ConfigError, match=f'^joints/pan/{key}: .* in {unit}$'):
-        describe(joint={key: -36000.1 if 'angle' in key else 0.0099})
-
-
-def test_a_joint_needs_a_range():
-    with pytest.raises(ConfigError, match='^joints/pan/min_angle: 20.0: expected an angle below max_angle, 20.0$'):
-        describe(joint={'min_angle': 20, 'max_angle': 20})
-
-
-@pytest.mark.parametrize('timeout, accepted', [(0, True), (0.01, True), (0.0099, False)])
-def test_a_timeout_is_0_or_at_least_10_milliseconds(timeout, accepted):
-    if accepted:
-        assert describe({'timeout': timeout}).timeout == round(timeout * SECOND)
-    else:
-        with pytest.raises(ConfigError, match=r'0.0099: expected 0 \(never\), or at least 0.01 s'):
-            describe({'timeout': timeout})
-
-
 def test_keys_of_the_hardware_and_unknown_keys_are_sorted():
     robot = describe({'ticks_meter': 4100, 'Kp': 12, 'bell': 1}, {'neutral': 512, 'id': 1, 'colour': 'red'},
                      port='/dev/ttyUSB0', baud=115200)

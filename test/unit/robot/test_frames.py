@@ -18,8 +18,3 @@ def test_the_robot_has_one_place_in_both_frames(pose, other):
     place = complex(frame.x, frame.y) + rect(1, frame.yaw) * complex(other.x, other.y)
     # rounding of coordinates up to 30 m
     assert (place.real, place.imag, frame.yaw + other.yaw) == approx(pose, abs=1e-13)
-
-
-def test_the_frame_of_a_robot_that_reports_a_quarter_turn_more():
-    frame = relative_frame(Pose(1.0, 2.0, 0.0), Pose(3.0, 0.0, pi / 2))
-    assert frame == approx((1.0, 5.0, -pi / 2))

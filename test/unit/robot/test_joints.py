@@ -49,10 +49,6 @@ def test_a_goal_that_is_not_finite_is_rejected(goal):
     assert joint.position == 0.0
 
 
-def test_a_joint_starts_within_its_limits():
-    assert Joint('lift', 0.5, 2.0, 0.5).position == 0.5
-
-
 def make_group():
     """Return a group of two joints that move to 1 rad at different speeds."""
     joints = [Joint('pan', -2.0, 2.0, 0.5), Joint('tilt', -2.0, 2.0, 0.25)]

@@ -82,16 +82,3 @@ def test_wheels_are_not_at_rest_while_a_command_is_under_way():
     for _ in range(200):
         wheels.travel(0.0, 0.0, 0.02)
     assert wheels.truth.pose.x > 0 and wheels.at_rest
-
-
-def test_reset_forgets_the_commands_under_way():
-    wheels = Wheels(WIDTH, LATE, RUN, 0.02)
-    wheels.travel(0.2, 1.0, 0.2)
-    assert not wheels.at_rest
-    wheels.reset()
-    assert wheels.at_rest
-    wheels.travel(0.0, 0.0, 1.0)
-    assert wheels.truth.pose == (0.0, 0.0, 0.0) and wheels.at_rest
-    # and then the full delay again, except for the rounding of times
-    wheels.travel(0.2, 1.0, DELAY - 1e-9)
-    assert wheels.truth.pose == (0.0, 0.0, 0.0)

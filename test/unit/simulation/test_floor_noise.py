@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rbx1_nav.simulation.floor_noise import CELL_TRAVELLED, CELL_TURNED, Noise, Roughness, make_roughness
+from rbx1_nav.simulation.floor_noise import Noise, Roughness
 from sample_surface import SURFACE
 
 ROUGH = SURFACE._replace(heading_noise_turning=0.1, heading_noise_straight=0.08, distance_noise=0.03)
@@ -62,17 +62,6 @@ def test_large_errors_are_more_frequent_than_in_a_normal_distribution():
     assert 5 < mean(error ** 4 for error in errors) / variance ** 2 < 7
 
 
-@given(seeds, st.lists(steps, max_size=10))
-def test_without_strength_the_error_is_exactly_0(seed, parts):
-    assert total(Noise(0.0, 0.1, random.Random(seed)), parts) == 0.0
-
-
-def test_a_surface_without_noise_has_no_roughness():
-    assert make_roughness(SURFACE, 1) is None
-    for key in ('heading_noise_turning', 'heading_noise_straight', 'distance_noise'):
-        assert make_roughness(SURFACE._replace(**{key: 0.01}), 1)
-
-
 @pytest.mark.parametrize('key, straight, turn, index', [
     ('heading_noise_turning', 0.0, 1.0, 1), ('heading_noise_straight', 1.0, 0.0, 1), ('distance_noise', 1.0, 0.0, 0)])
 def test_each_key_acts_on_its_own_error_by_its_own_motion(key, straight, turn, index):
@@ -85,18 +74,6 @@ def test_each_key_acts_on_its_own_error_by_its_own_motion(key, straight, turn, i
 def test_the_errors_depend_on_the_seed_only():
     first, same, other = (Roughness(ROUGH, seed).over(5.0, 5.0) for seed in (7, 7, 8))
     assert first == same and not set(first) & set(other)
-
-
-def test_the_cells_are_those_of_the_documents():
-    roughness = Roughness(ROUGH, 0)
-    assert (roughness.turning.cell, roughness.heading.cell, roughness.distance.cell) == (
-        CELL_TURNED, CELL_TRAVELLED, CELL_TRAVELLED) == (0.25, 0.1, 0.1)
-
-
-def test_backwards_is_as_rough_as_forwards():
-    forwards, backwards = Roughness(ROUGH, 5), Roughness(ROUGH, 5)
-    for straight, turn in (0.3, 0.5), (2.0, 4.0), (0.0, 1.0):
-        assert forwards.over(straight, turn) == backwards.over(-straight, -turn)
 
 
 def test_the_errors_of_distance_and_heading_have_nothing_in_common():

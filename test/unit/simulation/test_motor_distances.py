@@ -3,7 +3,7 @@ from math import exp, log
 
 import pytest
 
-from rbx1_nav.simulation.motors import Delay, Motor
+from rbx1_nav.simulation.motors import Motor
 
 SIGNS = pytest.mark.parametrize('sign', [1, -1])
 ROUNDING = 1e-12    # m or m/s: a few roundings of numbers of the order of 1
@@ -28,12 +28,6 @@ def test_a_reversal_at_the_acceleration_limit(sign):
     motor.speed = sign * 0.5
     assert motor.travel(-sign * 1.0, 0.375) == pytest.approx(sign * (1 / 16 - 1 / 64), abs=ROUNDING)
     assert is_at(motor, -sign * 0.25)
-
-
-@SIGNS
-def test_braking_at_the_acceleration_limit(sign):
-    motor = moving(sign * 0.5, 0.001, 2.0, 0.01)
-    assert motor.travel(0.0, 0.125) == pytest.approx(sign * 0.375 * 0.125, abs=ROUNDING) and is_at(motor, sign * 0.25)
 
 
 @SIGNS
@@ -71,37 +65,7 @@ def test_a_reversal_with_the_lag(sign):
     assert is_at(motor, -sign * 0.05 * (1 - exp(-back / 0.2)))
 
 
-@SIGNS
-@pytest.mark.parametrize('limit', [0.5, 2.0])
-def test_a_long_reversal_solves_the_equation_of_motion(sign, limit):
-    motor, step = moving(sign * 0.6, 0.2, limit, 0.03), 1e-4
-    v, travel = 0.6, 0.0
-    for _ in range(30000):
-        drag = 0.03 if v > 0 else -0.03
-        before, v = v, v + step * max(-limit, min(limit, (-0.7 - v - drag) / 0.2))
-        travel += (before + v) / 2 * step
-    # the error of Euler's method: less than a step of time at the highest speed
-    assert motor.travel(-sign * 0.7, 3.0) == pytest.approx(sign * travel, abs=1e-4)
-    assert motor.speed == pytest.approx(sign * v, abs=1e-3)
-
-
 def test_a_command_equal_to_the_drag_does_not_start_a_motor():
     motor = Motor(0.1, 1.0, 0.0625)
     assert motor.travel(0.0625, 10.0) == motor.speed == 0.0
     assert motor.travel(0.0626, 10.0) > 0
-
-
-def test_a_delay_that_has_passed_exactly_has_no_motion_left():
-    delay = Delay(0.25)
-    assert delay.is_empty
-    assert list(delay.over(0.5, 1.0, 0.25)) == [(0.0, 0.0, 0.25)] and not delay.is_empty
-    assert list(delay.over(0.0, 0.0, 0.25)) == [(0.5, 1.0, 0.25)] and delay.is_empty
-
-
-@pytest.mark.parametrize('command', [(0.2, 0.0), (0.0, -0.1)])
-def test_each_motion_in_a_delay_counts(command):
-    delay = Delay(0.25)
-    list(delay.over(*command, 0.125))
-    assert not delay.is_empty
-    delay.clear()
-    assert delay.is_empty and list(delay.over(*command, 0.5)) == [(0.0, 0.0, 0.25), (*command, 0.25)]

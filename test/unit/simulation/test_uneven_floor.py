@@ -6,7 +6,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rbx1_nav.robot.readings import MEASURED
 from rbx1_nav.simulation.floor_noise import make_roughness
 from rbx1_nav.simulation.surfaces import RandomErrors
 from rbx1_nav.simulation.wheels import Wheels
@@ -90,12 +89,6 @@ def test_turning_loss_never_drives_the_robot_against_its_wheels(commands, loss):
         assert linear * wheels.straight.speed >= 0
 
 
-def test_a_turn_on_the_spot_loses_nothing():
-    wheels = make_wheels(EVEN._replace(turning_loss=0.5))
-    drive(wheels, 0.0, 1.0, 3)
-    assert wheels.truth.pose[:2] == (0.0, 0.0) and wheels.truth.pose.yaw == pytest.approx(counted(wheels)[1])
-
-
 def ends(surface, linear, angular, duration):
     """Return the Wheels of all SEEDS after a motion."""
     runs = []
@@ -129,21 +122,6 @@ def test_the_uncertainty_of_the_position_is_an_upper_bound():
     runs = ends(EVEN._replace(heading_noise_straight=0.1), 0.2, 0.0, 10)
     # a heading error only shifts the path after it: on a straight line, this is a third of the bound
     assert 0.22 < variance(wheels.truth.pose.y for wheels in runs) / runs[0].uncertainty.position < 0.44
-
-
-def test_the_uncertainty_of_the_speeds_is_that_of_white_noise():
-    surface = EVEN._replace(distance_noise=0.05, heading_noise_turning=0.1, heading_noise_straight=0.08)
-    wheels, smooth = (Wheels(WIDTH, each, NO_SLIP, 0.05) for each in (surface, EVEN))
-    for each in (wheels, smooth):
-        drive(each, 0.2, 0.5, 5)
-    linear, angular = each.velocity()
-    # the sum over the windows of one second is the variance that one second adds to the pose
-    more, less = wheels.uncertainty, smooth.uncertainty
-    assert (more.linear - less.linear) * 0.05 == pytest.approx(0.05 ** 2 * linear)
-    assert (more.angular - less.angular) * 0.05 == pytest.approx(0.1 ** 2 * angular + 0.08 ** 2 * linear)
-    for each in (wheels, smooth):
-        drive(each, 0.0, 0.0, 5)
-        assert each.at_rest and each.uncertainty[2:] == (MEASURED, MEASURED)
 
 
 def test_encoders_do_not_see_the_noise():

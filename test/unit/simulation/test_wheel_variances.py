@@ -103,12 +103,6 @@ def test_after_a_reset_wheels_are_like_new_ones():
         assert any(used.velocity()) is any(new.velocity())
 
 
-def test_wheels_that_roll_without_a_count_are_not_at_rest():
-    wheels = Wheels(WIDTH, SURFACE._replace(ticks_meter=1.0), RUN, WINDOW)
-    wheels.travel(0.2, 0.0, WINDOW)
-    assert wheels.velocity() == (0.0, 0.0) and wheels.true_velocity()[0] > 0 and not wheels.at_rest
-
-
 def test_ideal_wheels_follow_each_command_exactly():
     wheels = IdealWheels(WIDTH)
     assert wheels.travel(0.2, 0.8, 0.5) == pytest.approx((0.05, 0.15))

@@ -4,8 +4,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from rbx1_nav.simulation.motors import Motor
-from rbx1_nav.simulation.wheels import Encoder, Wheels
-from sample_surface import RUN, SURFACE
+from rbx1_nav.simulation.wheels import Encoder
 
 speeds = st.floats(-1, 1)
 motors = st.builds(Motor, st.floats(0.01, 1), st.floats(0.1, 5), st.floats(1e-3, 0.1))
@@ -93,19 +92,3 @@ def test_an_encoder_counts_whole_ticks_and_loses_none(travels, ticks_meter):
         assert count * ticks_meter == pytest.approx(round(count * ticks_meter), abs=1e-6)
     # half a tick, and rounding errors of sums of up to 30 m
     assert abs(counted - sum(travels)) <= 0.5 / ticks_meter + 1e-12
-
-
-def test_a_shorter_window_makes_the_reported_speed_less_certain():
-    short, long = (Wheels(0.26, SURFACE, RUN, window) for window in (0.005, 0.02))
-    for wheels in (short, long):
-        for _ in range(10):
-            wheels.travel(0.2, 0.0, 0.005)
-    # except for the variance of (1 mm/s)^2 that both have
-    assert short.uncertainty.linear - 1e-6 == pytest.approx(16 * (long.uncertainty.linear - 1e-6))
-
-
-def test_the_uncertainty_of_the_position_grows_with_the_slip_of_the_path():
-    wheels = Wheels(0.26, SURFACE, RUN, 0.02)
-    path, tick = sum(wheels.travel(0.2, 0.0, 0.02)[0] for _ in range(500)), 1 / SURFACE.ticks_meter
-    slip = SURFACE.slip_straight ** 2 + SURFACE.slip_straight_spread ** 2
-    assert wheels.uncertainty.position == pytest.approx(slip * path ** 2 + tick ** 2, rel=0.02)

@@ -91,20 +91,3 @@ def test_a_dropout_of_the_odometry_leaves_the_displacement_unknown():
     assert twist.turn == pytest.approx(0.5, abs=0.02)
     # then the velocity is the mean since the last odometry
     assert robot.drive(1, 0.3, 0.5, 0.5).forward == pytest.approx(0.3, abs=0.02)
-
-
-def test_a_contradiction_makes_the_turn_as_uncertain_as_the_sensors_differ():
-    robot = Robot(UNKNOWN_FLOOR)
-    robot.drive(150, 0.0, 0.0, 0.0)
-    twist = robot.drive(300, 0.1, 1.0, 0.0)
-    assert robot.combined.case == 'contradiction'
-    assert twist.turn_variance > 0.5 ** 2
-
-
-def test_a_robot_that_is_carried_may_move_anywhere():
-    robot = Robot(UNKNOWN_FLOOR)
-    robot.drive(500, 0.0, 0.0, 0.0)
-    assert robot.drive(1, 0.0, 0.0, 0.0).forward_variance < 1e-5
-    twist = robot.drive(150, 0.0, 0.0, 1.0)
-    assert robot.combined.case == 'carried'
-    assert twist.forward_variance == twist.left_variance == DROPOUT_SPEED ** 2

@@ -19,13 +19,6 @@ class Log:
             self.now += 0.02
 
 
-def test_one_line_is_logged_as_it_is():
-    log = Log()
-    log.run(0.02, 'odom: header.stamp: %.3f')
-    log.run(5)
-    assert log.lines == [(1000.0, 'odom: header.stamp: 1000.000')]
-
-
 def test_a_flood_is_one_line_a_second_that_counts_the_others():
     log = Log()
     log.run(10, 'odom: header.stamp: %.9f: expected 1e-05')

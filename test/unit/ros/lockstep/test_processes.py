@@ -44,12 +44,6 @@ def make_start():
         child.communicate()
 
 
-def test_a_process_that_computes_is_awake(start):
-    process = Process(start('while True: pass').pid)
-    for _ in range(1000):
-        assert awake([process]) is process
-
-
 def test_what_has_been_woken_is_awake_until_it_has_answered(start):
     """The simulated clock relies on this: no answer comes from a process that was asleep."""
     with socket.socket() as server:
@@ -90,17 +84,6 @@ def test_a_process_that_has_ended_counts_as_asleep(start):
         Process(child.pid)
 
 
-def test_a_process_that_ends_while_it_is_observed():
-    for number in range(100):
-        child = subprocess.Popen(['sleep', '10'])
-        process = Process(child.pid)
-        end = threading.Thread(target=lambda: (time.sleep(number * 2e-5), child.kill(), child.wait()))
-        end.start()
-        while end.is_alive():       # none of these may fail
-            _ = awake([process]), process.polling(), process.main_sleeps_briefly(), process.runs()
-        process.close()
-
-
 def test_a_thread_that_polls(start):
     process = Process(start('while True: time.sleep(0.001)').pid)
     polling = wait_for(process.polling)
@@ -135,20 +118,6 @@ def test_messages_in_transit(start):
     assert awake([process], network) is network
     # it may have sent a message after the network was checked
     assert awake([process], SimpleNamespace(busy=run_and_sleep)) is process
-
-
-def test_a_thread_that_waits_for_another_one(start):
-    process = Process(start('threading.Thread(target=sys.stdin.read).start()\nthreading.Event().wait()').pid)
-    wait_for(lambda: not awake([process]) and len(process.threads) == 2)
-    assert sorted(thread.waits_for_thread() for thread in process.threads.values()) == [False, True]
-
-
-def test_a_main_thread_on_wall_time(start):
-    code = 'threading.Thread(target=time.sleep, args=[1000]).start()\n'
-    for rest, expected in ('time.sleep(1000)', True), ('sys.stdin.read()', False):
-        process = Process(start(code + rest).pid)
-        wait_for(lambda: not awake([process]) and len(process.threads) == 2)
-        assert process.main_sleeps_briefly() == expected
 
 
 def test_the_thread_that_looks_does_not_count():

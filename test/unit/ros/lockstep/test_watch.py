@@ -21,16 +21,6 @@ def test_sources_of_commands():
     assert sources_of(['/cmd_vel', '/goal'], PUBLISHERS, SUBSCRIBERS)[:2] == ['/mux', '/rviz']
 
 
-def test_who_only_listens_is_no_source():
-    assert sources_of(['/cmd_vel'], [['/cmd_vel', ['/driver']], ['/odom', ['/base']]],
-                      [['/cmd_vel', ['/base', '/recorder']], ['/odom', ['/recorder']]]) == ['/driver']
-
-
-def test_a_loop_of_nodes():
-    assert sources_of(['/a'], [['/a', ['/x']], ['/b', ['/y']]], [['/a', ['/y']], ['/b', ['/x']]]) == ['/x', '/y']
-    assert sources_of(['/a'], [['/a', ['/x']]], [['/a', ['/x']]]) == ['/x']
-
-
 def wait_for(condition):
     end = time.monotonic() + 60
     while not condition():
@@ -121,18 +111,6 @@ def test_what_keeps_a_node_from_being_in_step(world, monkeypatch):
     assert not world.watch.drivers and 'is not visible' in world.watch.obstacle('/other')
 
 
-def test_a_listener_that_connects_again_is_waited_for(world, monkeypatch):
-    """On Debian 11, rospy sleeps for 0.5 s after it has connected again."""
-    world.listen(world.connect('/driver'))
-    world.settle()
-    now = watch.monotonic()
-    monkeypatch.setattr(watch, 'monotonic', lambda: now)
-    world.listen(world.connect('/driver'))
-    wait_for(lambda: world.watch.awake() == '/clock')
-    monkeypatch.setattr(watch, 'monotonic', lambda: now + watch.RECONNECT_TIME)
-    wait_for(lambda: world.watch.awake() is None)
-
-
 def test_the_order_of_subscribers(world, monkeypatch):
     """Nodes that are not watched; sources, the farthest first; drivers."""
     monkeypatch.setattr(watch, 'call', lambda *_: (PUBLISHERS, SUBSCRIBERS, []))
@@ -146,13 +124,6 @@ def test_the_order_of_subscribers(world, monkeypatch):
     assert set(world.watch.processes) == {'/mux', '/driver', '/teleop'} and world.watch.drivers == {'/mux'}
     assert world.watch.groups(connections) == [([recorder], False), ([teleop], True), ([driver], True), ([mux], True)]
     assert world.watch.groups([recorder]) == [([recorder], False)]
-
-
-def test_new_sources(world, monkeypatch):
-    world.drive(world.connect('/mux'))
-    assert not world.watch.find_sources()       # a master that does not answer excuses nobody
-    monkeypatch.setattr(watch, 'call', lambda *_: (PUBLISHERS, SUBSCRIBERS, []))
-    assert world.watch.find_sources() and not world.watch.find_sources()
 
 
 def test_a_node_that_starts_is_watched_until_it_waits(world):

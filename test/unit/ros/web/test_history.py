@@ -10,13 +10,6 @@ def test_a_path_has_points_at_a_distance():
     assert [point[0] for point in path.since(0)] == [0.0, 0.02, 0.04, 0.06, 0.08, 0.1]
 
 
-def test_a_path_has_points_in_a_turn():
-    path = Path(Counter())
-    for step in range(101):
-        path.move(0.0, 0.0, 3.1 + 0.01 * step - (6.2832 if step > 4 else 0))
-    assert len(path.since(0)) == 20 + 1     # for each 0.05 rad of 1 rad, also across pi
-
-
 def test_a_path_is_bounded():
     path = Path(Counter())
     for step in range(2 * PATH_POINTS):

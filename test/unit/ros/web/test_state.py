@@ -122,14 +122,6 @@ def test_a_command_times_out(state):
     assert Browser(state).frame()['speeds']['commanded'][-1][1] == 0
 
 
-def test_a_source_that_is_silent_vanishes(state):
-    drive(state)
-    state.move('odometry', motion(104.5), 104.5)
-    state.tick(101.0 + SILENCE + 0.1)
-    assert set(Browser(state).frame()['poses']) == {'odometry'}
-    assert state.hears('odometry') and not state.hears('truth')
-
-
 @pytest.mark.parametrize('wrong', [motion(1.0, x=nan), motion(nan), motion(1.0, linear=inf), motion(1.0, yaw=-inf)])
 def test_what_is_not_finite_is_ignored(state, wrong):
     state.move('odometry', wrong, 0.0)
