@@ -27,10 +27,15 @@ ROOT = os.path.realpath(os.path.join(os.path.dirname(__file__), '..'))
 PACKAGE = 'rbx1_nav'
 LIMIT = 3600        # s after which a job counts as hung, even on a busy machine
 LOOK = 60       # s between two checks for jobs that hang
+LISTED = 10     # jobs in the list of the slowest ones
 # Rostests with the same set-up that leave nothing behind in it. Each set runs on one master, one after another.
 SETS = {
-    'set_tools': ['impossible_plot', 'interrupted_start', 'launch_arguments', 'simulate_command', 'usage'],
-    'set_base': ['base_timeout', 'ideal_sensors', 'reset', 'message_counts', 'final_pose'],
+    'set_tools': ['interrupted_start', 'launch_arguments', 'simulate_command', 'usage'],
+    'set_base': ['consistent_outputs', 'base_timeout', 'rejected_commands', 'reset', 'message_counts', 'final_pose'],
+    'set_stops': ['closed_terminal', 'stop_on_signal', 'plain_driver_in_simulated_time'],
+    'set_scripts': ['remembered_parameters', 'two_drivers'],
+    'set_fast': ['result', 'released_publisher', 'progress_bar'],
+    'set_real_time': ['keyboard_driving', 'contradictory_commands', 'suspended_base', 'plain_driver'],
     'set_calibration': ['angular_calibration', 'linear_calibration'],
     'set_fake_create': ['fake_create_baud_rate', 'fake_create_cable', 'fake_create_faults', 'fake_create_line',
                         'fake_create_parameters', 'fake_create_truth', 'independent_client'],
@@ -61,6 +66,7 @@ class Job:
         """log: path for the output; target(*arguments): runs the tests."""
         self.name = name
         self.log = log
+        self.used = multiprocessing.Value('d', 0.0)     # CPU time of the process and its children, s
         self.process = multiprocessing.get_context('fork').Process(target=self.run, args=(target, *arguments))
 
     def run(self, target, *arguments):
@@ -68,16 +74,24 @@ class Job:
         output = os.open(self.log, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
         os.dup2(output, 1)
         os.dup2(output, 2)
-        target(*arguments)
+        try:
+            target(*arguments)
+        finally:
+            self.used.value = sum(os.times()[:4])
 
     def start(self):
         """Start the process."""
-        self.end = time.monotonic() + LIMIT
+        self.start_time = time.monotonic()
         self.process.start()
+
+    def join(self):
+        """Wait for the end of the process."""
+        self.process.join()
+        self.duration = time.monotonic() - self.start_time
 
     def hangs(self):
         """Whether the process has been running for too long; if so, it is stopped."""
-        if time.monotonic() < self.end:
+        if time.monotonic() < self.start_time + LIMIT:
             return False
         self.process.terminate()
         self.process.join(10)
@@ -156,7 +170,7 @@ def run_jobs(jobs, count):
         for job in list(running):
             if job.process.is_alive() and not job.hangs():
                 continue
-            job.process.join()
+            job.join()
             running.remove(job)
             if job.trouble():
                 failed.append(job.name)
@@ -208,6 +222,15 @@ def summarize(results):
     return passed, failed, names
 
 
+def print_slowest(jobs):
+    """Print the jobs that used the most CPU time: with more jobs than cores, it decides how long all of them take."""
+    slowest = sorted(jobs, key=lambda job: -job.used.value)
+    total = sum(job.used.value for job in jobs)
+    print(f'CPU time of {len(jobs)} jobs: {total:.0f} s; the longest, and how long they ran:')
+    for job in slowest[:LISTED]:
+        print(f'{job.used.value:7.1f} s {job.duration:7.1f} s  {job.name}')
+
+
 def main():
     """Run the tests; return the exit status."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -217,13 +240,15 @@ def main():
     arguments = parser.parse_args()
     results = os.path.realpath(arguments.results)
     os.makedirs(os.path.join(results, PACKAGE), exist_ok=True)
+    jobs = make_jobs(results, arguments.tests)
     try:
-        troubled = run_jobs(make_jobs(results, arguments.tests), arguments.jobs)
+        troubled = run_jobs(jobs, arguments.jobs)
     except KeyboardInterrupt:       # rostest would take 10 s to stop its nodes; script/test kills them
         for process in multiprocessing.active_children():
             process.kill()
         return 130
     passed, failed, names = summarize(results)
+    print_slowest(jobs)
     for name in names + troubled:   # once more, because the output above may be long
         print('Failed:', name)
     # a job can also fail without a result
