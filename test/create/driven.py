@@ -17,6 +17,8 @@ import support
 
 STOP = drive_direct(0, 0)
 CHI_SQUARE = 16.3       # 99.9 % quantile for 3 degrees of freedom
+# parameters of the node: an ideal floor adds no error
+IDEAL = dict(odom_linear_error=0.0, odom_angular_error=0.0, odom_heading_error=0.0)
 
 
 def guardian_of(pid):

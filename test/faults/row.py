@@ -19,6 +19,7 @@ import signal
 import sys
 import time
 import traceback
+import unittest
 
 FOLDER = os.path.dirname(os.path.abspath(__file__))
 sys.path[:0] = [FOLDER, os.path.dirname(FOLDER)]
@@ -79,6 +80,26 @@ class Row:
     def node(self, name, *arguments):
         """Start an executable of the package; not by rosrun, a shell script, so that a signal reaches the node."""
         return self.start(roslib.packages.find_node('rbx1_nav', name)[0], *arguments)
+
+    @contextmanager
+    def busy(self, loops):
+        """Run so many busy loops beside what is inside."""
+        processes = [self.start('/bin/sh', '-c', 'while :; do :; done') for _ in range(loops)]
+        try:
+            yield
+        finally:
+            for process in processes:
+                process.kill()
+
+    @contextmanager
+    def case(self, text):
+        """One fault, as in fault(); yields a TestCase, for a robot that is stopped at its end."""
+        case = unittest.TestCase()
+        with self.fault(text):
+            try:
+                yield case
+            finally:
+                case.doCleanups()
 
     @staticmethod
     def reset():

@@ -4,16 +4,14 @@ import math
 import os
 import time
 
-import rospy
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from geometry_msgs.msg import Twist
 
 import support
 
 FAULT = ('Twists with NaN, infinities, 1e308, denormals, lateral and vertical components; random Twists; 5,000 Twists '
-         'per second for 10 s; two publishers whose commands contradict each other')
+         'per second for 10 s')
 PROMISE = ('/odom stays finite, and the base obeys exactly afterwards; its memory does not grow, and it logs at most 2 '
-           'lines per second; it names the two publishers in a warning and in /diagnostics')
+           'lines per second')
 FULL, SHORT = 10000, 500       # random Twists
 ROOT = ALONE = False
 
@@ -35,7 +33,7 @@ def run(row):
     pid = support.pid_of('/arbotix')
     seconds = 10 * row.times / FULL
     for text, fault in (('each value in each field', each_value), ('random Twists', random_twists),
-                        ('%d a second for %g s' % (FLOOD, seconds), flood), ('two publishers', two_publishers)):
+                        ('%d a second for %g s' % (FLOOD, seconds), flood)):
         with row.fault(text):
             commander = support.Commander()
             for _ in range(150):    # more than a second without a pause: now commands take effect as they arrive
@@ -43,7 +41,7 @@ def run(row):
                 time.sleep(0.01)
             odom.wait_for_twist(LAST)
             start, lines, memory = time.monotonic(), len(base.lines), rss(pid)
-            fault(row, commander, base, odom)
+            fault(row, commander, odom)
             for speed in (LAST, 0.0):       # the base has them in a queue: until it has come to the last
                 commander.send(speed)
                 odom.wait_for_twist(speed)
@@ -57,7 +55,7 @@ def run(row):
             del odom.messages[:-1]
             commander.publisher.unregister()
             row.reset()
-            if row.times >= FULL or fault is two_publishers:    # it takes 8 s
+            if row.times >= FULL or fault is flood:     # it takes 8 s
                 check_obeys(row, odom)
 
 
@@ -70,7 +68,7 @@ def check_obeys(row, odom):
     assert off < support.MICROMETRE and abs(yaw - 1) < 1e-6, f'{off:g} m and {yaw - 1:g} rad off'
 
 
-def each_value(row, commander, _, odom):
+def each_value(row, commander, odom):
     """Every special value in every field of a Twist, after an ordinary motion."""
     for (part, axis), value in itertools.product(FIELDS, VALUES):
         message = support.twist(0.2, 0.5)
@@ -102,25 +100,6 @@ def flood(row, commander, *_):
         commander.send(0.2 if count % 2 else -0.2)
         time.sleep(max(0, start + count / FLOOD - time.monotonic()))
     row.figure('commands per second in the flood', (count + 1) / (time.monotonic() - start))
-
-
-def two_publishers(row, commander, base, _):
-    """Forward at 20 Hz from here, and backward from a node of its own."""
-    diagnostics = support.Watch('/diagnostics', DiagnosticArray)
-    other = row.start('rostopic', 'pub', '-r', '20', '/cmd_vel', 'geometry_msgs/Twist', '{linear: {x: -0.2}}')
-    try:
-        end = time.monotonic() + 6
-        while time.monotonic() < end:
-            commander.send(0.2)
-            time.sleep(0.05)
-        warnings = [line for line in base.lines if 'WARN' in line]
-        texts = [str(status) for message in diagnostics.messages for status in message.status
-                 if status.level == DiagnosticStatus.WARN]
-    finally:
-        row.end(other)
-        diagnostics.subscriber.unregister()
-    for where, lines in (('a warning', warnings), ('/diagnostics', texts)):
-        assert any('/rostopic_' in line and rospy.get_name() in line for line in lines), f'not named in {where}'
 
 
 def numbers(message):

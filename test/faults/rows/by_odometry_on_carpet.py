@@ -10,7 +10,6 @@ from rbx1_nav.robot.description import read_robot
 from rbx1_nav.ros.node import resources
 from rbx1_nav.simulation.exercise import simulate
 from rbx1_nav.simulation.surfaces import load_surface
-from rows.in_step_feedback import BUSY, load
 import support
 
 FAULT = ('odom_out_and_back.py on low_ply_carpet at real_time_factor 20, with a new base for each run; in every second '
@@ -19,6 +18,7 @@ PROMISE = 'the end pose that simulate.py computes for the seed'
 FULL, SHORT = 20, 2
 ROOT, ALONE = False, True
 
+BUSY = 4        # loops
 SURFACE, SEED = 'low_ply_carpet', 7
 BASE = 'real_time_factor:=20', 'strict:=true', 'model:=none', f'surface:={SURFACE}', f'seed:={SEED}'
 
@@ -32,7 +32,7 @@ def run(row):
     truth = simulate('odom', robot, load_surface(SURFACE, resources.surfaces()), SEED).end.truth
     for number in range(row.times):
         loops = number % 2 * BUSY
-        with row.fault(f'{loops} busy loops'), load(row, loops):
+        with row.fault(f'{loops} busy loops'), row.busy(loops):
             base, driver = row.base(*BASE), row.node('odom_out_and_back.py')
             try:
                 assert driver.wait() == 0, driver.output

@@ -4,12 +4,11 @@ import signal
 import subprocess
 import sys
 import time
-import unittest
 
 import support
 
 sys.path.append(os.path.join(os.path.dirname(__file__), '..', '..', 'create'))
-from driven import CHI_SQUARE, DrivenRobot
+from driven import CHI_SQUARE, IDEAL, DrivenRobot
 
 FAULT = ("`stty` changes the baud rate of a Create's port at a random moment of a motion; half of the nodes receive "
          "SIGTERM immediately afterwards")
@@ -23,8 +22,7 @@ RATES = (1200, 9600, 19200, 38400, 57600, 115200)
 
 def change(row, case, robot_type, seconds, rate, at_once):
     """One fault."""
-    # an ideal floor adds no error
-    robot = DrivenRobot(case, robot_type, odom_linear_error=0.0, odom_angular_error=0.0, odom_heading_error=0.0)
+    robot = DrivenRobot(case, robot_type, **IDEAL)
     end = time.monotonic() + seconds
     robot.drive(0.2, 0.3, lambda: time.monotonic() > end and robot.moving, 'the robot to move')
     count = len(robot.received())
@@ -54,9 +52,5 @@ def run(row):
         own = {'create': 57600, 'create2': 115200}[robot_type]
         rate = row.random.choice([each for each in RATES if each != own])
         seconds, at_once = row.random.uniform(0.2, 2), bool(index % 2)
-        case = unittest.TestCase()
-        with row.fault('%s: %d baud after %.3f s%s' % (robot_type, rate, seconds, ', and SIGTERM' * at_once)):
-            try:
-                change(row, case, robot_type, seconds, rate, at_once)
-            finally:
-                case.doCleanups()
+        with row.case('%s: %d baud after %.3f s%s' % (robot_type, rate, seconds, ', and SIGTERM' * at_once)) as case:
+            change(row, case, robot_type, seconds, rate, at_once)

@@ -1,12 +1,11 @@
 """1 % of the bytes from an emulated Create or Create 2 are corrupted for a whole run."""
 import os
 import sys
-import unittest
 
 import support
 
 sys.path.append(os.path.join(os.path.dirname(__file__), '..', '..', 'create'))
-from driven import CHI_SQUARE, DrivenRobot
+from driven import CHI_SQUARE, IDEAL, DrivenRobot
 
 FAULT = '1 % of the bytes from a Create 2 or a Create are flipped, dropped or duplicated during the exercise'
 PROMISE = ('Create 2: the final odometry is within 5 cm of the truth; Create: the covariance covers the error; lost '
@@ -42,16 +41,10 @@ def run(row):
     row.roscore()
     support.init_node('faults')
     for index in range(row.times):
-        case = unittest.TestCase()
         robot_type, check = [('create2', check_create_2), ('create', check_create)][index % 2]
         seed = row.random.randrange(10 ** 6)
-        with row.fault('%s, seed %d' % (robot_type, seed)):
-            try:
-                # an ideal floor adds no error
-                robot = DrivenRobot(case, robot_type, {'corruption': 0.01, 'seed': seed}, odom_linear_error=0.0,
-                                    odom_angular_error=0.0, odom_heading_error=0.0)
-                driver = row.node('timed_out_and_back.py')
-                assert driver.wait() == 0, driver.output
-                check(row, robot)
-            finally:
-                case.doCleanups()
+        with row.case('%s, seed %d' % (robot_type, seed)) as case:
+            robot = DrivenRobot(case, robot_type, {'corruption': 0.01, 'seed': seed}, **IDEAL)
+            driver = row.node('timed_out_and_back.py')
+            assert driver.wait() == 0, driver.output
+            check(row, robot)

@@ -68,13 +68,11 @@ def check(row, robot, seconds, group, gap, loops):
     end = time.monotonic() + seconds
     robot.drive(0.2, 0.3, lambda: time.monotonic() > end and robot.moving, 'the robot to move')
     count = len(robot.received())
-    busy = [row.start('/usr/bin/python3', '-c', 'while True: pass') for _ in range(loops)]
-    time.sleep(0.3 if loops else 0)
-    robot.drive(0.2, 0.3, lambda: robot.moving, 'the robot to move')
-    killed, actual = kill(robot, group, gap)
-    delay = find_stop(robot, count, killed)
-    for process in busy:
-        process.kill()
+    with row.busy(loops):
+        time.sleep(0.3 if loops else 0)
+        robot.drive(0.2, 0.3, lambda: robot.moving, 'the robot to move')
+        killed, actual = kill(robot, group, gap)
+        delay = find_stop(robot, count, killed)
     where = 'beside busy loops' if loops else 'quiet'
     if delay is not None:
         row.figure(f'{where}: stop after (s)', delay)

@@ -56,16 +56,15 @@ def run(row):
         with row.fault(f'{kind} ({number})'):
             for name in names:
                 rospy.ServiceProxy(f'/{name}/arbotix/reset', Empty)()
-            loops = [row.start('/usr/bin/python3', '-c', 'while True: pass') for _ in range(LOOPS * (number // 3 % 2))]
-            drivers = {name: row.start('rosrun', 'rbx1_nav', 'timed_out_and_back.py', ROS_NAMESPACE=name)
-                       for name in names}
-            drivers['robot3'].wait_for_line('forward: ')
-            disturb(row, kind, drivers['robot3'], fleet)
-            for name in 'robot1', 'robot2':
-                assert drivers[name].wait() == 0, drivers[name].output
-                check_exact(truth[name])
-            for each in (drivers['robot3'], *loops):
-                each.kill()
+            with row.busy(LOOPS * (number // 3 % 2)):
+                drivers = {name: row.start('rosrun', 'rbx1_nav', 'timed_out_and_back.py', ROS_NAMESPACE=name)
+                           for name in names}
+                drivers['robot3'].wait_for_line('forward: ')
+                disturb(row, kind, drivers['robot3'], fleet)
+                for name in 'robot1', 'robot2':
+                    assert drivers[name].wait() == 0, drivers[name].output
+                    check_exact(truth[name])
+                drivers['robot3'].kill()
             if kind == 'removed':
                 answer = rospy.ServiceProxy('/fleet/add', AddDiagnostics)('robot3')
                 assert answer.success, answer.message

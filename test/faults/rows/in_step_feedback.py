@@ -1,5 +1,4 @@
 """Drivers with feedback in lockstep: every run of a driver takes the same path."""
-from contextlib import contextmanager
 import os
 import sys
 
@@ -51,17 +50,6 @@ class Base:
             self.row.end(*[each for each in (self.filter, self.launch) if each])
 
 
-@contextmanager
-def load(row, loops):
-    """Load the machine with so many busy loops."""
-    processes = [row.start('/bin/sh', '-c', 'while :; do :; done') for _ in range(loops)]
-    try:
-        yield
-    finally:
-        for process in processes:
-            process.kill()
-
-
 def run(row):
     """See FAULT."""
     row.roscore()
@@ -76,7 +64,7 @@ def run(row):
                     arguments = kind, str(rate)
                     loops = number % 2 * BUSY
                     text = f"{language}: {' '.join(arguments)}, {loops} busy loops"
-                    with row.fault(text), load(row, loops):
+                    with row.fault(text), row.busy(loops):
                         check(base, feedback.driver_in(language.split()[-1]), arguments, ends)
         base.end()
 

@@ -18,10 +18,8 @@ def drive(row, odom, commands, loops):
     del odom.messages[:-1]
     driver = row.start('rosrun', 'rbx1_nav', 'timed_out_and_back.py')
     odom.wait_for_twist(0.2)
-    busy = [row.start('/usr/bin/python3', '-c', 'while True: pass') for _ in range(loops)]
-    status = driver.wait()
-    for process in busy:
-        process.kill()
+    with row.busy(loops):
+        status = driver.wait()
     assert status == 0, driver.output
     odom.next()
     kinds = [(m.linear.x, m.angular.z) for m in commands.messages]

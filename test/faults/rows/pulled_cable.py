@@ -2,12 +2,11 @@
 import os
 import sys
 import time
-import unittest
 
 import support
 
 sys.path.append(os.path.join(os.path.dirname(__file__), '..', '..', 'create'))
-from driven import CHI_SQUARE, STOP, DrivenRobot
+from driven import CHI_SQUARE, IDEAL, STOP, DrivenRobot
 
 FAULT = "a Create's cable is pulled at a random moment of a motion, and plugged in again"
 PROMISE = ('the node first sends a stop; the odometry includes the motion in between, and its covariance is '
@@ -37,19 +36,12 @@ def run(row):
     row.roscore()
     support.init_node('faults')
     for index in range(row.times):
-        case = unittest.TestCase()
         robot_type = ('create', 'create2')[index % 2]
         seconds, gap = row.random.uniform(0.2, 2), row.random.uniform(0.1, 4)
         velocity = row.random.uniform(0.1, 0.3), row.random.choice([0.0, row.random.uniform(-1, 1)])
-        with row.fault('%s: cable pulled after %.3f s at %.3f m/s, %.3f rad/s for %.3f s'
-                       % (robot_type, seconds, *velocity, gap)):
-            try:
-                # an ideal floor adds no error
-                robot = DrivenRobot(case, robot_type, odom_linear_error=0.0, odom_angular_error=0.0,
-                                    odom_heading_error=0.0)
-                pull(row, robot, seconds, gap, velocity)
-            finally:
-                case.doCleanups()
+        with row.case('%s: cable pulled after %.3f s at %.3f m/s, %.3f rad/s for %.3f s'
+                      % (robot_type, seconds, *velocity, gap)) as case:
+            pull(row, DrivenRobot(case, robot_type, **IDEAL), seconds, gap, velocity)
     errors = row.figures.get('normalized squared error', [])
     if len(errors) > 10:
         with row.fault('the mean of the squared errors'):

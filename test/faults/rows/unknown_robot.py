@@ -4,7 +4,6 @@ import os
 import signal
 import sys
 import time
-import unittest
 
 import rospy
 import support
@@ -60,12 +59,8 @@ def run(row):
     for index in range(row.times):
         kind, robot_type, baud = pairs[index % len(pairs)]
         kill_after = row.random.uniform(0.0, 0.5) if index % 2 else None
-        case = unittest.TestCase()
-        with row.fault('robot_type %s, a %s at %d baud%s' % (
-                robot_type, kind, baud, '' if kill_after is None else ', SIGKILL after %.3f s' % kill_after)):
-            try:
-                meet(case, EmulatedRobot(case, kind, baud=baud), robot_type, kill_after)
-            finally:
-                case.doCleanups()
-                if rospy.has_param('/turtlebot_node'):
-                    rospy.delete_param('/turtlebot_node')
+        with row.case('robot_type %s, a %s at %d baud%s' % (
+                robot_type, kind, baud, '' if kill_after is None else ', SIGKILL after %.3f s' % kill_after)) as case:
+            meet(case, EmulatedRobot(case, kind, baud=baud), robot_type, kill_after)
+        if rospy.has_param('/turtlebot_node'):
+            rospy.delete_param('/turtlebot_node')
