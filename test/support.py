@@ -4,8 +4,10 @@ import os
 import re
 import signal
 import subprocess
+import sys
 import threading
 import time
+import unittest
 from xmlrpc.client import ServerProxy
 
 import rospkg
@@ -30,6 +32,11 @@ MICROMETRE = 1e-6
 # the error of a calibration on a machine that is too busy, where the odometry is late; the run is repeated
 LATE = 'The last transform'
 ATTEMPTS = 5
+
+
+def script_name():
+    """Return the name of the script that runs."""
+    return os.path.splitext(os.path.basename(sys.argv[0]))[0]
 
 
 def init_node(name):
@@ -161,12 +168,15 @@ def without_rosrun(command):
 class Process:
     """A node under test in a separate process. Stores the lines of its output."""
 
+    started = []        # all of them, in this order
+
     def __init__(self, *command, **environment):
         """environment: variables to set."""
         # unbuffered, so that each line arrives as soon as it is printed
         self.process = subprocess.Popen(without_rosrun(command), stdin=subprocess.PIPE, stdout=subprocess.PIPE,
                                         stderr=subprocess.STDOUT, text=True, start_new_session=True,
                                         env=dict(os.environ, PYTHONUNBUFFERED='1', **environment))
+        self.started.append(self)
         self.lines = []
         self.reader = threading.Thread(target=self._read, daemon=True)
         self.reader.start()
@@ -215,6 +225,24 @@ class Process:
         self.process.wait()
 
 
+class Case(unittest.TestCase):
+    """A test case that is a node with the name of its script. A Process that a test starts is killed at its end."""
+
+    @classmethod
+    def setUpClass(cls):
+        init_node(script_name())
+
+    def run(self, result=None):
+        """Run a test."""
+        before = len(Process.started)
+        try:
+            return super().run(result)
+        finally:
+            for process in Process.started[before:]:
+                process.kill()
+            del Process.started[before:]
+
+
 def surfaces():
     """Return the names of the surfaces, as in a message."""
     return ', '.join(known_surfaces(resources.surfaces()))
@@ -236,6 +264,6 @@ def pose(odom):
     return point.x, point.y, yaw(odom)
 
 
-def main(name, case):
-    """Run a TestCase under rostest. name: name of the .test file."""
-    rostest.rosrun('rbx1_nav', name, case)
+def main(case):
+    """Run a Case under rostest."""
+    rostest.rosrun('rbx1_nav', script_name(), case)

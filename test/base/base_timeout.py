@@ -1,13 +1,10 @@
 #!/usr/bin/python3
 """A command stays in force for exactly the timeout; then the base stops."""
-import unittest
-
 import support
 
 
-class TestBaseTimeout(unittest.TestCase):
+class TestBaseTimeout(support.Case):
     def test_a_command_lasts_for_the_timeout(self):
-        support.init_node('base_timeout')
         odom = support.OdomWatch()
         support.Commander().send(0.2)
         odom.wait_for_twist(0.2, since=0)
@@ -19,4 +16,4 @@ class TestBaseTimeout(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('base_timeout', TestBaseTimeout)
+    support.main(TestBaseTimeout)

@@ -1,15 +1,13 @@
 #!/usr/bin/python3
 """Commands above the limits in the YAML file are clamped, keep their sign, and cause a warning."""
-import unittest
 
 from rosgraph_msgs.msg import Log
 
 import support
 
 
-class TestClampedCommands(unittest.TestCase):
+class TestClampedCommands(support.Case):
     def test_commands_are_clamped_to_the_limits(self):
-        support.init_node('clamped_commands')
         odom = support.OdomWatch()
         log = support.Watch('/rosout', Log)
         commander = support.Commander()
@@ -22,4 +20,4 @@ class TestClampedCommands(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('clamped_commands', TestClampedCommands)
+    support.main(TestClampedCommands)

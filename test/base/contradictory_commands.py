@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """If two nodes drive the base at once with different commands, a warning and /diagnostics name both."""
 import re
-import unittest
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from rosgraph_msgs.msg import Log
@@ -9,13 +8,11 @@ from rosgraph_msgs.msg import Log
 import support
 
 
-class TestContradictoryCommands(unittest.TestCase):
+class TestContradictoryCommands(support.Case):
     def test_both_are_named(self):
-        support.init_node('contradictory_commands')
         logs, diagnostics = support.Watch('/rosout', Log), support.Watch('/diagnostics', DiagnosticArray)
         commander = support.Commander()
         other = support.Process('rostopic', 'pub', '-r', '20', '/cmd_vel', 'geometry_msgs/Twist', '{angular: {z: 0.5}}')
-        self.addCleanup(other.kill)
 
         def status():
             return next((each for message in diagnostics.messages[-1:] for each in message.status
@@ -44,4 +41,4 @@ class TestContradictoryCommands(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('contradictory_commands', TestContradictoryCommands)
+    support.main(TestContradictoryCommands)

@@ -1,5 +1,7 @@
-// roscpp version of driver_at_rate.py: driver_at_rate RATE COUNT
-#include <cstdlib>
+// roscpp version of driver_at_rate.py: driver_at_rate RATE,...
+#include <iostream>
+#include <sstream>
+#include <string>
 
 #include <geometry_msgs/Twist.h>
 #include <ros/ros.h>
@@ -15,13 +17,25 @@ int main(int argc, char** argv)
   ros::WallDuration(0.3).sleep();
   geometry_msgs::Twist move;
   move.linear.x = 0.2;
-  ros::Rate rate(std::atof(argv[1]));
-  for (int i = 0; i < std::atoi(argv[2]); i++)
+  std::istringstream rates(argv[1]);
+  std::string text, line;
+  for (bool first = true; std::getline(rates, text, ','); first = false)
   {
-    publisher.publish(move);
-    rate.sleep();
+    if (!first)
+    {
+      std::cout << "rests" << std::endl;
+      std::getline(std::cin, line);
+      ros::Duration(0.1).sleep();   // begins on the clock
+    }
+    int count = std::stoi(text);
+    ros::Rate rate(count);
+    for (int i = 0; i < count; i++)
+    {
+      publisher.publish(move);
+      rate.sleep();
+    }
+    publisher.publish(geometry_msgs::Twist());
+    ros::Duration(0.2).sleep();   // lets the stop be sent
   }
-  publisher.publish(geometry_msgs::Twist());
-  ros::Duration(0.2).sleep();   // lets the stop be sent
   return 0;
 }

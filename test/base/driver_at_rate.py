@@ -1,11 +1,11 @@
 #!/usr/bin/python3
-"""A typical driver: it sends 0.2 m/s at a given rate, then a stop.
+"""A typical driver: it sends 0.2 m/s for 1 s at a given rate, then a stop.
 
-    driver_at_rate.py KIND RATE COUNT [SPEED]
+    driver_at_rate.py KIND RATE,... [SPEED]
 
-KIND: rate (rospy.Rate), sleep (rospy.sleep), timer (rospy.Timer); RATE: Hz; COUNT: number of commands; SPEED: m/s. With
-SPEED, it reads the simulated time of the first command (s) from its input. Otherwise it begins 0.3 s of wall time after
-the base has connected.
+KIND: rate (rospy.Rate), sleep (rospy.sleep), timer (rospy.Timer); RATE: Hz, each after the other, with a line of its
+input in between; SPEED: m/s. With SPEED, it reads the simulated time of the first command (s) from its input. Otherwise
+it begins 0.3 s of wall time after the base has connected.
 """
 import sys
 import threading
@@ -39,7 +39,7 @@ def drive(kind, rate, count, publisher, move):
     publisher.publish(Twist())
 
 
-def main(kind, rate, count, speed=None):
+def main(kind, rates, speed=None):
     """Drive."""
     rospy.init_node('driver', anonymous=True)
     publisher = rospy.Publisher('/cmd_vel', Twist, queue_size=10)
@@ -52,8 +52,12 @@ def main(kind, rate, count, speed=None):
         rospy.sleep(float(input('ready\n')) - rospy.get_time())
     move = Twist()
     move.linear.x = float(speed or 0.2)
-    drive(kind, float(rate), int(count), publisher, move)
-    rospy.sleep(0.2)    # lets the stop be sent
+    for number, rate in enumerate(map(int, rates.split(','))):
+        if number:
+            input('rests\n')
+            rospy.sleep(0.1)    # begins on the clock
+        drive(kind, rate, rate, publisher, move)
+        rospy.sleep(0.2)    # lets the stop be sent
 
 
 if __name__ == '__main__':

@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """The launch file of a robot starts its base, its frames and its joints, in real time."""
 import sys
-import unittest
 
 import rospy
 from sensor_msgs.msg import JointState
@@ -17,10 +16,9 @@ SERVOS = {'turtlebot': [],
 BASE_FRAME = {'turtlebot': 'base_footprint', 'pi_robot': 'base_link'}
 
 
-class TestFakeRobot(unittest.TestCase):
+class TestFakeRobot(support.Case):
     def test_base_frames_and_joints(self):
         robot = next(name for name in SERVOS if name in sys.argv)
-        support.init_node('fake_robot')
         self.assertIs(rospy.get_param('/use_sim_time'), False)
         odom = support.OdomWatch()
         transforms = support.Watch('/tf', TFMessage)
@@ -55,4 +53,4 @@ class TestFakeRobot(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('fake_robot', TestFakeRobot)
+    support.main(TestFakeRobot)

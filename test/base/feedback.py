@@ -7,7 +7,6 @@ import importlib.util
 from math import cos, sin
 import os
 import sys
-import unittest
 
 import rospy
 from nav_msgs.msg import Odometry
@@ -16,7 +15,7 @@ from std_srvs.srv import Empty
 import support
 
 FOLDER = os.path.dirname(os.path.realpath(__file__))
-RUNS = 3
+RUNS = 2
 SECOND = 10 ** 9
 STEP = 20_000_000       # ns of the clock
 # rates (Hz) of each kind; 20 Hz is no whole number of ticks
@@ -64,10 +63,10 @@ def ideal_end(rate):
         tick += 1
 
 
-class TestFeedback(unittest.TestCase):
+class TestFeedback(support.Case):
     @classmethod
     def setUpClass(cls):
-        support.init_node('feedback')
+        super().setUpClass()
         rospy.wait_for_service('/arbotix/reset')
         if 'filter' in sys.argv:
             rospy.wait_for_message('/odom_ekf', Odometry)
@@ -86,7 +85,6 @@ class TestFeedback(unittest.TestCase):
         """See drive()."""
         rospy.ServiceProxy('/arbotix/reset', Empty)()
         driver = support.Process(command, *map(str, arguments), OPENBLAS_NUM_THREADS='')
-        self.addCleanup(driver.kill)
         self.assertEqual(driver.wait(), 0, driver.output)
         # through a new connection, because old messages may be queued in the connection of a busy subscriber
         end = support.pose(rospy.wait_for_message('/ground_truth', Odometry))
@@ -113,4 +111,4 @@ if __name__ == '__main__':
             for start in [(), ('wall',)][:1 + ((each, number) in WALL)]:
                 setattr(TestFeedback, '_'.join(['test', each, str(number), *start]),
                         lambda self, arguments=(sys.argv[1], each, number, *start): self.check(*arguments))
-    support.main('feedback', TestFeedback)
+    support.main(TestFeedback)

@@ -6,7 +6,6 @@
 from math import cos, pi, sin
 import os
 import sys
-import unittest
 
 import rospy
 from nav_msgs.msg import Odometry
@@ -17,6 +16,9 @@ import support
 SECOND = 10 ** 9
 DRIVER = os.path.join(os.path.dirname(os.path.realpath(__file__)), 'driver_at_rate.py')
 SPEED = 0.2     # m/s
+RATES = [int(arg) for arg in sys.argv[2:] if arg.isdigit()]
+# rates (Hz) at which processes of their own are started: whole and odd numbers of ticks, and one command in each tick
+PROCESSES = {7, 20, 33, 50, 100}
 
 
 class Ideal:
@@ -55,81 +57,88 @@ class Ideal:
         return sum(sent[tick] * (after - tick) for tick, after in zip(order, order[1:])) * self.step / SECOND
 
 
-class TestInStep(unittest.TestCase):
+class TestInStep(support.Case):
     @classmethod
     def setUpClass(cls):
-        support.init_node('in_step')
+        super().setUpClass()
         rospy.wait_for_service('/arbotix/reset')
         cls.ideal = Ideal(round(float(sys.argv[1]) * SECOND))
 
     def start(self, *command):
         """Start a driver, a Process that is killed after the test. Like other drivers, it has the threads of OpenBLAS,
         which script/test switches off."""
-        driver = support.Process(*map(str, command), OPENBLAS_NUM_THREADS='')
-        self.addCleanup(driver.kill)
-        return driver
+        return support.Process(*map(str, command), OPENBLAS_NUM_THREADS='')
 
-    def check(self, expected, *drivers):
-        """Wait for the drivers to exit, and compare the distance; expected: m."""
-        for driver in drivers:
-            self.assertEqual(driver.wait(), 0, driver.output)
+    def travel(self):
+        """Return the x of the robot, m."""
         # through a new connection, because old messages may be queued in the connection of a busy subscriber
-        x = rospy.wait_for_message('/odom', Odometry).pose.pose.position.x
-        self.assertAlmostEqual(x, expected, delta=support.MICROMETRE)
+        return rospy.wait_for_message('/odom', Odometry).pose.pose.position.x
 
-    def check_kind(self, kind, rate, *command):
-        """Check one driver of this kind, which drives for a second, starting at the origin."""
+    def check_kind(self, kind, *command):
+        """Check one driver of this kind, which drives for a second at each rate."""
         rospy.ServiceProxy('/arbotix/reset', Empty)()
-        driver = self.start(*command, rate, rate)
-        self.check(self.ideal.distance((SPEED, self.ideal.ticks(kind, rate, rate))), driver)
-
-    def check_rate(self, rate):
-        self.check_kind('rate', rate, DRIVER, 'rate')
-
-    def check_sleep(self, rate):
-        self.check_kind('sleep', rate, DRIVER, 'sleep')
-
-    def check_timer(self, rate):
-        self.check_kind('timer', rate, DRIVER, 'timer')
-
-    def check_roscpp(self, rate):
-        folder = os.path.join(os.environ['CMAKE_PREFIX_PATH'].split(':')[0], 'lib', 'rbx1_nav')
-        self.check_kind('roscpp', rate, os.path.join(folder, 'driver_at_rate'))
-
-    def check_script(self, rate):
-        """The package's own script."""
-        rospy.ServiceProxy('/arbotix/reset', Empty)()
-        driver = support.out_and_back(f'_rate:={rate}')
-        self.addCleanup(driver.kill)
+        driver = self.start(*command, ','.join(map(str, RATES)))
+        before = 0.0
+        for number, rate in enumerate(RATES, 1):
+            support.wait_for(lambda: driver.output.count('rests') == number or driver.process.poll() is not None,
+                             f'the end at {rate} Hz')
+            x = self.travel()
+            self.assertAlmostEqual(x - before, self.ideal.distance((SPEED, self.ideal.ticks(kind, rate, rate))),
+                                   delta=support.MICROMETRE, msg=f'{rate} Hz')
+            if number < len(RATES):
+                driver.type('')
+            before = x
         self.assertEqual(driver.wait(), 0, driver.output)
-        x, y, _ = support.pose(rospy.wait_for_message('/odom', Odometry))
-        for value, ideal in zip((x, y), self.ideal.exercise(rate)):
-            self.assertAlmostEqual(value, ideal, delta=support.MICROMETRE)
 
-    def check_beside_an_idle_driver(self, rate):
+    def test_rate(self):
+        self.check_kind('rate', DRIVER, 'rate')
+
+    def test_sleep(self):
+        self.check_kind('sleep', DRIVER, 'sleep')
+
+    def test_timer(self):
+        self.check_kind('timer', DRIVER, 'timer')
+
+    def test_roscpp(self):
+        folder = os.path.join(os.environ['CMAKE_PREFIX_PATH'].split(':')[0], 'lib', 'rbx1_nav')
+        self.check_kind('roscpp', os.path.join(folder, 'driver_at_rate'))
+
+    def test_beside_an_idle_driver(self):
         idle = self.start('/usr/bin/python3', '-c', 'import rospy; from geometry_msgs.msg import Twist; '
                           'rospy.init_node("teleop"); p = rospy.Publisher("/cmd_vel", Twist, queue_size=1); '
                           'input("waits for a key\\n")')
         idle.wait_for_line('waits for a key')
-        self.check_rate(rate)
+        self.test_rate()
+        idle.type('')
+        idle.wait()     # unregisters: otherwise the base would try to connect to whoever has this port next
 
-    def check_two_drivers(self, rate):
-        rospy.ServiceProxy('/arbotix/reset', Empty)()
-        drivers = [self.start(DRIVER, 'rate', each, each, speed, f'__name:={name}')
-                   for name, each, speed in (('a', 20, SPEED), ('b', rate, SPEED / 4))]
-        for driver in drivers:
-            driver.wait_for_line('ready')
-        now = rospy.wait_for_message('/odom', Odometry).header.stamp.to_sec()
-        for driver in drivers:
-            # whole seconds are ticks; at this speed of simulated time, both drivers have read it by then
-            driver.type(str(round(now) + 1 + 2 * rospy.get_param('/arbotix/real_time_factor')))
-        self.check(self.ideal.distance((SPEED, self.ideal.ticks('rate', 20, 20)),
-                                       (SPEED / 4, self.ideal.ticks('rate', rate, rate))), *drivers)
+    def test_script(self):
+        """The package's own script."""
+        for rate in PROCESSES.intersection(RATES):
+            rospy.ServiceProxy('/arbotix/reset', Empty)()
+            driver = support.out_and_back(f'_rate:={rate}')
+            self.assertEqual(driver.wait(), 0, driver.output)
+            x, y, _ = support.pose(rospy.wait_for_message('/odom', Odometry))
+            for value, ideal in zip((x, y), self.ideal.exercise(rate)):
+                self.assertAlmostEqual(value, ideal, delta=support.MICROMETRE, msg=f'{rate} Hz')
+
+    def test_two_drivers(self):
+        for rate in PROCESSES.intersection(RATES):
+            rospy.ServiceProxy('/arbotix/reset', Empty)()
+            drivers = [self.start(DRIVER, 'rate', each, speed, f'__name:={name}')
+                       for name, each, speed in (('a', 20, SPEED), ('b', rate, SPEED / 4))]
+            for driver in drivers:
+                driver.wait_for_line('ready')
+            now = rospy.wait_for_message('/odom', Odometry).header.stamp.to_sec()
+            for driver in drivers:
+                # whole seconds are ticks; at this speed of simulated time, both drivers have read it by then
+                driver.type(str(round(now) + 1 + 2 * rospy.get_param('/arbotix/real_time_factor')))
+            for driver in drivers:
+                self.assertEqual(driver.wait(), 0, driver.output)
+            expected = self.ideal.distance((SPEED, self.ideal.ticks('rate', 20, 20)),
+                                           (SPEED / 4, self.ideal.ticks('rate', rate, rate)))
+            self.assertAlmostEqual(self.travel(), expected, delta=support.MICROMETRE, msg=f'{rate} Hz')
 
 
 if __name__ == '__main__':
-    for number in [int(arg) for arg in sys.argv[2:] if arg.isdigit()]:
-        for kind in 'rate', 'sleep', 'timer', 'roscpp', 'script', 'beside_an_idle_driver', 'two_drivers':
-            setattr(TestInStep, f'test_{kind}_{number}',
-                    lambda self, check=f'check_{kind}', rate=number: getattr(self, check)(rate))
-    support.main('in_step', TestInStep)
+    support.main(TestInStep)

@@ -1,10 +1,9 @@
 #!/usr/bin/python3
 """The base names each driver whose commands depend on wall time or on chance, and none that is on the clock."""
 import os
-import signal
+import re
 import tempfile
 import time
-import unittest
 
 from geometry_msgs.msg import Twist
 import rosbag
@@ -45,10 +44,10 @@ def write_commands(path):
             bag.write('/cmd_vel', support.twist(0.1 if number < 20 else 0.0), rospy.Time(1 + number / 10))
 
 
-class TestOffClock(unittest.TestCase):
+class TestOffClock(support.Case):
     @classmethod
     def setUpClass(cls):
-        support.init_node('off_clock')
+        super().setUpClass()
         cls.odom = support.OdomWatch()
         cls.log = support.Watch('/rosout', Log)
 
@@ -58,93 +57,62 @@ class TestOffClock(unittest.TestCase):
 
     def start(self, *command):
         """Start a driver."""
-        self.before = len(self.warnings())
-        driver = support.Process(*map(str, command), OPENBLAS_NUM_THREADS='')
-        self.addCleanup(driver.kill)
-        return driver
+        return support.Process(*map(str, command), OPENBLAS_NUM_THREADS='')
 
-    def check(self, driver, pattern, status=0):
-        """Check, after the driver's run, the name of the node in the only warning; pattern: of the name, None: no
-        warning; status: of the driver."""
-        self.assertEqual(driver.wait(), status, driver.output)
+    def drive(self, *command):
+        """Run a driver."""
+        driver = self.start(*command)
+        self.assertEqual(driver.wait(), 0, driver.output)
+
+    def check(self, before, *patterns):
+        """Check the names of the nodes in the warnings after the first `before`: one matches each pattern."""
         end = self.odom.last.header.stamp.to_sec()
         support.wait_for(lambda: self.odom.last.header.stamp.to_sec() > end + REST, f'{REST} s of simulated time')
-        found = self.warnings()[self.before:]
-        if pattern is None:
-            self.assertEqual(found, [])
-        else:
-            self.assertEqual(len(found), 1, found)
-            self.assertRegex(found[0], f'^{pattern} ')
+        found = self.warnings()[before:]
+        for pattern in patterns:
+            self.assertEqual(len([each for each in found if re.match(f'{pattern} ', each)]), 1, (pattern, found))
+        self.assertEqual(len(found), len(patterns), found)
 
-    def test_wall_rate(self):
-        self.check(self.start(DRIVER, 'wall_rate'), '/wall_rate')
-
-    def test_wall_thread(self):
-        self.check(self.start(DRIVER, 'wall_thread'), '/wall_thread')
-
-    def test_wait_for_message(self):
-        self.check(self.start(DRIVER, 'wait_for_message'), '/wait_for_message')
-
-    def test_two_threads(self):
-        self.check(self.start(DRIVER, 'two_threads'), '/two_threads')
-
-    def test_keys(self):
+    def test_off_the_clock(self):
+        before = len(self.warnings())
+        for kind in 'wall_rate', 'wall_thread', 'wait_for_message', 'two_threads':
+            self.drive(DRIVER, kind)
         driver = self.start(DRIVER, 'keys')
         type_keys(driver)
-        self.check(driver, '/keys')
-
-    def test_rosbag_play(self):
+        self.assertEqual(driver.wait(), 0, driver.output)
         with tempfile.NamedTemporaryFile(suffix='.bag') as file:
             write_commands(file.name)
-            self.check(self.start('rosbag', 'play', file.name), r'/play_\d+')
-
-    def test_rostopic_pub(self):
+            self.drive('rosbag', 'play', file.name)
         driver = self.start('rostopic', 'pub', '-r', 10, '/cmd_vel', Twist._type, '{linear: {x: 0.1}}')
         self.odom.wait_for_twist(0.1)
         time.sleep(REPEATED)
-        driver.signal(signal.SIGKILL)       # SIGINT is a traceback in rospy on Debian 11
-        self.check(driver, r'/rostopic_\w+', -signal.SIGKILL)
+        driver.kill()       # SIGINT is a traceback in rospy on Debian 11
+        self.check(before, '/wall_rate', '/wall_thread', '/wait_for_message', '/two_threads', '/keys', r'/play_\d+',
+                   r'/rostopic_\w+')
 
-    def test_two_commands(self):
-        self.check(self.start(DRIVER, 'two_commands'), None)
-
-    def test_last_command(self):
-        self.check(self.start(DRIVER, 'last_command'), None)
-
-    def test_rate(self):
-        self.check(self.start(AT_RATE, 'rate', 20, 20), None)
-
-    def test_sleep(self):
-        self.check(self.start(AT_RATE, 'sleep', 20, 20), None)
-
-    def test_timer(self):
-        self.check(self.start(AT_RATE, 'timer', 20, 20), None)
-
-    def test_roscpp_rate(self):
-        self.check(self.start(roscpp('driver_at_rate'), 20, 20), None)
-
-    def test_feedback(self):
-        self.check(self.start(FEEDBACK, 'latest', 50), None)
-
-    def test_callback(self):
-        self.check(self.start(FEEDBACK, 'callback', 50), None)
-
-    def test_roscpp_callback(self):
-        self.check(self.start(roscpp('feedback_driver'), 'callback', 50), None)
+    def test_on_the_clock(self):
+        before = len(self.warnings())
+        for command in [(DRIVER, 'two_commands'), (DRIVER, 'last_command'), (AT_RATE, 'rate', 20),
+                        (AT_RATE, 'sleep', 20), (AT_RATE, 'timer', 20), (roscpp('driver_at_rate'), 20),
+                        (FEEDBACK, 'latest', 50), (FEEDBACK, 'callback', 50),
+                        (roscpp('feedback_driver'), 'callback', 50)]:
+            self.drive(*command)
+        self.check(before)
 
     def test_roscpp_timer(self):
         """A ros::Timer is exact, or named."""
         for rate in 10, 20, 50:
             rospy.ServiceProxy('/arbotix/reset', Empty)()
-            driver = self.start(roscpp('timer_driver'), rate, rate)
+            before = len(self.warnings())
+            self.drive(roscpp('timer_driver'), rate, rate)
             try:
-                self.check(driver, None)
+                self.check(before)
             except AssertionError:
-                self.check(driver, r'/timer_driver_\d+')
+                self.check(before, r'/timer_driver_\d+')
                 continue
             # 0.2 m/s for one second
             self.assertAlmostEqual(self.odom.next().pose.pose.position.x, 0.2, delta=support.MICROMETRE)
 
 
 if __name__ == '__main__':
-    support.main('off_clock', TestOffClock)
+    support.main(TestOffClock)

@@ -1,15 +1,13 @@
 #!/usr/bin/python3
 """With publish_tf false, the base publishes odometry but no transform."""
-import unittest
 
 from tf2_msgs.msg import TFMessage
 
 import support
 
 
-class TestPublishTF(unittest.TestCase):
+class TestPublishTF(support.Case):
     def test_odometry_without_a_transform(self):
-        support.init_node('publish_tf')
         transforms = support.Watch('/tf', TFMessage)
         odom = support.OdomWatch()
         support.wait_for(lambda: len(odom.messages) > 50, 'fifty odometry messages')
@@ -17,4 +15,4 @@ class TestPublishTF(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('publish_tf', TestPublishTF)
+    support.main(TestPublishTF)

@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """A Twist with values that are not finite is rejected: it stops the base, is counted, and does not affect odometry."""
 import math
-import unittest
 
 from diagnostic_msgs.msg import DiagnosticArray
 from rosgraph_msgs.msg import Log
@@ -9,9 +8,8 @@ from rosgraph_msgs.msg import Log
 import support
 
 
-class TestRejectedCommands(unittest.TestCase):
+class TestRejectedCommands(support.Case):
     def test_values_that_are_not_finite_are_rejected(self):
-        support.init_node('rejected_commands')
         odom = support.OdomWatch()
         diagnostics = support.Watch('/diagnostics', DiagnosticArray)
         logs = support.Watch('/rosout', Log)
@@ -45,4 +43,4 @@ class TestRejectedCommands(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('rejected_commands', TestRejectedCommands)
+    support.main(TestRejectedCommands)

@@ -1,16 +1,14 @@
 #!/usr/bin/python3
 """The simulated clock does not wait for a publisher of /cmd_vel that does not use it."""
 import time
-import unittest
 
 from rosgraph_msgs.msg import Log
 
 import support
 
 
-class TestReleasedPublisher(unittest.TestCase):
+class TestReleasedPublisher(support.Case):
     def test_a_publisher_on_wall_time_does_not_hold_the_clock(self):
-        support.init_node('released_publisher')
         odom = support.OdomWatch()
         log = support.Watch('/rosout', Log)
 
@@ -36,4 +34,4 @@ class TestReleasedPublisher(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('released_publisher', TestReleasedPublisher)
+    support.main(TestReleasedPublisher)

@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """~reset moves the base back to the origin, at standstill, even while it is driving."""
 import time
-import unittest
 
 import rospy
 from std_msgs.msg import Empty as EmptyMessage
@@ -10,9 +9,8 @@ from std_srvs.srv import Empty
 import support
 
 
-class TestReset(unittest.TestCase):
+class TestReset(support.Case):
     def test_reset_while_driving(self):
-        support.init_node('reset')
         odom = support.OdomWatch()
         commander = support.Commander()
         commander.send(0.2, 0.5)
@@ -37,4 +35,4 @@ class TestReset(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('reset', TestReset)
+    support.main(TestReset)

@@ -3,7 +3,6 @@
 import os
 import signal
 import tempfile
-import unittest
 
 import rosnode
 import rospy
@@ -20,11 +19,7 @@ OTHER_NAME = '''<launch>
 </launch>'''
 
 
-class TestSecondBase(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        support.init_node('second_base')
-
+class TestSecondBase(support.Case):
     def launch(self, *arguments):
         """Start a roslaunch and wait for its nodes; it is stopped after the test."""
         process = support.Process('roslaunch', *arguments)
@@ -70,4 +65,4 @@ class TestSecondBase(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('second_base', TestSecondBase)
+    support.main(TestSecondBase)

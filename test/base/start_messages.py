@@ -2,7 +2,6 @@
 """At its start, the base logs one line on ignored keys, the surface with the seed, and its pose, and nothing else."""
 import os
 import re
-import unittest
 
 import rospkg
 import rospy
@@ -11,19 +10,17 @@ import yaml
 import support
 
 
-class TestStartMessages(unittest.TestCase):
+class TestStartMessages(support.Case):
     @classmethod
     def setUpClass(cls):
-        support.init_node('start_messages')
+        super().setUpClass()
         with open(os.path.join(rospkg.RosPack().get_path('rbx1_nav'), 'config', 'turtlebot.yaml')) as file:
             cls.config = yaml.safe_load(file)
 
     def base(self, **params):
         """Start a base with the package's own configuration and these parameters."""
         rospy.set_param('/arbotix', dict(self.config, **params))
-        base = support.Process('rosrun', 'rbx1_nav', 'fake_base.py')
-        self.addCleanup(base.kill)
-        return base
+        return support.Process('rosrun', 'rbx1_nav', 'fake_base.py')
 
     def messages(self, **params):
         """Return the levels and texts that a base logs until it is ready."""
@@ -61,4 +58,4 @@ class TestStartMessages(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('start_messages', TestStartMessages)
+    support.main(TestStartMessages)

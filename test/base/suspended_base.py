@@ -3,14 +3,12 @@
 import os
 import signal
 import time
-import unittest
 
 import support
 
 
-class TestSuspendedBase(unittest.TestCase):
+class TestSuspendedBase(support.Case):
     def test_the_timeout_ends_while_the_base_is_suspended(self):
-        support.init_node('suspended_base')
         odom = support.OdomWatch()
         base = support.pid_of('/arbotix')
         support.Commander().send(0.2)
@@ -24,4 +22,4 @@ class TestSuspendedBase(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('suspended_base', TestSuspendedBase)
+    support.main(TestSuspendedBase)

@@ -2,7 +2,6 @@
 """A step of the system clock by hours does not move the robot, and the stamps follow the clock."""
 import os
 import tempfile
-import unittest
 
 import rospkg
 from tf2_msgs.msg import TFMessage
@@ -21,9 +20,8 @@ runpy.run_path(node, run_name='__main__')
 """
 
 
-class TestSystemClock(unittest.TestCase):
+class TestSystemClock(support.Case):
     def test_steps_forward_and_back(self):
-        support.init_node('system_clock')
         scratch = tempfile.NamedTemporaryFile('w', delete=False)
         self.addCleanup(os.remove, scratch.name)
 
@@ -33,8 +31,7 @@ class TestSystemClock(unittest.TestCase):
 
         step('+0')
         node = f"{rospkg.RosPack().get_path('rbx1_nav')}/nodes/fake_base.py"
-        base = support.Process('/usr/bin/python3', '-c', STEPPED, node, scratch.name)
-        self.addCleanup(base.kill)
+        support.Process('/usr/bin/python3', '-c', STEPPED, node, scratch.name)
         odom = support.OdomWatch()
         transforms = support.Watch('/tf', TFMessage)
         commander = support.Commander()
@@ -56,4 +53,4 @@ class TestSystemClock(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('system_clock', TestSystemClock)
+    support.main(TestSystemClock)

@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """Simulated time that jumps, stops or jumps back never moves the robot farther than timeout times speed."""
 import math
-import unittest
 
 import rospy
 from tf2_msgs.msg import TFMessage
@@ -11,9 +10,8 @@ import support
 MAX_TRAVEL = 1.0 * 0.2 + support.MICROMETRE     # timeout times speed, m
 
 
-class TestTimeJumps(unittest.TestCase):
+class TestTimeJumps(support.Case):
     def test_jumps_of_simulated_time(self):
-        support.init_node('time_jumps')
         clock = support.OwnClock(1000.0)
         commander = support.Commander()
         transforms = support.Watch('/tf', TFMessage)
@@ -71,4 +69,4 @@ class TestTimeJumps(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('time_jumps', TestTimeJumps)
+    support.main(TestTimeJumps)

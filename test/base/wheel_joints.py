@@ -1,6 +1,5 @@
 #!/usr/bin/python3
 """The base publishes its wheel joints under the names in another robot's URDF file, so the wheels have frames."""
-import unittest
 
 from sensor_msgs.msg import JointState
 from tf2_msgs.msg import TFMessage
@@ -8,9 +7,8 @@ from tf2_msgs.msg import TFMessage
 import support
 
 
-class TestWheelJoints(unittest.TestCase):
+class TestWheelJoints(support.Case):
     def test_own_names(self):
-        support.init_node('wheel_joints')
         odom = support.OdomWatch()
         joints = support.Watch('/joint_states', JointState)
         transforms = support.Watch('/tf', TFMessage)
@@ -27,4 +25,4 @@ class TestWheelJoints(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('wheel_joints', TestWheelJoints)
+    support.main(TestWheelJoints)

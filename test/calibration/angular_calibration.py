@@ -2,7 +2,6 @@
 """calibrate_angular.py finds the errors of wheels and gyro in a turn."""
 import math
 import re
-import unittest
 
 import rospy
 
@@ -11,14 +10,12 @@ import support
 ODOM_FACTOR, GYRO_FACTOR = 0.9, 1.2     # in force; the simulated base does not use them
 
 
-class TestAngularCalibration(unittest.TestCase):
+class TestAngularCalibration(support.Case):
     def test_it_finds_both_errors(self):
-        support.init_node('angular_calibration')
         rospy.set_param('/turtlebot_node', {'odom_angular_scale_correction': ODOM_FACTOR,
                                             'gyro_scale_correction': GYRO_FACTOR})
         odom, truth = support.OdomWatch(), support.Watch('/ground_truth', support.Odometry)
         script = support.Process('rosrun', 'rbx1_nav', 'calibrate_angular.py', '_turns:=2')
-        self.addCleanup(script.kill)
         script.wait_for_line('The gyro reports')
         # both differ from two turns
         real, reported = (720 + math.degrees(support.wrapped(support.yaw(topic.next()))) for topic in (truth, odom))
@@ -37,4 +34,4 @@ class TestAngularCalibration(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('angular_calibration', TestAngularCalibration)
+    support.main(TestAngularCalibration)

@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """Without a terminal, a calibration script stores its run; _measured:= supplies the answer later, without driving."""
 import re
-import unittest
 
 import rospy
 from geometry_msgs.msg import Twist
@@ -9,16 +8,11 @@ from geometry_msgs.msg import Twist
 import support
 
 
-class TestAnsweredLater(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        support.init_node('answered_later')
-
+class TestAnsweredLater(support.Case):
     def check(self, node, argument, keys, wrong, expected):
         """Drive without an answer, then enter an invalid result, then a valid result twice."""
         script = f'calibrate_{node}.py'
         run = support.Process('rosrun', 'rbx1_nav', script)
-        self.addCleanup(run.kill)
         run.process.stdin.close()
         self.assertEqual(run.wait(), 0, run.output)
         self.assertIn(f'rosrun rbx1_nav {script} _measured:=', run.output)
@@ -28,7 +22,6 @@ class TestAnsweredLater(unittest.TestCase):
         commands = support.Watch('/cmd_vel', Twist)
         for measured, status in [(wrong, 1), (argument, 0), (argument, 0)]:
             later = support.Process('rosrun', 'rbx1_nav', script, f'_measured:={measured}')
-            self.addCleanup(later.kill)
             self.assertEqual(later.wait(), status, later.output)
             factors = dict(re.findall(r'^(\w+_correction): (\S+)$', later.output, re.MULTILINE))
             self.assertIn(reported, later.output)
@@ -52,4 +45,4 @@ class TestAnsweredLater(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('answered_later', TestAnsweredLater)
+    support.main(TestAnsweredLater)

@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """A calibration script that is interrupted while driving or asking stops the robot and exits."""
 import signal
-import unittest
 
 import rospy
 from geometry_msgs.msg import Twist
@@ -9,10 +8,10 @@ from geometry_msgs.msg import Twist
 import support
 
 
-class TestInterruptedCalibration(unittest.TestCase):
+class TestInterruptedCalibration(support.Case):
     @classmethod
     def setUpClass(cls):
-        support.init_node('interrupted_calibration')
+        super().setUpClass()
         cls.odom = support.OdomWatch()
 
     def check(self, script, line=None):
@@ -22,7 +21,6 @@ class TestInterruptedCalibration(unittest.TestCase):
         kept = f"/last_calibration/{script[len('calibrate_'):-len('.py')]}"
         rospy.set_param(kept, {'reported': 1.0})
         process = support.Process('rosrun', 'rbx1_nav', script)
-        self.addCleanup(process.kill)
         if line:
             process.wait_for_line(line)
         else:
@@ -51,4 +49,4 @@ class TestInterruptedCalibration(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('interrupted_calibration', TestInterruptedCalibration)
+    support.main(TestInterruptedCalibration)

@@ -2,7 +2,6 @@
 """calibrate_linear.py measures the slip of the wheels; with its factor, the odometry would report the truth."""
 import math
 import re
-import unittest
 
 import rospy
 
@@ -11,13 +10,11 @@ import support
 FACTOR = 0.8    # in force; the simulated base does not use it
 
 
-class TestLinearCalibration(unittest.TestCase):
+class TestLinearCalibration(support.Case):
     def test_it_finds_the_slip(self):
-        support.init_node('linear_calibration')
         rospy.set_param('/turtlebot_node/odom_linear_scale_correction', FACTOR)
         odom, truth = support.OdomWatch(), support.Watch('/ground_truth', support.Odometry)
         script = support.Process('rosrun', 'rbx1_nav', 'calibrate_linear.py')
-        self.addCleanup(script.kill)
         script.wait_for_line('The odometry reports')
         real, reported = (math.hypot(*support.pose(topic.next())[:2]) for topic in (truth, odom))
         # on carpet the wheels slip by 2 % on average, with a standard deviation of 4 % over 1 m
@@ -37,4 +34,4 @@ class TestLinearCalibration(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('linear_calibration', TestLinearCalibration)
+    support.main(TestLinearCalibration)

@@ -2,7 +2,6 @@
 """Calibration with a stuck gyro, with a loss of fractions of a degree, and with factors that are not set."""
 import math
 import re
-import unittest
 
 import rospy
 
@@ -12,18 +11,13 @@ import support
 FACTOR = re.compile(r'^(\w+_correction): (\S+)$', re.MULTILINE)
 
 
-class TestCalibrationWithoutGyro(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        support.init_node('calibration_without_gyro')
-
+class TestCalibrationWithoutGyro(support.Case):
     def run_script(self, *command, before=lambda: None):
         """Run a script without a terminal, again if the machine was too busy. before() is called before each run.
         Returns the output of the last run."""
         for _ in range(support.ATTEMPTS):
             before()
             script = support.Process('rosrun', 'rbx1_nav', *command)
-            self.addCleanup(script.kill)
             script.process.stdin.close()
             if script.wait() == 0 or support.LATE not in script.output:
                 break
@@ -78,4 +72,4 @@ class TestCalibrationWithoutGyro(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('calibration_without_gyro', TestCalibrationWithoutGyro)
+    support.main(TestCalibrationWithoutGyro)

@@ -1,20 +1,13 @@
 #!/usr/bin/python3
 """The cable is unplugged and plugged in during motion: a stop is sent first, and the odometry includes the gap."""
-import unittest
 
-from driven import CHI_SQUARE, STOP, DrivenRobot
+from driven import CHI_SQUARE, IDEAL, STOP, DrivenRobot
 import support
 
 
-class TestCreateCable(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        support.init_node('create_cable')
-
+class TestCreateCable(support.Case):
     def check(self, robot_type):
-        # an ideal floor adds no error
-        robot = DrivenRobot(self, robot_type, odom_linear_error=0.0, odom_angular_error=0.0,
-                            odom_heading_error=0.0)
+        robot = DrivenRobot(self, robot_type, **IDEAL)
         for _ in range(2):
             with robot.driving(0.2, 0.3):
                 start = robot.truth.next()
@@ -39,4 +32,4 @@ class TestCreateCable(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('create_cable', TestCreateCable)
+    support.main(TestCreateCable)

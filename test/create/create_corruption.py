@@ -1,14 +1,12 @@
 #!/usr/bin/python3
 """1 % of the bytes from the robot are corrupted: it continues to drive, and the odometry remains right."""
-import unittest
 
 from driven import DrivenRobot
 import support
 
 
-class TestCreateCorruption(unittest.TestCase):
+class TestCreateCorruption(support.Case):
     def test_a_create_2(self):
-        support.init_node('create_corruption')
         robot = DrivenRobot(self, 'create2')
         robot.publish('corruption', 0.01)
         robot.drive(0.2, 0.0, lambda: robot.truth.last.pose.pose.position.x > 1.0, 'a meter')
@@ -24,4 +22,4 @@ class TestCreateCorruption(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('create_corruption', TestCreateCorruption)
+    support.main(TestCreateCorruption)

@@ -2,7 +2,6 @@
 """The base node drives an emulated robot: odometry, gyro, joints and diagnostics match it, and it stops at the end."""
 import math
 import signal
-import unittest
 
 from sensor_msgs.msg import Imu, JointState
 from tf2_msgs.msg import TFMessage
@@ -11,11 +10,7 @@ from driven import DrivenRobot
 import support
 
 
-class TestCreateDrives(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        support.init_node('create_drives')
-
+class TestCreateDrives(support.Case):
     def check(self, robot_type, angle, distance):
         """Drive the robot. angle, distance: odometry errors allowed for the rounding of the sensors along the path."""
         robot = DrivenRobot(self, robot_type, gyro_scale_correction=1.0)
@@ -72,4 +67,4 @@ class TestCreateDrives(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('create_drives', TestCreateDrives)
+    support.main(TestCreateDrives)

@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """A gyro fault in motion: imu/data pauses at once, with an error in the log and /diagnostics, until the gyro works
 again."""
-import unittest
 
 from diagnostic_msgs.msg import DiagnosticStatus
 from sensor_msgs.msg import Imu
@@ -10,9 +9,8 @@ from driven import DrivenRobot
 import support
 
 
-class TestCreateGyro(unittest.TestCase):
+class TestCreateGyro(support.Case):
     def test_no_power_in_a_turn(self):
-        support.init_node('create_gyro')
         robot = DrivenRobot(self, 'create', gyro_scale_correction=1.0)
         imu = support.Watch('/imu/data', Imu)
         robot.wait_for_motion(0.0, 0.5)
@@ -36,4 +34,4 @@ class TestCreateGyro(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('create_gyro', TestCreateGyro)
+    support.main(TestCreateGyro)

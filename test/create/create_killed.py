@@ -3,17 +3,12 @@
 one."""
 import os
 import signal
-import unittest
 
 from driven import DrivenRobot, guardian_of
 import support
 
 
-class TestCreateKilled(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        support.init_node('create_killed')
-
+class TestCreateKilled(support.Case):
     def test_kill(self):
         robot = DrivenRobot(self, 'create')
         kills = [lambda node: os.kill(support.pid_of('/turtlebot_node'), signal.SIGKILL),
@@ -53,4 +48,4 @@ class TestCreateKilled(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('create_killed', TestCreateKilled)
+    support.main(TestCreateKilled)

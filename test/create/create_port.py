@@ -2,17 +2,12 @@
 """If the port is absent or in use, the node logs one line and waits. With invalid parameters it exits."""
 import os
 import signal
-import unittest
 
 from driven import DrivenRobot
 import support
 
 
-class TestCreatePort(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        support.init_node('create_port')
-
+class TestCreatePort(support.Case):
     def test_two_nodes(self):
         robot = DrivenRobot(self, 'create2')
         pid = support.pid_of('/turtlebot_node')
@@ -49,11 +44,10 @@ class TestCreatePort(unittest.TestCase):
                 ('bad_type', '_robot_type:=roomba', "robot_type: 'roomba': expected one of auto, create, create2"),
                 ('bad_rate', '_update_rate:=fast', "update_rate: 'fast': expected a rate from 5 to 60 in Hz")):
             node = support.Process('rosrun', 'rbx1_nav', 'turtlebot_node.py', argument, f'__name:={name}')
-            self.addCleanup(node.kill)
             self.assertEqual(node.wait(), 1)
             self.assertIn(f'/{name}/{text}', node.output)
             self.assertNotIn('Traceback', node.output)
 
 
 if __name__ == '__main__':
-    support.main('create_port', TestCreatePort)
+    support.main(TestCreatePort)

@@ -2,17 +2,12 @@
 """Another process changes the rate of the port: the node restores it, and reports a last stop without confirmation."""
 import signal
 import subprocess
-import unittest
 
 from driven import DrivenRobot
 import support
 
 
-class TestCreateRate(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        support.init_node('create_rate')
-
+class TestCreateRate(support.Case):
     def test_a_rate_that_was_changed(self):
         for robot_type in 'create', 'create2':
             robot = DrivenRobot(self, robot_type)
@@ -43,4 +38,4 @@ class TestCreateRate(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('create_rate', TestCreateRate)
+    support.main(TestCreateRate)

@@ -1,21 +1,15 @@
 #!/usr/bin/python3
 """A wheel drops, or the cable is unplugged, while a script drives: it exits with 1 and the reason, and the robot does
 not move again."""
-import unittest
 
 from driven import DrivenRobot
 import support
 
 
-class TestCreateRefuses(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        support.init_node('create_refuses')
-
+class TestCreateRefuses(support.Case):
     def drive_by_script(self, robot):
         """Start a script, and wait until it drives the robot."""
         script = support.out_and_back()
-        self.addCleanup(script.kill)
         support.wait_for(lambda: robot.moving, f'the script to drive: {script.output}')
         return script
 
@@ -50,4 +44,4 @@ class TestCreateRefuses(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('create_refuses', TestCreateRefuses)
+    support.main(TestCreateRefuses)

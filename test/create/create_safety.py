@@ -1,17 +1,12 @@
 #!/usr/bin/python3
 """The robot leaves safe mode: the node reports the cause, and takes control again only when the cause is removed."""
-import unittest
 
 from driven import DrivenRobot
 from rbx1_nav.create.protocol import command
 import support
 
 
-class TestCreateSafety(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        support.init_node('create_safety')
-
+class TestCreateSafety(support.Case):
     def test_safe_mode(self):
         robot = DrivenRobot(self, 'create2')
         for service, reason in (('drop_wheel', 'a wheel dropped'), ('cliff', 'a cliff')):
@@ -45,4 +40,4 @@ class TestCreateSafety(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('create_safety', TestCreateSafety)
+    support.main(TestCreateSafety)

@@ -1,16 +1,11 @@
 #!/usr/bin/python3
 """A silent line, and a robot that is switched off and on: both are detected, and neither is counted as travel."""
-import unittest
 
 from driven import STOP, DrivenRobot
 import support
 
 
-class TestCreateSilence(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        support.init_node('create_silence')
-
+class TestCreateSilence(support.Case):
     def check(self, robot_type, distance):
         robot = DrivenRobot(self, robot_type)
         with robot.driving():
@@ -43,4 +38,4 @@ class TestCreateSilence(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('create_silence', TestCreateSilence)
+    support.main(TestCreateSilence)

@@ -1,15 +1,13 @@
 #!/usr/bin/python3
 """At a wrong baud rate, only garbage passes the line; after the Baud command, the new rate is right."""
-import unittest
 
 from emulated import EmulatedRobot
 from rbx1_nav.create.protocol import PASSIVE, command, drive_direct
 import support
 
 
-class TestBaudRate(unittest.TestCase):
+class TestBaudRate(support.Case):
     def test_baud_rates(self):
-        support.init_node('fake_create_baud_rate')
         for robot_type, wrong in ('create', 115200), ('create2', 57600):
             robot = EmulatedRobot(self, robot_type)
             robot.open(wrong)
@@ -39,4 +37,4 @@ class TestBaudRate(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('fake_create_baud_rate', TestBaudRate)
+    support.main(TestBaudRate)

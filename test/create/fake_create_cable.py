@@ -2,7 +2,6 @@
 """The cable of the emulated robot is unplugged, or its line is silent: it keeps executing its last Drive, and can be
 reached again later."""
 import os
-import unittest
 
 import rospy
 import serial
@@ -13,11 +12,7 @@ from rbx1_nav.create.protocol import FULL, command, drive_direct
 import support
 
 
-class TestCable(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        support.init_node('fake_create_cable')
-
+class TestCable(support.Case):
     def robot(self):
         robot = EmulatedRobot(self, 'create2')
         robot.open()
@@ -79,4 +74,4 @@ class TestCable(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('fake_create_cable', TestCable)
+    support.main(TestCable)

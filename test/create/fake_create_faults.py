@@ -1,17 +1,12 @@
 #!/usr/bin/python3
 """Faults and events of the emulated robot: wheel drop, cliff, bump, dock, power, battery, bad bytes, a stuck gyro."""
-import unittest
 
 from emulated import EmulatedRobot
 from rbx1_nav.create.protocol import OFF, PASSIVE, SAFE, checksum, command, drive_direct
 import support
 
 
-class TestFaults(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        support.init_node('fake_create_faults')
-
+class TestFaults(support.Case):
     def robot(self, robot_type):
         robot = EmulatedRobot(self, robot_type)
         robot.open()
@@ -108,4 +103,4 @@ class TestFaults(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('fake_create_faults', TestFaults)
+    support.main(TestFaults)

@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """/line shows each command that the emulated robot receives, even if it ignores it, with the time of the last byte."""
 import time
-import unittest
 
 from emulated import EmulatedRobot
 from rbx1_nav.create.protocol import command, drive_direct
@@ -10,9 +9,8 @@ import support
 CLOCKS = 0.001      # s: the robot and the stamps use different clocks
 
 
-class TestLine(unittest.TestCase):
+class TestLine(support.Case):
     def test_line(self):
-        support.init_node('fake_create_line')
         robot = EmulatedRobot(self, 'create')
         robot.open()
         sent = time.time()
@@ -34,4 +32,4 @@ class TestLine(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('fake_create_line', TestLine)
+    support.main(TestLine)

@@ -1,6 +1,5 @@
 #!/usr/bin/python3
 """Parameters of fake_create.py: valid ones have an effect, an invalid one stops the node with a one-line message."""
-import unittest
 
 import rospy
 
@@ -9,11 +8,7 @@ from rbx1_nav.create.protocol import SAFE, command, drive_direct, encode_frame
 import support
 
 
-class TestParameters(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        support.init_node('fake_create_parameters')
-
+class TestParameters(support.Case):
     def test_good_parameters(self):
         robot = EmulatedRobot(self, 'create', baud=19200, mode_plus_one=True, drops_fractions=True, gyro_stuck=700)
         robot.open(19200)
@@ -50,7 +45,6 @@ class TestParameters(unittest.TestCase):
                 ({'gyro_measurement_range': 0}, 'gyro_measurement_range: 0: expected a number from 1')]:
             rospy.set_param('/fake_create', params)
             process = support.Process('rosrun', 'rbx1_nav', 'fake_create.py')
-            self.addCleanup(process.kill)
             self.assertEqual(process.wait(), 1, process.output)
             errors = [line for line in process.lines if '[FATAL]' in line]
             self.assertEqual(len(errors), 1, process.output)
@@ -60,4 +54,4 @@ class TestParameters(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('fake_create_parameters', TestParameters)
+    support.main(TestParameters)

@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """/ground_truth is the true pose of the emulated robot: its sensors agree with it, within their errors."""
 from math import pi
-import unittest
 
 from emulated import EmulatedRobot
 from rbx1_nav.create.protocol import command, drive_direct
@@ -10,11 +9,7 @@ import support
 COUNTS = 508.8 / (pi * 0.072)   # encoder counts per meter
 
 
-class TestTruth(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        support.init_node('fake_create_truth')
-
+class TestTruth(support.Case):
     def stopped(self, robot):
         """Return the true pose after a stop."""
         robot.send(drive_direct(0, 0))
@@ -74,4 +69,4 @@ class TestTruth(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('fake_create_truth', TestTruth)
+    support.main(TestTruth)

@@ -6,7 +6,6 @@ usage: found_errors.py LINEAR ANGULAR GYRO --      GYRO: none for a robot withou
 import math
 import re
 import sys
-import unittest
 
 import rospy
 from std_srvs.srv import SetBool
@@ -16,10 +15,10 @@ import support
 WITHIN = 0.01       # relative error of the factor that the package guarantees
 
 
-class TestFoundErrors(unittest.TestCase):
+class TestFoundErrors(support.Case):
     @classmethod
     def setUpClass(cls):
-        support.init_node('found_errors')
+        super().setUpClass()
         cls.truth = support.Watch('/ground_truth', support.Odometry)
         support.wait_for(lambda: cls.truth.last, '/ground_truth')
 
@@ -28,7 +27,6 @@ class TestFoundErrors(unittest.TestCase):
         for _ in range(support.ATTEMPTS):
             start = support.pose(self.truth.next())
             process = support.Process('rosrun', 'rbx1_nav', script)
-            self.addCleanup(process.kill)
             if support.LATE not in process.wait_for_line(f'{line}|{support.LATE}')[0]:
                 break
         process.type(f'{measure(start, support.pose(self.truth.next())):.3f}')
@@ -46,7 +44,6 @@ class TestFoundErrors(unittest.TestCase):
         """Pull the cable while a calibration drives the robot; return the output of the calibration."""
         pull_cable = rospy.ServiceProxy('/fake_create/pull_cable', SetBool)
         script = support.Process('rosrun', 'rbx1_nav', 'calibrate_linear.py')
-        self.addCleanup(script.kill)
         support.wait_for(lambda: self.truth.next().twist.twist.linear.x > 0.1, 'the robot to drive')
         pull_cable(True)
         try:
@@ -79,4 +76,4 @@ class TestFoundErrors(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('found_errors', TestFoundErrors)
+    support.main(TestFoundErrors)

@@ -32,9 +32,8 @@ def import_pycreate2(folder):
     return pycreate2
 
 
-class TestIndependentClient(unittest.TestCase):
+class TestIndependentClient(support.Case):
     def test_pycreate2(self):
-        support.init_node('independent_client')
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         pycreate2 = import_pycreate2(folder.name)
@@ -90,4 +89,4 @@ class TestIndependentClient(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('independent_client', TestIndependentClient)
+    support.main(TestIndependentClient)

@@ -1,6 +1,5 @@
 #!/usr/bin/python3
 """turtlebot_minimal_create.launch starts everything that steps 5 to 7 of the tutorial need, on any serial port."""
-import unittest
 
 import rospy
 import tf2_ros
@@ -9,10 +8,10 @@ from sensor_msgs.msg import Imu, JointState
 import support
 
 
-class TestMinimalLaunch(unittest.TestCase):
+class TestMinimalLaunch(support.Case):
     @classmethod
     def setUpClass(cls):
-        support.init_node('minimal_launch')
+        super().setUpClass()
         cls.odom = support.OdomWatch()
 
     def test_frames(self):
@@ -46,4 +45,4 @@ class TestMinimalLaunch(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('minimal_launch', TestMinimalLaunch)
+    support.main(TestMinimalLaunch)

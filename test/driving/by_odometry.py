@@ -8,17 +8,15 @@ start. The test first waits for a message on each TOPIC.
 """
 import math
 import sys
-import unittest
 
 import rospy
 
 import support
 
 
-class TestByOdometry(unittest.TestCase):
+class TestByOdometry(support.Case):
     def test_it_ends_near_the_start(self):
         frame, metres, degrees, *topics = sys.argv[1:sys.argv.index('--')]
-        support.init_node('by_odometry')
         truth = support.Watch('/ground_truth', support.Odometry)
         support.wait_for(lambda: truth.last, '/ground_truth')
         for topic in topics:
@@ -28,7 +26,6 @@ class TestByOdometry(unittest.TestCase):
         support.wait_for(lambda: (truth.last.header.stamp - start).to_sec() > 2, 'two seconds')
 
         driver = support.by_odometry(f'_odom_frame:={frame}')
-        self.addCleanup(driver.kill)
         self.assertEqual(driver.wait(), 0, driver.output)
         x, y, yaw = support.pose(truth.next())
         self.assertGreater(max(message.pose.pose.position.x for message in truth.messages), 0.9)
@@ -37,4 +34,4 @@ class TestByOdometry(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('by_odometry', TestByOdometry)
+    support.main(TestByOdometry)

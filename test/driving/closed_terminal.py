@@ -5,16 +5,14 @@ import os
 import pty
 import subprocess
 import termios
-import unittest
 
 from rosgraph_msgs.msg import Log
 
 import support
 
 
-class TestClosedTerminal(unittest.TestCase):
+class TestClosedTerminal(support.Case):
     def test_the_robot_stops(self):
-        support.init_node('closed_terminal')
         odom = support.OdomWatch()
         log = support.Watch('/rosout', Log)
         ours, theirs = pty.openpty()
@@ -37,4 +35,4 @@ class TestClosedTerminal(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('closed_terminal', TestClosedTerminal)
+    support.main(TestClosedTerminal)

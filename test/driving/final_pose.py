@@ -1,17 +1,13 @@
 #!/usr/bin/python3
 """Every run of the exercise ends at the exact pose, to a micrometer."""
-import unittest
-
 import support
 
 
-class TestFinalPose(unittest.TestCase):
+class TestFinalPose(support.Case):
     def test_three_runs_end_at_the_exact_pose(self):
-        support.init_node('final_pose')
         odom = support.OdomWatch()
         for run in range(1, 4):
             driver = support.out_and_back()
-            self.addCleanup(driver.kill)
             self.assertEqual(driver.wait(), 0, driver.output)
             message = odom.next()
             self.assertEqual(message.twist.twist.linear.x, 0)
@@ -24,4 +20,4 @@ class TestFinalPose(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('final_pose', TestFinalPose)
+    support.main(TestFinalPose)

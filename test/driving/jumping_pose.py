@@ -1,6 +1,5 @@
 #!/usr/bin/python3
 """If the pose jumps during a run, as when the base restarts, the odometry-based script stops the robot and exits."""
-import unittest
 
 import rospy
 from geometry_msgs.msg import Twist
@@ -9,10 +8,10 @@ from std_srvs.srv import Empty
 import support
 
 
-class TestJumpingPose(unittest.TestCase):
+class TestJumpingPose(support.Case):
     @classmethod
     def setUpClass(cls):
-        support.init_node('jumping_pose')
+        super().setUpClass()
         cls.odom = support.OdomWatch()
         cls.commands = support.Watch('/cmd_vel', Twist)
         rospy.wait_for_service('/arbotix/reset', support.LIMIT)
@@ -23,7 +22,6 @@ class TestJumpingPose(unittest.TestCase):
         """Drive until a condition holds, and move the base to the origin."""
         self.to_origin()
         driver = support.by_odometry()
-        self.addCleanup(driver.kill)
         support.wait_for(condition, what)
         self.to_origin()
         self.assertEqual(driver.wait(), 1, driver.output)
@@ -48,4 +46,4 @@ class TestJumpingPose(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('jumping_pose', TestJumpingPose)
+    support.main(TestJumpingPose)

@@ -7,7 +7,6 @@ import os
 import pty
 import subprocess
 import termios
-import unittest
 
 import rospkg
 
@@ -17,10 +16,10 @@ KEYBOARD = os.path.join(rospkg.RosPack().get_path('rbx1_nav'), 'examples', 'keyb
 UP, DOWN, RIGHT, LEFT = (b'\x1b[' + key for key in (b'A', b'B', b'C', b'D'))
 
 
-class TestKeyboardDriving(unittest.TestCase):
+class TestKeyboardDriving(support.Case):
     @classmethod
     def setUpClass(cls):
-        support.init_node('keyboard_driving')
+        super().setUpClass()
         cls.odom = support.OdomWatch()
 
     def setUp(self):
@@ -63,4 +62,4 @@ class TestKeyboardDriving(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('keyboard_driving', TestKeyboardDriving)
+    support.main(TestKeyboardDriving)

@@ -3,7 +3,6 @@
 import os
 import signal
 import subprocess
-import unittest
 
 import rospy
 
@@ -12,22 +11,17 @@ import support
 BASE = {'controllers': {'base': {'type': 'diff_controller', 'base_width': 0.26, 'base_frame_id': 'base_footprint'}}}
 
 
-class TestLostListener(unittest.TestCase):
+class TestLostListener(support.Case):
     @classmethod
     def setUpClass(cls):
-        support.init_node('lost_listener')
+        super().setUpClass()
         rospy.set_param('/arbotix', BASE)
 
     def setUp(self):
-        self.base = self.start('rosrun', 'rbx1_nav', 'fake_base.py')
+        self.base = support.Process('rosrun', 'rbx1_nav', 'fake_base.py')
         self.base.wait_for_line('at the origin')
-        self.recorder = self.start('rosrun', 'topic_tools', 'drop', '/cmd_vel', '0', '1', '__name:=recorder')
+        self.recorder = support.Process('rosrun', 'topic_tools', 'drop', '/cmd_vel', '0', '1', '__name:=recorder')
         support.wait_for(lambda: '/recorder' in self.subscribers(), 'the recorder')
-
-    def start(self, *command):
-        process = support.Process(*command)
-        self.addCleanup(process.kill)
-        return process
 
     @staticmethod
     def subscribers():
@@ -37,7 +31,6 @@ class TestLostListener(unittest.TestCase):
     def drive(self, *arguments, script=support.out_and_back):
         """Run a script until the robot moves."""
         driver = script(*arguments)
-        self.addCleanup(driver.kill)
         driver.wait_for_line('forward: ')
         odom = support.OdomWatch()
         self.addCleanup(odom.subscriber.unregister)
@@ -55,7 +48,7 @@ class TestLostListener(unittest.TestCase):
             driver = self.drive('_linear_speed:=0.02', script=script)
             self.base.kill()
             self.check_error(driver, '/arbotix disconnected')
-            self.base = self.start('rosrun', 'rbx1_nav', 'fake_base.py')
+            self.base = support.Process('rosrun', 'rbx1_nav', 'fake_base.py')
             self.base.wait_for_line('at the origin')
 
     def test_the_base_ends(self):
@@ -76,15 +69,39 @@ class TestLostListener(unittest.TestCase):
         self.recorder.signal(signal.SIGINT)
         self.recorder.wait()
         driver = support.out_and_back('_linear_speed:=0.02')
-        self.addCleanup(driver.kill)
         driver.wait_for_line('Waiting for a base')
-        self.start('rosrun', 'rbx1_nav', 'fake_base.py').wait_for_line('at the origin')
+        support.Process('rosrun', 'rbx1_nav', 'fake_base.py').wait_for_line('at the origin')
         driver.wait_for_line('forward: ')
         pid = support.pid_of('/arbotix')
         self.addCleanup(os.kill, pid, signal.SIGCONT)
         os.kill(pid, signal.SIGSTOP)
         self.check_error(driver, '/arbotix has stopped responding')
         os.kill(pid, signal.SIGCONT)
+
+    def test_the_last_subscriber_is_killed(self):
+        self.base.signal(signal.SIGINT)
+        self.base.wait()
+        driver = support.out_and_back('_linear_speed:=0.01')
+        driver.wait_for_line('forward: 1.00 m')
+        self.recorder.kill()
+        self.check_error(driver, '/recorder disconnected, and no subscriber is left: expected a base')
+        subprocess.run(['rosnode', 'cleanup'], input=b'y\n', check=True)
+
+    def test_the_base_is_killed_and_the_clock_stops(self):
+        for process in self.base, self.recorder:
+            process.signal(signal.SIGINT)
+            process.wait()
+        rospy.set_param('/use_sim_time', True)
+        self.addCleanup(rospy.set_param, '/use_sim_time', False)
+        rospy.set_param('/arbotix/real_time_factor', 5)
+        self.addCleanup(rospy.delete_param, '/arbotix/real_time_factor')
+        for script in support.out_and_back, support.by_odometry:
+            base = support.Process('rosrun', 'rbx1_nav', 'fake_base.py')
+            base.wait_for_line('at the origin')
+            driver = script('_linear_speed:=0.01')
+            driver.wait_for_line('forward: 1.00 m')
+            base.kill()
+            self.check_error(driver, '/arbotix disconnected, and no subscriber is left: expected a base')
 
     def test_another_listener_is_killed(self):
         driver = self.drive('_linear_speed:=0.02')
@@ -101,4 +118,4 @@ class TestLostListener(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('lost_listener', TestLostListener)
+    support.main(TestLostListener)

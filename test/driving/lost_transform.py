@@ -2,16 +2,14 @@
 """Without a recent transform, the robot stops; it continues with a new one, otherwise the script exits in time."""
 import os
 import signal
-import unittest
 
 from geometry_msgs.msg import Twist
 
 import support
 
 
-class TestLostTransform(unittest.TestCase):
+class TestLostTransform(support.Case):
     def setUp(self):
-        support.init_node('lost_transform')
         self.odom = support.OdomWatch()
         self.base = support.pid_of('/arbotix')
         self.addCleanup(os.kill, self.base, signal.SIGCONT)
@@ -21,7 +19,6 @@ class TestLostTransform(unittest.TestCase):
     def suspend_base(self, *arguments):
         """Suspend the base during an odometry-based run; return the script once it has stopped the robot."""
         driver = support.by_odometry('_linear_speed:=0.1', *arguments)
-        self.addCleanup(driver.kill)
         self.odom.wait_for_twist(0.1)
         os.kill(self.base, signal.SIGSTOP)
         driver.wait_for_line(r'\[WARN\].*last transform from odom to base_footprint is .* s old: '
@@ -47,11 +44,10 @@ class TestLostTransform(unittest.TestCase):
 
     def test_without_any_transform_the_robot_does_not_start(self):
         driver = support.by_odometry('_odom_frame:=nowhere', '_wait_timeout:=1')
-        self.addCleanup(driver.kill)
         self.assertEqual(driver.wait(), 1, driver.output)
         self.assertIn('no transform from nowhere to base_footprint or base_link', driver.output)
         self.assertFalse([command for command in self.commands.messages if command.linear.x])
 
 
 if __name__ == '__main__':
-    support.main('lost_transform', TestLostTransform)
+    support.main(TestLostTransform)

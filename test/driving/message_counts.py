@@ -1,20 +1,17 @@
 #!/usr/bin/python3
 """A subscriber receives every command of the exercise in order, and none after the last stop."""
 import itertools
-import unittest
 
 from geometry_msgs.msg import Twist
 
 import support
 
 
-class TestMessageCounts(unittest.TestCase):
+class TestMessageCounts(support.Case):
     def test_commands_of_the_exercise(self):
-        support.init_node('message_counts')
         odom = support.OdomWatch()
         commands = support.Watch('/cmd_vel', Twist)
         driver = support.out_and_back()
-        self.addCleanup(driver.kill)
         self.assertEqual(driver.wait(), 0, driver.output)
 
         received = [(m.linear.x, m.angular.z) for m in commands.messages]
@@ -31,4 +28,4 @@ class TestMessageCounts(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('message_counts', TestMessageCounts)
+    support.main(TestMessageCounts)

@@ -2,7 +2,6 @@
 """A driver of rospy and tf alone reaches its goals on this base, in real and in simulated time."""
 import math
 import os
-import unittest
 
 import support
 
@@ -10,12 +9,10 @@ DRIVER = os.path.join(os.path.dirname(os.path.realpath(__file__)), 'plain_rospy.
 PERIOD = 1 / 20     # s, of the driver
 
 
-class TestPlainDriver(unittest.TestCase):
+class TestPlainDriver(support.Case):
     def test_it_reaches_its_goals(self):
-        support.init_node('plain_driver')
         odom = support.OdomWatch()
         driver = support.Process('/usr/bin/python3', DRIVER)
-        self.addCleanup(driver.kill)
         self.assertEqual(driver.wait(), 0, driver.output)
         x, y, heading = support.pose(odom.last)
         # it stops after its goal, by up to a few periods: on a busy machine, tf and the script are late
@@ -27,4 +24,4 @@ class TestPlainDriver(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('plain_driver', TestPlainDriver)
+    support.main(TestPlainDriver)

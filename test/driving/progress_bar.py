@@ -7,7 +7,6 @@ import struct
 import subprocess
 import termios
 import threading
-import unittest
 
 import support
 
@@ -32,11 +31,7 @@ def output_in_a_terminal(*command):
     return process.wait(), output.decode()
 
 
-class TestProgressBar(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        support.init_node('progress_bar')
-
+class TestProgressBar(support.Case):
     def check(self, script, forward, turn):
         status, output = output_in_a_terminal('rosrun', 'rbx1_nav', script, '_goal_distance:=0.5')
         self.assertEqual(status, 0, output)
@@ -60,10 +55,9 @@ class TestProgressBar(unittest.TestCase):
     def test_in_a_pipe(self):
         for start in support.out_and_back, support.by_odometry:
             driver = start('_goal_distance:=0.1')
-            self.addCleanup(driver.kill)
             self.assertEqual(driver.wait(), 0, driver.output)
             self.assertFalse([line for line in driver.lines if not line.startswith('[INFO]') and 'WARN' not in line])
 
 
 if __name__ == '__main__':
-    support.main('progress_bar', TestProgressBar)
+    support.main(TestProgressBar)

@@ -3,7 +3,6 @@
 import signal
 import subprocess
 import tempfile
-import unittest
 
 import rospy
 
@@ -18,18 +17,13 @@ LAUNCH = """<launch>
 FORGET = 'rosparam delete /out_and_back'
 
 
-class TestRememberedParameters(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        support.init_node('remembered_parameters')
-
+class TestRememberedParameters(support.Case):
     def tearDown(self):
         if rospy.has_param('/out_and_back'):
             rospy.delete_param('/out_and_back')
 
     def warnings(self, driver):
         """Return the warnings that a script logs until it has checked its parameters, without time stamps."""
-        self.addCleanup(driver.kill)
         driver.wait_for_line('forward: ')
         driver.signal(signal.SIGINT)
         driver.wait()
@@ -67,4 +61,4 @@ class TestRememberedParameters(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('remembered_parameters', TestRememberedParameters)
+    support.main(TestRememberedParameters)

@@ -1,6 +1,5 @@
 #!/usr/bin/python3
 """After a reset during a run, the base names the driving node, and the odometry-based script exits."""
-import unittest
 
 import rospy
 from geometry_msgs.msg import Twist
@@ -10,10 +9,10 @@ from std_srvs.srv import Empty
 import support
 
 
-class TestResetInMidRun(unittest.TestCase):
+class TestResetInMidRun(support.Case):
     @classmethod
     def setUpClass(cls):
-        support.init_node('reset_in_mid_run')
+        super().setUpClass()
         cls.odom = support.OdomWatch()
         cls.logs = support.Watch('/rosout', Log)
         cls.commands = support.Watch('/cmd_vel', Twist)
@@ -36,7 +35,6 @@ class TestResetInMidRun(unittest.TestCase):
     def start(self, script, *arguments):
         """Run a script until the robot has moved."""
         driver = script(*arguments)
-        self.addCleanup(driver.kill)
         support.wait_for(lambda: self.odom.position()[0] > 0.1, 'the robot to move')
         return driver
 
@@ -82,4 +80,4 @@ class TestResetInMidRun(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('reset_in_mid_run', TestResetInMidRun)
+    support.main(TestResetInMidRun)

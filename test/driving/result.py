@@ -1,24 +1,22 @@
 #!/usr/bin/python3
 """Each driving script logs its result: the timed script what it commanded, the odometry-based script the end pose."""
 import math
-import unittest
 
 import rospy
 
 import support
 
 
-class TestResult(unittest.TestCase):
+class TestResult(support.Case):
     @classmethod
     def setUpClass(cls):
-        support.init_node('result')
+        super().setUpClass()
         cls.odom = support.OdomWatch()
 
     def tearDown(self):
         rospy.delete_param('/out_and_back')     # the next test must not find it
 
     def last_line(self, driver):
-        self.addCleanup(driver.kill)
         self.assertEqual(driver.wait(), 0, driver.output)
         return driver.lines[-1]
 
@@ -43,4 +41,4 @@ class TestResult(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('result', TestResult)
+    support.main(TestResult)

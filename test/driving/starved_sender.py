@@ -2,7 +2,6 @@
 """If the thread that sends commands starves, or the script is suspended, no command is lost in lockstep unnoticed."""
 import signal
 import time
-import unittest
 
 import rospkg
 import rospy
@@ -47,10 +46,10 @@ runpy.run_path(sys.argv[0], run_name='__main__')
 """
 
 
-class TestStarvedSender(unittest.TestCase):
+class TestStarvedSender(support.Case):
     @classmethod
     def setUpClass(cls):
-        support.init_node('starved_sender')
+        super().setUpClass()
         cls.odom = support.OdomWatch()
         cls.log = support.Watch('/rosout', Log)
 
@@ -58,7 +57,6 @@ class TestStarvedSender(unittest.TestCase):
         """Run the exercise; return the Process when it has exited."""
         driver = support.Process('/usr/bin/python3', '-c', STARVED, NODE, peer, str(delay),
                                  'busy' if busy else 'asleep')
-        self.addCleanup(driver.kill)
         driver.wait()
         self.assertNotIn('Traceback', driver.output)
         return driver
@@ -94,7 +92,6 @@ class TestStarvedSender(unittest.TestCase):
 
     def test_suspended(self):
         driver = support.Process('/usr/bin/python3', '-c', SUSPENDED, NODE)
-        self.addCleanup(driver.kill)
         with open(f'/proc/{driver.process.pid}/stat') as stat:
             support.wait_for(lambda: (stat.seek(0), stat.read().rpartition(')')[2].split()[0])[1] == 'T',
                              'a script that is suspended', 60)
@@ -107,4 +104,4 @@ class TestStarvedSender(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('starved_sender', TestStarvedSender)
+    support.main(TestStarvedSender)

@@ -3,7 +3,6 @@
 import os
 import signal
 import subprocess
-import unittest
 
 import rospy
 from geometry_msgs.msg import Twist
@@ -11,10 +10,10 @@ from geometry_msgs.msg import Twist
 import support
 
 
-class TestStopOnSignal(unittest.TestCase):
+class TestStopOnSignal(support.Case):
     @classmethod
     def setUpClass(cls):
-        support.init_node('stop_on_signal')
+        super().setUpClass()
         cls.odom = support.OdomWatch()
 
     def check(self, end):
@@ -23,7 +22,6 @@ class TestStopOnSignal(unittest.TestCase):
         self.addCleanup(commands.subscriber.unregister)
         # slow, so that the motion lasts until the shutdown
         driver = support.out_and_back('_linear_speed:=0.01')
-        self.addCleanup(driver.kill)
         self.odom.wait_for_twist(0.01)
         end(driver)
         driver.wait()
@@ -73,4 +71,4 @@ class TestStopOnSignal(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('stop_on_signal', TestStopOnSignal)
+    support.main(TestStopOnSignal)

@@ -2,7 +2,6 @@
 """On carpet, the timed script misses as in the picture in the tutorial, exactly like the simulation without ROS."""
 import math
 import os
-import unittest
 
 import rospkg
 import rospy
@@ -14,14 +13,12 @@ from rbx1_nav.simulation.surfaces import load_surface, read_seed
 import support
 
 
-class TestTimedOnCarpet(unittest.TestCase):
+class TestTimedOnCarpet(support.Case):
     def test_it_misses_as_simulated(self):
-        support.init_node('timed_on_carpet')
         odom = support.OdomWatch()
         truth = support.Watch('/ground_truth', support.Odometry)
         support.wait_for(lambda: truth.last, '/ground_truth')
         driver = support.out_and_back()
-        self.addCleanup(driver.kill)
         self.assertEqual(driver.wait(), 0, driver.output)
         odom.next()
         x, y, yaw = support.pose(truth.next())
@@ -46,4 +43,4 @@ class TestTimedOnCarpet(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('timed_on_carpet', TestTimedOnCarpet)
+    support.main(TestTimedOnCarpet)

@@ -1,22 +1,18 @@
 #!/usr/bin/python3
 """A second driving script takes over the name of the first, which stops the robot and exits; the second finishes."""
-import unittest
 
 from rosgraph_msgs.msg import Log
 
 import support
 
 
-class TestTwoDrivers(unittest.TestCase):
+class TestTwoDrivers(support.Case):
     def test_the_second_one_takes_over(self):
-        support.init_node('two_drivers')
         odom = support.OdomWatch()
         log = support.Watch('/rosout', Log)
         first = support.out_and_back('_linear_speed:=0.01')
-        self.addCleanup(first.kill)
         odom.wait_for_twist(0.01)
         second = support.out_and_back('_linear_speed:=0.2')
-        self.addCleanup(second.kill)
         first.wait()
         self.assertIn('Stopping the robot...', first.output)
         status = second.wait()
@@ -26,4 +22,4 @@ class TestTwoDrivers(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('two_drivers', TestTwoDrivers)
+    support.main(TestTwoDrivers)

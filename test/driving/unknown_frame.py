@@ -1,20 +1,17 @@
 #!/usr/bin/python3
 """The error about a frame that does not exist lists the existing frames; an angle that looks like degrees is named."""
-import unittest
 
 from geometry_msgs.msg import Twist
 
 import support
 
 
-class TestUnknownFrame(unittest.TestCase):
+class TestUnknownFrame(support.Case):
     def test_odom_frame(self):
-        support.init_node('unknown_frame')
         support.OdomWatch()
         commands = support.Watch('/cmd_vel', Twist)
         # long enough for the static transforms to arrive
         driver = support.by_odometry('_odom_frame:=odom_combine', '_wait_timeout:=5')
-        self.addCleanup(driver.kill)
         self.assertEqual(driver.wait(), 1, driver.output)
         self.assertRegex(driver.lines[-1], r"\[ERROR\].*: Timed out after 5 s waiting for the robot's pose: There is "
                                            'no transform from odom_combine to base_footprint or base_link; '
@@ -22,9 +19,7 @@ class TestUnknownFrame(unittest.TestCase):
         self.assertFalse([command for command in commands.messages if command != Twist()])
 
     def test_combined_frame_without_filter_and_angle_in_degrees(self):
-        support.init_node('unknown_frame')
         driver = support.by_odometry('_odom_frame:=odom_combined', '_goal_angle:=180', '_wait_timeout:=5')
-        self.addCleanup(driver.kill)
         self.assertEqual(driver.wait(), 1, driver.output)
         self.assertRegex(driver.lines[-1], 'To start the filter that publishes odom_combined: '
                                            'roslaunch rbx1_bringup odom_ekf.launch$')
@@ -33,4 +28,4 @@ class TestUnknownFrame(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('unknown_frame', TestUnknownFrame)
+    support.main(TestUnknownFrame)

@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """The driving script waits for all live subscribers, ignores dead ones, and times out without a base."""
 import signal
-import unittest
 
 import rospy
 from geometry_msgs.msg import Twist
@@ -9,15 +8,9 @@ from geometry_msgs.msg import Twist
 import support
 
 
-class TestWaitForBase(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        support.init_node('wait_for_base')
-
+class TestWaitForBase(support.Case):
     def start(self, *arguments):
-        process = support.out_and_back(*arguments)
-        self.addCleanup(process.kill)
-        return process
+        return support.out_and_back(*arguments)
 
     def subscribe(self):
         commands = support.Watch('/cmd_vel', Twist)
@@ -27,7 +20,6 @@ class TestWaitForBase(unittest.TestCase):
     def base(self, name):
         rospy.set_param(name, {'controllers': {'base': {'type': 'diff_controller', 'base_width': 0.26}}})
         process = support.Process('rosrun', 'rbx1_nav', 'fake_base.py', f'__name:={name}')
-        self.addCleanup(process.kill)
         process.wait_for_line('at the origin')
         return process
 
@@ -65,4 +57,4 @@ class TestWaitForBase(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('wait_for_base', TestWaitForBase)
+    support.main(TestWaitForBase)

@@ -1,19 +1,16 @@
 #!/usr/bin/python3
 """A script that was started before /use_sim_time was set does not drive a base on simulated time."""
-import unittest
 
 import rospy
 
 import support
 
 
-class TestWrongClock(unittest.TestCase):
+class TestWrongClock(support.Case):
     def test_real_time(self):
-        support.init_node('wrong_clock')
         odom = support.OdomWatch()
         rospy.set_param('/use_sim_time', False)
         driver = support.out_and_back()
-        self.addCleanup(driver.kill)
         self.assertEqual(driver.wait(), 1, driver.output)
         self.assertRegex(driver.output, r'\[ERROR\].*: /use_sim_time was false when this node started, but /arbotix '
                                         'publishes /clock: start this node again')
@@ -21,4 +18,4 @@ class TestWrongClock(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('wrong_clock', TestWrongClock)
+    support.main(TestWrongClock)

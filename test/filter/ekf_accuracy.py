@@ -1,21 +1,18 @@
 #!/usr/bin/python3
 """While the timed script misses, the errors of /odom_ekf are smaller than those of /odom."""
 import math
-import unittest
 
 import support
 
 
-class TestEkfAccuracy(unittest.TestCase):
+class TestEkfAccuracy(support.Case):
     def test_errors_of_position_and_heading(self):
-        support.init_node('ekf_accuracy')
         odom = support.OdomWatch()
         truth = support.Watch('/ground_truth', support.Odometry)
         ekf = support.Watch('/odom_ekf', support.Odometry)
         # the filter estimates the gyro bias at standstill, for 2 s at 10 poses per second
         support.wait_for(lambda: truth.last and len(ekf.messages) > 20, '/odom_ekf')
         driver = support.out_and_back()
-        self.addCleanup(driver.kill)
         self.assertEqual(driver.wait(), 0, driver.output)
         ekf.next()
 
@@ -34,4 +31,4 @@ class TestEkfAccuracy(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('ekf_accuracy', TestEkfAccuracy)
+    support.main(TestEkfAccuracy)

@@ -5,7 +5,6 @@ usage: ekf_frames.py PARENT CHILD --
 """
 import math
 import sys
-import unittest
 
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from tf2_msgs.msg import TFMessage
@@ -19,10 +18,9 @@ def pose(transform):
     return transform.translation.x, transform.translation.y, 2 * math.atan2(rotation.z, rotation.w)
 
 
-class TestEkfFrames(unittest.TestCase):
+class TestEkfFrames(support.Case):
     def test_each_frame_has_one_parent_and_the_tree_ends_at_the_estimate(self):
         parent, child, _ = sys.argv[1:4]
-        support.init_node('ekf_frames')
         odom = support.OdomWatch()
         transforms = support.Watch('/tf', TFMessage)
         combined = support.Watch('odom_combined', PoseWithCovarianceStamped)
@@ -74,4 +72,4 @@ class TestEkfFrames(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('ekf_frames', TestEkfFrames)
+    support.main(TestEkfFrames)

@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """The filter node rejects invalid messages, handles timeouts and recovery of sensors, and restarts after resets."""
 import math
-import unittest
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
@@ -14,10 +13,10 @@ from still_robot import Sender, make_imu, make_odom
 import support
 
 
-class TestEkfMessages(unittest.TestCase):
+class TestEkfMessages(support.Case):
     @classmethod
     def setUpClass(cls):
-        support.init_node('ekf_messages')
+        super().setUpClass()
         cls.log = support.Watch('/rosout', Log)
         cls.poses = support.Watch('robot_pose_ekf/odom_combined', PoseWithCovarianceStamped)
         cls.diagnostics = support.Watch('/diagnostics', DiagnosticArray)
@@ -132,8 +131,7 @@ class TestEkfMessages(unittest.TestCase):
             self.assertGreater((third.header.stamp - first.header.stamp).to_sec(), 0.9)
 
     def test_another_sender_at_the_same_time_is_ignored(self):
-        other = support.Process('rostopic', 'pub', '-r', '20', '/odom', 'nav_msgs/Odometry', '{}')
-        self.addCleanup(other.kill)
+        support.Process('rostopic', 'pub', '-r', '20', '/odom', 'nav_msgs/Odometry', '{}')
         self.wait_for_log('/odom: messages from /rostopic', 'ignored', 'also publishes this topic')
         self.assertAlmostEqual(self.poses.next().pose.pose.position.x, 0.5, delta=0.01)
 
@@ -150,4 +148,4 @@ class TestEkfMessages(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('ekf_messages', TestEkfMessages)
+    support.main(TestEkfMessages)

@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """/diagnostics contains the current case of the filter, the errors that it has estimated, and counts."""
 import math
-import unittest
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 
@@ -11,9 +10,8 @@ import support
 BIAS = 2.0      # degrees/s
 
 
-class TestFilterDiagnostics(unittest.TestCase):
+class TestFilterDiagnostics(support.Case):
     def test_cases_bias_and_counts(self):
-        support.init_node('filter_diagnostics')
         diagnostics = support.Watch('/diagnostics', DiagnosticArray)
 
         def status():
@@ -66,4 +64,4 @@ class TestFilterDiagnostics(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('filter_diagnostics', TestFilterDiagnostics)
+    support.main(TestFilterDiagnostics)

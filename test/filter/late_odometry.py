@@ -2,7 +2,6 @@
 """The filter waits for odometry that is always later than ~sensor_timeout: the estimate is late but right."""
 from collections import deque
 import math
-import unittest
 
 import rospy
 
@@ -29,9 +28,8 @@ class LateRobot(AlteredRobot):
             publisher.publish(self.waiting.popleft())
 
 
-class TestLateOdometry(unittest.TestCase):
+class TestLateOdometry(support.Case):
     def test_it_is_waited_for(self):
-        support.init_node('late_odometry')
         robot = LateRobot()
         support.wait_for(lambda: len(robot.estimates.messages) > 60, 'two seconds of the filter')
         for linear, angular in ((0.2, 0.0), (0.2, 0.0), (0.1, 1.0)):
@@ -50,4 +48,4 @@ class TestLateOdometry(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('late_odometry', TestLateOdometry)
+    support.main(TestLateOdometry)

@@ -1,6 +1,5 @@
 #!/usr/bin/python3
 """Without a base, odom_ekf.launch logs one warning, and one line as soon as there is a base."""
-import unittest
 
 import rospy
 from nav_msgs.msg import Odometry
@@ -11,9 +10,8 @@ import support
 BASE = {'controllers': {'base': {'type': 'diff_controller', 'base_width': 0.26}}}
 
 
-class TestMissingBase(unittest.TestCase):
+class TestMissingBase(support.Case):
     def test_warning(self):
-        support.init_node('missing_base')
         logs = support.Watch('/rosout', Log)
 
         def lines(level):
@@ -23,12 +21,11 @@ class TestMissingBase(unittest.TestCase):
         support.wait_for(lambda: missing in lines(Log.WARN), 'the warning')
 
         rospy.set_param('/arbotix', BASE)
-        base = support.Process('rosrun', 'rbx1_nav', 'fake_base.py')
-        self.addCleanup(base.kill)
+        support.Process('rosrun', 'rbx1_nav', 'fake_base.py')
         support.wait_for(lambda: 'Publishing /odom_ekf' in lines(Log.INFO), 'the end of the wait')
         support.Watch('/odom_ekf', Odometry).next()
         self.assertEqual(lines(Log.WARN).count(missing), 1)
 
 
 if __name__ == '__main__':
-    support.main('missing_base', TestMissingBase)
+    support.main(TestMissingBase)

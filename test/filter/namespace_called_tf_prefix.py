@@ -1,6 +1,5 @@
 #!/usr/bin/python3
 """A namespace called tf_prefix is not a prefix: the filter starts with the same frames as without a prefix."""
-import unittest
 
 from geometry_msgs.msg import PoseWithCovarianceStamped
 
@@ -8,9 +7,8 @@ from still_robot import Sender, make_imu, make_odom
 import support
 
 
-class TestNamespaceCalledTfPrefix(unittest.TestCase):
+class TestNamespaceCalledTfPrefix(support.Case):
     def test_the_filter_starts(self):
-        support.init_node('namespace_called_tf_prefix')
         poses = support.Watch('/robot_pose_ekf/odom_combined', PoseWithCovarianceStamped)
         Sender('odom', make_odom)
         Sender('imu_data', make_imu)
@@ -19,4 +17,4 @@ class TestNamespaceCalledTfPrefix(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('namespace_called_tf_prefix', TestNamespaceCalledTfPrefix)
+    support.main(TestNamespaceCalledTfPrefix)

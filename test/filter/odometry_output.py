@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """The estimate as nav_msgs/Odometry has the pose of ~odom_combined, and a velocity that agrees with its covariance."""
 import math
-import unittest
 
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from nav_msgs.msg import Odometry
@@ -9,16 +8,14 @@ from nav_msgs.msg import Odometry
 import support
 
 
-class TestOdometryOutput(unittest.TestCase):
+class TestOdometryOutput(support.Case):
     def test_pose_and_velocity(self):
-        support.init_node('odometry_output')
         truth = support.Watch('/ground_truth', Odometry)
         poses = support.Watch('/robot_pose_ekf/odom_combined', PoseWithCovarianceStamped)
         estimates = support.Watch('/robot_pose_ekf/odometry', Odometry)
         # the filter estimates the gyro bias at standstill
         support.wait_for(lambda: truth.last and len(estimates.messages) > 60, 'estimates at standstill')
         driver = support.out_and_back()
-        self.addCleanup(driver.kill)
         self.assertEqual(driver.wait(), 0, driver.output)
         estimates.next()
 
@@ -54,4 +51,4 @@ class TestOdometryOutput(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('odometry_output', TestOdometryOutput)
+    support.main(TestOdometryOutput)

@@ -1,6 +1,5 @@
 #!/usr/bin/python3
 """If an IMU sends no angular velocity, the filter uses the change of its orientation."""
-import unittest
 
 from geometry_msgs.msg import Vector3
 
@@ -14,9 +13,8 @@ def orientation_only(imu):
     imu.angular_velocity_covariance = [-1.0] + [0.0] * 8
 
 
-class TestOrientationOnlyImu(unittest.TestCase):
+class TestOrientationOnlyImu(support.Case):
     def test_the_change_of_the_orientation_is_used(self):
-        support.init_node('orientation_only_imu')
         robot = AlteredRobot(imu=orientation_only)
         robot.turn()
         robot.check_heading(self)
@@ -25,4 +23,4 @@ class TestOrientationOnlyImu(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('orientation_only_imu', TestOrientationOnlyImu)
+    support.main(TestOrientationOnlyImu)

@@ -1,6 +1,5 @@
 #!/usr/bin/python3
 """With start_filter false, the combined pose of another filter is republished as /odom_ekf."""
-import unittest
 
 import rosnode
 import rospy
@@ -9,9 +8,8 @@ from geometry_msgs.msg import PoseWithCovarianceStamped
 import support
 
 
-class TestRepublish(unittest.TestCase):
+class TestRepublish(support.Case):
     def test_the_pose_of_another_filter_is_republished(self):
-        support.init_node('republish')
         republished = support.Watch('/odom_ekf', support.Odometry)
         odom = rospy.Publisher('odom', support.Odometry, queue_size=1, latch=True)
         frames = support.Odometry()
@@ -39,4 +37,4 @@ class TestRepublish(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('republish', TestRepublish)
+    support.main(TestRepublish)

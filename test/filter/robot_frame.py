@@ -1,6 +1,5 @@
 #!/usr/bin/python3
 """The transform leads to the robot's frame, even without child_frame_id, until another node publishes one to it."""
-import unittest
 
 import rospy
 from geometry_msgs.msg import TransformStamped
@@ -11,9 +10,8 @@ from tf2_msgs.msg import TFMessage
 import support
 
 
-class TestRobotFrame(unittest.TestCase):
+class TestRobotFrame(support.Case):
     def test_which_frame_the_transform_leads_to(self):
-        support.init_node('robot_frame')
         log, transforms = support.Watch('/rosout', Log), support.Watch('/tf', TFMessage)
         odometry = rospy.Publisher('/odom', Odometry, queue_size=10)
         others = rospy.Publisher('/tf', TFMessage, queue_size=10)
@@ -51,4 +49,4 @@ class TestRobotFrame(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('robot_frame', TestRobotFrame)
+    support.main(TestRobotFrame)

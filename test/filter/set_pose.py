@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """set_pose moves the estimate to a pose in the output frame; an invalid pose, or one in another frame, is rejected."""
 import math
-import unittest
 
 import rospy
 from geometry_msgs.msg import PoseWithCovarianceStamped
@@ -23,9 +22,8 @@ def make_pose(frame_id, x, y, yaw):
     return message
 
 
-class TestSetPose(unittest.TestCase):
+class TestSetPose(support.Case):
     def test_poses_in_the_output_frame_and_others(self):
-        support.init_node('set_pose')
         log = support.Watch('/rosout', Log)
         poses = support.Watch('/robot_pose_ekf/odom_combined', PoseWithCovarianceStamped)
         estimates = support.Watch('/robot_pose_ekf/odometry', Odometry)
@@ -67,4 +65,4 @@ class TestSetPose(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('set_pose', TestSetPose)
+    support.main(TestSetPose)

@@ -1,6 +1,5 @@
 #!/usr/bin/python3
 """A robot at 3 m/s is estimated along its whole path; with a lower ~max_speed, its odometry counts as jumped."""
-import unittest
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray
@@ -14,9 +13,8 @@ SPEED = 3.0     # m/s
 IGNORED = 'Odometry ignored: faster than ~max_speed or ~max_turn_rate'
 
 
-class TestSpeedLimit(unittest.TestCase):
+class TestSpeedLimit(support.Case):
     def test_a_fast_robot(self):
-        support.init_node('speed_limit')
         log = support.Watch('/rosout', Log)
         poses = {node: support.Watch(f'/{node}/odom_combined', PoseWithCovarianceStamped)
                  for node in ('standard', 'slow')}
@@ -50,4 +48,4 @@ class TestSpeedLimit(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('speed_limit', TestSpeedLimit)
+    support.main(TestSpeedLimit)

@@ -1,6 +1,5 @@
 #!/usr/bin/python3
 """With a new pkg and type, robot_pose_ekf's launch file yields the combined pose and one connected tree of frames."""
-import unittest
 
 import rospy
 import tf2_ros
@@ -12,9 +11,8 @@ from tf2_msgs.msg import TFMessage
 import support
 
 
-class TestStockLaunchFile(unittest.TestCase):
+class TestStockLaunchFile(support.Case):
     def test_the_pose_and_the_tree(self):
-        support.init_node('stock_launch_file')
         log = support.Watch('/rosout', Log)
         odom = support.Watch('/pr2_base_odometry/odom', Odometry)
         truth = support.Watch('/ground_truth', Odometry)
@@ -69,4 +67,4 @@ class TestStockLaunchFile(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('stock_launch_file', TestStockLaunchFile)
+    support.main(TestStockLaunchFile)

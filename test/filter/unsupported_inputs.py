@@ -1,6 +1,5 @@
 #!/usr/bin/python3
 """The filter logs a line for each requested feature of robot_pose_ekf that it does not support, and runs without it."""
-import unittest
 
 import rospy
 from geometry_msgs.msg import PoseWithCovarianceStamped
@@ -12,12 +11,11 @@ LINES = ['vo_used: visual odometry is not supported and not used', 'gps_used: GP
          'debug: no files are written; record the topics with rosbag', 'self_diagnose: see /diagnostics']
 
 
-class TestUnsupportedInputs(unittest.TestCase):
+class TestUnsupportedInputs(support.Case):
     def start(self, value):
         """Start the filter with this value of all four parameters and wait for a pose; return the process."""
         ekf = support.Process('rosrun', 'rbx1_nav', 'ekf.py', '_imu_used:=false', *(
             f"_{line.split(':')[0]}:={value}" for line in LINES))
-        self.addCleanup(ekf.kill)
         poses = support.Watch('/robot_pose_ekf/odom_combined', PoseWithCovarianceStamped)
         odometry = rospy.Publisher('/odom', Odometry, queue_size=10)
 
@@ -32,7 +30,6 @@ class TestUnsupportedInputs(unittest.TestCase):
         return ekf
 
     def test_each_is_named_if_it_is_asked_for(self):
-        support.init_node('unsupported_inputs')
         process = self.start('true')
         for line in LINES:
             self.assertEqual(process.output.count(line), 1, process.output)
@@ -43,4 +40,4 @@ class TestUnsupportedInputs(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('unsupported_inputs', TestUnsupportedInputs)
+    support.main(TestUnsupportedInputs)

@@ -1,6 +1,5 @@
 #!/usr/bin/python3
 """An IMU that is mounted upside down is used as soon as there is a transform to its frame, which rotates it."""
-import unittest
 
 import rospy
 from geometry_msgs.msg import Quaternion, TransformStamped
@@ -19,9 +18,8 @@ def upside_down(imu):
     imu.orientation = Quaternion(heading.w, heading.z, -heading.y, -heading.x)      # times the roll (1, 0, 0, 0)
 
 
-class TestUpsideDownImu(unittest.TestCase):
+class TestUpsideDownImu(support.Case):
     def test_it_is_turned_by_the_transform(self):
-        support.init_node('upside_down_imu')
         robot = AlteredRobot(imu=upside_down)
         robot.wait_for_line("/imu_altered: header.frame_id: 'imu_link': expected a transform from base_footprint to it")
         robot.estimates.next()      # from the wheels alone
@@ -43,4 +41,4 @@ class TestUpsideDownImu(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('upside_down_imu', TestUpsideDownImu)
+    support.main(TestUpsideDownImu)

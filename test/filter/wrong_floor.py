@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """A filter that assumes a different floor than the true one has the heading of the gyro, and covers its error."""
 import math
-import unittest
 
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from nav_msgs.msg import Odometry
@@ -10,15 +9,13 @@ from rosgraph_msgs.msg import Log
 import support
 
 
-class TestWrongFloor(unittest.TestCase):
+class TestWrongFloor(support.Case):
     def test_the_uncertainty_covers_the_difference(self):
-        support.init_node('wrong_floor')
         log, truth = support.Watch('/rosout', Log), support.Watch('/ground_truth', Odometry)
         right, wrong = (support.Watch(f'/{name}/odom_combined', PoseWithCovarianceStamped)
                         for name in ('right', 'wrong'))
         support.wait_for(lambda: min(len(right.messages), len(wrong.messages)) > 60, 'two seconds of both filters')
         driver = support.out_and_back()
-        self.addCleanup(driver.kill)
         self.assertEqual(driver.wait(), 0, driver.output)
         true = support.pose(truth.next())
         right.next()
@@ -35,4 +32,4 @@ class TestWrongFloor(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('wrong_floor', TestWrongFloor)
+    support.main(TestWrongFloor)

@@ -1,6 +1,5 @@
 #!/usr/bin/python3
 """An IMU without covariances is used with robot_pose_ekf's covariances; odometry does not need any."""
-import unittest
 
 from altered import AlteredRobot
 import support
@@ -11,9 +10,8 @@ def without_covariances(imu):
     imu.angular_velocity_covariance = imu.orientation_covariance = [0.0] * 9
 
 
-class TestZeroCovariances(unittest.TestCase):
+class TestZeroCovariances(support.Case):
     def test_of_an_imu_and_of_odometry(self):
-        support.init_node('zero_covariances')
 
         def odometry_without(odom):
             odom.pose.covariance = odom.twist.covariance = [0.0] * 36
@@ -27,4 +25,4 @@ class TestZeroCovariances(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('zero_covariances', TestZeroCovariances)
+    support.main(TestZeroCovariances)

@@ -1,6 +1,5 @@
 #!/usr/bin/python3
 """Five robots on one simulated clock: each ends as one alone, while others are added, removed, or lose their driver."""
-import unittest
 
 from diagnostic_msgs.srv import AddDiagnostics
 import rospy
@@ -15,10 +14,10 @@ import support
 SURFACE = 'low_ply_carpet'
 
 
-class TestFleet(unittest.TestCase):
+class TestFleet(support.Case):
     @classmethod
     def setUpClass(cls):
-        support.init_node('five_robots')
+        super().setUpClass()
         cls.truth = {f'robot{i}': support.Watch(f'/robot{i}/ground_truth', support.Odometry) for i in range(1, 7)}
         with open(resources.path('config', 'turtlebot.yaml')) as file:
             cls.robot = yaml.safe_load(file)
@@ -30,9 +29,7 @@ class TestFleet(unittest.TestCase):
 
     def drive(self, name, *arguments):
         """Start a script that drives a robot; return its Process."""
-        process = support.Process('rosrun', 'rbx1_nav', 'timed_out_and_back.py', *arguments, ROS_NAMESPACE=name)
-        self.addCleanup(process.kill)
-        return process
+        return support.Process('rosrun', 'rbx1_nav', 'timed_out_and_back.py', *arguments, ROS_NAMESPACE=name)
 
     def assert_end(self, name, seed):
         """Check that a robot has the same end pose as one that is simulated alone, without ROS."""
@@ -79,4 +76,4 @@ class TestFleet(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('five_robots', TestFleet)
+    support.main(TestFleet)

@@ -2,7 +2,6 @@
 """A second robot joins in real time; a second clock, and a launch that would change the clock, are refused."""
 import os
 import signal
-import unittest
 
 import rospy
 import tf2_ros
@@ -12,11 +11,7 @@ import support
 SIMULATED = 'real_time_factor:=5'
 
 
-class TestSecondClock(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        support.init_node('second_clock')
-
+class TestSecondClock(support.Case):
     def launch(self, robot, *arguments):
         """Start a robot; it is stopped after the test."""
         process = support.Process('roslaunch', 'rbx1_nav', 'fake_turtlebot.launch', f'robot:={robot}', *arguments)
@@ -32,7 +27,6 @@ class TestSecondClock(unittest.TestCase):
         support.wait_for(lambda: odometry['robot2'].last, 'odometry')
         driver = support.Process('rosrun', 'rbx1_nav', 'odom_out_and_back.py', '_goal_distance:=0.1',
                                  '_goal_angle:=0.1', ROS_NAMESPACE='robot1')
-        self.addCleanup(driver.kill)
         self.assertEqual(driver.wait(), 0, driver.output)
         self.assertGreater(max(message.pose.pose.position.x for message in odometry['robot1'].messages), 0.09)
         self.assertEqual(support.pose(odometry['robot2'].next()), (0, 0, 0))
@@ -47,7 +41,6 @@ class TestSecondClock(unittest.TestCase):
         self.assertIn('/use_sim_time: true: expected no robot in real time, but /robot1/arbotix, /robot2/arbotix runs',
                       refused.output)
         refused = support.Process('roslaunch', 'rbx1_nav', 'fleet.launch', 'n:=1', 'model:=none')
-        self.addCleanup(refused.kill)
         refused.wait()
         self.assertIn('/robot1/arbotix: expected the name of a robot that is not simulated by another', refused.output)
         self.assertIs(rospy.get_param('/use_sim_time'), False)
@@ -77,4 +70,4 @@ class TestSecondClock(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('second_clock', TestSecondClock)
+    support.main(TestSecondClock)

@@ -1,6 +1,5 @@
 #!/usr/bin/python3
 """A node with an invalid parameter exits with one line that contains the key, the value and what is expected."""
-import unittest
 
 import rospy
 from geometry_msgs.msg import Twist
@@ -16,14 +15,9 @@ def forget(name):
         rospy.delete_param(name)
 
 
-class TestBadParameters(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        support.init_node('bad_parameters')
-
+class TestBadParameters(support.Case):
     def check(self, process, expected):
         """Check that the process exits with status 1 and one error that contains all expected texts."""
-        self.addCleanup(process.kill)
         self.assertEqual(process.wait(), 1, process.output)
         errors = [line for line in process.lines if '[ERROR]' in line or '[FATAL]' in line]
         self.assertEqual(len(errors), 1, process.output)
@@ -103,4 +97,4 @@ class TestBadParameters(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('bad_parameters', TestBadParameters)
+    support.main(TestBadParameters)

@@ -3,7 +3,6 @@
 import os
 import signal
 import sys
-import unittest
 
 import rospkg
 
@@ -17,15 +16,13 @@ WAITING = ['fake_base.py', 'turtlebot_node.py', 'fake_create.py', 'ekf.py', 'odo
 BASE = '_controllers:={base: {type: diff_controller, base_width: 0.26}}'
 
 
-class TestNoMaster(unittest.TestCase):
+class TestNoMaster(support.Case):
     def setUp(self):
         self.port = free_port()
         self.uri = 'http://127.0.0.1:%d' % self.port
 
     def start(self, *command):
-        process = support.Process(*command, ROS_MASTER_URI=self.uri)
-        self.addCleanup(process.kill)
-        return process
+        return support.Process(*command, ROS_MASTER_URI=self.uri)
 
     def node(self, *command):
         return self.start('rosrun', 'rbx1_nav', *command)
@@ -73,4 +70,4 @@ class TestNoMaster(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('no_master', TestNoMaster)
+    support.main(TestNoMaster)

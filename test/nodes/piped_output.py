@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """The output of a program reaches a pipe while the program is running, not when it exits."""
 import signal
-import unittest
 
 import support
 
@@ -12,7 +11,7 @@ CASES = [(('rosrun', 'rbx1_nav', 'timed_out_and_back.py'), r'INFO.*Waiting for a
           r'1000000 runs of each method on ideal')]
 
 
-class TestPipedOutput(unittest.TestCase):
+class TestPipedOutput(support.Case):
     def start(self, *command):
         """Run a command as a user does, unlike the unbuffered Process of the other tests."""
         process = support.Process('env', '-u', 'PYTHONUNBUFFERED', *command)
@@ -22,7 +21,6 @@ class TestPipedOutput(unittest.TestCase):
         return process
 
     def test_a_line_arrives_while_the_program_runs(self):
-        support.init_node('piped_output')
         for command, line in CASES:
             process = self.start(*command)
             process.wait_for_line(line)
@@ -37,4 +35,4 @@ class TestPipedOutput(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('piped_output', TestPipedOutput)
+    support.main(TestPipedOutput)

@@ -4,7 +4,6 @@ import os
 import re
 import signal
 import tempfile
-import unittest
 
 import rosgraph
 import rospkg
@@ -18,9 +17,8 @@ import support
 TOPICS = '/cmd_vel', '/odom', '/imu/data', '/ground_truth'
 
 
-class TestFittedFloor(unittest.TestCase):
+class TestFittedFloor(support.Case):
     def setUp(self):
-        support.init_node('fitted_floor')
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.folder = folder.name
@@ -29,7 +27,6 @@ class TestFittedFloor(unittest.TestCase):
 
     def run_process(self, process):
         """Wait for a Process that must succeed; return its output."""
-        self.addCleanup(process.kill)
         self.assertEqual(process.wait(), 0, process.output)
         return process.output
 
@@ -37,7 +34,6 @@ class TestFittedFloor(unittest.TestCase):
         """Drive the exercise and record it; return the path of the bag."""
         path = os.path.join(self.folder, name)
         recorder = support.Process('rosbag', 'record', '-O', path, *TOPICS)
-        self.addCleanup(recorder.kill)
         master = rosgraph.Master(rospy.get_name())
         support.wait_for(lambda: all(any(node.startswith('/record') for node in nodes)
                                      for topic, nodes in master.getSystemState()[1] if topic in TOPICS), 'the recorder')
@@ -90,4 +86,4 @@ class TestFittedFloor(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('fitted_floor', TestFittedFloor)
+    support.main(TestFittedFloor)

@@ -4,7 +4,6 @@ import fcntl
 import os
 import signal
 import subprocess
-import unittest
 
 import support
 
@@ -13,7 +12,7 @@ NODES = ['ekf.py', 'fake_base.py', 'fit_surface.py', 'odom_ekf.py', 'odom_out_an
 F_SETPIPE_SZ = 1031     # defined in fcntl since Python 3.10
 
 
-class TestInterruptedStart(unittest.TestCase):
+class TestInterruptedStart(support.Case):
     def interrupt(self, name):
         """Interrupt an executable while it imports modules; return its exit status and its output after that."""
         # Python writes a line for each imported module. If the lines are not read, it blocks as soon as the pipe is
@@ -39,4 +38,4 @@ class TestInterruptedStart(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('interrupted_start', TestInterruptedStart)
+    support.main(TestInterruptedStart)

@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """Every launch argument has a default and a description in `roslaunch --ros-args`; arguments reach the nodes."""
 import subprocess
-import unittest
 
 import support
 
@@ -17,7 +16,7 @@ def roslaunch(*arguments):
                           universal_newlines=True).stdout
 
 
-class TestLaunchArguments(unittest.TestCase):
+class TestLaunchArguments(support.Case):
     def test_how_a_robot_differs_from_the_documents(self):
         for name in 'mode_plus_one', 'drops_fractions':
             for value in 'false', 'true':
@@ -52,4 +51,4 @@ class TestLaunchArguments(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('launch_arguments', TestLaunchArguments)
+    support.main(TestLaunchArguments)

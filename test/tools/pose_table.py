@@ -3,7 +3,6 @@
 import math
 import re
 import signal
-import unittest
 
 import rospy
 from nav_msgs.msg import Odometry
@@ -16,15 +15,10 @@ HEADER = r' +x \(m\) +y \(m\) +heading \(degrees\) +from the start \(m\)'
 ROW = r'(?:truth|odometry|estimate) +(/\w+) +(-?\d+\.\d{3}) +(-?\d+\.\d{3}) +(-?\d+\.\d) +(\d+\.\d{3})'
 
 
-class TestPoseTable(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        support.init_node('pose_table')
-
+class TestPoseTable(support.Case):
     def pose(self, *prefix):
         """Run pose.py; return its exit status and its lines."""
         process = support.Process(*prefix, 'rosrun', 'rbx1_nav', 'pose.py')
-        self.addCleanup(process.kill)
         return process.wait(), process.lines
 
     def start(self, *node):
@@ -78,7 +72,6 @@ class TestPoseTable(unittest.TestCase):
         watches = [support.Watch(topic, Odometry) for topic in topics]
         support.wait_for(lambda: all(watch.last for watch in watches), 'all three poses')
         driver = support.out_and_back('_goal_distance:=0.3', '_goal_angle:=2.0')
-        self.addCleanup(driver.kill)
         self.assertEqual(driver.wait(), 0, driver.output)
         # the robot is stationary: these are the poses that the table shows
         for watch in watches:
@@ -93,7 +86,6 @@ class TestPoseTable(unittest.TestCase):
 
     def test_a_base_that_starts_later(self):
         process = support.Process('rosrun', 'rbx1_nav', 'pose.py')
-        self.addCleanup(process.kill)
         support.wait_for(lambda: '/pose' in str(rospy.get_master().getSystemState()), 'pose.py to start')
         # not a real base, which may take longer to start than pose.py waits
         odom = self.publish_odometry(1.0, 0.0, 0.0)
@@ -114,4 +106,4 @@ class TestPoseTable(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('pose_table', TestPoseTable)
+    support.main(TestPoseTable)

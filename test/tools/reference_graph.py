@@ -3,7 +3,6 @@
 import os
 import re
 import sys
-import unittest
 
 import rospkg
 
@@ -14,14 +13,13 @@ sys.path.insert(0, os.path.join(PACKAGE, 'script'))
 import graph
 
 
-class TestReferenceGraph(unittest.TestCase):
+class TestReferenceGraph(support.Case):
     maxDiff = None
 
     def test_pictures(self):
         with open(os.path.join(PACKAGE, 'docs', 'reference.md'), encoding='utf-8') as page:
             expected = re.findall('```mermaid\n(.*?)\n```', page.read(), re.DOTALL)
         self.assertEqual(len(expected), 2)
-        support.init_node('reference_graph')
         system = graph.RunningSystem()
         try:
             # nodes start one after the other
@@ -32,4 +30,4 @@ class TestReferenceGraph(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('reference_graph', TestReferenceGraph)
+    support.main(TestReferenceGraph)

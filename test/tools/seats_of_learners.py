@@ -4,7 +4,6 @@ from contextlib import suppress
 import os
 import signal
 import sys
-import unittest
 from urllib.request import urlopen
 from xmlrpc.client import ServerProxy
 
@@ -35,13 +34,11 @@ def title(port, token):
         return client.wait_for('welcome')['trusted'] and client.wait_for('frame')['status']['title']
 
 
-class TestSeats(unittest.TestCase):
+class TestSeats(support.Case):
     def start(self, *arguments):
         """Start seats.py; return its Process."""
         node = roslib.packages.find_node('rbx1_nav', 'seats.py')[0]
-        process = support.Process('/usr/bin/python3', node, *map(str, arguments))
-        self.addCleanup(process.kill)
-        return process
+        return support.Process('/usr/bin/python3', node, *map(str, arguments))
 
     def check(self, ending, status):
         """Start seats, check them, and end the process with a signal."""
@@ -95,4 +92,4 @@ class TestSeats(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('seats', TestSeats)
+    support.main(TestSeats)

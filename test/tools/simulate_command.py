@@ -4,7 +4,6 @@ import os
 import re
 import signal
 import tempfile
-import unittest
 
 import numpy
 from PIL import Image
@@ -15,10 +14,7 @@ import support
 def simulate(*arguments):
     """Run simulate.py; return the exit status and the output."""
     process = support.Process('rosrun', 'rbx1_nav', 'simulate.py', *arguments)
-    try:
-        return process.wait(), process.output
-    finally:
-        process.kill()
+    return process.wait(), process.output
 
 
 def simulate_with_limit(picture):
@@ -26,10 +22,7 @@ def simulate_with_limit(picture):
     process = support.Process('bash', '-c', 'trap "" XFSZ; ulimit -f 1; '
                               'exec rosrun rbx1_nav simulate.py --method timed --runs 1 --plot "$0"', picture,
                               PYTHONDONTWRITEBYTECODE='1')      # it would be cut short, and others would read it
-    try:
-        return process.wait(), process.output
-    finally:
-        process.kill()
+    return process.wait(), process.output
 
 
 def children(pid):
@@ -47,7 +40,7 @@ def runs(pid):
         return False
 
 
-class TestSimulateCommand(unittest.TestCase):
+class TestSimulateCommand(support.Case):
     def test_three_methods_and_a_picture(self):
         with tempfile.TemporaryDirectory() as folder:
             picture = os.path.join(folder, 'methods.png')
@@ -75,7 +68,6 @@ class TestSimulateCommand(unittest.TestCase):
         """Start a long simulation; return the Process and the process ids of its children."""
         process = support.Process('rosrun', 'rbx1_nav', 'simulate.py', '--method', 'ekf', '--runs', '1000000', '--jobs',
                                   '2')
-        self.addCleanup(process.kill)
         return process, support.wait_for(
             lambda: len(children(process.process.pid)) == 2 and children(process.process.pid), 'two processes')
 
@@ -108,12 +100,25 @@ class TestSimulateCommand(unittest.TestCase):
             self.assertEqual(output.splitlines()[-1], 'simulate.py: [Errno 27] File too large')
             self.assertNotIn('Traceback', output)
 
+    def test_a_picture_that_cannot_be_written(self):
+        """It is rejected before the simulation starts."""
+        with tempfile.TemporaryDirectory() as folder:
+            os.mkdir(os.path.join(folder, 'taken.png'))
+            for path, expected in [
+                    ('/proc/picture.png', 'expected a file that can be written: '),     # not even by a superuser
+                    (os.path.join(folder, 'taken.png'), 'expected a file that can be written: Is a directory'),
+                    ('', 'expected a file name with one of the extensions ')]:
+                status, output = simulate('--runs', '1', '--plot', path)
+                self.assertEqual(status, 2, output)
+                self.assertIn(f'simulate.py: error: --plot: {path}: {expected}', output.splitlines()[-1])
+                self.assertNotIn('Runs', output)
+            self.assertEqual(os.listdir(folder), ['taken.png'])
+
     def test_invalid_arguments(self):
         for arguments, status, text in [
                 (['--surface', 'sand'], 1, f"'sand': expected one of {support.surfaces()}"),
                 (['--method', 'luck'], 2, 'luck'), (['--runs', '0'], 2, '--runs: 0: expected'),
                 (['--plot', 'picture.doc'], 2, '--plot: picture.doc: expected'),
-                (['--plot', '/'], 2, '--plot: /: expected'),
                 (['--animate', 'run.mp4'], 2,
                  '--animate: run.mp4: expected a file name with the extension .gif or .png'),
                 (['--config', '/dev/null'], 1, '/dev/null: configuration: None: expected'),
@@ -127,4 +132,4 @@ class TestSimulateCommand(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('simulate_command', TestSimulateCommand)
+    support.main(TestSimulateCommand)

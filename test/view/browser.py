@@ -4,7 +4,6 @@ import os
 import re
 import signal
 import tempfile
-import unittest
 
 from selenium import webdriver
 from selenium.webdriver.chrome.options import Options
@@ -132,14 +131,15 @@ class Page:
                 if entry['level'] in ('SEVERE', 'WARNING')]
 
 
-class PageTest(unittest.TestCase):
-    """Tests of the page in Chromium, with a base that is running. They need rospy's node.
+class PageTest(support.Case):
+    """Tests of the page in Chromium, with a base that is running.
 
     If the environment variable RBX1_PICTURE_DIR is set, the screenshots are saved in that directory.
     """
 
     @classmethod
     def setUpClass(cls):
+        super().setUpClass()
         cls.folder = tempfile.TemporaryDirectory()      # for files that the page saves
         cls.odom = support.OdomWatch()
         cls.view, cls.url = start_view()

@@ -15,9 +15,8 @@ from browser import Page, PageTest
 class TestBrowserComparison(PageTest):
     @classmethod
     def setUpClass(cls):
-        support.init_node('browser_comparison')
-        rospy.set_param('/out_and_back/goal_distance', 0.2)
         super().setUpClass()
+        rospy.set_param('/out_and_back/goal_distance', 0.2)
 
     def setUp(self):
         self.page = Page(self.driver, self.url)
@@ -136,4 +135,4 @@ class TestBrowserComparison(PageTest):
 
 
 if __name__ == '__main__':
-    support.main('browser_comparison', TestBrowserComparison)
+    support.main(TestBrowserComparison)

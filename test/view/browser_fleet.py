@@ -2,7 +2,6 @@
 """The page with two robots: both are on one floor, and a click selects whose runs, keys and Stop are meant."""
 import signal
 import tempfile
-import unittest
 
 import rospy
 
@@ -10,9 +9,8 @@ import support
 from browser import Page, start_chromium, start_view
 
 
-class TestBrowserFleet(unittest.TestCase):
+class TestBrowserFleet(support.Case):
     def setUp(self):
-        support.init_node('browser_fleet')
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.odometry = {name: support.Watch(f'/{name}/odom', support.Odometry) for name in ('robot1', 'robot2')}
@@ -50,4 +48,4 @@ class TestBrowserFleet(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('browser_fleet', TestBrowserFleet)
+    support.main(TestBrowserFleet)

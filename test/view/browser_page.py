@@ -19,11 +19,10 @@ SPEED, TIMEOUT = 0.2, 1.0       # m/s, speed of the arrow keys; s, timeout of th
 class TestBrowserPage(PageTest):
     @classmethod
     def setUpClass(cls):
-        support.init_node('browser_page')
-        cls.truth = support.Watch('/ground_truth', Odometry)
         # rosout collects the log of all nodes; roscore starts it, but rostest does not
         cls.rosout = support.Process('rosrun', 'rosout', 'rosout')
         super().setUpClass()
+        cls.truth = support.Watch('/ground_truth', Odometry)
 
     @classmethod
     def tearDownClass(cls):
@@ -245,4 +244,4 @@ class TestBrowserPage(PageTest):
 
 
 if __name__ == '__main__':
-    support.main('browser_page', TestBrowserPage)
+    support.main(TestBrowserPage)

@@ -2,7 +2,6 @@
 """Tests that a real robot moves only after confirmation, which both the page and the node require."""
 import signal
 import tempfile
-import unittest
 
 import support
 from browser import Page, start_chromium, start_view
@@ -10,9 +9,8 @@ from browser import Page, start_chromium, start_view
 SPEED = 0.2     # m/s
 
 
-class TestBrowserRealRobot(unittest.TestCase):
+class TestBrowserRealRobot(support.Case):
     def setUp(self):
-        support.init_node('browser_real_robot')
         self.odom = support.OdomWatch()
         self.view, url = start_view()
         self.addCleanup(self.view.kill)
@@ -62,4 +60,4 @@ class TestBrowserRealRobot(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    support.main('browser_real_robot', TestBrowserRealRobot)
+    support.main(TestBrowserRealRobot)

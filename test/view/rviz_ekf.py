@@ -8,8 +8,6 @@ import os
 import subprocess
 
 import numpy
-import rospy
-import rostest
 from nav_msgs.msg import Odometry
 
 import support
@@ -62,5 +60,4 @@ class RvizEkf(RvizTest):
 
 
 if __name__ == '__main__':
-    rospy.init_node('rviz_ekf')
-    rostest.rosrun(PACKAGE, 'rviz_ekf', RvizEkf)
+    support.main(RvizEkf)

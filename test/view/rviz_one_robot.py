@@ -7,9 +7,7 @@ import os
 import subprocess
 import sys
 
-import rospy
-import rostest
-
+import support
 from rviz_ekf import ARROWS, arrow_pixels
 from rviz_smoke import ARROW, PACKAGE, WAIT, RvizTest
 
@@ -34,5 +32,4 @@ class RvizOneRobot(RvizTest):
 
 if __name__ == '__main__':
     NAME = sys.argv[1]
-    rospy.init_node('rviz_one_robot')
-    rostest.rosrun(PACKAGE, 'rviz_one_robot', RvizOneRobot)
+    support.main(RvizOneRobot)

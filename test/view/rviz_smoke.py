@@ -9,15 +9,15 @@ import re
 import subprocess
 import tempfile
 import time
-import unittest
 
 import numpy
 import rospkg
 import rospy
-import rostest
 import yaml
 from PIL import ImageGrab
 from rosgraph_msgs.msg import Log
+
+import support
 
 PACKAGE = 'rbx1_nav'
 FRAME_RATE = 4      # Hz: without a GPU, the 30 Hz of the files would use more than a core
@@ -134,7 +134,7 @@ class Picture:
         return {'right of 1 m': self.star(1, 190), 'left of the start': self.star(0, 10)}
 
 
-class RvizTest(unittest.TestCase):
+class RvizTest(support.Case):
     """Each test starts its own X server and RViz."""
 
     FILE = 'sim.rviz'
@@ -257,5 +257,4 @@ class RvizSmoke(RvizTest):
 
 
 if __name__ == '__main__':
-    rospy.init_node('rviz_smoke')
-    rostest.rosrun(PACKAGE, 'rviz_smoke', RvizSmoke)
+    support.main(RvizSmoke)
