@@ -46,10 +46,13 @@ class Ekf:
         self.imu = ImuInput('imu_data', self.tree, partial(self.log.add, rospy.loginfo))
         self.diagnostics = Diagnostics(('odom', 'imu_data')[:1 + parameters.imu_used], parameters.sensor_timeout,
                                        self.lock, lambda: (self.combined, self.publisher.published))
+        self.odom_sub: rospy.Subscriber | None = None   # a message may arrive before it is assigned
+
+    def subscribe(self) -> None:
+        """Receive messages from now on."""
         self.tree.listen(True)
-        self.odom_sub: rospy.Subscriber | None = None   # a message may arrive before the next assignment
         self.odom_sub = rospy.Subscriber('odom', Odometry, self.on_odom, queue_size=None, tcp_nodelay=True)
-        if parameters.imu_used:
+        if self.parameters.imu_used:
             rospy.Subscriber('imu_data', Imu, self.on_imu, queue_size=None, tcp_nodelay=True)
         rospy.Subscriber('reset_odometry', Empty, self.on_reset)
         rospy.Subscriber('set_pose', PoseWithCovarianceStamped, self.on_set_pose)
@@ -136,7 +139,9 @@ class Ekf:
 def main() -> int:
     """Read the parameters and run; return the exit status."""
     life.init_node('robot_pose_ekf', __doc__, PARAMETERS, check=read_parameters)
-    Ekf(load_parameters()).run()
+    ekf = Ekf(load_parameters())
+    ekf.subscribe()
+    ekf.run()
     return 0
 
 

@@ -32,6 +32,7 @@ def main() -> int:
     robot = read_robot(stored_params())
     clock = read_clock(robot.rate)
     simulated = SimulatedRobot(with_frames(robot, resolve_frame), param('surface'), param('seed'), clock, Refusals())
+    simulated.start()
     clock.run(simulated.step)
     return 0
 

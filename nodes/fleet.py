@@ -92,7 +92,9 @@ class Fleet:
             rospy.logerr('%s', text)
             return False, text
         robot = with_frames(robot, partial(with_prefix, name))
-        self.robots[name] = SimulatedRobot(robot, *floor, self.clock, self.refusals, name), Schedule(robot.rate)
+        simulated = SimulatedRobot(robot, *floor, self.clock, self.refusals, name)
+        simulated.start()
+        self.robots[name] = simulated, Schedule(robot.rate)
         self.place(robot.odom_frame_id)
         return True, f'{name}: added'
 

@@ -91,12 +91,11 @@ class VelocityCommands:
         try:
             with self.lock:
                 clamped = self.base.command(self.clock.now(), *command)
-        except RejectedCommand as error:
-            rospy.logerr_throttle(1, f'{self.topic}: {error}; rejected, base stopped')
-            self.refusals.add(command.sender, str(error))
-            return
-        except RefusedCommand as error:
-            rospy.logwarn_throttle(5, f'{self.topic}: refused a command from {command.sender}: {error}')
+        except (RejectedCommand, RefusedCommand) as error:
+            if isinstance(error, RejectedCommand):
+                rospy.logerr_throttle(1, f'{self.topic}: {error}; rejected, base stopped')
+            else:
+                rospy.logwarn_throttle(5, f'{self.topic}: refused a command from {command.sender}: {error}')
             self.refusals.add(command.sender, str(error))
             return
         if clamped:

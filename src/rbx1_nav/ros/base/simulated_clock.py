@@ -41,7 +41,12 @@ def read_clock(rate: float) -> Clock:
     if factor is not None:
         if rospy.rostime.is_wallclock():
             raise ConfigError(f'real_time_factor: {factor:g}: expected /use_sim_time to be true')
-        return OwnClock(factor, rate, round(step * SECOND), strict)
+        clock = OwnClock(factor, rate, round(step * SECOND), strict)
+        other = earlier_clock()
+        if other:
+            raise ConfigError(f'real_time_factor: {factor:g}: expected no other clock, but {other} publishes /clock: '
+                              'fleet.launch simulates several robots on one clock')
+        return clock
     if strict or rospy.has_param('~clock_step'):
         given = 'strict: true' if strict else f'clock_step: {step:g}'
         raise ConfigError(f'{given}: expected a simulated clock of this node: real_time_factor is not set')
@@ -91,7 +96,7 @@ class OwnClock(FollowedClock):
 
     def __init__(self, factor: float, rate: float, period: int, strict: bool) -> None:
         """factor, rate: see read_clock(); period: clock period, ns; strict: whether a driver that is not in step is an
-        error. Raises ConfigError if there is another clock."""
+        error."""
         super().__init__(rate)
         self.factor = factor
         self.period = period
@@ -99,10 +104,6 @@ class OwnClock(FollowedClock):
         # rospy subscribes each node to /clock. This node sets the time, and receiving it would take a sixth of a tick.
         simtime._clock_sub.unregister()
         self.publisher = rospy.Publisher('/clock', ClockMessage, NoDelay(self.greet), queue_size=10)
-        other = earlier_clock()
-        if other:
-            raise ConfigError(f'real_time_factor: {factor:g}: expected no other clock, but {other} publishes /clock: '
-                              'fleet.launch simulates several robots on one clock')
         self.lockstep = Lockstep(Watch(self.publisher), self.report, life.end_requested.is_set)
         self.not_in_step: dict[str, str] = {}   # reasons, by the name of the node
 

@@ -59,8 +59,11 @@ class SimulatedRobot:
         self.reset_service = rospy.Service(f'{private}reset', EmptyService, self.on_reset)
         self.joint_subs = subscribe_joints(robot.joints, self.lock, topics)
         self.commands = VelocityCommands(self.base, self.base.gate, clock, self.lock, topics, refusals)
+
+    def start(self) -> None:
+        """Accept commands from now on."""
         self.commands.subscribe()
-        rospy.loginfo('Ready: %s is at the origin of %s', robot.base_frame_id, robot.odom_frame_id)
+        rospy.loginfo('Ready: %s is at the origin of %s', self.robot.base_frame_id, self.robot.odom_frame_id)
 
     def close(self) -> None:
         """Remove the topics and services."""

@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 from math import atan2
-import time
 from typing import Callable
 
 import rospy
@@ -14,7 +13,7 @@ import yaml
 from rbx1_nav.control.legs import is_reachable
 from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.ros.node.frames import resolve_frame
-from rbx1_nav.ros.node.life import end_requested, sleep
+from rbx1_nav.ros.node.life import wait_for
 from rbx1_nav.units import wrap_angle
 
 MAX_AGE = 0.5       # s: older transforms are not used
@@ -82,22 +81,17 @@ class PoseListener:
 
         Raises ROSException after `timeout` s of wall time, ROSInterruptException.
         """
-        deadline = time.monotonic() + timeout
-        log_time = time.monotonic() + 0.5
-        while True:
+        problem: LostTransform | None = None
+
+        def find() -> Pose | None:
+            nonlocal problem
             try:
                 return self.pose()
             except LostTransform as error:
-                if time.monotonic() > deadline:
-                    raise rospy.ROSException(f"Timed out after {timeout:g} s waiting for the robot's pose: "
-                                             f'{error}') from None
-                if time.monotonic() > log_time:
-                    log_time += 5
-                    rospy.loginfo("Waiting for the robot's pose: %s", error)
-            sleep(0.02)
+                problem = error
             check()
-            if end_requested.is_set():
-                raise rospy.ROSInterruptException('shutdown requested')
+            return None
+        return wait_for(find, timeout, lambda: f"the robot's pose: {problem}")
 
     def _on_reset(self, _: Empty) -> None:
         self.reset = self.before is not None

@@ -10,7 +10,7 @@ import time
 import rospy
 
 from rbx1_nav.ros.driving.watching import Listeners
-from rbx1_nav.ros.node.life import end_requested, sleep
+from rbx1_nav.ros.node.life import check_end, sleep
 from rbx1_nav.schedule import NODE_TIMEOUT
 from rbx1_nav.units import SECOND
 
@@ -33,8 +33,7 @@ def _wait_until(end: int, longest: int, listeners: Listeners, last_look: float) 
     warn_time = time.monotonic() + 5
     last = None
     while True:
-        if end_requested.is_set():
-            raise rospy.ROSInterruptException('shutdown requested')
+        check_end()
         look = time.monotonic()
         if listeners.clock and look - last_look > NODE_TIMEOUT:
             raise rospy.ROSException(f'This script was suspended for {look - last_look:.1f} s: expected at most '

@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import threading
-import time
 from typing import Iterable
 
 import rosgraph
@@ -11,7 +10,8 @@ import rospy
 from rbx1_nav.ros.driving.watching import Listeners, Peer
 from rbx1_nav.ros.network.bases import ask_refusals, namespaces_of_bases
 from rbx1_nav.ros.network.master import Server, call
-from rbx1_nav.ros.node.life import end_requested, sleep
+from rbx1_nav.ros.network.rospy_topics import connected_nodes
+from rbx1_nav.ros.node.life import wait_for
 
 
 class _SubscriberMonitor(threading.Thread):
@@ -75,11 +75,6 @@ class _SubscriberMonitor(threading.Thread):
                     name in self.publishers.get('/clock', ()), refused)
 
 
-def connected_nodes(publisher: rospy.Publisher) -> set[str]:
-    """Return the names of the nodes that are connected to a publisher."""
-    return {connection.endpoint_id for connection in publisher.impl.connections}
-
-
 def wait_for_subscribers(publisher: rospy.Publisher, timeout: float) -> Listeners:
     """Wait until all live subscribers of a publisher's topic are connected to it and simulated time has started.
 
@@ -91,35 +86,34 @@ def wait_for_subscribers(publisher: rospy.Publisher, timeout: float) -> Listener
     topic = publisher.resolved_name
     monitor = _SubscriberMonitor(topic)
     monitor.start()
-    deadline = time.monotonic() + timeout
-    log_time = time.monotonic() + 0.5
     before: set[str] = set()
     known = 0
+
+    def missing() -> str:
+        names = ', '.join(sorted((monitor.live or {}).keys() - before))
+        return (f'the master to list the subscribers of {topic}'
+                if monitor.live is None or before and monitor.rounds < known
+                else f'{names} to connect to {topic}' if names
+                else monitor.missing_base() if not before else 'the time on /clock')
+
+    def find() -> Listeners | None:
+        nonlocal before, known
+        connected = connected_nodes(publisher)
+        if connected != before:     # an update in progress may have begun before the change
+            before, known = connected, monitor.rounds + 2
+        if not (connected and monitor.rounds >= known and (monitor.live or {}).keys() <= connected
+                and rospy.get_rostime()):
+            return None
+        peers = [monitor.peer(name) for name in connected]
+        _check_clock(peers)
+        return Listeners(publisher, peers)
+
     try:
-        while True:
-            connected = connected_nodes(publisher)
-            if connected != before:     # an update in progress may have begun before the change
-                before, known = connected, monitor.rounds + 2
-            live = monitor.live or {}
-            if connected and monitor.rounds >= known and live.keys() <= connected and rospy.get_rostime():
-                peers = [monitor.peer(name) for name in connected]
-                _check_clock(peers)
-                return Listeners(publisher, peers)
-            missing = ', '.join(sorted(live.keys() - connected))
-            what = (f'the master to list the subscribers of {topic}'
-                    if monitor.live is None or connected and monitor.rounds < known
-                    else f'{missing} to connect to {topic}' if missing
-                    else monitor.missing_base() if not connected else 'the time on /clock')
-            if time.monotonic() > deadline:
-                raise rospy.ROSException(f'Timed out after {timeout:g} s waiting for {what}')
-            if time.monotonic() > log_time:
-                log_time += 5
-                rospy.loginfo('Waiting for %s', what)
-            sleep(0.02)
-            if end_requested.is_set():
-                raise rospy.ROSInterruptException('shutdown requested')
+        listeners = wait_for(find, timeout, missing)
     finally:
         monitor.done.set()
+    listeners.start()
+    return listeners
 
 
 def _check_clock(peers: Iterable[Peer]) -> None:

@@ -55,8 +55,11 @@ class Listener:
         self.refusal: str | None = None     # a text, if the node has refused a command
         self.closed = False
         self.ended = False      # whether the node has exited properly and is no longer watched
-        if peer.uri:
-            threading.Thread(target=self.ask, args=(peer.uri,), daemon=True).start()
+
+    def start(self) -> None:
+        """Call the node from now on, if it answers calls."""
+        if self.peer.uri:
+            threading.Thread(target=self.ask, args=(self.peer.uri,), daemon=True).start()
 
     def look(self, now: float) -> None:
         """Look at the connection. now: s of the monotonic clock."""
@@ -176,6 +179,11 @@ class Listeners:
             (peer.name for peer in by_name.values() if peer.keeps_time), None)
         # s of simulated time; read now, since the master may have died when the robot moves
         self.clock_step = rospy.get_param(f'{self.clock}/clock_step', CLOCK_STEP) if self.clock else CLOCK_STEP
+
+    def start(self) -> None:
+        """Call the nodes from now on."""
+        for listener in self.listeners:
+            listener.start()
 
     def check(self) -> None:
         """Look at all connections, if that is due; to be called at least every LOOK_PERIOD.

@@ -1,4 +1,4 @@
-"""Two corrections of rospy: messages are sent at once, and a subscriber misses no publisher."""
+"""The connections of rospy: messages are sent at once, and a subscriber misses no publisher."""
 from __future__ import annotations
 
 import socket
@@ -28,6 +28,11 @@ class NoDelay(rospy.SubscribeListener):
                 pass
         if self.greet:
             self.greet(topic_name, peer_publish)
+
+
+def connected_nodes(publisher: rospy.Publisher) -> set[str]:
+    """Return the names of the nodes that are connected to a publisher."""
+    return {connection.endpoint_id for connection in publisher.impl.connections}
 
 
 def keep_publisher_lists() -> None:

@@ -13,7 +13,7 @@ import sys
 import threading
 import time
 import traceback
-from typing import Any, Callable, Iterator, NoReturn, Sequence, TextIO, cast
+from typing import Any, Callable, Iterator, NoReturn, Sequence, TextIO, TypeVar, cast
 
 import rosgraph
 import rospy
@@ -36,6 +36,7 @@ PACKAGE = os.path.realpath(os.path.join(os.path.dirname(__file__), '..', '..')) 
 if not hasattr(threading.Thread, 'isAlive'):
     setattr(threading.Thread, 'isAlive', threading.Thread.is_alive)
 
+Found = TypeVar('Found')
 end_requested = threading.Event()
 _leaving = threading.Event()
 
@@ -98,8 +99,7 @@ def init_node(name: str, usage: str, parameters: Sequence[Parameter] = (), requi
     wait_for_master(future_name(name), lambda: read_wait_timeout(name, parameters), end_requested.is_set, sleep)
     if not end_requested.is_set():
         check_before_start(name, parameters, check)
-    if end_requested.is_set():
-        raise rospy.ROSInterruptException('shutdown requested')
+    check_end()
     keep_publisher_lists()
     try:
         rospy.init_node(name, disable_signals=True, disable_rostime=wall_time)
@@ -107,8 +107,7 @@ def init_node(name: str, usage: str, parameters: Sequence[Parameter] = (), requi
         if not end_requested.is_set():
             raise rospy.ROSException(f'The master at {rosgraph.get_master_uri()} does not answer ({error}): '
                                      'expected a running roscore') from error
-    if end_requested.is_set():
-        raise rospy.ROSInterruptException('shutdown requested')
+    check_end()
     # For each logged line, rospy queries this parameter from the master. A frozen master would block the node, and a
     # master that has given the name to another node would register this one again. The cached value avoids the call.
     get_param_server_cache().set('/rosout_disable_topics_generation', False)
@@ -141,6 +140,32 @@ def sleep(seconds: float) -> None:
     end_requested.wait() is unsuitable: before Python 3.11 it follows steps of the system clock.
     """
     time.sleep(max(0, min(seconds, MAX_SLEEP)))
+
+
+def check_end() -> None:
+    """Raise ROSInterruptException if shutdown is requested."""
+    if end_requested.is_set():
+        raise rospy.ROSInterruptException('shutdown requested')
+
+
+def wait_for(find: Callable[[], Found | None], timeout: float, missing: Callable[[], str]) -> Found:
+    """Call find() every 20 ms until it does not return None, and return its result.
+
+    missing(): returns what is missing, for the log. Raises ROSException after `timeout` s of wall time, and
+    ROSInterruptException as soon as shutdown is requested.
+    """
+    deadline, log_time = time.monotonic() + timeout, time.monotonic() + 0.5
+    while True:
+        found = find()
+        if found is not None:
+            return found
+        if time.monotonic() > deadline:
+            raise rospy.ROSException(f'Timed out after {timeout:g} s waiting for {missing()}')
+        if time.monotonic() > log_time:
+            log_time += 5
+            rospy.loginfo('Waiting for %s', missing())
+        sleep(0.02)
+        check_end()
 
 
 def leave(status: int) -> NoReturn:

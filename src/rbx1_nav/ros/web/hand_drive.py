@@ -11,6 +11,8 @@ from typing import Callable
 from geometry_msgs.msg import Twist
 import rospy
 
+from rbx1_nav.ros.network.rospy_topics import connected_nodes
+
 COMMANDS = 'cmd_vel'     # rospy.resolve_name() applies the namespace and a remapping
 KEY_TIMEOUT = 0.3   # s after the last message of the driving browser; the robot must stop within 0.5 s
 PERIOD = 0.05       # s between commands
@@ -37,7 +39,7 @@ class CommandPublisher:
 
     def connected(self) -> set[str]:
         """Return the names of the nodes that receive the commands."""
-        return {connection.endpoint_id for connection in self.publisher.impl.connections}
+        return connected_nodes(self.publisher)
 
 
 class Keys:

@@ -33,25 +33,45 @@ PERIOD = 2.0        # s
 RESET_TIMEOUT = 5.0  # s
 
 
-class Topics:
-    """The subscriptions."""
+def subscribe(topic: str, kind: type, callback: Callable[..., None], args: Any = None,
+              queue_size: int = 1) -> rospy.Subscriber:
+    """Subscribe to a topic. The callbacks may sleep: rospy has one thread for each connection, and drops messages
+    that are not read in time, so neither other topics nor the publishers are delayed."""
+    return rospy.Subscriber(topic, kind, callback, args, queue_size=queue_size, buff_size=BUFFER, tcp_nodelay=True)
 
-    def __init__(self, state: PageState, on_seed: Callable[[str, str], None], namespace: str = '') -> None:
-        """on_seed(surface, seed): called with the values that a simulated base publishes in /diagnostics; namespace: of
-        the robot, with a slash at the end, '' for that of this node."""
+
+class System:
+    """Subscribes to the topics, queries the master once per PERIOD, and updates the state of the page."""
+
+    def __init__(self, state: PageState, connected: Callable[[], set[str]], namespace: str = '') -> None:
+        """connected(): returns the names of the nodes that receive the commands of this node; namespace: of the robot,
+        with a slash at the end, '' for that of this node."""
         self.state = state
-        self.namespace = namespace or rospy.get_namespace()
-        self.on_seed = on_seed
+        self.namespace = namespace
+        self.connected = connected
+        self.lock = Lock()
+        self.drawn: tuple[str, str] | None = None   # surface and seed, from /diagnostics
         self.base: str | None = None    # the node that publishes the odometry
         self.connections: deque[object] = deque(maxlen=10)  # the latest ones to publishers of odometry
         self.truth: str | None = None   # the node that publishes the ground truth
-        self.subscribers = [
-            *(subscribe(f'{namespace}{topic}', Odometry, self.on_odometry, source) for source, topic in TOPICS.items()),
-            subscribe(f'{namespace}{COMMANDS}', Twist, self.on_command),
-            subscribe(f'{namespace}reset_odometry', Empty, self.on_reset),
-            subscribe('/diagnostics', DiagnosticArray, self.on_diagnostics, queue_size=5),
-            # the log of all nodes, over one connection to rosout instead of one to each node
-            subscribe('/rosout_agg', Log, self.on_log, queue_size=50)]
+        self.reset_service = ''     # '' if there is none
+        self.searching = False      # whether the master is being asked for driving nodes
+        self.shutting_down: set[str] = set()    # nodes that have not answered yet
+        self.stopped: set[str] = set()
+        self.silent: set[str] = set()
+        self.not_connected = ''     # a base that does not receive the commands of this node, at the last Stop
+        self.thread = Thread(target=self._run, daemon=True)
+
+    def start(self) -> None:
+        """Subscribe to the topics, and start the thread."""
+        for source, topic in TOPICS.items():
+            subscribe(f'{self.namespace}{topic}', Odometry, self.on_odometry, source)
+        subscribe(f'{self.namespace}{COMMANDS}', Twist, self.on_command)
+        subscribe(f'{self.namespace}reset_odometry', Empty, self.on_reset)
+        subscribe('/diagnostics', DiagnosticArray, self.on_diagnostics, queue_size=5)
+        # the log of all nodes, over one connection to rosout instead of one to each node
+        subscribe('/rosout_agg', Log, self.on_log, queue_size=50)
+        self.thread.start()
 
     def on_odometry(self, message: Odometry, source: str) -> None:
         """Process a pose and a velocity."""
@@ -83,12 +103,14 @@ class Topics:
 
     def on_diagnostics(self, array: DiagnosticArray) -> None:
         """Process the diagnostics of a base, which arrive once per second."""
+        namespace = (self.namespace or rospy.get_namespace()).rstrip('/')
         for status in array.status:
-            if f"/{status.name.rpartition('/')[0]}".rstrip('/') != self.namespace.rstrip('/'):
+            if f"/{status.name.rpartition('/')[0]}".rstrip('/') != namespace:
                 continue        # it belongs to another robot
             values = {each.key: each.value for each in status.values}
             if 'Surface' in values and 'Seed' in values:
-                self.on_seed(values['Surface'], values['Seed'])
+                self.drawn = values['Surface'], values['Seed']
+                self.state.set_status(surface=values['Surface'], seed=values['Seed'])
         time.sleep(MIN_PERIOD)
 
     def on_log(self, line: Log) -> None:
@@ -96,42 +118,6 @@ class Topics:
         if line.level >= Log.INFO:
             self.state.log_line(line.level, line.header.stamp.to_sec(), line.name, line.msg)
         time.sleep(MIN_PERIOD)
-
-
-def subscribe(topic: str, kind: type, callback: Callable[..., None], args: Any = None,
-              queue_size: int = 1) -> rospy.Subscriber:
-    """Subscribe to a topic. The callbacks may sleep: rospy has one thread for each connection, and drops messages
-    that are not read in time, so neither other topics nor the publishers are delayed."""
-    return rospy.Subscriber(topic, kind, callback, args, queue_size=queue_size, buff_size=BUFFER, tcp_nodelay=True)
-
-
-class System:
-    """Queries the master once per PERIOD, and updates the status of the page."""
-
-    def __init__(self, state: PageState, connected: Callable[[], set[str]], namespace: str = '') -> None:
-        """connected(): returns the names of the nodes that receive the commands of this node; namespace: see Topics."""
-        self.state = state
-        self.namespace = namespace
-        self.connected = connected
-        self.lock = Lock()
-        self.drawn: tuple[str, str] | None = None   # surface and seed, from /diagnostics
-        self.topics = Topics(state, self.on_seed, namespace)
-        self.reset_service = ''     # '' if there is none
-        self.searching = False      # whether the master is being asked for driving nodes
-        self.shutting_down: set[str] = set()    # nodes that have not answered yet
-        self.stopped: set[str] = set()
-        self.silent: set[str] = set()
-        self.not_connected = ''     # a base that does not receive the commands of this node, at the last Stop
-        self.thread = Thread(target=self._run, daemon=True)
-
-    def start(self) -> None:
-        """Start the thread."""
-        self.thread.start()
-
-    def on_seed(self, surface: str, seed: str) -> None:
-        """Store the surface and the seed that a simulated base reports."""
-        self.drawn = surface, seed
-        self.state.set_status(surface=surface, seed=seed)
 
     @property
     def simulated(self) -> bool:
@@ -155,7 +141,7 @@ class System:
         known = any(rospy.get_name() in names for _, names in subscribers)
         self.state.set_status(master='' if known else 'restarted')
         services = {name for name, _ in offered}
-        base = self.topics.base if self.state.hears('odometry') else None
+        base = self.base if self.state.hears('odometry') else None
         odom = rospy.resolve_name(f'{self.namespace}odom')
         private = private_namespace(base, odom, master) if base else ''
         name = f'{private}/reset'
@@ -165,11 +151,11 @@ class System:
         values: dict[str, Any] = {'surface': '', 'seed': '', 'simulated_time': False}
         if base:
             values['simulated_time'] = bool(master.param('/use_sim_time', False))
-        if self.simulated and self.topics.truth:
-            private = private_namespace(self.topics.truth, odom, master)
+        if self.simulated and self.truth:
+            private = private_namespace(self.truth, odom, master)
             values['surface'] = str(master.param(f'{private}/surface', 'ideal')).rpartition('/')[2]
             values['seed'] = str(master.param(f'{private}/seed', 'random'))
-            if self.drawn and self.topics.truth == base:    # the base itself has reported them
+            if self.drawn and self.truth == base:    # the base itself has reported them
                 del values['surface'], values['seed']
         else:
             self.drawn = None
@@ -210,7 +196,7 @@ class System:
                                       f'{error}')
             with self.lock:
                 self.silent.add('the master')
-        topic, base = rospy.resolve_name(f'{self.namespace}{COMMANDS}'), self.topics.base or ''
+        topic, base = rospy.resolve_name(f'{self.namespace}{COMMANDS}'), self.base or ''
         names = set(dict(publishers).get(topic, ())) - {rospy.get_name()}
         listening = base in dict(subscribers).get(topic, ())
         with self.lock:

@@ -8,9 +8,8 @@ from rbx1_nav.ros.web.state import PageState
 
 @pytest.fixture(name='view')
 def make_view(monkeypatch):
-    monkeypatch.setattr(system, 'subscribe', lambda *_, **__: None)
     monkeypatch.setattr(system, 'MIN_PERIOD', 0)
-    return system.Topics(PageState(), lambda surface, seed: None)
+    return system.System(PageState(), set)
 
 
 def receive(view, connection):

@@ -24,9 +24,8 @@ def test_stop_shuts_down_the_drivers_of_the_remapped_topic(monkeypatch):
     monkeypatch.setattr(rospy.names, '_resolved_mappings', {'/cmd_vel': '/other/cmd_vel'})
     monkeypatch.setattr(rospy, 'get_name', lambda: '/unnamed')
     monkeypatch.setattr(module, 'call', call)
-    monkeypatch.setattr(module, 'subscribe', lambda *_, **__: None)
     system = module.System(PageState(), lambda: {'/recorder'})
-    system.topics.base = '/base'
+    system.base = '/base'
     system.shut_down_drivers()
     end = time.monotonic() + LIMIT
     while system.pending:
