@@ -19,6 +19,7 @@ SOURCE = os.path.join('src', 'rbx1_nav')
 ROOMS = 'control', 'create', 'estimation', 'robot', 'simulation'
 SLOWER = 5      # tests that take this many times as long as without a mutation, and START more, hang: they have failed
 START = 30      # s
+TUNING = os.path.join(os.path.dirname(os.path.realpath(__file__)), 'tuning.txt')
 
 OTHER = {
     ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult, ast.Pow: ast.Mult, ast.FloorDiv: ast.Mult,
@@ -43,19 +44,43 @@ def is_statement(node):
     return isinstance(node, STATEMENTS) and not (isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant))
 
 
-def walk(node):
-    """A node and all nodes below it, except hints, which have no effect."""
+def read_tuning():
+    """The names of the constants that are tuning: {path: names}; names that a line assigns together are one."""
+    found = {}
+    with open(TUNING, encoding='utf-8') as file:
+        for line in file:
+            if not line.startswith('#'):
+                path, names, _ = line.split(': ', 2)
+                found.setdefault(os.path.join(SOURCE, path), set()).update(names.split())
+    return found
+
+
+def constant(node):
+    """The name of the constant that a node assigns, several joined by commas, or None."""
+    if not isinstance(node, ast.Assign):
+        return None
+    return ast.unparse(node.targets[0]).strip('()').replace(' ', '')
+
+
+def walk(node, tuning):
+    """A node and all nodes below it, except hints, which have no effect, and constants that are tuning."""
     yield node
     for name, value in ast.iter_fields(node):
         if name not in ('annotation', 'returns'):
             for child in value if isinstance(value, list) else [value]:
-                if isinstance(child, ast.AST):
-                    yield from walk(child)
+                if isinstance(child, ast.AST) and not (isinstance(node, ast.Module) and is_tuning(child, tuning)):
+                    yield from walk(child, tuning)
 
 
-def places(tree):
+def is_tuning(node, tuning):
+    """Whether a node of a module assigns one of these constants; `*` stands for all constants of the module."""
+    name = constant(node)
+    return name is not None and (name in tuning or '*' in tuning and name.isupper())
+
+
+def places(tree, tuning):
     """All (node, index of its operator) that can be changed."""
-    for node in walk(tree):
+    for node in walk(tree, tuning):
         if isinstance(node, ast.Compare):
             yield from ((node, index) for index, operator in enumerate(node.ops) if type(operator) in OTHER)
         elif isinstance(node, (ast.BinOp, ast.BoolOp, ast.AugAssign)) and type(node.op) in OTHER:
@@ -84,16 +109,26 @@ def change(tree, node, index):
     return f'`{before}` becomes `{ast.unparse(node)}`'
 
 
-def draw(paths, generator):
-    """A random Mutation of one of the files; all places are equally probable."""
-    counts = []
-    for path in paths:
-        with open(os.path.join(ROOT, path), encoding='utf-8') as file:
-            counts.append(sum(1 for _ in places(ast.parse(file.read()))))
-    path, = generator.choices(paths, counts)
+def parse(path):
+    """The tree of a file of the package."""
     with open(os.path.join(ROOT, path), encoding='utf-8') as file:
-        tree = ast.parse(file.read())
-    node, index = generator.choice(list(places(tree)))
+        return ast.parse(file.read())
+
+
+def check_tuning(tuning):
+    """Exit if the list names a constant that does not exist."""
+    for path, names in tuning.items():
+        missing = names - {constant(node) for node in parse(path).body} - {'*'}
+        if missing:
+            sys.exit(f"{TUNING}: {path}: {', '.join(sorted(missing))}: no such constant")
+
+
+def draw(paths, generator, tuning):
+    """A random Mutation of one of the files; all places are equally probable."""
+    counts = [sum(1 for _ in places(parse(path), tuning.get(path, ()))) for path in paths]
+    path, = generator.choices(paths, counts)
+    tree = parse(path)
+    node, index = generator.choice(list(places(tree, tuning.get(path, ()))))
     line = node.lineno
     return Mutation(path, line, change(tree, node, index), ast.unparse(tree))
 
@@ -175,8 +210,10 @@ def main():
     paths = sorted(os.path.relpath(os.path.join(folder, name), ROOT) for room in arguments.rooms
                    for folder, _, names in os.walk(os.path.join(ROOT, SOURCE, room))
                    for name in names if name.endswith('.py') and name != '__init__.py')
+    tuning = read_tuning()
+    check_tuning(tuning)
     generator = random.Random(arguments.seed)
-    mutations = [draw(paths, generator) for _ in range(arguments.count)]
+    mutations = [draw(paths, generator, tuning) for _ in range(arguments.count)]
     rooms = sorted({room_of(mutation.path) for mutation in mutations})
     with ThreadPoolExecutor(arguments.jobs) as pool:
         try:

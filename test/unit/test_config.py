@@ -3,7 +3,7 @@ from math import inf, nan
 
 import pytest
 
-from rbx1_nav.config import ConfigError, Section, load_yaml, show_name, suggestion
+from rbx1_nav.config import ConfigError, Section, load_yaml, show_name
 
 
 def rejection(function, *arguments, **options):
@@ -107,17 +107,7 @@ def test_a_file_that_is_not_yaml(tmp_path, text):
     assert rejection(load_yaml, str(path)).startswith('expected a YAML file: ')
 
 
-def test_a_file_that_does_not_exist(tmp_path):
-    assert rejection(load_yaml, str(tmp_path / 'a.yaml')).startswith('expected a YAML file: ')
-
-
 def test_an_unknown_key_gets_a_suggestion():
     section = Section({'time_out': 1, 'colour': 'red', 7: 8}, 'base')
     section.number('timeout', 0, 10, 1.0)
     assert section.unknown() == ['base/time_out (did you mean timeout?)', 'base/colour', 'base/7']
-
-
-@pytest.mark.parametrize('name, expected', [('gyro_scale_corection', ' (did you mean gyro_scale_correction?)'),
-                                            ('colour', ''), (7, '')])
-def test_only_a_similar_name_is_suggested(name, expected):
-    assert suggestion(name, ['port', 'gyro_scale_correction']) == expected

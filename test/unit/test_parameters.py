@@ -42,12 +42,6 @@ def test_the_other_kinds(parameter, right, wrong, expected):
     assert rejection(parameter, **{parameter.name: wrong}) == f'{parameter.name}: {wrong!r}: expected {expected}'
 
 
-@pytest.mark.parametrize('parameter', [flag('a', None, ''), choice('a', (1, 2), None, ''), frame('a', None, '')])
-def test_what_is_found_out_if_it_is_not_set(parameter):
-    assert check(parameter) is None
-    rejection(parameter, a='no value of any kind')
-
-
 def test_a_check_of_its_own():
     def double(value):
         if value == 3:
@@ -55,10 +49,6 @@ def test_a_check_of_its_own():
         return 2 * value
     size = custom('size', 1, '', double)
     assert check(size) == 2 and check(size, size=4) == 8 and rejection(size, size=3).startswith('size: 3')
-
-
-def test_one_that_is_read_elsewhere_has_no_value():
-    assert read([elsewhere('controllers', ''), RATE], Section({})) == {'rate': 50}
 
 
 def test_the_lines_of_a_usage_text():
@@ -72,11 +62,6 @@ Parameters:
     ~surface      the floor (ideal, carpet; default: ideal)
     ~sim          ignored"""
     assert list_parameters([]) == ''
-
-
-def test_a_long_line_is_continued_below_its_text():
-    first, second = list_parameters([flag('strict', False, 'word ' * 25)]).splitlines()[1:]
-    assert first.startswith('    ~strict   word') and second.startswith(' ' * 14 + 'word') and len(first) <= 120
 
 
 def test_a_table():

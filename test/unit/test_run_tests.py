@@ -51,17 +51,3 @@ def test_results(tmp_path, capsys):
     passed, failed, names = run_tests.summarize(str(tmp_path))
     assert (passed, failed, len(names)) == (3, 5, 5)
     assert capsys.readouterr().out.count('FAILED: ') == 5
-
-
-def test_a_set(tmp_path):
-    for name in 'reset', 'base_timeout', 'other':
-        (tmp_path / f'{name}.test').write_text(
-            f'<launch><param name="a" value="1"/><test test-name="{name}" type="{name}.py" args="7"/></launch>')
-    paths = [str(tmp_path / f'{name}.test') for name in ('reset', 'base_timeout', 'other')]
-    other, together = run_tests.share_setups(str(tmp_path), paths)
-    assert other == paths[2]
-    setup, test = run_tests.read_setup(together)
-    assert setup.startswith('<launch><param name="a" value="1"')
-    assert test.get('args') == f'base_timeout,{tmp_path}/base_timeout.py,7 reset,{tmp_path}/reset.py,7'
-    # a single test needs no set
-    assert run_tests.share_setups(str(tmp_path), paths[1:]) == paths[1:]

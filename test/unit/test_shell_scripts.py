@@ -29,17 +29,6 @@ def start(tmp_path):
         process.stdout.close()
 
 
-def ignore_sigint():
-    """Ignore SIGINT, as nohup, cron and background jobs of scripts do."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-
-
-def test_what_a_script_starts_has_the_default_action_of_sigint(start):
-    script = start("/usr/bin/python3 -c 'import signal; print(signal.getsignal(signal.SIGINT).__name__)'",
-                   preexec_fn=ignore_sigint)
-    assert script.communicate(timeout=LIMIT)[0] == 'default_int_handler\n'
-
-
 def obey_sighup():
     """Restore the default action of SIGHUP: what nohup starts ignores it, and so do all its children."""
     signal.signal(signal.SIGHUP, signal.SIG_DFL)
@@ -105,7 +94,3 @@ def test_the_installation_page_names_the_packages_that_the_scripts_install():
     # ros-robot depends on ros-core
     needed = words_of('dependencies exec; printf "%s\n" "${tool_packages[@]}"') - {'ros-core', 'qt6-svg-plugins'}
     assert named == needed | {'ros-robot'}
-
-
-def test_packages_that_are_not_installed_are_found():
-    assert words_of('missing_packages bash no-such-package coreutils') == {'no-such-package'}

@@ -45,15 +45,6 @@ def test_a_turn_slows_down_in_time(to_go, speed, expected):
     assert at(left(speed=speed), to_go) == pytest.approx(expected)
 
 
-@pytest.mark.parametrize('leg, keys', [(forward, 'goal_distance, min_linear_speed'),
-                                       (left, 'goal_angle, min_angular_speed')])
-def test_an_error_names_the_keys(leg, keys):
-    with pytest.raises(ValueError) as error:
-        leg(goal=2.0, min_speed=1e-9)
-    assert str(error.value) == (f'{keys}: at the lowest speed, goal / speed * rate: 2 / 1e-09 * 50: 1e+11 ticks: '
-                                'expected from 1 to 100000000')
-
-
 # the trial stop
 
 def test_a_short_leg_begins_with_the_trial_stop():

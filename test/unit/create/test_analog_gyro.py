@@ -89,18 +89,6 @@ def test_a_fast_turn_is_not_a_gyro_without_power():
     assert all(abs(state.gyro.rate) < radians(121) for state in driven.states if state.gyro)
 
 
-def test_the_power_that_the_base_switches_on_with_its_control_may_take_a_moment():
-    driven = DrivenCreate('create')
-    driven.body.gyro_stuck = 3
-    driven.connect()
-    while not driven.driver.supervisor.in_control:
-        driven.run(0.01)
-    driven.run(0.3)
-    driven.body.gyro_stuck = -1
-    driven.run(3)
-    assert not lines(driven) and driven.states[-1].gyro
-
-
 @pytest.mark.parametrize('mode, errors', [(1, 0), (2, 1)])
 def test_a_gyro_that_never_has_power(mode, errors):
     """In passive mode, the base does not switch the power on."""
@@ -123,14 +111,6 @@ def test_a_gyro_that_jumps_at_rest_is_noticed_at_once_however_long_it_was_right(
     assert lines(driven) == driven.errors == [
         'Gyro: %d counts at rest: expected 425 to 575; using the wheels alone for the heading' % count]
     assert driven.driver.gyro.yaw == pytest.approx(0, abs=0.001)
-
-
-def test_an_offset_that_jumps_at_rest_is_measured_again():
-    driven = calibrated(40)
-    rates, first, _ = read(driven, 2, 560)
-    assert not first and not lines(driven)
-    # the new offset is in use within 1.5 s
-    assert len(rates) > 40 and set(rates[-10:]) == {0}
 
 
 @pytest.mark.parametrize('mode', [2, 3])

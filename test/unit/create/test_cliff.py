@@ -53,14 +53,6 @@ def test_other_commands_do_not_ask_for_the_mode(robot_type, velocity):
 
 
 @BOTH
-def test_in_full_mode_a_cliff_stops_nothing(robot_type):
-    driven = started(robot_type, operation_mode=protocol.FULL)
-    driven.body.cliff = True
-    driven.drive(0.2, 0, 1)
-    assert driven.speeds == (200, 200) and not driven.refusals
-
-
-@BOTH
 def test_one_corrupted_reading_is_no_cliff(robot_type):
     driven = started(robot_type)
     driven.drive(0.2, 0, 1)

@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rbx1_nav.create.protocol import CREATE, CREATE_2, FULL, MODELS, OFF, PASSIVE, SAFE, command, drive_direct
+from rbx1_nav.create.protocol import CREATE_2, FULL, MODELS, OFF, PASSIVE, SAFE, command, drive_direct
 from robots import Robot, robot_in, both
 
 COMMANDS = [pytest.param(model, each, id=f'{model.name}-{each.name}')
@@ -134,12 +134,6 @@ def test_drive_direct_is_exact(model, right, left):
     assert robot.pose.yaw - before == pytest.approx((right - left) / 1000 / model.wheel_separation)
     values = robot.read(5)
     assert (values['requested_right_velocity'], values['requested_left_velocity']) == (right, left)
-
-
-def test_speeds_beyond_the_limit_are_clamped():
-    robot = robot_in(FULL, CREATE)
-    robot.send(drive_direct(20000, -501))
-    assert (robot.body.right, robot.body.left) == (500, -500)
 
 
 @pytest.mark.parametrize('pwm, speed', [(255, 500), (-255, -500), (51, 100), (300, 500), (0, 0)])

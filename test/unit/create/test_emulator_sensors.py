@@ -58,16 +58,6 @@ def test_distance_and_angle_are_those_since_the_last_reading(model):
     assert robot.read(19) == {'distance': 0} and robot.read(20) == {'angle': 0}
 
 
-def test_distance_is_capped():
-    robot = robot_in(FULL, CREATE)
-    robot.send(drive_direct(500, 500))
-    robot.run(70)
-    assert robot.read(19) == {'distance': 32767}
-    robot.send(drive_direct(0, 0))
-    robot.read(19)
-    assert robot.read(19) == {'distance': 0}
-
-
 def test_encoders_wrap():
     robot = robot_in(FULL, CREATE_2)
     robot.send(drive_direct(500, -500))

@@ -13,7 +13,6 @@ from rbx1_nav.create import protocol
 from rbx1_nav.create.driver.link import BEAT, LineLost, Link
 from rbx1_nav.create.driver.search import Search
 from rbx1_nav.create.emulator.serial_line import PseudoTerminal
-from rbx1_nav.create.line_settings import read_rate
 from rbx1_nav.units import SECOND
 
 LIMIT = 30      # s after which a wait fails
@@ -87,15 +86,6 @@ def test_a_rate_that_another_process_has_set_is_set_back(line):
     assert '115200' in subprocess.run(['stty', '-F', link.path, 'speed'], stdout=subprocess.PIPE, check=True,
                                       text=True).stdout
     assert link.is_guarded(2 * BEAT) and len(log) == 1
-
-
-def test_no_byte_is_sent_at_a_rate_that_another_process_has_set(line):
-    robot, link, _ = line
-    assert link.is_guarded(BEAT)
-    subprocess.run(['stty', '-F', link.path, '57600'], check=True)
-    link.write(b'\x91')
-    assert link.port.baudrate == 115200 and link.changes == 1 and link.disturbed
-    assert read_rate(robot) == 115200
 
 
 def test_an_echo_that_another_process_has_set_is_cleared(line):

@@ -70,13 +70,6 @@ def test_the_groups(model):
     assert all(list(each) == list(range(each[0], each[-1] + 1)) for each in model.groups.values())
 
 
-def test_each_command_has_one_opcode():
-    assert len(OPCODES) == 42       # 18 of both, 13 of the Create, 12 of the Create 2; `reset` is in two lists
-    for model in MODELS.values():
-        for opcode, each in model.commands.items():
-            assert each.opcode == opcode == OPCODES[each.name]
-
-
 def test_the_opcodes_that_the_driver_sends():
     assert {name: OPCODES[name] for name in (
         'start', 'baud', 'safe', 'full', 'drive', 'drive_direct', 'sensors', 'stream', 'query_list',

@@ -1,6 +1,4 @@
 """Power-off, reset, and the initial baud rate of the robot."""
-import pytest
-
 from rbx1_nav.create.protocol import CREATE, OFF, PASSIVE, command, drive_direct
 from robots import Robot, both
 
@@ -50,17 +48,3 @@ def test_reset_restarts_a_create_without_a_word():
     robot.run(0.15)
     robot.send(command('start'))
     assert robot.mode == PASSIVE and robot.read(19) == {'distance': 0} and robot.run(1) == b''
-
-
-@both
-@pytest.mark.parametrize('name', ['reset', 'power', None])
-def test_a_robot_that_starts_again_has_its_first_baud_rate(model, name):
-    robot = driving(model, baud=19200)
-    robot.send(command('pause_resume_stream', 0), command('baud', 10))
-    assert robot.robot.line.baud == 57600
-    robot.robot.line.host_baud = 57600
-    if name:
-        robot.send(command(name))
-    else:
-        robot.robot.switch_on(robot.now)
-    assert robot.robot.line.baud == 19200

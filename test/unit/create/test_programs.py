@@ -3,8 +3,8 @@ from math import hypot
 
 import pytest
 
-from rbx1_nav.create.protocol import CREATE, CREATE_2, MODELS, OPCODES, PASSIVE, command, drive_direct
-from robots import Robot, both
+from rbx1_nav.create.protocol import CREATE, CREATE_2, MODELS, OPCODES, PASSIVE, command
+from robots import Robot
 
 CLEANING = {CREATE.name: ['spot', 'cover', 'dock'], CREATE_2.name: ['spot', 'cover', 'max', 'dock']}
 CLEANING_OF = [pytest.param(model, name, id=f'{model.name}-{name}')
@@ -46,13 +46,6 @@ def test_commands_that_stop_a_program(model, name):
     robot.send(command(name))
     check_it_is_over(robot)
     assert robot.robot.programs.started == 1
-
-
-@both
-def test_other_commands_do_not_stop_it(model):
-    robot = running(model, command('cover'))
-    robot.send(drive_direct(0, 0), command('stream', 1, 7), command('leds', 0, 0, 0), command('song', 0, 1, 60, 32))
-    assert robot.body.moving and robot.robot.programs.running
 
 
 @pytest.mark.parametrize('fault', ['wheel_dropped', 'cliff', 'docked'])

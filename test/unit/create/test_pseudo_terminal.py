@@ -72,15 +72,6 @@ def test_a_pulled_cable_is_an_error_at_the_client_and_the_link_is_gone(terminal)
         assert received(terminal, 5) == b'again'
 
 
-def test_a_link_of_somebody_else_stays(terminal):
-    os.unlink(terminal.link)
-    os.symlink('/dev/null', terminal.link)
-    terminal.unplug()
-    assert os.readlink(terminal.link) == '/dev/null'
-    terminal.plug()
-    assert os.readlink(terminal.link) == terminal.device
-
-
 @pytest.mark.parametrize('name, text', [('file', 'exists, and is not a link'), ('none/port', 'No such file')])
 def test_a_link_that_cannot_be_made(tmp_path, name, text):
     (tmp_path / 'file').write_text('')

@@ -33,14 +33,6 @@ def test_a_reply(size):
     assert found[-1] == reading and not any(found[:-1]) and not queries.waiting
 
 
-def test_a_reply_that_nobody_asked_for():
-    queries = asked()
-    queries.give_up()
-    assert queries.receive(0, reply()[1]) is None
-    queries.ask(0)
-    assert queries.receive(0, reply()[1]) == reply()[0]
-
-
 @pytest.mark.parametrize('data', [reply()[1] + b'\0', reply(mode=5)[1], reply(voltage=0)[1], reply(voltage=25001)[1],
                                   b'\0' + reply()[1][:-1]],
                          ids=['too long', 'mode', 'no voltage', 'voltage', 'shifted'])

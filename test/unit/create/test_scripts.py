@@ -1,7 +1,7 @@
 """Scripts of the Create: the examples in the document (Create p. 15), and the conditions that scripts wait for."""
 import pytest
 
-from rbx1_nav.create.protocol import CREATE, SAFE, command, drive_direct
+from rbx1_nav.create.protocol import CREATE, command, drive_direct
 from robots import Robot
 
 FORWARD, HALT = bytes((137, 1, 44, 128, 0)), bytes((137, 0, 0, 0, 0))
@@ -43,14 +43,3 @@ def test_while_it_waits_it_does_not_listen(robot):
     assert robot.body.left == 300
     robot.run(1)
     assert robot.body.left == -100      # the commands waited, too
-
-
-def test_a_script_that_only_plays_itself_leaves_the_robot_responsive(robot):
-    play(robot, command('play_script'))
-    robot.run(1)
-    assert robot.read(35) == {'mode': SAFE}
-
-
-def test_a_script_that_is_too_long_is_ignored(robot):
-    robot.send(command('script', 101, *bytes(101)))
-    assert robot.send(command('show_script')) == bytes((0,))

@@ -32,16 +32,3 @@ def test_wheels_that_slip_move_the_robot_along_the_turn_of_the_gyro(slip):
     chord = 0.1 * sin(0.25 * slip) / (0.25 * slip)
     # the first 3 steps have taught the filter a bias and a slip of rounding errors
     assert exact(robot.combined.estimate, Pose(chord * cos(0.25), chord * sin(0.25), 0.5), abs=1e-6)
-
-
-def test_wheels_that_turn_too_far_while_no_odometry_arrives_keep_the_direction_of_the_gyro():
-    robot = Robot(IDEAL)
-    robot.send(3)
-    robot.send(100, angular=0.5, odom=False)        # 1 rad, and a dropout
-    robot.pose = arc(ORIGIN, 0.1, 1.2)
-    robot.now += STEP
-    robot.combined.add_imu(robot.now, Imu(robot.now, 0.0, 3e-6))
-    robot.combined.add_odom(robot.now, robot.odom())
-    chord = 0.1 * sin(0.6) / 0.6
-    # rounding errors, as above
-    assert exact(robot.combined.estimate, Pose(chord * cos(0.5), chord * sin(0.5), 1.0), abs=1e-6)

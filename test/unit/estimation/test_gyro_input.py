@@ -74,15 +74,6 @@ def test_invalid_rates_are_rejected_by_the_axis_that_measures(vertical, field, r
         GyroInput().read(ImuData(0, rates, variances, None, 1.0), vertical)
 
 
-@pytest.mark.parametrize('kept', [0, 1, 2])
-def test_an_axis_that_is_the_only_one_with_a_variance_measures_the_rate(kept):
-    # all axes measure the same share of 0.6 rad/s, but the others report nonsense
-    variances, rates, share = [0.0] * 3, [100.0] * 3, 3 ** -0.5
-    variances[kept], rates[kept] = 1e-4, 0.6 * share
-    imu = GyroInput().read(ImuData(0, rates, variances, None, 1.0), (share, share, share))
-    assert imu.rate == pytest.approx(0.6) and imu.variance == pytest.approx(3e-4)
-
-
 def test_rates_without_a_covariance_get_the_one_of_robot_pose_ekf():
     notes = []
     gyro = GyroInput(notes.append)
@@ -131,11 +122,6 @@ def test_notes_about_the_orientation_are_logged_once():
         gyro.read(message)
         gyro.accepted(message)
         assert notes == noted
-
-
-def test_a_second_message_with_the_same_stamp_has_no_rate():
-    first, second = orientations_only((data(heading=0.0), (0.0, 0.0, 1.0)), (data(heading=0.1), (0.0, 0.0, 1.0)))
-    assert first.rate == second.rate == 0.0
 
 
 @pytest.mark.parametrize('variance', [-1.0, nan, inf])

@@ -23,11 +23,6 @@ def test_odometry_may_ask_again_for_the_same_or_a_later_time():
         [2.0, 3.0, 3.0, 2.8, 3.0, 3.0, 5.0])
 
 
-def test_the_first_yaw_of_a_time_counts():
-    yaws = past((100, 1.0), (100, 9.0), (200, 3.0), (200, 9.0), (300, 1.0), (150, 9.0))
-    assert [yaws.at(time) for time in (150, 250)] == pytest.approx([2.0, 2.0])
-
-
 def test_a_turn_of_the_frame_turns_all_yaws():
     yaws = past((100, 1.0), (200, 3.0), (300, 1.0))
     yaws.turn(0.5)

@@ -6,7 +6,6 @@ import pytest
 
 from rbx1_nav.config import ConfigError
 from rbx1_nav.fitting.gyro_fit import rests_at
-from rbx1_nav.fitting.recording import Commands
 from rbx1_nav.fitting.surface_fit import WholeFit
 from rbx1_nav.robot.kinematics import Pose
 from sample_runs import DRIVE, EXERCISE, FLOOR, FORWARD, REST, record, wrapped
@@ -96,19 +95,6 @@ def test_ends_tell_slips_and_one_factor():
     assert values['slip_turning_spread'].value > values['slip_turning'].error
     assert values['heading_noise_turning'].error and values['curvature'].error is None
     assert "Student's t distribution" in result.notes[0]
-
-
-def test_a_heading_measured_a_turn_off_is_the_same():
-    runs = [with_end(record(EXERCISE, seed)) for seed in range(3)]
-    turned = [run._replace(end=run.end._replace(yaw=run.end.yaw + 2 * numpy.pi)) for run in runs]
-    some, others = (fit(each, end_errors=TAPE)[0].surface for each in (runs, turned))
-    assert some[1:] == pytest.approx(others[1:])
-
-
-def test_commands_of_another_robot_are_warned_of():
-    other = record(EXERCISE).commands
-    result, _ = fit([record(DRIVE, seed)._replace(commands=Commands(*other)) for seed in range(2)])
-    assert any(text.startswith('odometry: ') for text in result.warnings)
 
 
 def test_a_robot_that_was_pushed_is_warned_of():

@@ -3,7 +3,7 @@ import numpy
 import pytest
 
 from rbx1_nav.fitting.recording import Commands, Recording, Track
-from rbx1_nav.fitting.run import MAX_GAP, PreparedRun
+from rbx1_nav.fitting.run import PreparedRun
 
 WIDTH = 0.26
 COMMANDS = Commands(numpy.array([0.0, 40.0]), numpy.array([0.2, 0.2]), numpy.array([0.1, 0.1]))
@@ -47,12 +47,6 @@ def test_a_window_with_a_gap_of_the_truth_is_left_out(gap):
         assert set(found) <= set(expected)
         assert len(found) >= len(expected) - 2
         assert found
-
-
-def test_a_short_gap_is_interpolated():
-    run = make_run([(12.0, 12.0 + MAX_GAP - 0.01)])
-    assert starts(run, run.windows(10, 1)) == starts(run, make_run().windows(10, 1))
-    assert run.windows(10, 1).ends == pytest.approx(make_run().windows(10, 1).ends, abs=1e-3)
 
 
 def test_the_window_of_a_whole_run_ends_after_the_predicted_number_of_turns():

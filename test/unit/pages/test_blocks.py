@@ -112,8 +112,3 @@ def test_errors(page, trouble):
     with pytest.raises(ValueError) as caught:
         blocks.parse(page)
     assert str(caught.value).startswith(trouble)
-
-
-def test_no_steps():
-    """Prose, tables, lists and inline code need no comment."""
-    assert blocks.parse('# A `<!-- run -->`\n\n- a list\n\n    goes on\n\n| a | b |\n|---|---|\n') == []

@@ -53,21 +53,3 @@ def test_broken(tmp_path, link, trouble):
     """In any Markdown file of the repository."""
     found, = problems(tmp_path, **{'CONTRIBUTING.md': f"Text\n{link}\n"})
     assert found.startswith('CONTRIBUTING.md:2: ') and found.endswith(f': {trouble}')
-
-
-def test_a_page_that_has_moved(tmp_path):
-    """No page leads to it, and none has to; its own links are checked."""
-    moved = '# Old\n\nThis page has moved:\n\n- [Part](a.md#part)\n'
-    assert problems(tmp_path, **{'docs/old.md': moved}) == []
-    assert problems(tmp_path, **{'docs/old.md': moved, 'OTHER.md': '[old](docs/old.md)'}) == [
-        'OTHER.md:1: docs/old.md: leads to a page that has moved']
-    found, = problems(tmp_path, **{'docs/old.md': moved.replace('part', 'none'), 'OTHER.md': ''})
-    assert found == 'docs/old.md:5: a.md#none: no such heading'
-
-
-def test_out_of_reach(tmp_path):
-    """Pages that only link each other, and a picture that is linked but not shown."""
-    lost = {'docs/lost.md': '[too](lost_too.md) [q](q.png)', 'docs/lost_too.md': '[lost](lost.md)', 'docs/q.png': ''}
-    assert problems(tmp_path, **lost) == [
-        'docs/lost.md: README.md does not lead to this page', 'docs/lost_too.md: README.md does not lead to this page',
-        'docs/q.png: no page shows this picture']

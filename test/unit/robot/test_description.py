@@ -38,13 +38,6 @@ def test_pi_robot():
     assert robot.joints[-1].upper == radians(60) and robot.joints[-1].max_speed == radians(90)
 
 
-def test_frame_names_of_old_files_lose_their_leading_slash():
-    params = load('turtlebot.yaml')
-    params['controllers']['base_controller'].update(base_frame_id='/base_footprint', odom_frame_id='/odom')
-    robot = read_robot(params)
-    assert (robot.odom_frame_id, robot.base_frame_id) == ('odom', 'base_footprint')
-
-
 def test_unknown_keys_are_reported():
     params = load('turtlebot.yaml')
     params['controllers']['base_controller']['time_out'] = 2
@@ -122,14 +115,6 @@ def test_wheels_have_the_names_of_the_urdf_file():
     params['joints']['base_l_wheel_joint'] = {}     # this name is free, because the wheels have other names
     robot = read_robot(params)
     assert robot.wheel_joints == ('wheel-left.joint', 'base/right_wheel') and robot.unknown == []
-
-
-@pytest.mark.parametrize('key', ['left_wheel', 'right_wheel'])
-def test_a_wheel_is_no_servo(key):
-    params = load('pi_robot.yaml')
-    params['controllers']['base_controller'][key] = 'head_pan_joint'
-    with pytest.raises(ConfigError, match=f"/base_controller/{key}: 'head_pan_joint': expected .* not a servo"):
-        read_robot(params)
 
 
 def test_sim_false_is_rejected():

@@ -21,14 +21,6 @@ def test_a_joint_stays_within_its_limits_and_its_speed(moves):
         assert abs(joint.velocity) <= 0.5 + 1e-9
 
 
-def test_a_joint_reaches_its_goal_and_stays_there():
-    joint = Joint('pan', -1.0, 2.0, 0.5)
-    joint.command(0.3)
-    for _ in range(7):
-        joint.advance(0.1)
-    assert joint.position == 0.3 and joint.velocity == 0.0
-
-
 def test_a_joint_reports_the_speed_at_which_it_moves():
     joint = Joint('pan', -1.0, 2.0, 0.5)
     assert joint.velocity == 0.0

@@ -64,16 +64,6 @@ def test_a_command_between_two_ticks_belongs_to_the_tick_before(world):
     assert [command for _, command in world.lockstep.take()] == [STOP]
 
 
-def test_a_thread_that_polls_the_time_is_waited_for(world):
-    world.lockstep.begin()
-    world.processes.poll = [lambda: world.processes.work.append(lambda: world.send('b', MOVE))]
-    world.deliver(Connection('a', lambda: None), message=Twist())
-    assert world.processes.poll         # not for other messages
-    world.deliver(Connection('a', lambda: None))
-    world.apply()
-    assert world.applied == [(1, MOVE)]
-
-
 def test_a_node_that_never_sleeps_is_given_up(world):
     world.tick(('a', MOVE))
     world.processes.never_sleeps = 'a'
@@ -84,12 +74,6 @@ def test_a_node_that_never_sleeps_is_given_up(world):
     world.processes.never_sleeps = 'starting'
     world.tick()
     assert len(world.reports) == 1
-
-
-def test_a_base_that_was_suspended_itself_gives_nobody_up(world):
-    world.processes.work = [lambda: setattr(world, 'now', world.now + 10)]
-    world.tick()
-    assert not world.reports
 
 
 def test_nobody_is_waited_for_at_the_end(world):
@@ -151,13 +135,6 @@ def test_a_driver_that_cannot_be_in_step_is_named_if_it_drives(world):
     assert world.reports == [('a', 'does not subscribe to /clock')]
 
 
-def test_a_node_that_has_exited_is_not_named(world):
-    world.processes.obstacles = {'a': 'is not visible'}
-    world.processes.is_connected = lambda _: False
-    world.drive(3)
-    assert not world.reports and len(world.applied) == 3
-
-
 @pytest.mark.parametrize('commands, sending, named', [
     ((MOVE, FASTER), ['xyz'], True), ((MOVE, FASTER), ['xy'], False), ((MOVE, FASTER), ['xyt', 'xyu'], False),
     ((MOVE, MOVE), ['xyz'], False), ((MOVE,), ['xyz'], False)])
@@ -170,14 +147,6 @@ def test_two_threads_that_send_different_commands_at_once_are_named(world, comma
         world.tick(*[('a', command) for command in commands])
     assert [text for _, text in world.reports] == ['sends different commands in one tick, from several threads'] * named
     assert world.applied == [(tick, command) for tick in range(1, 6) for command in commands]
-
-
-def test_new_threads_are_tested(world):
-    world.tick()
-    assert not world.processes.tests
-    world.processes.new_threads = True
-    world.tick()
-    assert world.processes.tests == 2       # as long as a result is uncertain
 
 
 def test_a_report_that_raises_ends_the_tick(monkeypatch, world):

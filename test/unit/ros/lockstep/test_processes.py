@@ -1,15 +1,12 @@
 """The information of the kernel about other processes, tested with real processes."""
-import os
 import signal
 import socket
 import subprocess
-import threading
 import time
 from types import SimpleNamespace
 
 import pytest
 
-from rbx1_nav.ros.lockstep.peers import own_process
 from rbx1_nav.ros.lockstep.processes import Process, awake, still_polling
 
 LIMIT = 60      # s
@@ -118,20 +115,6 @@ def test_messages_in_transit(start):
     assert awake([process], network) is network
     # it may have sent a message after the network was checked
     assert awake([process], SimpleNamespace(busy=run_and_sleep)) is process
-
-
-def test_the_thread_that_looks_does_not_count():
-    done = threading.Event()
-    other = threading.Thread(target=done.wait)
-    other.start()
-    try:
-        process = wait_for(own_process)
-        assert threading.get_native_id() not in process.threads
-        wait_for(lambda: not awake([process]))
-        assert awake([Process(os.getpid())])
-    finally:
-        done.set()
-        other.join()
 
 
 def test_a_process_that_has_run_between_two_looks_is_awake():

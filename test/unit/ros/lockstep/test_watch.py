@@ -91,16 +91,6 @@ def test_a_driver_is_watched_while_it_is_connected(world):
     assert not world.watch.drivers and not world.watch.processes and world.watch.awake() is None
 
 
-def test_a_connection_that_its_publisher_refuses_is_no_driver(world, monkeypatch):
-    # rospy keeps only the error until it closes the connection
-    refused = type('Connection', (), dict(vars(world.connect('/driver')), header={'error': 'is not a publisher'}))()
-    world.drive(refused)
-    assert not world.watch.drivers
-    assert world.watch.awake() == '/cmd_vel'        # the node may try again
-    monkeypatch.setattr(watch, 'CONNECT_TIME', 0)
-    assert world.watch.awake() is None
-
-
 def test_what_keeps_a_node_from_being_in_step(world, monkeypatch):
     world.drive(world.connect('/driver'))
     assert world.watch.obstacle('/driver') is None and world.watch.drivers == {'/driver'}
@@ -138,18 +128,6 @@ def test_a_node_that_starts_is_watched_until_it_waits(world):
     world.children[-1].stdin.flush()
     time.sleep(0.05)
     assert world.watch.awake() is None
-
-
-def test_a_publisher_that_has_registered_is_waited_for(world, monkeypatch):
-    monkeypatch.setattr(watch, 'call', lambda *_: ([['/cmd_vel', ['/node', '/old']]], [], []))
-    node = world.connect('/node')
-    world.listen(node)
-    wait_for(lambda: not world.watch.processes['/node'].main_sleeps_briefly())
-    for _ in range(10):
-        assert world.watch.awake() == '/node'
-    world.drive(node)
-    world.settle()
-    assert not world.watch.starting
 
 
 def test_a_driver_that_is_forgotten_holds_the_clock_no_more(world):

@@ -28,15 +28,6 @@ def wait_for(condition):
     raise AssertionError('timed out')
 
 
-def test_all_is_acknowledged_by_a_peer_that_reads(pair):
-    sender, receiver = pair
-    sender.sendall(b'x' * 52)
-    assert len(receiver.recv(100)) == 52
-    wait_for(lambda: read_connection(sender).unacknowledged == 0)
-    connection = read_connection(sender)
-    assert connection.established and connection.acknowledged >= 52 and connection.window > CLOSED_WINDOW
-
-
 def test_a_peer_that_does_not_read_closes_its_window(pair):
     sender, _ = pair
     sender.setblocking(False)

@@ -32,9 +32,3 @@ def test_what_rospy_understands_passes(argument):
     ('_rate:=', 'expected a value'), ('_rate:=[', 'expected a value'), ('_rate:=1:=2', 'expected a value')])
 def test_what_rospy_would_drop_is_named(argument, problem):
     assert find_problem(argument, NAMES) == problem
-
-
-@pytest.mark.parametrize('argument', ['_rate:=50', '50', 'rate:=50'])
-def test_a_node_without_parameters_accepts_none(argument):
-    assert find_problem(argument, [])
-    assert find_problem('odom:=/other/odom', []) is None

@@ -175,15 +175,6 @@ def test_nothing_moves_while_another_node_drives(view, message):
     assert socket.kinds == ['welcome', 'refused']
 
 
-def test_a_run_at_a_time(view):
-    view.runs.busy = True
-    socket = view.connect(TOKEN)
-    view.send(socket, type='run', method='timed')
-    view.send(socket, type='hand', on=True)
-    view.send(socket, type='reset')
-    assert socket.kinds == ['welcome', *3 * ['refused']] and not view.hand.drivers
-
-
 def test_a_real_robot_has_to_be_confirmed(view):
     view.system.simulated = False
     socket = view.connect(TOKEN)
@@ -241,11 +232,3 @@ def test_watchers_leave_room_for_one_with_the_token(view):
     while len(view.connections.browsers) < MAX_SOCKETS:
         view.connect(TOKEN)
     assert view.connections.full
-
-
-def test_a_newcomer_replaces_who_never_says_hello(view):
-    first = view.connect('')
-    silent = [view.connect() for _ in range(2 * MAX_SOCKETS)]
-    assert len(view.connections.browsers) == MAX_SOCKETS and not view.connections.full
-    assert view.connect(TOKEN).closed is None and first.closed is None
-    assert silent[0].closed[0] == 1008 and silent[-1].closed is None

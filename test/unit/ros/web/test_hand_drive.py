@@ -1,10 +1,10 @@
 """Keys that are held drive the robot, and keys that are released, or no longer repeated, stop it."""
-from threading import Event, Thread
+from threading import Event
 import time
 
 import pytest
 
-from rbx1_nav.ros.web.hand_drive import KEY_TIMEOUT, LINGER, QUIET, HandDrive, Keys
+from rbx1_nav.ros.web.hand_drive import KEY_TIMEOUT, LINGER, HandDrive, Keys
 
 LIMIT = 60      # s, after which a wait fails
 
@@ -92,23 +92,3 @@ def test_the_end_stops_a_robot_that_moves():
     wait_for(lambda: base.commands)
     hand.end()
     assert base.commands[-1] == (0.0, 0.0)
-
-
-def test_it_waits_until_it_has_not_driven_for_a_while(driven):
-    hand, base, clock = driven
-    hand.wait_until_quiet(lambda: False)    # at once
-    hand.begin('a')
-    assert hand.drive('a', 0.2, 0.0)
-    wait_for(lambda: (0.2, 0.0) in base.commands)
-    hand.stop()
-    wait_for(lambda: base.commands[-1] == (0.0, 0.0))
-    waiting = Thread(target=hand.wait_until_quiet, args=(lambda: False,))
-    waiting.start()
-    for step in LINGER, QUIET - LINGER - 0.01:
-        clock.now += step
-        time.sleep(0.1)
-        assert waiting.is_alive()
-    hand.wait_until_quiet(lambda: True)
-    clock.now += 0.02
-    waiting.join(LIMIT)
-    assert not waiting.is_alive()

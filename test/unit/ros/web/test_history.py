@@ -1,5 +1,5 @@
 """Paths, speeds and log lines, thinned out and bounded."""
-from rbx1_nav.ros.web.history import PATH_POINTS, Counter, Log, Path, Speeds
+from rbx1_nav.ros.web.history import PATH_POINTS, Counter, Path, Speeds
 
 
 def test_a_path_has_points_at_a_distance():
@@ -15,17 +15,6 @@ def test_a_path_is_bounded():
     for step in range(2 * PATH_POINTS):
         path.move(0.1 * step, 0.0, 0.0)
     assert len(path.since(0)) == PATH_POINTS
-
-
-def test_only_what_is_new():
-    counter = Counter()
-    path, log = Path(counter), Log(counter)
-    path.move(0.0, 0.0, 0.0)
-    number = counter.last
-    assert path.since(number) == [] and log.since(number) == []
-    log.line(2, 1.0, '/node', 'text')
-    path.move(1.0, 0.0, 0.0)
-    assert path.since(number) == [[1.0, 0.0, 0.0]] and log.since(number) == [[2, 1.0, '/node', 'text']]
 
 
 def test_a_steady_speed_is_thinned_out_and_its_end_kept():

@@ -4,7 +4,7 @@ from math import inf, nan
 
 import pytest
 
-from rbx1_nav.ros.web.state import COMMAND_TIMEOUT, SILENCE, PoseAndSpeed, PageState
+from rbx1_nav.ros.web.state import PoseAndSpeed, PageState
 
 
 def motion(time, x=0.0, y=0.0, yaw=0.0, linear=0.0, angular=0.0):
@@ -92,18 +92,6 @@ def test_another_base_begins_another_run(state, first):
     assert state.epoch == epoch + 1 and Browser(state).frame()['status']['before']['odometry'] == [0.2, 0, 0]
 
 
-def test_a_base_that_is_started_again_begins_another_run(state):
-    state.connected()   # the first base
-    drive(state)
-    epoch = state.epoch
-    state.tick(101.0 + SILENCE + 0.1)   # it has ended
-    state.connected()
-    assert state.epoch == epoch + 1 and Browser(state).frame()['status']['before']['odometry'] == [0.2, 0, 0]
-    state.move('odometry', motion(110.0), 110.0)
-    frame = Browser(state).frame()
-    assert frame['epoch'] == epoch + 1 and frame['time'] == 0 and frame['paths'] == {'odometry': [[0, 0, 0]]}
-
-
 def test_a_run_of_the_page_has_its_name(state):
     state.set_status(started='timed', outcome='')
     drive(state)
@@ -111,15 +99,6 @@ def test_a_run_of_the_page_has_its_name(state):
     state.set_status(outcome='finished')
     drive(state, 102.0)
     assert Browser(state).frame()['run'] == '/out_and_back'
-
-
-def test_a_command_times_out(state):
-    drive(state)
-    state.move('odometry', motion(102.5), 102.5)
-    state.tick(101.0 + COMMAND_TIMEOUT / 2)
-    assert Browser(state).frame()['speeds']['commanded'][-1][1] == 0.2
-    state.tick(102.5)
-    assert Browser(state).frame()['speeds']['commanded'][-1][1] == 0
 
 
 @pytest.mark.parametrize('wrong', [motion(1.0, x=nan), motion(nan), motion(1.0, linear=inf), motion(1.0, yaw=-inf)])

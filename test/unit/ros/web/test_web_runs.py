@@ -63,15 +63,6 @@ def test_a_run(started):
     wait_for(lambda: changes == [('timed', ''), ('timed', 'finished')])
 
 
-def test_a_run_that_fails(started):
-    runs, changes, pid_file, write = started
-    write(status=1)
-    (pid_file.parent / 'pid.end').touch()
-    runs.start('timed', lambda _: None)
-    wait_for(lambda: len(changes) == 2)
-    assert 'exit status 1' in changes[1][1]
-
-
 def test_stop(started):
     runs, changes, pid_file, _ = started
     runs.start('timed', lambda _: None)
@@ -88,13 +79,6 @@ def test_a_script_that_hangs_is_killed(started, monkeypatch):
     wait_for(lambda: begun(pid_file))
     runs.stop()
     wait_for(lambda: changes[1:] == [('timed', 'stopped')])
-
-
-def test_stop_before_the_script_is_started(started):
-    runs, changes, pid_file, _ = started
-    runs.start('timed', lambda _: runs.stop())      # while the robot is put back
-    wait_for(lambda: changes[1:] == [('timed', 'stopped')])
-    assert not pid_file.exists()
 
 
 def test_a_run_ends_with_a_view_that_is_killed(started):
