@@ -1,7 +1,6 @@
 """Processes started by the scripts stop with them, and have SIGINT's default action."""
 import os
 import re
-import shutil
 import signal
 import subprocess
 import time
@@ -48,27 +47,6 @@ def test_a_signal_ends_what_a_script_has_started(start, tmp_path, number):
     while any(map(is_alive, pids)):
         assert time.monotonic() < end, 'a process is left'
         time.sleep(0.01)
-
-
-def test_a_signal_ends_the_unit_tests(tmp_path):
-    # a copy of script/unit with a single test, which is new and therefore runs first, and tells its process id
-    root = os.path.join(os.path.dirname(COMMON), '..')
-    shutil.copytree(os.path.join(root, 'script'), tmp_path / 'script')
-    shutil.copy(os.path.join(root, 'package.xml'), tmp_path)
-    for test in ('test_rooms.py', 'pages/test_parameter_tables.py'):
-        path = tmp_path / 'test' / 'unit' / test
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text('import os, sys, time\nprint(os.getpid(), file=sys.__stdout__, flush=True)\ntime.sleep(1000)\n')
-    subprocess.run(['git', 'init', '-q', tmp_path], check=True)
-    script = subprocess.Popen(['bash', tmp_path / 'script' / 'unit', '-s'], stdout=subprocess.PIPE, text=True)
-    pid = int(script.stdout.readline())
-    script.terminate()
-    assert script.wait(LIMIT) == -signal.SIGTERM
-    end = time.monotonic() + LIMIT
-    while is_alive(pid):
-        assert time.monotonic() < end, 'pytest is left'
-        time.sleep(0.01)
-    script.stdout.close()
 
 
 def is_alive(pid):

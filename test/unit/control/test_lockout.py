@@ -1,6 +1,4 @@
 """A sender that has not noticed that the robot was stopped cannot drive it."""
-import weakref
-
 import pytest
 
 from rbx1_nav.create.driver.acceptance import Lockout
@@ -43,18 +41,3 @@ def test_the_next_event_concerns_everybody_again(locked):
     assert not locked.refuses(120, 'driver', False)
     locked.lock('the robot was reset')
     assert locked.refuses(140, 'driver', True) and locked.reason == 'the robot was reset'
-
-
-class Name(str):
-    """A name that shows when it has been removed from memory."""
-
-
-def test_the_names_of_silent_senders_do_not_accumulate():
-    """A node may have another name at each start."""
-    lockout, names = Lockout(SILENCE), []
-    for number in range(100):
-        name = Name(number)
-        names.append(weakref.ref(name))
-        lockout.refuses(number * (SILENCE + 1), name, True)
-        del name
-        assert sum(each() is not None for each in names) <= 20

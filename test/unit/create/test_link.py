@@ -3,16 +3,13 @@ import os
 import pty
 import select
 import subprocess
-import time
 from types import SimpleNamespace
 
 import pytest
 
-import rbx1_nav.create.driver.link
 from rbx1_nav.create import protocol
 from rbx1_nav.create.driver.link import BEAT, LineLost, Link
 from rbx1_nav.create.driver.search import Search
-from rbx1_nav.create.emulator.serial_line import PseudoTerminal
 from rbx1_nav.units import SECOND
 
 LIMIT = 30      # s after which a wait fails
@@ -112,28 +109,3 @@ def test_a_line_without_rts_and_dtr_is_searched_without_waking(line):
     assert log == ['wake_robot:=true: %s has no RTS and DTR: expected an adapter that has these lines; searching '
                    'without '
                    'waking the robot' % link.path]
-
-
-def test_another_device_is_reported(tmp_path, monkeypatch):
-    monkeypatch.setattr(rbx1_nav.create.driver.link, 'describe_adapter', os.path.realpath)
-    terminals = [PseudoTerminal(str(tmp_path / 'port')) for _ in range(2)]     # the second one takes the link
-    link, log = make_link(terminals[1].link)
-    assert link.open(0)
-    guardians = [link.guardian.process]
-    link.close()
-    os.unlink(terminals[1].link)
-    os.symlink(terminals[0].device, terminals[1].link)
-    give_up = time.monotonic() + LIMIT
-    for attempt in range(1, 10 ** 6):
-        assert time.monotonic() < give_up
-        if link.open(attempt * 10 ** 9):
-            break
-    guardians.append(link.guardian.process)
-    assert log == ['%s is now %s (previously %s): check that the same robot is connected'
-                   % (link.path, terminals[0].device, terminals[1].device)]
-    assert not link.is_same
-    link.close()
-    for process in guardians:
-        process.wait()
-    for terminal in terminals:
-        terminal.unplug()

@@ -1,9 +1,13 @@
 """When the mode in which the robot is driven is requested, and what is logged about it: see docs/bases.md, 'Modes'."""
 import pytest
 
+from rbx1_nav.create import protocol
 from rbx1_nav.create.driver.supervisor import Supervisor, causes
+from rbx1_nav.create.emulator.body import Quirks
 from rbx1_nav.create.protocol import FULL, OFF, PASSIVE, SAFE
 from rbx1_nav.units import SECOND
+
+from driven_create import BOTH, started
 
 TENTH = SECOND // 10
 WHEEL, CLIFF, CHARGER, DOCK = (
@@ -69,3 +73,43 @@ def test_what_is_logged_when_control_is_gained_and_lost():
     robot.feed(FULL, 2)
     robot.feed(OFF, 2)
     assert robot.log[2:] == ['The robot is in full mode', 'Lost control of the robot: it changed from full to off mode']
+
+
+MODES = pytest.mark.parametrize('mode', [protocol.PASSIVE, protocol.SAFE, protocol.FULL])
+
+
+@BOTH
+@MODES
+@pytest.mark.parametrize('plus_one', [False, True])
+def test_with_the_right_workaround_the_robot_is_driven(robot_type, mode, plus_one):
+    driven = started(robot_type, quirks=Quirks(mode_plus_one=plus_one), operation_mode=mode,
+                     oi_mode_workaround=plus_one)
+    assert driven.robot.mode == driven.driver.supervisor.mode == mode and len(driven.log) == 2
+    driven.drive(0.2, 0, 0.2)
+    assert driven.body.moving == (mode != protocol.PASSIVE)
+    driven.body.wheel_dropped = True
+    driven.run(1)
+    driven.body.wheel_dropped = False
+    driven.run(2)
+    driven.command_zero()
+    assert driven.driver.supervisor.in_control
+    driven.driver.leave(driven.now)
+    driven.run(0.2)
+    assert driven.driver.left
+
+
+@BOTH
+@pytest.mark.parametrize('mode', [protocol.PASSIVE, protocol.SAFE])
+@pytest.mark.parametrize('plus_one', [False, True])
+def test_a_wrong_workaround_is_named_and_the_robot_is_not_driven(robot_type, mode, plus_one):
+    driven = started(robot_type, 5, quirks=Quirks(mode_plus_one=plus_one), operation_mode=mode,
+                     oi_mode_workaround=not plus_one)
+    assert driven.log[1:] == [
+        'The robot cannot be driven: it reports mode %d after it was asked for %s mode: expected %d, or '
+        'oi_mode_workaround:=%s' % (mode + plus_one, protocol.MODE_NAMES[mode], mode + 1 - plus_one,
+                                    str(plus_one).lower())]
+    # the node subscribes to commands, and refuses them with the reason
+    assert driven.driver.is_ready
+    driven.drive(0.2, 0, 1)
+    assert not driven.body.moving or plus_one       # in that case, it is in safe mode
+    assert any('oi_mode_workaround' in text for text in driven.refusals)

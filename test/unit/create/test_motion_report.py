@@ -54,25 +54,6 @@ def test_the_scale_corrections_apply_to_the_pose_and_not_to_the_wheels():
     assert motion.state(None).travel == pytest.approx((2 * (0.1 - 0.2 * 0.13), 2 * (0.1 + 0.2 * 0.13)))
 
 
-@pytest.mark.parametrize('travel', [Travel(0.01, 0, 0, 0), Travel(0, 0.01, 0, 0)])
-def test_a_robot_stands_half_a_second_after_its_last_travel_or_command(travel):
-    motion = make_motion()
-    motion.add(0, NOWHERE)
-    motion.add(SECOND, NOWHERE)
-    assert motion.stands
-    motion.add(SECOND, travel)
-    assert not motion.stands
-    motion.add(SECOND * 3 // 2 - 1, NOWHERE)
-    assert not motion.stands
-    motion.add(SECOND * 3 // 2, NOWHERE)
-    assert motion.stands
-    motion.command(SECOND * 2)
-    motion.add(SECOND * 5 // 2 - 1, NOWHERE)
-    assert not motion.stands
-    motion.add(SECOND * 5 // 2, NOWHERE)
-    assert motion.stands
-
-
 def test_while_it_is_commanded_to_move_the_velocity_of_a_robot_without_travel_is_uncertain():
     motion = make_motion()
     motion.add(0, NOWHERE)

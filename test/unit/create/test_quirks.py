@@ -2,24 +2,10 @@
 import pytest
 
 from rbx1_nav.create.emulator.body import Quirks
-from rbx1_nav.create.protocol import CREATE, FULL, PASSIVE, SAFE, command, drive_direct
-from robots import Robot, both
+from rbx1_nav.create.protocol import CREATE, command, drive_direct
+from robots import Robot
 
 PLUS_ONE, DROPPING = Quirks(mode_plus_one=True), Quirks(drops_fractions=True)
-
-
-@both
-def test_a_robot_that_reports_its_mode_plus_one(model):
-    robot, normal = Robot(model, quirks=PLUS_ONE), Robot(model)
-    for name, mode in ('start', PASSIVE), ('safe', SAFE), ('full', FULL):
-        robot.send(command(name))
-        normal.send(command(name))
-        assert robot.read(35) == {'mode': mode + 1} and normal.read(35) == {'mode': mode}
-        assert robot.mode == mode
-    robot.send(command('stream', 1, 35))
-    assert bytes((19, 2, 35, FULL + 1)) in robot.run(0.1)
-    # 4 is an allowed value of the packet
-    assert FULL + 1 <= model.packets[35].high
 
 
 def streamed(robot, number, right, left, seconds=1.5):
@@ -42,16 +28,3 @@ def test_an_angle_whose_fractions_are_lost(speed, expected):
 def test_an_angle_whose_fractions_are_kept(speed, rate):
     values = streamed(Robot(CREATE), 20, speed, -speed)
     assert sum(values) == pytest.approx(1.5 * rate, abs=2)      # a degree at the start and at the end
-
-
-def test_a_gyro_that_is_stuck():
-    robot = Robot(CREATE)
-    robot.send(command('start'), command('full'), drive_direct(130, -130))
-    turning = robot.read(33)
-    for count in 0, 700, 1023:
-        robot.body.gyro_stuck = count
-        robot.run(0.02)     # more than an update
-        assert robot.read(33) == {'analog_input': count} != turning
-    robot.body.gyro_stuck = -1
-    robot.run(0.02)
-    assert robot.read(33) == turning

@@ -101,16 +101,6 @@ def test_after_four_unclear_replies_the_rate_decides(baud, model):
     assert searching.answer(bytes(3)) == (model, baud)
 
 
-def test_only_a_robot_that_answers_the_battery_query_again_counts_as_one_that_answers_nothing_else():
-    """A Create that is silent for half a second, twice, is not a Roomba 400."""
-    searching = Searching((57600,))
-    for last, count in (battery(), 1), (battery(), 2), (b'', 0), (battery(), 1):
-        searching.find_battery()
-        for reply in (b'', b'', b'', b'', last):
-            assert searching.answer(reply) is None
-        assert len(searching.search.battery_rates) == count
-
-
 @pytest.mark.parametrize('data, found', [
     (b'\x13\x02\x23\x01', False), (b'\x13\x02\x23\x01\xc7', False), (b'\x13\x02\x23\x01\xc7' * 2, True),
     (b'\x13\x02\x23\x01\xc6' + b'\x13\x02\x23\x01\xc7', False), (b'\x13\x02\x23\x01\xc7\x13', False),

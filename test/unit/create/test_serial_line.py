@@ -51,17 +51,6 @@ def test_bytes_to_the_robot_take_their_time(data):
     assert line.next_to_robot is None
 
 
-def test_a_silent_line_carries_nothing_either_way():
-    line = SerialLine(57600)
-    line.silent = True
-    line.from_host(b'abc', 0)
-    line.from_robot(b'abc', 0)
-    assert line.next_to_robot is None and line.received(SECOND) == b''
-    line.silent = False
-    line.from_robot(b'abc', SECOND)
-    assert line.received(2 * SECOND) == b'abc'
-
-
 @pytest.mark.parametrize('fraction', [0.0, 0.01, 0.3, 1.0])
 def test_the_fraction_of_corrupted_bytes(fraction):
     line = SerialLine(115200, 7)

@@ -49,16 +49,6 @@ def test_what_is_passed_on_is_what_came_in_a_delay_earlier(delay, commands):
         assert command_at(passed, time) in (command_at(late, time), None)
 
 
-@given(st.floats(1e-3, 2), inputs)
-def test_after_a_delay_without_commands_none_is_under_way(delay, commands):
-    line = Delay(delay)
-    for command in commands:
-        list(line.over(*command))
-    list(line.over(0.0, 0.0, delay + 1e-9))
-    assert line.is_empty
-    assert {part[:2] for part in line.over(0.0, 0.0, 10.0)} == {(0.0, 0.0)}
-
-
 def test_wheels_start_and_stop_a_delay_later_and_travel_as_far():
     late, punctual = Wheels(WIDTH, LATE, RUN, 0.02), Wheels(WIDTH, SURFACE, RUN, 0.02)
     late.travel(0.2, 0.0, DELAY)
@@ -71,14 +61,3 @@ def test_wheels_start_and_stop_a_delay_later_and_travel_as_far():
         wheels.travel(0.0, 0.0, 5.0)
     assert late.truth.pose == pytest.approx(punctual.truth.pose, abs=1e-12)
     assert late.truth.pose.x > 0.3
-
-
-def test_wheels_are_not_at_rest_while_a_command_is_under_way():
-    wheels = Wheels(WIDTH, LATE, RUN, 0.02)
-    assert wheels.at_rest
-    wheels.travel(0.2, 0.0, 0.02)
-    wheels.travel(0.0, 0.0, 0.02)
-    assert wheels.truth.pose.x == 0 and not wheels.at_rest
-    for _ in range(200):
-        wheels.travel(0.0, 0.0, 0.02)
-    assert wheels.truth.pose.x > 0 and wheels.at_rest

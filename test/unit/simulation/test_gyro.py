@@ -80,17 +80,3 @@ def test_the_scale_error_in_the_variance_grows_in_both_directions():
     # 2 rad to the left and 2 rad to the right; the noise of 1e-9 rad/s adds less than 1e-8 rad
     assert back.yaw == pytest.approx(0.0, abs=1e-7)
     assert back.yaw_variance == pytest.approx(1e-6 + (0.003 * 4) ** 2, rel=1e-6)
-
-
-@pytest.mark.parametrize('rest', [0, 10])
-def test_after_a_reset_a_gyro_is_like_a_new_one(rest):
-    surface = SURFACE._replace(gyro_noise=1e-9)
-    used, new = (Gyro(surface, RUN, 1) for _ in range(2))
-    readings(used, 0.0, 20, at_rest=True)
-    readings(used, 1.0, 70)
-    used.reset()
-    for gyro in used, new:
-        readings(gyro, 0.0, rest, at_rest=True)
-    # except for the noise of 1e-9 rad/s
-    for one, other in zip(readings(used, 0.5, 50), readings(new, 0.5, 50)):
-        assert one == pytest.approx(other, abs=1e-7, rel=1e-6)

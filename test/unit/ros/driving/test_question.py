@@ -3,7 +3,6 @@ import os
 import threading
 
 import pytest
-import rospy
 
 from rbx1_nav.config import ConfigError
 from rbx1_nav.ros.driving import calibrating as question
@@ -34,15 +33,3 @@ def test_it_asks_until_the_answer_makes_sense(terminal, capsys):
     os.write(terminal, b'wrong\n\n  right \nmore\n')
     assert question.ask('What?', check) == 'right'
     assert capsys.readouterr().out == 'What? wrong: expected right\nWhat? : expected right\nWhat? '
-
-
-def test_nobody_answers(terminal):
-    os.write(terminal, b'wrong\nri')
-    os.close(terminal)
-    assert question.ask('What?', check) is None
-
-
-def test_the_node_ends_meanwhile(terminal):
-    threading.Timer(0.2, question.end_requested.set).start()
-    with pytest.raises(rospy.ROSInterruptException):
-        question.ask('What?', check)
