@@ -8,7 +8,7 @@ import time
 import numpy
 import yaml
 
-from rbx1_nav.control.motions import out_and_back
+from rbx1_nav.control.legs import out_and_back
 from rbx1_nav.fitting.comparison import region_share
 from rbx1_nav.fitting.recording import Commands, Rates, Recording, Track
 from rbx1_nav.fitting.surface_fit import WholeFit
@@ -91,7 +91,7 @@ def judge_values(robot, start, seeds, odometry=True):
         if not odometry:
             recordings = [each._replace(odometry=None) for each in recordings]
         begin = time.process_time()
-        result = WholeFit(recordings, robot.base_width, start).result()
+        result = WholeFit(recordings, robot.base_width, start).run()
         longest = max(longest, time.process_time() - begin)
         for key, value, error, _ in result.values:
             true = getattr(surface, key)
@@ -129,7 +129,7 @@ def judge_tape(robot, start, seeds, odometry=True):
         recordings = [recording._replace(
             truth=None, odometry=recording.odometry if odometry else None,
             end=Pose(*(value + normal(0.0, sigma) for value, sigma in zip(end, TAPE)))) for recording, end in runs]
-        result = WholeFit(recordings[:3], robot.base_width, start, TAPE).result()
+        result = WholeFit(recordings[:3], robot.base_width, start, TAPE).run()
         fourth = numpy.array(runs[3][1])
         ends = region_share(result.surface, recordings[3], robot.base_width, fourth, seed)
         shares.append(ends[0])

@@ -14,12 +14,13 @@ import numpy
 from real_pictures import draw_ends, draw_paths
 from rbx1_nav.config import ConfigError, show_name
 from rbx1_nav.fitting.comparison import energy_score, inner_share, simulate_ends
-from rbx1_nav.fitting.floor import NOISES, SPREADS, Prediction, Windows
+from rbx1_nav.fitting.floor import SPREADS, Prediction
 from rbx1_nav.fitting.floor_fit import Fitter, fit_floor
 from rbx1_nav.fitting.recording import BASE_WIDTH, CAMERAS, read_set
-from rbx1_nav.fitting.run import PreparedRun
+from rbx1_nav.fitting.run import PreparedRun, Windows
 from rbx1_nav.plotting.plots import check_picture
 from rbx1_nav.ros.node import resources
+from rbx1_nav.simulation.floor_noise import NOISES
 from rbx1_nav.simulation.surfaces import load_surface
 
 LENGTHS = 5, 10, 20, 40     # s

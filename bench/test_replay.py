@@ -6,7 +6,7 @@ import pytest
 import yaml
 
 import replay
-from rbx1_nav.control.motions import out_and_back
+from rbx1_nav.control.legs import out_and_back
 from rbx1_nav.estimation.combined_odometry import CombinedOdometry
 from rbx1_nav.estimation.priors import priors
 from rbx1_nav.robot.description import read_robot

@@ -120,8 +120,8 @@ def main() -> int:
             # only now, because they import scipy, which takes longer than the checks
             from rbx1_nav.fitting.surface_file import surface_text, table
             from rbx1_nav.fitting.surface_fit import WholeFit
-            result = WholeFit(recordings, robot.base_width, start, end_errors,
-                              lambda part: bar.set_description(f'Fitting the {part}')).result()
+            result = WholeFit(recordings, robot.base_width, start, end_errors).run(
+                lambda part: bar.set_description(f'Fitting the {part}'))
             bar.set_description('Simulating the runs on the new surface')
             with open_place(max(1, arguments.jobs), arguments.scheduler, robot, start) as place:
                 comparisons = compare(result.surface, recordings, robot.base_width,

@@ -30,8 +30,8 @@ from rbx1_nav.ros.base.publisher import with_frames
 from rbx1_nav.ros.base.simulated_clock import PARAMETERS as CLOCK, read_clock
 from rbx1_nav.ros.base.simulated_floor import read_floor
 from rbx1_nav.ros.base.simulated_robot import SimulatedRobot
-from rbx1_nav.ros.network.master import is_alive
 from rbx1_nav.ros.network.bases import Refusals
+from rbx1_nav.ros.network.master import is_alive
 from rbx1_nav.ros.node import life
 from rbx1_nav.ros.node.frames import with_prefix
 from rbx1_nav.ros.node.params import param

@@ -22,11 +22,11 @@ from tf.transformations import (
 import tf2_ros
 from visualization_msgs.msg import Marker, MarkerArray
 
-from rbx1_nav.arrays import Array
 from rbx1_nav.parameters import elsewhere
 from rbx1_nav.robot.urdf import Visual, read_visuals
 from rbx1_nav.ros.node import life
 from rbx1_nav.schedule import Schedule
+from rbx1_nav.units import Array
 
 PARAMETERS = [elsewhere('robot_description', "the robot's URDF, as text")]
 SHAPES = {'box': Marker.CUBE, 'cylinder': Marker.CYLINDER, 'sphere': Marker.SPHERE, 'mesh': Marker.MESH_RESOURCE}

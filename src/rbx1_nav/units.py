@@ -1,4 +1,4 @@
-"""Units, and arithmetic on single numbers.
+"""Units, arithmetic on single numbers, and the type of an array.
 
 Meters, radians and seconds (REP 103) unless a name indicates another unit. Times that are compared or added up are
 whole nanoseconds, so that fifty steps of 20 ms are exactly one second.
@@ -6,6 +6,14 @@ whole nanoseconds, so that fifty steps of 20 ms are exactly one second.
 from __future__ import annotations
 
 from math import copysign, pi, remainder
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import numpy
+    from numpy.typing import NDArray    # not available in Debian 11's numpy
+    Array = NDArray[numpy.float64]
+else:
+    Array = 'an array of numbers'   # only for type hints, which need no numpy
 
 SECOND = 10 ** 9    # ns
 

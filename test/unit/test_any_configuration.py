@@ -12,7 +12,7 @@ from rbx1_nav.robot.description import read_robot
 from rbx1_nav.ros.filter.ekf_parameters import read_parameters
 from rbx1_nav.schedule import Schedule
 from rbx1_nav.simulation.base import make_base, make_wheels_and_gyro
-from rbx1_nav.simulation.surfaces import KEYS, draw_run, read_seed, read_surface
+from rbx1_nav.simulation.surfaces import KEYS, Surface, draw_run, read_seed, read_surface
 
 CONFIG = os.path.join(os.path.dirname(__file__), '..', '..', 'config')
 ROBOTS, SURFACES = ([yaml.safe_load(open(path)) for path in sorted(glob.glob(os.path.join(CONFIG, *pattern)))]
@@ -30,7 +30,7 @@ VALUES = st.recursive(SCALARS, lambda values: st.one_of(
     st.lists(values, max_size=3), st.dictionaries(st.one_of(TEXTS, NUMBERS), values, max_size=3)), max_leaves=8)
 
 ANY = st.one_of(NUMBERS, TEXTS, VALUES)
-OPTIONAL = st.dictionaries(st.sampled_from(sorted(key for key in KEYS if KEYS[key].optional)), st.floats(0, 1))
+OPTIONAL = st.dictionaries(st.sampled_from(sorted(Surface._field_defaults)), st.floats(0, 1))
 
 
 def with_change(data, mapping):

@@ -9,7 +9,6 @@ from typing import Iterator, NamedTuple, Sequence
 import numpy
 from tqdm import tqdm
 
-from rbx1_nav.arrays import Array
 from rbx1_nav.batch.cases import Chunk, Combination, Row, add_row, chunks, simulate_paths, simulate_row, simulate_rows
 from rbx1_nav.batch.cluster import code_version
 from rbx1_nav.batch.executor import Place, in_order, open_place
@@ -18,6 +17,7 @@ from rbx1_nav.config import ConfigError
 from rbx1_nav.robot.description import Robot
 from rbx1_nav.simulation.exercise import SimulationResult
 from rbx1_nav.simulation.summary import HEADER, Summary
+from rbx1_nav.units import Array
 
 MOMENT = 1.0    # s: a bar appears after this time
 PAUSE = 10.0    # s between two lines

@@ -1,20 +1,63 @@
-"""The odometry-based exercise: a list of legs, each of which stops when the robot's pose has reached its goal."""
+"""The exercise: timed motions, each a velocity for a number of ticks, and legs, each of which stops when the robot's
+pose has reached its goal.
+"""
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections import deque
 from enum import Enum
-from math import cos, pi, sin, sqrt
+from math import cos, isfinite, pi, sin, sqrt
+from typing import NamedTuple
 
-from rbx1_nav.control.motions import ticks
 from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.units import wrap_angle
 
+MAX_TICKS = 10 ** 8    # three weeks at 50 Hz
 SLOW_DOWN = 0.5     # s: travel time to the goal at which a leg begins to slow down
 SPEED_WINDOW = 0.1  # s over which the robot's speed is measured: a few encoder counts, one or two messages
 COASTING = 1.0      # s: how long a robot may continue to move without a command
 POSE_TOLERANCE = 0.1    # m, and twice this value in rad: largest correction of a pose in one message
 STUCK_TIME = 5.0    # s without progress: something holds the robot, or turns it in the wrong direction
+
+
+class Motion(NamedTuple):
+    """One motion: the same command for a number of ticks."""
+
+    name: str
+    linear: float   # m/s
+    angular: float  # rad/s, positive to the left
+    ticks: int
+
+
+def whole_ticks(number: float, formula: str) -> int:
+    """Return a number of ticks, rounded down. Raises ValueError if it is below 1 or above MAX_TICKS.
+
+    formula: how the number was calculated, for the error message.
+    """
+    if not (isfinite(number) and 1 <= number + 1e-9 <= MAX_TICKS):
+        raise ValueError(f'{formula}: {number:g} ticks: expected from 1 to {MAX_TICKS}')
+    # 0.3 / 0.1 is a little less than 3 in floating point: do not lose a tick to that
+    return int(number + 1e-9)
+
+
+def ticks(goal: float, speed: float, rate: float, keys: str = 'goal / speed') -> int:
+    """Return the number of ticks that it takes to cover `goal` (m or rad) at `speed` (m/s or rad/s), rounded down.
+
+    rate: ticks per second; keys: names of goal and speed, for the error message. Raises ValueError, see whole_ticks().
+    """
+    return whole_ticks(goal / speed * rate, f'{keys} * rate: {goal:g} / {speed:g} * {rate:g}')
+
+
+def out_and_back(linear_speed: float, goal_distance: float, angular_speed: float, goal_angle: float,
+                 rate: float) -> list[Motion]:
+    """Return the tutorial's exercise (forward and turn left, twice) as four Motions. Raises ValueError, see ticks().
+
+    The arguments are in m/s, m, rad/s, rad and Hz.
+    """
+    forward = Motion('forward', linear_speed, 0.0,
+                     ticks(goal_distance, linear_speed, rate, 'goal_distance / linear_speed'))
+    turn = Motion('turn left', 0.0, angular_speed, ticks(goal_angle, angular_speed, rate, 'goal_angle / angular_speed'))
+    return [forward, turn, forward, turn]
 
 
 def is_reachable(before: Pose, after: Pose, elapsed: float, linear_speed: float, angular_speed: float) -> bool:
@@ -38,8 +81,8 @@ class StuckError(ValueError):
     """Raised if a leg makes no progress toward its goal."""
 
 
-class State(Enum):
-    """The state of a Leg."""
+class Phase(Enum):
+    """The phase of a Leg."""
 
     NEW = 'no pose received yet'
     APPROACH = 'driving and slowing down'
@@ -69,7 +112,7 @@ class Leg(ABC):
         self.speed = speed
         self.min_speed = min(min_speed, speed)
         self.rate = rate
-        self.state = State.NEW
+        self.state = Phase.NEW
         self.turned = 0.0       # rad
         self.nearest = goal     # m or rad
         self.patience = self.stuck_ticks = max(2, int(min(STUCK_TIME * rate, 1e9)))
@@ -95,7 +138,7 @@ class Leg(ABC):
     @property
     def finished(self) -> bool:
         """Whether the leg has stopped at its goal."""
-        return self.state is State.FINISHED
+        return self.state is Phase.FINISHED
 
     def next_speed(self, pose: Pose) -> float:
         """Return the speed for the next tick, with the robot at `pose`. Raises StuckError.
@@ -105,18 +148,18 @@ class Leg(ABC):
         """
         self._follow(pose)
         to_go = self.goal - self.done()
-        if self.state is State.FINISHED:
+        if self.state is Phase.FINISHED:
             return 0.0
-        if self.state is State.TRIAL_STOP:
+        if self.state is Phase.TRIAL_STOP:
             self._end_trial(to_go)
         travel = self._measure_travel(to_go)
         # the robot cannot get closer to the goal than half of the travel per tick
         if to_go - self._expected_roll_out(travel) <= min(travel, self.min_speed / self.rate) / 2:
-            self.state = State.FINISHED
+            self.state = Phase.FINISHED
             return 0.0
         self._check_progress(to_go)
         # the robot has reached its lowest speed, and is less than SLOW_DOWN from the goal
-        if self.state is State.APPROACH and to_go < SLOW_DOWN * self.min_speed:
+        if self.state is Phase.APPROACH and to_go < SLOW_DOWN * self.min_speed:
             self._begin_trial(to_go, travel)
             return 0.0
         # slow enough to brake in time, and never past the goal within two ticks
@@ -125,9 +168,9 @@ class Leg(ABC):
 
     def _follow(self, pose: Pose) -> None:
         """Update the leg with a new pose of the robot."""
-        if self.state is State.NEW:
+        if self.state is Phase.NEW:
             self.start = self.last = pose
-            self.state = State.APPROACH
+            self.state = Phase.APPROACH
         self.turned += wrap_angle(pose.yaw - self.last.yaw)
         self.last = pose
 
@@ -135,13 +178,13 @@ class Leg(ABC):
         """Begin the trial stop, which measures the stopping distance. travel: per tick, m or rad."""
         self.trial_to_go = to_go
         self.trial_travel = max(travel, 1e-9)   # never divide by 0
-        self.state = State.TRIAL_STOP
+        self.state = Phase.TRIAL_STOP
 
     def _end_trial(self, to_go: float) -> None:
         """Finish the trial stop: the robot is stationary, and the last part begins."""
         self.roll_out = max(0.0, self.trial_to_go - to_go)
         self.recent.clear()
-        self.state = State.LAST_PART
+        self.state = Phase.LAST_PART
 
     def _measure_travel(self, to_go: float) -> float:
         """Return the robot's current travel per tick, m or rad."""

@@ -6,16 +6,14 @@ from copy import copy
 from math import cos, sin
 from typing import Callable, Deque, NamedTuple
 
-from rbx1_nav.arrays import Array
-from rbx1_nav.estimation.arrivals import IMU, MAX_LEAD, MAX_WAIT, ODOM, Arrivals
-from rbx1_nav.estimation.doubts import Doubts
-from rbx1_nav.estimation.filter import X, Y, YAW, Filter, Measurement
-from rbx1_nav.estimation.gyro_turns import PastYaws, Readings
+from rbx1_nav.estimation.filter import X, Y, YAW, Filter
 from rbx1_nav.estimation.inputs import Imu, Odom, check_imu, check_odom, distance, format_pose, has_jumped
-from rbx1_nav.estimation.priors import UNKNOWN_FLOOR, Limits, Priors
+from rbx1_nav.estimation.priors import UNKNOWN_FLOOR, Priors, Bounds
+from rbx1_nav.estimation.sensors import IMU, MAX_LEAD, MAX_WAIT, ODOM, Arrivals, Doubts
 from rbx1_nav.estimation.standstill import STANDSTILL, Part, Standstill
+from rbx1_nav.estimation.turns import Measurement, PastYaws, Readings
 from rbx1_nav.robot.kinematics import Pose
-from rbx1_nav.units import SECOND, wrap_angle
+from rbx1_nav.units import SECOND, Array, wrap_angle
 
 DROPOUT_SPEED = 0.5     # m/s: possible speed of the robot (1 sigma) while no odometry arrives
 
@@ -42,7 +40,7 @@ class CombinedOdometry:
 
     def __init__(self, prior: Priors, timeout: int, gyro_used: bool = True,
                  warn: Callable[[str], None] = lambda text: None, clock: Callable[[], int] | None = None,
-                 max_lead: int = MAX_LEAD, limits: Limits = Limits()) -> None:
+                 max_lead: int = MAX_LEAD, limits: Bounds = Bounds()) -> None:
         """timeout: ns; gyro_used: whether to wait for a gyro at all; warn(text): logs a warning; clock(): returns the
         arrival time (ns) if `now` may be simulated time; max_lead: ns that a stamp may be ahead."""
         self.prior = prior
@@ -152,7 +150,7 @@ class CombinedOdometry:
 
     def _arrive(self, sensor: str, now: int, stamp: int) -> int | None:
         """Check and store a stamp; return the previous stamp, or None."""
-        back = self.arrivals.step_back(now)
+        back = self.arrivals.notice_step_back(now)
         if back:
             self.restart(f'The clock jumped back by {back / SECOND:.3f} s')
         return self.arrivals.add(sensor, now, stamp)
@@ -184,7 +182,7 @@ class CombinedOdometry:
 
     def _step(self, odom: Odom) -> None:
         """Make a step up to an Odom."""
-        if self.odom and (odom.stamp <= self.odom.stamp or self._is_outlier(self.odom, odom)):
+        if self.odom and (odom.stamp <= self.odom.stamp or self._reject_outlier(self.odom, odom)):
             return
         ekf, last = self.filter, self.odom
         if not ekf or not last:
@@ -194,7 +192,7 @@ class CombinedOdometry:
             self._place(ekf)
         duration = max(0, odom.stamp - self.time) / SECOND      # shorter than since `last` if the gyro was used alone
         gyro = self._gyro_turn(odom.stamp)
-        if self.standstill.rests(odom.stamp, odom.pose) and gyro and self.time == last.stamp:
+        if self.standstill.follow(odom.stamp, odom.pose) and gyro and self.time == last.stamp:
             self.standstill.add(Part(duration, *gyro), ekf)
             self.odom_yaw = ekf.state[YAW]
         else:
@@ -211,8 +209,8 @@ class CombinedOdometry:
             self._place(ekf)
         self._finish(odom.stamp, odom)
 
-    def _is_outlier(self, last: Odom, odom: Odom) -> bool:
-        """Return whether to ignore an Odom, a single jump. If a second one agrees, the filter restarts there."""
+    def _reject_outlier(self, last: Odom, odom: Odom) -> bool:
+        """Store an Odom that has jumped, and return True: it is ignored. If a second one agrees, restart there."""
         suspect, self.suspect = self.suspect, None
         if suspect and not has_jumped(suspect, odom, self.limits) and distance(suspect, odom) <= distance(last, odom):
             self.restart(f'odom: jumped from {format_pose(last)} to {format_pose(odom)}')
@@ -243,14 +241,14 @@ class CombinedOdometry:
         turn = ekf.turn(duration, wheels, gyro, forward)
         # this heading in the filter's frame: halfway between the yaws at the last odometry and at this one
         yaw = ekf.state[YAW]
-        end = yaw + turn.angle if odom.stamp >= self.time else self.yaws.at(odom.stamp)
+        end = yaw + turn.angle if odom.stamp >= self.time else self.yaws.take(odom.stamp)
         ahead = turned + wrap_angle(end - self.odom_yaw - turned)
         ekf.step(duration, turn, self.odom_yaw + ahead / 2 - yaw - turn.angle / 2, forward, left,
                  odom.linear_variance * elapsed ** 2)
         self.odom_yaw = end
-        verdict = ekf.compare()
+        verdict = ekf.close_window()
         if verdict:
-            self.doubts.check(verdict, ekf, odom.stamp)
+            self.doubts.report(verdict, ekf, odom.stamp)
 
     def _leave_standstill(self, ekf: Filter) -> None:
         """After a rest, use the gyro's turn in its last part, in which the robot may have begun to turn."""

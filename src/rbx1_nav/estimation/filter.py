@@ -1,7 +1,7 @@
 """The arithmetic of the combined odometry: a planar extended Kalman filter of wheel odometry and a gyro.
 
 The gyro measures how the robot turns, and the wheels measure how far it moves. The wheels measure the turn only if the
-gyro cannot (gyro_turns.py).
+gyro cannot (turns.py).
 
 - The state is the pose x, y (m), yaw (rad), the bias of the gyro (rad/s), and the curvature that unequal wheels drive
   (rad/m). The bias is learned at rest (standstill.py). Until the first rest it is 0, with the uncertainty of any gyro.
@@ -24,10 +24,10 @@ from typing import NamedTuple, Tuple
 
 import numpy
 
-from rbx1_nav.arrays import Array
-from rbx1_nav.estimation.priors import UNKNOWN_FLOOR, Limits, Priors
-from rbx1_nav.estimation.window import WINDOW_TIME, WINDOW_TURN, Sums, Window
+from rbx1_nav.estimation.priors import UNKNOWN_FLOOR, Priors, Bounds
+from rbx1_nav.estimation.turns import WINDOW_TIME, WINDOW_TURN, Measurement, Sums, Window
 from rbx1_nav.robot.kinematics import Pose
+from rbx1_nav.units import Array
 
 # indices of P; the state has the first five. WINDOW: the difference of both turns in the window
 X, Y, YAW, BIAS, CURVATURE, SCALE, SLIP_TURNING, SLIP_STRAIGHT, WINDOW = range(9)
@@ -45,11 +45,10 @@ FADE = 0.85                 # fraction of a doubt, or of too large a slip, that 
 LEAST_SLIP = 0.05           # 1 sigma of the slip in turns, however well wheels and gyro agree
 HALF_TRACK = 0.2            # m: half the distance of the wheels of a robot of medium size
 
-Measurement = Tuple[float, float]   # a turn (rad) and its variance (rad^2)
 Verdict = Tuple[Sums, str]  # 'imu_data', 'wheels' or 'both' (one of them) is doubted, or '' if they agree
 
 
-class Turn(NamedTuple):
+class Yaw(NamedTuple):
     """The turn of a step, and its derivatives with respect to BIAS, CURVATURE, SCALE and SLIP_TURNING."""
 
     angle: float        # rad
@@ -61,7 +60,7 @@ class Turn(NamedTuple):
 class Filter:
     """The state and its covariance. Time stamps, dropouts and invalid messages are handled elsewhere."""
 
-    def __init__(self, prior: Priors, pose: Pose, max_bias: float = Limits().gyro_bias) -> None:
+    def __init__(self, prior: Priors, pose: Pose, max_bias: float = Bounds().gyro_bias) -> None:
         """pose: initial pose; max_bias: the largest bias of a gyro, rad/s."""
         self.prior = prior
         # variances per unit of travel on the assumed floor, and on any floor
@@ -122,13 +121,13 @@ class Filter:
         turned, path = abs(wheels[0]), abs(forward)
         return max(turning * turned + straight * path, min(wheels[1], most_turning * turned + most_straight * path))
 
-    def turn(self, duration: float, wheels: Measurement | None, gyro: Measurement | None, forward: float = 0.0) -> Turn:
-        """Return the Turn of a step of `duration` (s): as measured by the gyro, or by the wheels if the gyro has not
+    def turn(self, duration: float, wheels: Measurement | None, gyro: Measurement | None, forward: float = 0.0) -> Yaw:
+        """Return the Yaw of a step of `duration` (s): as measured by the gyro, or by the wheels if the gyro has not
         measured it, or so many of its readings are missing that the wheels are more certain."""
         compared = by_wheels = None
         if wheels:
             angle = wheels[0] * (1 - self.prior.slip_turning) + self.state[CURVATURE] * forward
-            by_wheels = Turn(angle, self.wheel_variance(wheels, forward), (0.0, forward, 0.0, -wheels[0]))
+            by_wheels = Yaw(angle, self.wheel_variance(wheels, forward), (0.0, forward, 0.0, -wheels[0]))
         if gyro:
             angle = gyro[0] - self.bias * duration
             if by_wheels and wheels:
@@ -136,12 +135,12 @@ class Filter:
                     return by_wheels
                 if duration < WINDOW_TIME:      # a longer step is no part of a window
                     compared = Sums(duration, wheels[0], by_wheels.angle, angle, forward, by_wheels.variance)
-            return Turn(angle, gyro[1], (-duration, 0.0, -angle, 0.0), compared)
-        return by_wheels or Turn(0.0, 0.0, (0.0, 0.0, 0.0, 0.0))
+            return Yaw(angle, gyro[1], (-duration, 0.0, -angle, 0.0), compared)
+        return by_wheels or Yaw(0.0, 0.0, (0.0, 0.0, 0.0, 0.0))
 
-    def step(self, duration: float, turn: Turn, direction: float = 0.0, forward: float = 0.0, left: float = 0.0,
+    def step(self, duration: float, turn: Yaw, direction: float = 0.0, forward: float = 0.0, left: float = 0.0,
              reported: float = 0.0) -> None:
-        """Make a step of `duration` (s) with a Turn and a displacement.
+        """Make a step of `duration` (s) with a Yaw and a displacement.
 
         forward, left: displacement (m) measured by the wheels, in a frame that is rotated by `direction` (rad) relative
         to the robot's own frame halfway through the turn; reported: its variance, m^2.
@@ -234,9 +233,10 @@ class Filter:
         self.window = Window()
         self.P[WINDOW] = self.P[:, WINDOW] = self.drift[WINDOW] = 0.0
 
-    def compare(self) -> Verdict | None:
-        """Compare the turns that wheels and gyro have measured. Returns a Verdict at the end of a window."""
-        sums = self.window.complete()
+    def close_window(self) -> Verdict | None:
+        """If the window is complete, compare the turns of wheels and gyro, change the errors that may explain a
+        difference, and return the Verdict."""
+        sums = self.window.close()
         if not sums:
             return None
         doubted = self._judge(sums)

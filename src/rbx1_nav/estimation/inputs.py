@@ -4,7 +4,7 @@ from __future__ import annotations
 from math import hypot
 from typing import NamedTuple
 
-from rbx1_nav.estimation.priors import Limits
+from rbx1_nav.estimation.priors import Bounds
 from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.robot.readings import MIN_VARIANCE
 from rbx1_nav.units import SECOND, wrap_angle
@@ -81,8 +81,8 @@ def distance(one: Odom, other: Odom) -> float:
     return hypot(other.pose.x - one.pose.x, other.pose.y - one.pose.y)
 
 
-def has_jumped(before: Odom, odom: Odom, limits: Limits) -> bool:
-    """Return whether no robot within its Limits can have moved from one Odom to another in the time between them."""
+def has_jumped(before: Odom, odom: Odom, limits: Bounds) -> bool:
+    """Return whether no robot within its Bounds can have moved from one Odom to another in the time between them."""
     elapsed = (odom.stamp - before.stamp) / SECOND
     return (distance(before, odom) > limits.max_speed * elapsed + JUMP_TOLERANCE
             or abs(wrap_angle(odom.pose.yaw - before.pose.yaw)) > limits.max_turn_rate * elapsed + JUMP_TOLERANCE)

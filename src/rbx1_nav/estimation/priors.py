@@ -9,7 +9,7 @@ from typing import NamedTuple, Protocol
 MIN_SPREADS = dict(gyro_scale_error=0.003, slip_turning_spread=0.05, slip_straight_spread=0.02, curvature_spread=0.02)
 
 
-class Limits(NamedTuple):
+class Bounds(NamedTuple):
     """The limits of a robot; the defaults suit robots up to 5 m/s, with a margin for the noise of the odometry."""
     max_speed: float = 6.0                  # m/s: odometry that moves faster has jumped
     max_turn_rate: float = 6.0              # rad/s: odometry that turns faster has jumped
@@ -42,7 +42,7 @@ class Floor(Protocol):
 
 # any floor. The noise was measured with five real robots, config/surfaces/create_lab_floor.yaml; the spreads are as
 # wide as the differences between the slips of all files
-UNKNOWN_FLOOR = Priors(0.0, 0.05, 0.0, 0.3, 0.0, Limits().gyro_scale_error, Limits().max_turn_rate, 0.084, 0.066, 0.044,
+UNKNOWN_FLOOR = Priors(0.0, 0.05, 0.0, 0.3, 0.0, Bounds().gyro_scale_error, Bounds().max_turn_rate, 0.084, 0.066, 0.044,
                        0.05)
 
 

@@ -72,8 +72,8 @@ class Standstill:
         self.undecided = Part()     # parts with a steady rate that is not known to be the bias
         self.last: Part | None = None       # the last Part that was used
 
-    def rests(self, stamp: int, pose: Pose) -> bool:
-        """Return whether the wheels are at rest at the Pose with this stamp (ns)."""
+    def follow(self, stamp: int, pose: Pose) -> bool:
+        """Store the Pose with this stamp (ns), and return whether the wheels are at rest there."""
         last = self.pose
         if (last is None or abs(pose.x - last.x) > SAME or abs(pose.y - last.y) > SAME
                 or abs(wrap_angle(pose.yaw - last.yaw)) > SAME):

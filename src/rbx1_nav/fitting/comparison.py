@@ -5,12 +5,12 @@ from typing import Callable, Iterable, Iterator, NamedTuple, Sequence
 
 import numpy
 
-from rbx1_nav.arrays import Array
-from rbx1_nav.fitting.floor import Prediction, Windows, integrate
+from rbx1_nav.fitting.floor import Prediction, integrate
 from rbx1_nav.fitting.recording import Recording, relative
-from rbx1_nav.fitting.run import PreparedRun
-from rbx1_nav.simulation.floor_noise import CELL_TRAVELLED, CELL_TURNED
+from rbx1_nav.fitting.run import PreparedRun, Windows
+from rbx1_nav.simulation.floor_noise import KINDS, cell_errors
 from rbx1_nav.simulation.surfaces import Surface
+from rbx1_nav.units import Array
 
 ENDS = 500      # number of simulated end poses per run
 LONG = 60.0     # s: longer runs are compared in parts, each of which starts at the true pose
@@ -18,34 +18,21 @@ PART = 20.0     # s: length of a part
 MAX_SHOWN = 12  # number of runs or parts
 
 
-def cell_noise(generator: numpy.random.Generator, count: int, path: Array, cell: float) -> Array:
-    """Return the errors (count, m) in each of m steps of `path` due to noise of strength 1. This is
-    simulation.floor_noise.Noise in arrays."""
-    borders = numpy.concatenate([[0.0], numpy.cumsum(path)]) / cell + generator.random((count, 1))
-    number = borders.astype(int)
-    sums = numpy.cumsum(generator.laplace(0.0, (cell / 2) ** 0.5, (count, number[:, -1].max() + 1)), axis=1)
-    sums = numpy.concatenate([numpy.zeros((count, 1)), sums], axis=1)
-    before = numpy.take_along_axis(sums, number, axis=1)
-    after = numpy.take_along_axis(sums, number + 1, axis=1)
-    return numpy.diff(before + (borders - number) * (after - before), axis=1)
-
-
 def simulate_paths(surface: Surface, prediction: Prediction, index: int, count: int,
                    generator: numpy.random.Generator) -> Array:
     """Return x, y (m) and yaw (rad) after each step of a window of a Prediction, in `count` separate runs on a Surface.
     The shape is (count, 3, steps)."""
     straight, turn = prediction.straight[index], prediction.turn[index]
-    angle = numpy.repeat(prediction.angle[index][None], count, axis=0)
-    distance = numpy.repeat(prediction.distance[index][None], count, axis=0)
-    for strength, errors, path, cell in (
-            (surface.heading_noise_turning, angle, abs(turn), CELL_TURNED),
-            (surface.heading_noise_straight, angle, abs(straight), CELL_TRAVELLED),
-            (surface.distance_noise, distance, abs(straight), CELL_TRAVELLED)):
+    errors = {'angle': numpy.repeat(prediction.angle[index][None], count, axis=0),
+              'distance': numpy.repeat(prediction.distance[index][None], count, axis=0)}
+    paths = prediction.paths()
+    for key, kind in KINDS.items():
+        strength = getattr(surface, key)
         if strength:
-            errors += strength * cell_noise(generator, count, path, cell)
-    angle -= surface.slip_turning_spread * generator.standard_normal((count, 1)) * turn
-    distance -= surface.slip_straight_spread * generator.standard_normal((count, 1)) * straight
-    return numpy.stack(integrate(distance, angle), axis=1)
+            errors[kind.error] += strength * cell_errors(generator, count, paths[kind.path][index], kind.cell)
+    errors['angle'] -= surface.slip_turning_spread * generator.standard_normal((count, 1)) * turn
+    errors['distance'] -= surface.slip_straight_spread * generator.standard_normal((count, 1)) * straight
+    return numpy.stack(integrate(errors['distance'], errors['angle']), axis=1)
 
 
 def simulate_ends(surface: Surface, prediction: Prediction, index: int, count: int,

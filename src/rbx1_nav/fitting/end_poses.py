@@ -14,11 +14,12 @@ from scipy.optimize import minimize_scalar
 from scipy.stats import chi2, f as f_distribution
 
 from rbx1_nav.config import ConfigError, Section, load_yaml, show, show_name
-from rbx1_nav.fitting.floor import NOISES, SPREADS, Windows, with_values
+from rbx1_nav.fitting.floor import SPREADS, with_values
 from rbx1_nav.fitting.floor_fit import MEANS, Fitter
-from rbx1_nav.fitting.run import PreparedRun
+from rbx1_nav.fitting.run import PreparedRun, Windows
 from rbx1_nav.robot.kinematics import Pose
-from rbx1_nav.simulation.surfaces import Surface
+from rbx1_nav.simulation.floor_noise import NOISES
+from rbx1_nav.simulation.surfaces import Surface, floor_travel
 
 FARTHEST, MOST = 1000.0, 36000.0    # m, degrees
 ERRORS = dict(position_error=(1e-4, 10.0, 0.01, 'm'), heading_error=(0.01, 90.0, 2.0, 'degrees'))
@@ -124,7 +125,7 @@ def fit_ends(runs: Sequence[PreparedRun], surface: Surface, end_errors: Sequence
 def ends_of(run: PreparedRun, surface: Surface) -> Windows:
     """Return the single window of a run, with the heading closest to the prediction of a Surface."""
     steps = run.steps(surface)
-    yaw = (1 - surface.slip_turning) * steps.turn.sum() + surface.curvature * steps.straight.sum()
+    _, yaw = floor_travel(surface, surface, float(steps.straight.sum()), float(steps.turn.sum()))
     return run.whole(yaw)
 
 

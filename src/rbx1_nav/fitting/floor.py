@@ -1,46 +1,25 @@
-"""The floor model in arrays: the pose that results from wheel travel in Steps, and its covariance.
+"""The prediction of end poses from wheel travel, for many windows at once, and its covariance.
 
-The model matches simulation/wheels.py and simulation/floor_noise.py, for many windows at once. Covariances are
-propagated to first order: each error turns or shifts the rest of the path.
+Covariances are propagated to first order: each error turns or shifts the rest of the path.
 """
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Mapping, NamedTuple
+from typing import Mapping
 
 import numpy
 
-from rbx1_nav.arrays import Array
-from rbx1_nav.fitting.travel import Steps
-from rbx1_nav.simulation.floor_noise import CELL_TRAVELLED, CELL_TURNED
-from rbx1_nav.simulation.surfaces import Surface
+from rbx1_nav.fitting.run import Steps, Windows
+from rbx1_nav.simulation.floor_noise import KINDS, NOISES, NoiseKind, cell_covariance
+from rbx1_nav.simulation.surfaces import Surface, floor_travel
+from rbx1_nav.units import Array
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-NOISES = ('heading_noise_turning', 'heading_noise_straight', 'distance_noise')
 SPREADS = ('slip_straight_spread', 'slip_turning_spread')
-ROWS = 256      # rows of a matrix that are computed at a time
-
-
-class Windows(NamedTuple):
-    """Parts of a recording with measured end poses."""
-
-    first: NDArray[numpy.int_]      # (n,), index of the first step of each window
-    length: int     # number of steps in each window
-    ends: Array     # (n, 3), end poses in the frame of the start of each window: x, y (m), yaw (rad)
 
 
 def with_values(surface: Surface, values: Mapping[str, float]) -> Surface:
     """Return a copy of a Surface with the given values."""
     # passing the name shows mypy that no value is meant for it
     return surface._replace(name=surface.name, **values)
-
-
-def floor_travel(surface: Surface, straight: Array, turn: Array) -> tuple[Array, Array]:
-    """Return the (distance in m, angle in rad) that a robot travels without noise. straight, turn: wheel travel."""
-    distance = straight * (1 - surface.slip_straight)
-    distance = numpy.sign(distance) * numpy.maximum(0.0, abs(distance) - surface.turning_loss * abs(turn))
-    return distance, turn * (1 - surface.slip_turning) + surface.curvature * straight
 
 
 def integrate(distance: Array, angle: Array) -> tuple[Array, Array, Array]:
@@ -51,25 +30,6 @@ def integrate(distance: Array, angle: Array) -> tuple[Array, Array, Array]:
     return numpy.cumsum(chord * numpy.cos(middle), axis=-1), numpy.cumsum(chord * numpy.sin(middle), axis=-1), yaw
 
 
-def cell_covariance(derivatives: Array, path: Array, cell: float) -> Array:
-    """Return the covariance (k, k) of k values with these derivatives (k, m) with respect to the errors in m steps of a
-    path, due to noise of strength 1 with cells.
-
-    The errors between two points have the variance cell * (apart - 1/3 + near ** 3 / 3), for a random position of the
-    cells, where `apart` is the distance of the points in cells, and near = max(0, 1 - apart). White noise has the
-    first term only. The second one cancels out.
-    """
-    covariance: Array = derivatives * path @ derivatives.T
-    position = numpy.append(0.0, numpy.cumsum(path)) / cell
-    change = numpy.diff(derivatives, prepend=0.0, append=0.0)
-    for first in range(0, len(position), ROWS):     # the whole matrix may need gigabytes
-        rows = position[first:first + ROWS]
-        low, high = numpy.searchsorted(position, (rows[0] - 1, rows[-1] + 1))
-        near = numpy.maximum(0, 1 - abs(rows[:, None] - position[low:high]))
-        covariance -= cell / 6 * change[:, first:first + ROWS] @ (near * near * near) @ change[:, low:high].T
-    return covariance
-
-
 class Prediction:
     """The prediction of a Surface for n windows of m steps."""
 
@@ -78,7 +38,8 @@ class Prediction:
         part = windows.first[:, None] + numpy.arange(windows.length)
         self.straight: Array = steps.straight[part]     # (n, m)
         self.turn: Array = steps.turn[part]     # (n, m)
-        self.distance, self.angle = floor_travel(surface, self.straight, self.turn)
+        self.distance, self.angle = floor_travel(surface, surface, self.straight, self.turn, numpy.copysign,
+                                                 numpy.maximum)
         self.path = integrate(self.distance, self.angle)
         self.means = numpy.stack([values[:, -1] for values in self.path], axis=1)   # (n, 3)
         self.errors = windows.ends - self.means
@@ -94,18 +55,23 @@ class Prediction:
         middle = yaw - self.angle / 2
         by_heading = numpy.stack([y - y[:, -1:], x[:, -1:] - x, numpy.ones_like(x)], axis=1)    # (n, 3, m)
         by_distance = numpy.stack([numpy.cos(middle), numpy.sin(middle), numpy.zeros_like(x)], axis=1)
-        turned, travelled = numpy.abs(self.turn)[:, None], numpy.abs(self.straight)[:, None]
+        paths = self.paths()
+        derivatives = {'angle': by_heading, 'distance': by_distance}
 
-        def along(derivatives: Array, weights: Array, cell: float) -> Array:
+        def covariances(kind: NoiseKind) -> Array:
+            along, path = derivatives[kind.error], paths[kind.path]
             if by_cells:
-                return numpy.stack([cell_covariance(one, path[0], cell) for one, path in zip(derivatives, weights)])
-            return derivatives * weights @ derivatives.transpose(0, 2, 1)
+                return numpy.stack([cell_covariance(*each, kind.cell) for each in zip(along, path)])
+            white: Array = along * path[:, None] @ along.transpose(0, 2, 1)
+            return white
 
-        return {'heading_noise_turning': along(by_heading, turned, CELL_TURNED),
-                'heading_noise_straight': along(by_heading, travelled, CELL_TRAVELLED),
-                'distance_noise': along(by_distance, travelled, CELL_TRAVELLED),
+        return {**{key: covariances(kind) for key, kind in KINDS.items()},
                 'slip_straight_spread': -(by_distance @ self.straight[..., None])[..., 0],
                 'slip_turning_spread': -(by_heading @ self.turn[..., None])[..., 0]}
+
+    def paths(self) -> dict[str, Array]:
+        """Return the (n, m) lengths of the steps of both kinds of path of a NoiseKind."""
+        return {'travelled': numpy.abs(self.straight), 'turned': numpy.abs(self.turn)}
 
 
 class Covariance:

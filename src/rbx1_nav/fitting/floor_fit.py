@@ -11,18 +11,16 @@ from typing import Callable, Protocol, Sequence
 import numpy
 from scipy.optimize import OptimizeResult, approx_fprime, brentq, least_squares, minimize
 
-from rbx1_nav.arrays import Array
-from rbx1_nav.fitting.floor import Covariance, Prediction, Windows, with_values
-from rbx1_nav.fitting.run import PreparedRun
-from rbx1_nav.simulation.surfaces import Surface
+from rbx1_nav.fitting.floor import Covariance, Prediction, with_values
+from rbx1_nav.fitting.run import PreparedRun, Windows
+from rbx1_nav.simulation.surfaces import KEYS, Surface
+from rbx1_nav.units import Array
 
 # key: step of a numerical derivative; standard error above which the recordings do not determine the value
 MEANS = {'delay': (0.01, 0.1), 'lag': (0.01, 0.1), 'slip_straight': (1e-3, 0.05), 'slip_turning': (1e-3, 0.05),
          'curvature': (1e-3, 0.2), 'turning_loss': (1e-3, 0.05), 'drag_straight': (1e-4, 0.01),
          'drag_turning': (1e-4, 0.01)}
-BOUNDS: dict[str, tuple[float, float]] = {
-    'delay': (0, 5), 'lag': (1e-3, 60), 'slip_straight': (-0.5, 0.5), 'slip_turning': (-0.5, 0.5),
-    'curvature': (-10, 10), 'turning_loss': (0, 1), 'drag_straight': (1e-6, 10), 'drag_turning': (1e-6, 10)}
+BOUNDS = {**{key: KEYS[key].limits for key in MEANS}, 'lag': (1e-3, 60.0)}
 ROUNDS = 3
 VAGUE_MEAN = 100    # prior 1 sigma of a value, in units of its largest standard error
 VAGUE = 0.5     # 1 sigma of the logarithm of a strength above which the strength may be 0

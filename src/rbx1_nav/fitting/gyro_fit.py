@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Sequence
 import numpy
 from scipy.stats import chi2, norm
 
-from rbx1_nav.arrays import Array
 from rbx1_nav.fitting.recording import Rates, Recording, Track
 from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.simulation.gyro import NOISE_RATE
+from rbx1_nav.units import Array
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, NamedTuple, Sequence
 import numpy
 from scipy.optimize import least_squares
 
-from rbx1_nav.arrays import Array
 from rbx1_nav.fitting.floor import with_values
 from rbx1_nav.fitting.floor_fit import BOUNDS
 from rbx1_nav.fitting.recording import Recording, Track
-from rbx1_nav.fitting.travel import commanded_travel, reported_travel
+from rbx1_nav.fitting.run import commanded_travel, reported_travel
 from rbx1_nav.simulation.surfaces import Surface
+from rbx1_nav.units import Array
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

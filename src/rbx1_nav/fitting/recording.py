@@ -13,11 +13,10 @@ import warnings
 
 import numpy
 
-from rbx1_nav.arrays import Array
 from rbx1_nav.config import ConfigError, show, show_name
 from rbx1_nav.robot.description import Robot
 from rbx1_nav.robot.kinematics import Pose
-from rbx1_nav.units import SECOND
+from rbx1_nav.units import SECOND, Array
 
 LARGEST = 1e10      # s, m, ...: largest number allowed in a run
 MIN_TRAVEL, MIN_TURN = 0.02, 0.1    # m, rad: thresholds for motion

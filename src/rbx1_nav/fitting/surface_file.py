@@ -6,10 +6,10 @@ from typing import Sequence
 import numpy
 
 from rbx1_nav.config import as_yaml_number, show_name
-from rbx1_nav.fitting.surface_fit import FitResult, Value, limits_of
+from rbx1_nav.fitting.surface_fit import FitResult, Value
 from rbx1_nav.simulation.surfaces import KEYS
 
-PARTS = (
+PARTS = [
     ('Motors: delay and lag after a command, and the speed that a wheel loses by drag.',
      ('delay', 'lag', 'accel_limit', 'drag_straight', 'drag_turning')),
     ('Slip: the fraction of the wheel travel that is lost, and its spread from run to run.',
@@ -19,7 +19,8 @@ PARTS = (
      ('heading_noise_turning', 'heading_noise_straight', 'distance_noise')),
     ('Encoders.', ('ticks_meter',)),
     ('Gyro: bias and scale error are constant in a run.',
-     ('gyro_noise', 'gyro_bias', 'gyro_scale_error', 'gyro_measurement_range')))
+     ('gyro_noise', 'gyro_bias', 'gyro_scale_error', 'gyro_measurement_range'))]
+PARTS.append(('Others.', tuple(key for key in KEYS if not any(key in keys for _, keys in PARTS))))
 WIDTH = 117     # of a line
 
 
@@ -36,9 +37,10 @@ def shown(value: Value) -> tuple[str, str | None]:
 def yaml_number(value: Value) -> str:
     """Return a Value as a YAML number within the range of its key."""
     text = shown(value)[0]
-    low, high = (KEYS[value.key].from_si(limit) for limit in limits_of(value.key))
+    key = KEYS[value.key]
+    low, high = map(key.from_si, key.limits)
     if not low <= float(text) <= high:      # due to rounding
-        text = repr(KEYS[value.key].from_si(value.value))
+        text = repr(key.from_si(value.value))
         text = text if low <= float(text) <= high else repr(low if float(text) < low else high)
     return as_yaml_number(text) if 'e' in text else text
 
@@ -74,7 +76,7 @@ def surface_text(result: FitResult, start_name: str, names: Sequence[str]) -> st
         lines += wrapped(f'Warning: {text}.')
     values = {value.key: value for value in result.values}
     for title, keys in PARTS:
-        lines += ['', *wrapped(title)]
+        lines += ['', *wrapped(title)] if keys else []
         for key in keys:
             setting = f'{key}: {yaml_number(values[key])}'
             lines.append(f'{setting:<36} # {comment(values[key])}')

@@ -8,12 +8,13 @@ import numpy
 
 from rbx1_nav.config import ConfigError
 from rbx1_nav.fitting.end_poses import TYPICAL, fit_ends
-from rbx1_nav.fitting.floor import NOISES, SPREADS, Covariance, with_values
+from rbx1_nav.fitting.floor import SPREADS, Covariance, with_values
 from rbx1_nav.fitting.floor_fit import BOUNDS, MEANS, MIN_STRENGTH, Fitter, fit_floor
 from rbx1_nav.fitting.gyro_fit import fit_gyro, rests_at
 from rbx1_nav.fitting.motor_fit import KEYS as MOTOR_KEYS, LIMITS, fit_motors
 from rbx1_nav.fitting.recording import CAMERAS, Recording
 from rbx1_nav.fitting.run import PreparedRun
+from rbx1_nav.simulation.floor_noise import NOISES
 from rbx1_nav.simulation.surfaces import KEYS, Surface
 
 FLOOR = ('slip_straight', 'slip_turning', 'curvature', 'turning_loss')
@@ -54,10 +55,9 @@ class WholeFit:
     """Fits all parts of a surface."""
 
     def __init__(self, recordings: Sequence[Recording], base_width: float, start: Surface,
-                 end_errors: tuple[float, float, float] | None = None,
-                 progress: Callable[[str], object] = lambda part: None) -> None:
+                 end_errors: tuple[float, float, float] | None = None) -> None:
         """recordings: with equal series, see check_alike(); base_width: m; end_errors: 1 sigma of end poses measured by
-        hand: x, y (m), yaw (rad); progress(part): called with the name of each part before it is fitted."""
+        hand: x, y (m), yaw (rad). Raises ConfigError."""
         check_alike(recordings)
         self.recordings = recordings
         self.base_width = base_width
@@ -69,6 +69,10 @@ class WholeFit:
         self.notes: list[str] = []
         self.description = 'motors and gyro'
         self.has_odometry = recordings[0].odometry is not None
+
+    def run(self, progress: Callable[[str], object] = lambda part: None) -> FitResult:
+        """Fit all parts. progress(part): called with the name of each part before it is fitted. Raises ConfigError."""
+        recordings = self.recordings
         if self.has_odometry:
             progress('motors')
             self._fit_motors()
@@ -81,25 +85,20 @@ class WholeFit:
             raise ConfigError(f'{recordings[0].name}: neither odometry nor truth: expected at least one of them')
         progress('gyro')
         self._fit_gyro()
-
-    def result(self) -> FitResult:
-        """Return the FitResult."""
-        values = []
-        for key in KEYS:
-            error = self.errors.get(key)
-            reason = None if error is not None else self.reasons.get(key, 'not determined by these runs')
-            values.append(Value(key, getattr(self.surface, key), error, reason))
+        values = [Value(key, getattr(self.surface, key), self.errors.get(key),
+                        None if key in self.errors else self.reasons.get(key, 'not determined by these runs'))
+                  for key in KEYS]
         return FitResult(self.surface, values, self.warnings, self.description, self.notes)
 
     def _set(self, key: str, value: float, error: float, bounds: tuple[float, float] | None = None) -> bool:
         """Accept a fitted value unless its standard error is too large. Returns whether it was accepted."""
-        low, high = bounds or limits_of(key)
+        low, high = bounds or KEYS[key].limits
         if not error <= LARGEST[key]:
             self.reasons[key] = f'found {value:.3g} +- {error:.2g}: too uncertain'
             return False
         if bounds and (value <= low * 1.001 + 1e-9 or value >= high * 0.999) and low != 0:
             self.warnings.append(f'{key}: {value:.4g}: at the limit of its range')
-        self.surface = with_values(self.surface, {key: float(numpy.clip(value, *limits_of(key)))})
+        self.surface = with_values(self.surface, {key: float(numpy.clip(value, *KEYS[key].limits))})
         self.errors[key] = float(error)
         self.reasons.pop(key, None)
         return True
@@ -217,12 +216,6 @@ class WholeFit:
                 self.reasons[key] = f'found {value:.2g}: smaller than its uncertainty'
             else:
                 self._set(key, value, error)
-
-
-def limits_of(key: str) -> tuple[float, float]:
-    """Return the (lowest, highest) value of a key, in SI units."""
-    found = KEYS[key]
-    return found.to_si(found.low), found.to_si(found.high)
 
 
 def check_alike(recordings: Sequence[Recording]) -> None:

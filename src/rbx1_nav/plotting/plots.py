@@ -13,13 +13,12 @@ from typing import TYPE_CHECKING, Iterable, Mapping, Sequence, Tuple
 
 import numpy
 
-from rbx1_nav.arrays import Array
 from rbx1_nav.config import ConfigError
 from rbx1_nav.files import check_writable, write_file
 from rbx1_nav.fitting.comparison import Comparison, mahalanobis, shares
 from rbx1_nav.robot.kinematics import ORIGIN, Pose
 from rbx1_nav.simulation.exercise import SimulationResult
-from rbx1_nav.units import rounded
+from rbx1_nav.units import Array, rounded
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -10,13 +10,13 @@ import numpy
 import rosbag
 from sensor_msgs.msg import Imu
 
-from rbx1_nav.arrays import Array
 from rbx1_nav.config import ConfigError, show_name
 from rbx1_nav.estimation.inputs import JUMP_TOLERANCE
-from rbx1_nav.estimation.priors import Limits
+from rbx1_nav.estimation.priors import Bounds
 from rbx1_nav.fitting.recording import Commands, Rates, Recording, Track, check_recording
 from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.ros.messages import yaw_of
+from rbx1_nav.units import Array
 
 
 class TopicNames(NamedTuple):
@@ -135,7 +135,7 @@ def check_jumps(name: str, topic: str, poses: Track | None) -> None:
     if poses is None:
         return
     steps = numpy.hypot(numpy.diff(poses.x), numpy.diff(poses.y))
-    jumps = numpy.flatnonzero(steps > Limits().max_speed * numpy.diff(poses.time) + JUMP_TOLERANCE)
+    jumps = numpy.flatnonzero(steps > Bounds().max_speed * numpy.diff(poses.time) + JUMP_TOLERANCE)
     if len(jumps):
         first = jumps[0]
         elapsed = poses.time[first + 1] - poses.time[first]

@@ -10,14 +10,13 @@ import numpy
 import rospy
 from sensor_msgs.msg import Imu, JointState
 
-from rbx1_nav.arrays import Array
 from rbx1_nav.config import show
 from rbx1_nav.estimation.gyro_input import ImuData
 from rbx1_nav.estimation.inputs import MAX_VARIANCE, Odom, check, check_number, check_variance
 from rbx1_nav.robot.description import Joint
 from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.robot.readings import MEASURED, Reading, Uncertainty
-from rbx1_nav.units import wrap_angle
+from rbx1_nav.units import Array, wrap_angle
 
 ROUNDING = 1e-6     # tolerance for rounding errors of a received correlation
 UNKNOWN = 1e6       # variance of a quantity that is not measured, as in diff_drive_controller and robot_pose_ekf

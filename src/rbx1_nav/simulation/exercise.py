@@ -8,17 +8,15 @@ from functools import partial
 from math import pi
 from typing import Callable, Iterator, Mapping, NamedTuple, Sequence
 
-from rbx1_nav.arrays import Array
-from rbx1_nav.control.legs import Leg, out_and_back_by_odometry
-from rbx1_nav.control.motions import Motion, out_and_back
+from rbx1_nav.control.legs import Leg, Motion, out_and_back, out_and_back_by_odometry
 from rbx1_nav.estimation.combined_odometry import CombinedOdometry
-from rbx1_nav.estimation.priors import Priors, priors
 from rbx1_nav.estimation.inputs import Imu, Odom
+from rbx1_nav.estimation.priors import Priors, priors
 from rbx1_nav.robot.description import Robot
 from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.simulation.base import make_base
 from rbx1_nav.simulation.surfaces import Surface
-from rbx1_nav.units import SECOND
+from rbx1_nav.units import SECOND, Array
 
 METHODS = ('timed', 'odom', 'ekf')
 

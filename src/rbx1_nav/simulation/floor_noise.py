@@ -3,11 +3,31 @@ from __future__ import annotations
 
 from math import log
 import random
+from typing import NamedTuple
+
+import numpy
 
 from rbx1_nav.simulation.surfaces import Surface
+from rbx1_nav.units import Array
 
 CELL_TURNED = 0.25      # rad } cell sizes, determined from recordings of five Creates: docs/real_runs.md
 CELL_TRAVELLED = 0.1    # m   }
+ROWS = 256      # rows of a matrix that are computed at a time
+
+
+class NoiseKind(NamedTuple):
+    """What a noise of a surface does."""
+
+    error: str      # what it changes: angle (rad) or distance (m)
+    path: str       # along which it varies: turned (rad) or travelled (m)
+    cell: float     # length of a cell of this path
+
+
+# by the key of the surface, whose value is the strength
+KINDS = {'heading_noise_turning': NoiseKind('angle', 'turned', CELL_TURNED),
+         'heading_noise_straight': NoiseKind('angle', 'travelled', CELL_TRAVELLED),
+         'distance_noise': NoiseKind('distance', 'travelled', CELL_TRAVELLED)}
+NOISES = tuple(KINDS)
 
 
 class Noise:
@@ -48,12 +68,9 @@ class Roughness:
     """The motion errors of one run as a function of the wheel travel."""
 
     def __init__(self, surface: Surface, seed: int) -> None:
-        def noise(key: str, cell: float) -> Noise:
-            # one generator each: with a shared one, the length of the steps would determine which noise draws next
-            return Noise(getattr(surface, key), cell, random.Random(f'{key} {seed}'))
-        self.turning = noise('heading_noise_turning', CELL_TURNED)
-        self.heading = noise('heading_noise_straight', CELL_TRAVELLED)
-        self.distance = noise('distance_noise', CELL_TRAVELLED)
+        # one generator each: with a shared one, the length of the steps would determine which noise draws next
+        self.turning, self.heading, self.distance = (
+            Noise(getattr(surface, key), kind.cell, random.Random(f'{key} {seed}')) for key, kind in KINDS.items())
 
     def over(self, straight: float, turn: float) -> tuple[float, float]:
         """Return the errors of distance (m) and angle (rad) while the wheels travel `straight` (m) and `turn` (rad)."""
@@ -67,5 +84,35 @@ class Roughness:
 
 def make_roughness(surface: Surface, seed: int) -> Roughness | None:
     """Return the Roughness of a Surface, or None if the surface has no noise."""
-    return Roughness(surface, seed) if (surface.heading_noise_turning or surface.heading_noise_straight
-                                        or surface.distance_noise) else None
+    return Roughness(surface, seed) if any(getattr(surface, key) for key in NOISES) else None
+
+
+def cell_errors(generator: numpy.random.Generator, count: int, path: Array, cell: float) -> Array:
+    """Return the errors (count, m) in each of m steps of `path` due to Noise of strength 1, with
+    other random numbers."""
+    borders = numpy.concatenate([[0.0], numpy.cumsum(path)]) / cell + generator.random((count, 1))
+    number = borders.astype(int)
+    sums = numpy.cumsum(generator.laplace(0.0, (cell / 2) ** 0.5, (count, number[:, -1].max() + 1)), axis=1)
+    sums = numpy.concatenate([numpy.zeros((count, 1)), sums], axis=1)
+    before = numpy.take_along_axis(sums, number, axis=1)
+    after = numpy.take_along_axis(sums, number + 1, axis=1)
+    return numpy.diff(before + (borders - number) * (after - before), axis=1)
+
+
+def cell_covariance(derivatives: Array, path: Array, cell: float) -> Array:
+    """Return the covariance (k, k) of k values with these derivatives (k, m) with respect to the errors in m steps of a
+    path, due to Noise of strength 1.
+
+    The errors between two points have the variance cell * (apart - 1/3 + near ** 3 / 3), for a random position of the
+    cells, where `apart` is the distance of the points in cells, and near = max(0, 1 - apart). White noise has the
+    first term only. The second one cancels out.
+    """
+    covariance: Array = derivatives * path @ derivatives.T
+    position = numpy.append(0.0, numpy.cumsum(path)) / cell
+    change = numpy.diff(derivatives, prepend=0.0, append=0.0)
+    for first in range(0, len(position), ROWS):     # the whole matrix may need gigabytes
+        rows = position[first:first + ROWS]
+        low, high = numpy.searchsorted(position, (rows[0] - 1, rows[-1] + 1))
+        near = numpy.maximum(0, 1 - abs(rows[:, None] - position[low:high]))
+        covariance -= cell / 6 * change[:, first:first + ROWS] @ (near * near * near) @ change[:, low:high].T
+    return covariance

@@ -1,14 +1,14 @@
 """Simulated wheels: how they follow commands, what their encoders count, and how they move the robot."""
 from __future__ import annotations
 
-from math import copysign, floor, hypot
+from math import floor, hypot
 from typing import Protocol
 
 from rbx1_nav.robot.kinematics import ORIGIN, Odometry
-from rbx1_nav.robot.readings import MEASURED, Uncertainty
+from rbx1_nav.robot.readings import MEASURED, OdometryErrors, Uncertainty
 from rbx1_nav.simulation.floor_noise import Roughness
 from rbx1_nav.simulation.motors import Delay, Motor
-from rbx1_nav.simulation.surfaces import RandomErrors, Surface
+from rbx1_nav.simulation.surfaces import RandomErrors, Surface, floor_travel
 
 
 class Encoder:
@@ -109,6 +109,8 @@ class Wheels:
         self.surface = surface
         self.run = run
         self.roughness = roughness
+        self.noise = OdometryErrors(surface.distance_noise, surface.heading_noise_turning,
+                                    surface.heading_noise_straight)
         self.delay = Delay(surface.delay) if surface.delay else None
         self.straight = Motor(surface.lag, surface.accel_limit, surface.drag_straight)
         self.turning = Motor(surface.lag, surface.accel_limit, surface.drag_turning)
@@ -128,7 +130,7 @@ class Wheels:
             turning = self.turning.travel(angular * self.base_width / 2, duration)
         self._rolling = bool(straight or turning or self.straight.speed or self.turning.speed)
         turn = 2 * turning / self.base_width
-        distance, angle = self._on_the_floor(straight, turn)
+        distance, angle = floor_travel(self.surface, self.run, straight, turn)
         if self.roughness:
             further, more = self.roughness.over(straight, turn)
             distance, angle = distance + further, angle + more
@@ -143,18 +145,7 @@ class Wheels:
 
     def true_velocity(self, *_: float) -> tuple[float, float]:
         """Return the motors' speeds minus slip, whatever is commanded."""
-        return self._on_the_floor(self.straight.speed, 2 * self.turning.speed / self.base_width)
-
-    def _on_the_floor(self, straight: float, turn: float) -> tuple[float, float]:
-        """Return the robot's distance and angle for the travel of its wheels, or its speeds for the wheels' speeds.
-
-        Noise is not included.
-        """
-        surface, run = self.surface, self.run
-        distance = straight * (1 - run.slip_straight)
-        if surface.turning_loss:
-            distance = copysign(max(0.0, abs(distance) - surface.turning_loss * abs(turn)), distance)
-        return distance, turn * (1 - run.slip_turning) + surface.curvature * straight
+        return floor_travel(self.surface, self.run, self.straight.speed, 2 * self.turning.speed / self.base_width)
 
     @property
     def at_rest(self) -> bool:
@@ -184,25 +175,16 @@ class Wheels:
         yaw = hypot(surface.slip_turning, surface.slip_turning_spread) * self._turned
         position = hypot(hypot(surface.slip_straight, surface.slip_straight_spread), yaw) * self._path
         tick = 1 / surface.ticks_meter
-        length, heading = self._noise(self._path, self._turned)
+        length, heading = self.noise.variances(self._path, self._turned)
         position = position ** 2 + tick ** 2 + length + heading * self._path ** 2
         yaw = yaw ** 2 + (tick / self.base_width) ** 2 + heading
         if self.at_rest:
             return Uncertainty(position, yaw, MEASURED, MEASURED)
         wheel = tick ** 2 / 6 / self.window ** 2
         linear, angular = self._velocity
-        length, heading = self._noise(abs(linear), abs(angular))
+        length, heading = self.noise.variances(linear, angular)
         return Uncertainty(position, yaw, MEASURED + wheel / 2 + length / self.window,
                            MEASURED + 2 * wheel / self.base_width ** 2 + heading / self.window)
-
-    def _noise(self, path: float, turned: float) -> tuple[float, float]:
-        """Return the variances that noise adds to the length (m^2) and the heading (rad^2).
-
-        path: m; turned: rad.
-        """
-        surface = self.surface
-        return (surface.distance_noise ** 2 * path,
-                surface.heading_noise_turning ** 2 * turned + surface.heading_noise_straight ** 2 * path)
 
     def reset(self) -> None:
         self.straight.speed = self.turning.speed = 0.0

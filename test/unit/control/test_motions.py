@@ -3,7 +3,7 @@ from math import inf, pi
 
 import pytest
 
-from rbx1_nav.control.motions import out_and_back, ticks
+from rbx1_nav.control.legs import out_and_back, ticks
 
 
 def test_motions_have_the_numbers_of_the_tutorial():

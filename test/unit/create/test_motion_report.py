@@ -1,9 +1,10 @@
 """The reported motion: corrected pose, mean velocity, wheel travel, standstill and variances."""
 import pytest
 
-from rbx1_nav.create.driver.motion import NOWHERE, MotionReport, Travel
+from rbx1_nav.create.driver.motion import NOWHERE, MotionReport
 from rbx1_nav.create.driver.settings import read_settings
 from rbx1_nav.create.protocol import CREATE
+from rbx1_nav.robot.readings import Travel
 from rbx1_nav.units import SECOND
 
 ROUNDING = 0.002, 0.03      # m, rad

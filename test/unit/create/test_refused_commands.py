@@ -5,9 +5,9 @@ import pytest
 
 from rbx1_nav.control.gate import CommandGate, RefusedCommand
 from rbx1_nav.create.driver.acceptance import Acceptance
+from rbx1_nav.create.driver.contact import CLIFFS
 from rbx1_nav.create.driver.motion import NOWHERE, Expected
 from rbx1_nav.create.driver.settings import read_settings
-from rbx1_nav.create.driver.supervisor import CLIFFS
 from rbx1_nav.create.protocol import CREATE
 from rbx1_nav.units import SECOND
 

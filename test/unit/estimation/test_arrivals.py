@@ -1,8 +1,8 @@
 """Stamps are checked at their limits, and silent sensors are detected and reported once."""
 import pytest
 
-from rbx1_nav.estimation.arrivals import IMU, ODOM, Arrivals
 from rbx1_nav.estimation.inputs import RejectedMessage
+from rbx1_nav.estimation.sensors import IMU, ODOM, Arrivals
 from rbx1_nav.units import SECOND
 
 NOW = 1000 * SECOND

@@ -6,10 +6,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rbx1_nav.estimation.doubts import CONTRADICTION, Doubts
 from rbx1_nav.estimation.filter import BIAS, CURVATURE, FIRST_BIAS, SCALE, SLIP_TURNING, WINDOW, X, Y, YAW, Filter
-from rbx1_nav.estimation.priors import UNKNOWN_FLOOR, Limits
-from rbx1_nav.estimation.window import Sums
+from rbx1_nav.estimation.priors import UNKNOWN_FLOOR, Bounds
+from rbx1_nav.estimation.sensors import CONTRADICTION, Doubts
+from rbx1_nav.estimation.turns import Sums
 from rbx1_nav.robot.kinematics import ORIGIN, Pose
 from rbx1_nav.units import SECOND
 from sample_priors import IDEAL
@@ -69,7 +69,7 @@ def test_the_covariance_stays_symmetric_and_positive(steps):
             ekf.learn_bias(turned, 10 ** noise)
         turn = ekf.turn(duration, (turned, 10 ** noise), gyro if sensor < 3 else None, forward)
         ekf.step(duration, turn, 0.0, forward, 0.0, 10 ** noise)
-        ekf.compare()
+        ekf.close_window()
         numpy.testing.assert_array_equal(ekf.covariance, ekf.covariance.T)
         values = numpy.linalg.eigvalsh(ekf.covariance)
         assert values[0] >= -1e-9 * values[-1] and numpy.isfinite(ekf.state).all()
@@ -108,7 +108,7 @@ def test_a_rest_also_corrects_the_heading_since_the_start():
     ekf = Filter(UNKNOWN_FLOOR, ORIGIN)
     turn_by_gyro(ekf, 0.02, 30)
     assert ekf.state[YAW] == pytest.approx(0.6)
-    first = FIRST_BIAS * Limits().gyro_bias
+    first = FIRST_BIAS * Bounds().gyro_bias
     # the bias for 30 s, and the scale error in a turn of 0.6 rad
     assert ekf.covariance[YAW, YAW] == pytest.approx((first * 30) ** 2 + (0.007 * 0.6 / 2) ** 2, rel=0.05)
     ekf.learn_bias(0.02, 1e-9)
@@ -152,7 +152,7 @@ def move(ekf, turns, forward=0.0):
     doubts = []
     for wheels, gyro in turns:
         ekf.step(0.02, ekf.turn(0.02, wheels, gyro, forward), 0.0, forward)
-        verdict = ekf.compare()
+        verdict = ekf.close_window()
         doubts += [verdict[1]] if verdict else []
     return doubts
 
@@ -235,7 +235,7 @@ def report(verdicts, rested=True):
     warnings, doubts, ekf = [], Doubts(warn=lambda text: warnings.append(text)), Filter(UNKNOWN_FLOOR, ORIGIN)
     ekf.rested = rested
     for second, doubted in enumerate(verdicts):
-        doubts.check((Sums(time=20.0, wheels=2.0, gyro=1.0), doubted), ekf, second * SECOND)
+        doubts.report((Sums(time=20.0, wheels=2.0, gyro=1.0), doubted), ekf, second * SECOND)
     return warnings, doubts
 
 

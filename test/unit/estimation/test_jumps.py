@@ -4,7 +4,7 @@ from math import pi
 import pytest
 
 from rbx1_nav.estimation.inputs import Odom, has_jumped
-from rbx1_nav.estimation.priors import Limits
+from rbx1_nav.estimation.priors import Bounds
 from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.units import SECOND
 
@@ -15,7 +15,7 @@ def odom(time, x=0.0, y=0.0, yaw=0.0):
 
 
 @pytest.mark.parametrize('limits, speed, turn_rate', [
-    (Limits(), 6.0, 6.0), (Limits(max_speed=2.0), 2.0, 6.0), (Limits(max_turn_rate=0.5), 6.0, 0.5)])
+    (Bounds(), 6.0, 6.0), (Bounds(max_speed=2.0), 2.0, 6.0), (Bounds(max_turn_rate=0.5), 6.0, 0.5)])
 @pytest.mark.parametrize('elapsed', [0.02, 0.3])
 def test_the_limits_and_the_time_decide(limits, speed, turn_rate, elapsed):
     before = odom(5.0, 1.0, 2.0, 0.3)
@@ -28,5 +28,5 @@ def test_the_limits_and_the_time_decide(limits, speed, turn_rate, elapsed):
 
 
 def test_a_whole_turn_of_the_yaw_is_no_jump():
-    assert not has_jumped(odom(0.0, yaw=pi), odom(0.02, yaw=-pi), Limits())
-    assert not has_jumped(odom(0.0, yaw=0.0), odom(0.02, yaw=4 * pi), Limits())
+    assert not has_jumped(odom(0.0, yaw=pi), odom(0.02, yaw=-pi), Bounds())
+    assert not has_jumped(odom(0.0, yaw=0.0), odom(0.02, yaw=4 * pi), Bounds())

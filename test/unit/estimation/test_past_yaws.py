@@ -1,7 +1,7 @@
 """Past yaws of the filter are interpolated."""
 import pytest
 
-from rbx1_nav.estimation.gyro_turns import PastYaws
+from rbx1_nav.estimation.turns import PastYaws
 
 
 def past(*yaws):
@@ -14,17 +14,25 @@ def past(*yaws):
 
 @pytest.mark.parametrize('time, yaw', [(100, 1.0), (125, 1.5), (200, 3.0), (250, 2.0), (300, 1.0)])
 def test_a_yaw_between_two_times_is_interpolated(time, yaw):
-    assert past((100, 1.0), (200, 3.0), (300, 1.0)).at(time) == pytest.approx(yaw)
+    assert past((100, 1.0), (200, 3.0), (300, 1.0)).take(time) == pytest.approx(yaw)
 
 
 def test_odometry_may_ask_again_for_the_same_or_a_later_time():
     yaws = past((100, 1.0), (200, 3.0), (300, 1.0), (400, 5.0))
-    assert [yaws.at(time) for time in (150, 200, 200, 210, 350, 350, 400)] == pytest.approx(
+    assert [yaws.take(time) for time in (150, 200, 200, 210, 350, 350, 400)] == pytest.approx(
         [2.0, 3.0, 3.0, 2.8, 3.0, 3.0, 5.0])
 
 
+<<<<<<< HEAD
+=======
+def test_the_first_yaw_of_a_time_counts():
+    yaws = past((100, 1.0), (100, 9.0), (200, 3.0), (200, 9.0), (300, 1.0), (150, 9.0))
+    assert [yaws.take(time) for time in (150, 250)] == pytest.approx([2.0, 2.0])
+
+
+>>>>>>> 4dd7ffc (The physics of a floor is written once, and the fit calls it; one name, one thing)
 def test_a_turn_of_the_frame_turns_all_yaws():
     yaws = past((100, 1.0), (200, 3.0), (300, 1.0))
     yaws.turn(0.5)
     yaws.add(400, 7.5)
-    assert [yaws.at(time) for time in (100, 150, 250, 350)] == pytest.approx([1.5, 2.5, 2.5, 4.5])
+    assert [yaws.take(time) for time in (100, 150, 250, 350)] == pytest.approx([1.5, 2.5, 2.5, 4.5])

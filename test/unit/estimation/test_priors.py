@@ -4,7 +4,7 @@ from math import inf
 import pytest
 
 from rbx1_nav.estimation.combined_odometry import CombinedOdometry
-from rbx1_nav.estimation.priors import MIN_SPREADS, UNKNOWN_FLOOR, Limits, Priors, priors
+from rbx1_nav.estimation.priors import MIN_SPREADS, UNKNOWN_FLOOR, Bounds, Priors, priors
 from rbx1_nav.simulation.surfaces import load_surface
 from rbx1_nav.units import SECOND
 from sample_priors import IDEAL, SURFACES
@@ -37,7 +37,7 @@ def test_an_unknown_floor_has_the_noise_of_a_lab_floor_and_any_slip():
 
 
 def test_on_an_unknown_floor_the_limits_are_the_errors_of_the_gyro():
-    limits = Limits(max_turn_rate=2.0, gyro_scale_error=0.03)
+    limits = Bounds(max_turn_rate=2.0, gyro_scale_error=0.03)
     assert CombinedOdometry(UNKNOWN_FLOOR, SECOND, limits=limits).prior == UNKNOWN_FLOOR._replace(
         gyro_scale_error=0.03, gyro_measurement_range=2.0)
     known = UNKNOWN_FLOOR._replace(slip_straight=0.01)

@@ -3,9 +3,9 @@ from math import inf
 
 import pytest
 
-from rbx1_nav.estimation.gyro_turns import Readings
 from rbx1_nav.estimation.inputs import Imu
-from rbx1_nav.estimation.priors import Limits
+from rbx1_nav.estimation.priors import Bounds
+from rbx1_nav.estimation.turns import Readings
 from rbx1_nav.units import SECOND
 
 START = 100 * SECOND
@@ -20,7 +20,7 @@ def ns(time):
 class Gyro:
     """Readings in which a test stores what a gyro reports, as the combined odometry does."""
 
-    def __init__(self, limits=Limits(), rate=0.0):
+    def __init__(self, limits=Bounds(), rate=0.0):
         self.readings = Readings(limits)
         self.readings.last = Imu(START, rate, NOISE)
 
@@ -96,9 +96,9 @@ def test_a_mean_is_the_turn_of_a_long_interval():
 
 @pytest.mark.parametrize('limits, gap, error', [
     # the rate changes by at most 10 rad/s^2, so the turn is wrong by at most 10 * gap^2 / 4
-    (Limits(), 0.4, 10 * 0.4 ** 2 / 4), (Limits(), 1.0, 2.5), (Limits(max_angular_acceleration=2.0), 0.4, 0.08),
+    (Bounds(), 0.4, 10 * 0.4 ** 2 / 4), (Bounds(), 1.0, 2.5), (Bounds(max_angular_acceleration=2.0), 0.4, 0.08),
     # and by at most the greatest turn rate
-    (Limits(), 3.0, 6.0 * 3.0), (Limits(max_turn_rate=0.5), 0.4, 0.5 * 0.4)])
+    (Bounds(), 3.0, 6.0 * 3.0), (Bounds(max_turn_rate=0.5), 0.4, 0.5 * 0.4)])
 def test_lost_readings_make_a_turn_uncertain(limits, gap, error):
     gyro, start = steady(0.02, limits=limits)
     gyro.report((start + gap, 0.0))

@@ -45,14 +45,14 @@ def rest(rates, variance=0.0, time=TIME, **known):
 
 def test_a_slow_motion_adds_up():
     standstill = Standstill(LIMIT)
-    assert [standstill.rests(number * SECOND, Pose(0.6e-4 * number, 0.0, 0.0)) for number in range(4)] == [
+    assert [standstill.follow(number * SECOND, Pose(0.6e-4 * number, 0.0, 0.0)) for number in range(4)] == [
         False, True, False, True]
 
 
 def test_a_whole_turn_of_the_yaw_is_rest():
     standstill = Standstill(LIMIT)
-    standstill.rests(0, Pose(0.0, 0.0, pi))
-    assert standstill.rests(SECOND, Pose(0.0, 0.0, -pi))
+    standstill.follow(0, Pose(0.0, 0.0, pi))
+    assert standstill.follow(SECOND, Pose(0.0, 0.0, -pi))
 
 
 # the first bias

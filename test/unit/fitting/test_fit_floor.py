@@ -3,10 +3,11 @@ from hypothesis import given, strategies as st
 import numpy
 import pytest
 
-from rbx1_nav.fitting.comparison import cell_noise, simulate_ends
-from rbx1_nav.fitting.floor import Covariance, Prediction, Windows, cell_covariance
+from rbx1_nav.fitting.comparison import simulate_ends
+from rbx1_nav.fitting.floor import Covariance, Prediction
 from rbx1_nav.fitting.floor_fit import MEANS, Fitter
-from rbx1_nav.fitting.run import PreparedRun
+from rbx1_nav.fitting.run import PreparedRun, Windows
+from rbx1_nav.simulation.floor_noise import cell_covariance, cell_errors
 from sample_runs import EXERCISE, FLOOR, FORWARD, REST, record
 
 QUIET = 1e-4, 1e-4, 1e-4    # m, m, rad
@@ -25,7 +26,7 @@ def test_the_variance_after_a_path_does_not_depend_on_its_steps(steps, cell, par
 
 def test_the_covariance_is_that_of_simulated_noise():
     path = numpy.array([0.02, 0.3, 0.0, 0.05, 0.2, 0.1])
-    errors = cell_noise(numpy.random.default_rng(1), 100000, path, 0.25)
+    errors = cell_errors(numpy.random.default_rng(1), 100000, path, 0.25)
     # 1 sigma of an estimated variance is 0.5 % for a normal distribution, and 0.8 % for these tails
     assert numpy.cov(errors.T) == pytest.approx(cell_covariance(numpy.eye(len(path)), path, 0.25), abs=0.01)
 

@@ -5,10 +5,10 @@ from hypothesis import given, settings, strategies as st
 import yaml
 
 from rbx1_nav.fitting.surface_file import PARTS, surface_text, table
-from rbx1_nav.fitting.surface_fit import FitResult, Value, limits_of
+from rbx1_nav.fitting.surface_fit import FitResult, Value
 from rbx1_nav.simulation.surfaces import KEYS, Surface, read_surface
 
-VALUES = {key: st.floats(*limits_of(key)) | st.sampled_from(limits_of(key)) for key in KEYS}      # in SI units
+VALUES = {key: st.floats(*KEYS[key].limits) | st.sampled_from(KEYS[key].limits) for key in KEYS}      # in SI units
 ERRORS = st.none() | st.floats(1e-9, 1e4)       # as a fraction of the value
 
 

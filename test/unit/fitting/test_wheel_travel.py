@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rbx1_nav.fitting.recording import Commands, Track
-from rbx1_nav.fitting.travel import STEP, commanded_travel, grid, reported_travel
+from rbx1_nav.fitting.run import STEP, commanded_travel, grid, reported_travel
 from rbx1_nav.robot.kinematics import Pose, arc
 from rbx1_nav.simulation.wheels import Wheels
 from sample_surface import RUN, SURFACE

@@ -19,7 +19,7 @@ TAPE = 0.01, 0.01, radians(2)   # m, m, rad
 
 def fit(recordings, **options):
     """Return (FitResult, {key: Value})."""
-    result = WholeFit(recordings, 0.26, START, **options).result()
+    result = WholeFit(recordings, 0.26, START, **options).run()
     return result, {value.key: value for value in result.values}
 
 

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rbx1_nav.control.gate import CommandGate, RejectedCommand
-from rbx1_nav.control.motions import out_and_back
+from rbx1_nav.control.legs import out_and_back
 from rbx1_nav.robot.description import Limits
 from rbx1_nav.robot.kinematics import ORIGIN, arc
 from rbx1_nav.simulation.base import SimulatedBase

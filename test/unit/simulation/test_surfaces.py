@@ -7,10 +7,10 @@ import pytest
 import yaml
 
 from rbx1_nav.config import ConfigError
-from rbx1_nav.simulation.surfaces import KEYS, draw_run, known_surfaces, load_surface, read_seed, read_surface
+from rbx1_nav.simulation.surfaces import KEYS, Surface, draw_run, known_surfaces, load_surface, read_seed, read_surface
 
 FOLDER = os.path.join(os.path.dirname(__file__), '..', '..', '..', 'config', 'surfaces')
-OPTIONAL = [key for key in KEYS if KEYS[key].optional]
+OPTIONAL = list(Surface._field_defaults)
 KNOWN = ', '.join(known_surfaces(FOLDER))
 
 

@@ -11,15 +11,14 @@ from rbx1_nav.create import protocol
 from rbx1_nav.create.driver import sequences
 from rbx1_nav.create.driver.acceptance import OUTAGE, Acceptance
 from rbx1_nav.create.driver.analog_gyro import AnalogGyro, Step
-from rbx1_nav.create.driver.contact import Contact
+from rbx1_nav.create.driver.contact import WHEEL_DROPS, Contact, Supervisor, causes
 from rbx1_nav.create.driver.exchange import Queries, Sender, is_too_fast
 from rbx1_nav.create.driver.fractions import Fractions
 from rbx1_nav.create.driver.link import Link
 from rbx1_nav.create.driver.motion import (
-    Counter, CounterTravel, EncoderTravel, Expected, Implausible, MotionReport, State, Travel, unknown)
+    Counter, CounterTravel, EncoderTravel, Expected, Implausible, MotionReport, State, unknown)
 from rbx1_nav.create.driver.settings import Settings
-from rbx1_nav.create.driver.supervisor import WHEEL_DROPS, Supervisor, causes
-from rbx1_nav.robot.readings import Reading
+from rbx1_nav.robot.readings import Reading, Travel
 from rbx1_nav.schedule import Schedule
 from rbx1_nav.units import SECOND
 
@@ -226,7 +225,8 @@ class Driver:
     def _step(self, elapsed: float, travel: Travel, expected: Expected, reading: Mapping[str, int]) -> Step:
         """Return the Step for the gyro. expected: travel according to the commands."""
         bits = reading['bumps_and_wheel_drops']
-        variance = travel.angle_variance + self.settings.errors.variances(travel)[1] + self.counter.rounding[1] ** 2
+        _, variance = self.settings.errors.variances(travel.distance, travel.angle)
+        variance = travel.angle_variance + variance + self.counter.rounding[1] ** 2
         return Step(elapsed, travel.angle, variance, (expected.right - expected.left) / self.model.wheel_separation,
                     self.motion.stands and not bits & WHEEL_DROPS,      # a lifted robot may be turned by hand
                     self.supervisor.in_control and self.settings.operation_mode != protocol.PASSIVE, bool(bits),

@@ -19,7 +19,7 @@ REPLY_TIMEOUT = SECOND // 5     # time from a query to the first byte of its rep
 BYTE_TIMEOUT = SECOND // 20     # time between two bytes of a reply
 MEMORY = 0.02                   # weight of the last reply in the share of lost replies, which covers about 50 replies
 
-Reading = Dict[str, int]        # values by the name of the packet
+Values = Dict[str, int]        # values by the name of the packet
 
 
 def is_too_fast(linear: float, angular: float, width: float) -> bool:
@@ -95,7 +95,7 @@ class Layout:
         self.names, self.low, self.high = zip(*((packet.name, packet.low, packet.high) for packet in packets))
         self.format = protocol.packets_format(packets)
 
-    def decode(self, data: bytes) -> Reading | None:
+    def decode(self, data: bytes) -> Values | None:
         """Return the reading in a reply; None if its length or a value is not possible."""
         if len(data) != self.format.size:
             return None
@@ -155,7 +155,7 @@ class Queries:
         """The number of bytes that complete the reply."""
         return self.layout.format.size - len(self.buffer) if self.waiting else 0
 
-    def receive(self, now: int, data: bytes) -> Reading | None:
+    def receive(self, now: int, data: bytes) -> Values | None:
         """Return the reading that these bytes complete, if any. Call accept() or lose_reply() then."""
         if not (data and self.waiting):
             return None

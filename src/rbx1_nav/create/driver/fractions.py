@@ -41,14 +41,14 @@ UNSURE = 0.1            # 1 sigma of a commanded turn that was not read, as a pa
 UNCERTAIN = 1.0         # degrees: a lost turn of this size does not show in the next reading
 
 
-class Turn(NamedTuple):
+class CountedTurn(NamedTuple):
     """A turn in degrees, and its variance in degrees^2 without rounding."""
 
     angle: float
     variance: float
 
 
-NO_TURN = Turn(0.0, 0.0)
+NO_TURN = CountedTurn(0.0, 0.0)
 
 
 def lost_part(lost: float, after: float, reading: float, uncertain: float) -> tuple[float, float]:
@@ -108,7 +108,7 @@ class Fractions:
         """Note that the robot starts to count the angle from 0."""
         self.turn = self.time = self._lost = 0.0
 
-    def update(self, commanded: float, elapsed: float, angle: int | None) -> Turn:
+    def update(self, commanded: float, elapsed: float, angle: int | None) -> CountedTurn:
         """Return the turn since the last update. commanded: commanded turn; elapsed: s; angle: the reading, or None."""
         rate = commanded / elapsed if elapsed > 0 else 0.0
         self._steady = self._steady + elapsed if abs(rate - self._rate) <= 0.2 * abs(rate) else 0.0
@@ -122,10 +122,10 @@ class Fractions:
             self._owed += turn - commanded - ahead
         part = clamp(self._owed, MAX_CORRECTION * elapsed)
         self._owed -= part
-        return Turn(commanded + part, variance)
+        return CountedTurn(commanded + part, variance)
 
-    def _add(self, commanded: float, elapsed: float, angle: int) -> Turn:
-        """Return the Turn since the last reading of the angle."""
+    def _add(self, commanded: float, elapsed: float, angle: int) -> CountedTurn:
+        """Return the CountedTurn since the last reading of the angle."""
         self._count += 1
         if self.hurries and self.time == elapsed and not self._lost:
             if abs(self._rate) * UPDATE_PERIOD * ceil(elapsed / UPDATE_PERIOD) <= BELOW:
@@ -135,15 +135,15 @@ class Fractions:
         tested = self._check(angle) if self._checking else NO_TURN
         turn, variance = self._read(angle)
         self.finish_reading()
-        return Turn(turn + tested.angle, variance + tested.variance)
+        return CountedTurn(turn + tested.angle, variance + tested.variance)
 
-    def _read(self, angle: int) -> Turn:
-        """Return the Turn since the last reading."""
+    def _read(self, angle: int) -> CountedTurn:
+        """Return the CountedTurn since the last reading."""
         lost, sigma = lost_part(self._lost, self.turn - self._lost, angle, UNCERTAIN)
         turn = angle + lost + (copysign(MEAN_LOSS[self.kind], angle) if angle else 0.0)
-        return Turn(turn, sigma ** 2 + (LOSS_VARIANCE if self.kind != KEPT and (angle or self.turn) else 0.0))
+        return CountedTurn(turn, sigma ** 2 + (LOSS_VARIANCE if self.kind != KEPT and (angle or self.turn) else 0.0))
 
-    def _test(self, commanded: float, angle: int) -> Turn:
+    def _test(self, commanded: float, angle: int) -> CountedTurn:
         """Add a reading before which the robot has turned by less than a degree."""
         self._tested += abs(commanded)
         self._tested_turn += commanded
@@ -155,11 +155,11 @@ class Fractions:
             return self._finish_test(self.kind, commanded)
         if part < ENOUGH or self._shown == 0:
             self._checking = part >= ENOUGH
-            return Turn(commanded, 0.0)
+            return CountedTurn(commanded, 0.0)
         # fewer: its wheels were blocked for a part of the time
         return self._finish_test(KEPT if self._shown >= TURNS * part else self.kind, commanded)
 
-    def _check(self, angle: int) -> Turn:
+    def _check(self, angle: int) -> CountedTurn:
         """Check whether a robot that reported zeros turns. angle: the reading after them."""
         share = (angle + copysign(MEAN_LOSS[LOST], angle)) / self.turn if self.turn else 0.0
         if abs(self.turn) < MIN_CHECK or share > 1.5:
@@ -173,8 +173,8 @@ class Fractions:
         self._shown_turn = share * self._tested_turn
         return self._finish_test(LOST, 0.0)
 
-    def _finish_test(self, kind: str, commanded: float) -> Turn:
-        """Return the Turn that replaces the commands during the test by what was read. kind: the result, if any."""
+    def _finish_test(self, kind: str, commanded: float) -> CountedTurn:
+        """Return the CountedTurn that replaces the commands during the test by what was read. kind: the result."""
         if kind == AUTO and self._rounds:   # a check has shown that the robot turned
             self._shown_turn += self._tested_turn * self._rounds * ENOUGH / self._tested
         if kind != self.kind:
@@ -182,7 +182,7 @@ class Fractions:
             if kind == LOST:
                 self._warn('The robot loses fractions of a degree: correcting the odometry. Set '
                            'angle_fractions:=lost to correct it from the start')
-        turn = Turn(commanded + self._shown_turn - self._tested_turn,
+        turn = CountedTurn(commanded + self._shown_turn - self._tested_turn,
                     0.0 if kind == KEPT else (UNSURE * self._tested_turn) ** 2)
         self._begin_test()
         return turn

@@ -7,14 +7,12 @@ from __future__ import annotations
 from math import degrees, hypot, radians
 from typing import Mapping, NamedTuple, Union
 
-from rbx1_nav.arrays import Array
 from rbx1_nav.create.driver.fractions import UNSURE, Fractions, lost_part
 from rbx1_nav.create.driver.settings import Settings
 from rbx1_nav.create.protocol import MAX_SPEED, Model
 from rbx1_nav.robot.kinematics import Pose
-from rbx1_nav.robot.odometry import UncertainOdometry
-from rbx1_nav.robot.readings import MEASURED, Reading
-from rbx1_nav.units import SECOND
+from rbx1_nav.robot.readings import MEASURED, Reading, Travel, UncertainOdometry
+from rbx1_nav.units import SECOND, Array
 
 WHEEL_LIMIT = 1.3 * MAX_SPEED / 1000    # m/s: faster than any wheel
 MARGIN = 0.015          # m of wheel travel that one reading may miss and the next one include
@@ -23,15 +21,6 @@ DOUBT = 0.5             # 1 sigma of a reading if all replies around it are lost
 ANYWHERE = 10.0         # m, 1 sigma of the travel of a robot that has stopped counting
 ROUND = 1 / 12 ** 0.5   # 1 sigma of rounding to a whole number
 STANDSTILL = SECOND // 2    # ns without travel or a command to move, after which the robot is stationary
-
-
-class Travel(NamedTuple):
-    """An arc, with the variances of its length and angle excluding rounding and slip."""
-
-    distance: float             # m
-    angle: float                # rad
-    distance_variance: float    # m^2
-    angle_variance: float       # rad^2
 
 
 class Expected(NamedTuple):
@@ -268,7 +257,7 @@ class MotionReport:
         if elapsed > 0 and (any(self.since) or not self.stands):
             velocity = self.since.distance / elapsed, self.since.angle / elapsed
             # the error is the difference of two rounding errors
-            errors = self.odometry.errors.variances(self.since)
+            errors = self.odometry.errors.variances(self.since.distance, self.since.angle)
             linear, angular = ((variance + error + 2 * rounding ** 2) / elapsed ** 2 + MEASURED
                                for variance, error, rounding in zip(self.since[2:], errors, self.rounding))
             variances = linear, angular

@@ -9,7 +9,7 @@ from rbx1_nav.create import protocol
 from rbx1_nav.create.driver.fractions import KINDS
 from rbx1_nav.parameters import choice, custom, elsewhere, flag, frame, number, read
 from rbx1_nav.robot.description import WHEEL_JOINTS, Limits, Robot, read_wheel_joints
-from rbx1_nav.robot.odometry import OdometryErrors
+from rbx1_nav.robot.readings import OdometryErrors
 from rbx1_nav.units import SECOND
 
 GYRO_CORRECTION = 1.35  # create_node's default

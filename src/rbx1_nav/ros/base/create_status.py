@@ -8,10 +8,10 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from diagnostic_updater import DiagnosticStatusWrapper, Updater
 
 from rbx1_nav.create import protocol
+from rbx1_nav.create.driver.contact import BUMPS, CLIFFS, WHEEL_DROPS
 from rbx1_nav.create.driver.driver import Driver
 from rbx1_nav.create.driver.link import Link
 from rbx1_nav.create.driver.motion import CounterTravel
-from rbx1_nav.create.driver.supervisor import BUMPS, CLIFFS, WHEEL_DROPS
 from rbx1_nav.ros.base.commands import VelocityCommands
 from rbx1_nav.ros.messages import fill_status
 

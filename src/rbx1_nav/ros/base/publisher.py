@@ -8,12 +8,12 @@ from nav_msgs.msg import Odometry
 from sensor_msgs.msg import Imu, JointState
 from tf2_msgs.msg import TFMessage
 
-from rbx1_nav.arrays import Array
 from rbx1_nav.robot.description import Robot
 from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.robot.readings import Reading, Uncertainty
 from rbx1_nav.ros import messages
 from rbx1_nav.ros.network.rospy_topics import NoDelay
+from rbx1_nav.units import Array
 
 
 class BasePublisher:

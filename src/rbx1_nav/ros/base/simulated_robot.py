@@ -16,8 +16,8 @@ from rbx1_nav.ros import messages
 from rbx1_nav.ros.base.clocks import Clock
 from rbx1_nav.ros.base.commands import VelocityCommands, subscribe_joints
 from rbx1_nav.ros.base.publisher import BasePublisher
-from rbx1_nav.ros.network.rospy_topics import NoDelay
 from rbx1_nav.ros.network.bases import Refusals
+from rbx1_nav.ros.network.rospy_topics import NoDelay
 from rbx1_nav.ros.node.frames import with_prefix
 from rbx1_nav.schedule import Schedule
 from rbx1_nav.simulation.base import make_base

@@ -14,7 +14,7 @@ import rospy
 from geometry_msgs.msg import Twist
 from tqdm import tqdm
 
-from rbx1_nav.control.motions import whole_ticks
+from rbx1_nav.control.legs import whole_ticks
 from rbx1_nav.parameters import Parameter, frame, number
 from rbx1_nav.ros.driving.rate import Rate, pause, wait_for_tick
 from rbx1_nav.ros.driving.waiting import wait_for_subscribers

@@ -11,9 +11,9 @@ import rosgraph
 import rospy
 
 from rbx1_nav.config import ConfigError, Section, YamlValue, show
-from rbx1_nav.estimation.arrivals import MAX_AGE, MAX_LEAD
 from rbx1_nav.estimation.combined_odometry import CombinedOdometry
-from rbx1_nav.estimation.priors import UNKNOWN_FLOOR, Limits, Priors, priors
+from rbx1_nav.estimation.priors import UNKNOWN_FLOOR, Bounds, Priors, priors
+from rbx1_nav.estimation.sensors import MAX_AGE, MAX_LEAD
 from rbx1_nav.parameters import custom, flag, frame, number, read
 from rbx1_nav.ros.network.bases import private_namespace
 from rbx1_nav.ros.network.master import Server
@@ -25,7 +25,7 @@ from rbx1_nav.units import SECOND
 
 AUTO = 'auto'       # the surface of a simulated base, otherwise ANY
 ANY = 'unknown'     # any floor
-DEFAULT = Limits()
+DEFAULT = Bounds()
 
 # parameters of robot_pose_ekf, each with a log line that explains why it has no effect
 UNSUPPORTED = {
@@ -83,7 +83,7 @@ def read_parameters(params: dict[str, YamlValue]) -> SimpleNamespace:
     """Return the values of all parameters, by name, if `params` are set. Raises ConfigError.
 
     The frames have the prefix; base_footprint_frame is '' unless it is set, and default_base_frame is its default. The
-    Limits are `limits`. `unsupported` has a log line for each parameter that requests an unsupported feature.
+    Bounds are `limits`. `unsupported` has a log line for each parameter that requests an unsupported feature.
     """
     given = read(PARAMETERS, Section(params))
     if not given['odom_used']:
@@ -91,7 +91,7 @@ def read_parameters(params: dict[str, YamlValue]) -> SimpleNamespace:
     base_frame = _resolve(given['tf_prefix'], given['base_footprint_frame'] or 'base_footprint',
                           params.get('base_footprint_frame'))
     given.update(
-        limits=Limits(**{**{name: given[name] for name in Limits._fields}, 'gyro_bias': radians(given['gyro_bias'])}),
+        limits=Bounds(**{**{name: given[name] for name in Bounds._fields}, 'gyro_bias': radians(given['gyro_bias'])}),
         output_frame=_resolve(given['tf_prefix'], given['output_frame'], params.get('output_frame')),
         base_footprint_frame=base_frame if 'base_footprint_frame' in params else '',
         default_base_frame=base_frame,

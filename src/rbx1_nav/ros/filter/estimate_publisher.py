@@ -11,9 +11,9 @@ from geometry_msgs.msg import PoseWithCovarianceStamped
 from nav_msgs.msg import Odometry
 from tf2_msgs.msg import TFMessage
 
-from rbx1_nav.estimation.arrivals import IMU
 from rbx1_nav.estimation.combined_odometry import DROPOUT_SPEED, CombinedOdometry, Estimate
 from rbx1_nav.estimation.filter import BIAS, SCALE, SLIP_STRAIGHT, SLIP_TURNING, Filter
+from rbx1_nav.estimation.sensors import IMU
 from rbx1_nav.robot.kinematics import relative_frame
 from rbx1_nav.robot.readings import MEASURED
 from rbx1_nav.ros import messages

@@ -1,7 +1,7 @@
 """A mistake in a driving script is logged with its position, an error that this package detects without."""
 import pytest
 import rospy
-from rbx1_nav.control.motions import whole_ticks
+from rbx1_nav.control.legs import whole_ticks
 from rbx1_nav.ros.node import life as module
 
 SCRIPT = """\

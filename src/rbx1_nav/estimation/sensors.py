@@ -1,8 +1,10 @@
-"""Tracks the stamps and the arrivals of both sensors' messages, and detects which sensor is silent."""
+"""Which sensor is silent, and which one is doubted: stamps and arrivals of the messages, and reports to the user."""
 from __future__ import annotations
 
+from math import degrees
 from typing import Callable
 
+from rbx1_nav.estimation.filter import BIAS, SLIP_TURNING, YAW, Filter, Verdict
 from rbx1_nav.estimation.inputs import RejectedMessage
 from rbx1_nav.units import SECOND
 
@@ -11,6 +13,11 @@ ODOM, IMU = 'odom', 'imu_data'  # the sensors, by their topics
 MAX_LEAD = SECOND // 2  # ns that a stamp may be ahead of the clock: clocks of computers differ
 MAX_AGE = 60 * SECOND   # ns that a stamp may be behind; simulated time may be ahead or behind by the same amount
 MAX_WAIT = 5 * SECOND   # ns that odometry waits for a gyro that is late but not silent
+CONTRADICTION = 5 * SECOND  # ns for which a contradiction is reported
+FADED = 0.1                 # rad: a smaller doubt of the heading is none
+REASONS = {'imu_data': 'the bias of the gyro has drifted',
+           'wheels': 'the wheels slip; the heading follows the gyro',
+           'both': 'one of them is wrong; the heading is uncertain'}
 
 
 def rejection(stamp: int, expected: str, time: int) -> RejectedMessage:
@@ -39,8 +46,8 @@ class Arrivals:
         """Mark both sensors as not timed out."""
         self.timed_out = {ODOM: False, IMU: False}
 
-    def step_back(self, now: int) -> int:
-        """Return how far the clock has jumped back, or 0 if it has not. A jump discards the stamps."""
+    def notice_step_back(self, now: int) -> int:
+        """Discard the stamps if the clock has jumped back. Returns how far (ns), or 0."""
         back = self.now - now
         if back <= MAX_LEAD:
             return 0
@@ -93,3 +100,36 @@ class Arrivals:
             self.timed_out[sensor] = True
             reason = reason or f'no valid message for more than {self.timeout / SECOND:g} s'
             self.warn(f'{sensor} has timed out: {reason}; not used until it recovers')
+
+
+class Doubts:
+    """Warns when wheels and gyro begin to contradict each other, and when they agree again."""
+
+    def __init__(self, warn: Callable[[str], None]) -> None:
+        """warn(text): logs a warning."""
+        self.warn = warn
+        self.doubted = 'nothing'
+        self.contradicted: int | None = None    # ns, when wheels and gyro last contradicted each other
+        self.warned = False     # whether there was a warning that the bias is unknown
+
+    def contradicts(self, time: int) -> bool:
+        """Return whether wheels and gyro contradict each other at a time (ns), or did so recently."""
+        return self.contradicted is not None and time - self.contradicted < CONTRADICTION
+
+    def report(self, verdict: Verdict, ekf: Filter, time: int) -> None:
+        """Report a Verdict of a Filter at a time (ns)."""
+        if not (ekf.rested or self.warned):
+            self.warned = True
+            self.warn('the robot has not been at rest yet, so the bias of the gyro is unknown: the heading may drift '
+                      f'by {degrees(ekf.sigma(BIAS)):.1f} degrees/s or more')
+        sums, doubted = verdict
+        if doubted:
+            self.contradicted = time
+            if self.doubted == 'nothing':
+                self.warn(f'odom turned by {sums.wheels:.2f} rad, imu_data by {sums.gyro:.2f} rad in '
+                          f'{sums.time:.1f} s: {REASONS[doubted]}')
+                self.doubted = f'{doubted} since {time / SECOND:.1f} s'
+        elif (self.doubted != 'nothing' and ekf.doubt[YAW] < FADED
+              and ekf.sigma(SLIP_TURNING) < 1.001 * ekf.prior.slip_turning_spread):
+            self.warn('odom and imu_data agree again')
+            self.doubted = 'nothing'

@@ -1,21 +1,28 @@
-"""Turns from gyro readings: readings wait here until the odometry arrives, and yaws if the gyro is ahead of it."""
+"""Turns of the robot from gyro readings, and the window in which the turns of wheels and gyro are compared.
+
+Readings wait here until the odometry arrives, and yaws if the gyro is ahead of it.
+"""
 from __future__ import annotations
 
 from collections import deque
-from typing import Deque, NamedTuple
+from operator import add
+from typing import Deque, NamedTuple, Tuple
 
-from rbx1_nav.estimation.filter import Measurement
 from rbx1_nav.estimation.inputs import Imu
-from rbx1_nav.estimation.priors import Limits
+from rbx1_nav.estimation.priors import Bounds
 from rbx1_nav.units import SECOND
 
 SHORT = SECOND // 20    # ns between two readings in which the rate hardly changes
 ENOUGH = 20             # readings at rest, as a multiple of those that were equal, that show the noise of the gyro
 MORE = 2                # readings that must be equal, in addition to twice those at rest, if they are not measured
 LOST = 1.5              # times the usual time between two readings: in a longer gap, readings were lost
+WINDOW_TURN, WINDOW_TIME = 2.0, 9.9     # rad, s: turn or time after which a window is complete
+BLOCK = 0.99    # s: part of a window; both times are a little less than 10 and 1 s, because stamps are rounded
+
+Measurement = Tuple[float, float]   # a turn (rad) and its variance (rad^2)
 
 
-class Reading(NamedTuple):
+class WaitingReading(NamedTuple):
     """An Imu, and the period to which its rate applies."""
 
     start: int          # ns; the period extends from here to the stamp
@@ -27,11 +34,11 @@ class Reading(NamedTuple):
 class Readings:
     """Readings in the order of their stamps."""
 
-    def __init__(self, limits: Limits) -> None:
+    def __init__(self, limits: Bounds) -> None:
         self.limits = limits
         self.last: Imu | None = None        # the latest one
         self.period = 0                     # ns, usual time between two readings; 0: not known
-        self.waiting: Deque[Reading] = deque()
+        self.waiting: Deque[WaitingReading] = deque()
         self.equal = 0                      # number of latest readings that are equal to the one before
         self.usually_equal = 0              # the largest such number at rest, where noise makes readings differ
         self.at_rest = 0                    # number of readings at rest
@@ -65,7 +72,7 @@ class Readings:
                 limits = self.limits
                 changed += min(limits.max_angular_acceleration * duration / SECOND / 4, limits.max_turn_rate) ** 2 / 3
             imu = imu._replace(rate=rate)
-        self.waiting.append(Reading(last.stamp, imu, stuck, changed))
+        self.waiting.append(WaitingReading(last.stamp, imu, stuck, changed))
 
     def turn(self, start: int, end: int, max_rate: float, max_density: float) -> Measurement | None:
         """Return the turn from `start` to `end` (ns), or None if the readings do not cover the whole time.
@@ -105,10 +112,51 @@ class PastYaws:
         """Add an angle (rad) to all yaws."""
         self.yaws = deque((time, yaw + angle) for time, yaw in self.yaws)
 
-    def at(self, time: int) -> float:
+    def take(self, time: int) -> float:
         """Return the yaw at a time between the first and the last yaw, and discard the yaws before it."""
         yaws = self.yaws
         while yaws[1][0] < time:
             yaws.popleft()
         (start, before), (end, after) = yaws[0], yaws[1]
         return before + (after - before) * (time - start) / (end - start)
+
+
+class Sums(NamedTuple):
+    """Sums of what wheels and gyro measured in a number of steps."""
+
+    time: float = 0.0       # s
+    wheels: float = 0.0     # rad: the turn that the wheels report
+    expected: float = 0.0   # rad: this turn on the assumed floor
+    gyro: float = 0.0       # rad: the turn, corrected by the bias
+    forward: float = 0.0    # m
+    variance: float = 0.0   # rad^2: of the turn that the wheels report
+    turned: float = 0.0     # rad: the larger one of the turns, both directions counted positive
+    scatter: float = 0.0    # rad^2: variance of the difference of the turns, from the scatter of its blocks
+
+    def plus(self, other: Sums) -> Sums:
+        """Return the sum."""
+        return Sums(*map(add, self, other))
+
+
+class Window:
+    """Sums up the steps. Their noise is measured by the scatter of blocks of 1 s."""
+
+    def __init__(self) -> None:
+        self.sums = Sums()
+        self.block = Sums()     # the latest block
+        self.last = 0.0         # rad: the difference of the turns in the block before
+
+    def add(self, step: Sums) -> None:
+        """Add a step."""
+        self.block = self.block.plus(step)
+
+    def close(self) -> Sums | None:
+        """Finish a complete block, and return the Sums if the window is complete."""
+        block = self.block
+        if block.time < BLOCK:
+            return None
+        last, self.last = self.last, block.gyro - block.expected
+        self.sums = self.sums.plus(block._replace(
+            turned=max(abs(block.wheels), abs(block.gyro)), scatter=(self.last - last) ** 2 / 2))
+        self.block = Sums()
+        return self.sums if self.sums.time > WINDOW_TIME or self.sums.turned > WINDOW_TURN else None

@@ -1,0 +1,29 @@
+"""Each key that a surface declares changes what a simulated robot does, or what it measures."""
+import pytest
+
+from rbx1_nav.robot.description import read_robot
+from rbx1_nav.simulation.base import make_base
+from rbx1_nav.simulation.surfaces import KEYS
+from rbx1_nav.units import SECOND
+from sample_surface import SURFACE
+
+ROBOT = read_robot({'controllers': {'base': {'type': 'diff_controller', 'base_width': 0.26}}})
+COMMANDS = (0.0, 0.0), (0.3, 0.0), (0.0, 0.0), (0.0, 1.0), (0.2, 0.5)   # m/s, rad/s, for a second each
+
+
+def drive(surface):
+    """Return the true pose, the odometry and the reading of the gyro after each second."""
+    base, found = make_base(ROBOT, surface, seed=1), []
+    base.read_gyro()
+    for number, (linear, angular) in enumerate(COMMANDS):
+        for tick in range(50):
+            base.command(number * SECOND + tick * SECOND // 50, linear, angular)
+        base.advance((number + 1) * SECOND)
+        found.append((base.wheels.truth.pose, base.odometry.pose, base.read_gyro()))
+    return found
+
+
+@pytest.mark.parametrize('key', KEYS)
+def test_a_key_that_is_declared_is_used(key):
+    limits = (KEYS[key].to_si(limit) for limit in (KEYS[key].low, KEYS[key].high))
+    assert any(drive(SURFACE._replace(**{key: limit})) != drive(SURFACE) for limit in limits)
