@@ -1,13 +1,9 @@
 """When the mode in which the robot is driven is requested, and what is logged about it: see docs/bases.md, 'Modes'."""
 import pytest
 
-<<<<<<< HEAD
 from rbx1_nav.create import protocol
-from rbx1_nav.create.driver.supervisor import Supervisor, causes
-from rbx1_nav.create.emulator.body import Quirks
-=======
 from rbx1_nav.create.driver.contact import Supervisor, causes
->>>>>>> 4dd7ffc (The physics of a floor is written once, and the fit calls it; one name, one thing)
+from rbx1_nav.create.emulator.body import Quirks
 from rbx1_nav.create.protocol import FULL, OFF, PASSIVE, SAFE
 from rbx1_nav.units import SECOND
 

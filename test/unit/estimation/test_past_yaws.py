@@ -23,14 +23,6 @@ def test_odometry_may_ask_again_for_the_same_or_a_later_time():
         [2.0, 3.0, 3.0, 2.8, 3.0, 3.0, 5.0])
 
 
-<<<<<<< HEAD
-=======
-def test_the_first_yaw_of_a_time_counts():
-    yaws = past((100, 1.0), (100, 9.0), (200, 3.0), (200, 9.0), (300, 1.0), (150, 9.0))
-    assert [yaws.take(time) for time in (150, 250)] == pytest.approx([2.0, 2.0])
-
-
->>>>>>> 4dd7ffc (The physics of a floor is written once, and the fit calls it; one name, one thing)
 def test_a_turn_of_the_frame_turns_all_yaws():
     yaws = past((100, 1.0), (200, 3.0), (300, 1.0))
     yaws.turn(0.5)

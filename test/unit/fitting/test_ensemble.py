@@ -105,20 +105,6 @@ def test_the_covariance_to_first_order_is_that_of_the_ensemble(keys):
     assert spreads_agree(numpy.cov(white.T), numpy.eye(3))
 
 
-<<<<<<< HEAD
-=======
-@given(st.integers(0, 10 ** 6), st.lists(st.floats(0, 1), min_size=1, max_size=20), st.floats(0.05, 1))
-def test_the_noise_in_arrays_has_the_sum_of_its_steps_at_any_cut(seed, path, cell):
-    whole = cell_errors(numpy.random.default_rng(seed), 4, numpy.array([sum(path)]), cell)
-    parts = cell_errors(numpy.random.default_rng(seed), 4, numpy.array(path), cell)
-    assert whole.shape == (4, 1) and parts.shape == (4, len(path))
-    # rounding may move the last border to another cell, which changes the number of draws
-    borders = numpy.random.default_rng(seed).random((4, 1)) + sum(path) / cell
-    if (abs(borders - numpy.round(borders)) > 1e-9).all():
-        assert parts.sum(axis=1) == pytest.approx(whole[:, 0], abs=1e-9)
-
-
->>>>>>> 4dd7ffc (The physics of a floor is written once, and the fit calls it; one name, one thing)
 def test_the_noise_in_arrays_has_variance_and_tails_of_the_noise_of_a_run():
     cell, path, count = 0.25, numpy.array([0.1, 0.3, 1.6, 0.0]), 4000
     arrays = cell_errors(numpy.random.default_rng(5), count, path, cell)
