@@ -28,9 +28,3 @@ def test_a_calibration_is_accepted_and_complete(path, robot_type):
     params = {**load('parameters.yaml'), **calibration, 'robot_type': robot_type}
     assert not read_settings(params)[1].unknown
     assert calibration.keys() == load('calibration', 'default.yaml').keys()
-
-
-def test_the_neutral_calibration_corrects_nothing():
-    settings, _ = read_settings(load('calibration', 'neutral.yaml'))
-    assert settings.gyro_scale_correction == 1
-    assert settings.odom_linear_scale_correction == settings.odom_angular_scale_correction == 1

@@ -23,14 +23,6 @@ def refusal(path):
     return str(caught.value)
 
 
-def test_a_port_is_opened_by_its_link(terminal):
-    with open_port(terminal.link, 57600) as port:
-        assert terminal.baud == 57600
-        port.write(b'abc')
-        terminal.wait(10)
-        assert terminal.read() == b'abc'
-
-
 def test_no_device(tmp_path):
     path = tmp_path / 'none'
     assert refusal(path) == f"{path}: no such device: expected the robot's adapter to be plugged in"

@@ -118,15 +118,6 @@ def test_the_total_travel_of_each_wheel():
     assert (base.left, base.right) == pytest.approx((0.035 - 0.05, 0.165 - 0.05))
 
 
-def test_the_speeds_are_those_of_the_command_in_force():
-    base = make_base()
-    assert base.at_rest
-    base.command(0, 0.2, -0.5)
-    assert base.velocity == base.true_velocity == (0.2, -0.5) and not base.at_rest
-    base.advance(2 * SECOND)
-    assert base.velocity == base.true_velocity == (0.0, 0.0) and base.at_rest
-
-
 def test_the_gyro_measures_the_mean_rate_since_the_last_reading():
     base = make_base()
     base.command(SECOND, 0.0, 0.5)
