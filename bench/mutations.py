@@ -45,13 +45,13 @@ def is_statement(node):
 
 
 def read_tuning():
-    """The names of the constants that are tuning: {path: names}; names that a line assigns together are one."""
+    """The names of the constants that are tuning: {room: names}; names that a line assigns together are one."""
     found = {}
     with open(TUNING, encoding='utf-8') as file:
         for line in file:
             if not line.startswith('#'):
-                path, names, _ = line.split(': ', 2)
-                found.setdefault(os.path.join(SOURCE, path), set()).update(names.split())
+                room, names, _ = line.split(': ', 2)
+                found.setdefault(room, set()).update(names.split())
     return found
 
 
@@ -73,9 +73,8 @@ def walk(node, tuning):
 
 
 def is_tuning(node, tuning):
-    """Whether a node of a module assigns one of these constants; `*` stands for all constants of the module."""
-    name = constant(node)
-    return name is not None and (name in tuning or '*' in tuning and name.isupper())
+    """Whether a node of a module assigns one of these constants."""
+    return constant(node) in tuning
 
 
 def places(tree, tuning):
@@ -115,20 +114,25 @@ def parse(path):
         return ast.parse(file.read())
 
 
-def check_tuning(tuning):
-    """Exit if the list names a constant that does not exist."""
-    for path, names in tuning.items():
-        missing = names - {constant(node) for node in parse(path).body} - {'*'}
-        if missing:
-            sys.exit(f"{TUNING}: {path}: {', '.join(sorted(missing))}: no such constant")
+def files_of(rooms):
+    """The paths of the modules of rooms."""
+    return sorted(os.path.relpath(os.path.join(folder, name), ROOT) for room in rooms
+                  for folder, _, names in os.walk(os.path.join(ROOT, SOURCE, room))
+                  for name in names if name.endswith('.py') and name != '__init__.py')
+
+
+def unknown_tuning():
+    """The (room, name) of the list that the package does not have."""
+    return [(room, name) for room, names in read_tuning().items()
+            for name in sorted(names - {constant(node) for path in files_of([room]) for node in parse(path).body})]
 
 
 def draw(paths, generator, tuning):
     """A random Mutation of one of the files; all places are equally probable."""
-    counts = [sum(1 for _ in places(parse(path), tuning.get(path, ()))) for path in paths]
+    counts = [sum(1 for _ in places(parse(path), tuning.get(room_of(path), ()))) for path in paths]
     path, = generator.choices(paths, counts)
     tree = parse(path)
-    node, index = generator.choice(list(places(tree, tuning.get(path, ()))))
+    node, index = generator.choice(list(places(tree, tuning.get(room_of(path), ()))))
     line = node.lineno
     return Mutation(path, line, change(tree, node, index), ast.unparse(tree))
 
@@ -207,11 +211,8 @@ def main():
             parser.error(f"{room}: no such room: expected one of {', '.join(rooms)}")
     for number in signal.SIGINT, signal.SIGTERM:
         signal.signal(number, stop)
-    paths = sorted(os.path.relpath(os.path.join(folder, name), ROOT) for room in arguments.rooms
-                   for folder, _, names in os.walk(os.path.join(ROOT, SOURCE, room))
-                   for name in names if name.endswith('.py') and name != '__init__.py')
+    paths = files_of(arguments.rooms)
     tuning = read_tuning()
-    check_tuning(tuning)
     generator = random.Random(arguments.seed)
     mutations = [draw(paths, generator, tuning) for _ in range(arguments.count)]
     rooms = sorted({room_of(mutation.path) for mutation in mutations})

@@ -96,6 +96,21 @@ def test_set_pose_while_the_odometry_has_timed_out():
     assert exact(robot.send(1, 0.2), Pose(0.0, 9 * 0.004, pi / 2), abs=1e-6)
 
 
+def test_set_pose_does_not_change_an_estimate_before_the_next_step():
+    robot = Robot(IDEAL)
+    robot.send(50)
+    robot.now += STEP
+    robot.combined.add_imu(robot.now, Imu(robot.now, 0.0, 3e-6))
+    robot.combined.add_odom(robot.now, robot.odom())        # a step whose estimate nobody has requested yet
+    robot.combined.set_pose(robot.now + STEP, Pose(5.0, 0.0, 0.0), 0.01 * numpy.eye(3))
+    for dropout in range(1, 7):     # the odometry times out, and single readings between dropouts do not make a step
+        later = robot.now + dropout * 6 * SECOND // 5
+        robot.combined.add_imu(later, Imu(later, 0.0, 3e-6))
+    estimate = robot.combined.estimate
+    assert robot.combined.placed is None and estimate.stamp == robot.now and exact(estimate, ORIGIN)
+    assert estimate.covariance[0, 0] < 1e-3
+
+
 def test_set_pose_does_not_depend_on_the_order_of_the_messages():
     results = []
     for late in False, True:

@@ -5,6 +5,7 @@ import numpy
 import pytest
 
 from rbx1_nav.config import ConfigError
+from rbx1_nav.fitting.end_poses import widening
 from rbx1_nav.fitting.gyro_fit import rests_at
 from rbx1_nav.fitting.surface_fit import WholeFit
 from rbx1_nav.robot.kinematics import Pose
@@ -95,6 +96,13 @@ def test_ends_tell_slips_and_one_factor():
     assert values['slip_turning_spread'].value > values['slip_turning'].error
     assert values['heading_noise_turning'].error and values['curvature'].error is None
     assert "Student's t distribution" in result.notes[0]
+
+
+@pytest.mark.parametrize('degrees', [2, 4, 50])
+def test_a_region_from_few_runs_is_wider(degrees):
+    # the quantiles of F with 2 and n degrees of freedom, and of chi squared with 2, in closed form
+    ratio = degrees * (0.1 ** (-2 / degrees) - 1) / (-2 * numpy.log(0.1))
+    assert widening(degrees) == pytest.approx(ratio ** 0.5)
 
 
 def test_a_robot_that_was_pushed_is_warned_of():

@@ -72,6 +72,20 @@ def test_the_variances_of_the_speeds_grow_with_the_noise_in_both_directions(comm
         (0.1 ** 2 * angular + 0.2 ** 2 * linear) / WINDOW)
 
 
+@pytest.mark.parametrize('step, steps', [(0.02, 1), (0.016, 1), (0.014, 2), (0.008, 2), (0.007, 3)])
+def test_a_speed_is_reported_after_about_a_window(step, steps):
+    """Steps differ slightly from their nominal length, so three quarters of a window are enough."""
+    wheels, reported = Wheels(WIDTH, SURFACE._replace(ticks_meter=1e6), RUN, WINDOW), []
+    while not any(wheels.velocity()):
+        wheels.travel(0.5, 1.0, step)
+        reported.append(wheels.velocity())
+    assert len(reported) == steps
+    linear, angular = wheels.velocity()
+    # the mean speed over these steps: counts of 1 um
+    assert linear * step * steps == pytest.approx((wheels.left.total + wheels.right.total) / 2, abs=1e-6)
+    assert angular * step * steps == pytest.approx((wheels.right.total - wheels.left.total) / WIDTH, abs=2e-6 / WIDTH)
+
+
 def test_after_a_reset_wheels_are_like_new_ones():
     surface = SURFACE._replace(delay=0.05)
     used, new = (Wheels(WIDTH, surface, RUN, WINDOW) for _ in range(2))
