@@ -36,11 +36,6 @@ def test_a_number_is_in_its_range(value):
     assert rejection(number, 'rate', value) == f'rate: {value!r}: expected a width from 0.5 to 10 in m'
 
 
-def test_a_number_is_a_float_and_both_ends_belong_to_the_range():
-    for value in (0.5, 5, 10):
-        assert number('rate', value) == value and isinstance(number('rate', value), float)
-
-
 def test_a_choice_is_one_of_several_values():
     assert Section({}).choice('baud', (300, 19200), 300) == 300
     value = Section({'baud': 19200.0}).choice('baud', (300, 19200), 300)

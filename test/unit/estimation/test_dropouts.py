@@ -51,6 +51,17 @@ def test_odometry_times_out_and_its_travel_meanwhile_counts_when_it_recovers():
     assert robot.combined.estimate.covariance[X, X] < 1e-3
 
 
+def test_a_turn_that_begins_just_before_the_odometry_times_out_counts():
+    robot = Robot(IDEAL)
+    robot.send(100)
+    for _ in range(4):      # the wheels still report rest
+        robot.now += STEP
+        robot.combined.add_imu(robot.now, Imu(robot.now, 0.5, 3e-6))
+        robot.combined.add_odom(robot.now, robot.odom())
+    robot.send(100, 0.0, 0.5, odom=False)
+    assert robot.combined.estimate.pose.yaw == pytest.approx(0.04 + robot.pose.yaw, abs=1e-3)
+
+
 @pytest.mark.parametrize('odom_first', [True, False])
 def test_odometry_that_recovers_in_a_turn_does_not_count_it_again(odom_first):
     robot = Robot()     # its wheels slip by 3 %, as the filter expects, and it turns at 0.5 rad/s

@@ -108,9 +108,3 @@ def test_a_good_path_is_left_as_it_was(tmp_path, name):
 def test_a_name_that_says_no_format(tmp_path, name):
     with pytest.raises(ConfigError, match=r'expected a file name with one of the extensions .*\.pdf, \.png, '):
         check_picture(f'{tmp_path!s}/{name}')
-
-
-def test_a_folder_in_which_nobody_can_write():
-    # a folder where not even root can write, whom permissions do not stop
-    with pytest.raises(ConfigError, match='expected a file that can be written: '):
-        check_picture('/proc/a.png')

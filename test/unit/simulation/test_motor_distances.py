@@ -63,9 +63,3 @@ def test_a_reversal_with_the_lag(sign):
     expected = 0.2 * 0.1 - 0.15 * forth - (0.05 * back - 0.05 * 0.2 * (1 - exp(-back / 0.2)))
     assert motor.travel(-sign * 0.1, forth + back) == pytest.approx(sign * expected, abs=ROUNDING)
     assert is_at(motor, -sign * 0.05 * (1 - exp(-back / 0.2)))
-
-
-def test_a_command_equal_to_the_drag_does_not_start_a_motor():
-    motor = Motor(0.1, 1.0, 0.0625)
-    assert motor.travel(0.0625, 10.0) == motor.speed == 0.0
-    assert motor.travel(0.0626, 10.0) > 0
