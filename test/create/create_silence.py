@@ -1,5 +1,7 @@
 #!/usr/bin/python3
-"""A silent line, and a robot that is switched off and on: both are detected, and neither is counted as travel."""
+"""A silent line, and a robot that is switched off and on: both are detected, and neither is counted as travel. A last
+stop that is not confirmed is reported."""
+import signal
 
 from driven import STOP, DrivenRobot
 import support
@@ -35,6 +37,16 @@ class TestCreateSilence(support.Case):
 
     def test_a_create_2(self):
         self.check('create2', 0.001)
+
+    def test_a_stop_that_is_not_confirmed(self):
+        robot = DrivenRobot(self, 'create2')
+        robot.wait_for_motion()
+        robot.switch('silence', True)
+        robot.node.signal(signal.SIGTERM)
+        self.assertEqual(robot.node.wait(), 1, robot.node.output)
+        self.assertIn('The robot has not confirmed that it stopped. If it is still moving, stop it by hand',
+                      robot.node.output)
+        self.assertTrue(robot.moving)
 
 
 if __name__ == '__main__':

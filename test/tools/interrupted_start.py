@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Ctrl-C while modules are being imported stops each executable immediately and without a traceback."""
+"""Ctrl-C while modules are being imported stops a script immediately and without a traceback."""
 import fcntl
 import os
 import signal
@@ -7,8 +7,6 @@ import subprocess
 
 import support
 
-NODES = ['ekf.py', 'fake_base.py', 'fit_surface.py', 'odom_ekf.py', 'odom_out_and_back.py', 'pose.py', 'simulate.py',
-         'timed_out_and_back.py']
 F_SETPIPE_SZ = 1031     # defined in fcntl since Python 3.10
 
 
@@ -31,10 +29,9 @@ class TestInterruptedStart(support.Case):
             return process.wait(support.LIMIT), lines.read().decode()
 
     def test_interrupt(self):
-        for name in NODES:
-            status, rest = self.interrupt(name)
-            self.assertEqual(status, -signal.SIGINT, rest)
-            self.assertNotIn('Traceback', rest)
+        status, rest = self.interrupt('timed_out_and_back.py')
+        self.assertEqual(status, -signal.SIGINT, rest)
+        self.assertNotIn('Traceback', rest)
 
 
 if __name__ == '__main__':

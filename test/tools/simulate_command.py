@@ -93,12 +93,11 @@ class TestSimulateCommand(support.Case):
             self.check_children_end(pids)
 
     def test_a_full_disk(self):
-        for kind in 'png', 'pdf', 'svg':
-            with tempfile.TemporaryDirectory() as folder:
-                status, output = simulate_with_limit(os.path.join(folder, f'a.{kind}'))
-                self.assertEqual((status, os.listdir(folder)), (1, []), output)
-            self.assertEqual(output.splitlines()[-1], 'simulate.py: [Errno 27] File too large')
-            self.assertNotIn('Traceback', output)
+        with tempfile.TemporaryDirectory() as folder:
+            status, output = simulate_with_limit(os.path.join(folder, 'a.png'))
+            self.assertEqual((status, os.listdir(folder)), (1, []), output)
+        self.assertEqual(output.splitlines()[-1], 'simulate.py: [Errno 27] File too large')
+        self.assertNotIn('Traceback', output)
 
     def test_a_picture_that_cannot_be_written(self):
         """It is rejected before the simulation starts."""

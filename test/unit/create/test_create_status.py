@@ -12,7 +12,7 @@ def statuses(driven):
     """Return {title: DiagnosticStatus} of a DrivenCreate."""
     functions = {}
     updater = SimpleNamespace(setHardwareID=lambda _: None, add=functions.__setitem__, force_update=lambda: None)
-    link = SimpleNamespace(path='/dev/ttyUSB0', problem='', adapter='', baud=driven.driver.contact.baud, changes=0)
+    link = SimpleNamespace(path='/dev/ttyUSB0', problem='', adapter='', baud=driven.driver.contact.baud)
     status = CreateStatus(updater, driven.driver, link, SimpleNamespace(diagnose=lambda _: None))
     status.update()
     return {title: function(DiagnosticStatusWrapper()) for title, function in functions.items()}

@@ -1,16 +1,13 @@
 """The guardian stops the robot when the guarded process has died or hangs. Real processes on a pseudo-terminal."""
-import fcntl
 import os
 import signal
 import subprocess
 import sys
-import termios
 import time
 
 import pytest
 
 from rbx1_nav.create.driver import guardian
-from rbx1_nav.create.driver.guardian import Guardian
 from rbx1_nav.create.driver.link import PortError, open_port
 from rbx1_nav.create.emulator.serial_line import PseudoTerminal
 
@@ -67,13 +64,6 @@ def start(terminal, command=b'\x91'):
     return process, pid
 
 
-def unread_bytes(pipe):
-    """Return the number of bytes in a pipe that its reader has not read yet."""
-    count = bytearray(4)
-    fcntl.ioctl(pipe, termios.FIONREAD, count)
-    return int.from_bytes(count, sys.byteorder)
-
-
 def wait_for_end(pid):
     give_up = time.monotonic() + LIMIT
     while os.path.exists('/proc/%d' % pid):
@@ -126,22 +116,6 @@ def test_a_process_that_dies_while_its_guardian_starts_is_stopped_too(terminal):
         os.close(write_end)
         assert read_until(terminal, STOP) == STOP
         assert process.wait() == 0
-
-
-def test_a_known_robot_gets_another_stop_at_the_rate_that_it_had(terminal):
-    with open_port(terminal.link, 57600) as port:
-        watcher = Guardian(port.fileno(), b'\x80')
-        port.baudrate = 19200
-        watcher.beat(STOP)
-        give_up = time.monotonic() + LIMIT
-        while unread_bytes(watcher.process.stdin.fileno()) and time.monotonic() < give_up:
-            time.sleep(0.001)
-        time.sleep(0.1)         # time for the guardian to read the settings of the port
-        subprocess.run(['stty', '-F', terminal.link, '9600'], check=True)
-        watcher.release()
-        assert read_until(terminal, STOP) == STOP
-        assert terminal.baud == 19200
-        watcher.process.wait()
 
 
 def test_a_cable_that_is_gone_ends_the_guardian(terminal):

@@ -2,7 +2,6 @@
 import os
 import pty
 import select
-import subprocess
 from types import SimpleNamespace
 
 import pytest
@@ -72,29 +71,6 @@ def test_the_death_of_the_guardian_ends_the_wait_for_bytes(line):
         assert not select.select([robot], [], [], 0)[0]
         link.close()
         assert link.open(10 ** 9)
-
-
-def test_a_rate_that_another_process_has_set_is_set_back(line):
-    _, link, log = line
-    subprocess.run(['stty', '-F', link.path, '9600'], check=True)
-    assert link.is_guarded(BEAT)
-    assert log == [f'{link.path}: another process has changed the rate to 9600 baud: expected 115200; restored']
-    assert link.port.baudrate == 115200 and link.changes == 1
-    assert '115200' in subprocess.run(['stty', '-F', link.path, 'speed'], stdout=subprocess.PIPE, check=True,
-                                      text=True).stdout
-    assert link.is_guarded(2 * BEAT) and len(log) == 1
-
-
-def test_an_echo_that_another_process_has_set_is_cleared(line):
-    """With echo, the robot would execute its own readings."""
-    robot, link, log = line
-    subprocess.run(['stty', '-F', link.path, 'sane'], check=True)
-    link.write(b'\x91')
-    assert log == [f'{link.path}: another process has changed the settings; restored']
-    os.read(robot, 1)
-    os.write(robot, b'\x85')
-    assert link.read(LIMIT, 1) == b'\x85'
-    assert not select.select([robot], [], [], 0)[0]
 
 
 def test_a_line_without_rts_and_dtr_is_searched_without_waking(line):

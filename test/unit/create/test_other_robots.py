@@ -86,14 +86,3 @@ def test_another_robot_at_another_adapter_gets_no_command_before_it_is_known():
     assert not other.robot.programs.started
     assert driven.log[-1] == ('A create2 answers at 115200 baud: expected a create; to drive it, restart this node '
                               'with robot_type:=create2, or auto')
-
-
-@BOTH
-@pytest.mark.parametrize('seconds', [0.0, 0.05, 0.3])
-def test_a_program_that_another_process_has_started_ends(robot_type, seconds):
-    driven = started(robot_type)
-    driven.robot.receive(protocol.command('spot'), driven.now)
-    driven.run(seconds)
-    driven.driver.restore(driven.now)
-    driven.run(0.03)
-    assert driven.robot.programs.started == 1 and driven.speeds == (0, 0)

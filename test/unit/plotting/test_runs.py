@@ -73,9 +73,8 @@ def full_disk():
         signal.signal(signal.SIGXFSZ, handler)
 
 
-@pytest.mark.parametrize('kind', ['png', 'pdf', 'svg'])
-def test_an_older_picture_survives_a_full_disk(tmp_path, kind):
-    path = tmp_path / (f'a.{kind}')
+def test_an_older_picture_survives_a_full_disk(tmp_path):
+    path = tmp_path / 'a.png'
     path.write_bytes(b'an older picture')
     with full_disk(), pytest.raises(OSError):
         draw(str(path), 'test', {'timed': FAR}, range(3))

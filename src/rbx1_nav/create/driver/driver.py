@@ -85,12 +85,6 @@ class Driver:
         if self.contact.may_ask:
             self.sender.stop(now)
 
-    def restore(self, now: int) -> None:
-        """Stop anything that the robot may have started when another process changed the settings of the port."""
-        if self.leaving is None and self.contact.may_ask:
-            mode = self.settings.operation_mode if self.supervisor.in_control else protocol.PASSIVE
-            self.sender.stop(now, sequences.STOP + sequences.take_control(self.model, mode))
-
     def leave(self, now: int) -> None:
         """Stop the robot and leave it in passive mode. `left` becomes true once the robot has confirmed this, if it
         can. Raises OSError."""

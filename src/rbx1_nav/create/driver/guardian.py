@@ -53,16 +53,10 @@ class Guardian:
         self.alive.close()
 
 
-def send(line: int, data: bytes, settings: list[int | list[bytes | int]] | None) -> None:
-    """Write bytes to a port, discarding what is still waiting there. A disconnected port is not an error.
-
-    settings: attributes of the port to restore, as tcgetattr() returns them, since another process may have changed
-    them; None: leave the attributes alone.
-    """
+def send(line: int, data: bytes) -> None:
+    """Write bytes to a port, discarding what is still waiting there. A disconnected port is not an error."""
     try:
         termios.tcflush(line, termios.TCOFLUSH)
-        if settings:
-            termios.tcsetattr(line, termios.TCSANOW, settings)
     except termios.error:
         pass
     end = time.monotonic() + WRITE_TIMEOUT
@@ -76,14 +70,6 @@ def send(line: int, data: bytes, settings: list[int | list[bytes | int]] | None)
         pass
 
 
-def read_settings(line: int) -> list[int | list[bytes | int]] | None:
-    """Return the attributes of a port; None if it has disconnected."""
-    try:
-        return termios.tcgetattr(line)
-    except termios.error:
-        return None
-
-
 def main(line: int, stop: bytes) -> None:
     """Wait until the node exits or hangs, and stop the robot. line, stop: see Guardian."""
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGTSTP):
@@ -92,7 +78,7 @@ def main(line: int, stop: bytes) -> None:
         os.write(1, b'.')
     except OSError:     # the node has died already
         pass
-    received, settings = b'', None
+    received = b''
     timeout: float | None = None    # None before the first heartbeat, and while the node hangs
     while True:
         if select.select([0], [], [], timeout)[0]:
@@ -102,11 +88,11 @@ def main(line: int, stop: bytes) -> None:
                 break
             *lines, received = (received + data).split(b'\n')
             for text in filter(None, lines):
-                stop, settings = bytes.fromhex(text.decode()), read_settings(line)
+                stop = bytes.fromhex(text.decode())
         else:
             timeout = None
-            send(line, stop, settings)
-    send(line, stop, settings)
+            send(line, stop)
+    send(line, stop)
 
 
 if __name__ == '__main__':

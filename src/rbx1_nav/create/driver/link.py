@@ -21,7 +21,6 @@ from rbx1_nav.create import protocol
 from rbx1_nav.create.driver import sequences
 from rbx1_nav.create.driver.guardian import Guardian
 from rbx1_nav.create.driver.settings import Settings
-from rbx1_nav.create.line_settings import rate_in, read_settings
 from rbx1_nav.units import SECOND
 
 PSEUDO_TERMINALS = range(136, 144)      # major device numbers (Linux kernel, admin-guide/devices.txt)
@@ -131,16 +130,12 @@ class Link:
         self.others: set[str] = set()       # ports of other adapters at that time
         self.is_same = True         # whether the previous line had the same adapter
         self.beat_time = 0
-        self.settings: bytes | None = None  # of the port, as read_settings() returns them
-        self.changes = 0            # number of changes of the settings by other processes
-        self.disturbed = False      # whether there was a change since a caller cleared this
 
     def open(self, now: int) -> bool:
         """Try to open the port. Returns whether it is open."""
         self.path = find_port(self.configured, self.adapter, self.others)
         try:
             self.port = open_port(self.path, self.baud)
-            self.settings = read_settings(self.port.fd)
             # until the robot is known, Start is the only command that is harmless at any baud rate
             self.guardian = Guardian(self.port.fd, sequences.START)
         except OSError as error:
@@ -177,7 +172,6 @@ class Link:
             self.port.baudrate = baud
         except (OSError, ValueError, termios.error) as error:
             raise LineLost(f'{self.path}: {error}') from None
-        self.settings = read_settings(self.port.fd)
 
     def set_wake_lines(self, on: bool) -> bool:
         """Set or clear RTS and DTR. Returns whether the port has these lines. Raises LineLost."""
@@ -197,29 +191,14 @@ class Link:
         self.guardian.beat(sequences.guardian_stop(model))
 
     def is_guarded(self, now: int) -> bool:
-        """Check the guardian and the settings if a heartbeat is due. Returns whether the guardian is alive."""
+        """Send a heartbeat if one is due. Returns whether the guardian is alive."""
         if self.guarded and now - self.beat_time >= BEAT:
             self.beat_time = now
-            self._keep_settings()
             self.guarded = self.guardian is not None and self.guardian.beat()
         return self.guarded
 
-    def _keep_settings(self) -> None:
-        """Restore settings that another process has changed. With echo, the robot would execute its own readings."""
-        settings = read_settings(self.port.fd)
-        if settings is None or settings == self.settings:
-            return
-        self.changes += 1
-        self.disturbed = True
-        rate = rate_in(settings)
-        changed = 'settings' if rate == self.baud else f'rate to {rate} baud: expected {self.baud}'
-        self.warn(f'{self.path}: another process has changed the {changed}; restored')
-        self.set_rate(self.baud)
-
     def write(self, data: bytes) -> None:
-        """Send bytes at the right rate. Raises LineLost, also if the port's buffer is full, which means that no bytes
-        have left it for seconds."""
-        self._keep_settings()
+        """Send bytes. Raises LineLost, also if the port's buffer is full: no bytes have left it for seconds."""
         try:
             written = os.write(self.port.fd, data)
         except OSError as error:
@@ -256,14 +235,12 @@ class Link:
         return any(each in ready for each in descriptors)
 
     def _read(self, timeout: float) -> bytes:
-        # a process that changes the settings may discard input; a disconnected line stays readable without data
-        for wait in timeout, 0.0:
-            if not self._wait((self.port.fd,), wait):
-                return b''
-            try:
-                data = os.read(self.port.fd, 4096)
-            except OSError as error:
-                raise LineLost(f'{self.path}: {error.strerror}') from None
-            if data:
-                return data
-        raise LineLost(f'{self.path}: device disconnected')
+        if not self._wait((self.port.fd,), timeout):
+            return b''
+        try:
+            data = os.read(self.port.fd, 4096)
+        except OSError as error:
+            raise LineLost(f'{self.path}: {error.strerror}') from None
+        if not data:        # a disconnected line stays readable without data
+            raise LineLost(f'{self.path}: device disconnected')
+        return data

@@ -5,19 +5,22 @@ Bytes arrive at the rate of the line, and as garbage at the wrong baud rate. All
 from __future__ import annotations
 
 from collections import deque
+import fcntl
 import os
 import random
 import select
+import struct
 import time
 import tty
 from typing import Deque, Tuple
 
 from rbx1_nav.config import ConfigError, show_name
-from rbx1_nav.create.line_settings import read_rate
 from rbx1_nav.units import SECOND
 
 BITS = 10           # bits per byte on the line: start bit, 8 data bits, stop bit
 BUFFER_SIZE = 1024  # bytes that wait to be sent; further bytes are lost, which corrupts a stream that is too long
+# termios.tcgetattr() supports only the common rates; this request (ioctl_tty(2)) returns any rate as a number
+TCGETS2, TERMIOS2 = 0x802c542a, struct.Struct('=4I20s2I')
 MIN_SLEEP = 0.001   # s: without a client, all bytes are lost, so there is no need to wake up for each one
 
 TimedBytes = Deque[Tuple[int, int]]     # (time, byte)
@@ -171,7 +174,10 @@ class PseudoTerminal:
     @property
     def baud(self) -> int | None:
         """The baud rate that the client has set, bits per second; None while the cable is unplugged."""
-        return None if self._master is None else read_rate(self._master)
+        if self._master is None:
+            return None
+        rate: int = TERMIOS2.unpack(fcntl.ioctl(self._master, TCGETS2, bytes(TERMIOS2.size)))[-1]
+        return rate
 
     def read(self) -> bytes:
         """Return the bytes that the client has sent since the last call."""

@@ -75,10 +75,6 @@ class CreateBase:
                 self.driver.stop(self.clock.now(), 'the guardian process died')
             self.disconnect()
             return
-        if self.link.disturbed:
-            self.link.disturbed = False
-            with self.lock:
-                self.driver.restore(self.clock.now())
         timed_out, state = self.exchange()
         # a robot that does not answer may not have stopped
         if timed_out and self.driver.contact.answers:

@@ -146,7 +146,6 @@ class CreateStatus:
             'Port': link.path,
             'Adapter': link.adapter or 'unknown',
             'Rate (baud)': link.baud,
-            'Settings changed by other processes': link.changes,
             'Corrupted readings': driver.queries.rejected,
             'Implausible readings': driver.implausible,
             'Lost replies': driver.queries.missed,

@@ -14,11 +14,11 @@ from rbx1_nav.ros.node.params import named_errors
 def search_value(key: str, node: str, get: Callable[[str, None], Any]) -> Any:
     """Return the value of a parameter of a node or of the nearest namespace around it; None if there is none.
 
-    Unlike rospy.search_param(), it skips a namespace that has the name of the parameter. get: rospy.get_param.
+    get: rospy.get_param.
     """
     while node:
         value = get(rosgraph.names.ns_join(node, key), None)
-        if value is not None and not isinstance(value, dict):
+        if value is not None:
             return value
         node = '' if node == '/' else rosgraph.names.namespace(node).rstrip('/') or '/'
     return None
