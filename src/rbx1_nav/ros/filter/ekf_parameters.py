@@ -18,7 +18,7 @@ from rbx1_nav.parameters import custom, flag, frame, number, read
 from rbx1_nav.ros.network.bases import private_namespace
 from rbx1_nav.ros.network.master import Server
 from rbx1_nav.ros.node import resources
-from rbx1_nav.ros.node.frames import check_prefix, search_value, with_prefix
+from rbx1_nav.ros.node.frames import check_prefix, find_prefix, with_prefix
 from rbx1_nav.ros.node.params import named_errors, stored_params
 from rbx1_nav.simulation.surfaces import load_surface
 from rbx1_nav.units import SECOND
@@ -108,7 +108,7 @@ def load_parameters() -> SimpleNamespace:
     Logs requests for unsupported features. Raises ROSException with one line.
     """
     params = stored_params()
-    prefix = search_value('tf_prefix', rospy.get_name(), rospy.get_param)
+    prefix = find_prefix()
     with named_errors(rospy.get_name()):
         values = read_parameters(params if prefix is None else dict(params, tf_prefix=prefix))
     for line in values.unsupported:

@@ -1,9 +1,8 @@
-"""The filter node checks the units and ranges of its limits, and finds a prefix in a namespace around the node."""
+"""The filter node checks the units and ranges of its limits."""
 import pytest
 
 from rbx1_nav.config import ConfigError
 from rbx1_nav.ros.filter.ekf_parameters import read_parameters
-from rbx1_nav.ros.node.frames import search_value
 
 
 @pytest.mark.parametrize('name, value, expected', [
@@ -20,16 +19,3 @@ from rbx1_nav.ros.node.frames import search_value
 def test_a_bad_value_is_one_line(name, value, expected):
     with pytest.raises(ConfigError, match=f'^{expected}'):
         read_parameters({name: value})
-
-
-@pytest.mark.parametrize('params, value', [
-    ({'/a/b/ekf/tf_prefix': 'private', '/a/b/tf_prefix': 'near'}, 'private'),
-    ({'/a/b/tf_prefix': 'near', '/a/tf_prefix': 'far'}, 'near'),
-    ({'/tf_prefix': 'global'}, 'global'),
-    ({'/a/tf_prefix': ''}, ''),
-    ({'/b/tf_prefix': 'another'}, None),
-    # a namespace with the name of the parameter
-    ({'/tf_prefix': {'node': {'rate': 10}}}, None),
-    ({'/a/tf_prefix': {'node': {}}, '/tf_prefix': 'global'}, 'global')])
-def test_a_prefix_is_searched_for_in_the_namespaces_around_the_node(params, value):
-    assert search_value('tf_prefix', '/a/b/ekf', params.get) == value
