@@ -39,7 +39,7 @@ from rbx1_nav.schedule import Schedule
 
 PARAMETERS = [
     number('robots', 0, '', 'number of robots at the beginning: robot1, robot2 and so on; the parameters of a base are '
-           'below robot1/arbotix', 0, 1000, 'a number'),
+           'below robot1/arbotix', 0, 200, 'a number'),
     number('spacing', 1.0, 'm', 'distance between the origins of the odometry of neighbors, in the frame map', 0, 1000,
            'a distance'),
     choice('method', ('none', 'timed', 'odometry'), 'none', 'script that fleet.launch starts for each robot'),
@@ -79,8 +79,10 @@ class Fleet:
         """Add a robot with the parameters below NAME/arbotix; return whether this was possible, and a text."""
         key = f'/{name}/arbotix'
         try:
-            if name in self.robots or not re.fullmatch(r'[A-Za-z]\w{0,49}', name, re.ASCII):
-                raise ConfigError('expected the name of a robot that does not exist yet: letters, digits and _')
+            if name in self.robots:
+                raise ConfigError('this robot exists: expected a new name')
+            if not re.fullmatch(r'[A-Za-z]\w{0,49}', name, re.ASCII):
+                raise ConfigError('expected the name of a robot: letters, digits and _')
             if is_alive(key):
                 raise ConfigError('expected the name of a robot that is not simulated by another node')
             params = rospy.get_param(key, None)

@@ -60,7 +60,7 @@ def read_arguments() -> argparse.Namespace:
     # the name of a surface has no extension
     arguments.surface = [os.path.abspath(name) if os.path.splitext(name)[1] else name
                          for name in dict.fromkeys(arguments.surface or ['ideal'])]
-    for name, check in (('output', check_writable), ('plot', check_picture), ('animate', check_animation)):
+    for name, check in (('plot', check_picture), ('animate', check_animation)):
         path = getattr(arguments, name)
         try:
             if path is not None:
@@ -129,7 +129,7 @@ def main() -> int:
         combinations, titles = read_combinations(arguments)
         robot = load_robot(arguments.config)
         sweep = Sweep(combinations, arguments.method, robot, range(arguments.seed, arguments.seed + arguments.runs))
-        file = sweep.open_file(arguments.output, titles) if arguments.output else None
+        file = sweep.open_file(arguments.output, titles) if arguments.output is not None else None
         simulate_all(sweep, arguments, file)
     except (OSError, ValueError, RuntimeError, CancelledError) as error:    # or a robot that is stuck
         text = ' '.join(str(error).split()) or 'the scheduler is disconnected'

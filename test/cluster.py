@@ -32,8 +32,9 @@ class Cluster:
         log = os.path.join(self.folder, f'dask-{len(self.processes)}.log')
         with open(log, 'w', encoding='utf-8') as output:
             process = subprocess.Popen(
-                [sys.executable, '-m', f'distributed.cli.{module}', *arguments, '--no-dashboard'], stdout=output,
-                stderr=output, cwd=self.folder, env=dict(self.environment, **environment))
+                [sys.executable, '-m', f'distributed.cli.{module}', *arguments, '--no-dashboard',
+                 '--dashboard-address', '127.0.0.1:0'],
+                stdout=output, stderr=output, cwd=self.folder, env=dict(self.environment, **environment))
         self.processes.append(process)
         end = time.monotonic() + LIMIT
         while True:

@@ -59,7 +59,7 @@ class TestFleet(support.Case):
         self.assertIn('/robot4/cmd_vel', removed.output)
 
     def test_requests_that_are_refused(self):
-        for service, name, text in (('add', 'robot1', 'does not exist yet'), ('add', '1', 'the name of a robot'),
+        for service, name, text in (('add', 'robot1', 'this robot exists'), ('add', '1', 'the name of a robot'),
                                     ('add', 'robot9', '/robot9/arbotix: no parameters'),
                                     ('remove', 'robot9', 'robot9: expected one of robot1, ')):
             success, message = self.request(service, name)

@@ -77,7 +77,7 @@ def open_place(jobs: int, scheduler: str | None, robot: Robot, surface: Surface 
     It is None for one job. robot, surface: for the runs with which the workers of a cluster are checked. Raises
     ConfigError if the cluster cannot be used.
     """
-    if scheduler:
+    if scheduler is not None:
         from rbx1_nav.batch.cluster import open_cluster     # only now, because it imports Dask
         with open_cluster(scheduler, robot, surface) as cluster:
             yield cluster

@@ -9,13 +9,14 @@ import csv
 import fcntl
 import io
 import json
+import math
 import os
 import signal
 from typing import Any, Iterable, Iterator, Mapping, Sequence
 
 from rbx1_nav.batch.cases import RESULTS, Chunk, Row
 from rbx1_nav.config import ConfigError, show, show_name
-from rbx1_nav.files import check_writable, write_file
+from rbx1_nav.files import write_file
 
 TEXT = 'method', 'surface'      # the first columns
 
@@ -30,17 +31,22 @@ class RunsFile:
         self.header = encoded([*TEXT, *swept, 'seed', *RESULTS])
         # as it will be read
         command = json.loads(json.dumps(command))
-        exists = os.path.exists(path) and os.path.getsize(path) > 0
-        if exists:
-            self._compare(command)
-        else:
-            check_writable(path)
-            write_file(self.record, (json.dumps(command, indent=1) + '\n').encode())
-        self.file = open(path, 'r+b' if os.path.exists(path) else 'w+b', buffering=0)
+        if os.path.exists(path) and not os.path.isfile(path):
+            raise ConfigError(f'--output: {show_name(path)}: expected a regular file, or a new one')
+        try:
+            self.file = open(path, 'r+b', buffering=0,
+                             opener=lambda name, flags: os.open(name, flags | os.O_CREAT, 0o666))
+        except OSError as error:
+            raise ConfigError(f'--output: {show_name(path)}: expected a file that can be written: '
+                              f'{error.strerror}') from None
         try:
             fcntl.flock(self.file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:
             raise ConfigError(f'--output: {show_name(path)}: another program is writing it') from None
+        if os.path.getsize(path):
+            self._compare(command)
+        else:
+            write_file(self.record, (json.dumps(command, indent=1) + '\n').encode())
         self.size = 0
 
     def _compare(self, command: Mapping[str, Any]) -> None:
@@ -59,8 +65,8 @@ class RunsFile:
                                   f'{show(before.get(key))}: expected {show(command.get(key))}, or a new file')
 
     def read(self, chunks: Iterable[Chunk]) -> Iterator[tuple[Chunk, list[Row]]]:
-        """Yield the Chunks in the file, with their rows, and cut off what follows them. Raises ConfigError if they are
-        other runs."""
+        """Yield the Chunks in the file, with their rows, and cut off an incomplete one. Raises ConfigError if they are
+        other runs, or more."""
         with open(self.path, 'rb') as file:
             header = file.readline()
             if header == self.header:
@@ -71,8 +77,14 @@ class RunsFile:
                         break
                     yield chunk, self._decoded(chunk, lines)
                     self.size += sum(map(len, lines))
+                else:
+                    if b'\n' in file.read():
+                        raise ConfigError(f'--output: {show_name(self.path)}: more rows than this command writes: '
+                                          'expected a new file')
             elif header.endswith(b'\n'):
-                raise ConfigError(f'--output: {show_name(self.path)}: other columns: expected a new file')
+                raise ConfigError(f'--output: {show_name(self.path)}: other columns: '
+                                  f'{show(header.decode(errors="replace"))}: expected '
+                                  f'{show(self.header.decode())}, or a new file')
         if not self.size:
             self._write(self.header)
         self.file.truncate(self.size)
@@ -87,7 +99,7 @@ class RunsFile:
                 row: Row = tuple(float(value) if value else None for value in values)
             except ValueError:
                 row = ()
-            if found[:len(keys)] != keys or len(row) != len(RESULTS):
+            if found[:len(keys)] != keys or not is_complete(row, chunk.method):
                 raise ConfigError(f'--output: {show_name(self.path)}: {show(line.decode(errors="replace"))}: expected '
                                   f'the run {", ".join(keys)}, or a new file')
             rows.append(row)
@@ -116,6 +128,13 @@ class RunsFile:
 def labels(chunk: Chunk, seed: int) -> list[str]:
     """Return the first values of the row of a run, which name it."""
     return [chunk.method, chunk.combination.surface_name, *map(repr, chunk.combination.values.values()), str(seed)]
+
+
+def is_complete(row: Row, method: str) -> bool:
+    """Return whether a row has a finite number for each of RESULTS; without a filter, none for the estimate."""
+    return len(row) == len(RESULTS) and all(
+        value is None if method != 'ekf' and name.startswith(('estimate', 'covariance'))
+        else isinstance(value, float) and math.isfinite(value) for name, value in zip(RESULTS, row))
 
 
 def encoded(values: Sequence[object]) -> bytes:

@@ -4,7 +4,7 @@ from __future__ import annotations
 from array import array
 import sys
 import time
-from typing import Iterator, NamedTuple, Sequence
+from typing import Iterable, Iterator, NamedTuple, Sequence, TypeVar
 
 import numpy
 from tqdm import tqdm
@@ -21,6 +21,7 @@ from rbx1_nav.units import Array
 
 MOMENT = 1.0    # s: a bar appears after this time
 PAUSE = 10.0    # s between two lines
+_T = TypeVar('_T')
 FORMAT = '{desc}: {n_fmt} of {total_fmt} runs, {rate_noinv_fmt}, {remaining} left'
 
 
@@ -82,6 +83,11 @@ class Finished(NamedTuple):
         return lines
 
 
+def in_turn(values: Iterable[_T]) -> list[_T]:
+    """Return the different values, in their order."""
+    return list(dict.fromkeys(values))
+
+
 class Sweep:
     """The runs of a command."""
 
@@ -105,8 +111,9 @@ class Sweep:
         return RunsFile(path, {
             'rbx1_nav': code_version(), 'config': self.robot, 'method': self.methods, 'seed': self.seeds[0],
             'runs': len(self.seeds),
-            **{key: sorted({each.values[key] for each in self.combinations}) for key in self.combinations[0].values},
-            'surface': {each.surface_name: each.surface for each in self.combinations}}, keys)
+            **{key: in_turn(each.values[key] for each in self.combinations) for key in self.combinations[0].values},
+            'surface': in_turn(each.surface_name for each in self.combinations),
+            'values of the surface': {each.surface_name: each.surface for each in self.combinations}}, keys)
 
     def run(self, jobs: int, scheduler: str | None, file: RunsFile | None = None, keep_truths: bool = False,
             paths: int = 0) -> Iterator[Finished]:

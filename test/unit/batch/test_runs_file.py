@@ -16,8 +16,9 @@ CHUNKS = list(chunks(combine({'ideal': None}, {}), ['timed', 'odom'], range(7, 2
 
 
 def rows(chunk):
-    """Return results for the runs of a chunk."""
-    return [(seed / 3, *[None] * (len(RESULTS) - 1)) for seed in chunk.seeds]
+    """Return results for the runs of a chunk, without a filter."""
+    return [tuple(None if name.startswith(('estimate', 'covariance')) else seed / 3 for name in RESULTS)
+            for seed in chunk.seeds]
 
 
 def write(path, number, command=None):
@@ -37,7 +38,7 @@ def test_a_file_that_is_continued_at_any_byte_is_equal_to_one_that_was_never_int
     assert write(whole, len(CHUNKS)) == 0
     content = whole.read_bytes()
     header = content.index(b'\n') + 1
-    assert content[header:].startswith(b'timed,ideal,7,2.3333333333333335,,') and content.count(b'\n') == 501
+    assert content[header:].startswith(b'timed,ideal,7,2.3333333333333335,') and content.count(b'\n') == 501
     for size in (0, 10, header - 1, header, header + 5, header + 70, 2000, len(content) - 1, len(content)):
         part = tmp_path / f'{size}.csv'
         part.write_bytes(content[:size])
@@ -77,6 +78,47 @@ def test_rows_of_other_runs_are_refused(tmp_path):
     path.write_bytes(path.read_bytes().replace(b'ideal,8', b'ideal,9'))
     with pytest.raises(ConfigError, match="'timed,ideal,9.*expected the run timed, ideal, 8, or a new file"):
         write(path, 3)
+
+
+def test_rows_that_somebody_has_appended_are_not_cut_off(tmp_path):
+    path = tmp_path / 'a.csv'
+    write(path, len(CHUNKS))
+    with open(path, 'a', encoding='utf-8') as file:
+        file.write('another row\n')
+    content = path.read_bytes()
+    with pytest.raises(ConfigError, match='more rows than this command writes: expected a new file'):
+        write(path, len(CHUNKS))
+    assert path.read_bytes() == content
+
+
+@pytest.mark.parametrize('value', [b'', b'nan', b'inf', b'1e999'])
+def test_a_result_that_is_not_a_finite_number_is_refused(tmp_path, value):
+    path = tmp_path / 'a.csv'
+    write(path, 1)
+    lines = path.read_bytes().split(b'\n')
+    fields = lines[1].split(b',')
+    fields[3] = value       # true_x
+    lines[1] = b','.join(fields)
+    path.write_bytes(b'\n'.join(lines))
+    with pytest.raises(ConfigError, match='expected the run timed, ideal, 7, or a new file'):
+        write(path, 1)
+
+
+@pytest.mark.parametrize('path, reason', [
+    ('/dev/null', 'a regular file, or a new one'), ('', 'a file that can be written'),
+    ('/none/a.csv', 'a file that can be written: No such file or directory')])
+def test_a_path_that_is_no_file(path, reason):
+    with pytest.raises(ConfigError, match=f'^--output: {path}: expected {reason}'):
+        RunsFile(path, COMMAND, [])
+
+
+def test_the_record_belongs_to_the_program_that_writes(tmp_path):
+    first = RunsFile(str(tmp_path / 'a.csv'), COMMAND, [])
+    record = (tmp_path / 'a.csv.json').read_bytes()
+    with pytest.raises(ConfigError, match='another program is writing it'):
+        RunsFile(str(tmp_path / 'a.csv'), {**COMMAND, 'runs': 7}, [])
+    assert (tmp_path / 'a.csv.json').read_bytes() == record
+    first.file.close()
 
 
 def test_two_programs_do_not_write_one_file(tmp_path):

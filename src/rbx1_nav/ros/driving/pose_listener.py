@@ -130,5 +130,7 @@ class PoseListener:
             return ''
         existing = f"; frames that exist: {', '.join(sorted(frames))}"
         if self.odom_frame == resolve_frame(COMBINED_FRAME) and self.odom_frame not in frames:
+            robot = rospy.get_namespace().strip('/')
             existing += f'. To start the filter that publishes {COMBINED_FRAME}: roslaunch rbx1_bringup odom_ekf.launch'
+            existing += f' robot:={robot}' if robot else ''
         return existing
