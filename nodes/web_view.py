@@ -71,7 +71,7 @@ class RobotView:
     """The view of one robot."""
 
     def __init__(self, name: str, token: str) -> None:
-        """name: namespace of the robot, '' for that of this node; token: needed to move the robot."""
+        """name: namespace of the robot, '' for the namespace of this node; token: needed to move the robot."""
         namespace = f'/{name}/' if name else ''
         self.state, publisher = PageState(), CommandPublisher(namespace)
         self.state.set_status(title=param('title'), robots=robot_names(), spacing=param('spacing'))

@@ -106,7 +106,7 @@ def test_every_module_is_found_and_every_room_is_in_the_table():
 
 
 def test_a_room_may_import_only_what_it_imports():
-    """So the arrows of the diagram in docs/design.md are those of ALLOWED."""
+    """So the diagram in docs/design.md, which is made from the imports, shows what ALLOWED permits."""
     used = {room: set() for room in ALLOWED}
     for path, module, is_package in modules():
         room = room_of(module) if module.startswith('rbx1_nav') else 'nodes'

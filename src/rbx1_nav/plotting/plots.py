@@ -54,7 +54,7 @@ def draw(file: str, surface: str, results: Mapping[str, Sequence[SimulationResul
     """Draw a column for each method: above, true paths; below, the end poses of all runs, on one scale.
 
     surface: name of the surface; results: by method, at least those with a path; truths: true end poses (n, 3) of all
-    runs by method, m and rad; None: those of the results.
+    runs by method, m and rad; None: the poses of the results.
     """
     from matplotlib.figure import Figure
     figure = Figure(figsize=(5.6 * len(results), 9.4), constrained_layout=True)

@@ -1,4 +1,4 @@
-"""The line on a pseudo-terminal: without a reader, disconnected, and shared with other processes."""
+"""The line on a pseudo-terminal: missing, without a reader, disconnected, and with a guardian that has died."""
 import os
 import pty
 import select

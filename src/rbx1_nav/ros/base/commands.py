@@ -43,7 +43,7 @@ class VelocityCommands:
     def __init__(self, base: Base, gate: CommandGate, clock: Clock, lock: Lock, namespace: str = '',
                  refusals: Refusals | None = None) -> None:
         """gate, lock: the CommandGate and the lock of the base; namespace: of the topic, with a slash at the end, ''
-        for that of this node; refusals: of this node, if it has several bases."""
+        for the namespace of this node; refusals: of this node, if it has several bases."""
         self.base = base
         self.gate = gate
         self.clock = clock

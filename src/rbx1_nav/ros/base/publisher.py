@@ -24,7 +24,7 @@ class BasePublisher:
     def __init__(self, robot: Robot, publish: Callable[[rospy.Publisher, Any], None] = rospy.Publisher.publish,
                  greet: Callable[[str, Callable[[Any], None]], None] | None = None, namespace: str = '') -> None:
         """publish(publisher, message): publishes a message; greet: of new subscribers of odom and tf, see NoDelay;
-        namespace: of the topics, with a slash at the end, '' for that of this node."""
+        namespace: of the topics, with a slash at the end, '' for the namespace of this node."""
         self.robot = robot
         self.frames = robot.odom_frame_id, robot.base_frame_id
         self.publish = publish

@@ -31,7 +31,7 @@ class SimulatedRobot:
     def __init__(self, robot: Robot, surface: Surface | None, seed: int, clock: Clock, refusals: Refusals,
                  name: str = '') -> None:
         """surface: None for the ideal floor; seed: of its errors; refusals: of this node; name: namespace of the
-        robot, '' for that of this node."""
+        robot, '' for the namespace of this node."""
         topics, private = (f'/{name}/', f'/{name}/arbotix/') if name else ('', '~')
         if robot.hardware:
             rospy.loginfo('Ignoring %d parameters that apply only to hardware', len(robot.hardware))

@@ -226,7 +226,7 @@ def position(error: Exception) -> str:
 
     It is empty for an error that rospy or this package has detected.
     """
-    frames = traceback.extract_tb(error.__traceback__)[1:]      # without that of exit_status()
+    frames = traceback.extract_tb(error.__traceback__)[1:]      # without the frame of exit_status()
     if (not frames or isinstance(error, rospy.ROSException)
             or any(os.path.realpath(frame.filename).startswith(PACKAGE) for frame in frames)):
         return ''

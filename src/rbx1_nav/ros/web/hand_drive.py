@@ -25,7 +25,7 @@ class CommandPublisher:
     unregisters may keep a dead connection to it."""
 
     def __init__(self, namespace: str = '') -> None:
-        """namespace: of the robot, with a slash at the end, '' for that of this node."""
+        """namespace: of the robot, with a slash at the end, '' for the namespace of this node."""
         self.publisher = rospy.Publisher(f'{namespace}{COMMANDS}', Twist, queue_size=5, tcp_nodelay=True)
 
     def publish(self, linear: float, angular: float) -> None:

@@ -23,7 +23,7 @@ class Runs:
                  remappings: Mapping[str, str] = MappingProxyType({}), namespace: str = '') -> None:
         """folder: directory of the scripts; on_change(name, outcome): called with the outcome '' when a run begins, and
         with its outcome when it has finished; after(): called before the second of these calls; remappings: of names,
-        for the scripts; namespace: of the robot, '' for that of this node."""
+        for the scripts; namespace: of the robot, '' for the namespace of this node."""
         self.folder = folder
         self.on_change = on_change
         self.after = after

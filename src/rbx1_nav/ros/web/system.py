@@ -45,7 +45,7 @@ class System:
 
     def __init__(self, state: PageState, connected: Callable[[], set[str]], namespace: str = '') -> None:
         """connected(): returns the names of the nodes that receive the commands of this node; namespace: of the robot,
-        with a slash at the end, '' for that of this node."""
+        with a slash at the end, '' for the namespace of this node."""
         self.state = state
         self.namespace = namespace
         self.connected = connected
