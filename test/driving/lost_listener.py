@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""If a node no longer accepts commands during a run, the run fails with an error that names the node."""
+"""If a base no longer accepts commands during a run, the run fails with an error that names the base."""
 import os
 import signal
 import subprocess
@@ -54,25 +54,11 @@ class TestLostListener(support.Case):
     def test_the_base_ends(self):
         driver = self.drive('_linear_speed:=0.02')
         self.base.signal(signal.SIGINT)
-        self.check_error(driver, '/arbotix, which publishes the odometry, disconnected')
+        self.check_error(driver, '/arbotix disconnected')
 
     def test_the_base_is_suspended(self):
         pid = support.pid_of('/arbotix')
         driver = self.drive('_linear_speed:=0.02')
-        self.addCleanup(os.kill, pid, signal.SIGCONT)
-        os.kill(pid, signal.SIGSTOP)
-        self.check_error(driver, '/arbotix has stopped responding')
-        os.kill(pid, signal.SIGCONT)
-
-    def test_a_base_that_starts_after_the_script_is_suspended(self):
-        self.base.kill()    # it stays registered
-        self.recorder.signal(signal.SIGINT)
-        self.recorder.wait()
-        driver = support.out_and_back('_linear_speed:=0.02')
-        driver.wait_for_line('Waiting for a base')
-        support.Process('rosrun', 'rbx1_nav', 'fake_base.py').wait_for_line('at the origin')
-        driver.wait_for_line('forward: ')
-        pid = support.pid_of('/arbotix')
         self.addCleanup(os.kill, pid, signal.SIGCONT)
         os.kill(pid, signal.SIGSTOP)
         self.check_error(driver, '/arbotix has stopped responding')
@@ -84,7 +70,7 @@ class TestLostListener(support.Case):
         driver = support.out_and_back('_linear_speed:=0.01')
         driver.wait_for_line('forward: 1.00 m')
         self.recorder.kill()
-        self.check_error(driver, '/recorder disconnected, and no subscriber is left: expected a base')
+        self.check_error(driver, '/recorder disconnected')
         subprocess.run(['rosnode', 'cleanup'], input=b'y\n', check=True)
 
     def test_the_base_is_killed_and_the_clock_stops(self):
@@ -101,20 +87,14 @@ class TestLostListener(support.Case):
             driver = script('_linear_speed:=0.01')
             driver.wait_for_line('forward: 1.00 m')
             base.kill()
-            self.check_error(driver, '/arbotix disconnected, and no subscriber is left: expected a base')
+            self.check_error(driver, '/arbotix disconnected')
 
     def test_another_listener_is_killed(self):
-        driver = self.drive('_linear_speed:=0.02')
-        self.recorder.kill()
-        self.check_error(driver, '/recorder disconnected')
-        subprocess.run(['rosnode', 'cleanup'], input=b'y\n', check=True)
-
-    def test_another_listener_ends(self):
         driver = self.drive('_linear_speed:=0.5', '_angular_speed:=2')
-        self.recorder.signal(signal.SIGINT)
-        driver.wait_for_line(r'\[WARN\].*: /cmd_vel: /recorder disconnected; continuing with the other subscribers')
+        self.recorder.kill()
         self.assertEqual(driver.wait(), 0, driver.output)
-        self.assertIn('Done: ', driver.output)
+        self.assertRegex(driver.output, r'\[WARN\].*: /cmd_vel: /recorder disconnected during the run')
+        subprocess.run(['rosnode', 'cleanup'], input=b'y\n', check=True)
 
 
 if __name__ == '__main__':

@@ -100,7 +100,7 @@ class TestStarvedSender(support.Case):
         driver.wait()
         self.assertEqual(driver.process.returncode, 1, driver.output)
         self.assertRegex(driver.output, r'This script was suspended for \d+\.\d s: expected at most 5 s, '
-                         'after which the clock of /arbotix continues')
+                         'after which the clock of the base continues')
 
 
 if __name__ == '__main__':

@@ -1,8 +1,7 @@
 """Waits for the subscribers of a topic, because messages published before they are connected are lost."""
 from __future__ import annotations
 
-import threading
-from typing import Iterable
+import time
 
 import rosgraph
 import rospy
@@ -13,49 +12,47 @@ from rbx1_nav.ros.network.master import Server, call
 from rbx1_nav.ros.network.rospy_topics import connected_nodes
 from rbx1_nav.ros.node.life import wait_for
 
+PERIOD = 0.1        # s between two questions to the master
 
-class _SubscriberMonitor(threading.Thread):
-    """Keeps the list of live subscribers of a topic up to date until it is stopped."""
+
+class _Subscribers:
+    """The live subscribers of a topic."""
 
     def __init__(self, topic: str) -> None:
-        super().__init__(daemon=True)
         self.topic = topic
-        # (address, number of refused commands) of each live subscriber, by its name; None until the master has answered
-        self.live: dict[str, tuple[str, int | None]] | None = None
+        self.peers: dict[str, Peer] | None = None       # by name; None until the master has answered
         self.dead: set[str | None] = set()      # addresses
-        self.publishers: dict[str, list[str]] = {}      # names of the nodes that publish a topic
-        self.odometry: list[str] = []   # topics
         self.others: list[str] = []     # namespaces of other bases
-        self.rounds = 0         # number of complete updates of these values
-        self.done = threading.Event()
+        self.next = 0.0     # s of the monotonic clock
 
-    def run(self) -> None:
+    def update(self) -> None:
+        """Ask the master and the subscribers, unless it is too early."""
+        if time.monotonic() < self.next:
+            return
         master = rosgraph.get_master_uri()
-        while not self.done.is_set():
-            try:
-                publishers, subscribers, _ = call(master, 'getSystemState')
-                self.publishers = dict(publishers)
-                self.odometry = [topic for topic, kind in call(master, 'getTopicTypes') if kind == 'nav_msgs/Odometry']
-                names = {name for topic, nodes in subscribers if topic == self.topic for name in nodes}
-                namespace, commands = self.topic.rpartition('/')[::2]
-                self.others = sorted(namespaces_of_bases(self.publishers, dict(subscribers), self.odometry,
-                                                         commands).keys() - {namespace or '/'})
-                live = {name: self.find(master, name) for name in names}
-                self.live = {name: found for name, found in live.items() if found}
-                self.rounds += 1
-            except Exception as error:
-                rospy.logwarn_throttle(5, f'The master at {master} does not answer: {error}')
-            self.done.wait(0.1)
+        try:
+            state: list[dict[str, list[str]]] = [dict(each) for each in call(master, 'getSystemState')]
+            publishers, subscribers, _ = state
+            odometry = [topic for topic, kind in call(master, 'getTopicTypes') if kind == 'nav_msgs/Odometry']
+            namespace, commands = self.topic.rpartition('/')[::2]
+            self.others = sorted(namespaces_of_bases(publishers, subscribers, odometry, commands).keys()
+                                 - {namespace or '/'})
+            names = subscribers.get(self.topic, [])
+            found = [self.find(master, name, any(name in publishers.get(topic, ()) for topic in odometry),
+                               name in publishers.get('/clock', ())) for name in names]
+            self.peers = {peer.name: peer for peer in found if peer}
+        except Exception as error:
+            rospy.logwarn_throttle(5, f'The master at {master} does not answer: {error}')
+        self.next = time.monotonic() + PERIOD
 
-    def find(self, master: str, name: str) -> tuple[str, int | None] | None:
-        """Return (address, number of refused commands) of a node that answers, else None. An address that did not
-        answer is not called again."""
+    def find(self, master: str, name: str, is_base: bool, keeps_time: bool) -> Peer | None:
+        """Return the Peer of this name if it answers. An address that did not answer is not called again."""
         address = None
         try:
             address = call(master, 'lookupNode', name)
             if address not in self.dead:
                 with Server(address) as server:
-                    return address, ask_refusals(server)[0]
+                    return Peer(name, address, is_base, keeps_time, ask_refusals(server)[0])
         except Exception:
             self.dead.add(address)
             rospy.logwarn('%s is registered as a subscriber of %s but does not answer: ignored '
@@ -68,12 +65,6 @@ class _SubscriberMonitor(threading.Thread):
                   f'ROS_NAMESPACE={self.others[0]}' if self.others else '')
         return f'a base that subscribes to {self.topic}{others}'
 
-    def peer(self, name: str) -> Peer:
-        """Return the Peer of this name."""
-        uri, refused = (self.live or {}).get(name, (None, None))
-        return Peer(name, uri, any(name in self.publishers.get(topic, ()) for topic in self.odometry),
-                    name in self.publishers.get('/clock', ()), refused)
-
 
 def wait_for_subscribers(publisher: rospy.Publisher, timeout: float) -> Listeners:
     """Wait until all live subscribers of a publisher's topic are connected to it and simulated time has started.
@@ -84,41 +75,23 @@ def wait_for_subscribers(publisher: rospy.Publisher, timeout: float) -> Listener
     node and the base are on different clocks, and ROSInterruptException as soon as shutdown is requested.
     """
     topic = publisher.resolved_name
-    monitor = _SubscriberMonitor(topic)
-    monitor.start()
-    before: set[str] = set()
-    known = 0
+    subscribers = _Subscribers(topic)
 
     def missing() -> str:
-        names = ', '.join(sorted((monitor.live or {}).keys() - before))
-        return (f'the master to list the subscribers of {topic}'
-                if monitor.live is None or before and monitor.rounds < known
-                else f'{names} to connect to {topic}' if names
-                else monitor.missing_base() if not before else 'the time on /clock')
+        peers, connected = subscribers.peers, connected_nodes(publisher)
+        return (f'the master to list the subscribers of {topic}' if peers is None
+                else f"{', '.join(sorted(peers.keys() - connected))} to connect to {topic}" if peers.keys() - connected
+                else 'the time on /clock' if connected else subscribers.missing_base())
 
     def find() -> Listeners | None:
-        nonlocal before, known
-        connected = connected_nodes(publisher)
-        if connected != before:     # an update in progress may have begun before the change
-            before, known = connected, monitor.rounds + 2
-        if not (connected and monitor.rounds >= known and (monitor.live or {}).keys() <= connected
-                and rospy.get_rostime()):
+        subscribers.update()
+        peers = subscribers.peers or {}
+        if not (peers and peers.keys() <= connected_nodes(publisher) and rospy.get_rostime()):
             return None
-        peers = [monitor.peer(name) for name in connected]
-        _check_clock(peers)
+        for peer in peers.values():
+            if peer.keeps_time and rospy.rostime.is_wallclock():
+                raise rospy.ROSException('/use_sim_time was false when this node started, but '
+                                         f'{peer.name} publishes /clock: start this node again')
         return Listeners(publisher, peers)
 
-    try:
-        listeners = wait_for(find, timeout, missing)
-    finally:
-        monitor.done.set()
-    listeners.start()
-    return listeners
-
-
-def _check_clock(peers: Iterable[Peer]) -> None:
-    """Raise ROSException if a subscriber publishes /clock, but this node, started earlier, does not use it."""
-    for peer in peers:
-        if peer.keeps_time and rospy.rostime.is_wallclock():
-            raise rospy.ROSException('/use_sim_time was false when this node started, but '
-                                     f'{peer.name} publishes /clock: start this node again')
+    return wait_for(find, timeout, missing)
