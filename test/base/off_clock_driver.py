@@ -7,7 +7,6 @@ KIND: wall_rate          time.sleep() between two commands
       wall_thread        each command is sent by a threading.Timer
       wait_for_message   a loop of rospy.wait_for_message()
       keys               a command for each line of the input
-      two_threads        two threads with a rospy.Rate each, whose order at a tick depends on chance
       two_commands       for comparison, on the clock: two commands at a time, of which the second one counts
       last_command       for comparison, on the clock: a node that exits just after a command
 """
@@ -65,20 +64,6 @@ def keys(publisher):
     print('waits for a key', flush=True)
     for line in sys.stdin:
         publisher.publish(twist(float(line)))
-
-
-def two_threads(publisher):
-    """Send different speeds in two threads, for 1 s."""
-    def send(rate, speed):
-        clock = rospy.Rate(rate)
-        for _ in range(rate):
-            publisher.publish(twist(speed))
-            clock.sleep()
-    threads = [threading.Thread(target=send, args=args) for args in ((50, SPEED), (10, SPEED / 2))]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
 
 
 def two_commands(publisher):

@@ -12,14 +12,14 @@ import support
 sys.path.append(os.path.join(os.path.dirname(support.__file__), 'base'))
 import off_clock
 
-FAULT = ('drivers on wall time, on a keyboard, from a bag, or with two threads, at real_time_factor 20 with strict; in '
-         'every second run beside four busy loops')
+FAULT = ('drivers on wall time, on a keyboard, or from a bag, at real_time_factor 20 with strict; in every second run '
+         'beside four busy loops')
 PROMISE = 'the base names the driver and exits with status 1'
 FULL, SHORT = 20, 2     # runs of each kind of driver
 ROOT, ALONE = False, True
 
 BUSY = 4        # loops
-KINDS = 'wall_rate', 'wall_thread', 'wait_for_message', 'two_threads', 'keys', 'rosbag play', 'rostopic pub'
+KINDS = 'wall_rate', 'wall_thread', 'wait_for_message', 'keys', 'rosbag play', 'rostopic pub'
 LIMIT = 30      # s of wall time of a run; the base may also wait for the driver for 5 s
 AFTER = 10      # s of wall time after the run in which the base has to exit
 

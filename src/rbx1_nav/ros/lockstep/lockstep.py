@@ -36,7 +36,6 @@ HOLD_LATER = 1 / 128    # fraction of the later ticks at which the clock is held
 HOLD = 1.5          # duration of a hold, in intervals between two commands
 FIRST_HOLD = 0.02   # s of wall time: duration of the first hold, before an interval is known
 COMMANDS = 3        # that a driver on the clock may send after one message; stops do not count
-SENDERS = 2         # threads of a rospy node that run when one of them publishes: this one, and that of the connection
 TEST, TESTS = 0.005, 4  # s of wall time in which a thread that polls usually runs more than once; how often to try
 SLEEP = 0.05        # s: the longest sleep between two checks for a shutdown request
 
@@ -88,9 +87,6 @@ class Lockstep:
         self.ready: list[tuple[Any, Any]] = []   # commands in the order in which they take effect
         self.idle = True        # whether everything was asleep, and nothing has been delivered since
         self.held = False       # whether the clock was held after the last tick
-        self.mixed: set[str] = set()        # drivers whose last commands arrived together and differed
-        # drivers for which this was so before, with the threads that ran when it was so for the last time
-        self.suspects: dict[str, set[Any]] = {}
         self.tick = 0
         self.random = Random(0)
 
@@ -118,14 +114,12 @@ class Lockstep:
         buffer = BytesIO()
         serialize_message(buffer, topic.seq, message)
         for connections, wait in self.processes.groups(topic.connections):
-            runs = {name: self.processes.runs(name) for name in self.suspects}
             self.heard.clear()
             for connection in connections:
                 write(connection, buffer.getvalue())
             if wait:
                 self.heard.wait(ANSWER_TIME)    # before a command arrives, there is no need to look
                 self._settle(isinstance(message, Clock))
-                self._check_threads(runs)
 
     def take(self) -> list[tuple[Any, Any]]:
         """Return the commands that take effect now, each with its target."""
@@ -185,8 +179,6 @@ class Lockstep:
             arrived, self.arrived = self.arrived, []
         # the order must not depend on chance
         arrived.sort(key=lambda each: each.header['callerid'])
-        self.mixed = {one.header['callerid'] for one, other in zip(arrived, arrived[1:])
-                      if one.header is other.header and one.command != other.command}
         counts = Counter(id(each.header) for each in arrived if each.moves())
         for each in arrived:
             self._check(self._driver_of(each.header), each, counts[id(each.header)])
@@ -240,19 +232,6 @@ class Lockstep:
         if reason:
             self.processes.forget(driver.name)
             self._report(driver.name, reason)
-
-    def _check_threads(self, runs: dict[str, list[Any]]) -> None:
-        """Report a driver that sends different commands at once from more than one thread: their order may depend on
-        chance. runs: of its threads until now; known from the second time on."""
-        for name in self.mixed & self.processes.drivers & runs.keys():
-            senders = self.processes.senders(runs[name])
-            # twice the same ones, because rospy has threads that also wake once or twice per second of wall time
-            if len(senders & self.suspects[name]) > SENDERS:
-                self.processes.forget(name)
-                self._report(name, 'sends different commands in one tick, from several threads')
-            self.suspects[name] = senders
-        for name in self.mixed:
-            self.suspects.setdefault(name, set())
 
     def _report(self, name: str, reason: str) -> None:
         for driver in self.drivers.values():

@@ -77,10 +77,6 @@ class Thread:
         """Return the letter of the state of the thread."""
         return os.pread(self.files[0], 512, 0).rpartition(b') ')[2][:1]     # the name in () may contain any characters
 
-    def waits_for_thread(self) -> bool:
-        """Return whether the thread waits for another one of its process, as in rospy.Rate.sleep()."""
-        return self.waits_in().startswith(FUTEX)
-
     def needs_no_message(self) -> bool:
         """Return whether the thread is running, runnable, or will wake by itself."""
         name = self.waits_in()
@@ -146,11 +142,11 @@ class Process:
 
     def main_sleeps_briefly(self) -> bool:
         """Return whether the main thread will wake by itself."""
-        return bool(self._each(lambda thread: thread.is_main and thread.needs_no_message()))
+        return bool(self.those(lambda thread: thread.is_main and thread.needs_no_message()))
 
     def polling(self) -> list[PollingThread]:
         """Return the threads that sleep only briefly."""
-        return [(thread, thread.ran) for thread in self._each(Thread.polls)]
+        return [(thread, thread.ran) for thread in self.those(Thread.polls)]
 
     def has_new_threads(self) -> bool:
         """Return whether there are threads that did not exist at the last call."""
@@ -166,8 +162,16 @@ class Process:
         self._update()
         return not self.threads
 
-    def _each(self, function: Callable[[Thread], object]) -> list[Thread]:
-        return those(self.threads.values(), function)
+    def those(self, function: Callable[[Thread], object]) -> list[Thread]:
+        """Call a function with each thread; return the threads for which it is true, without those that have exited."""
+        found = []
+        for thread in self.threads.values():
+            try:
+                if function(thread):
+                    found.append(thread)
+            except OSError:
+                pass
+        return found
 
     def _update(self) -> None:
         try:
@@ -182,18 +186,6 @@ class Process:
                 self.new_threads = True
             except (FileNotFoundError, ProcessLookupError):
                 pass
-
-
-def those(threads: Iterable[Thread], function: Callable[[Thread], object]) -> list[Thread]:
-    """Call a function with each thread; return the threads for which it is true, without those that have exited."""
-    found = []
-    for thread in threads:
-        try:
-            if function(thread):
-                found.append(thread)
-        except OSError:
-            pass
-    return found
 
 
 class Network:

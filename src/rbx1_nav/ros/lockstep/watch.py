@@ -12,7 +12,7 @@ import rospy
 
 from rbx1_nav.ros.lockstep.peers import listening_process, own_process, peer_process
 from rbx1_nav.ros.lockstep.processes import (
-    Network, PollingThread, Process, Runs, Thread, awake, runs_since, still_polling, those)
+    Network, PollingThread, Process, Runs, awake, runs_since, still_polling)
 from rbx1_nav.ros.network.master import call
 
 # s of wall time to wait for a new connection of cmd_vel; less than NODE_TIMEOUT. A busy machine takes more than 1 s
@@ -205,10 +205,9 @@ class Watch:
         """Return whether there are new threads in the watched nodes since the last call."""
         return any([process.has_new_threads() for process in self.processes.values()])
 
-    def runs(self, name: str = '') -> Runs:
-        """Return how often each thread of a watched node has run, or of all watched nodes."""
-        processes = [self.processes[name]] if name in self.processes else [] if name else self.processes.values()
-        return [each for process in processes for each in process.runs()]
+    def runs(self) -> Runs:
+        """Return how often each thread of the watched nodes has run."""
+        return [each for process in self.processes.values() for each in process.runs()]
 
     @staticmethod
     def find_pollers(before: Runs) -> bool:
@@ -218,11 +217,6 @@ class Watch:
         for thread, count in runs:
             thread.is_poller = thread.is_poller or count > 1
         return any(count == 1 for _, count in runs)
-
-    @staticmethod
-    def senders(before: Runs) -> set[Thread]:
-        """Return the threads that have run since runs(), without those that receive messages."""
-        return set(those((thread for thread, count in runs_since(before) if count), Thread.waits_for_thread))
 
     @staticmethod
     def still_polling(threads: list[PollingThread]) -> bool:

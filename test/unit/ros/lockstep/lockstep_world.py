@@ -58,15 +58,12 @@ class Processes:
     def have_new_threads(self):
         return self.new_threads
 
-    def runs(self, _=''):
+    def runs(self):
         return []
 
     def find_pollers(self, _):
         self.tests += 1
         return self.tests < 2
-
-    def senders(self, _):
-        return set()
 
     def forget(self, name):
         self.drivers.discard(name)

@@ -1,5 +1,4 @@
 """The clock stays in step with the nodes that drive by it, and names those that do not."""
-from itertools import cycle
 from types import SimpleNamespace
 
 from geometry_msgs.msg import Twist
@@ -133,20 +132,6 @@ def test_a_driver_that_cannot_be_in_step_is_named_if_it_drives(world):
     assert not world.reports
     world.drive(1)
     assert world.reports == [('a', 'does not subscribe to /clock')]
-
-
-@pytest.mark.parametrize('commands, sending, named', [
-    ((MOVE, FASTER), ['xyz'], True), ((MOVE, FASTER), ['xy'], False), ((MOVE, FASTER), ['xyt', 'xyu'], False),
-    ((MOVE, MOVE), ['xyz'], False), ((MOVE,), ['xyz'], False)])
-def test_two_threads_that_send_different_commands_at_once_are_named(world, commands, sending, named):
-    """x, y, z: threads that ran; t, u: others that ran by chance."""
-    sets = cycle(sending)
-    world.processes.senders = lambda _: set(next(sets))
-    for tick in range(5):
-        assert bool(world.reports) == (named and tick > 2)      # compared from the third tick on
-        world.tick(*[('a', command) for command in commands])
-    assert [text for _, text in world.reports] == ['sends different commands in one tick, from several threads'] * named
-    assert world.applied == [(tick, command) for tick in range(1, 6) for command in commands]
 
 
 def test_a_report_that_raises_ends_the_tick(monkeypatch, world):
