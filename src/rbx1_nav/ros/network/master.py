@@ -2,8 +2,8 @@
 from __future__ import annotations
 
 from http.client import HTTPConnection
+from math import inf
 import socket
-import threading
 import time
 from typing import Any, Callable
 from urllib.parse import urlsplit
@@ -14,7 +14,7 @@ import rosgraph
 import rospy
 
 TIMEOUT = 2.0       # s of wall time for the master, or a live node, to answer a call
-PERIOD = 0.2        # s between two calls to a master that is not running yet, as in rospy
+PERIOD = 0.05       # s between two calls to a master that is not running yet
 
 
 class _TimeoutTransport(Transport):
@@ -80,18 +80,6 @@ def require_master() -> None:
                                  'expected a running roscore') from error
 
 
-def _probe_master(answered: threading.Event, failed: threading.Event, done: threading.Event) -> None:
-    """Call the master until it has answered, or `done` is set; `failed` is set after the first failure."""
-    while not done.is_set():
-        try:
-            require_master()
-            answered.set()
-            return
-        except Exception:
-            failed.set()        # another server at this port causes other errors
-        time.sleep(PERIOD)
-
-
 def wait_for_master(name: str, read_limit: Callable[[], float | None], is_ended: Callable[[], bool],
                     sleep: Callable[[float], None]) -> None:
     """Wait until the master answers, or is_ended(), and log one line if it does not answer immediately.
@@ -99,25 +87,19 @@ def wait_for_master(name: str, read_limit: Callable[[], float | None], is_ended:
     name: name of the node, for the log; sleep(seconds): sleeps briefly; read_limit(): returns how long to wait, s of
     wall time, None for no limit, and is called only if the node has to wait. Raises ROSException after this time.
     """
-    uri = rosgraph.get_master_uri()
+    uri, end = rosgraph.get_master_uri(), None
     if urlsplit(uri).scheme != 'http':      # rospy reports it
         return
-    answered, failed, done = (threading.Event() for _ in range(3))
-    start = time.monotonic()
-    # in a thread, so that a host that drops packets does not delay Ctrl-C
-    threading.Thread(target=_probe_master, args=(answered, failed, done), daemon=True).start()
-    try:
-        while not (answered.is_set() or failed.is_set() or is_ended()):
-            sleep(0.002)
-        if answered.is_set() or is_ended():
-            return
-        rospy.core.configure_logging(name)      # as init_node() would, so that the line has the usual format
-        limit = read_limit()
-        rospy.loginfo('Waiting for the master at %s', uri)
-        while not (answered.is_set() or is_ended()):
-            if limit is not None and time.monotonic() > start + limit:
-                raise rospy.ROSException(f'The master at {uri} does not answer (timed out after {limit:g} s): '
-                                         'expected a running roscore')
-            sleep(0.02)
-    finally:
-        done.set()
+    while not is_ended():
+        try:
+            return require_master()
+        except Exception:       # another server at this port causes other errors
+            if end is None:
+                rospy.core.configure_logging(name)      # as init_node() would, so that the line has the usual format
+                limit = read_limit()
+                end = time.monotonic() + (inf if limit is None else limit)
+                rospy.loginfo('Waiting for the master at %s', uri)
+        if time.monotonic() > end:
+            raise rospy.ROSException(f'The master at {uri} does not answer (timed out after {limit:g} s): '
+                                     'expected a running roscore')
+        sleep(PERIOD)
