@@ -121,7 +121,7 @@ class Ekf:
             return
         if not (self.combined and self.frames):
             return
-        self.diagnostics.count(topic, now, self.combined)
+        self.diagnostics.received[topic] = now
         if self.combined.estimate and not life.end_requested.is_set():      # topics are closed during shutdown
             self.publisher.update(self.combined, *self.frames)
 
@@ -131,7 +131,6 @@ class Ekf:
         while not life.end_requested.is_set():
             if schedule.due(time.monotonic_ns()):   # wall time: diagnostics are needed even if /clock has stopped
                 self.diagnostics.publish()
-            self.log.flush(time.monotonic())
             self.tree.listen(not (self.publisher.settled and self.imu.settled))
             life.sleep(0.05)
 

@@ -28,7 +28,7 @@ class OdomEkf:
 
     def __init__(self) -> None:
         self.frames: tuple[str, str] | None = None      # (frame_id, child_frame_id) of the wheel odometry
-        self.last: PoseWithCovarianceStamped | None = None
+        self.received = False       # whether there was a pose
         self.publisher = rospy.Publisher('odom_ekf', Odometry, NoDelay(), queue_size=10)
         rospy.Subscriber('odom', Odometry, self.on_odom)
         rospy.Subscriber('odom_combined', PoseWithCovarianceStamped, self.on_pose)
@@ -38,15 +38,19 @@ class OdomEkf:
         self.frames = odom.header.frame_id.lstrip('/'), odom.child_frame_id.lstrip('/')
 
     def on_pose(self, pose: PoseWithCovarianceStamped) -> None:
-        """Republish a combined pose, with the mean velocity since the previous one."""
+        """Republish a combined pose. The velocity is unknown."""
         if self.frames and not life.end_requested.is_set():     # topics are closed during shutdown
-            self.publisher.publish(messages.odometry_of_pose(pose, self.last, *self.frames))
-        self.last = pose
+            odometry = Odometry(pose=pose.pose)
+            odometry.header.stamp = pose.header.stamp
+            odometry.header.frame_id, odometry.child_frame_id = self.frames
+            odometry.twist.covariance = messages.diagonal(*[messages.UNKNOWN] * 6)
+            self.publisher.publish(odometry)
+        self.received = True
 
     def run(self) -> None:
         """Run until shutdown is requested; warn once if there is nothing to republish."""
         deadline = time.monotonic() + MESSAGE_WARN_TIME
-        while not (self.frames and self.last):
+        while not (self.frames and self.received):
             if life.end_requested.is_set():
                 return
             if time.monotonic() > deadline:

@@ -5,7 +5,6 @@ import math
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from geometry_msgs.msg import PoseWithCovarianceStamped
-from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Log
 from std_msgs.msg import Empty
 
@@ -109,26 +108,6 @@ class TestEkfMessages(support.Case):
         self.wait_for_log('odom has recovered')
         support.wait_for(lambda: self.poses.last.pose.covariance[0] < 2 * before + 1e-6, 'the previous uncertainty')
         self.wait_for_status('odom', DiagnosticStatus.OK)
-
-    def test_a_flood_of_bad_messages_is_two_lines_a_second(self):
-        def bad(name, value):
-            def make():
-                message = make_odom()
-                setattr(message.pose.pose.position, name, value)
-                return message
-            return make
-        good = self.odom.make
-        start = len(self.log.messages)
-        for make in bad('x', math.nan), bad('y', math.inf), lambda: Odometry(header=make_odom().header):
-            self.odom.make = make
-            self.imu.send(lambda m: setattr(m, 'angular_velocity_covariance', [-0.5] * 9))
-            support.wait_for(lambda: any(
-                'more of this kind' in m.msg for m in self.log.messages[start:]), 'a line that counts')
-        self.odom.make = good
-        lines = [m for m in self.log.messages[start:] if m.name == '/robot_pose_ekf']
-        # two lines per second on the node's wall clock: at most two in any second, minus the transit time of a line
-        for first, third in zip(lines, lines[2:]):
-            self.assertGreater((third.header.stamp - first.header.stamp).to_sec(), 0.9)
 
     def test_another_sender_at_the_same_time_is_ignored(self):
         support.Process('rostopic', 'pub', '-r', '20', '/odom', 'nav_msgs/Odometry', '{}')

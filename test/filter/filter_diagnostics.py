@@ -58,9 +58,7 @@ class TestFilterDiagnostics(support.Case):
         wait_for_case('carried', DiagnosticStatus.WARN, 'Carried, or turned by hand')
         rate[0] -= 0.5
         wait_for_case('standstill', DiagnosticStatus.OK, 'Standstill')
-        values = status()[2]
-        self.assertEqual((values['Contradictions'], values['Times carried'], values['Restarts']), ('1', '1', '0'))
-        self.assertGreater(int(values['Poses published']), 30)
+        self.assertGreater(int(status()[2]['Poses published']), 30)
 
 
 if __name__ == '__main__':

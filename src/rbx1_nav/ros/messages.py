@@ -16,7 +16,7 @@ from rbx1_nav.estimation.inputs import MAX_VARIANCE, Odom, check, check_number, 
 from rbx1_nav.robot.description import Joint
 from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.robot.readings import MEASURED, Reading, Uncertainty
-from rbx1_nav.units import Array, wrap_angle
+from rbx1_nav.units import Array
 
 ROUNDING = 1e-6     # tolerance for rounding errors of a received correlation
 UNKNOWN = 1e6       # variance of a quantity that is not measured, as in diff_drive_controller and robot_pose_ekf
@@ -188,25 +188,6 @@ def from_set_pose(message: PoseWithCovarianceStamped, output_frame: str) -> tupl
             and numpy.linalg.eigvalsh(correlations).min() > -ROUNDING)
     check('pose.covariance', show(covariance.tolist()), good, 'a covariance: symmetric, no correlation above 1')
     return pose, (covariance + covariance.T) / 2
-
-
-def odometry_of_pose(pose: PoseWithCovarianceStamped, before: PoseWithCovarianceStamped | None, frame_id: str,
-                     child_frame_id: str) -> Odometry:
-    """Return an Odometry message with the pose of a PoseWithCovarianceStamped. Its velocity is the mean since the pose
-    `before`, which may be None, with an unknown variance."""
-    message = _stamped(Odometry(), pose.header.stamp, frame_id, child_frame_id)
-    message.pose = pose.pose
-    message.twist.covariance = diagonal(*[UNKNOWN] * 6)
-    elapsed = (pose.header.stamp - before.header.stamp).to_sec() if before else 0.0
-    if before and elapsed > 0:
-        yaw = yaw_of(pose.pose.pose.orientation)
-        turned = wrap_angle(yaw - yaw_of(before.pose.pose.orientation))
-        x = pose.pose.pose.position.x - before.pose.pose.position.x
-        y = pose.pose.pose.position.y - before.pose.pose.position.y
-        middle = yaw - turned / 2
-        message.twist.twist.linear.x = (x * cos(middle) + y * sin(middle)) / elapsed
-        message.twist.twist.angular.z = turned / elapsed
-    return message
 
 
 # Any: a DiagnosticStatusWrapper

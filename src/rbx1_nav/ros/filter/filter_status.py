@@ -5,6 +5,7 @@ from functools import partial
 from math import degrees, sqrt
 import re
 from threading import Lock
+import time
 from typing import Callable, Sequence
 
 import rospy
@@ -12,12 +13,11 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from diagnostic_updater import DiagnosticStatusWrapper, Updater
 
 from rbx1_nav.estimation.combined_odometry import CombinedOdometry
-from rbx1_nav.estimation.filter import BIAS, Filter
+from rbx1_nav.estimation.filter import BIAS
 from rbx1_nav.ros.messages import fill_status
 
-INTERVAL = 0.5      # s between two log lines
-KIND_INTERVAL = 1.0     # s between two lines of one kind
-MAX_KINDS = 100     # kinds waiting to be logged; further kinds are dropped
+INTERVAL = 1.0      # s between two log lines of one kind
+MAX_KINDS = 4       # lines in this time
 NUMBER = re.compile(r'[-+]?\b(\d[\d.]*(e[-+]?\d+)?|nan|inf)\b')
 
 OK, WARN = DiagnosticStatus.OK, DiagnosticStatus.WARN
@@ -28,7 +28,7 @@ SUMMARIES = {'standstill': (OK, 'Standstill'), 'agreement': (OK, 'Wheels and gyr
 
 
 class Diagnostics:
-    """Counts the messages to the filter, and publishes a DiagnosticStatus of the filter and of each sensor."""
+    """Publishes a DiagnosticStatus of the filter and of each sensor."""
 
     def __init__(self, sensors: Sequence[str], timeout: float, lock: Lock,
                  get_filter: Callable[[], tuple[CombinedOdometry | None, int]]) -> None:
@@ -37,31 +37,14 @@ class Diagnostics:
         self.timeout = timeout
         self.lock = lock
         self.get_filter = get_filter
-        # arrival time of the last message of each sensor
+        # arrival time of the last message of each sensor that the filter has accepted
         self.received: dict[str, rospy.Time | None] = dict.fromkeys(sensors)
         self.rejected = dict.fromkeys([*sensors, 'set_pose'], 0)    # number of messages
-        self.filter: Filter | None = None
-        self.case: str | None = None
-        self.starts = 0
-        self.counts = {'contradiction': 0, 'carried': 0}
         self.updater = Updater()
         self.updater.setHardwareID('none')
         self.updater.add('filter', self._diagnose_filter)
         for sensor in sensors:
             self.updater.add(sensor, partial(self._diagnose_sensor, sensor))
-
-    def count(self, topic: str, now: rospy.Time, combined: CombinedOdometry) -> None:
-        """Count a message; to be called after each message on a topic that the filter has accepted at `now`."""
-        self.received[topic] = now
-        if combined.filter is not self.filter:
-            self.filter = combined.filter
-            if self.filter:
-                self.starts += 1
-        case = combined.case
-        if case != self.case:
-            self.case = case
-            if case and case in self.counts:
-                self.counts[case] += 1
 
     def publish(self) -> None:
         """Publish /diagnostics."""
@@ -84,9 +67,6 @@ class Diagnostics:
                 'Doubted': combined.doubts.doubted if combined else 'nothing',
                 'Standard deviation of the heading (degrees)':
                     f'{degrees(sqrt(estimate.covariance[2, 2])):.2f}' if estimate else 'unknown',
-                'Contradictions': self.counts['contradiction'],
-                'Times carried': self.counts['carried'],
-                'Restarts': max(0, self.starts - 1),
                 'Poses published': published,
                 'Rejected messages on set_pose': self.rejected['set_pose']})
 
@@ -106,33 +86,18 @@ class Diagnostics:
 
 
 class LimitedLog:
-    """A log that is limited to two lines per second. It keeps lines until they may be logged: the latest line of each
-    kind, and the number of lines.
+    """Logs at most one line of a kind per second, and MAX_KINDS lines in all. The others are dropped.
 
     Lines that differ only in numbers are of the same kind.
     """
 
     def __init__(self) -> None:
-        # by kind, the oldest first: (log, text, number of lines)
-        self.pending: dict[str, tuple[Callable[..., None], str, int]] = {}
-        self.logged: dict[str, float] = {}      # by kind: time of the last logged line, s
-        self.next = 0.0         # s
-        self.lock = Lock()
+        self.logged: dict[str, float] = {}      # by kind: time of a line that was logged, s of the monotonic clock
 
     def add(self, log: Callable[..., None], text: str) -> None:
-        """Add a line, from any thread. log: a function such as rospy.logwarn."""
-        kind = NUMBER.sub('', text)
-        with self.lock:
-            if kind in self.pending or len(self.pending) < MAX_KINDS:
-                self.pending[kind] = log, text, self.pending.get(kind, (log, text, 0))[2] + 1
-
-    def flush(self, now: float) -> None:
-        """Log at most one line. To be called often; now: s of a monotonic clock."""
-        with self.lock:
-            self.logged = {kind: time for kind, time in self.logged.items() if now - time < KIND_INTERVAL}
-            kind = next((each for each in self.pending if each not in self.logged), None)
-            if kind is None or now < self.next:
-                return
-            log, text, count = self.pending.pop(kind)
-            self.logged[kind], self.next = now, now + INTERVAL
-        log('%s', text if count == 1 else f'{text} (and {count - 1} more of this kind)')
+        """Log a line. log: a function such as rospy.logwarn."""
+        kind, now = NUMBER.sub('', text), time.monotonic()
+        self.logged = {each: then for each, then in self.logged.items() if now - then < INTERVAL}
+        if kind not in self.logged and len(self.logged) < MAX_KINDS:
+            self.logged[kind] = now
+            log('%s', text)
