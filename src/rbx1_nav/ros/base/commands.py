@@ -17,7 +17,7 @@ from rbx1_nav.ros.base.clocks import Clock
 from rbx1_nav.ros.network.bases import Refusals
 from rbx1_nav.units import SECOND
 
-RECENT = SECOND * 3 // 2    # ns: a node whose last motion is older is not driving; rests last 1 s
+RECENT = SECOND * 3 // 2    # ns: an older contradiction is not shown
 
 
 class VelocityCommand(NamedTuple):
@@ -51,8 +51,6 @@ class VelocityCommands:
         self.namespace = namespace
         self.topic = rospy.resolve_name(f'{namespace}cmd_vel')
         self.senders = Senders()
-        # the connection header of the last command that is not zero, and its time, ns
-        self.moving: tuple[object, int] | None = None
         self.subscriber: rospy.Subscriber | None = None
         self.refusals = refusals or Refusals()
 
@@ -78,8 +76,6 @@ class VelocityCommands:
         """Process a command, which takes effect now or when the clock applies it."""
         header = twist._connection_header       # one object for each connection
         command = VelocityCommand(*messages.from_twist(twist), header['callerid'])
-        if any(command[:2]):
-            self.moving = header, self.clock.now()
         text = self.senders.contradiction(self.clock.now(), header, command.sender, command[:2],
                                           lambda: [connection.header for connection in self.connections()])
         if text:
@@ -105,13 +101,6 @@ class VelocityCommands:
         if any(command.others):
             rospy.logwarn_throttle(5, f'{self.topic}: linear.y, linear.z, angular.x, angular.y = {command.others}: a '
                                       'differential drive cannot follow these, expected 0; ignored')
-
-    def driver(self) -> str | None:
-        """Return the name of the node that is driving the base, also while it rests between two motions, or None."""
-        if self.moving is None or self.clock.now() - self.moving[1] > RECENT:
-            return None
-        return next((connection.header['callerid'] for connection in self.connections()
-                     if connection.header is self.moving[0]), None)
 
     def log_timeout(self) -> None:
         """Log that the current command has timed out."""

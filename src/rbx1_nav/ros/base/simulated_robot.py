@@ -121,11 +121,7 @@ class SimulatedRobot:
             self.base.advance(self.clock.now())
             self.base.reset()
         self.reset_pub.publish()
-        driver = self.commands.driver()
-        if driver:
-            rospy.logwarn('Reset while %s is driving: this run is not valid. Reset again when it has finished', driver)
-        else:
-            rospy.loginfo('Reset: %s is back at the origin of %s', self.robot.base_frame_id, self.robot.odom_frame_id)
+        rospy.loginfo('Reset: %s is back at the origin of %s', self.robot.base_frame_id, self.robot.odom_frame_id)
         return EmptyResponse()
 
     def diagnose(self, status: DiagnosticStatusWrapper) -> DiagnosticStatusWrapper:
