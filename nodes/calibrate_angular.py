@@ -17,14 +17,12 @@ import sys
 import rospy
 from sensor_msgs.msg import Imu
 
-from rbx1_nav.config import ConfigError, YamlValue
+from rbx1_nav.config import ConfigError
 from rbx1_nav.control.legs import Turn
 from rbx1_nav.create.driver.fractions import LOST
 from rbx1_nav.create.driver.settings import GYRO_CORRECTION
-from rbx1_nav.parameters import elsewhere
 from rbx1_nav.robot.calibration import corrected, read_measured, turn_by_gyro
-from rbx1_nav.ros.driving.calibrating import (
-    COMMON, CalibrationDrive, Diagnosis, ask, factor_in_force, forget_run, load_run, save_run, take_measured)
+from rbx1_nav.ros.driving.calibrating import COMMON, CalibrationDrive, Diagnosis, ask, factor_in_force
 from rbx1_nav.ros.driving.pose_listener import PoseListener
 
 ODOM_KEY, GYRO_KEY = 'odom_angular_scale_correction', 'gyro_scale_correction'
@@ -33,9 +31,7 @@ PARAMETERS = [
     number('turns', 1, '', 'number of full turns to the left', 0.1, 100),
     number('angular_speed', 0.5, 'rad/s', 'turning speed'),
     number('min_angular_speed', 0.2, 'rad/s', 'lowest speed near the goal'),
-    *COMMON,
-    elsewhere('measured', 'true angle of the last run, given instead of an answer; the robot does not move',
-              unit='degrees', note='the total angle, 1800 for five turns')]
+    *COMMON]
 
 
 def measure() -> dict[str, float]:
@@ -48,7 +44,6 @@ def measure() -> dict[str, float]:
     rospy.Subscriber('imu/data', Imu, lambda message: readings.append((message.header.stamp.to_sec(),
                                                                        message.angular_velocity.z)))
     base, gyro = Diagnosis(base_node, 'Base'), Diagnosis(base_node, 'Gyro')
-    forget_run('angular')
     with CalibrationDrive(rate, poses) as drive:
         run = {ODOM_KEY: factor_in_force(base_node, ODOM_KEY, 1.0), GYRO_KEY: factor_in_force(base_node, GYRO_KEY, nan)}
         # The gyro reports its bias while the robot is stationary.
@@ -79,26 +74,20 @@ def warn_of_gyro(error: ConfigError) -> None:
 def calibrate() -> None:
     """Turn, ask, and print the factors."""
     init_node('calibrate_angular', __doc__, PARAMETERS)
-    measured = take_measured()
-    if measured is None:
-        run = measure()
-        save_run('angular', run)
-    else:
-        run = load_run('angular', 'reported', 'loses_fractions', ODOM_KEY, GYRO_KEY)
+    run = measure()
     print(f"The odometry reports {run['reported']:.1f} degrees.")
     if run['loses_fractions']:
         print('The robot loses fractions of a degree. The base detected this during a turn and now corrects its '
               'odometry. With the angle_fractions line in your configuration file, it does so from the start.')
     if 'gyro' in run:
         print(f"The gyro reports {run['gyro']:.1f} degrees.")
-
-    def check(answer: YamlValue) -> float:
-        return read_measured('measured', answer, run['reported'], 'an angle', 'degrees')
-
-    true_value = ask('How far has the robot turned, in degrees?', check) if measured is None else check(measured)
+    true_value = ask('How far has the robot turned, in degrees?',
+                     lambda answer: read_measured('measured', answer, run['reported'], 'an angle', 'degrees'))
     if true_value is None:
-        print('Measure how far the robot has turned, in degrees. Then: rosrun rbx1_nav calibrate_angular.py '
-              '_measured:=DEGREES')
+        for key, value in {ODOM_KEY: 'reported', GYRO_KEY: 'gyro'}.items():
+            if value in run:
+                print(f'{key}: {run[key]:.4f} * DEGREES / {run[value]:.1f}, where DEGREES is how far the robot has '
+                      'turned')
         return
     factors = {ODOM_KEY: corrected(ODOM_KEY, run[ODOM_KEY], true_value, run['reported'])}
     if 'gyro' in run:

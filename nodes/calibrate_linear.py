@@ -16,12 +16,9 @@ import sys
 
 import rospy
 
-from rbx1_nav.config import YamlValue
 from rbx1_nav.control.legs import Straight
-from rbx1_nav.parameters import elsewhere
 from rbx1_nav.robot.calibration import corrected, read_measured
-from rbx1_nav.ros.driving.calibrating import (
-    COMMON, CalibrationDrive, ask, factor_in_force, forget_run, load_run, save_run, take_measured)
+from rbx1_nav.ros.driving.calibrating import COMMON, CalibrationDrive, ask, factor_in_force
 from rbx1_nav.ros.driving.pose_listener import PoseListener
 
 KEY = 'odom_linear_scale_correction'
@@ -30,46 +27,33 @@ PARAMETERS = [
     number('goal_distance', 1.0, 'm', 'distance to drive', 0.1, 100),
     number('linear_speed', 0.15, 'm/s', 'forward speed'),
     number('min_linear_speed', 0.05, 'm/s', 'lowest speed near the goal'),
-    *COMMON,
-    elsewhere('measured', 'true distance of the last run, given instead of an answer; the robot does not move',
-              unit='m', note='from half to twice the reported distance')]
+    *COMMON]
 
 
-def measure() -> dict[str, float]:
+def measure() -> tuple[float, float]:
     """Drive once; return the distance that the odometry reported (m) and the factor in force."""
     rate, linear_speed = param('rate'), param('linear_speed')
     leg = Straight('forward', param('goal_distance'), linear_speed, param('min_linear_speed'), rate)
-    base_node = param('base_node')
     poses = PoseListener(param('odom_frame'), param('base_frame'), linear_speed, 0.0)
-    forget_run('linear')
     with CalibrationDrive(rate, poses) as drive:
-        factor = factor_in_force(base_node, KEY, 1.0)
+        factor = factor_in_force(param('base_node'), KEY, 1.0)
         drive.drive(leg)
     # A tape measures from mark to mark, not along the robot's initial heading.
-    return {'reported': hypot(leg.last.x - leg.start.x, leg.last.y - leg.start.y), KEY: factor}
+    return hypot(leg.last.x - leg.start.x, leg.last.y - leg.start.y), factor
 
 
 def calibrate() -> None:
     """Drive, ask, and print the factor."""
     init_node('calibrate_linear', __doc__, PARAMETERS)
-    measured = take_measured()
+    reported, before = measure()
+    print(f'The odometry reports {reported:.3f} m.')
+    measured = ask('How far is the robot from its start, in m?',
+                   lambda answer: read_measured('measured', answer, reported, 'a distance', 'm'))
     if measured is None:
-        run = measure()
-        save_run('linear', run)
-    else:
-        run = load_run('linear', 'reported', KEY)
-    print(f"The odometry reports {run['reported']:.3f} m.")
-
-    def check(answer: YamlValue) -> float:
-        return read_measured('measured', answer, run['reported'], 'a distance', 'm')
-
-    true_value = ask('How far is the robot from its start, in m?', check) if measured is None else check(measured)
-    if true_value is None:
-        print('Measure how far the robot is from its start, in m. Then: rosrun rbx1_nav calibrate_linear.py '
-              '_measured:=METERS')
+        print(f'{KEY}: {before:.4f} * METERS / {reported:.3f}, where METERS is how far the robot is from its start')
         return
-    factor = corrected(KEY, run[KEY], true_value, run['reported'])
-    print(f'The factor was {run[KEY]:.4f}. Now it should be:\n{KEY}: {factor:.4f}')
+    factor = corrected(KEY, before, measured, reported)
+    print(f'The factor was {before:.4f}. Now it should be:\n{KEY}: {factor:.4f}')
 
 
 if __name__ == '__main__':

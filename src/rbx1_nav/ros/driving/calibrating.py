@@ -1,4 +1,4 @@
-"""What the calibration scripts share: driving, the base's factors, the last run, and the question to the user."""
+"""What the calibration scripts share: driving, the base's factors, and the question to the user."""
 from __future__ import annotations
 
 import os
@@ -85,49 +85,8 @@ def factor_in_force(base_node: str, key: str, default: float) -> float:
         return default
     if key not in values:
         return default
-    return _number(Section(values, name), key, 1 / MAX_FACTOR, MAX_FACTOR, 'the factor that the base uses now')
-
-
-def save_run(name: str, run: dict[str, float]) -> None:
-    """Store the result of a run, a mapping: the true value may be measured later, or entered in another terminal."""
     try:
-        rospy.set_param(_stored(name), run)
-    except OSError as error:
-        rospy.logwarn('Could not store this run on the parameter server: %s', error)
-
-
-def forget_run(name: str) -> None:
-    """Delete the last run, because a new one begins and may be interrupted."""
-    if rospy.has_param(_stored(name)):
-        rospy.delete_param(_stored(name))
-
-
-def load_run(name: str, *keys: str) -> dict[str, float]:
-    """Return the result of the last run, a mapping with at least these keys. Raises ROSException if there is none."""
-    run = rospy.get_param(_stored(name), None)
-    if not isinstance(run, dict):
-        raise rospy.ROSException(f'{rospy.resolve_name(_stored(name))}: missing: expected a run before this one that '
-                                 'had no _measured:= and was not interrupted')
-    section = Section(run, rospy.resolve_name(_stored(name)))
-    return {key: _number(section, key, -1e6, 1e6) for key in {*keys, *run}}
-
-
-def take_measured() -> YamlValue:
-    """Return the parameter ~measured, or None, and delete it from the master, because it is valid for one run only."""
-    measured: YamlValue = rospy.get_param('~measured', None)
-    if measured is not None:
-        rospy.delete_param('~measured')
-    return measured
-
-
-def _stored(name: str) -> str:
-    # not private: otherwise it would be reported as a parameter that an earlier command has left on the master
-    return 'last_calibration/' + name
-
-
-def _number(section: Section, key: str, low: float, high: float, what: str = 'a number') -> float:
-    try:
-        return section.number(key, low, high, what=what)
+        return Section(values, name).number(key, 1 / MAX_FACTOR, MAX_FACTOR, what='the factor that the base uses now')
     except ConfigError as error:
         raise rospy.ROSException(str(error)) from None
 
