@@ -16,7 +16,6 @@ import rostest
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
 from roslib.packages import find_node
-from rosgraph_msgs.msg import Clock
 
 from rbx1_nav.ros.network.rospy_topics import keep_publisher_lists
 from rbx1_nav.ros.node import resources
@@ -135,21 +134,6 @@ class Commander:
     def send(self, linear=0.0, angular=0.0):
         """Publish a Twist, m/s and rad/s."""
         self.publisher.publish(twist(linear, angular))
-
-
-class OwnClock:
-    """Publishes /clock for a test that controls simulated time itself."""
-
-    def __init__(self, start):
-        """start: seconds."""
-        self.publisher = rospy.Publisher('/clock', Clock, queue_size=100, tcp_nodelay=True)
-        wait_for(lambda: self.publisher.get_num_connections() > 0, 'a subscriber of /clock')
-        self.now = start
-
-    def publish(self, now):
-        """Set the time, seconds."""
-        self.now = now
-        self.publisher.publish(rospy.Time.from_sec(now))
 
 
 def without_rosrun(command):

@@ -86,6 +86,7 @@ class TestBadParameters(support.Case):
                  ['/arbotix/surface', "'sand'", f'expected one of {support.surfaces()}']),
                 ({'controllers': {'base': BASE}, 'seed': -1}, ['/arbotix/seed', '-1', 'integer']),
                 ({'controllers': {'base': BASE}, 'real_time_factor': 5}, ['real_time_factor', '5', '/use_sim_time']),
+                ({'controllers': {'base': BASE}, 'strict': True}, ['strict: true: expected a simulated clock']),
                 ({'controllers': {'base': BASE}, 'real_time_factor': 1e-300}, ['1e-300: expected a number from 0.01'])]:
             if params:
                 rospy.set_param('/arbotix', params)

@@ -44,8 +44,6 @@ class TopicMessages:
         self.topic = topic
         self.types = types
         self.other_types: set[str] = set()
-        # (name of the node, child frame) of each publisher
-        self.senders: dict[tuple[str, str | None], bool] = {}
         self.rows: list[tuple[float, ...]] = []
 
     def accepts(self, datatype: str, md5sum: str) -> bool:
@@ -55,11 +53,8 @@ class TopicMessages:
         self.other_types.add(datatype)
         return False
 
-    def add(self, message: Message, time: float, header: Mapping[str, str | bytes]) -> None:
+    def add(self, message: Message, time: float) -> None:
         """Add a message. time: time of recording, s."""
-        name = header.get('callerid', 'an unknown node')    # rosbag leaves it undecoded
-        self.senders[name.decode(errors='replace') if isinstance(name, bytes) else name,
-                     getattr(message, 'child_frame_id', None)] = True
         if isinstance(message, Twist):
             self.rows.append((time, message.linear.x, message.angular.z))
             return
@@ -89,9 +84,8 @@ def read_bag(path: str, topics: TopicNames, end: Pose | None = None) -> Recordin
 
     try:
         with rosbag.Bag(path) as bag:
-            for topic, message, time, header in bag.read_messages(connection_filter=choose,
-                                                                  return_connection_header=True):
-                by_topic[f"/{topic.lstrip('/')}"].add(message, time.to_sec(), header)
+            for topic, message, time in bag.read_messages(connection_filter=choose):
+                by_topic[f"/{topic.lstrip('/')}"].add(message, time.to_sec())
     except Exception as error:
         # a damaged bag may cause any error, depending on the first wrong byte: struct.error, KeyError, MemoryError, ...
         raise ConfigError(f"{name}: expected a bag: {' '.join(str(error).split()) or type(error).__name__}") from error
@@ -111,15 +105,10 @@ def read_bag(path: str, topics: TopicNames, end: Pose | None = None) -> Recordin
 
 
 def check(name: str, series: TopicMessages) -> None:
-    """Raise ConfigError for messages of another type, or from two robots."""
+    """Raise ConfigError if all messages have another type."""
     if series.other_types and not series.rows:
         raise ConfigError(f"{name}: {series.topic}: {', '.join(sorted(series.other_types))}: expected "
                           f"{' or '.join(one._type for one in series.types)}")
-    # except for commands: the user may also steer by hand while a script runs
-    if len(series.senders) > 1 and series.types != TYPES['cmd_vel']:
-        senders = ' and '.join(f'{show_name(sender)} ({show_name(frame)})' if frame else show_name(sender)
-                               for sender, frame in sorted(series.senders, key=str))
-        raise ConfigError(f'{name}: {series.topic}: published by {senders}: expected one robot')
 
 
 def track(series: TopicMessages | None) -> Track | None:

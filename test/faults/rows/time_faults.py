@@ -1,41 +1,54 @@
-"""Clocks that jump: the system clock as a node sees it, and simulated time."""
+"""The system clock steps by an hour, as a driving script or the filter sees it."""
 import math
+import os
 import time
 
-import rospy
-import yaml
+import rospkg
 from geometry_msgs.msg import PoseWithCovarianceStamped
 
 import support
 from sensors import Sensors
-from unsteady_time import PACKAGE, Time
 
-FAULT = ('the system clock of a script or of the filter steps by an hour; simulated time jumps forward or backward, or '
-         'stops for 2 s')
+FAULT = 'the system clock of a script or of the filter steps by an hour'
 PROMISE = 'finite values, no false success, and no hang'
-FULL, SHORT = 21, 2
+FULL, SHORT = 12, 3
 ROOT = ALONE = False
 
+NODES = os.path.join(rospkg.RosPack().get_path('rbx1_nav'), 'nodes')
 SPEED = 0.2     # m/s
 NEAR = 0.03     # m and rad: an end that counts as exact in real time
+# the node itself, with a time of day that is off by the number in a file
+STEPPED = """
+import runpy, sys, time
+real, (node, offset) = time.time, sys.argv[1:3]
+time.time = lambda: real() + float(open(offset).read() or 0)
+time.time_ns = lambda: int(time.time() * 1e9)
+sys.argv[:3] = [node]
+runpy.run_path(node, run_name='__main__')
+"""
 
 
-def start_base(clock):
-    """Start a base at the origin; returns its odometry."""
-    with open(f'{PACKAGE}/config/turtlebot.yaml', encoding='utf-8') as file:
-        rospy.set_param('/arbotix', yaml.safe_load(file))
-    clock.row.start('rosrun', 'rbx1_nav', 'fake_base.py').wait_for_line('Ready: ')
-    return support.OdomWatch()
+def step(seconds):
+    """Step the system clock of the node that start() starts."""
+    with open('offset.new', 'w', encoding='ascii') as file:
+        file.write(f'{seconds:+d}')
+    os.rename('offset.new', 'offset')
 
 
-def script_in_motion(row, clock, jump, script):
-    """The clock of a script, or of all nodes, jumps while it drives."""
-    odom = start_base(clock)
-    driver = clock.start(script, '_goal_distance:=0.3', '_goal_angle:=3.14')
-    odom.wait_for_twist(SPEED) if script.startswith('timed') else support.wait_for(
-        lambda: odom.last.twist.twist.linear.x > 0.1, 'the start')
+def start(row, node, *arguments):
+    """Start a node whose system clock can be stepped."""
+    step(0)
+    return row.start('/usr/bin/python3', '-c', STEPPED, os.path.join(NODES, node), 'offset', *arguments)
+
+
+def script_in_motion(row, seconds, script):
+    """The clock of a script steps while it drives."""
+    row.reset()
+    odom = support.OdomWatch()
+    driver = start(row, script, '_goal_distance:=0.3', '_goal_angle:=3.14')
+    support.wait_for(lambda: odom.last.twist.twist.linear.x > SPEED / 2, 'the start')
     time.sleep(row.random.uniform(0, 2))
-    jump()
+    step(seconds)
     status = driver.wait()
     x, y, heading = support.pose(odom.last)
     off = math.hypot(x - 0.3 * (1 + math.cos(3.14)), y - 0.3 * math.sin(3.14))
@@ -49,17 +62,17 @@ def script_in_motion(row, clock, jump, script):
         assert off < NEAR and turned < NEAR, f'status 0, but {off:.3f} m and {turned:.3f} rad off'
 
 
-def filter_in_use(row, clock, jump):
-    """The clock of the filter jumps while the sensors' stamps go on."""
-    clock.start('ekf.py', 'odom:=/odom_sent')
+def filter_in_use(row, seconds):
+    """The clock of the filter steps while the sensors' stamps go on."""
+    start(row, 'ekf.py', 'odom:=/odom_sent')
     poses = support.Watch('/robot_pose_ekf/odom_combined', PoseWithCovarianceStamped)
     if not row.sensors:
         row.sensors = Sensors('/odom_sent')
         row.sensors.start()
     poses.next()
-    jump()
+    step(seconds)
     time.sleep(1)
-    clock.step(0)
+    step(0)
     count = len(poses.messages)
     support.wait_for(lambda: len(poses.messages) > count + 3, 'a pose after the clock is right again')
     assert all(math.isfinite(n) for m in poses.messages for n in [*support.pose(m), *m.pose.covariance]), \
@@ -69,19 +82,12 @@ def filter_in_use(row, clock, jump):
 def run(row):
     """See FAULT."""
     row.roscore()
+    row.base()
     support.init_node('faults')
     row.sensors = None
-    kinds = [(simulated, script_in_motion, script) for simulated in (True, False)
-             for script in ('timed_out_and_back.py', 'odom_out_and_back.py')]
-    kinds.append((False, filter_in_use))
+    kinds = [(script_in_motion, 'timed_out_and_back.py'), (script_in_motion, 'odom_out_and_back.py'), (filter_in_use,)]
     for number in range(row.times):
-        simulated, fault, *arguments = kinds[(number + row.times) % len(kinds)]
-        clock = Time(row, simulated)
-        jump = clock.disturb if simulated else lambda: clock.step(row.random.choice([-3600, 3600]))
-        text = ' '.join(['simulated' if simulated else 'system', 'time', fault.__name__, *arguments])
-        with row.fault(text):
-            fault(row, clock, jump, *arguments)
-        row.end(*row.processes[1:])
-        del row.processes[1:]
-        clock.done.set()
-        clock.publisher.unregister()
+        fault, *arguments = kinds[number % len(kinds)]
+        seconds = row.random.choice([-3600, 3600])
+        with row.fault(' '.join([fault.__name__, *arguments, f'{seconds:+d} s'])):
+            fault(row, seconds, *arguments)

@@ -1,4 +1,4 @@
-"""Simulated time, which a base follows, or advances itself, in step with its drivers."""
+"""Simulated time, which a base advances in step with its drivers."""
 from __future__ import annotations
 
 import time
@@ -50,11 +50,10 @@ def read_clock(rate: float) -> Clock:
     if strict or rospy.has_param('~clock_step'):
         given = 'strict: true' if strict else f'clock_step: {step:g}'
         raise ConfigError(f'{given}: expected a simulated clock of this node: real_time_factor is not set')
-    if rospy.rostime.is_wallclock():
-        return RealTimeClock(rate)
-    rospy.logwarn('Following the time on /clock, not in step with the drivers of this base: the end pose of the robot '
-                  'depends on the speed of the machine. fleet.launch simulates several robots on one clock')
-    return FollowedClock(rate)
+    if not rospy.rostime.is_wallclock():
+        raise ConfigError('real_time_factor: missing: expected one, because /use_sim_time is true. fleet.launch '
+                          'simulates several robots on one clock')
+    return RealTimeClock(rate)
 
 
 def earlier_clock() -> str | None:
@@ -67,29 +66,7 @@ def earlier_clock() -> str | None:
     return next((name for name in names[:names.index(rospy.get_name())] if is_alive(name)), None)
 
 
-class FollowedClock(Clock):
-    """Simulated time that another node publishes on /clock."""
-
-    def __init__(self, rate: float) -> None:
-        self.time = 0       # ns, the latest /clock
-        self.schedule = Schedule(rate)
-
-    def now(self) -> int:
-        return self.time
-
-    def stamp(self, instant: int) -> rospy.Time:
-        return rospy.Time(0, instant)
-
-    def run(self, step: Callable[[], None]) -> None:
-        def on_clock(message: ClockMessage) -> None:
-            self.time = message.clock.to_nsec()
-            if self.schedule.due(self.time):
-                step()
-        rospy.Subscriber('/clock', ClockMessage, on_clock, queue_size=None, tcp_nodelay=True)
-        life.end_requested.wait()
-
-
-class OwnClock(FollowedClock):
+class OwnClock(Clock):
     """Simulated time that this node advances: at most `factor` times as fast as real time, in step with the drivers."""
 
     waits = True
@@ -97,7 +74,8 @@ class OwnClock(FollowedClock):
     def __init__(self, factor: float, rate: float, period: int, strict: bool) -> None:
         """factor, rate: see read_clock(); period: clock period, ns; strict: whether a driver that is not in step is an
         error."""
-        super().__init__(rate)
+        self.time = 0       # ns
+        self.schedule = Schedule(rate)
         self.factor = factor
         self.period = period
         self.strict = strict
@@ -111,6 +89,12 @@ class OwnClock(FollowedClock):
         """Send the time to a new subscriber: otherwise, other messages may arrive before the time."""
         if self.time:
             publish(ClockMessage(self.stamp(self.time)))
+
+    def now(self) -> int:
+        return self.time
+
+    def stamp(self, instant: int) -> rospy.Time:
+        return rospy.Time(0, instant)
 
     def watch(self, subscriber: Any) -> None:
         self.lockstep.add(subscriber)

@@ -18,11 +18,11 @@ def twist(linear, angular):
     return message
 
 
-def odometry(stamp, x, y, yaw, child='base_footprint'):
+def odometry(stamp, x, y, yaw):
     """Return an Odometry message; stamp: s."""
     message = Odometry()
     message.header.stamp = rospy.Time.from_sec(stamp)
-    message.header.frame_id, message.child_frame_id = 'odom', child
+    message.header.frame_id, message.child_frame_id = 'odom', 'base_footprint'
     message.pose.pose.position.x, message.pose.pose.position.y = x, y
     message.pose.pose.orientation = Quaternion(0.0, 0.0, sin(yaw / 2), cos(yaw / 2))
     return message
@@ -56,18 +56,9 @@ def run_messages(motions=MOTIONS, start=100.0):
     return messages
 
 
-def write_bag(path, messages, senders=None):
-    """Write a bag of (topic, message, time in s). senders: {topic: names of nodes that took turns publishing it}."""
+def write_bag(path, messages):
+    """Write a bag of (topic, message, time in s)."""
     with rosbag.Bag(path, 'w') as bag:
-        before = {}
-        for number, (topic, message, time) in enumerate(messages):
-            names = (senders or {}).get(topic, ['/arbotix'])
-            name = names[number // 40 % len(names)]
-            # the writer of rosbag has one connection per topic, the recorder has one per publisher
-            if before.setdefault(topic, name) != name:
-                bag._topic_connections.pop(topic)
-                before[topic] = name
-            header = {'topic': topic, 'type': message._type, 'md5sum': message._md5sum,
-                      'message_definition': message._full_text, 'callerid': name}
-            bag.write(topic, message, rospy.Time.from_sec(time), connection_header=header)
+        for topic, message, time in messages:
+            bag.write(topic, message, rospy.Time.from_sec(time))
     return str(path)
