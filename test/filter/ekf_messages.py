@@ -70,8 +70,7 @@ class TestEkfMessages(support.Case):
     def test_reset_odometry_restarts_the_filter(self):
         reset = rospy.Publisher('reset_odometry', Empty, queue_size=1)
         support.wait_for(reset.get_num_connections, 'the filter to subscribe to reset_odometry')
-        reset.publish()
-        self.wait_for_log('Odometry was reset: restarting')
+        self.wait_for_log('Odometry was reset: restarting', send=reset.publish)
         self.poses.next()
 
     def test_wheels_and_gyro_that_contradict_each_other_are_diagnosed(self):

@@ -14,12 +14,12 @@ from sensors import Sensors, turn
 
 FAULT = ('the filter receives NaN, invalid covariances and stamps, gaps, jumps, resets, messages from two senders, '
          'and wheel motion while the robot is held')
-PROMISE = ('all published values are finite; at most 4 log lines per second; poses are published again afterwards')
+PROMISE = ('all published values are finite; at most 10 log lines per second; poses are published again afterwards')
 FULL, SHORT = 130, 7
 ROOT = ALONE = False
 
 DURATION = 2.0      # s of a fault
-LINES = 4           # per second
+LINES = 10          # per second
 BAD = [math.nan, math.inf, -math.inf, 1e308, -1e7]
 
 

@@ -17,7 +17,7 @@ from rbx1_nav.estimation.filter import BIAS
 from rbx1_nav.ros.messages import fill_status
 
 INTERVAL = 1.0      # s between two log lines of one kind
-MAX_KINDS = 4       # lines in this time
+MAX_KINDS = 10      # lines in this time
 NUMBER = re.compile(r'[-+]?\b(\d[\d.]*(e[-+]?\d+)?|nan|inf)\b')
 
 OK, WARN = DiagnosticStatus.OK, DiagnosticStatus.WARN
