@@ -4,10 +4,10 @@ from __future__ import annotations
 from math import cos, sin
 import time
 from types import SimpleNamespace
-from typing import Callable, NamedTuple
+from typing import Callable
 
 import rospy
-from geometry_msgs.msg import PoseWithCovarianceStamped
+from geometry_msgs.msg import PoseWithCovarianceStamped, TwistWithCovariance
 from nav_msgs.msg import Odometry
 from tf2_msgs.msg import TFMessage
 
@@ -27,36 +27,26 @@ TRANSFORM_TIME = 2 * SECOND   # ns after the first estimate to wait for a transf
 MIN_WAIT = 1.0          # minimum wall time (s) to wait for it: connecting takes time, however fast simulated time is
 
 
-class EstimatedTwist(NamedTuple):
-    """Mean velocities in the robot's frame and their variances."""
-
-    forward: float              # m/s
-    left: float                 # m/s
-    turn: float                 # rad/s
-    forward_variance: float     # m^2/s^2
-    left_variance: float        # m^2/s^2
-    turn_variance: float        # rad^2/s^2
-
-
 def _of_floor(noise: float, speed: float, elapsed: float, cell: float) -> float:
     """Return the variance of a speed due to the noise of a floor, which is constant within a cell and averages out over
     several cells."""
     return noise ** 2 * speed ** 2 / max(cell, speed * elapsed)
 
 
-def estimate_twist(combined: CombinedOdometry, before: Estimate) -> EstimatedTwist | None:
-    """Return the EstimatedTwist from the Estimate `before` to the latest one; None if their stamps are equal.
+def estimate_twist(combined: CombinedOdometry, before: Estimate | None) -> TwistWithCovariance:
+    """Return the mean velocity from the Estimate `before` to the latest one, in the robot's frame; with unknown
+    variances if there is none before, or their stamps are equal.
 
     The displacement comes from the odometry, reduced by the slip of the assumed floor, and the turn comes from the
     filter. During an odometry dropout the displacement is unknown: it is set to 0, with the uncertainty that the filter
     assumes for a dropout. The uncertainty is the same while the robot is carried, because its wheels do not measure its
     motion.
     """
+    message = TwistWithCovariance(covariance=messages.diagonal(*[messages.UNKNOWN] * 6))
     last, ekf = combined.estimate, combined.filter
-    assert last is not None and ekf is not None     # because there is a `before`
+    if not (before and last and ekf and last.stamp > before.stamp):
+        return message
     elapsed = (last.stamp - before.stamp) / SECOND
-    if elapsed <= 0:
-        return None
     prior = ekf.prior
     turn = wrap_angle(last.pose.yaw - before.pose.yaw) / elapsed
     travel_time = (last.odom.stamp - before.odom.stamp) / SECOND
@@ -88,23 +78,9 @@ def estimate_twist(combined: CombinedOdometry, before: Estimate) -> EstimatedTwi
         floor = (_of_floor(prior.heading_noise_turning, abs(by_wheels), elapsed, CELL_TURNED)
                  + _of_floor(prior.heading_noise_straight, abs(forward), elapsed, CELL_TRAVELLED))
         turn_variance = max(last.odom.angular_variance, floor) + (ekf.sigma(SLIP_TURNING) * turn) ** 2
-    return EstimatedTwist(forward, left, turn, forward_variance, left_variance, MEASURED + turn_variance)
-
-
-def odometry_message(pose: PoseWithCovarianceStamped, child_frame_id: str, twist: EstimatedTwist | None) -> Odometry:
-    """Return an Odometry message with a pose and a twist in the frame of the robot; twist None: unknown."""
-    message = Odometry()
-    message.header = pose.header
-    message.child_frame_id = child_frame_id
-    message.pose = pose.pose
-    if twist is None:
-        message.twist.covariance = messages.diagonal(*[messages.UNKNOWN] * 6)
-        return message
-    message.twist.twist.linear.x, message.twist.twist.linear.y = twist.forward, twist.left
-    message.twist.twist.angular.z = twist.turn
-    message.twist.covariance = messages.diagonal(
-        twist.forward_variance, twist.left_variance, messages.UNKNOWN, messages.UNKNOWN, messages.UNKNOWN,
-        twist.turn_variance)
+    message.twist.linear.x, message.twist.linear.y, message.twist.angular.z = forward, left, turn
+    message.covariance = messages.diagonal(
+        forward_variance, left_variance, messages.UNKNOWN, messages.UNKNOWN, messages.UNKNOWN, MEASURED + turn_variance)
     return message
 
 
@@ -156,8 +132,8 @@ class EstimatePublisher:
         self.pose_pub.publish(pose)
         self.published += 1
         if self.odometry_pub.get_num_connections():     # this message takes longer to create than the pose
-            twist = estimate_twist(combined, self.before) if self.before else None
-            self.odometry_pub.publish(odometry_message(pose, base_frame, twist))
+            self.odometry_pub.publish(Odometry(pose.header, base_frame, pose.pose,
+                                               estimate_twist(combined, self.before)))
         if not self.publish_tf:
             return
         if self.frames != (odom_frame, base_frame):

@@ -1,4 +1,5 @@
 """The velocity that is published with the estimate comes from odometry and gyro, with a matching uncertainty."""
+from collections import namedtuple
 from math import pi
 
 import pytest
@@ -11,6 +12,8 @@ from rbx1_nav.ros.filter.estimate_publisher import estimate_twist
 from rbx1_nav.units import SECOND
 
 STEP = SECOND // 50
+# m/s, m/s, rad/s, and the variances of these
+Twist = namedtuple('Twist', 'forward left turn forward_variance left_variance turn_variance')
 IDEAL = priors(None)
 
 
@@ -35,7 +38,9 @@ class Robot:
                 self.combined.add_odom(self.now, Odom(self.now, self.pose))
             if self.combined.estimate is not last:
                 self.before = last
-        return estimate_twist(self.combined, self.before)
+        message = estimate_twist(self.combined, self.before)
+        twist, variances = message.twist, message.covariance[::7]
+        return Twist(twist.linear.x, twist.linear.y, twist.angular.z, variances[0], variances[1], variances[5])
 
 
 def test_sensors_without_errors():
