@@ -101,6 +101,17 @@ class Page:
         self.click(f'.run[data-method={method}]')
         support.wait_for(answered, f'an answer to the request of a run: {method}')
 
+    def reset(self):
+        """Put the robot back at its start, and wait until a new run has begun. On a busy machine, the node may refuse
+        the request because it is too old."""
+        def begun():
+            if 'more than 2 s old' in self.text('notice'):
+                self.click('#reset')
+            return self.driver.execute_script('return rbx1.model.epoch') != epoch
+        epoch = self.driver.execute_script('return rbx1.model.epoch')
+        self.click('#reset')
+        support.wait_for(begun, 'the reset')
+
     def robot(self, source):
         """Return where the page draws a robot: x, y (m), heading (degrees)."""
         transform = self.find(f'#robot-{source}').get_attribute('transform')

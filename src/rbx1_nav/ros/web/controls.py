@@ -182,7 +182,7 @@ class Controls:
             self.hand.stop()
 
     def _reset_robot(self, cancelled: Callable[[], bool]) -> None:
-        self.hand.wait_until_quiet(cancelled)   # the base warns of a reset while a node drives
+        self.hand.wait_until_quiet(cancelled)
         if not cancelled():
             self.system.reset()
 

@@ -17,7 +17,6 @@ COMMANDS = 'cmd_vel'     # rospy.resolve_name() applies the namespace and a rema
 KEY_TIMEOUT = 0.3   # s after the last message of the driving browser; the robot must stop within 0.5 s
 PERIOD = 0.05       # s between commands
 LINGER = 1.0        # s during which zero commands are sent after the last command, and after Stop
-QUIET = 1.6         # s after the last motion: the base counts a node as driving for 1.5 s
 
 
 class CommandPublisher:
@@ -80,7 +79,6 @@ class HandDrive:
         self.drivers: set[object] = set()   # the browsers in which driving by hand is on
         self.stop_until = 0.0       # s: zero commands are sent until then
         self.changed = Condition()
-        self.moved = -QUIET     # s: when the last command that is not zero was sent
         self.ended = False
         self.thread = Thread(target=self._run, daemon=True)
 
@@ -119,10 +117,10 @@ class HandDrive:
             self.changed.notify_all()
 
     def wait_until_quiet(self, cancelled: Callable[[], bool]) -> None:
-        """Wait until this node has not driven for a while and sends no zero commands, or until cancelled(). A Stop
-        meanwhile does not make the wait longer."""
+        """Wait until the zero commands after driving by hand have been sent, or until cancelled(). A Stop meanwhile does
+        not make the wait longer."""
         with self.changed:
-            quiet = max(self.stop_until, self.moved + QUIET)
+            quiet = self.stop_until
             while self.clock() < quiet and not (self.ended or cancelled()):
                 self.changed.wait(PERIOD)
 
@@ -152,8 +150,6 @@ class HandDrive:
                 if not (moving or stopping):
                     self.changed.wait()
                     continue
-                if moving:
-                    self.moved = now
             self.publisher.publish(*velocity)
             with self.changed:
                 if not self.ended:
