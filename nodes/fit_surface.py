@@ -108,7 +108,6 @@ def load_files(arguments: argparse.Namespace) -> tuple[Robot, Surface]:
 
 def main() -> int:
     """Read the runs, fit, print and write the result; return the exit status."""
-    signal.signal(signal.SIGPIPE, signal.SIG_DFL)               # the reader of a pipe may stop reading early
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: os._exit(130))
     try:
@@ -137,7 +136,7 @@ def main() -> int:
         if arguments.plot:
             draw_fit(arguments.plot, f'Fitted: {result.description}', comparisons)
             print(f'Picture: {arguments.plot}')
-    except (OSError, ValueError, RuntimeError) as error:
+    except (OSError, ValueError, RuntimeError, ImportError) as error:
         # the device of the output may be full, and Python would try to write to it again at exit
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         print(f"fit_surface.py: {' '.join(str(error).split())}", file=sys.stderr)

@@ -8,11 +8,12 @@ from __future__ import annotations
 import rbx1_nav.ros.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
 
 import argparse
-from concurrent.futures import CancelledError
 from concurrent.futures.process import BrokenProcessPool
 import os
 import signal
 import sys
+
+from tqdm import tqdm
 
 from rbx1_nav.batch.cases import Combination, combine, read_sweep, units
 from rbx1_nav.batch.executor import add_arguments
@@ -92,11 +93,11 @@ def simulate_all(sweep: Sweep, arguments: argparse.Namespace, file: RunsFile | N
     results, truths = {}, {}
     for each in sweep.run(arguments.jobs, arguments.scheduler, file, bool(arguments.plot),
                           PATHS if arguments.plot else int(bool(arguments.animate))):
-        if len(sweep.combinations) > 1 and each.method == sweep.methods[0]:
-            sweep.progress.print(f'{each.combination.title()}:')
-        sweep.progress.print('\n'.join(each.lines()))
+        with tqdm.external_write_mode():        # above the progress bar
+            if len(sweep.combinations) > 1 and each.method == sweep.methods[0]:
+                print(f'{each.combination.title()}:')
+            print('\n'.join(each.summary.lines(each.method)), flush=True)
         results[each.method], truths[each.method] = each.paths, each.truths
-    sweep.progress.close()
     title = sweep.combinations[0].title()
     if arguments.plot:
         draw(arguments.plot, title, results, sweep.seeds, truths)
@@ -109,14 +110,13 @@ def simulate_all(sweep: Sweep, arguments: argparse.Namespace, file: RunsFile | N
 
 def main() -> int:
     """Simulate, print and draw; return the exit status."""
-    signal.signal(signal.SIGPIPE, signal.SIG_DFL)               # the reader of a pipe may stop reading early
     sweep: Sweep | None = None
     file: RunsFile | None = None
 
     def missing() -> str:
         if not (sweep and file):
             return ''
-        return f'{arguments.output} lacks {sweep.total - sweep.progress.done} of {sweep.total} runs'
+        return f'{arguments.output} lacks {sweep.total - sweep.done} of {sweep.total} runs'
 
     def interrupt(*_: object) -> None:      # immediately; the other processes follow
         if file:
@@ -131,8 +131,8 @@ def main() -> int:
         sweep = Sweep(combinations, arguments.method, robot, range(arguments.seed, arguments.seed + arguments.runs))
         file = sweep.open_file(arguments.output, titles) if arguments.output is not None else None
         simulate_all(sweep, arguments, file)
-    except (OSError, ValueError, RuntimeError, CancelledError) as error:    # or a robot that is stuck
-        text = ' '.join(str(error).split()) or 'the scheduler is disconnected'
+    except (OSError, ValueError, RuntimeError, ImportError) as error:   # also a robot that is stuck, and a worker's
+        text = ' '.join(str(error).split())
         if isinstance(error, BrokenProcessPool):
             text = ('a process was killed, perhaps because memory ran out: '
                     f'expected all of --jobs {arguments.jobs} to run')

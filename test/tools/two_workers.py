@@ -56,10 +56,7 @@ class TestTwoWorkers(support.Case):
         self.assertEqual(status, 0, output)
         self.assertEqual(content, self.content)
         self.assertEqual(len(content.splitlines()), 241)
-        # the same table, except for the speed and the lines of progress
-        for line in self.output.splitlines():
-            if 'real time' not in line and ' left' not in line:
-                self.assertIn(line, output)
+        self.assertEqual(output, self.output)
 
     def copy_package(self):
         """Return a folder with another version of the package."""
@@ -83,17 +80,17 @@ class TestTwoWorkers(support.Case):
         self.check_refused(self.cluster.start_worker(PYTHONPATH=self.copy_package()), 'rbx1_nav [0-9a-f]+: expected')
 
     def test_a_worker_without_the_package_is_refused(self):
-        self.check_refused(self.cluster.start_worker(PYTHONPATH=''), 'expected a worker with the same rbx1_nav')
+        self.check_refused(self.cluster.start_worker(PYTHONPATH=''), "No module named 'rbx1_nav'")
 
-    def test_a_worker_that_joins_later_is_refused_and_the_run_continues(self):
+    def test_a_worker_with_another_version_that_joins_later_ends_the_run(self):
         process, path = self.start('joined.csv', '--scheduler', self.cluster.address)
         support.wait_for(lambda: os.path.exists(path) and os.path.getsize(path) > 10000, 'rows')
         worker = self.cluster.start_worker(PYTHONPATH=self.copy_package())
         self.addCleanup(worker.wait)
         self.addCleanup(worker.kill)
         status, output, content = self.wait(process, path)
-        self.assertEqual((status, content), (0, self.content), output)
-        self.assertRegex(output, r'(?m)^Worker tcp://127.0.0.1:\d+ is refused: rbx1_nav [0-9a-f]+: expected')
+        self.assertEqual((status, self.content.startswith(content)), (1, True), output)
+        self.assertRegex(output, r'(?m)^simulate.py: worker tcp://127.0.0.1:\d+: rbx1_nav [0-9a-f]+: expected .* lacks')
 
     def test_no_scheduler_and_an_address_that_is_none(self):
         for address, expected in (('tcp://127.0.0.1:1', 'the address of a Dask scheduler that runs'),

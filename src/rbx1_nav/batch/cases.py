@@ -90,7 +90,7 @@ def simulate_paths(task: tuple[Case, Sequence[int]]) -> list[SimulationResult]:
 def add_row(summary: Summary, row: Row) -> None:
     """Add the RESULTS of a run to a Summary."""
     truth, odometry, estimate = (Pose(*row[first:first + 3]) for first in (0, 3, 6))    # type: ignore[arg-type]
-    summary.add(truth, odometry, None if estimate.x is None else estimate, *row[-2:])   # type: ignore[arg-type]
+    summary.add(truth, odometry, None if estimate.x is None else estimate, row[-2])     # type: ignore[arg-type]
 
 
 def chunks(combinations: Sequence[Combination], methods: Sequence[str], seeds: range) -> Iterator[Chunk]:

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from collections import deque
-from concurrent.futures import Executor, Future, ProcessPoolExecutor, wait
+from concurrent.futures import CancelledError, Future, ProcessPoolExecutor
 from contextlib import contextmanager
 import multiprocessing
 import os
@@ -13,9 +13,7 @@ from typing import Any, Callable, Deque, Iterable, Iterator, NamedTuple, TypeVar
 from rbx1_nav.robot.description import Robot
 from rbx1_nav.simulation.surfaces import Surface
 
-LOOK = 1.0          # s between two checks of an executor whose result is late
 AHEAD = 4           # tasks per process that are submitted before their results are needed
-ATTEMPTS = 10       # of a task, if place.again() requests them
 Task = TypeVar('Task')
 Result = TypeVar('Result')
 
@@ -23,51 +21,28 @@ Result = TypeVar('Result')
 class Place(NamedTuple):
     """Where tasks are computed."""
 
-    executor: Executor
+    submit: Callable[[Callable[[Any], Any], Any], Future[Any]]      # submits a task: function, argument
     jobs: Callable[[], int]     # returns the current number of processes
-    check: Callable[[], object]     # called while a result is late; raises an error if no result will come
-    again: Callable[[BaseException], bool]      # whether a task that failed with this error must be submitted again
 
 
 def in_order(place: Place | None, function: Callable[[Task], Result], tasks: Iterable[Task]) -> Iterator[Result]:
     """Yield the results of a function for all tasks, in the order of the tasks. Few of them are in memory at a time.
 
-    place: None for this process.
+    place: None for this process. Raises ConnectionError if a cluster is lost.
     """
     if place is None:
         yield from map(function, tasks)
         return
-    waiting: Deque[tuple[Task, Future[Result]]] = deque()
-    for task in tasks:
-        waiting.append((task, _submit(place, function, task)))
-        if len(waiting) > AHEAD * place.jobs():
-            yield _result(place, function, *waiting.popleft())
-    while waiting:
-        yield _result(place, function, *waiting.popleft())
-
-
-def _submit(place: Place, function: Callable[[Task], Result], task: Task) -> Future[Result]:
-    # a thread that writes to the processes inherits this mask: SIGPIPE does not reach it when they die
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGPIPE,))
+    waiting: Deque[Future[Result]] = deque()
     try:
-        return place.executor.submit(function, task)
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
-def _result(place: Place, function: Callable[[Task], Result], task: Task, future: Future[Result]) -> Result:
-    attempts = 1
-    while True:
-        while not future.done():
-            if not wait([future], LOOK).done:
-                place.check()
-        try:
-            return future.result()
-        except Exception as error:
-            if attempts == ATTEMPTS or not place.again(error):
-                raise
-            attempts += 1
-            future = _submit(place, function, task)
+        for task in tasks:
+            waiting.append(place.submit(function, task))
+            if len(waiting) > AHEAD * place.jobs():
+                yield waiting.popleft().result()
+        while waiting:
+            yield waiting.popleft().result()
+    except CancelledError:
+        raise ConnectionError('the scheduler is disconnected') from None
 
 
 @contextmanager
@@ -84,13 +59,11 @@ def open_place(jobs: int, scheduler: str | None, robot: Robot, surface: Surface 
     elif jobs == 1:
         yield None
     else:
-        with ProcessPoolExecutor(jobs, initializer=_follow_the_parent) as pool:
-            try:
-                yield Place(pool, lambda: jobs, lambda: None, lambda error: False)
-            except BaseException:       # do not wait for runs whose results are not needed
-                for process in multiprocessing.active_children():
-                    process.kill()
-                raise
+        pool = ProcessPoolExecutor(jobs, initializer=_follow_the_parent)
+        try:
+            yield Place(pool.submit, lambda: jobs)
+        finally:        # do not compute runs whose results are not needed
+            pool.shutdown(cancel_futures=True)
 
 
 def add_arguments(parser: Any, jobs: int | None = os.cpu_count()) -> None:

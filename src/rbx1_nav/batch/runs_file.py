@@ -9,9 +9,7 @@ import csv
 import fcntl
 import io
 import json
-import math
 import os
-import signal
 from typing import Any, Iterable, Iterator, Mapping, Sequence
 
 from rbx1_nav.batch.cases import RESULTS, Chunk, Row
@@ -34,8 +32,7 @@ class RunsFile:
         if os.path.exists(path) and not os.path.isfile(path):
             raise ConfigError(f'--output: {show_name(path)}: expected a regular file, or a new one')
         try:
-            self.file = open(path, 'r+b', buffering=0,
-                             opener=lambda name, flags: os.open(name, flags | os.O_CREAT, 0o666))
+            self.file = open(path, 'ab', buffering=0)
         except OSError as error:
             raise ConfigError(f'--output: {show_name(path)}: expected a file that can be written: '
                               f'{error.strerror}') from None
@@ -85,24 +82,20 @@ class RunsFile:
                 raise ConfigError(f'--output: {show_name(self.path)}: other columns: '
                                   f'{show(header.decode(errors="replace"))}: expected '
                                   f'{show(self.header.decode())}, or a new file')
+        self.file.truncate(self.size)
         if not self.size:
             self._write(self.header)
-        self.file.truncate(self.size)
 
     def _decoded(self, chunk: Chunk, lines: Sequence[bytes]) -> list[Row]:
         rows: list[Row] = []
         for seed, line in zip(chunk.seeds, lines):
             keys = labels(chunk, seed)
             found: list[str] = next(csv.reader([line.decode(errors='replace').rstrip('\n')]), [])
-            values = found[len(keys):]
-            try:
-                row: Row = tuple(float(value) if value else None for value in values)
-            except ValueError:
-                row = ()
-            if found[:len(keys)] != keys or not is_complete(row, chunk.method):
+            if found[:len(keys)] != keys or len(found) != len(keys) + len(RESULTS):
                 raise ConfigError(f'--output: {show_name(self.path)}: {show(line.decode(errors="replace"))}: expected '
                                   f'the run {", ".join(keys)}, or a new file')
-            rows.append(row)
+            rows.append(tuple(None if not value and name.startswith(('estimate', 'covariance')) else float(value)
+                              for name, value in zip(RESULTS, found[len(keys):])))
         return rows
 
     def append(self, chunk: Chunk, rows: Sequence[Row]) -> None:
@@ -110,10 +103,8 @@ class RunsFile:
         self._write(b''.join(encoded([*labels(chunk, seed), *row]) for seed, row in zip(chunk.seeds, rows)))
 
     def _write(self, text: bytes) -> None:
-        before = signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT, signal.SIGTERM))
+        done = 0
         try:
-            self.file.seek(self.size)
-            done = 0
             while done < len(text):
                 done += self.file.write(text[done:]) or 0
             os.fsync(self.file.fileno())
@@ -121,20 +112,11 @@ class RunsFile:
         except BaseException:
             self.file.truncate(self.size)
             raise
-        finally:
-            signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def labels(chunk: Chunk, seed: int) -> list[str]:
     """Return the first values of the row of a run, which name it."""
     return [chunk.method, chunk.combination.surface_name, *map(repr, chunk.combination.values.values()), str(seed)]
-
-
-def is_complete(row: Row, method: str) -> bool:
-    """Return whether a row has a finite number for each of RESULTS; without a filter, none for the estimate."""
-    return len(row) == len(RESULTS) and all(
-        value is None if method != 'ekf' and name.startswith(('estimate', 'covariance'))
-        else isinstance(value, float) and math.isfinite(value) for name, value in zip(RESULTS, row))
 
 
 def encoded(values: Sequence[object]) -> bytes:

@@ -1,8 +1,7 @@
-"""Computes all runs of a sweep that its file lacks, and shows the progress: a bar in a terminal, lines in a pipe."""
+"""Computes all runs of a sweep that its file lacks, and shows the progress in a terminal."""
 from __future__ import annotations
 
 from array import array
-import sys
 import time
 from typing import Iterable, Iterator, NamedTuple, Sequence, TypeVar
 
@@ -19,47 +18,8 @@ from rbx1_nav.simulation.exercise import SimulationResult
 from rbx1_nav.simulation.summary import HEADER, Summary
 from rbx1_nav.units import Array
 
-MOMENT = 1.0    # s: a bar appears after this time
-PAUSE = 10.0    # s between two lines
+MOMENT = 1.0    # s: shorter sweeps show no bar, and use one process
 _T = TypeVar('_T')
-FORMAT = '{desc}: {n_fmt} of {total_fmt} runs, {rate_noinv_fmt}, {remaining} left'
-
-
-class Progress:
-    """Shows on stderr how many runs are done, how many there are in a second, and the time left."""
-
-    def __init__(self, total: int) -> None:
-        self.total, self.done, self.counted = total, 0, 0
-        self.start = self.shown = time.monotonic()
-        self.bar: tqdm[None] | None = None
-
-    def add(self, runs: int, title: str, computed: bool) -> None:
-        """Count runs, which were computed now or before; show the title of the current ones."""
-        self.done += runs
-        if not computed:
-            self.counted += runs
-            return
-        now = time.monotonic()
-        if self.bar is None and sys.stderr.isatty() and now > self.start + MOMENT:
-            self.bar = tqdm(total=self.total, initial=self.done - runs, unit='run', leave=False)
-        if self.bar is not None:
-            self.bar.set_description(title, refresh=False)
-            self.bar.update(runs)
-        elif now > self.shown + PAUSE:
-            rate = (self.done - self.counted) / (now - self.shown)      # since the last line: the methods differ
-            self.shown, self.counted = now, self.done
-            print(tqdm.format_meter(self.done, self.total, now - self.start, unit=' runs', bar_format=FORMAT,
-                                    prefix=title, rate=rate), file=sys.stderr, flush=True)
-
-    def print(self, text: str) -> None:
-        """Print text to stdout, above the bar."""
-        with tqdm.external_write_mode():
-            print(text, flush=True)
-
-    def close(self) -> None:
-        """Remove the bar."""
-        if self.bar is not None:
-            self.bar.close()
 
 
 class Finished(NamedTuple):
@@ -68,19 +28,8 @@ class Finished(NamedTuple):
     combination: Combination
     method: str
     summary: Summary
-    took: float         # s of wall time
-    computed: int       # runs that were not in the file
     truths: Array       # (n, 3): the true end poses, if they were kept
     paths: list[SimulationResult]
-
-    def lines(self) -> list[str]:
-        """Return the lines below HEADER, with the speed of the simulation if runs were computed."""
-        lines = self.summary.lines(self.method)
-        if self.computed:
-            simulated = self.summary.simulated * self.computed / self.summary.first_leg.count
-            lines.append(f"{'':6} {simulated:.0f} s simulated in {self.took:.2f} s, {simulated / self.took:.0f} times "
-                         'real time')
-        return lines
 
 
 def in_turn(values: Iterable[_T]) -> list[_T]:
@@ -96,7 +45,7 @@ class Sweep:
         self.combinations, self.methods, self.robot, self.seeds = combinations, methods, robot, seeds
         self.chunks = list(chunks(combinations, methods, seeds))
         self.total = len(combinations) * len(methods) * len(seeds)
-        self.progress = Progress(self.total)
+        self.done = 0       # runs
 
     def title(self) -> str:
         """Return the lines above the table."""
@@ -128,32 +77,28 @@ class Sweep:
         long = (time.monotonic() - start) * self.total > MOMENT
         number = 0
         for chunk, rows in file.read(self.chunks) if file else ():
-            self._check(number, rows, first)
+            if number == 0 and rows[0] != first:
+                raise ConfigError(f'{self.methods[0]}, seed {self.seeds[0]}: this computer has another result for the '
+                                  'run: expected a file from one with an equal processor and equal libraries')
             kept.add(rows)
-            self.progress.add(len(rows), chunk.method, False)
-            number += 1
+            number, self.done = number + 1, self.done + len(rows)
             if chunk.is_last:
-                yield kept.finished(chunk, 0.0, self._paths(None, chunk, paths))
+                yield kept.finished(chunk, self._paths(None, chunk, paths))
         missing = self.chunks[number:]
         if not missing:
             return
-        start = time.monotonic()
-        with open_place(jobs if long else 1, scheduler, self.robot, self.chunks[0].combination.surface) as place:
+        with open_place(jobs if long else 1, scheduler, self.robot, self.chunks[0].combination.surface) as place, tqdm(
+                total=self.total, initial=self.done, unit='run', leave=False, disable=None if long else True) as bar:
             tasks = ((chunk.case(self.robot), chunk.seeds) for chunk in missing)
-            for number, (chunk, rows) in enumerate(zip(missing, in_order(place, simulate_rows, tasks)), number):
-                self._check(number, rows, first)
-                kept.add(rows, computed=True)
+            for chunk, rows in zip(missing, in_order(place, simulate_rows, tasks)):
+                kept.add(rows)
                 if file:
                     file.append(chunk, rows)
-                self.progress.add(len(rows), chunk.method, True)
+                self.done += len(rows)
+                bar.set_description(chunk.method, refresh=False)
+                bar.update(len(rows))
                 if chunk.is_last:
-                    took, start = time.monotonic() - start, time.monotonic()
-                    yield kept.finished(chunk, took, self._paths(place, chunk, paths))
-
-    def _check(self, number: int, rows: Sequence[Row], first: Row) -> None:
-        if number == 0 and rows[0] != first:
-            raise ConfigError(f'{self.methods[0]}, seed {self.seeds[0]}: this computer has another result for the run: '
-                              'expected a file or a cluster with equal processors and libraries')
+                    yield kept.finished(chunk, self._paths(place, chunk, paths))
 
     def _paths(self, place: Place | None, chunk: Chunk, count: int) -> list[SimulationResult]:
         """Return the first results of a method, with their paths."""
@@ -166,19 +111,17 @@ class Kept:
 
     def __init__(self, keep_truths: bool) -> None:
         self.keep_truths = keep_truths
-        self.summary, self.truths, self.computed = Summary(), array('d'), 0
+        self.summary, self.truths = Summary(), array('d')
 
-    def add(self, rows: Sequence[Row], computed: bool = False) -> None:
-        """Add runs. computed: whether they were not in the file."""
-        self.computed += len(rows) if computed else 0
+    def add(self, rows: Sequence[Row]) -> None:
+        """Add runs."""
         for row in rows:
             add_row(self.summary, row)
             if self.keep_truths:
                 self.truths.extend(row[:3])     # type: ignore[arg-type]
 
-    def finished(self, chunk: Chunk, took: float, paths: list[SimulationResult]) -> Finished:
+    def finished(self, chunk: Chunk, paths: list[SimulationResult]) -> Finished:
         """Return all runs of a method, and forget them. chunk: the last one."""
-        found = Finished(chunk.combination, chunk.method, self.summary, took, self.computed,
-                         numpy.array(self.truths).reshape(-1, 3), paths)
-        self.summary, self.truths, self.computed = Summary(), array('d'), 0
+        found = Finished(chunk.combination, chunk.method, self.summary, numpy.array(self.truths).reshape(-1, 3), paths)
+        self.summary, self.truths = Summary(), array('d')
         return found

@@ -115,17 +115,15 @@ class Summary:
         self.poses: dict[str, PoseSpread] = {}
         self.errors: dict[str, ErrorSpread] = {}
         self.first_leg = Spread()
-        self.simulated = 0.0    # s
 
-    def add(self, truth: Pose, odometry: Pose, estimate: Pose | None, first_leg: float, time: float) -> None:
-        """Add the end poses of a run, its true first leg (m) and its simulated time (s)."""
+    def add(self, truth: Pose, odometry: Pose, estimate: Pose | None, first_leg: float) -> None:
+        """Add the end poses of a run, and its true first leg (m)."""
         for name, pose, reference in (('truth', truth, ORIGIN), ('/odom', odometry, truth),
                                       ('/odom_ekf', estimate, truth)):
             if pose:
                 self.poses.setdefault(name, PoseSpread()).add(pose)
                 self.errors.setdefault(name, ErrorSpread()).add(pose, reference)
         self.first_leg.add(first_leg)
-        self.simulated += time
 
     def lines(self, method: str) -> list[str]:
         """Return the lines below HEADER: the true end poses, and the end poses that the odometry and the estimate
@@ -143,5 +141,5 @@ def summary(method: str, results: Iterable[SimulationResult]) -> list[str]:
     found = Summary()
     for result in results:
         end = result.end
-        found.add(end.truth, end.odometry, end.estimate, result.first_leg, end.time)
+        found.add(end.truth, end.odometry, end.estimate, result.first_leg)
     return found.lines(method)
