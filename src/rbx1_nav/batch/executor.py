@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from collections import deque
-from concurrent.futures import CancelledError, Future, ProcessPoolExecutor
+from concurrent.futures import CancelledError, Future, ProcessPoolExecutor, wait
 from contextlib import contextmanager
 import multiprocessing
 import os
@@ -13,6 +13,7 @@ from typing import Any, Callable, Deque, Iterable, Iterator, NamedTuple, TypeVar
 from rbx1_nav.robot.description import Robot
 from rbx1_nav.simulation.surfaces import Surface
 
+LOOK = 1.0          # s between two checks of a cluster whose result is late
 AHEAD = 4           # tasks per process that are submitted before their results are needed
 Task = TypeVar('Task')
 Result = TypeVar('Result')
@@ -22,7 +23,7 @@ class Place(NamedTuple):
     """Where tasks are computed."""
 
     submit: Callable[[Callable[[Any], Any], Any], Future[Any]]      # submits a task: function, argument
-    jobs: Callable[[], int]     # returns the current number of processes
+    jobs: Callable[[], int]     # returns the current number of processes; raises ConnectionError if a cluster is lost
 
 
 def in_order(place: Place | None, function: Callable[[Task], Result], tasks: Iterable[Task]) -> Iterator[Result]:
@@ -38,11 +39,17 @@ def in_order(place: Place | None, function: Callable[[Task], Result], tasks: Ite
         for task in tasks:
             waiting.append(place.submit(function, task))
             if len(waiting) > AHEAD * place.jobs():
-                yield waiting.popleft().result()
+                yield _result(place, waiting.popleft())
         while waiting:
-            yield waiting.popleft().result()
+            yield _result(place, waiting.popleft())
     except CancelledError:
         raise ConnectionError('the scheduler is disconnected') from None
+
+
+def _result(place: Place, future: Future[Result]) -> Result:
+    while not wait([future], LOOK).done:
+        place.jobs()
+    return future.result()
 
 
 @contextmanager
