@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import rbx1_nav.ros.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
 
+from functools import partial
 import os
 import sys
 import threading
@@ -22,36 +23,35 @@ from rbx1_nav.config import ConfigError, YamlValue, show
 from rbx1_nav.parameters import custom, flag, number
 from rbx1_nav.ros.node import life, resources
 from rbx1_nav.ros.node.params import param
-from rbx1_nav.ros.web.checks import (
-    LOCALHOST, TOKEN_VARIABLE, HostCheck, check_address, check_port, machine_names, make_token, page_address)
+from rbx1_nav.ros.web.checks import LOCALHOST, TOKEN_VARIABLE, make_token, page_address
 from rbx1_nav.ros.web.connections import Connections
 from rbx1_nav.ros.web.controls import Controls
-from rbx1_nav.ros.web.hand_drive import CommandPublisher, HandDrive
+from rbx1_nav.ros.web.hand_drive import HandDrive, command_publisher
 from rbx1_nav.ros.web.page_runs import Runs
 from rbx1_nav.ros.web.server import PageServer
 from rbx1_nav.ros.web.state import PageState
 from rbx1_nav.ros.web.system import System
 
 
-MAX_TITLE = 60
+MAX_TEXT = 60
 
 
-def check_title(value: YamlValue) -> str:
-    """Return the value of ~title. Raises ConfigError."""
-    if isinstance(value, str) and 0 < len(value) <= MAX_TITLE:
+def check_text(name: str, value: YamlValue) -> str:
+    """Return the value of a parameter that is a text. Raises ConfigError."""
+    if isinstance(value, str) and 0 < len(value) <= MAX_TEXT:
         return value
-    raise ConfigError(f'title: {show(value)}: expected a text of 1 to {MAX_TITLE} characters')
+    raise ConfigError(f'{name}: {show(value)}: expected a text of 1 to {MAX_TEXT} characters')
 
 
 PARAMETERS = [
-    custom('address', LOCALHOST, 'address at which the page is served; localhost: for this machine only', check_address,
+    custom('address', LOCALHOST, 'address at which the page is served; localhost: for this machine only',
+           partial(check_text, 'address'),
            note='0.0.0.0: all addresses of this machine; see [Security](web_view.md#security)'),
-    custom('port', 8080, 'TCP port at which the page is served; 0: any free port', check_port,
-           range='0, 1024 to 65535'),
+    number('port', 8080, '', 'TCP port at which the page is served; 0: any free port', 0, 65535, 'a TCP port'),
     number('robots', 0, '', 'number of robots of a fleet: robot1, robot2 and so on; 0: the robot in the namespace of '
            'this node', 0, 20, 'a number'),
     number('spacing', 1.0, 'm', 'distance between the starts of neighbors in a fleet', 0, 1000, 'a distance'),
-    custom('title', 'Out and back', 'title of the page', check_title),
+    custom('title', 'Out and back', 'title of the page', partial(check_text, 'title')),
     flag('stop_needs_token', False, 'whether Stop needs the token, for a machine that is shared with strangers'),
     number('linear_speed', 0.2, 'm/s', 'speed while an arrow key drives forward or backward', 0.01, 1),
     number('angular_speed', 1.0, 'rad/s', 'speed while an arrow key turns the robot', 0.01, 4)]
@@ -73,14 +73,15 @@ class RobotView:
     def __init__(self, name: str, token: str) -> None:
         """name: namespace of the robot, '' for the namespace of this node; token: needed to move the robot."""
         namespace = f'/{name}/' if name else ''
-        self.state, publisher = PageState(), CommandPublisher(namespace)
+        self.state = PageState()
         self.state.set_status(title=param('title'), robots=robot_names(), spacing=param('spacing'))
-        self.hand, self.system = HandDrive(publisher), System(self.state, publisher.connected, namespace)
+        self.hand, self.system = HandDrive(command_publisher(namespace)), System(self.state, namespace)
         self.runs = Runs(os.path.dirname(os.path.abspath(sys.argv[0])),
                          lambda name, outcome: self.state.set_status(started=name, outcome=outcome),
                          self.system.forget_frame, remappings(), namespace)
         controls = Controls(self.state, self.system, self.hand, self.runs,
-                            (param('linear_speed'), param('angular_speed')), in_background, log=rospy.loginfo,
+                            (param('linear_speed'), param('angular_speed')), in_background,
+                            log=lambda text: rospy.loginfo_throttle(5, text),
                             stop_needs_token=param('stop_needs_token'))
         self.connections = Connections(self.state, controls, token, time.monotonic)
 
@@ -108,10 +109,10 @@ def main() -> int:
     views = {f'/socket/{name}': RobotView(name, token) for name in robot_names()}
     views['/socket'] = next(iter(views.values()))
     try:
-        server = PageServer(resources.path('web'), HostCheck(address, machine_names()),
-                        {path: view.connections for path, view in views.items()}, address, param('port'))
-    except (ConfigError, OSError) as error:
-        rospy.logfatal('address %s, port %s: %s: expected an address of this machine and a free port', address,
+        server = PageServer(resources.path('web'), {path: view.connections for path, view in views.items()}, address,
+                            round(param('port')))
+    except OSError as error:
+        rospy.logfatal('address %s, port %g: %s: expected an address of this machine and a free port', address,
                        param('port'), error)
         return 1
     for view in set(views.values()):

@@ -94,6 +94,16 @@ class TestBadParameters(support.Case):
             if params:
                 rospy.delete_param('/arbotix')
 
+    def test_web_view(self):
+        for params, expected in [({'address': ''}, ["/address: '': expected a text of 1"]),
+                                 ({'address': '192.0.2.1'}, ['address 192.0.2.1, port 8080', 'expected an address']),
+                                 ({'linear_speed': 0}, ['/linear_speed: 0: expected']),
+                                 ({'angular_speed': 9}, ['/angular_speed: 9: expected']),
+                                 ({'port': 70000}, ['/port: 70000: expected a TCP port from 0 to 65535'])]:
+            rospy.set_param('/web_view', params)
+            self.check(support.Process('rosrun', 'rbx1_nav', 'web_view.py'), expected)
+            rospy.delete_param('/web_view')
+
 
 if __name__ == '__main__':
     support.main(TestBadParameters)

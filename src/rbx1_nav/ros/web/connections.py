@@ -1,42 +1,29 @@
-"""The connected browsers: each receives frames as fast as it reads them, and its rate of messages is limited."""
+"""The connected browsers: each receives frames as fast as it reads them."""
 from __future__ import annotations
 
 from asyncio import Future
-from typing import Callable, Protocol
+from typing import Callable
 
-from rbx1_nav.ros.web.checks import RateLimit, same_token
+from tornado.websocket import WebSocketHandler
+
+from rbx1_nav.ros.web.checks import same_token
 from rbx1_nav.ros.web.controls import Controls
 from rbx1_nav.ros.web.page_messages import Hello, InvalidMessage, StopRequest, encode, kind_of, parse
 from rbx1_nav.ros.web.state import PageState
 
 MAX_SOCKETS = 100       # maximum number of browsers
-MAX_WATCHERS = 60       # maximum without the token, so that browsers with the token can connect
-HELLO_TIMEOUT = 5.0     # s within which a browser must send its first message
 FRAME_TIMEOUT = 0.4     # s after which a frame is sent although nothing has changed; see web/connection.js
-RATE, BURST = 30, 60    # messages per second, and in a burst; held keys are sent 10 times per second
-TRY_AGAIN_LATER, POLICY = 1013, 1008    # close codes: RFC 6455 and the IANA registry
-
-
-class Socket(Protocol):
-    """The part of tornado's WebSocketHandler that is used here."""
-
-    def write_message(self, message: bytes, binary: bool = False) -> Future[None]:
-        """Send a message. Raises an exception if the socket is closed."""
-
-    def close(self, code: int | None = None, reason: str | None = None) -> None:
-        """Close the socket."""
+POLICY = 1008           # close code, RFC 6455
 
 
 class Browser:
     """A connected browser."""
 
-    def __init__(self, socket: Socket, now: float) -> None:
+    def __init__(self, socket: WebSocketHandler, now: float) -> None:
         """now: s, monotonic clock."""
         self.socket = socket
-        self.since = now
         self.greeted = self.trusted = False
-        self.limit = RateLimit(RATE, BURST)
-        self.address = getattr(getattr(socket, 'request', None), 'remote_ip', 'an unknown address')
+        self.address = socket.request.remote_ip
         self.sent = now         # s: when the last frame was sent
         self.number, self.epoch = 0, -1     # what this browser has received, see history.py
         self.sending: Future[None] | None = None    # the frame that is being sent
@@ -65,41 +52,35 @@ class Connections:
         self.controls = controls
         self.token = token
         self.clock = clock
-        self.browsers: dict[Socket, Browser] = {}
+        self.browsers: dict[WebSocketHandler, Browser] = {}
 
     @property
     def full(self) -> bool:
         """Whether no further browser may connect."""
-        return sum(each.greeted for each in self.browsers.values()) >= MAX_SOCKETS
+        return len(self.browsers) >= MAX_SOCKETS
 
-    def opened(self, socket: Socket) -> None:
-        """Add a browser that has connected. If all places are taken, it replaces the one that has waited longest
-        without sending hello."""
-        if len(self.browsers) >= MAX_SOCKETS:
-            silent = next((each for each in self.browsers.values() if not each.greeted), None)
-            if silent:
-                self._close(silent, POLICY, 'expected hello')
+    def opened(self, socket: WebSocketHandler) -> None:
+        """Add a browser that has connected."""
         self.browsers[socket] = Browser(socket, self.clock())
 
-    def closed(self, socket: Socket) -> None:
+    def closed(self, socket: WebSocketHandler) -> None:
         """Remove a browser that has disconnected. If its keys were driving the robot, stop the robot."""
         browser = self.browsers.pop(socket, None)
         if browser:
             self.controls.leave(browser)
 
-    def received(self, socket: Socket, text: object) -> None:
+    def received(self, socket: WebSocketHandler, text: object) -> None:
         """Process a message from a browser."""
         browser = self.browsers.get(socket)
         if browser is None:
             return
         try:
-            if not browser.limit.allows(self.clock()):
-                raise InvalidMessage('too many messages')
             message = parse(text)
             if browser.greeted == isinstance(message, Hello):
                 raise InvalidMessage('expected hello as the first message, and only once')
         except InvalidMessage as error:
-            self._close(browser, POLICY, str(error))
+            self.closed(socket)
+            socket.close(POLICY, str(error))
             return
         if isinstance(message, Hello):
             self._greet(browser, message)
@@ -111,19 +92,10 @@ class Connections:
             browser.send(encode('refused', what=kind_of(message), reason=refused))
 
     def _greet(self, browser: Browser, hello: Hello) -> None:
-        browser.trusted = same_token(self.token, hello.token)
-        watchers = sum(each.greeted and not each.trusted for each in self.browsers.values())
-        if not browser.trusted and watchers >= MAX_WATCHERS:
-            self._close(browser, TRY_AGAIN_LATER, 'too many browsers')
-            return
-        browser.greeted = True
+        browser.greeted, browser.trusted = True, same_token(self.token, hello.token)
         linear, angular = self.controls.speeds
         browser.send(encode('welcome', trusted=browser.trusted, known_token=browser.trusted or not hello.token,
                             speeds=[linear, angular]))
-
-    def _close(self, browser: Browser, code: int, reason: str) -> None:
-        self.closed(browser.socket)
-        browser.socket.close(code, reason)
 
     def send_frames(self) -> None:
         """Send a frame to each browser that is ready. To be called periodically."""
@@ -135,9 +107,7 @@ class Connections:
         # most browsers have received the same frames, so they need the same next frame
         frames: dict[tuple[int, int], tuple[int, int, bytes]] = {}
         latest = self.state.counter.last
-        for browser in list(self.browsers.values()):
-            if not browser.greeted and now - browser.since > HELLO_TIMEOUT:
-                self._close(browser, POLICY, 'expected hello')
+        for browser in self.browsers.values():
             if not browser.ready or browser.number == latest and now - browser.sent < FRAME_TIMEOUT:
                 continue
             key = browser.number, browser.epoch

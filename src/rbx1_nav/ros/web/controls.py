@@ -18,9 +18,7 @@ ROUNDING = 0.001    # s: resolution of the clock in a frame
 MAX_AGE = 2.0       # s: age of the last frame that the browser had received when it sent a request
 NOT_CONFIRMED = 'a real robot moves only after you have confirmed that its path is free'
 LIMIT = 3.0         # s: time for the robot to come to rest; then the answer is that it has not
-REPEAT = 0.2        # s from one search for driving nodes to the next
 REST = 0.005        # m/s, rad/s: encoder noise of a robot at rest
-LOG_PERIOD = 5.0    # s between two log messages
 
 
 class Answer(NamedTuple):
@@ -48,7 +46,7 @@ class Stopper:
         self.log = log
         self.waiting: dict[Any, int] = {}   # browsers that wait for an answer: the number of their request
         self.again = False      # whether a Stop has arrived since the last search for driving nodes
-        self.begun = self.next_search = self.next_log = float('-inf')
+        self.begun = 0.0
 
     def request(self, browser: Any, number: int, now: float) -> None:
         """Stop the robot; answers() returns the answer. now: s, monotonic clock."""
@@ -56,33 +54,29 @@ class Stopper:
             self.begun = now
         self.waiting[browser], self.again = number, True
         self.stop()
-        self._search(now)
-        if now >= self.next_log:
-            self.next_log = now + LOG_PERIOD
-            self.log(f'Stop from {getattr(browser, "address", "")}')
+        self._search()
+        self.log(f'Stop from {browser.address}')
 
-    def _search(self, now: float) -> None:
-        if self.again and now >= self.next_search:
-            self.again, self.next_search = False, now + REPEAT
+    def _search(self) -> None:
+        if self.again and not self.system.searching:
+            self.again = False
             self.system.shut_down_drivers()
 
     def answers(self, busy: bool, now: float) -> dict[Any, Answer]:
         """Return the answers that are due, by browser. busy: whether a run has not exited yet. Call this often."""
         if not self.waiting:
             return {}
-        self._search(now)
+        self._search()
         speed = self.speed(self.begun)
         stationary = speed is not None and speed < REST
         stopping = self.again or busy or self.system.pending or not stationary
         if stopping and now - self.begun < LIMIT:
             return {}
-        stopped, silent, not_connected = self.system.take_shut_down()
+        stopped, silent = self.system.take_shut_down()
         texts = [f'Stopped {" and ".join(stopped)}.' if stopped else 'Stopped.' if stationary else
                  'Zero commands were sent.']
         if silent:
             texts.append(f'No answer from {" and ".join(silent)}.')
-        if not_connected:
-            texts.append(f'{not_connected} does not receive the commands of this page: restart the web view.')
         texts.append('The robot is stationary.' if stationary else
                      'There is no odometry: the robot may still be moving.' if speed is None else
                      'The robot is still moving.')

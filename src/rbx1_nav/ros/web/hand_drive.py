@@ -4,14 +4,13 @@ A browser that crashes cannot report a released key, so keys that are not repeat
 """
 from __future__ import annotations
 
+from contextlib import suppress
 from threading import Condition, Thread
 import time
 from typing import Callable
 
-from geometry_msgs.msg import Twist
+from geometry_msgs.msg import Twist, Vector3
 import rospy
-
-from rbx1_nav.ros.network.rospy_topics import connected_nodes
 
 COMMANDS = 'cmd_vel'     # rospy.resolve_name() applies the namespace and a remapping
 KEY_TIMEOUT = 0.3   # s after the last message of the driving browser; the robot must stop within 0.5 s
@@ -19,26 +18,18 @@ PERIOD = 0.05       # s between commands
 LINGER = 1.0        # s during which zero commands are sent after the last command, and after Stop
 
 
-class CommandPublisher:
-    """Publishes /cmd_vel. It stays registered, because a subscriber of rospy that connects while a publisher
-    unregisters may keep a dead connection to it."""
+def command_publisher(namespace: str = '') -> Callable[[float, float], None]:
+    """Return a function that publishes a command (m/s, rad/s). The publisher stays registered, because a subscriber of
+    rospy that connects while a publisher unregisters may keep a dead connection to it.
 
-    def __init__(self, namespace: str = '') -> None:
-        """namespace: of the robot, with a slash at the end, '' for the namespace of this node."""
-        self.publisher = rospy.Publisher(f'{namespace}{COMMANDS}', Twist, queue_size=5, tcp_nodelay=True)
+    namespace: of the robot, with a slash at the end, '' for the namespace of this node.
+    """
+    publisher = rospy.Publisher(f'{namespace}{COMMANDS}', Twist, queue_size=5, tcp_nodelay=True)
 
-    def publish(self, linear: float, angular: float) -> None:
-        """Send a command, m/s and rad/s."""
-        command = Twist()
-        command.linear.x, command.angular.z = linear, angular
-        try:
-            self.publisher.publish(command)
-        except rospy.ROSException:
-            pass    # closed by the shutdown of the node, which sends its own stop
-
-    def connected(self) -> set[str]:
-        """Return the names of the nodes that receive the commands."""
-        return connected_nodes(self.publisher)
+    def publish(linear: float, angular: float) -> None:
+        with suppress(rospy.ROSException):  # closed by the shutdown of the node, which sends its own stop
+            publisher.publish(Vector3(x=linear), Vector3(z=angular))
+    return publish
 
 
 class Keys:
@@ -71,9 +62,9 @@ class Keys:
 class HandDrive:
     """Sends the commands in a separate thread, so that nothing else in the server can delay a stop."""
 
-    def __init__(self, publisher: CommandPublisher, clock: Callable[[], float] = time.monotonic) -> None:
-        """clock(): returns the monotonic time, s."""
-        self.publisher = publisher
+    def __init__(self, publish: Callable[[float, float], None], clock: Callable[[], float] = time.monotonic) -> None:
+        """publish(linear, angular): sends a command, m/s and rad/s; clock(): returns the monotonic time, s."""
+        self.publish = publish
         self.clock = clock
         self.keys = Keys()
         self.drivers: set[object] = set()   # the browsers in which driving by hand is on
@@ -117,8 +108,8 @@ class HandDrive:
             self.changed.notify_all()
 
     def wait_until_quiet(self, cancelled: Callable[[], bool]) -> None:
-        """Wait until the zero commands after driving by hand have been sent, or until cancelled(). A Stop meanwhile does
-        not make the wait longer."""
+        """Wait until the zero commands after driving by hand have been sent, or until cancelled(). A Stop meanwhile
+        does not make the wait longer."""
         with self.changed:
             quiet = self.stop_until
             while self.clock() < quiet and not (self.ended or cancelled()):
@@ -150,9 +141,9 @@ class HandDrive:
                 if not (moving or stopping):
                     self.changed.wait()
                     continue
-            self.publisher.publish(*velocity)
+            self.publish(*velocity)
             with self.changed:
                 if not self.ended:
                     self.changed.wait(PERIOD)
         if moving or stopping:
-            self.publisher.publish(0.0, 0.0)
+            self.publish(0.0, 0.0)

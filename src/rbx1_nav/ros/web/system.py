@@ -43,12 +43,10 @@ def subscribe(topic: str, kind: type, callback: Callable[..., None], args: Any =
 class System:
     """Subscribes to the topics, queries the master once per PERIOD, and updates the state of the page."""
 
-    def __init__(self, state: PageState, connected: Callable[[], set[str]], namespace: str = '') -> None:
-        """connected(): returns the names of the nodes that receive the commands of this node; namespace: of the robot,
-        with a slash at the end, '' for the namespace of this node."""
+    def __init__(self, state: PageState, namespace: str = '') -> None:
+        """namespace: of the robot, with a slash at the end, '' for the namespace of this node."""
         self.state = state
         self.namespace = namespace
-        self.connected = connected
         self.lock = Lock()
         self.drawn: tuple[str, str] | None = None   # surface and seed, from /diagnostics
         self.base: str | None = None    # the node that publishes the odometry
@@ -59,7 +57,6 @@ class System:
         self.shutting_down: set[str] = set()    # nodes that have not answered yet
         self.stopped: set[str] = set()
         self.silent: set[str] = set()
-        self.not_connected = ''     # a base that does not receive the commands of this node, at the last Stop
         self.thread = Thread(target=self._run, daemon=True)
 
     def start(self) -> None:
@@ -180,27 +177,21 @@ class System:
 
     def shut_down_drivers(self) -> None:
         """Shut down all other nodes that publish the commands, as `rosnode kill` does. Does not wait for them."""
-        with self.lock:
-            if self.searching:
-                return
-            self.searching = True
+        self.searching = True
         Thread(target=self._shut_down_drivers, daemon=True).start()
 
     def _shut_down_drivers(self) -> None:
         publishers: Any = ()
-        subscribers: Any = ()
         try:
-            publishers, subscribers, _ = call(rosgraph.get_master_uri(), 'getSystemState')
+            publishers, _, _ = call(rosgraph.get_master_uri(), 'getSystemState')
         except Exception as error:
             rospy.logwarn_throttle(5, f'The master does not answer, so Stop may not have reached other driving nodes: '
                                       f'{error}')
             with self.lock:
                 self.silent.add('the master')
-        topic, base = rospy.resolve_name(f'{self.namespace}{COMMANDS}'), self.base or ''
+        topic = rospy.resolve_name(f'{self.namespace}{COMMANDS}')
         names = set(dict(publishers).get(topic, ())) - {rospy.get_name()}
-        listening = base in dict(subscribers).get(topic, ())
         with self.lock:
-            self.not_connected = base if listening and base not in self.connected() else ''
             names -= self.shutting_down
             self.shutting_down |= names
             self.searching = False
@@ -222,11 +213,10 @@ class System:
             self.shutting_down.discard(node)
             answered.add(node)
 
-    def take_shut_down(self) -> tuple[list[str], list[str], str]:
-        """Return the nodes that were shut down since the last call, those that did not answer, and the name of a base
-        that subscribes to the commands but is not connected, or ''."""
+    def take_shut_down(self) -> tuple[list[str], list[str]]:
+        """Return the nodes that were shut down since the last call, and those that did not answer."""
         with self.lock:
-            found = sorted(self.stopped), sorted((self.silent | self.shutting_down) - self.stopped), self.not_connected
+            found = sorted(self.stopped), sorted((self.silent | self.shutting_down) - self.stopped)
             self.stopped.clear()
             self.silent.clear()
         return found

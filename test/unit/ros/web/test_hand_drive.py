@@ -39,7 +39,7 @@ def wait_for(condition):
 @pytest.fixture(name='driven')
 def start():
     base, clock = Base(), Clock()
-    hand = HandDrive(base, clock)
+    hand = HandDrive(base.publish, clock)
     hand.start()
     yield hand, base, clock
     hand.end()
@@ -85,7 +85,7 @@ def test_stop_sends_zeros_though_nobody_drives(driven):
 
 def test_the_end_stops_a_robot_that_moves():
     base = Base()
-    hand = HandDrive(base)
+    hand = HandDrive(base.publish)
     hand.start()
     hand.begin('a')
     hand.drive('a', 0.2, 0.0)

@@ -9,7 +9,7 @@ from rbx1_nav.ros.web.state import PageState
 @pytest.fixture(name='view')
 def make_view(monkeypatch):
     monkeypatch.setattr(system, 'MIN_PERIOD', 0)
-    return system.System(PageState(), set)
+    return system.System(PageState())
 
 
 def receive(view, connection):

@@ -1,5 +1,4 @@
-"""Stop shuts down the nodes that publish the topic of the commands, under the name to which it is remapped, and finds
-a base that is not connected."""
+"""Stop shuts down the nodes that publish the topic of the commands, under the name to which it is remapped."""
 import time
 
 import rospy
@@ -16,7 +15,7 @@ def test_stop_shuts_down_the_drivers_of_the_remapped_topic(monkeypatch):
 
     def call(uri, method, *arguments):
         if method == 'getSystemState':
-            return PUBLISHERS, [['/other/cmd_vel', ['/base']]], []
+            return PUBLISHERS, [], []
         if method == 'lookupNode':
             return f'uri of {arguments[0]}'
         shut_down.append((uri, method))
@@ -24,11 +23,10 @@ def test_stop_shuts_down_the_drivers_of_the_remapped_topic(monkeypatch):
     monkeypatch.setattr(rospy.names, '_resolved_mappings', {'/cmd_vel': '/other/cmd_vel'})
     monkeypatch.setattr(rospy, 'get_name', lambda: '/unnamed')
     monkeypatch.setattr(module, 'call', call)
-    system = module.System(PageState(), lambda: {'/recorder'})
-    system.base = '/base'
+    system = module.System(PageState())
     system.shut_down_drivers()
     end = time.monotonic() + LIMIT
     while system.pending:
         assert time.monotonic() < end
         time.sleep(0.002)
-    assert shut_down == [('uri of /driver', 'shutdown')] and system.take_shut_down() == (['/driver'], [], '/base')
+    assert shut_down == [('uri of /driver', 'shutdown')] and system.take_shut_down() == (['/driver'], [])
