@@ -50,7 +50,7 @@ ALLOWED = {
                                  'ros.node'},
     'ros.filter': {'config', 'estimation', 'parameters', 'robot', 'ros', 'ros.network', 'ros.node', 'schedule',
                    'simulation', 'units'},
-    'ros.web': {'config', 'ros', 'ros.network', 'ros.node', 'units'},
+    'ros.web': {'ros', 'ros.network', 'ros.node', 'units'},
     'ros.bags': {'config', 'estimation', 'fitting', 'robot', 'ros', 'units'},
 }
 ALLOWED['nodes'] = set(ALLOWED) - {'__init__'}
