@@ -13,7 +13,7 @@ from rbx1_nav.robot.description import load_robot
 from rbx1_nav.robot.kinematics import ORIGIN
 from rbx1_nav.ros.node import resources
 from rbx1_nav.simulation import exercise
-from rbx1_nav.simulation.summary import HEADER, summary
+from rbx1_nav.simulation.summary import HEADER, Summary
 from rbx1_nav.simulation.surfaces import load_surface
 
 ANSWER = os.path.join(os.path.dirname(os.path.realpath(__file__)), '..', 'examples', 'answers', 'steering.py')
@@ -72,8 +72,12 @@ def main():
                         ('Steered', partial(steered_legs, load_answer().steering))):
         exercise.out_and_back_by_odometry = legs
         for method in 'odom', 'ekf':
-            results = list(exercise.simulate_many(method, robot, surface, range(arguments.runs)))
-            print('\n'.join([f'{title}:', *summary(method, results), across(results)]))
+            results = [exercise.simulate(method, robot, surface, seed) for seed in range(arguments.runs)]
+            summary = Summary()
+            for result in results:
+                end = result.end
+                summary.add(end.truth, end.odometry, end.estimate, result.first_leg)
+            print('\n'.join([f'{title}:', *summary.lines(method), across(results)]))
 
 
 if __name__ == '__main__':

@@ -11,7 +11,7 @@ import yaml
 from floors import Follower, consistency
 from rbx1_nav.robot.description import read_robot
 from rbx1_nav.ros.node import resources
-from rbx1_nav.simulation.exercise import METHODS, simulate, simulate_many
+from rbx1_nav.simulation.exercise import METHODS, simulate
 from rbx1_nav.simulation.surfaces import load_surface
 
 TIMED_SEEDS = 20    # runs of each method whose speed is measured
@@ -30,7 +30,7 @@ def turned(pose, other=(0.0, 0.0, 0.0)):
 def ends(robot, surface, seeds):
     """(name, values) for the end poses of each method: the true end pose, and the odometry error."""
     for method in METHODS:
-        runs = list(simulate_many(method, robot, surface, seeds))
+        runs = [simulate(method, robot, surface, seed) for seed in seeds]
         yield f'{method}: true end, from the start (m)', [distance(r.end.truth) for r in runs]
         yield f'{method}: true end, to the left (m)', [r.end.truth.y for r in runs]
         yield f'{method}: true end, angle (degrees)', [turned(r.end.truth) for r in runs]
@@ -90,8 +90,8 @@ def main():
         values = list(speed(method, robot, surface, range(min(arguments.seeds, TIMED_SEEDS))))
         report(f'{method}: times real time, one core', min=min(values), median=numpy.median(values), max=max(values))
     start = time.perf_counter()
-    for _ in simulate_many('timed', robot, surface, range(10000)):
-        pass
+    for seed in range(10000):
+        simulate('timed', robot, surface, seed)
     report('10,000 timed runs, one core (s)', value=time.perf_counter() - start)
     if arguments.json:
         with open(arguments.json, 'w', encoding='utf-8') as file:

@@ -29,7 +29,7 @@ def test_the_pages_quote_the_gain(monkeypatch):
     carpet = load_surface('low_ply_carpet', os.path.join(CONFIG, 'surfaces'))
     robot = load_robot(os.path.join(CONFIG, 'turtlebot.yaml'))
     monkeypatch.setattr(exercise, 'out_and_back_by_odometry', partial(steering.steered_legs, ANSWER.steering))
-    ends = numpy.array([run.end.truth for run in exercise.simulate_many('ekf', robot, carpet, range(100))])
+    ends = numpy.array([exercise.simulate('ekf', robot, carpet, seed).end.truth for seed in range(100)])
     gain = 100 * numpy.hypot(*ends.T[:2]).mean(), 100 * numpy.sqrt((ends[:, 1] ** 2).mean())
     texts = {}
     for page in 'answers', 'why_it_misses', 'figures':

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from functools import partial
 from math import pi
-from typing import Callable, Iterator, Mapping, NamedTuple, Sequence
+from typing import Callable, Mapping, NamedTuple
 
 from rbx1_nav.control.legs import Leg, Motion, out_and_back, out_and_back_by_odometry
 from rbx1_nav.estimation.combined_odometry import CombinedOdometry
@@ -176,9 +176,3 @@ def _drives(simulation: Simulation, method: str, parameters: Mapping[str, float]
         estimate = combined.pose if combined else None
         return estimate or simulation.base.odometry.pose
     return [partial(simulation.drive_by_pose, leg, get_pose) for leg in legs(parameters)]
-
-
-def simulate_many(method: str, robot: Robot, surface: Surface | None,
-                  seeds: Sequence[int]) -> Iterator[SimulationResult]:
-    """Yield the SimulationResults of all seeds, in the order of the seeds."""
-    return (simulate(method, robot, surface, seed) for seed in seeds)
