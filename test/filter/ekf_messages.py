@@ -101,16 +101,16 @@ class TestEkfMessages(support.Case):
         self.poses.next()
 
     def test_the_odometry_times_out_and_recovers(self):
-        before = self.poses.next().pose.covariance[0]
+        self.poses.next()
         self.odom.active = False
         self.wait_for_log('odom has timed out')
         self.wait_for_status('odom', DiagnosticStatus.WARN)
-        # during this time, no sensor measures the distance
-        support.wait_for(lambda: self.poses.last.pose.covariance[0] > 0.2, 'a growing uncertainty')
+        # during this time, no sensor measures the position
+        count = len(self.poses.messages)
         self.odom.active = True
         self.wait_for_log('odom has recovered')
-        support.wait_for(lambda: self.poses.last.pose.covariance[0] < 2 * before + 1e-6, 'the previous uncertainty')
         self.wait_for_status('odom', DiagnosticStatus.OK)
+        support.wait_for(lambda: len(self.poses.messages) > count, 'another pose')
 
     def test_another_sender_at_the_same_time_is_ignored(self):
         support.Process('rostopic', 'pub', '-r', '20', '/odom', 'nav_msgs/Odometry', '{}')

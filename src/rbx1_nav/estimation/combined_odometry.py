@@ -6,16 +6,14 @@ from copy import copy
 from math import cos, sin
 from typing import Callable, Deque, NamedTuple
 
-from rbx1_nav.estimation.filter import X, Y, YAW, Filter
+from rbx1_nav.estimation.filter import YAW, Filter
 from rbx1_nav.estimation.inputs import Imu, Odom, check_imu, check_odom, distance, format_pose, has_jumped
 from rbx1_nav.estimation.priors import UNKNOWN_FLOOR, Priors, Bounds
 from rbx1_nav.estimation.sensors import IMU, MAX_LEAD, MAX_WAIT, ODOM, Arrivals, Doubts
 from rbx1_nav.estimation.standstill import STANDSTILL, Part, Standstill
-from rbx1_nav.estimation.turns import Measurement, PastYaws, Readings
+from rbx1_nav.estimation.turns import Measurement, Readings
 from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.units import SECOND, Array, wrap_angle
-
-DROPOUT_SPEED = 0.5     # m/s: possible speed of the robot (1 sigma) while no odometry arrives
 
 
 class Estimate(NamedTuple):
@@ -33,9 +31,8 @@ class CombinedOdometry:
     A step waits until the gyro has reported up to the stamp of the odometry. So the result depends only on stamps (ns),
     not on arrivals, as long as no sensor times out. A sensor has timed out if the other sensor's stamps are ahead by
     more than `timeout`, and nothing has arrived from it for that time: a late sensor is not silent. A sensor that has
-    timed out is not used until it recovers. Without the gyro, the wheels measure the turn. Without odometry, the gyro
-    measures the turn, and the uncertainty of the position grows. The travel during an odometry dropout counts when the
-    odometry recovers.
+    timed out is not used until it recovers. Without the gyro, the wheels measure the turn. Without odometry, there is no
+    estimate; both sensors have measured the turn in a dropout when the odometry recovers.
     """
 
     def __init__(self, prior: Priors, timeout: int, gyro_used: bool = True,
@@ -74,14 +71,11 @@ class CombinedOdometry:
         self._estimate: Estimate | None = None      # the latest one, once it was requested
         self.pending: Deque[tuple[int, Odom]] = deque()     # with arrival times (ns), until the gyro has caught up
         self.readings.waiting.clear()
-        self.time = 0               # ns, time after the last step
         self.odom: Odom | None = None       # the last odometry that was used in a step
-        self.odom_yaw = 0.0         # rad, the filter's yaw at that time
-        self.yaws = PastYaws()      # yaws since then, if the gyro is ahead of the odometry
+        self.odom_yaw = 0.0         # rad, the filter's yaw after that step
         self.doubts.contradicted = None
         self.standstill.restart()
         self.placed: tuple[int, Pose, Array] | None = None      # arguments of set_pose(), until the first step after it
-        self.placed_at = 0          # ns, the time of the last set_pose() that counts
         self.suspect: Odom | None = None    # odometry that has jumped, until the next message confirms it
         self.arrivals.restart()
 
@@ -95,11 +89,7 @@ class CombinedOdometry:
         """The latest Estimate, the same object until the next step; None before the first odometry."""
         ekf, odom = self.filter, self.odom
         if not self._estimate and ekf and odom:
-            covariance = ekf.covariance
-            unknown_travel = DROPOUT_SPEED * (self.time - odom.stamp) / SECOND
-            covariance[X, X] += unknown_travel ** 2
-            covariance[Y, Y] += unknown_travel ** 2
-            self._estimate = Estimate(self.time, Pose(*ekf.state[:3]), covariance, odom)
+            self._estimate = Estimate(odom.stamp, Pose(*ekf.state[:3]), ekf.covariance, odom)
         return self._estimate
 
     @property
@@ -110,7 +100,7 @@ class CombinedOdometry:
     @property
     def contradicts(self) -> bool:
         """Whether wheels and gyro contradict each other, or did so recently."""
-        return self.doubts.contradicts(self.time)
+        return self.odom is not None and self.doubts.contradicts(self.odom.stamp)
 
     @property
     def case(self) -> str | None:
@@ -124,11 +114,11 @@ class CombinedOdometry:
 
     def set_pose(self, now: int, pose: Pose, covariance: Array) -> None:
         """Set the robot's Pose at `now` (ns), with its covariance (3x3) of x, y (m) and yaw (rad). It takes effect at
-        the first step after `now`. The filter keeps what it has learned about the sensors."""
+        once, or before the first step beyond `now`. The filter keeps what it has learned about the sensors."""
         self.placed = now, pose, covariance
-        if self.filter and self.time >= now:
+        if self.filter and self.odom and self.odom.stamp >= now:
             self._place(self.filter)
-            self._finish(self.time)
+            self._estimate = None
 
     def add_odom(self, now: int, odom: Odom) -> None:
         """Process an Odom that arrived at `now` (ns). Raises RejectedMessage."""
@@ -162,10 +152,9 @@ class CombinedOdometry:
         while self.pending and self._gyro_is_ready():
             self._step(self.pending.popleft()[1])
         reported = self.arrivals.last_stamp[IMU] or 0
-        if (self.filter and self.odom and not self.pending and reported - self.odom.stamp > self.timeout
+        if (self.odom and not self.pending and reported - self.odom.stamp > self.timeout
                 and self.arrivals.is_silent(ODOM, 0)):
             self.arrivals.set_timed_out(ODOM)
-            self._step_by_gyro(self.filter, reported)
 
     def _gyro_is_ready(self) -> bool:
         """Return whether the gyro has reported up to the first pending odometry, or there is no need to wait for it."""
@@ -182,7 +171,7 @@ class CombinedOdometry:
 
     def _step(self, odom: Odom) -> None:
         """Make a step up to an Odom."""
-        if self.odom and (odom.stamp <= self.odom.stamp or self._reject_outlier(self.odom, odom)):
+        if self.odom and self._reject_outlier(self.odom, odom):
             return
         ekf, last = self.filter, self.odom
         if not ekf or not last:
@@ -190,15 +179,15 @@ class CombinedOdometry:
             return
         if self.placed and odom.stamp > self.placed[0]:
             self._place(ekf)
-        duration = max(0, odom.stamp - self.time) / SECOND      # shorter than since `last` if the gyro was used alone
-        gyro = self._gyro_turn(odom.stamp)
-        if self.standstill.follow(odom.stamp, odom.pose) and gyro and self.time == last.stamp:
+        duration = (odom.stamp - last.stamp) / SECOND
+        gyro = self.readings.turn(last.stamp, odom.stamp, self.prior.gyro_measurement_range, self.standstill.max_density)
+        if self.standstill.follow(odom.stamp, odom.pose) and gyro:
             self.standstill.add(Part(duration, *gyro), ekf)
             self.odom_yaw = ekf.state[YAW]
         else:
             self._leave_standstill(ekf)
             self._drive(ekf, last, odom, duration, gyro)
-        self._finish(max(odom.stamp, self.time), odom)
+        self.odom, self._estimate = odom, None
 
     def _begin(self, odom: Odom) -> None:
         """Begin at the pose of the first Odom."""
@@ -207,7 +196,7 @@ class CombinedOdometry:
         self.odom_yaw = odom.pose.yaw
         if self.placed:
             self._place(ekf)
-        self._finish(odom.stamp, odom)
+        self.odom, self._estimate = odom, None
 
     def _reject_outlier(self, last: Odom, odom: Odom) -> bool:
         """Store an Odom that has jumped, and return True: it is ignored. If a second one agrees, restart there."""
@@ -221,30 +210,20 @@ class CombinedOdometry:
         return self.suspect is not None
 
     def _drive(self, ekf: Filter, last: Odom, odom: Odom, duration: float, gyro: Measurement | None) -> None:
-        """Move the robot from one Odom to the next. duration: since the last step, s; gyro: its turn in that time."""
-        elapsed = (odom.stamp - last.stamp) / SECOND
-        # if set_pose() took effect since the last odometry, only the rest of the distance counts
-        share = min(1.0, max(0, odom.stamp - self.placed_at) / (odom.stamp - last.stamp))
-        dx, dy = share * (odom.pose.x - last.pose.x), share * (odom.pose.y - last.pose.y)
+        """Move the robot from one Odom to the next. duration: between them, s; gyro: its turn in that time."""
+        dx, dy = odom.pose.x - last.pose.x, odom.pose.y - last.pose.y
         turned = wrap_angle(odom.pose.yaw - last.pose.yaw)
-        wheels = None
-        if self.time == last.stamp:
-            wheels = turned, odom.angular_variance * elapsed ** 2
-        elif duration and not gyro:
-            # the gyro was used alone, but not up to here: the wheels measured the rest of the turn
-            already = (ekf.state[YAW] - self.odom_yaw) / (1 - self.prior.slip_turning)
-            wheels = wrap_angle(turned - already), odom.angular_variance * elapsed ** 2
         # in the frame of the wheels' heading halfway through the turn
         heading = last.pose.yaw + turned / 2
         c, s = cos(heading), sin(heading)
         forward, left = dx * c + dy * s, dy * c - dx * s
-        turn = ekf.turn(duration, wheels, gyro, forward)
+        turn = ekf.turn(duration, (turned, odom.angular_variance * duration ** 2), gyro, forward)
         # this heading in the filter's frame: halfway between the yaws at the last odometry and at this one
         yaw = ekf.state[YAW]
-        end = yaw + turn.angle if odom.stamp >= self.time else self.yaws.take(odom.stamp)
+        end = yaw + turn.angle
         ahead = turned + wrap_angle(end - self.odom_yaw - turned)
         ekf.step(duration, turn, self.odom_yaw + ahead / 2 - yaw - turn.angle / 2, forward, left,
-                 odom.linear_variance * elapsed ** 2)
+                 odom.linear_variance * duration ** 2)
         self.odom_yaw = end
         verdict = ekf.close_window()
         if verdict:
@@ -258,38 +237,9 @@ class CombinedOdometry:
             ekf.step(last.time, ekf.turn(last.time, None, (last.angle, last.variance)))
             self.odom_yaw += ekf.state[YAW] - before
 
-    def _step_by_gyro(self, ekf: Filter, end: int) -> None:
-        """Make a step up to `end` (ns) without odometry."""
-        duration = (end - self.time) / SECOND
-        if self.placed and end > self.placed[0]:
-            self._place(ekf)
-        gyro = self._gyro_turn(end) if duration > 0 else None
-        if not gyro:        # the wheels will measure this turn
-            return
-        self._leave_standstill(ekf)
-        self.yaws.add(self.time, ekf.state[YAW])
-        ekf.step(duration, ekf.turn(duration, None, gyro))
-        self._finish(end)
-        self.yaws.add(end, ekf.state[YAW])
-
-    def _gyro_turn(self, end: int) -> Measurement | None:
-        """Return the turn since the last step, see Readings.turn()."""
-        return self.readings.turn(self.time, end, self.prior.gyro_measurement_range, self.standstill.max_density)
-
     def _place(self, ekf: Filter) -> None:
         """Move the filter to the pose of set_pose()."""
         assert self.placed
-        (self.placed_at, pose, covariance), self.placed = self.placed, None
-        self._estimate = self.estimate      # calculated before the filter moves; valid until the next step
-        turned = pose.yaw - ekf.state[YAW]
+        (_, pose, covariance), self.placed = self.placed, None
+        self.odom_yaw += pose.yaw - ekf.state[YAW]
         ekf.place(pose, covariance)
-        self.odom_yaw += turned
-        self.yaws.turn(turned)
-
-    def _finish(self, time: int, odom: Odom | None = None) -> None:
-        """Finish a step up to a time (ns), with an Odom if it has one."""
-        self.time, self._estimate = time, None
-        if odom:
-            self.odom = odom
-            if odom.stamp >= time:
-                self.yaws = PastYaws()

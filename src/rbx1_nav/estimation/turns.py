@@ -1,6 +1,6 @@
 """Turns of the robot from gyro readings, and the window in which the turns of wheels and gyro are compared.
 
-Readings wait here until the odometry arrives, and yaws if the gyro is ahead of it.
+Readings wait here until the odometry arrives.
 """
 from __future__ import annotations
 
@@ -18,6 +18,8 @@ MORE = 2                # readings that must be equal, in addition to twice thos
 LOST = 1.5              # times the usual time between two readings: in a longer gap, readings were lost
 WINDOW_TURN, WINDOW_TIME = 2.0, 9.9     # rad, s: turn or time after which a window is complete
 BLOCK = 0.99    # s: part of a window; both times are a little less than 10 and 1 s, because stamps are rounded
+
+MOST = 30000    # readings that wait at most, if there is no odometry: older ones are discarded
 
 Measurement = Tuple[float, float]   # a turn (rad) and its variance (rad^2)
 
@@ -38,7 +40,7 @@ class Readings:
         self.limits = limits
         self.last: Imu | None = None        # the latest one
         self.period = 0                     # ns, usual time between two readings; 0: not known
-        self.waiting: Deque[WaitingReading] = deque()
+        self.waiting: Deque[WaitingReading] = deque(maxlen=MOST)
         self.equal = 0                      # number of latest readings that are equal to the one before
         self.usually_equal = 0              # the largest such number at rest, where noise makes readings differ
         self.at_rest = 0                    # number of readings at rest
@@ -95,30 +97,6 @@ class Readings:
             if imu.stamp <= end:
                 self.waiting.popleft()
         return (angle, variance) if good and time == end and variance else None
-
-
-class PastYaws:
-    """Past yaws (rad) of the filter, with their times (ns)."""
-
-    def __init__(self) -> None:
-        self.yaws: Deque[tuple[int, float]] = deque()
-
-    def add(self, time: int, yaw: float) -> None:
-        """Add the latest yaw, if there is none for its time."""
-        if not self.yaws or self.yaws[-1][0] < time:
-            self.yaws.append((time, yaw))
-
-    def turn(self, angle: float) -> None:
-        """Add an angle (rad) to all yaws."""
-        self.yaws = deque((time, yaw + angle) for time, yaw in self.yaws)
-
-    def take(self, time: int) -> float:
-        """Return the yaw at a time between the first and the last yaw, and discard the yaws before it."""
-        yaws = self.yaws
-        while yaws[1][0] < time:
-            yaws.popleft()
-        (start, before), (end, after) = yaws[0], yaws[1]
-        return before + (after - before) * (time - start) / (end - start)
 
 
 class Sums(NamedTuple):

@@ -1,9 +1,11 @@
 """Sensors that become silent time out and recover, and late sensors are waited for."""
+from math import pi, remainder
+
 import pytest
 
-from rbx1_nav.estimation.filter import X, Y, YAW
 from rbx1_nav.estimation.inputs import Imu, Odom
-from rbx1_nav.robot.kinematics import Pose, arc
+from rbx1_nav.estimation.turns import MOST
+from rbx1_nav.robot.kinematics import arc
 from rbx1_nav.units import SECOND
 from sample_priors import IDEAL, PRIORS
 from sample_robot import STEP, Robot, exact
@@ -33,48 +35,32 @@ def test_without_a_gyro_the_heading_is_as_uncertain_as_the_slip_of_the_floor():
         (0.05 * 2) ** 2 + PRIORS.heading_noise_turning ** 2 * 2, rel=0.01)
 
 
-def test_odometry_times_out_and_its_travel_meanwhile_counts_when_it_recovers():
+@pytest.mark.parametrize('late', [False, True])
+def test_what_both_sensors_measure_in_a_dropout_of_the_odometry_counts_when_it_recovers(late):
     robot = Robot(IDEAL)
     robot.send(100)
-    robot.send(50, 0.2)
-    last = robot.pose
-    robot.send(100, 0.0, 0.5, odom=False)
-    estimate = robot.combined.estimate
-    # during the dropout, the gyro measures the turn
-    assert robot.combined.timed_out['odom'] and exact(estimate, last._replace(yaw=robot.pose.yaw))
-    # and no sensor measures the travel: 0.5 m/s for 2 s
-    assert estimate.covariance[X, X] > 0.9 and estimate.covariance[Y, Y] > 0.9
-    robot.send(100, 0.2, 0.0, odom=False)
-    robot.send(1, 0.2, 0.0)
-    # the wheels report a straight displacement since the dropout, and the gyro has reported the turn
+    before = robot.send(50, 0.2)
+    robot.send(100, 0.2, 0.5, odom=False)
+    robot.send(100, odom=False)
+    assert robot.combined.estimate is before and robot.combined.timed_out['odom']     # nothing measures the position
+    odom = robot.odom()
+    if late:        # the gyro is ahead
+        robot.send(5, odom=False)
+    robot.combined.add_odom(robot.now, odom)
     assert exact(robot.combined.estimate, robot.pose) and not robot.combined.timed_out['odom']
-    assert robot.combined.estimate.covariance[X, X] < 1e-3
+    assert exact(robot.send(50, 0.2, -0.5), robot.pose)
+    assert robot.warnings == ['odom has timed out: no valid message for more than 1 s; not used until it recovers',
+                              'odom has recovered']
 
 
-def test_a_turn_that_begins_just_before_the_odometry_times_out_counts():
-    robot = Robot(IDEAL)
+def test_a_dropout_that_is_longer_than_the_stored_readings_is_measured_by_the_wheels():
+    robot = Robot()
     robot.send(100)
-    for _ in range(4):      # the wheels still report rest
-        robot.now += STEP
-        robot.combined.add_imu(robot.now, Imu(robot.now, 0.5, 3e-6))
-        robot.combined.add_odom(robot.now, robot.odom())
-    robot.send(100, 0.0, 0.5, odom=False)
-    assert robot.combined.estimate.pose.yaw == pytest.approx(0.04 + robot.pose.yaw, abs=1e-3)
-
-
-@pytest.mark.parametrize('odom_first', [True, False])
-def test_odometry_that_recovers_in_a_turn_does_not_count_it_again(odom_first):
-    robot = Robot()     # its wheels slip by 3 %, as the filter expects, and it turns at 0.5 rad/s
-    for tick in range(300):
-        robot.now += STEP
-        wheels = Odom(robot.now, Pose(0.0, 0.0, 0.5 * 0.02 * tick / 0.97))
-        odom = (robot.combined.add_odom, wheels)
-        imu = (robot.combined.add_imu, Imu(robot.now, 0.5 if tick else 0.0, 3e-6))
-        for add, *message in (odom, imu) if odom_first else (imu, odom):
-            if add is imu[0] or not 50 < tick < 200:
-                add(robot.now, *message)
-    assert robot.combined.filter.state[YAW] == pytest.approx(0.5 * 0.02 * tick, abs=1e-3)
-    assert len(robot.warnings) == 2
+    robot.send(MOST + 100, 0.0, 0.1, odom=False)
+    estimate = robot.send(1, 0.0, 0.1)
+    # slip of 3 +- 5 %
+    assert len(robot.combined.readings.waiting) == 0
+    assert abs(remainder(estimate.pose.yaw - 0.97 * remainder(robot.pose.yaw, 2 * pi), 2 * pi)) < 0.05
 
 
 def send_late(odom_lag, imu_lag):
@@ -139,20 +125,3 @@ def test_messages_that_wait_while_the_process_sleeps_are_no_dropout():
     for odom in odoms:
         robot.combined.add_odom(robot.now, odom)
     assert not robot.warnings and exact(robot.combined.estimate, robot.pose)
-
-
-@pytest.mark.parametrize('imu_first', [True, False])
-def test_a_turn_while_both_sensors_are_silent_is_never_certain(imu_first):
-    robot = Robot()
-    robot.send(100)
-    robot.send(60, 0.0, 0.5, odom=False)        # odometry times out,
-    robot.now += 3 * SECOND // 2                # and then the gyro
-    robot.pose = arc(robot.pose, 0.0, 0.75)
-    odom = (robot.combined.add_odom, robot.odom())
-    imu = (robot.combined.add_imu, Imu(robot.now, 0.5, 3e-6))
-    for add, *message in (imu, odom) if imu_first else (odom, imu):
-        add(robot.now, *message)
-    estimate = robot.send(50, 0.0, 0.5)
-    error = abs(estimate.pose.yaw - robot.pose.yaw)
-    # the wheels of this floor slip by 3 +- 5 % of the 0.75 rad
-    assert error < 0.1 and error ** 2 < 9 * estimate.covariance[2, 2]

@@ -11,8 +11,8 @@ from geometry_msgs.msg import PoseWithCovarianceStamped, TwistWithCovariance
 from nav_msgs.msg import Odometry
 from tf2_msgs.msg import TFMessage
 
-from rbx1_nav.estimation.combined_odometry import DROPOUT_SPEED, CombinedOdometry, Estimate
-from rbx1_nav.estimation.filter import BIAS, SCALE, SLIP_STRAIGHT, SLIP_TURNING, Filter
+from rbx1_nav.estimation.combined_odometry import CombinedOdometry, Estimate
+from rbx1_nav.estimation.filter import BIAS, CARRY_SPEED, SCALE, SLIP_STRAIGHT, SLIP_TURNING, Filter
 from rbx1_nav.estimation.sensors import IMU
 from rbx1_nav.robot.kinematics import relative_frame
 from rbx1_nav.robot.readings import MEASURED
@@ -38,9 +38,7 @@ def estimate_twist(combined: CombinedOdometry, before: Estimate | None) -> Twist
     variances if there is none before, or their stamps are equal.
 
     The displacement comes from the odometry, reduced by the slip of the assumed floor, and the turn comes from the
-    filter. During an odometry dropout the displacement is unknown: it is set to 0, with the uncertainty that the filter
-    assumes for a dropout. The uncertainty is the same while the robot is carried, because its wheels do not measure its
-    motion.
+    filter. While the robot is carried, its wheels do not measure its motion.
     """
     message = TwistWithCovariance(covariance=messages.diagonal(*[messages.UNKNOWN] * 6))
     last, ekf = combined.estimate, combined.filter
@@ -49,22 +47,19 @@ def estimate_twist(combined: CombinedOdometry, before: Estimate | None) -> Twist
     elapsed = (last.stamp - before.stamp) / SECOND
     prior = ekf.prior
     turn = wrap_angle(last.pose.yaw - before.pose.yaw) / elapsed
-    travel_time = (last.odom.stamp - before.odom.stamp) / SECOND
-    forward = left = by_wheels = 0.0
-    forward_variance = left_variance = DROPOUT_SPEED ** 2
-    if travel_time > 0:
-        start, end = before.odom.pose, last.odom.pose
-        turned = wrap_angle(end.yaw - start.yaw)
-        c, s = cos(start.yaw + turned / 2), sin(start.yaw + turned / 2)
-        share = (1 - prior.slip_straight) / travel_time
-        dx, dy = end.x - start.x, end.y - start.y
-        forward, left = (dx * c + dy * s) * share, (dy * c - dx * s) * share
-        by_wheels = turned / travel_time
-        if combined.case != 'carried':
-            slip = ekf.sigma(SLIP_STRAIGHT) ** 2
-            floor = _of_floor(prior.distance_noise, abs(forward), travel_time, CELL_TRAVELLED)
-            forward_variance = MEASURED + max(last.odom.linear_variance, floor) + slip * forward ** 2
-            left_variance = MEASURED + slip * left ** 2      # wheels do not roll sideways
+    start, end = before.odom.pose, last.odom.pose
+    turned = wrap_angle(end.yaw - start.yaw)
+    c, s = cos(start.yaw + turned / 2), sin(start.yaw + turned / 2)
+    share = (1 - prior.slip_straight) / elapsed
+    dx, dy = end.x - start.x, end.y - start.y
+    forward, left = (dx * c + dy * s) * share, (dy * c - dx * s) * share
+    by_wheels = turned / elapsed
+    forward_variance = left_variance = CARRY_SPEED ** 2
+    if combined.case != 'carried':
+        slip = ekf.sigma(SLIP_STRAIGHT) ** 2
+        floor = _of_floor(prior.distance_noise, abs(forward), elapsed, CELL_TRAVELLED)
+        forward_variance = MEASURED + max(last.odom.linear_variance, floor) + slip * forward ** 2
+        left_variance = MEASURED + slip * left ** 2      # wheels do not roll sideways
 
     imu = combined.readings.last if combined.gyro_used and not combined.timed_out[IMU] else None
     if imu:
