@@ -26,7 +26,7 @@ ALLOWED = {
     'simulation': {'config', 'robot', 'units'},
     'simulation.base': {'control', 'robot', 'simulation', 'units'},
     'simulation.exercise': {'control', 'estimation', 'robot', 'simulation', 'simulation.base', 'units'},
-    'simulation.summary': {'robot', 'simulation.exercise', 'units'},
+    'simulation.summary': {'robot', 'units'},
     'estimation': {'robot', 'units'},
     'fitting': {'config', 'robot', 'simulation', 'units'},
     'plotting': {'config', 'files', 'fitting', 'robot', 'simulation.exercise', 'units'},

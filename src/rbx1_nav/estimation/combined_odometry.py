@@ -31,8 +31,8 @@ class CombinedOdometry:
     A step waits until the gyro has reported up to the stamp of the odometry. So the result depends only on stamps (ns),
     not on arrivals, as long as no sensor times out. A sensor has timed out if the other sensor's stamps are ahead by
     more than `timeout`, and nothing has arrived from it for that time: a late sensor is not silent. A sensor that has
-    timed out is not used until it recovers. Without the gyro, the wheels measure the turn. Without odometry, there is no
-    estimate; both sensors have measured the turn in a dropout when the odometry recovers.
+    timed out is not used until it recovers. Without the gyro, the wheels measure the turn. Without odometry, there is
+    no estimate; when it recovers, both sensors have measured the turn in the dropout.
     """
 
     def __init__(self, prior: Priors, timeout: int, gyro_used: bool = True,
@@ -180,7 +180,8 @@ class CombinedOdometry:
         if self.placed and odom.stamp > self.placed[0]:
             self._place(ekf)
         duration = (odom.stamp - last.stamp) / SECOND
-        gyro = self.readings.turn(last.stamp, odom.stamp, self.prior.gyro_measurement_range, self.standstill.max_density)
+        gyro = self.readings.turn(last.stamp, odom.stamp, self.prior.gyro_measurement_range,
+                                  self.standstill.max_density)
         if self.standstill.follow(odom.stamp, odom.pose) and gyro:
             self.standstill.add(Part(duration, *gyro), ekf)
             self.odom_yaw = ekf.state[YAW]

@@ -30,7 +30,6 @@ FACTORS = 0.02, 50.0    # limits of the factor
 PRIOR = 1.0     # prior 1 sigma of the logarithm of the factor: the variation between floors
 ROUNDS = 3
 PART = 0.9      # share of the end poses of future runs that the region should contain
-FAR_OFF = 5.0   # a factor above this, or below its reciprocal, is suspicious
 
 
 def read_ends(path: str, bags: Sequence[str]) -> tuple[list[Pose], tuple[float, float, float]]:
@@ -74,7 +73,6 @@ class EndsFit(NamedTuple):
     errors: dict[str, float]    # standard errors
     reasons: dict[str, str]     # for keys that cannot be determined
     notes: list[str]
-    warnings: list[str]
 
 
 def fit_ends(runs: Sequence[PreparedRun], surface: Surface, end_errors: Sequence[float]) -> EndsFit:
@@ -117,9 +115,7 @@ def fit_ends(runs: Sequence[PreparedRun], surface: Surface, end_errors: Sequence
              f'to {len(runs)} end poses, and by {wider:.2f} because {3 * len(runs)} values are few: the 90 % region '
              "should contain 90 % of the end poses of future runs (Student's t distribution). The spreads also contain "
              'the standard errors of the mean slips.']
-    warnings = [] if 1 / FAR_OFF < factor < FAR_OFF else [
-        f'noise: {factor:.2f} times the noise of the starting surface: check the end poses and their order']
-    return EndsFit({key: float(value) for key, value in values.items()}, {**errors, **found}, reasons, notes, warnings)
+    return EndsFit({key: float(value) for key, value in values.items()}, {**errors, **found}, reasons, notes)
 
 
 def ends_of(run: PreparedRun, surface: Surface) -> Windows:

@@ -1,6 +1,7 @@
 """Formats the result of a fit as text: a surface file with comments, and a table to print."""
 from __future__ import annotations
 
+import textwrap
 from typing import Sequence
 
 import numpy
@@ -55,13 +56,8 @@ def comment(value: Value) -> str:
 
 def wrapped(text: str) -> list[str]:
     """Wrap text to the lines of a comment."""
-    lines, line = [], '#'
-    for word in text.split():
-        if len(line) + 1 + len(word) > WIDTH and line != '#':
-            lines.append(line)
-            line = '#'
-        line += ' ' + word
-    return lines + [line]
+    return textwrap.wrap(text, WIDTH, initial_indent='# ', subsequent_indent='# ', break_long_words=False,
+                         break_on_hyphens=False)
 
 
 def surface_text(result: FitResult, start_name: str, names: Sequence[str]) -> str:

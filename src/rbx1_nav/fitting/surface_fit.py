@@ -8,7 +8,7 @@ import numpy
 
 from rbx1_nav.config import ConfigError
 from rbx1_nav.fitting.end_poses import TYPICAL, fit_ends
-from rbx1_nav.fitting.floor import SPREADS, Covariance, with_values
+from rbx1_nav.fitting.floor import SPREADS, with_values
 from rbx1_nav.fitting.floor_fit import BOUNDS, MEANS, MIN_STRENGTH, Fitter, fit_floor
 from rbx1_nav.fitting.gyro_fit import fit_gyro, rests_at
 from rbx1_nav.fitting.motor_fit import KEYS as MOTOR_KEYS, LIMITS, fit_motors
@@ -27,7 +27,6 @@ MIN_RUNS = 3        # number of runs required for a spread from run to run
 LARGEST = {'accel_limit': 0.3, 'lag': 0.1, 'gyro_noise': 0.02, 'gyro_bias': 0.02, 'gyro_scale_error': 0.01,
            **{key: error for key, (_, error) in MEANS.items()},
            **dict.fromkeys(NOISES, 0.05), **dict.fromkeys(SPREADS, 0.02)}  # largest standard error of an accepted value
-FAR_OFF = 30.0      # squared error of three normal values of variance 1: exceeded once in a million
 POOR = 0.1          # fraction of the travel, rms, that the motor model may leave unexplained; but always at least
 POOR_TRAVEL = 0.002     # m
 
@@ -158,7 +157,6 @@ class WholeFit:
             self.notes.append(f'The end poses of the windows have additional errors of {1e3 * max(x, y):.1f} mm and '
                               f'{degrees(yaw):.2f} degrees, which do not grow along the path: errors of the truth, or '
                               'of the times of the commands. They are not in the surface.')
-        self._look_for_outliers(fitter, surface)
 
     def _fit_known(self, fitter: Fitter, start: Surface, means: Sequence[str],
                    noises: Sequence[str]) -> tuple[Surface, dict[str, float]]:
@@ -182,16 +180,6 @@ class WholeFit:
                 surface = with_values(surface, {key: 0.0})
         return surface, errors
 
-    def _look_for_outliers(self, fitter: Fitter, surface: Surface) -> None:
-        for run, windows, prediction in zip(fitter.runs, fitter.windows, fitter.predictions(surface)):
-            covariance = Covariance(surface, prediction.sensitivities(True), fitter.floor)
-            squares = (covariance.whitened(prediction.errors).reshape(-1, 3) ** 2).sum(axis=1)
-            far = numpy.flatnonzero(squares > FAR_OFF)
-            if len(far) > 0.02 * len(squares):      # the errors of a floor have heavy tails
-                first = run.times[windows.first[far[0]]] - run.times[0]
-                self.warnings.append(f'{run.recording.name}: {len(far)} of {len(squares)} windows have an end pose far '
-                                     f'from the prediction; the first one begins {first:.0f} s after the start')
-
     def _fit_to_ends(self) -> None:
         assert self.end_errors
         runs = [PreparedRun(recording, self.base_width) for recording in self.recordings]
@@ -202,7 +190,6 @@ class WholeFit:
         self.errors.update(fit.errors)
         self.reasons.update(fit.reasons)
         self.notes += fit.notes
-        self.warnings += fit.warnings
 
     def _fit_gyro(self) -> None:
         found = fit_gyro(self.recordings, self._stopping_time(),

@@ -5,27 +5,13 @@ Radians and seconds; counter-clockwise positive.
 from __future__ import annotations
 
 import random
-from typing import Protocol
+from typing import Union
 
 from rbx1_nav.robot.readings import MEASURED, MIN_VARIANCE, Reading
 from rbx1_nav.simulation.surfaces import RandomErrors, Surface
 from rbx1_nav.units import clamp
 
 NOISE_RATE = 50.0   # Hz, the rate that gyro_noise refers to: white noise grows with the square root of the rate
-
-
-class AnyGyro(Protocol):
-    """The interface of all gyros."""
-
-    def read(self, yaw: float, duration: float, at_rest: bool) -> Reading:
-        """Return a Reading, `duration` (s, above 0) after the previous one.
-
-        yaw: the robot's true heading now, rad; at_rest: whether the wheels were at rest during this time. The rate of
-        the Reading is the mean over this time, as from a gyro that samples faster than it is read.
-        """
-
-    def reset(self) -> None:
-        """Restart with the robot at the origin."""
 
 
 class IdealGyro:
@@ -35,11 +21,17 @@ class IdealGyro:
         self.yaw = 0.0
 
     def read(self, yaw: float, duration: float, _at_rest: bool) -> Reading:
+        """Return a Reading, `duration` (s, above 0) after the previous one.
+
+        yaw: the robot's true heading now, rad; at_rest: whether the wheels were at rest during this time. The rate of
+        the Reading is the mean over this time, as from a gyro that samples faster than it is read.
+        """
         rate = (yaw - self.yaw) / duration
         self.yaw = yaw
         return Reading(rate, MEASURED, yaw, MEASURED)
 
     def reset(self) -> None:
+        """Restart with the robot at the origin."""
         self.yaw = 0.0
 
 
@@ -67,6 +59,7 @@ class Gyro:
         self.reset()
 
     def read(self, yaw: float, duration: float, at_rest: bool) -> Reading:
+        """See IdealGyro."""
         surface = self.surface
         noise = surface.gyro_noise / (NOISE_RATE * duration) ** 0.5
         rate = (yaw - self._true_yaw) / duration * (1 + self.run.gyro_scale_error) + self.run.gyro_bias
@@ -92,3 +85,6 @@ class Gyro:
         self._true_yaw = self._yaw = self._turned = self._time = 0.0
         self._rest = self._rest_angle = 0.0     # duration (s) and summed readings (rad) of the calibration
         self._calibrating = True
+
+
+AnyGyro = Union[IdealGyro, Gyro]

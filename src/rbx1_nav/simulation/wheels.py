@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from math import floor, hypot
-from typing import Protocol
+from typing import Union
 
 from rbx1_nav.robot.kinematics import ORIGIN, Odometry
 from rbx1_nav.robot.readings import MEASURED, OdometryErrors, Uncertainty
@@ -27,53 +27,28 @@ class Encoder:
         return (self.ticks - before) / self.ticks_meter
 
 
-class AnyWheels(Protocol):
-    """The interface of all wheels."""
+class IdealWheels:
+    """Wheels without inertia and slip, which follow every command immediately and exactly."""
 
-    base_width: float       # distance between the wheels, m
-    truth: Odometry         # motion of the robot itself, which no encoder measures
+    at_rest = True      # they stay at rest until there is a motion command
+    uncertainty = Uncertainty(MEASURED, MEASURED, MEASURED, MEASURED)       # of the odometry
 
-    @property
-    def at_rest(self) -> bool:
-        """Whether the wheels are at rest, and stay at rest until there is a motion command."""
+    def __init__(self, base_width: float) -> None:
+        """base_width: distance between the wheels, m."""
+        self.base_width = base_width
+        self.truth = Odometry(base_width)       # motion of the robot itself, which no encoder measures
 
-    @property
-    def uncertainty(self) -> Uncertainty:
-        """The Uncertainty of the odometry."""
+    def velocity(self, linear: float, angular: float) -> tuple[float, float]:
+        """Return the speeds that the encoders report while this command is in force, m/s and rad/s."""
+        return linear, angular
+
+    true_velocity = velocity        # of the robot itself
 
     def travel(self, linear: float, angular: float, duration: float) -> tuple[float, float]:
         """Return the (left, right) travel in m that the encoders count in `duration` (s).
 
         linear (m/s), angular (rad/s): the command in force during this time.
         """
-
-    def velocity(self, linear: float, angular: float) -> tuple[float, float]:
-        """Return the speeds that the encoders report while this command is in force, m/s and rad/s."""
-
-    def true_velocity(self, linear: float, angular: float) -> tuple[float, float]:
-        """Return the speeds of the robot itself, m/s and rad/s."""
-
-    def reset(self) -> None:
-        """Put the robot back at the origin, at rest."""
-
-
-class IdealWheels:
-    """Wheels without inertia and slip, which follow every command immediately and exactly."""
-
-    at_rest = True
-    uncertainty = Uncertainty(MEASURED, MEASURED, MEASURED, MEASURED)
-
-    def __init__(self, base_width: float) -> None:
-        self.base_width = base_width
-        self.truth = Odometry(base_width)
-
-    def velocity(self, linear: float, angular: float) -> tuple[float, float]:
-        """Return the commanded speeds."""
-        return linear, angular
-
-    true_velocity = velocity
-
-    def travel(self, linear: float, angular: float, duration: float) -> tuple[float, float]:
         if not (linear or angular):     # a robot at rest needs no arithmetic
             return 0.0, 0.0
         difference = angular * self.base_width / 2
@@ -82,6 +57,7 @@ class IdealWheels:
         return left, right
 
     def reset(self) -> None:
+        """Put the robot back at the origin, at rest."""
         self.truth.pose = ORIGIN
 
 
@@ -120,6 +96,7 @@ class Wheels:
         self.reset()
 
     def travel(self, linear: float, angular: float, duration: float) -> tuple[float, float]:
+        """See IdealWheels."""
         if self.delay:
             straight = turning = 0.0
             for speed, rate, part in self.delay.over(linear, angular, duration):
@@ -187,6 +164,7 @@ class Wheels:
                            MEASURED + 2 * wheel / self.base_width ** 2 + heading / self.window)
 
     def reset(self) -> None:
+        """Put the robot back at the origin, at rest."""
         self.straight.speed = self.turning.speed = 0.0
         if self.delay:
             self.delay.clear()
@@ -195,3 +173,6 @@ class Wheels:
         self._time = self._distance = self._angle = 0.0
         self._path = self._turned = 0.0
         self.truth.pose = ORIGIN
+
+
+AnyWheels = Union[IdealWheels, Wheels]

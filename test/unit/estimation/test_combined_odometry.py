@@ -4,7 +4,7 @@ from math import cos, pi, sin
 import numpy
 import pytest
 
-from rbx1_nav.estimation.inputs import Imu, Odom
+from rbx1_nav.estimation.inputs import Imu
 from rbx1_nav.robot.kinematics import ORIGIN, Pose, arc
 from rbx1_nav.units import SECOND
 from sample_priors import IDEAL

@@ -105,15 +105,6 @@ def test_a_region_from_few_runs_is_wider(degrees):
     assert widening(degrees) == pytest.approx(ratio ** 0.5)
 
 
-def test_a_robot_that_was_pushed_is_warned_of():
-    runs = [record(DRIVE, seed, name='run%d' % seed) for seed in range(3)]
-    x = runs[1].truth.x + 1.0 * (runs[1].truth.time > 11.0)
-    runs[1] = runs[1]._replace(truth=runs[1].truth._replace(x=x))
-    result, _ = fit(runs)
-    assert any(text.startswith('run1: ') and 'begins 10 s after' in text or 'begins 9 s after' in text
-               for text in result.warnings), result.warnings
-
-
 def test_a_truth_that_is_worse_in_motion_is_not_taken_for_noise_of_the_floor():
     def shaken(run, generator):
         moving = ~rests_at(run, run.truth.time, 0.75)
