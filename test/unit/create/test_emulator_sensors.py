@@ -1,10 +1,9 @@
-"""The emulated Create: its sensors and their packets, its battery, and its input buffer."""
+"""The emulated Create: its sensors and their packets, its battery, and its longest commands."""
 from math import pi, radians
 
 from hypothesis import given, strategies as st
 import pytest
 
-from rbx1_nav.create.emulator.emulator import INPUT_SIZE
 from rbx1_nav.create.protocol import (
     COUNTED, CREATE, CREATE_2, FULL, MODELS, NOTES, OFF, PASSIVE, SAFE, command, drive_direct, encode_frame,
     packets_format, single_packets)
@@ -151,15 +150,3 @@ def test_the_longest_command_can_be_completed(model, data):
     assert [received for _, received in robot.commands] == [data]
     robot.run(1)    # a query list of 255 packets has an answer
     assert robot.read(35) == {'mode': PASSIVE}
-
-
-def test_what_waits_is_limited():
-    robot = Robot(CREATE)
-    robot.send(command('start'), command('wait_time', 50))
-    for _ in range(20):
-        robot.robot.receive(command('leds', 0, 0, 0) * 100, robot.now)
-        robot.run(0.1)
-    assert len(robot.robot._input) == INPUT_SIZE
-    robot.run(10)
-    robot.send(bytes(3))    # completes the last command
-    assert len(robot.robot._input) == 0 and robot.read(35) == {'mode': PASSIVE}

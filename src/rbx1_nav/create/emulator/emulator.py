@@ -6,7 +6,7 @@ from struct import Struct
 from typing import Callable, Sequence
 
 from rbx1_nav.create.emulator.body import Body
-from rbx1_nav.create.emulator.programs import CIRCLE, MAX_SCRIPT, Programs, Scripts
+from rbx1_nav.create.emulator.programs import CIRCLE, Programs
 from rbx1_nav.create.emulator.serial_line import SerialLine
 from rbx1_nav.create.protocol import (
     BAUD_RATES, COUNTED, CREATE, IN_PLACE_LEFT, IN_PLACE_RIGHT, MAX_SPEED, OFF, PASSIVE, ROBOT_RADIUS, SAFE, STRAIGHT,
@@ -18,7 +18,6 @@ BOOT_TIME = SECOND      # time after power-on during which the robot receives no
 CREATE_RESET_TIME = 3 * SECOND      # this time after a reset of a Create: its boot loader takes 3 s (Create p. 10)
 # text with the firmware version, which the Create 2 sends at power-on
 BOOT_TEXT = b'bl-start\r\nSTR730\r\nRoomba by iRobot!\r\nr3_robot/tags/release-3.5.4\r\n'
-INPUT_SIZE = 3 + 2 * 255    # bytes that are buffered while a script waits; the longest command, 255 notes, must fit
 MAX_FRAME = 255         # data bytes in a frame of the stream
 MAX_PWM = 255
 PAIR = Struct('>hh')
@@ -48,8 +47,6 @@ class EmulatedCreate:
         self.body = body
         self.line = line
         self.on_command = on_command or (lambda time, data: None)
-        # data bytes of the latest command to each output (LEDs, drivers, ...), by the name of the command
-        self.outputs: dict[str, bytes] = {}
         self.programs = Programs(body)
         self._baud = line.baud
         self._deaf_until: float = now
@@ -68,7 +65,6 @@ class EmulatedCreate:
         self.line.baud = self._baud
         self.body.drive(0, 0)
         self.body.reset_counters()
-        self.outputs.clear()
         self.programs.stop()
         self._input = bytearray()
         self._next_update = now + TICK
@@ -76,7 +72,6 @@ class EmulatedCreate:
                                          'requested_left_velocity'), 0)
         self._stream: list[int] = []
         self._streaming = False
-        self._scripts = Scripts(self.body, lambda: dict(self._values(()), mode=self.mode))
 
     # time
 
@@ -128,9 +123,6 @@ class EmulatedCreate:
             self.programs.stop()
         if self.programs.running:
             self._drive_curve(*CIRCLE)
-        self._input[:0] = self._scripts.update(self.now)
-        del self._input[INPUT_SIZE + MAX_SCRIPT:]   # a script may play itself repeatedly before its last command
-        self._execute()
         if self._streaming:
             self.line.from_robot(encode_frame(self.model, self._stream, self._values(self._stream)), self.now)
 
@@ -145,21 +137,19 @@ class EmulatedCreate:
         if mode in (OFF, PASSIVE):
             self._drive(0, 0)
             self._requested = dict.fromkeys(self._requested, 0)
-        if mode == SAFE:
-            self.outputs.pop('leds', None)
         self.mode = mode
 
     # bytes and commands
 
     def _on_byte(self, byte: int) -> None:
-        if self.now < self._deaf_until or not self.body.charge or len(self._input) >= INPUT_SIZE:
+        if self.now < self._deaf_until or not self.body.charge:
             return
         self._input.append(byte)
         self._execute()
 
     def _execute(self) -> None:
-        """Execute the complete commands, up to one that waits."""
-        while self._input and not self._scripts.waiting:
+        """Execute the complete commands."""
+        while self._input:
             command = self.model.commands.get(self._input[0])
             if command is None or (self.mode == OFF and OFF not in command.modes):
                 del self._input[0]      # while the interface is off, data bytes are not skipped
@@ -175,12 +165,9 @@ class EmulatedCreate:
 
     def _do(self, command: Command, data: bytes) -> None:
         of_programs = getattr(self.programs, f'do_{command.name}', None)
-        handler = of_programs or getattr(self, f'_do_{command.name}', None) or getattr(
-            self._scripts, f'do_{command.name}', None)
-        if handler:
+        handler = of_programs or getattr(self, f'_do_{command.name}', None)
+        if handler:     # the other commands have no visible effect
             handler(data)
-        elif data:
-            self.outputs[command.name] = data
         if command.mode is not None:
             self._enter(command.mode)
             if not of_programs:
@@ -267,7 +254,3 @@ class EmulatedCreate:
 
     def _do_pause_resume_stream(self, data: bytes) -> None:
         self._streaming = bool(data[0] and self._stream)
-
-    def _do_show_script(self, _: bytes) -> None:
-        self._streaming = False
-        self.line.from_robot(bytes((len(self._scripts.stored),)) + self._scripts.stored, self.now)
