@@ -59,6 +59,11 @@ def test_a_sensor_that_reports_something_else_has_no_factor(reported):
     assert 'expected a factor from 0.1 to 10' in rejection(corrected, 'scale', 1.0, 1.0, reported)
 
 
+@pytest.mark.parametrize('factor', [0.1, 10.0])
+def test_a_factor_may_be_at_a_limit(factor):
+    assert corrected('scale', 1.0, factor, 1.0) == factor
+
+
 def readings(bias, scale, rest=2.0, period=0.02):
     """Return the readings of a gyro that rests, turns by 2 pi rad in 10 s, and rests for 1 s."""
     steps = [(rest, 0.0), (10.0, 2 * pi / 10), (1.0, 0.0)]
@@ -98,6 +103,10 @@ def test_a_clock_that_jumped_back_has_no_turn():
 @pytest.mark.parametrize('rest, start', [(0.5, 100.501), (2.0, 99.0)])
 def test_a_gyro_that_was_not_at_rest_has_no_bias(rest, start):
     assert 'expected at least 1 s of readings' in rejection(by_gyro, readings(0.0, 1.0, rest), start)
+
+
+def test_one_second_at_rest_suffices():
+    assert by_gyro(readings(0.01, 1.0, rest=1.0), 101.0) == pytest.approx(2 * pi)
 
 
 @pytest.mark.parametrize('rate', [nan, inf])
