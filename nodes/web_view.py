@@ -81,7 +81,7 @@ class RobotView:
                          self.system.forget_frame, remappings(), namespace)
         controls = Controls(self.state, self.system, self.hand, self.runs,
                             (param('linear_speed'), param('angular_speed')), in_background,
-                            log=lambda text: rospy.loginfo_throttle(5, text),
+                            log=partial(rospy.loginfo_throttle, 5),
                             stop_needs_token=param('stop_needs_token'))
         self.connections = Connections(self.state, controls, token, time.monotonic)
 
