@@ -43,19 +43,6 @@ class TestStartMessages(support.Case):
                  if re.fullmatch(r'INFO Surface: hard_floor; seed:=\d+ repeats this run', line)]
         self.assertEqual(len(set(lines)), 2, lines)
 
-    def test_an_unknown_key(self):
-        config = yaml.safe_load(yaml.safe_dump(self.config))
-        config['controllers']['base_controller']['time_out'] = 2
-        self.assertIn('WARN Ignoring unknown parameters: controllers/base_controller/time_out '
-                      '(did you mean timeout?)', self.messages(**config))
-
-    def test_a_surface_file_that_does_not_exist(self):
-        base = self.base(surface='/nowhere/sand.yaml')
-        self.assertEqual(base.wait(), 1)
-        self.assertEqual(len(base.lines), 1, base.output)
-        self.assertIn("/arbotix/surface: '/nowhere/sand.yaml': no such file: expected the absolute path of a surface "
-                      f'file, or one of {support.surfaces()}', base.lines[0])
-
 
 if __name__ == '__main__':
     support.main(TestStartMessages)

@@ -54,12 +54,6 @@ class TestSetPose(support.Case):
 
         publisher.publish(make_pose('map', 0.0, 0.0, 0.0))
         wait_for_log("/set_pose: header.frame_id: 'map': expected odom_combined, the output_frame; rejected")
-        publisher.publish(make_pose('odom_combined', math.nan, 0.0, 0.0))
-        wait_for_log('/set_pose: pose.pose.position.x: nan: expected a number')
-        empty = make_pose('odom_combined', 0.0, 0.0, 0.0)
-        empty.pose.covariance = [0.0] * 36
-        publisher.publish(empty)
-        wait_for_log('/set_pose: pose.covariance[0]: 0.0: expected a variance above 0')
         poses.next()
         self.assertTrue(is_at(-2.0, 1.0, -3.0))
 

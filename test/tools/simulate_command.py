@@ -2,7 +2,6 @@
 """simulate.py on the command line prints numbers, writes a picture, and reports an invalid argument in one line."""
 import os
 import re
-import signal
 import tempfile
 
 import numpy
@@ -15,29 +14,6 @@ def simulate(*arguments):
     """Run simulate.py; return the exit status and the output."""
     process = support.Process('rosrun', 'rbx1_nav', 'simulate.py', *arguments)
     return process.wait(), process.output
-
-
-def simulate_with_limit(picture):
-    """Run simulate.py with a picture and a file size limit of a kilobyte: like a full disk, but without privileges."""
-    process = support.Process('bash', '-c', 'trap "" XFSZ; ulimit -f 1; '
-                              'exec rosrun rbx1_nav simulate.py --method timed --runs 1 --plot "$0"', picture,
-                              PYTHONDONTWRITEBYTECODE='1')      # it would be cut short, and others would read it
-    return process.wait(), process.output
-
-
-def children(pid):
-    """Return the process ids of the children of a process."""
-    with open('/proc/%d/task/%d/children' % (pid, pid)) as file:
-        return [int(child) for child in file.read().split()]
-
-
-def runs(pid):
-    """Return whether a process exists and is not a zombie."""
-    try:
-        with open('/proc/%d/stat' % pid) as file:
-            return file.read().rpartition(')')[2].split()[0] != 'Z'
-    except (FileNotFoundError, ProcessLookupError):
-        return False
 
 
 class TestSimulateCommand(support.Case):
@@ -63,41 +39,6 @@ class TestSimulateCommand(support.Case):
         # 157 ticks are slightly shorter than pi seconds: 1.6 mm to the left, and 0.18 degrees short
         self.assertRegex(output, r'timed +truth +0\.000 \+- 0\.000 +0\.002 \+- 0\.000 +-0\.18 \+- +0\.00 +0\.002')
         self.assertNotIn('ekf', output)
-
-    def start_long(self):
-        """Start a long simulation; return the Process and the process ids of its children."""
-        process = support.Process('rosrun', 'rbx1_nav', 'simulate.py', '--method', 'ekf', '--runs', '1000000', '--jobs',
-                                  '2')
-        return process, support.wait_for(
-            lambda: len(children(process.process.pid)) == 2 and children(process.process.pid), 'two processes')
-
-    def check_children_end(self, pids):
-        support.wait_for(lambda: not any(map(runs, pids)), f'the exit of the processes {pids}')
-
-    def test_a_process_that_is_killed(self):
-        process, pids = self.start_long()
-        os.kill(pids[0], signal.SIGKILL)
-        self.assertEqual(process.wait(), 1, process.output)
-        self.assertRegex(process.lines[-1], '^simulate.py: a process was killed, .*: expected all of --jobs 2 to run$')
-        self.assertNotIn('Traceback', process.output)
-        self.check_children_end(pids)
-
-    def test_an_end_by_signal_is_that_of_all_processes(self):
-        # more than once, because shutdown during the start of the processes is a special case
-        for number, status in 2 * [(signal.SIGINT, 130), (signal.SIGTERM, 130)] + [
-                (signal.SIGKILL, -signal.SIGKILL)]:
-            process, pids = self.start_long()
-            process.signal(number)
-            self.assertEqual(process.wait(), status, process.output)
-            self.assertNotIn('Traceback', process.output)
-            self.check_children_end(pids)
-
-    def test_a_full_disk(self):
-        with tempfile.TemporaryDirectory() as folder:
-            status, output = simulate_with_limit(os.path.join(folder, 'a.png'))
-            self.assertEqual((status, os.listdir(folder)), (1, []), output)
-        self.assertEqual(output.splitlines()[-1], 'simulate.py: [Errno 27] File too large')
-        self.assertNotIn('Traceback', output)
 
     def test_a_picture_that_cannot_be_written(self):
         """It is rejected before the simulation starts."""

@@ -1,5 +1,5 @@
 """The values of an ArbotiX file have defaults and limits, and are kept in the units of the package."""
-from math import inf, radians
+from math import radians
 
 import pytest
 
@@ -13,16 +13,6 @@ def describe(controller=(), joint=None, **top):
     joints = {} if joint is None else {'joints': {'pan': joint}}
     return read_robot(dict(top, controllers={'base': dict({'type': 'diff_controller', 'base_width': 0.26},
                                                           **dict(controller))}, **joints))
-
-
-def test_keys_that_are_not_given_have_defaults():
-    robot = describe(joint={})
-    joint, = robot.joints
-    assert (joint.name, joint.lower, joint.upper, joint.max_speed) == (
-        'pan', radians(-150), radians(150), radians(90))
-    assert robot._replace(joints=[]) == (
-        'base', 'odom', 'base_link', 0.26, 0.033, 50.0, SECOND, (inf, inf), True, [],
-        ('base_l_wheel_joint', 'base_r_wheel_joint'), [], [])
 
 
 def test_keys_that_are_given_replace_the_defaults():
