@@ -45,12 +45,6 @@ class TestSecondBase(support.Case):
         publishers = [name for name in rosnode.get_node_names() if 'robot_state_publisher' in name]
         self.assertEqual(len(publishers), 1)
 
-    def test_another_robot(self):
-        first = self.launch('rbx1_nav', 'fake_turtlebot.launch')
-        self.launch('rbx1_nav', 'fake_pi_robot.launch')
-        first.wait()
-        self.assert_whole('base_l_wheel_link', 'gripper_link')
-
     def test_a_base_of_another_name(self):
         file = tempfile.NamedTemporaryFile('w', suffix='.launch')
         self.addCleanup(file.close)

@@ -36,25 +36,6 @@ def start_chromium(downloads):
     return driver
 
 
-def kill_chromium(driver):
-    """Send SIGKILL to the WebDriver and all processes of the browser."""
-    parents = {}
-    for pid in filter(str.isdigit, os.listdir('/proc')):
-        try:
-            with open(f'/proc/{pid}/stat', encoding='utf-8', errors='replace') as file:
-                parents[int(pid)] = int(file.read().rpartition(')')[2].split()[1])
-        except OSError:     # the process has exited
-            pass
-    pids = [driver.service.process.pid]
-    for pid in pids:        # the list grows during the loop
-        pids += [child for child, parent in parents.items() if parent == pid]
-    for pid in pids:
-        try:
-            os.kill(pid, signal.SIGKILL)
-        except ProcessLookupError:
-            pass
-
-
 class Page:
     """The page of the web view in a browser."""
 
