@@ -39,7 +39,7 @@ SETS = {
     'set_calibration': ['angular_calibration', 'linear_calibration'],
     'set_fake_create': ['fake_create_baud_rate', 'fake_create_cable', 'fake_create_faults', 'fake_create_line',
                         'fake_create_parameters', 'fake_create_truth', 'independent_client'],
-    'set_create': ['create_cable', 'create_corruption', 'create_drives', 'create_gyro', 'create_port'],
+    'set_create': ['create_drives', 'create_gyro', 'create_port'],
     'set_create_fails': ['create_killed', 'create_refuses', 'create_safety', 'create_silence']}
 # the longest first, so that none of them is still running when the others have finished
 LONGEST = ['documents', 'in_step', 'calibration_without_gyro', *SETS, 'unit-1', 'unit-2', 'unit-3', 'unit-4',

@@ -39,6 +39,8 @@ class TestCreateRefuses(support.Case):
         script = self.drive_by_script(robot)
         robot.switch('pull_cable', True)
         self.check_refusal(script, 'the robot does not answer')
+        robot.node.wait_for_line('Lost the serial connection')
+        robot.wait_for_status('no such device')
         robot.switch('pull_cable', False)
         robot.wait_for_standstill()
 

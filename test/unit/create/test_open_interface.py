@@ -4,7 +4,7 @@ from math import pi
 import pytest
 
 from rbx1_nav.create import protocol
-from rbx1_nav.create.protocol import CREATE, CREATE_2, MODELS, OPCODES
+from rbx1_nav.create.protocol import CREATE, CREATE_2, MODELS
 
 LETTERS = dict(zip(range(4), 'opsf'))      # off, passive, safe, full
 # modes that accept a command, and the mode after it, by opcode: Create p. 7 to 16, Create 2 p. 8 to 22
@@ -70,30 +70,11 @@ def test_the_groups(model):
     assert all(list(each) == list(range(each[0], each[-1] + 1)) for each in model.groups.values())
 
 
-def test_the_opcodes_that_the_driver_sends():
-    assert {name: OPCODES[name] for name in (
-        'start', 'baud', 'safe', 'full', 'drive', 'drive_direct', 'sensors', 'stream', 'query_list',
-        'pause_resume_stream', 'digital_outputs')} == {
-            'start': 128, 'baud': 129, 'safe': 131, 'full': 132, 'drive': 137, 'drive_direct': 145, 'sensors': 142,
-            'stream': 148, 'query_list': 149, 'pause_resume_stream': 150, 'digital_outputs': 147}
-
-
 def test_the_robots():
     """Create p. 4, 9, 11; Create 2 p. 4, 5, 13, 20, 31."""
     assert (CREATE.baud, CREATE.wheel_separation, CREATE.counts_per_metre) == (57600, 0.26, None)
     assert (CREATE_2.baud, CREATE_2.wheel_separation) == (115200, 0.235)
     assert CREATE_2.counts_per_metre == pytest.approx(508.8 / (pi * 0.072))
-
-
-def test_the_constants_of_the_documents():
-    assert protocol.MAX_SPEED == 500 and protocol.UPDATE_PERIOD == 0.015 and protocol.FRAME_HEADER == 19
-    assert (protocol.OFF, protocol.PASSIVE, protocol.SAFE, protocol.FULL) == (0, 1, 2, 3)
-    assert protocol.MODE_NAMES == ('off', 'passive', 'safe', 'full')
-    assert (protocol.BUMP_RIGHT, protocol.BUMP_LEFT, protocol.WHEEL_DROP_RIGHT, protocol.WHEEL_DROP_LEFT,
-            protocol.WHEEL_DROP_CASTOR) == (1, 2, 4, 8, 16)
-    assert set(protocol.STRAIGHT) == {0x7fff, -0x8000}
-    assert protocol.IN_PLACE_LEFT == 1 and protocol.IN_PLACE_RIGHT == -1
-    assert protocol.BAUD_RATES == (300, 600, 1200, 2400, 4800, 9600, 14400, 19200, 28800, 38400, 57600, 115200)
 
 
 @pytest.mark.parametrize('data, checksum', [(b'', 0), (b'\0', 0), (b'\1', 255), (b'\xff', 1), (b'\x80\x80', 0)])
