@@ -19,6 +19,7 @@ from pages.display import virtual_display
 from pages.session import PageFailed, Session
 
 ROOT = os.path.realpath(os.path.join(os.path.dirname(__file__), '..'))
+PARALLEL = 4    # pages that are followed at the same time
 
 
 def read_steps(page):
@@ -62,8 +63,8 @@ class Documents(unittest.TestCase):
 
     @classmethod
     def setUpClass(cls):
-        # in parallel: the pages mostly wait for robots that move in real time
-        with ThreadPoolExecutor(len(cls.pages)) as pool:
+        # in parallel: the pages mostly wait for robots that move in real time, but with more they compete
+        with ThreadPoolExecutor(PARALLEL) as pool:
             cls.results = {page: pool.submit(follow, page) for page in cls.pages}
 
     @classmethod
