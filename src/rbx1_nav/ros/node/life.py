@@ -22,7 +22,7 @@ from rospy.impl.paramserver import get_param_server_cache
 from rbx1_nav.config import ConfigError, YamlValue
 from rbx1_nav.parameters import Parameter, list_parameters
 from rbx1_nav.ros.network.master import require_master, wait_for_master
-from rbx1_nav.ros.network.rospy_topics import keep_publisher_lists
+from rbx1_nav.ros.network.rospy_topics import find_missing_subscribers, keep_publisher_lists
 from rbx1_nav.ros.node.params import (
     check_before_start, check_command_line, future_name, load_params, read_wait_timeout, report_parameters,
     stored_params)
@@ -112,6 +112,7 @@ def init_node(name: str, usage: str, parameters: Sequence[Parameter] = (), requi
     # master that has given the name to another node would register this one again. The cached value avoids the call.
     get_param_server_cache().set('/rosout_disable_topics_generation', False)
     stored = stored_params()
+    find_missing_subscribers(end_requested)
     report_parameters(stored, names)
     load_params(parameters, stored)
 
