@@ -42,21 +42,6 @@ class TestTruth(support.Case):
         self.assertAlmostEqual(y, 0)
         self.assertAlmostEqual(robot.read(20)['angle'] * pi / 180, yaw * 1.1, delta=pi / 180)    # whole degrees
 
-    def test_a_program(self):
-        robot = EmulatedRobot(self, 'create2')
-        robot.open()
-        robot.send(command('start'), command('cover'))
-        support.wait_for(lambda: support.yaw(robot.truth.next()) > 1, 'the robot to drive a spiral')
-        self.assertTrue(robot.moving)
-        self.assertGreater(robot.read(44)['right_encoder'], robot.read(43)['left_encoder'])
-        robot.send(command('start'))
-        self.assertFalse(robot.moving)
-
-    def test_frames(self):
-        robot = EmulatedRobot(self, 'create')
-        self.assertEqual(robot.truth.last.header.frame_id, 'odom')
-        self.assertEqual(robot.truth.last.child_frame_id, 'base_footprint')
-
     def test_carpet(self):
         robot = EmulatedRobot(self, 'create2', surface='low_ply_carpet')
         robot.open()

@@ -64,33 +64,3 @@ def test_rules_write_the_dependencies_of_package_xml(tmp_path):
 def test_the_udev_rules_are_installed_only_on_request(package):
     of_package = fields('Package', package)
     assert not any('udev' in of_package.get(kind, '') for kind in ('Depends', 'Pre-Depends', 'Recommends', 'Suggests'))
-
-
-@pytest.mark.skipif(not shutil.which('git') or not shutil.which('dpkg'), reason='needs git and dpkg')
-def test_a_later_commit_or_an_uncommitted_change_gives_a_higher_version(tmp_path):
-    for path in ('script/common.sh', 'debian/changelog'):
-        (tmp_path / path).parent.mkdir(exist_ok=True)
-        shutil.copy(os.path.join(ROOT, path), tmp_path / path)
-
-    def version():
-        command = 'set -euo pipefail; source script/common.sh; package_version'
-        return subprocess.run(['bash', '-c', command], cwd=tmp_path, check=True, text=True, stdout=subprocess.PIPE,
-                              env={**os.environ, 'GIT_CEILING_DIRECTORIES': str(tmp_path.parent)}).stdout.strip()
-
-    def commit(date):
-        subprocess.run(['git', 'add', '.'], cwd=tmp_path, check=True)
-        subprocess.run(['git', '-c', 'user.name=a', '-c', 'user.email=a@example.org', '-c', 'commit.gpgsign=false',
-                        'commit', '-q', '--allow-empty', '-m', 'a'], cwd=tmp_path, check=True,
-                       env={**os.environ, 'GIT_COMMITTER_DATE': date})
-
-    versions = [version()]
-    subprocess.run(['git', 'init', '-q', tmp_path], check=True)
-    # 09:30 at +0200 is before 08:00 UTC
-    for date in ('2026-11-22T09:30:00+0200', '2026-11-22T08:00:00+0000'):
-        commit(date)
-        versions.append(version())
-    (tmp_path / 'changed').touch()
-    versions.append(version())
-    assert versions[1:3] == [f'{versions[0]}+git20261122{time}' for time in ('073000', '080000')]
-    for older, newer in zip(versions, versions[1:]):
-        subprocess.run(['dpkg', '--compare-versions', older, 'lt', newer], check=True)

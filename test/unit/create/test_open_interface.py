@@ -27,13 +27,6 @@ RANGES = {
                 WORD: [22, 25, 26, 33, 43, 44], (-128, 127): [24], (0, 1023): [27],
                 (0, 4095): [28, 29, 30, 31, 46, 47, 48, 49, 50, 51], (0, 3): [34, 58], (0, 4): [35], (0, 108): [38],
                 (-500, 500): [39, 41, 42], (0, 127): [45]}}
-# the packets that the driver reads, and those with a unit
-NAMES = {7: 'bumps_and_wheel_drops', 9: 'cliff_left', 10: 'cliff_front_left', 11: 'cliff_front_right',
-         12: 'cliff_right', 18: 'buttons', 19: 'distance', 20: 'angle', 21: 'charging_state', 22: 'voltage',
-         23: 'current', 24: 'temperature', 25: 'charge', 26: 'capacity', 33: 'analog_input', 34: 'charging_sources',
-         35: 'mode', 36: 'song_number', 37: 'song_playing', 38: 'stream_packets', 39: 'requested_velocity',
-         40: 'requested_radius', 41: 'requested_right_velocity', 42: 'requested_left_velocity', 43: 'left_encoder',
-         44: 'right_encoder', 54: 'left_motor_current', 55: 'right_motor_current', 58: 'stasis'}
 both = pytest.mark.parametrize('model', MODELS.values(), ids=MODELS)
 
 
@@ -51,14 +44,6 @@ def test_the_ranges_of_the_packets(model):
         assert packet.number == number
         ranges.setdefault((packet.low, packet.high), []).append(number)
     assert {key: sorted(numbers) for key, numbers in ranges.items()} == RANGES[model.name]
-
-
-@both
-def test_the_names_of_the_packets(model):
-    last = 42 if model is CREATE else 58
-    assert sorted(model.packets) == list(range(7, last + 1))
-    assert {number: packet.name for number, packet in model.packets.items() if number in NAMES} == {
-        number: name for number, name in NAMES.items() if number <= last}
 
 
 @both

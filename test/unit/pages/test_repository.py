@@ -27,9 +27,3 @@ def test_a_module_that_a_page_for_maintainers_names_exists(page):
     places = [ROOT, os.path.join(ROOT, 'src', 'rbx1_nav')]
     names = [name for name in names if name not in EXAMPLES]
     assert [name for name in names if not any(os.path.exists(os.path.join(place, name)) for place in places)] == []
-
-
-def test_readme_runs():
-    """README.md has commands that are run."""
-    steps = blocks.parse(markdown.read(ROOT, 'README.md'))
-    assert any(isinstance(each, blocks.Start) for each in steps) and any(isinstance(each, blocks.Run) for each in steps)
