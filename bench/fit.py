@@ -9,7 +9,7 @@ import numpy
 import yaml
 
 from rbx1_nav.control.legs import out_and_back
-from rbx1_nav.fitting.comparison import region_share
+from rbx1_nav.fitting.comparison import ENDS, inner_share, predict, simulate_paths
 from rbx1_nav.fitting.recording import Commands, Rates, Recording, Track
 from rbx1_nav.fitting.surface_fit import WholeFit
 from rbx1_nav.robot.description import read_robot
@@ -33,6 +33,14 @@ RANGES = dict(      # of random surfaces: lowest, highest; drawn log-uniformly i
 WITHIN = 'drag_straight', 'drag_turning', 'delay', 'slip_straight', 'slip_turning'     # 5 %, the last two as a scale
 KNOWN = 0.025       # a value is identifiable within 5 % if its relative standard error is at most this
 START = 'low_ply_carpet'
+
+
+def region_share(surface, recording, base_width, end, seed):
+    """inner_share() of the true end pose of a run, predicted from its commands alone: for x and y, and for all
+    three values. end: x, y (m), yaw (rad, not wrapped)."""
+    _, prediction = predict(surface, recording, base_width)
+    ends = simulate_paths(surface, prediction, 0, ENDS, numpy.random.default_rng(seed))[:, :, -1]
+    return inner_share(ends[:, :2], end[:2]), inner_share(ends, end)
 
 
 def random_surface(generator):

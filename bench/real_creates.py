@@ -5,6 +5,7 @@ Unless a surface is given, fits one to the first half of each robot's record. Th
 poses in the second half, some seconds after a known pose.
 """
 import argparse
+import glob
 import os
 import sys
 import time
@@ -13,10 +14,10 @@ import numpy
 
 from real_pictures import draw_ends, draw_paths
 from rbx1_nav.config import ConfigError, show_name
-from rbx1_nav.fitting.comparison import energy_score, inner_share, simulate_ends
+from rbx1_nav.fitting.comparison import inner_share, simulate_ends
 from rbx1_nav.fitting.floor import SPREADS, Prediction
 from rbx1_nav.fitting.floor_fit import Fitter, fit_floor
-from rbx1_nav.fitting.recording import BASE_WIDTH, CAMERAS, read_set
+from rbx1_nav.fitting.recording import BASE_WIDTH, CAMERAS, COMMANDS, read_robot, truth_file
 from rbx1_nav.fitting.run import PreparedRun, Windows
 from rbx1_nav.plotting.plots import check_picture
 from rbx1_nav.ros.node import resources
@@ -33,6 +34,23 @@ PICTURES = 'real_paths.png', 'real_ends.png'
 PATH_LENGTH, END_LENGTH = 40, 20    # s, length of the windows shown
 MOTIONS = 'delay', 'lag', 'slip_straight', 'slip_turning', 'curvature', 'turning_loss'
 OLD_MOTIONS = 'lag', 'slip_straight', 'slip_turning', 'drag_straight', 'drag_turning'
+
+
+def read_set(folder, number):
+    """The Recordings of all robots of a set in a folder: for set 6, D6R1_Odometry.dat and so on. Raises ConfigError."""
+    pattern = f'D{number}R*{COMMANDS}'
+    paths = sorted(glob.glob(os.path.join(glob.escape(folder), pattern)))
+    if not paths:
+        raise ConfigError(f'{show_name(folder)}: no files {pattern}: expected the folder of an unpacked set')
+    return [read_robot(path, truth_file(path)) for path in paths]
+
+
+def energy_score(ends, point):
+    """How well an ensemble (count, d) predicted a point (d,), in the unit of the point; lower is better
+    (Gneiting and Raftery, Strictly proper scoring rules, prediction, and estimation, 2007, section 4.3)."""
+    half = len(ends) // 2
+    return (numpy.linalg.norm(ends - point, axis=1).mean()
+            - numpy.linalg.norm(ends[:half] - ends[half:2 * half], axis=1).mean() / 2)
 
 
 def halves(recordings):

@@ -59,15 +59,6 @@ def inner_share(ends: Array, end: Array) -> float:
     return share
 
 
-def energy_score(ends: Array, point: Array) -> float:
-    """Return how well an ensemble (count, d) predicted a point (d,), in the unit of the point; lower is better
-    (Gneiting and Raftery, Strictly proper scoring rules, prediction, and estimation, 2007, section 4.3)."""
-    half = len(ends) // 2
-    score: float = (numpy.linalg.norm(ends - point, axis=1).mean()
-                    - numpy.linalg.norm(ends[:half] - ends[half:2 * half], axis=1).mean() / 2)
-    return score
-
-
 class Comparison(NamedTuple):
     """One run or a part of it, in the frame of its start."""
 
@@ -85,15 +76,6 @@ def predict(surface: Surface, recording: Recording, base_width: float, start: fl
     run = PreparedRun(recording._replace(odometry=None), base_width, start, end)
     windows = Windows(numpy.array([0]), len(run.times) - 1, numpy.zeros((1, 3)))
     return run, Prediction(surface, run.steps(surface), windows)
-
-
-def region_share(surface: Surface, recording: Recording, base_width: float, end: Array,
-                 seed: int) -> tuple[float, float]:
-    """Return inner_share() of the true end pose of a run, predicted from its commands alone: for x and y, and for all
-    three values. end: x, y (m), yaw (rad, not wrapped)."""
-    _, prediction = predict(surface, recording, base_width)
-    ends = simulate_paths(surface, prediction, 0, ENDS, numpy.random.default_rng(seed))[:, :, -1]
-    return inner_share(ends[:, :2], end[:2]), inner_share(ends, end)
 
 
 def compare(surface: Surface, recordings: Sequence[Recording], base_width: float, seed: int = 1,

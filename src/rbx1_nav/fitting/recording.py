@@ -6,14 +6,13 @@ H. H. T. Liu, International Journal of Robotics Research 30(8), 969-974, 2011).
 """
 from __future__ import annotations
 
-import glob
 import os
 from typing import NamedTuple, Sequence
 import warnings
 
 import numpy
 
-from rbx1_nav.config import ConfigError, show, show_name
+from rbx1_nav.config import ConfigError, show_name
 from rbx1_nav.robot.description import Robot
 from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.units import SECOND, Array
@@ -164,13 +163,3 @@ def read_robot(commands: str, truth: str) -> Recording:
     track = Track(*tables[1])
     recording = check_recording(Recording(name, Commands(*tables[0]), None, None, track, None))
     return recording._replace(truth=track._replace(yaw=numpy.unwrap(track.yaw)))
-
-
-def read_set(folder: str, number: int) -> list[Recording]:
-    """Read the Recordings of all robots of a set from a folder: for set 6, D6R1_Odometry.dat and so on. Raises
-    ConfigError."""
-    pattern = f'D{number}R*{COMMANDS}'
-    paths = sorted(glob.glob(os.path.join(glob.escape(folder), pattern)))
-    if not paths:
-        raise ConfigError(f'{show(folder)}: no files {pattern}: expected the folder of an unpacked set')
-    return [read_robot(path, truth_file(path)) for path in paths]

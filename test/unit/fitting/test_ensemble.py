@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rbx1_nav.fitting.comparison import energy_score, inner_share, mahalanobis, simulate_ends, simulate_paths
+from rbx1_nav.fitting.comparison import inner_share, mahalanobis, simulate_ends, simulate_paths
 from rbx1_nav.fitting.floor import SPREADS, Covariance, Prediction
 from rbx1_nav.fitting.recording import Commands
 from rbx1_nav.fitting.run import STEP, Windows, commanded_travel, grid
@@ -128,14 +128,3 @@ def test_the_inner_share_of_an_end_is_that_of_the_simulated_ends_nearer_to_the_m
     for end in [1.5, 2.0], [1.0, 2.02]:
         assert inner_share(ends, numpy.array(end)) == pytest.approx(1 - numpy.exp(-0.5), abs=0.04)
     assert mahalanobis(ends, numpy.array([[1.5, 2.02]])) == pytest.approx(2, rel=0.2)
-
-
-def test_the_energy_score_is_the_smaller_the_better_the_prediction():
-    generator = numpy.random.default_rng(4)
-    points = generator.standard_normal((300, 2))
-    good, shifted, timid, bold = (numpy.mean([
-        energy_score(generator.standard_normal((200, 2)) * width + shift, point) for point in points])
-        for width, shift in ((1, 0), (1, 1), (3, 0), (0.2, 0)))
-    assert good < min(shifted, timid, bold)
-    # without spread, the score is the distance
-    assert energy_score(numpy.zeros((10, 2)), numpy.array([3.0, 4.0])) == 5
