@@ -118,7 +118,7 @@ end_all() {             # DIR: stop the processes of run(), and the nodes whose 
   for i in $(grep -lsz "^ROS_HOME=$1/ros\$" /proc/[0-9]*/environ | cut -d / -f 3); do kill -KILL "$i" 2>/dev/null || true; done
 }
 
-make_workspace() {      # DIR [CMAKE_ARGUMENT...]: create and build a catkin workspace in DIR
+make_workspace() {      # DIR [ARGUMENT...]: create a catkin workspace in DIR, and build it; ARGUMENT: for catkin_make
   local workspace=$1; shift
   mkdir -p "$workspace/src"
   ln -sfn "$source_dir" "$workspace/src/rbx1_nav"
