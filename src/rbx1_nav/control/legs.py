@@ -50,7 +50,8 @@ def ticks(goal: float, speed: float, rate: float, keys: str = 'goal / speed') ->
 
 def out_and_back(linear_speed: float, goal_distance: float, angular_speed: float, goal_angle: float,
                  rate: float) -> list[Motion]:
-    """Return the tutorial's exercise (forward and turn left, twice) as four Motions. Raises ValueError, see ticks().
+    """Return the tutorial's exercise (forward and turn left, twice) as four Motions, as timed_out_and_back.py drives
+    them. Raises ValueError, see ticks().
 
     The arguments are in m/s, m, rad/s, rad and Hz.
     """
@@ -243,7 +244,8 @@ class Turn(Leg):
 
 def out_and_back_by_odometry(linear_speed: float, goal_distance: float, angular_speed: float, goal_angle: float,
                              rate: float, min_linear_speed: float, min_angular_speed: float) -> list[Leg]:
-    """Return the odometry-based exercise as four Legs. Raises ValueError, see ticks().
+    """Return the odometry-based exercise as four Legs, as odom_out_and_back.py drives them. Raises ValueError, see
+    ticks().
 
     The arguments are in m/s, m, rad/s, rad, Hz, m/s and rad/s.
     """
