@@ -103,8 +103,10 @@ class Watch:
             if name in self.forgotten:
                 continue
             process = self.processes.pop(name, None)
-            if not process or process.socket is not sock:
-                process = peer_process(sock)
+            if process and process.socket is not sock:      # another process, or now known by another connection
+                process.close()
+                process = None
+            process = process or peer_process(sock)
             if process:
                 process.socket = sock
                 processes[name] = process

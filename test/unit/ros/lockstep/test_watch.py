@@ -139,3 +139,14 @@ def test_a_driver_that_is_forgotten_holds_the_clock_no_more(world):
     # until it connects again
     world.drive(world.connect('/driver'))
     assert world.watch.drivers == {'/driver'}
+
+
+def test_the_files_of_a_node_that_starts_and_then_drives_are_closed(world):
+    """It is known by its connection for the clock, and then by that for the commands."""
+    node = world.connect('/node')
+    world.listen(node)
+    starting = world.watch.processes['/node']
+    with node.socket.dup() as commands:
+        world.drive(SimpleNamespace(header=node.header, endpoint_id='/node', socket=commands))
+        assert world.watch.drivers == {'/node'} and world.watch.processes['/node'] is not starting
+    assert starting.threads == {}
