@@ -80,7 +80,7 @@ def full_disk(row):
     path = os.path.abspath(os.path.join(FOLDER, 'picture.png'))
     errors = Simulation(row, '--method', 'timed', '--runs', '20', '--surface', 'hard_floor', '--jobs', '1',
                         '--plot', path, limit=FULL_AT).check_end(1)
-    assert errors.endswith('simulate.py: [Errno 27] File too large\n'), errors
+    assert errors.endswith(f"simulate.py: [Errno 27] File too large: '{path}'\n"), errors
 
 
 def full_output(row):
