@@ -13,7 +13,7 @@ FAULT = ('simulate.py --output, with local processes or a Dask cluster: a signal
          'or of the scheduler, or a full disk, at a random moment; then the same command again')
 PROMISE = ('complete chunks or none, one line with the number of missing runs, a non-zero exit status; then the same '
            'bytes as without the fault')
-FULL, SHORT = 100, 7
+FULL, SHORT = 49, 7
 ROOT = ALONE = False
 
 COMMAND = ['--surface', 'low_ply_carpet', '--method', 'timed', '--runs', '1000', '--set', 'linear_speed=0.2,0.4']
