@@ -117,7 +117,7 @@ def read_sweep(texts: Sequence[str], declared: Sequence[Parameter]) -> dict[str,
         values[key] = []
         for each in listed.split(','):
             try:
-                section = Section({key: yaml.safe_load(each)}, '--set')
+                section = Section({key: yaml.safe_load(each or "''")}, '--set')
             except yaml.YAMLError:
                 raise ConfigError(f'--set: {key}: {show(each)}: expected a number') from None
             declaration = KEYS.get(key)

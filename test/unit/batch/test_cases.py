@@ -31,8 +31,8 @@ def test_all_combinations_of_surfaces_and_values_the_last_one_fastest():
 @pytest.mark.parametrize('texts, text', [
     (['lga=1'], r'--set: lga \(did you mean lag\?\): expected KEY=VALUE'),
     (['transform_timeout=1'], '--set: transform_timeout: expected KEY=VALUE'),
-    (['lag'], '--set/lag: None: expected a number from 0.0001 to 60 in s'),
-    (['lag=1,,2'], '--set/lag: None: expected'), (['lag=1', 'lag=2'], '--set: lag: given twice'),
+    (['lag'], "--set/lag: '': expected a number from 0.0001 to 60 in s"),
+    (['lag=1,,2'], "--set/lag: '': expected"), (['lag=1', 'lag=2'], '--set: lag: given twice'),
     (['lag=1,1.0'], '--set: lag: 1: given twice'), (['lag=[1'], r"--set: lag: '\[1': expected a number"),
     (['lag=1e-2'], "--set/lag: '1e-2' .text to YAML: write 1.0e-2"),
     (['rate=1'], '--set/rate: 1: expected .* 2 to 1000'),
