@@ -80,11 +80,13 @@ def find_missing_subscribers(ended: threading.Event) -> None:
 def register_again() -> None:
     """Register each publisher of this node again that has a subscriber which is not connected."""
     try:
-        master = rosgraph.get_master_uri()
+        master, own = rosgraph.get_master_uri(), rospy.get_node_uri()
         _, subscribers, _ = call(master, 'getSystemState')
         for topic, names in subscribers:
             publisher = get_topic_manager().get_publisher_impl(topic)
-            if publisher and not set(names) <= {each.endpoint_id for each in publisher.connections}:
-                call(master, 'registerPublisher', topic, publisher.type, rospy.get_node_uri())
+            # a node that has taken over the name would be shut down by the registration
+            if (publisher and not set(names) <= {each.endpoint_id for each in publisher.connections}
+                    and call(master, 'lookupNode', rospy.get_name()) == own):
+                call(master, 'registerPublisher', topic, publisher.type, own)
     except (OSError, HTTPException, xmlrpc.client.Error):      # the master does not answer
         pass
