@@ -39,9 +39,8 @@ def write_file(path: str, content: bytes) -> None:
         if os.path.exists(path):
             shutil.copymode(path, new)
         os.replace(new, path)
-    except BaseException as error:
+    except OSError as error:    # a full disk names no file
+        raise OSError(error.errno, error.strerror, path) from error
+    finally:
         if os.path.exists(new):
             os.remove(new)
-        if isinstance(error, OSError):
-            raise OSError(error.errno, error.strerror, path) from error     # a full disk names no file
-        raise

@@ -102,11 +102,9 @@ class Watch:
         for name, sock in sockets.items():
             if name in self.forgotten:
                 continue
-            process = self.processes.pop(name, None)
-            if process and process.socket is not sock:      # another process, or now known by another connection
-                process.close()
-                process = None
-            process = process or peer_process(sock)
+            known = self.processes.get(name)
+            # one that was known by another connection is closed below
+            process = self.processes.pop(name) if known and known.socket is sock else peer_process(sock)
             if process:
                 process.socket = sock
                 processes[name] = process
