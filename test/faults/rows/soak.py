@@ -11,7 +11,7 @@ import support
 FAULT = 'minutes of simulated time, driving out and back repeatedly, at up to 30 times real time'
 PROMISE = ('memory, threads and file descriptors of the base do not grow; /odom is within 1 mm and 1 mrad of the '
            'exact integral')
-FULL, SHORT = 60, 28       # minutes: shorter runs are too few to compare
+FULL, SHORT = 60, 28     # minutes; fewer are too short for eight drives
 ROOT = ALONE = False
 
 WARM_UP = 4         # runs: later, nothing connects for the first time
