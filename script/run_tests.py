@@ -24,6 +24,10 @@ import rostest.rostest_main
 import rostest.runner           # noqa: F401
 
 ROOT = os.path.realpath(os.path.join(os.path.dirname(__file__), '..'))
+sys.path.insert(0, os.path.join(ROOT, 'test'))
+
+from ports import own_loopback
+
 PACKAGE = 'rbx1_nav'
 LIMIT = 3600        # s after which a job counts as hung, even on a busy machine
 LOOK = 60       # s between two checks for jobs that hang
@@ -74,6 +78,7 @@ class Job:
         output = os.open(self.log, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
         os.dup2(output, 1)
         os.dup2(output, 2)
+        own_loopback()
         try:
             target(*arguments)
         finally:

@@ -17,12 +17,12 @@ from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
 from roslib.packages import find_node
 
-from rbx1_nav.ros.network.rospy_topics import keep_publisher_lists
+from rbx1_nav.ros.network.rospy_topics import repair_connections
 from rbx1_nav.ros.node import resources
 from rbx1_nav.simulation.surfaces import known_surfaces
 
 COLOR = re.compile('\x1b\\[[0-9;]*m')
-LIMIT = 280      # s of wall time after which a wait fails, less than most tests may take; none asserts a shorter time
+LIMIT = 280      # s of wall time after which a wait fails and is named; less than a test may take
 
 # the exact end pose of the exercise: 157 ticks of 1/50 s at 1 rad/s turn by 3.14 rad, slightly less than pi
 EXACT_X, EXACT_Y, EXACT_TURN = 1 + math.cos(3.14), math.sin(3.14), 6.28
@@ -40,7 +40,7 @@ def script_name():
 
 def init_node(name):
     """Start a node that ignores simulated time: tests wait for conditions by the wall clock."""
-    keep_publisher_lists()
+    repair_connections()
     rospy.init_node(name, disable_rostime=True, anonymous=True)
 
 

@@ -1,8 +1,10 @@
 #!/usr/bin/python3
-"""What a base logs at its start, and that it reaches a subscriber that has dropped the notice of it."""
+"""What a base logs at its start, and that each subscriber receives its messages."""
 import os
 import re
+import socket
 from unittest import mock
+from xmlrpc.client import ServerProxy
 
 import rospkg
 import rospy
@@ -60,6 +62,14 @@ class TestStartMessages(support.Case):
             self.base()
             support.wait_for(lambda: odom.last, 'odometry')
         self.assertEqual(len(lost), 1)
+
+    def test_a_client_that_sends_nothing_keeps_nobody_from_connecting(self):
+        self.base().wait_for_line('Ready')
+        with ServerProxy(rospy.get_master().lookupNode('/arbotix')[2]) as node:
+            _, host, port = node.requestTopic('/test', '/odom', [['TCPROS']])[2]
+        with socket.create_connection((host, port)):
+            odom = support.Watch('/odom', Odometry)
+            support.wait_for(lambda: odom.last, 'odometry')
 
 
 if __name__ == '__main__':

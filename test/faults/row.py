@@ -28,6 +28,7 @@ import roslib.packages
 import rospy
 from std_srvs.srv import Empty
 
+from ports import own_loopback
 import support
 
 
@@ -138,6 +139,7 @@ def main():
     """Run the row, and print its result."""
     name, times, seed = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
+    own_loopback()
     row = Row(name, times, seed)
     try:
         importlib.import_module(f'rows.{name}').run(row)

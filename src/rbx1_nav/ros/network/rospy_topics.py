@@ -10,11 +10,13 @@ import xmlrpc.client
 import rosgraph
 import rospy
 from rospy.impl.registration import RegManager
+from rospy.impl.tcpros_base import TCPROSServer
 from rospy.topics import get_topic_manager
 
 from rbx1_nav.ros.network.master import call
 
 CHECKS, PERIOD = 4, 2.0     # number of checks for missing subscribers after the start, and s of wall time between them
+_read_header = TCPROSServer._tcp_server_callback
 
 
 class NoDelay(rospy.SubscribeListener):
@@ -43,14 +45,23 @@ def connected_nodes(publisher: rospy.Publisher) -> set[str]:
     return {connection.endpoint_id for connection in publisher.impl.connections}
 
 
-def keep_publisher_lists() -> None:
-    """Keep every publisher that the master has named, in this process; to be called before the node starts.
+def repair_connections() -> None:
+    """Repair two faults of rospy, in this process; to be called before the node starts.
 
     rospy connects a subscriber to the publishers in the last list that it has received, and drops a list that it has
     not used yet. A publisher that registers at the same moment as the subscriber is in the master's notice, but not in
     the answer to the registration of the subscriber. If the answer comes last, they are never connected.
+
+    rospy accepts connections in one thread, which also waits for the header of each connection, without a limit. After
+    a client that sends none, such as a port scanner or a computer that has left the network, nobody can connect.
     """
     RegManager.publisher_update = _update_publishers
+    TCPROSServer._tcp_server_callback = _read_header_in_thread
+
+
+def _read_header_in_thread(server: TCPROSServer, connection: socket.socket, address: tuple[str, int]) -> None:
+    """Read the header of a connection, and add the connection to its topic or service."""
+    threading.Thread(target=_read_header, args=(server, connection, address), daemon=True).start()
 
 
 def _update_publishers(manager: RegManager, topic: str, publishers: Sequence[str]) -> None:
@@ -65,7 +76,7 @@ def _update_publishers(manager: RegManager, topic: str, publishers: Sequence[str
 def find_missing_subscribers(ended: threading.Event) -> None:
     """Look a few times, in a thread, for subscribers that are not connected to this node, until `ended` is set.
 
-    A subscriber in another node that uses rospy can lose a publisher as keep_publisher_lists() describes. A test that
+    A subscriber in another node that uses rospy can lose a publisher as repair_connections() describes. A test that
     waits for the first message of a base would then wait forever. When a publisher registers again, the master names it
     to its subscribers again.
     """

@@ -22,7 +22,7 @@ from rospy.impl.paramserver import get_param_server_cache
 from rbx1_nav.config import ConfigError, YamlValue
 from rbx1_nav.parameters import Parameter, list_parameters
 from rbx1_nav.ros.network.master import require_master, wait_for_master
-from rbx1_nav.ros.network.rospy_topics import find_missing_subscribers, keep_publisher_lists
+from rbx1_nav.ros.network.rospy_topics import find_missing_subscribers, repair_connections
 from rbx1_nav.ros.node.params import (
     check_before_start, check_command_line, future_name, load_params, read_wait_timeout, report_parameters,
     stored_params)
@@ -100,7 +100,7 @@ def init_node(name: str, usage: str, parameters: Sequence[Parameter] = (), requi
     if not end_requested.is_set():
         check_before_start(name, parameters, check)
     check_end()
-    keep_publisher_lists()
+    repair_connections()
     try:
         rospy.init_node(name, disable_signals=True, disable_rostime=wall_time)
     except (OSError, rospy.ROSInitException) as error:

@@ -2,7 +2,7 @@
 import pytest
 from rospy.impl.registration import RegManager
 
-from rbx1_nav.ros.network.rospy_topics import keep_publisher_lists
+from rbx1_nav.ros.network.rospy_topics import repair_connections
 
 ORIGINAL = RegManager.publisher_update
 
@@ -11,7 +11,7 @@ ORIGINAL = RegManager.publisher_update
 def fixture_manager(monkeypatch):
     """Return a RegManager whose thread is not running."""
     monkeypatch.setattr(RegManager, 'publisher_update', ORIGINAL)
-    keep_publisher_lists()
+    repair_connections()
     return RegManager(None)
 
 
