@@ -66,8 +66,8 @@ class TestStartMessages(support.Case):
     def test_a_client_that_sends_nothing_keeps_nobody_from_connecting(self):
         self.base().wait_for_line('Ready')
         with ServerProxy(rospy.get_master().lookupNode('/arbotix')[2]) as node:
-            _, host, port = node.requestTopic('/test', '/odom', [['TCPROS']])[2]
-        with socket.create_connection((host, port)):
+            _, *address = node.requestTopic('/test', '/odom', [['TCPROS']])[2]
+        with socket.create_connection(address):
             odom = support.Watch('/odom', Odometry)
             support.wait_for(lambda: odom.last, 'odometry')
 
