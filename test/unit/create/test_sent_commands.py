@@ -4,7 +4,8 @@ import pytest
 
 from rbx1_nav.create import protocol
 from rbx1_nav.create.driver import sequences
-from rbx1_nav.create.driver.exchange import Queries, Sender, is_too_fast, wheel_speeds
+from rbx1_nav.create.driver.queries import Queries
+from rbx1_nav.create.driver.sender import Sender, is_too_fast, wheel_speeds
 from rbx1_nav.create.driver.fractions import KEPT, Fractions
 from rbx1_nav.create.driver.motion import STILL, CounterTravel, EncoderTravel
 from rbx1_nav.units import SECOND

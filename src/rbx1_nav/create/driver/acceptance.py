@@ -7,8 +7,8 @@ from typing import Mapping
 from rbx1_nav.control.gate import CommandGate, RefusedCommand
 from rbx1_nav.create import protocol
 from rbx1_nav.create.driver.contact import BUMPS, CLIFFS, WHEEL_DROPS, Contact, Supervisor
-from rbx1_nav.create.driver.exchange import wheel_speeds
 from rbx1_nav.create.driver.motion import Expected
+from rbx1_nav.create.driver.sender import wheel_speeds
 from rbx1_nav.create.driver.settings import Settings
 from rbx1_nav.robot.readings import Travel
 from rbx1_nav.units import SECOND

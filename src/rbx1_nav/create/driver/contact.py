@@ -9,9 +9,10 @@ from typing import Callable, Mapping
 from rbx1_nav.config import AUTO
 from rbx1_nav.create import protocol
 from rbx1_nav.create.driver import sequences
-from rbx1_nav.create.driver.exchange import Queries, Sender
 from rbx1_nav.create.driver.link import Link
+from rbx1_nav.create.driver.queries import Queries
 from rbx1_nav.create.driver.search import RATES, Found, Search
+from rbx1_nav.create.driver.sender import Sender
 from rbx1_nav.create.driver.settings import Settings
 from rbx1_nav.units import SECOND
 

@@ -12,11 +12,12 @@ from rbx1_nav.create.driver import sequences
 from rbx1_nav.create.driver.acceptance import OUTAGE, Acceptance
 from rbx1_nav.create.driver.analog_gyro import AnalogGyro, Step
 from rbx1_nav.create.driver.contact import WHEEL_DROPS, Contact, Supervisor, causes
-from rbx1_nav.create.driver.exchange import Queries, Sender, is_too_fast
 from rbx1_nav.create.driver.fractions import Fractions
 from rbx1_nav.create.driver.link import Link
 from rbx1_nav.create.driver.motion import (
     Counter, CounterTravel, EncoderTravel, Expected, Implausible, MotionReport, State, unknown)
+from rbx1_nav.create.driver.queries import Queries
+from rbx1_nav.create.driver.sender import Sender, is_too_fast
 from rbx1_nav.create.driver.settings import Settings
 from rbx1_nav.robot.readings import Reading, Travel
 from rbx1_nav.schedule import Schedule

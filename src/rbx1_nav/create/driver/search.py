@@ -10,8 +10,8 @@ from typing import Callable, NamedTuple, Optional, Sequence
 
 from rbx1_nav.create import protocol
 from rbx1_nav.create.driver import sequences
-from rbx1_nav.create.driver.exchange import Layout
 from rbx1_nav.create.driver.link import Link
+from rbx1_nav.create.driver.queries import Layout
 from rbx1_nav.units import SECOND
 
 RATES = (57600, 115200, 19200)      # of a Create, of a Create 2, and of either after its buttons were held
