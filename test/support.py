@@ -226,6 +226,13 @@ class Case(unittest.TestCase):
                 process.kill()
             del Process.started[before:]
 
+    def start(self, *command):
+        """Start a Process. It is interrupted after the test, so that a roslaunch stops its nodes."""
+        process = Process(*command)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.signal, signal.SIGINT)
+        return process
+
 
 def surfaces():
     """Return the names of the surfaces, as in a message."""

@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """A base that is started while another one is running replaces it, and one complete robot remains."""
 import os
-import signal
 import tempfile
 
 import rosnode
@@ -21,11 +20,8 @@ OTHER_NAME = '''<launch>
 
 class TestSecondBase(support.Case):
     def launch(self, *arguments):
-        """Start a roslaunch and wait for its nodes; it is stopped after the test."""
-        process = support.Process('roslaunch', *arguments)
-        self.addCleanup(process.kill)
-        self.addCleanup(process.wait)
-        self.addCleanup(process.signal, signal.SIGINT)
+        """Start a roslaunch and wait for its nodes."""
+        process = self.start('roslaunch', *arguments)
         process.wait_for_line('at the origin of odom' if arguments[0] == 'rbx1_nav' else 'process\\[my_base-')
         return process
 

@@ -13,12 +13,8 @@ SIMULATED = 'real_time_factor:=5'
 
 class TestSecondClock(support.Case):
     def launch(self, robot, *arguments):
-        """Start a robot; it is stopped after the test."""
-        process = support.Process('roslaunch', 'rbx1_nav', 'fake_turtlebot.launch', f'robot:={robot}', *arguments)
-        self.addCleanup(process.kill)
-        self.addCleanup(process.wait)
-        self.addCleanup(process.signal, signal.SIGINT)
-        return process
+        """Start a robot."""
+        return self.start('roslaunch', 'rbx1_nav', 'fake_turtlebot.launch', f'robot:={robot}', *arguments)
 
     def test_two_robots_in_real_time_are_apart(self):
         for robot in 'robot1', 'robot2':

@@ -12,24 +12,21 @@ CASES = [(('rosrun', 'rbx1_nav', 'timed_out_and_back.py'), r'INFO.*Waiting for a
 
 
 class TestPipedOutput(support.Case):
-    def start(self, *command):
+    def run_buffered(self, *command):
         """Run a command as a user does, unlike the unbuffered Process of the other tests."""
-        process = support.Process('env', '-u', 'PYTHONUNBUFFERED', *command)
-        self.addCleanup(process.kill)
-        self.addCleanup(process.wait)       # roslaunch stops its nodes, which are not in its process group
-        self.addCleanup(process.signal, signal.SIGINT)
-        return process
+        return self.start('env', '-u', 'PYTHONUNBUFFERED', *command)
 
     def test_a_line_arrives_while_the_program_runs(self):
         for command, line in CASES:
-            process = self.start(*command)
+            process = self.run_buffered(*command)
             process.wait_for_line(line)
             self.assertIsNone(process.process.poll(), process.output)
             process.signal(signal.SIGINT)
             process.wait()
 
     def test_a_reader_that_leaves_causes_no_traceback(self):
-        reader = self.start('bash', '-c', 'rosrun rbx1_nav pose.py --help | true; echo "status ${PIPESTATUS[0]}"')
+        reader = self.run_buffered(
+            'bash', '-c', 'rosrun rbx1_nav pose.py --help | true; echo "status ${PIPESTATUS[0]}"')
         self.assertEqual(reader.wait(), 0)
         self.assertEqual(reader.lines, ['status 0'])
 

@@ -2,7 +2,6 @@
 """pose.py prints truth, odometry and estimate below each other, and always exits by itself."""
 import math
 import re
-import signal
 
 import rospy
 from nav_msgs.msg import Odometry
@@ -20,14 +19,6 @@ class TestPoseTable(support.Case):
         """Run pose.py; return its exit status and its lines."""
         process = support.Process(*prefix, 'rosrun', 'rbx1_nav', 'pose.py')
         return process.wait(), process.lines
-
-    def start(self, *node):
-        """Start a node with arguments; it is stopped and unregistered after the test."""
-        process = support.Process('rosrun', 'rbx1_nav', *node)
-        self.addCleanup(process.kill)
-        self.addCleanup(process.wait)
-        self.addCleanup(process.signal, signal.SIGTERM)
-        return process
 
     def publish_odometry(self, x, y, yaw):
         """Publish the odometry of a stationary robot; return the message."""
@@ -67,7 +58,7 @@ class TestPoseTable(support.Case):
     def test_base_and_filter(self):
         rospy.set_param('/arbotix', BASE)
         for node in ('fake_base.py',), ('ekf.py',), ('odom_ekf.py', 'odom_combined:=robot_pose_ekf/odom_combined'):
-            self.start(*node)
+            self.start('rosrun', 'rbx1_nav', *node)
         topics = ['/ground_truth', '/odom', '/odom_ekf']
         watches = [support.Watch(topic, Odometry) for topic in topics]
         support.wait_for(lambda: all(watch.last for watch in watches), 'all three poses')

@@ -4,10 +4,10 @@ import pytest
 
 from rbx1_nav.create import protocol
 from rbx1_nav.create.driver import sequences
-from rbx1_nav.create.driver.queries import Queries
-from rbx1_nav.create.driver.sender import Sender, is_too_fast, wheel_speeds
 from rbx1_nav.create.driver.fractions import KEPT, Fractions
 from rbx1_nav.create.driver.motion import STILL, CounterTravel, EncoderTravel
+from rbx1_nav.create.driver.queries import Queries
+from rbx1_nav.create.driver.sender import Sender, is_too_fast, wheel_speeds
 from rbx1_nav.units import SECOND
 
 
@@ -16,11 +16,18 @@ def tenths(count):
 
 
 def make_sender():
-    """Return (a Sender on a line at 10 bytes per second, the bytes that it sends)."""
+    """Return (a Sender on a line, the bytes that it sends)."""
     sender, sent = Sender(), []
-    sender.byte = SECOND // 10
     sender.use_line(sent.append)
     return sender, sent
+
+
+def asked(model=protocol.CREATE):
+    """Return Queries that wait for a reply."""
+    queries = Queries(make_sender()[0])
+    queries.use(model, EncoderTravel(model) if model.counts_per_metre else CounterTravel(model, Fractions(KEPT)))
+    queries.ask(0)
+    return queries
 
 
 def test_speeds_count_from_their_command_to_the_next():
@@ -37,26 +44,15 @@ def test_speeds_count_from_their_command_to_the_next():
     assert sender.travel(tenths(50)) == pytest.approx((0.1, -0.05))
 
 
-# queries
-
-def queries(model=protocol.CREATE, kind=KEPT):
-    """Return (Queries to a robot, what they send)."""
-    sender, sent = Sender(), []
-    sender.use_line(sent.append)
-    result = Queries(sender)
-    result.use(model, EncoderTravel(model) if model.counts_per_metre else CounterTravel(model, Fractions(kind)))
-    return result, sent
-
-
 def test_a_reading_has_a_time_and_a_commanded_travel():
-    result, _ = queries(protocol.CREATE_2)
-    result.sender.drive(0, (100, 200))
-    result.ask(tenths(1))
-    assert result.since_reading() == (0.0, STILL)
-    result.accept()
-    result.ask(tenths(2))
-    result.ask(tenths(4))       # the reply to the query before was lost
-    assert result.since_reading() == (pytest.approx(0.3), pytest.approx((0.03, 0.06)))
+    queries = asked(protocol.CREATE_2)
+    queries.sender.drive(0, (100, 200))
+    queries.ask(tenths(1))
+    assert queries.since_reading() == (0.0, STILL)
+    queries.accept()
+    queries.ask(tenths(2))
+    queries.ask(tenths(4))      # the reply to the query before was lost
+    assert queries.since_reading() == (pytest.approx(0.3), pytest.approx((0.03, 0.06)))
 
 
 SPEEDS = strategies.floats(-10, 10)
@@ -74,14 +70,6 @@ def test_the_limit_does_not_bend_the_curve(linear, angular):
 
 def test_below_the_limit_nothing_changes():
     assert wheel_speeds(0.2, 1.0, 0.26) == pytest.approx((70, 330))
-
-
-def asked():
-    """Return Queries that wait for a reply."""
-    queries = Queries(Sender())
-    queries.use(protocol.CREATE, CounterTravel(protocol.CREATE, Fractions(KEPT)))
-    queries.ask(0)
-    return queries
 
 
 def reply(**changes):
