@@ -17,6 +17,7 @@ import rostest
 from pages import blocks, markdown
 from pages.display import virtual_display
 from pages.session import PageFailed, Session
+from ports import own_loopback
 
 ROOT = os.path.realpath(os.path.join(os.path.dirname(__file__), '..'))
 PARALLEL = 4    # pages that are followed at the same time
@@ -50,6 +51,7 @@ def follow(page):
     steps = read_steps(page)
     if not steps:
         return
+    own_loopback()
     with tempfile.TemporaryDirectory() as home, virtual_display() as display:
         make_workspace(home, steps)
         with Session(page, home, display) as session:

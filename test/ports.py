@@ -25,7 +25,7 @@ def free_port():
 
 
 def own_loopback():
-    """Give this process and its children a network namespace with a loopback interface, if the system allows it.
+    """Give this thread and its children a network namespace with a loopback interface, if the system allows it.
 
     A killed node stays registered, and its port can be given to a node of another test. The master of the first test
     would then shut down the other node, or wait for an answer from a port that does not speak HTTP.
