@@ -33,7 +33,7 @@ def output_in_a_terminal(*command):
 
 class TestProgressBar(support.Case):
     def check(self, script, forward, turn):
-        status, output = output_in_a_terminal('rosrun', 'rbx1_nav', script, '_goal_distance:=0.5')
+        status, output = output_in_a_terminal('rosrun', 'rbx1_nav', script, '_goal_distance:=2', '_goal_angle:=12')
         self.assertEqual(status, 0, output)
         bars = re.findall(r'(forward  |turn left): \|[^|]*\| (\S+) of (\S+) (\w+)', output)
         for name, total, unit in ('forward  ', *forward), ('turn left', *turn):
@@ -47,10 +47,10 @@ class TestProgressBar(support.Case):
             self.assertTrue([number for number in shown if 0 < number < float(total)], output)
 
     def test_by_time(self):
-        self.check('timed_out_and_back.py', ('125', 'commands'), ('157', 'commands'))
+        self.check('timed_out_and_back.py', ('500', 'commands'), ('600', 'commands'))
 
     def test_by_odometry(self):
-        self.check('odom_out_and_back.py', ('0.50', 'm'), ('3.14', 'rad'))
+        self.check('odom_out_and_back.py', ('2.00', 'm'), ('12.00', 'rad'))
 
 
 if __name__ == '__main__':
