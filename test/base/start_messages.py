@@ -1,15 +1,13 @@
 #!/usr/bin/python3
-"""What a base logs at its start, and that each subscriber receives its messages."""
+"""What a base logs at its start, and that a silent client does not block it."""
 import os
 import re
 import socket
-from unittest import mock
 from xmlrpc.client import ServerProxy
 
 import rospkg
 import rospy
 from nav_msgs.msg import Odometry
-from rospy.impl.registration import RegManager
 import yaml
 
 import support
@@ -47,21 +45,6 @@ class TestStartMessages(support.Case):
         lines = [line for _ in range(2) for line in self.messages(surface='hard_floor', seed='random')
                  if re.fullmatch(r'INFO Surface: hard_floor; seed:=\d+ repeats this run', line)]
         self.assertEqual(len(set(lines)), 2, lines)
-
-    def test_a_subscriber_that_lost_the_notice_of_the_base(self):
-        lost = []
-
-        def lose_the_first(manager, topic, publishers, update=RegManager.publisher_update):
-            if topic == '/odom' and publishers and not lost:
-                lost.extend(publishers)
-            else:
-                update(manager, topic, publishers)
-
-        odom = support.Watch('/odom', Odometry)
-        with mock.patch.object(RegManager, 'publisher_update', lose_the_first):
-            self.base()
-            support.wait_for(lambda: odom.last, 'odometry')
-        self.assertEqual(len(lost), 1)
 
     def test_a_client_that_sends_nothing_keeps_nobody_from_connecting(self):
         self.base().wait_for_line('Ready')

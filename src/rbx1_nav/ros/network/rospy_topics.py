@@ -1,21 +1,15 @@
-"""The connections of rospy: messages are sent at once, and a subscriber misses no publisher."""
+"""The connections of rospy: messages are sent at once, and no connection is missed or held up."""
 from __future__ import annotations
 
-from http.client import HTTPException
 import socket
 import threading
 from typing import Any, Callable, Sequence
-import xmlrpc.client
 
-import rosgraph
 import rospy
 from rospy.impl.registration import RegManager
 from rospy.impl.tcpros_base import TCPROSServer
 from rospy.topics import get_topic_manager
 
-from rbx1_nav.ros.network.master import call
-
-CHECKS, PERIOD = 4, 2.0     # number of checks for missing subscribers after the start, and s of wall time between them
 _read_header = TCPROSServer._tcp_server_callback
 
 
@@ -71,33 +65,3 @@ def _update_publishers(manager: RegManager, topic: str, publishers: Sequence[str
         unused = [uri for name, uris in manager.updates if name == topic for uri in uris]
         manager.updates.append((topic, [*unused, *(uri for uri in publishers if uri not in unused)]))
         manager.cond.notify_all()
-
-
-def find_missing_subscribers(ended: threading.Event) -> None:
-    """Look a few times, in a thread, for subscribers that are not connected to this node, until `ended` is set.
-
-    A subscriber in another node that uses rospy can lose a publisher as repair_connections() describes. A test that
-    waits for the first message of a base would then wait forever. When a publisher registers again, the master names it
-    to its subscribers again.
-    """
-    def look() -> None:
-        for _ in range(CHECKS):
-            if not ended.wait(PERIOD):
-                register_again()
-
-    threading.Thread(target=look, daemon=True).start()
-
-
-def register_again() -> None:
-    """Register each publisher of this node again that has a subscriber which is not connected."""
-    try:
-        master, own = rosgraph.get_master_uri(), rospy.get_node_uri()
-        _, subscribers, _ = call(master, 'getSystemState')
-        for topic, names in subscribers:
-            publisher = get_topic_manager().get_publisher_impl(topic)
-            # a node that has taken over the name would be shut down by the registration
-            if (publisher and not set(names) <= {each.endpoint_id for each in publisher.connections}
-                    and call(master, 'lookupNode', rospy.get_name()) == own):
-                call(master, 'registerPublisher', topic, publisher.type, own)
-    except (OSError, HTTPException, xmlrpc.client.Error):      # the master does not answer
-        pass

@@ -22,7 +22,7 @@ from rospy.impl.paramserver import get_param_server_cache
 from rbx1_nav.config import ConfigError, YamlValue
 from rbx1_nav.parameters import Parameter, list_parameters
 from rbx1_nav.ros.network.master import require_master, wait_for_master
-from rbx1_nav.ros.network.rospy_topics import find_missing_subscribers, repair_connections
+from rbx1_nav.ros.network.rospy_topics import repair_connections
 from rbx1_nav.ros.node.params import (
     check_before_start, check_command_line, future_name, load_params, read_wait_timeout, report_parameters,
     stored_params)
@@ -39,6 +39,7 @@ if not hasattr(threading.Thread, 'isAlive'):
 Found = TypeVar('Found')
 end_requested = threading.Event()
 _leaving = threading.Event()
+_exit_status = [1]      # of a process that does not exit in time
 
 
 class _Terminal:
@@ -112,7 +113,6 @@ def init_node(name: str, usage: str, parameters: Sequence[Parameter] = (), requi
     # master that has given the name to another node would register this one again. The cached value avoids the call.
     get_param_server_cache().set('/rosout_disable_topics_generation', False)
     stored = stored_params()
-    find_missing_subscribers(end_requested)
     report_parameters(stored, names)
     load_params(parameters, stored)
 
@@ -124,7 +124,7 @@ def _wait_for_signal(pipe: int) -> None:
 
 def _set_end_requested() -> None:
     end_requested.set()
-    last_resort = threading.Timer(EXIT_DEADLINE, os._exit, [1])
+    last_resort = threading.Timer(EXIT_DEADLINE, lambda: os._exit(_exit_status[0]))
     last_resort.daemon = True
     last_resort.start()
 
@@ -171,6 +171,7 @@ def wait_for(find: Callable[[], Found | None], timeout: float, missing: Callable
 
 def leave(status: int) -> NoReturn:
     """Unregister the node and exit with a status, without waiting for a master that hangs."""
+    _exit_status[0] = status    # the final work is done
     time.sleep(0.02)    # lets the last line reach /rosout
     _leaving.set()
     threading.Thread(target=rospy.signal_shutdown, args=('done',), daemon=True).start()
