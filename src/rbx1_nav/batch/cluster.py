@@ -108,6 +108,8 @@ def open_cluster(address: str, robot: Robot, surface: Surface | None) -> Iterato
         for worker in workers:
             try:
                 client.run(require, requirements, workers=[worker])
+            except OSError:     # it has just gone
+                pass
             except Exception as error:      # also what Dask makes of an ImportError
                 raise ConfigError(f'worker {worker}: {error}') from None
         # a worker that joins later checks itself
