@@ -14,16 +14,17 @@ import numpy
 
 from real_pictures import draw_ends, draw_paths
 from rbx1_nav.config import ConfigError, show_name
-from rbx1_nav.fitting.comparison import inner_share, simulate_ends
+from rbx1_nav.fitting.comparison import inner_share, simulate_paths
 from rbx1_nav.fitting.floor import SPREADS, Prediction
 from rbx1_nav.fitting.floor_fit import Fitter, fit_floor
-from rbx1_nav.fitting.recording import BASE_WIDTH, CAMERAS, COMMANDS, read_robot, truth_file
+from rbx1_nav.fitting.recording import CAMERAS, COMMANDS, read_robot, truth_file
 from rbx1_nav.fitting.run import PreparedRun, Windows
 from rbx1_nav.plotting.plots import check_picture
 from rbx1_nav.ros.node import resources
 from rbx1_nav.simulation.floor_noise import NOISES
 from rbx1_nav.simulation.surfaces import load_surface
 
+BASE_WIDTH = 0.26       # m, of a Create in these files
 LENGTHS = 5, 10, 20, 40     # s
 FITTED = 10     # s, length of the windows of the fit
 ENDS = 500      # simulated end poses per window
@@ -106,7 +107,7 @@ class Judgement:
             self.windows += [(run, window) for window in separate(windows)]
             self.blocks += [(number, int(run.times[first] - run.times[0]) // BLOCK) for first in windows.first]
             for index, end in enumerate(windows.ends):
-                ends = simulate_ends(surface, prediction, index, ENDS, generator)
+                ends = simulate_paths(surface, prediction, index, ENDS, generator)[:, :, -1]
                 self.ends.append(ends)
                 error = end - ends.mean(axis=0)
                 errors.append((numpy.hypot(*error[:2]), abs(error[2])))

@@ -6,7 +6,7 @@ import difflib
 from math import isfinite
 import re
 import reprlib
-from typing import Iterable, Mapping, Sequence, Union, overload
+from typing import Iterable, Mapping, Sequence, TypeVar, Union
 
 import yaml
 
@@ -15,6 +15,7 @@ AUTO = 'auto'       # a value that is determined at run time
 # content of a YAML file or the parameter server; a key that is not text is a mistake, and is shown like any other key
 YamlValue = Union[None, bool, int, float, str, bytes, date, Sequence['YamlValue'], Mapping[str, 'YamlValue']]
 Scalar = Union[bool, int, float, str]
+Choice = TypeVar('Choice', bound=Scalar)
 
 _short = reprlib.Repr()
 _short.maxstring = _short.maxother = 200    # characters
@@ -121,16 +122,7 @@ class Section:
             return float(value)
         raise ConfigError(f'{self.path(key)}: {describe(value)}: expected {expected}')
 
-    @overload
-    def choice(self, key: str, choices: Sequence[str], default: str) -> str: ...
-
-    @overload
-    def choice(self, key: str, choices: Sequence[int], default: int) -> int: ...
-
-    @overload
-    def choice(self, key: str, choices: Sequence[Scalar], default: Scalar) -> Scalar: ...
-
-    def choice(self, key: str, choices: Sequence[Scalar], default: Scalar) -> Scalar:
+    def choice(self, key: str, choices: Sequence[Choice], default: Choice) -> Choice:
         """Return one of several values: texts, numbers, or true and false. Raises ConfigError."""
         value = self.get(key, default)
         for each in choices:

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     import numpy
-    from numpy.typing import NDArray    # not available in Debian 11's numpy
+    from numpy.typing import NDArray as NDArray     # not available in Debian 11's numpy
     Array = NDArray[numpy.float64]
 else:
-    Array = 'an array of numbers'   # only for type hints, which need no numpy
+    Array = NDArray = 'an array of numbers'     # only for type hints, which need no numpy
 
 SECOND = 10 ** 9    # ns
 

@@ -17,6 +17,7 @@ SLOW_DOWN = 0.5     # s: travel time to the goal at which a leg begins to slow d
 SPEED_WINDOW = 0.1  # s over which the robot's speed is measured: a few encoder counts, one or two messages
 COASTING = 1.0      # s: how long a robot may continue to move without a command
 POSE_TOLERANCE = 0.1    # m, and twice this value in rad: largest correction of a pose in one message
+TRIAL_REST = 0.5    # s at a trial stop, in which the robot coasts to rest
 STUCK_TIME = 5.0    # s without progress: something holds the robot, or turns it in the wrong direction
 
 
@@ -135,11 +136,6 @@ class Leg(ABC):
     @abstractmethod
     def velocity(speed: float) -> tuple[float, float]:
         """Return (linear, angular) for a speed, m/s and rad/s."""
-
-    @property
-    def finished(self) -> bool:
-        """Whether the leg has stopped at its goal."""
-        return self.state is Phase.FINISHED
 
     def next_speed(self, pose: Pose) -> float:
         """Return the speed for the next tick, with the robot at `pose`. Raises StuckError.

@@ -35,28 +35,19 @@ def simulate_paths(surface: Surface, prediction: Prediction, index: int, count: 
     return numpy.stack(integrate(errors['distance'], errors['angle']), axis=1)
 
 
-def simulate_ends(surface: Surface, prediction: Prediction, index: int, count: int,
-                  generator: numpy.random.Generator) -> Array:
-    """Return the end poses of simulate_paths(), with shape (count, 3)."""
-    ends: Array = simulate_paths(surface, prediction, index, count, generator)[:, :, -1]
-    return ends
-
-
 def mahalanobis(ends: Array, points: Array) -> Array:
     """Return the squared Mahalanobis distances of points (n, d) from the mean and covariance of `ends` (count, d)."""
     away = points - ends.mean(axis=0)
     covariance = numpy.cov(ends.T)
     # the end poses of a stationary robot have no spread; keep the covariance invertible
     covariance += 1e-12 * numpy.eye(len(covariance))
-    squares: Array = (away * numpy.linalg.solve(covariance, away.T).T).sum(axis=1)
-    return squares
+    return (away * numpy.linalg.solve(covariance, away.T).T).sum(axis=1)
 
 
 def inner_share(ends: Array, end: Array) -> float:
     """Return the share of simulated end poses whose Mahalanobis distance from their mean is smaller than the distance
     of `end`. It is below p for an end pose inside the region that contains a share p. ends: (count, d); end: (d,)."""
-    share: float = (mahalanobis(ends, ends) < mahalanobis(ends, end[None])).mean()
-    return share
+    return (mahalanobis(ends, ends) < mahalanobis(ends, end[None])).mean()
 
 
 class Comparison(NamedTuple):

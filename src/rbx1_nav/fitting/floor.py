@@ -62,8 +62,7 @@ class Prediction:
             along, path = derivatives[kind.error], paths[kind.path]
             if by_cells:
                 return numpy.stack([cell_covariance(*each, kind.cell) for each in zip(along, path)])
-            white: Array = along * path[:, None] @ along.transpose(0, 2, 1)
-            return white
+            return along * path[:, None] @ along.transpose(0, 2, 1)
 
         return {**{key: covariances(kind) for key, kind in KINDS.items()},
                 'slip_straight_spread': -(by_distance @ self.straight[..., None])[..., 0],
@@ -93,11 +92,9 @@ class Covariance:
         """Transform errors of the end poses, (n, 3), to 3 n independent numbers of variance 1."""
         white = self._white(errors)
         along = self.axes.T @ white
-        whitened: Array = white + self.axes @ (along * (self.variances ** -0.5 - 1))
-        return whitened
+        return white + self.axes @ (along * (self.variances ** -0.5 - 1))
 
     def half_log_determinant(self) -> float:
         """Return half of the logarithm of the determinant."""
-        half: float = (numpy.log(numpy.diagonal(self.roots, axis1=1, axis2=2)).sum()
-                       + numpy.log(self.variances).sum() / 2)
-        return half
+        return (numpy.log(numpy.diagonal(self.roots, axis1=1, axis2=2)).sum()
+                + numpy.log(self.variances).sum() / 2)

@@ -52,8 +52,7 @@ class Fitter:
     @property
     def floor(self) -> Array:
         """The covariance of a measured end pose."""
-        floor: Array = self.wider ** 2 * self.measured
-        return floor
+        return self.wider ** 2 * self.measured
 
     def predictions(self, surface: Surface) -> list[Prediction]:
         """Return the Prediction for each run."""
@@ -165,14 +164,12 @@ def upper_error(cost: Callable[[Array], float], result: OptimizeResult, index: i
     def excess(logarithm: float) -> float:
         moved = result.x.copy()
         moved[index] = logarithm
-        difference: float = cost(moved) - result.fun - 0.5
-        return difference
+        return cost(moved) - result.fun - 0.5
 
     largest = numpy.log(MAX_STRENGTH)
     if result.x[index] >= largest or excess(largest) < 0:
         return numpy.inf
-    error: float = numpy.exp(brentq(excess, result.x[index], largest, xtol=0.01)) - numpy.exp(result.x[index])
-    return error
+    return numpy.exp(brentq(excess, result.x[index], largest, xtol=0.01)) - numpy.exp(result.x[index])
 
 
 def fit_floor(fitter: Fitter, surface: Surface, means: Sequence[str], noises: Sequence[str],

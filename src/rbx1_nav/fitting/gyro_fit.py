@@ -1,7 +1,7 @@
 """Fits the errors of a gyro: its bias and noise at rest, and its scale from the true heading."""
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Sequence
+from typing import Sequence
 
 import numpy
 from scipy.stats import chi2, norm
@@ -9,10 +9,7 @@ from scipy.stats import chi2, norm
 from rbx1_nav.fitting.recording import Rates, Recording, Track
 from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.simulation.gyro import NOISE_RATE
-from rbx1_nav.units import Array
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
+from rbx1_nav.units import Array, NDArray
 
 SETTLED = 1.5       # s after a stop command after which a robot counts as stationary
 INTERVAL = 1.0      # s: turns in intervals of this length are compared
@@ -29,8 +26,7 @@ def rests_at(recording: Recording, times: Array, delay: float = 0.0) -> NDArray[
     ends = numpy.append(commands.time[1:], numpy.inf)
     last = numpy.maximum.accumulate(numpy.where(moving, ends, -numpy.inf))
     latest = numpy.where(before >= 0, last[before], -numpy.inf)
-    rests: NDArray[numpy.bool_] = times > latest + SETTLED + delay
-    return rests
+    return times > latest + SETTLED + delay
 
 
 def rest_of(recording: Recording, gyro: Rates, delay: float) -> tuple[float, float, int] | None:

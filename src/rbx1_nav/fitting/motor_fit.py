@@ -1,7 +1,7 @@
 """Fits delay, lag, acceleration limit and drag of the motors to commands and odometry."""
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple, Sequence
+from typing import NamedTuple, Sequence
 
 import numpy
 from scipy.optimize import least_squares
@@ -9,15 +9,11 @@ from scipy.optimize import least_squares
 from rbx1_nav.fitting.floor import with_values
 from rbx1_nav.fitting.floor_fit import BOUNDS
 from rbx1_nav.fitting.recording import Recording, Track
-from rbx1_nav.fitting.run import commanded_travel, reported_travel
+from rbx1_nav.fitting.run import MOTORS, commanded_travel, reported_travel
 from rbx1_nav.simulation.surfaces import Surface
-from rbx1_nav.units import Array
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
+from rbx1_nav.units import Array, NDArray
 
 INTERVAL = 0.2      # s: the travel in intervals of about this length is compared
-KEYS = ('delay', 'lag', 'accel_limit', 'drag_straight', 'drag_turning')
 STEPS = dict(delay=1e-3, lag=1e-3, accel_limit=1e-2, drag_straight=1e-5, drag_turning=1e-5)     # for derivatives
 LIMITS: dict[str, tuple[float, float]] = {**BOUNDS, 'accel_limit': (0.01, 100)}
 FIRST_DELAYS = 0.0, 0.05, 0.1, 0.2, 0.4, 0.8    # s: the fit starts at the best of these; far away, the cost is flat
@@ -26,7 +22,7 @@ SIGNIFICANT = 9.0   # required decrease of the sum of squares by a limit, in var
 
 
 class MotorFit(NamedTuple):
-    """The result of fit_motors() for KEYS."""
+    """The result of fit_motors() for MOTORS."""
 
     values: dict[str, float]
     errors: dict[str, float]    # standard errors
@@ -57,8 +53,7 @@ class Intervals:
     def errors(self, surface: Surface) -> Array:
         """Return reported minus predicted travel of the wheels, m: straight, then turning."""
         steps = commanded_travel(surface, 2 * self.half_width, self.commands, self.times)
-        errors: Array = self.travel - self._sides(steps.straight, steps.turn)
-        return errors
+        return self.travel - self._sides(steps.straight, steps.turn)
 
 
 def standard_errors(slopes: Array, left: Array, borders: NDArray[numpy.int_]) -> Array:
@@ -75,8 +70,7 @@ def standard_errors(slopes: Array, left: Array, borders: NDArray[numpy.int_]) ->
     scores = slopes * left[:, None]
     for sums in (scores, numpy.stack([part.sum(axis=0) for part in numpy.split(scores, borders[:-1])])):
         variances.append(numpy.diag(bread @ (sums.T @ sums) @ bread) * len(sums) / max(1, len(sums) - 1))
-    errors: Array = numpy.sqrt(numpy.max(variances, axis=0))
-    return errors
+    return numpy.sqrt(numpy.max(variances, axis=0))
 
 
 def fit_motors(surface: Surface, base_width: float, recordings: Sequence[Recording]) -> MotorFit:
@@ -84,45 +78,44 @@ def fit_motors(surface: Surface, base_width: float, recordings: Sequence[Recordi
     intervals = [each for each in (Intervals(one, base_width) for one in recordings) if len(each.times) > 1]
 
     def with_clipped(values: Array) -> Surface:
-        low, high = zip(*(LIMITS[key] for key in KEYS))
+        low, high = zip(*(LIMITS[key] for key in MOTORS))
         clipped = numpy.clip(values, low, high)
-        return with_values(surface, dict(zip(KEYS, clipped.tolist())))
+        return with_values(surface, dict(zip(MOTORS, clipped.tolist())))
 
     def residuals(values: Array) -> Array:
         return numpy.concatenate([each.errors(with_clipped(values)) for each in intervals])
 
     def squares(values: Array) -> float:
-        total: float = (residuals(values) ** 2).sum()
-        return total
+        return (residuals(values) ** 2).sum()
 
     def jacobian(values: Array) -> Array:
         base, columns = residuals(values), []
-        for index, key in enumerate(KEYS):
-            step = numpy.zeros(len(KEYS))
+        for index, key in enumerate(MOTORS):
+            step = numpy.zeros(len(MOTORS))
             # downward at the upper bound
             step[index] = STEPS[key] if values[index] + STEPS[key] < LIMITS[key][1] else -STEPS[key]
             columns.append((residuals(values + step) - base) / step[index])
         return numpy.stack(columns, axis=1)
 
-    given = numpy.array([numpy.clip(getattr(surface, key), *LIMITS[key]) for key in KEYS])
+    given = numpy.array([numpy.clip(getattr(surface, key), *LIMITS[key]) for key in MOTORS])
     start = min((numpy.array([delay, *given[1:]]) for delay in FIRST_DELAYS), key=squares)
-    result = least_squares(residuals, start, jacobian, numpy.transpose([LIMITS[key] for key in KEYS]),
+    result = least_squares(residuals, start, jacobian, numpy.transpose([LIMITS[key] for key in MOTORS]),
                            x_scale=[0.01, 0.01, 0.3, 0.001, 0.001], xtol=1e-6, ftol=1e-8, max_nfev=60)
     slopes = jacobian(result.x)
     left = residuals(result.x)
     # a parameter without effect: a tenth of its value changes the residuals by less than 1 micrometer in total
-    unused = [key for key, column, value in zip(KEYS, slopes.T, result.x)
+    unused = [key for key, column, value in zip(MOTORS, slopes.T, result.x)
               if abs(column).sum() * max(abs(value), STEPS[key]) < 1e-5]
     # a limit just above the acceleration that the motors need also has no effect
-    without = residuals(numpy.where([key == 'accel_limit' for key in KEYS], LIMITS['accel_limit'][1], result.x))
-    variance = (left ** 2).sum() / max(1, len(left) - len(KEYS))
+    without = residuals(numpy.where([key == 'accel_limit' for key in MOTORS], LIMITS['accel_limit'][1], result.x))
+    variance = (left ** 2).sum() / max(1, len(left) - len(MOTORS))
     if 'accel_limit' not in unused and (without ** 2).sum() - (left ** 2).sum() < SIGNIFICANT * variance:
         unused.append('accel_limit')
-    used = [index for index, key in enumerate(KEYS) if key not in unused]
-    errors = dict.fromkeys(KEYS, numpy.inf)
+    used = [index for index, key in enumerate(MOTORS) if key not in unused]
+    errors = dict.fromkeys(MOTORS, numpy.inf)
     if used:
         borders = numpy.cumsum([len(each.travel) for each in intervals])
-        errors.update(zip((KEYS[index] for index in used), standard_errors(slopes[:, used], left, borders)))
+        errors.update(zip((MOTORS[index] for index in used), standard_errors(slopes[:, used], left, borders)))
     travel = numpy.concatenate([each.travel for each in intervals])
-    return MotorFit(dict(zip(KEYS, result.x.tolist())), errors, unused, float(numpy.sqrt((left ** 2).mean())),
+    return MotorFit(dict(zip(MOTORS, result.x.tolist())), errors, unused, float(numpy.sqrt((left ** 2).mean())),
                     float(numpy.sqrt((travel ** 2).mean())))

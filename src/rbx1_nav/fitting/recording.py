@@ -19,7 +19,6 @@ from rbx1_nav.units import SECOND, Array
 
 LARGEST = 1e10      # s, m, ...: largest number allowed in a run
 MIN_TRAVEL, MIN_TURN = 0.02, 0.1    # m, rad: thresholds for motion
-BASE_WIDTH = 0.26       # m, of a Create in these files
 CAMERAS = 0.001, 0.001, 0.003   # m, m, rad: 1 sigma of a motion capture system, from stationary robots
 COMMANDS, TRUTH = '_Odometry.dat', '_Groundtruth.dat'   # suffixes of file names
 

@@ -3,17 +3,14 @@ pose is known.
 """
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy
 
 from rbx1_nav.fitting.recording import Commands, Recording, Track, relative
 from rbx1_nav.simulation.motors import Motor
 from rbx1_nav.simulation.surfaces import Surface
-from rbx1_nav.units import Array, wrap_angle
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
+from rbx1_nav.units import Array, NDArray, wrap_angle
 
 STEP = 0.05     # s
 MAX_GAP = 0.25      # s: windows with a longer gap in the truth are excluded

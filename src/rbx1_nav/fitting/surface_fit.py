@@ -11,9 +11,9 @@ from rbx1_nav.fitting.end_poses import TYPICAL, fit_ends
 from rbx1_nav.fitting.floor import SPREADS, with_values
 from rbx1_nav.fitting.floor_fit import BOUNDS, MEANS, MIN_STRENGTH, Fitter, fit_floor
 from rbx1_nav.fitting.gyro_fit import fit_gyro, rests_at
-from rbx1_nav.fitting.motor_fit import KEYS as MOTOR_KEYS, LIMITS, fit_motors
+from rbx1_nav.fitting.motor_fit import LIMITS, fit_motors
 from rbx1_nav.fitting.recording import CAMERAS, Recording
-from rbx1_nav.fitting.run import PreparedRun
+from rbx1_nav.fitting.run import MOTORS, PreparedRun
 from rbx1_nav.simulation.floor_noise import NOISES
 from rbx1_nav.simulation.surfaces import KEYS, Surface
 
@@ -108,7 +108,7 @@ class WholeFit:
 
     def _fit_motors(self) -> None:
         fit = fit_motors(self.start, self.base_width, self.recordings)
-        for key in MOTOR_KEYS:
+        for key in MOTORS:
             if key not in fit.unused:
                 self._set(key, fit.values[key], fit.errors[key], LIMITS[key])
             else:

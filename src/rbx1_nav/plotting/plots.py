@@ -50,11 +50,11 @@ def check_picture(path: str) -> None:
 
 
 def draw(file: str, surface: str, results: Mapping[str, Sequence[SimulationResult]], seeds: range,
-         truths: Mapping[str, Array] | None = None) -> None:
+         truths: Mapping[str, Array]) -> None:
     """Draw a column for each method: above, true paths; below, the end poses of all runs, on one scale.
 
     surface: name of the surface; results: by method, at least those with a path; truths: true end poses (n, 3) of all
-    runs by method, m and rad; None: the poses of the results.
+    runs by method, m and rad.
     """
     from matplotlib.figure import Figure
     figure = Figure(figsize=(5.6 * len(results), 9.4), constrained_layout=True)
@@ -62,9 +62,9 @@ def draw(file: str, surface: str, results: Mapping[str, Sequence[SimulationResul
     runs = (f'1 run (seed {seeds[0]})' if len(seeds) == 1
             else f'{len(seeds)} runs (seeds {seeds[0]} to {seeds[-1]})')
     figure.suptitle(f'Out and back on {surface}, {runs}')
-    ends = {method: with_heading_errors(truths[method]) if truths else end_poses(each)
-            for method, each in results.items()}
-    extent, norm = common_extent(ends.values()), common_norm(ends.values())
+    ends = {method: with_heading_errors(truths[method]) for method in results}
+    extent = square([poses[:, :2] for poses in ends.values()], 0.05, 0.6)
+    norm = common_norm(ends.values())
     for (above, below), method in zip(panels.T, results):
         draw_paths(above, results[method])
         distances, errors = numpy.hypot(*ends[method].T[:2]), ends[method][:, 2]
@@ -85,11 +85,6 @@ def save(figure: Figure, path: str) -> None:
     write_file(path, picture.getvalue())
 
 
-def end_poses(results: Iterable[SimulationResult]) -> Array:
-    """Return an array with a row for each result: true x and y (m), and the absolute heading error (degrees)."""
-    return with_heading_errors(numpy.array([result.end.truth for result in results]))
-
-
 def with_heading_errors(poses: Array) -> Array:
     """Return poses (n, 3) with the absolute heading error (degrees) in place of the heading (rad)."""
     poses = poses.copy()
@@ -97,12 +92,13 @@ def with_heading_errors(poses: Array) -> Array:
     return poses
 
 
-def common_extent(ends: Iterable[Array]) -> Extent:
-    """Return a square around the start and all end poses; at least 10 cm wide."""
-    points = numpy.vstack([poses[:, :2] for poses in ends] + [numpy.zeros((1, 2))])
+def square(parts: Sequence[Array], least: float, factor: float) -> Extent:
+    """Return a square around the start and all points, (n, 2). Half of its width is at least `least` (m), and `factor`
+    times the extent of the points."""
+    points = numpy.vstack([numpy.zeros((1, 2)), *parts])
     low, high = points.min(axis=0), points.max(axis=0)
-    half = max(0.05, 0.6 * (high - low).max())
-    (x, y) = (low + high) / 2
+    half = max(least, factor * (high - low).max())
+    x, y = (low + high) / 2
     return x - half, x + half, y - half, y + half
 
 
@@ -180,7 +176,10 @@ def draw_fit(file: str, title: str, comparisons: Sequence[Comparison]) -> None:
                        label=None if number else 'end pose, simulated')
         if not any(alike(each, other) for other in comparisons[:number]):
             draw_regions(ends, each.ends[:, :2], label=not number)
-    set_extents(comparisons, recorded, simulated)
+    extent = square([path.T for each in comparisons for path in (each.recorded, each.simulated) if path is not None],
+                    0.1, 0.5 + MARGIN)
+    for axes in (recorded, simulated):      # the same part of the floor
+        axes.set(xlim=extent[:2], ylim=extent[2:], aspect='equal')
     count, inside_50, inside_90 = shares(comparisons)
     recorded.set_title('recorded', fontsize='medium')
     simulated.set_title('simulated on the fitted floor, same commands', fontsize='medium')
@@ -216,14 +215,3 @@ def draw_regions(axes: Axes, points: Array, label: bool) -> None:
         axes.add_patch(Ellipse(points.mean(axis=0), axis[1], axis[0], angle=angle, facecolor=SIMULATED,
                                edgecolor='black', linewidth=0.8, alpha=alpha,
                                label=f'{100 * part:.0f} %' if label else None))
-
-
-def set_extents(comparisons: Sequence[Comparison], *panels: Axes) -> None:
-    """Show the same part of the floor, which contains all paths, in all panels."""
-    points = numpy.concatenate([path for each in comparisons for path in (each.recorded, each.simulated)
-                                if path is not None] + [numpy.zeros((2, 1))], axis=1)
-    low, high = points.min(axis=1), points.max(axis=1)
-    half = max(0.1, (high - low).max() * (0.5 + MARGIN))
-    x, y = (low + high) / 2
-    for axes in panels:
-        axes.set(xlim=(x - half, x + half), ylim=(y - half, y + half), aspect='equal')

@@ -1,13 +1,12 @@
 """Reads the visuals of a URDF file, which define the appearance of a robot."""
 from __future__ import annotations
 
-from typing import Mapping, NamedTuple, Tuple, TypeVar, cast
+from typing import Mapping, NamedTuple, Tuple
 import xml.etree.ElementTree as ElementTree
 
 SHAPES = ('box', 'cylinder', 'sphere', 'mesh')
 
 Numbers = Tuple[float, ...]
-T = TypeVar('T')
 
 
 class Visual(NamedTuple):
@@ -32,17 +31,12 @@ def read_visuals(text: str) -> list[Visual]:
                   if material.find('color') is not None}
         return [_read_visual(link.get('name'), visual, colors)
                 for link in root.findall('link') for visual in link.findall('visual')]
-    except (ElementTree.ParseError, AttributeError, IndexError, TypeError, ValueError) as error:
+    except (ElementTree.ParseError, KeyError, ValueError) as error:
         raise ValueError(f'not a URDF file: {error}') from error
 
 
-def _required(value: T | None) -> T:
-    """Return a value that a URDF file must contain. Using None raises an error, which read_visuals() catches."""
-    return cast(T, value)   # a separate check would change the text of that error
-
-
-def _numbers(text: str | None, count: int = 3) -> Numbers:
-    numbers = tuple(float(each) for each in _required(text).split())
+def _numbers(text: str, count: int = 3) -> Numbers:
+    numbers = tuple(float(each) for each in text.split())
     if len(numbers) != count:
         raise ValueError(f'{text!r}: expected {count} numbers')
     return numbers
@@ -55,17 +49,17 @@ def _read_visual(link: str | None, visual: ElementTree.Element,
     color = None if material is None else material.find('color')
     if color is None and material is not None:
         color = colors.get(material.get('name'))
-    shape, = _required(visual.find('geometry'))
+    shape, = visual.findall('geometry/*')
     if shape.tag not in SHAPES:
         raise ValueError(f"<{shape.tag}>: expected one of {', '.join(SHAPES)}")
     return Visual(link, _numbers(values.get('xyz', '0 0 0')), _numbers(values.get('rpy', '0 0 0')), shape.tag,
-                  _size(shape), shape.get('filename', ''), None if color is None else _numbers(color.get('rgba'), 4))
+                  _size(shape), shape.get('filename', ''), None if color is None else _numbers(color.attrib['rgba'], 4))
 
 
 def _size(shape: ElementTree.Element) -> Numbers:
     if shape.tag == 'box':
-        return _numbers(shape.get('size'))
+        return _numbers(shape.attrib['size'])
     if shape.tag == 'mesh':
         return _numbers(shape.get('scale', '1 1 1'))
-    diameter = 2 * float(_required(shape.get('radius')))
+    diameter = 2 * float(shape.attrib['radius'])
     return diameter, diameter, float(shape.get('length', diameter))

@@ -4,7 +4,7 @@ from math import pi, remainder, sqrt
 
 import pytest
 
-from rbx1_nav.control.legs import Straight, StuckError, Turn
+from rbx1_nav.control.legs import Phase, Straight, StuckError, Turn
 from rbx1_nav.robot.kinematics import ORIGIN, Pose
 
 
@@ -50,8 +50,8 @@ def test_a_turn_slows_down_in_time(to_go, speed, expected):
 def test_a_short_leg_begins_with_the_trial_stop():
     leg = forward(goal=0.02)
     # the robot coasts after an earlier motion, and is then driven to the goal
-    assert drive(leg, [0.0, 0.005, 0.001]) == [0.0, 0.05, 0.05] and not leg.finished
-    assert leg.next_speed(Pose(0.0197, 0.0, 0.0)) == 0.0 and leg.finished
+    assert drive(leg, [0.0, 0.005, 0.001]) == [0.0, 0.05, 0.05] and leg.state is not Phase.FINISHED
+    assert leg.next_speed(Pose(0.0197, 0.0, 0.0)) == 0.0 and leg.state is Phase.FINISHED
 
 
 # The robot coasts 10 mm after a trial stop at 23 mm. In the last part it is stationary at 13 mm, and then moves by
@@ -67,10 +67,10 @@ def test_the_stopping_distance_is_proportional_to_the_speed_over_a_tenth_of_a_se
     leg = forward()
     start = 0.977 - sum(before)
     assert drive(leg, [0.0, start, *before])[-1] == 0.0     # the trial stop
-    assert not leg.finished
+    assert leg.state is not Phase.FINISHED
     assert leg.next_speed(Pose(0.987, 0.0, 0.0)) == 0.05
     leg.next_speed(Pose(0.991, 0.0, 0.0))
-    assert leg.finished is finished
+    assert (leg.state is Phase.FINISHED) is finished
 
 
 # no progress

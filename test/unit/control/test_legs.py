@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rbx1_nav.control.legs import StuckError, is_reachable, out_and_back_by_odometry
+from rbx1_nav.control.legs import Phase, StuckError, is_reachable, out_and_back_by_odometry
 from rbx1_nav.robot.kinematics import ORIGIN, Pose, arc
 from rbx1_nav.simulation.motors import Motor
 
@@ -20,7 +20,7 @@ def drive(leg, pose, fraction=1.0):
     speeds = []
     while True:
         speed = leg.next_speed(pose._replace(yaw=remainder(pose.yaw, 2 * pi)))
-        if leg.finished:
+        if leg.state is Phase.FINISHED:
             return pose, speeds
         speeds.append(speed)
         linear, angular = leg.velocity(speed)
@@ -83,7 +83,7 @@ def test_a_slow_rate_does_not_overshoot_the_goal(rate):
         pose = ORIGIN
         while True:
             speed = leg.next_speed(pose._replace(yaw=remainder(pose.yaw, 2 * pi)))
-            if leg.finished:
+            if leg.state is Phase.FINISHED:
                 break
             pose = arc(pose, *(value / rate for value in leg.velocity(speed)))
         assert abs(leg.goal - leg.done()) <= 0.5001 * slowest / rate

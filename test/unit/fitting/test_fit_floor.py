@@ -3,7 +3,7 @@ from hypothesis import given, strategies as st
 import numpy
 import pytest
 
-from rbx1_nav.fitting.comparison import simulate_ends
+from rbx1_nav.fitting.comparison import simulate_paths
 from rbx1_nav.fitting.floor import Covariance, Prediction
 from rbx1_nav.fitting.floor_fit import MEANS, Fitter
 from rbx1_nav.fitting.run import PreparedRun, Windows
@@ -34,7 +34,7 @@ def test_the_covariance_is_that_of_simulated_noise():
 def test_ends_have_the_predicted_covariance():
     run = PreparedRun(record(EXERCISE), 0.26)
     prediction = Prediction(FLOOR, run.steps(FLOOR), Windows(numpy.array([0]), len(run.times) - 1, numpy.zeros((1, 3))))
-    ends = simulate_ends(FLOOR, prediction, 0, 20000, numpy.random.default_rng(2))
+    ends = simulate_paths(FLOOR, prediction, 0, 20000, numpy.random.default_rng(2))[:, :, -1]
     roots = Covariance(FLOOR, prediction.sensitivities(by_cells=True), numpy.diag(numpy.square(QUIET))).roots[0]
     spreads = [prediction.sensitivities()[key][0] * getattr(FLOOR, key)
                for key in ('slip_straight_spread', 'slip_turning_spread')]

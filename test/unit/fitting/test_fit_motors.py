@@ -3,7 +3,8 @@ from hypothesis import Phase, given, settings, strategies as st
 import numpy
 import pytest
 
-from rbx1_nav.fitting.motor_fit import KEYS, fit_motors, standard_errors
+from rbx1_nav.fitting.motor_fit import fit_motors, standard_errors
+from rbx1_nav.fitting.run import MOTORS
 from sample_runs import DRIVE, EXERCISE, FLOOR, FORWARD, REST, record
 
 START = FLOOR._replace(lag=0.1, accel_limit=1.0, drag_straight=0.002, drag_turning=0.003, delay=0.0)
@@ -14,7 +15,7 @@ START = FLOOR._replace(lag=0.1, accel_limit=1.0, drag_straight=0.002, drag_turni
 def test_motors_are_found(delay, lag, limit, straight, turning):
     surface = FLOOR._replace(delay=delay, lag=lag, accel_limit=limit, drag_straight=straight, drag_turning=turning)
     fit = fit_motors(START, 0.26, [record(DRIVE, surface=surface)])
-    for key in KEYS:
+    for key in MOTORS:
         if key not in fit.unused:
             # 5 standard errors, since rounding to ticks is not normal noise; a limit may hide a lag of 0.03 s
             assert fit.values[key] == pytest.approx(getattr(surface, key), abs=5 * fit.errors[key]), key

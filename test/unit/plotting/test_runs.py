@@ -5,11 +5,12 @@ import resource
 import signal
 import sys
 
+import numpy
 import pytest
 from matplotlib.figure import Figure
 
 from rbx1_nav.config import ConfigError
-from rbx1_nav.plotting.plots import check_picture, common_extent, draw, end_poses
+from rbx1_nav.plotting.plots import check_picture, draw, square, with_heading_errors
 from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.simulation.exercise import SimulationResult, Snapshot
 
@@ -24,12 +25,18 @@ FAR = [result((0, 0, 0), (0.1, y, 2 * pi - radians(60))) for y in (0.4, 0.5, 0.6
 NEAR = [result((0, 0, 0), (0.0, y, 2 * pi + radians(10))) for y in (-0.01, 0.0, 0.02)]
 
 
-def test_end_poses_have_the_absolute_heading_error_in_degrees():
-    assert end_poses(FAR)[:, 2] == pytest.approx([60] * 3) and end_poses(NEAR)[:, 2] == pytest.approx([10] * 3)
+def ends(results):
+    """Return the true end poses of results, an array (n, 3)."""
+    return numpy.array([each.end.truth for each in results])
+
+
+def test_the_absolute_heading_error_in_degrees():
+    assert with_heading_errors(ends(FAR))[:, 2] == pytest.approx([60] * 3)
+    assert with_heading_errors(ends(NEAR))[:, 2] == pytest.approx([10] * 3)
 
 
 def test_the_extent_is_square_and_holds_the_start_and_all_ends():
-    xmin, xmax, ymin, ymax = common_extent([end_poses(FAR), end_poses(NEAR)])
+    xmin, xmax, ymin, ymax = square([ends(FAR)[:, :2], ends(NEAR)[:, :2]], 0.05, 0.6)
     assert xmax - xmin == pytest.approx(ymax - ymin)
     assert xmin < 0 < 0.1 < xmax and ymin < -0.01 and 0.6 < ymax
 
@@ -41,7 +48,7 @@ def drawn(monkeypatch, tmp_path):
     monkeypatch.setattr(Figure, 'savefig', lambda figure, *_, **__: figures.append(figure))
 
     def call(results):
-        draw(str(tmp_path / 'a.png'), 'test', results, range(3))
+        draw(str(tmp_path / 'a.png'), 'test', results, range(3), {key: ends(each) for key, each in results.items()})
         return figures[-1]
     return call
 
@@ -77,7 +84,7 @@ def test_an_older_picture_survives_a_full_disk(tmp_path):
     path = tmp_path / 'a.png'
     path.write_bytes(b'an older picture')
     with full_disk(), pytest.raises(OSError):
-        draw(str(path), 'test', {'timed': FAR}, range(3))
+        draw(str(path), 'test', {'timed': FAR}, range(3), {'timed': ends(FAR)})
     assert list(tmp_path.iterdir()) == [path] and path.read_bytes() == b'an older picture'
 
 
@@ -87,7 +94,7 @@ def test_a_picture_takes_the_place_of_an_older_one(tmp_path, kind, start):
     path.write_bytes(b'an older picture')
     path.chmod(0o640)
     (tmp_path / (f'link.{kind}')).symlink_to(path)
-    draw(str(tmp_path / (f'link.{kind}')), 'test', {'timed': FAR}, range(3))
+    draw(str(tmp_path / (f'link.{kind}')), 'test', {'timed': FAR}, range(3), {'timed': ends(FAR)})
     assert path.read_bytes().startswith(start) and path.stat().st_mode & 0o777 == 0o640
     assert len(list(tmp_path.iterdir())) == 2
 

@@ -8,13 +8,11 @@ import rospy
 from geometry_msgs.msg import Twist
 from tqdm import tqdm
 
-from rbx1_nav.control.legs import Leg
+from rbx1_nav.control.legs import TRIAL_REST, Leg
 from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.ros.driving.script import Drive
 from rbx1_nav.ros.driving.pose_listener import LostTransform, PoseListener
 from rbx1_nav.units import wrap_angle
-
-TRIAL_REST = 0.5    # s: the robot coasts to rest before a leg continues
 
 
 class PoseDrive(Drive):

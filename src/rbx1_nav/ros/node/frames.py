@@ -10,8 +10,7 @@ from rbx1_nav.ros.node.params import named_errors
 def find_prefix() -> YamlValue:
     """Return the tf_prefix of this node or of the nearest namespace around it, not checked; None if there is none."""
     name = rospy.search_param('tf_prefix')
-    value: YamlValue = rospy.get_param(name, None) if name else None
-    return value
+    return rospy.get_param(name, None) if name else None
 
 
 def check_prefix(value: YamlValue) -> str:

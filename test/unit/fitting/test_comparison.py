@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rbx1_nav.fitting.comparison import inner_share, mahalanobis, simulate_ends, simulate_paths
+from rbx1_nav.fitting.comparison import inner_share, mahalanobis, simulate_paths
 from rbx1_nav.fitting.floor import SPREADS, Covariance, Prediction
 from rbx1_nav.fitting.recording import Commands
 from rbx1_nav.fitting.run import STEP, Windows, commanded_travel, grid
@@ -63,17 +63,14 @@ def test_without_noise_path_and_end_are_those_of_the_simulated_robot(parts):
     sequence = [(linear, angular, STEP * count) for linear, angular, count in parts]
     prediction = predict(FLOOR, sequence)
     path = numpy.transpose(list(drive(FLOOR, sequence, 0)))
-    end = path[:, -1]
-    assert prediction.means[0] == pytest.approx(end, abs=1e-9)
-    ends = simulate_ends(FLOOR, prediction, 0, 3, numpy.random.default_rng(0))
-    assert ends == pytest.approx(numpy.stack([end] * 3), abs=1e-9)
+    assert prediction.means[0] == pytest.approx(path[:, -1], abs=1e-9)
     paths = simulate_paths(FLOOR, prediction, 0, 3, numpy.random.default_rng(0))
     assert paths == pytest.approx(numpy.stack([path] * 3), abs=1e-9)
 
 
 def test_the_ensemble_is_that_of_the_simulated_robot():
     ends = simulated(NOISY)
-    ensemble = simulate_ends(NOISY, predict(NOISY, SEQUENCE), 0, 10 * RUNS, numpy.random.default_rng(1))
+    ensemble = simulate_paths(NOISY, predict(NOISY, SEQUENCE), 0, 10 * RUNS, numpy.random.default_rng(1))[:, :, -1]
     # five times 1 sigma of a mean
     assert (abs(ends.mean(axis=0) - ensemble.mean(axis=0)) < 5 * ends.std(axis=0) / RUNS ** 0.5).all()
     assert spreads_agree(numpy.cov(ends.T), numpy.cov(ensemble.T))
@@ -87,7 +84,7 @@ def test_the_ensemble_is_that_of_the_simulated_robot():
 def test_each_strength_alone_has_the_spread_of_the_simulated_robot(key):
     surface = FLOOR._replace(**{key: 0.05})
     ends = simulated(surface)
-    ensemble = simulate_ends(surface, predict(surface, SEQUENCE), 0, 10 * RUNS, numpy.random.default_rng(1))
+    ensemble = simulate_paths(surface, predict(surface, SEQUENCE), 0, 10 * RUNS, numpy.random.default_rng(1))[:, :, -1]
     floor = 1e-6 * numpy.eye(3)     # one strength alone leaves some direction without any spread
     assert spreads_agree(numpy.cov(ends.T) + floor, numpy.cov(ensemble.T) + floor)
 
@@ -96,7 +93,7 @@ def test_each_strength_alone_has_the_spread_of_the_simulated_robot(key):
 def test_the_covariance_to_first_order_is_that_of_the_ensemble(keys):
     surface = FLOOR._replace(**dict.fromkeys(keys, 0.02))
     prediction = predict(surface, SEQUENCE)
-    ensemble = simulate_ends(surface, prediction, 0, 10 * RUNS, numpy.random.default_rng(2))
+    ensemble = simulate_paths(surface, prediction, 0, 10 * RUNS, numpy.random.default_rng(2))[:, :, -1]
     # a measurement error of 3 mm, which is larger than the effects beyond the first order
     measured = ensemble - ensemble.mean(axis=0) + 0.003 * numpy.random.default_rng(3).standard_normal(ensemble.shape)
     covariance = Covariance(surface, prediction.sensitivities(), 0.003 ** 2 * numpy.eye(3))
