@@ -17,10 +17,9 @@ class TestBrowserComparison(PageTest):
     def setUpClass(cls):
         super().setUpClass()
         rospy.set_param('/out_and_back/goal_distance', 0.2)
+        rospy.set_param('/out_and_back/goal_angle', 0.5)
 
     def setUp(self):
-        self.page = Page(self.driver, self.url)
-        self.page.click('#stop')
         self.wait_for_rest()
         rospy.ServiceProxy('/arbotix/reset', Empty)()
         support.wait_for(lambda: self.odom.position() == (0, 0), 'the reset')
