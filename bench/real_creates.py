@@ -15,8 +15,8 @@ import numpy
 from real_pictures import draw_ends, draw_paths
 from rbx1_nav.config import ConfigError, show_name
 from rbx1_nav.fitting.comparison import inner_share, simulate_paths
-from rbx1_nav.fitting.floor import SPREADS, Prediction
 from rbx1_nav.fitting.floor_fit import Fitter, fit_floor
+from rbx1_nav.fitting.prediction import SPREADS, Prediction
 from rbx1_nav.fitting.recording import CAMERAS, COMMANDS, read_robot, truth_file
 from rbx1_nav.fitting.run import PreparedRun, Windows
 from rbx1_nav.plotting.plots import check_picture

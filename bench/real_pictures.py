@@ -3,7 +3,7 @@ from matplotlib.figure import Figure
 import numpy
 
 from rbx1_nav.fitting.comparison import simulate_paths
-from rbx1_nav.fitting.floor import Prediction
+from rbx1_nav.fitting.prediction import Prediction
 from rbx1_nav.fitting.recording import relative
 from rbx1_nav.plotting.plots import PATHS, SIMULATED, TRUTH, draw_regions, save
 

@@ -5,7 +5,7 @@ from typing import Callable, Iterable, Iterator, NamedTuple, Sequence
 
 import numpy
 
-from rbx1_nav.fitting.floor import Prediction, integrate
+from rbx1_nav.fitting.prediction import Prediction, integrate
 from rbx1_nav.fitting.recording import Recording, relative
 from rbx1_nav.fitting.run import PreparedRun, Windows
 from rbx1_nav.simulation.floor_noise import KINDS, cell_errors

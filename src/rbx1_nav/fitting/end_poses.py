@@ -14,8 +14,8 @@ from scipy.optimize import minimize_scalar
 from scipy.stats import chi2, f as f_distribution
 
 from rbx1_nav.config import ConfigError, Section, load_yaml, show, show_name
-from rbx1_nav.fitting.floor import SPREADS, with_values
 from rbx1_nav.fitting.floor_fit import MEANS, Fitter
+from rbx1_nav.fitting.prediction import SPREADS, with_values
 from rbx1_nav.fitting.run import PreparedRun, Windows
 from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.simulation.floor_noise import NOISES

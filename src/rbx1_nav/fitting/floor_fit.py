@@ -11,7 +11,7 @@ from typing import Callable, Protocol, Sequence
 import numpy
 from scipy.optimize import OptimizeResult, approx_fprime, brentq, least_squares, minimize
 
-from rbx1_nav.fitting.floor import Covariance, Prediction, with_values
+from rbx1_nav.fitting.prediction import Covariance, Prediction, with_values
 from rbx1_nav.fitting.run import PreparedRun, Windows
 from rbx1_nav.simulation.surfaces import KEYS, Surface
 from rbx1_nav.units import Array

@@ -6,8 +6,8 @@ from typing import NamedTuple, Sequence
 import numpy
 from scipy.optimize import least_squares
 
-from rbx1_nav.fitting.floor import with_values
 from rbx1_nav.fitting.floor_fit import BOUNDS
+from rbx1_nav.fitting.prediction import with_values
 from rbx1_nav.fitting.recording import Recording, Track
 from rbx1_nav.fitting.run import MOTORS, commanded_travel, reported_travel
 from rbx1_nav.simulation.surfaces import Surface

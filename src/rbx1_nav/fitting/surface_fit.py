@@ -8,10 +8,10 @@ import numpy
 
 from rbx1_nav.config import ConfigError
 from rbx1_nav.fitting.end_poses import TYPICAL, fit_ends
-from rbx1_nav.fitting.floor import SPREADS, with_values
 from rbx1_nav.fitting.floor_fit import BOUNDS, MEANS, MIN_STRENGTH, Fitter, fit_floor
 from rbx1_nav.fitting.gyro_fit import fit_gyro, rests_at
 from rbx1_nav.fitting.motor_fit import LIMITS, fit_motors
+from rbx1_nav.fitting.prediction import SPREADS, with_values
 from rbx1_nav.fitting.recording import CAMERAS, Recording
 from rbx1_nav.fitting.run import MOTORS, PreparedRun
 from rbx1_nav.simulation.floor_noise import NOISES

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rbx1_nav.fitting.comparison import inner_share, mahalanobis, simulate_paths
-from rbx1_nav.fitting.floor import SPREADS, Covariance, Prediction
+from rbx1_nav.fitting.prediction import SPREADS, Covariance, Prediction
 from rbx1_nav.fitting.recording import Commands
 from rbx1_nav.fitting.run import STEP, Windows, commanded_travel, grid
 from rbx1_nav.simulation.floor_noise import NOISES, Noise, cell_errors, make_roughness

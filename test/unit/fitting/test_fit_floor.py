@@ -4,8 +4,8 @@ import numpy
 import pytest
 
 from rbx1_nav.fitting.comparison import simulate_paths
-from rbx1_nav.fitting.floor import Covariance, Prediction
 from rbx1_nav.fitting.floor_fit import MEANS, Fitter
+from rbx1_nav.fitting.prediction import Covariance, Prediction
 from rbx1_nav.fitting.run import PreparedRun, Windows
 from rbx1_nav.simulation.floor_noise import cell_covariance, cell_errors
 from sample_runs import EXERCISE, FLOOR, FORWARD, REST, record
