@@ -70,6 +70,8 @@ class TestBrowserPage(PageTest):
         self.assertTrue(self.page.find('#linear .reported').get_attribute('d'))
 
     def test_a_run_and_the_run_before(self):
+        rospy.set_param('/out_and_back/goal_distance', 0.5)
+        self.addCleanup(rospy.delete_param, '/out_and_back/goal_distance')
         self.page.run('timed')
         self.odom.wait_for_twist(0.0, 1.0)
         self.page.wait_for_text('run-state', 'Running: timed')
@@ -80,7 +82,7 @@ class TestBrowserPage(PageTest):
             self.assertAlmostEqual(row[0], x, delta=0.00056)    # rounded to four decimals, and then to three
             self.assertAlmostEqual(row[1], y, delta=0.00056)
         end = self.page.row('table-now', 'odometry')
-        self.page.wait_for_text('lines', 'Done: commanded 2.00 m forward')
+        self.page.wait_for_text('lines', 'Done: commanded 1.00 m forward')
         self.page.click('#reset')
         # the table may show the run of an earlier test
         support.wait_for(lambda: self.page.find('#table-before').is_displayed()

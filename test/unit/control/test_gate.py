@@ -1,5 +1,4 @@
 """The gate: a command in force is finite, within the limits, and has an age."""
-from collections import namedtuple
 from math import inf, nan
 
 import pytest
@@ -7,9 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rbx1_nav.control.gate import MAX_COMMAND, CommandGate, RejectedCommand
+from rbx1_nav.robot.description import Limits
 from rbx1_nav.units import SECOND
-
-Limits = namedtuple('Limits', 'linear angular')
 
 
 def make_gate(linear=inf, angular=inf, timeout=SECOND):

@@ -90,9 +90,11 @@ def test_a_reset_is_no_travel(robot_type):
 
 
 @BOTH
-def test_the_position_of_a_robot_that_was_reset_while_disconnected_is_as_uncertain_as_its_commanded_travel(robot_type):
+@pytest.mark.parametrize('linear, angular, index', [(0.2, 0, 0), (0, 0.8, 2)])
+def test_the_pose_of_a_robot_that_was_reset_while_disconnected_is_as_uncertain_as_its_commanded_travel(
+        robot_type, linear, angular, index):
     driven = started(robot_type, **NO_ERRORS)
-    driven.drive(0.2, 0, 1)
+    driven.drive(linear, angular, 1)
     covariance, before = driven.driver.motion.odometry.covariance, driven.pose
     driven.pull()
     driven.run(4)
@@ -101,8 +103,20 @@ def test_the_position_of_a_robot_that_was_reset_while_disconnected_is_as_uncerta
     driven.run(5)
     grown = driven.driver.motion.odometry.covariance - covariance
     assert driven.robot.mode == protocol.SAFE and driven.pose == before
-    # uniform from 0 to the travel at 0.2 m/s in 4 s; 1 % in variance for the 20 ms of an incomplete reading
-    assert grown[0, 0] == pytest.approx(0.8 ** 2 / 3, rel=0.02)
+    # uniform from 0 to the travel in 4 s; 1 % in variance for the 20 ms of an incomplete reading
+    assert grown[index, index] == pytest.approx((4 * (linear or angular)) ** 2 / 3, rel=0.02)
+
+
+@BOTH
+def test_more_commands_than_the_line_can_carry_do_not_delay_a_stop(robot_type):
+    driven = started(robot_type)
+    for _ in range(500):
+        for _ in range(4):
+            driven.command(0.2, 0)
+        driven.run(0.002)
+    driven.command_zero()
+    driven.run(0.05)
+    assert driven.speeds == (0, 0)
 
 
 @BOTH

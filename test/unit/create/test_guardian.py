@@ -76,6 +76,8 @@ def wait_for_end(pid):
     lambda process: process.terminate()], ids=['kill', 'kill the group', 'terminate'])
 def test_the_end_of_the_process_sends_the_stop(terminal, end):
     process, pid = start(terminal)
+    for number in signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGTSTP:     # as killall sends them
+        os.kill(pid, number)
     end(process)
     assert read_until(terminal, STOP) == STOP
     process.communicate()

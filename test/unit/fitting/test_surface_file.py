@@ -4,7 +4,7 @@ from math import isclose
 from hypothesis import given, settings, strategies as st
 import yaml
 
-from rbx1_nav.fitting.surface_file import PARTS, surface_text, table
+from rbx1_nav.fitting.surface_file import surface_text, table
 from rbx1_nav.fitting.surface_fit import FitResult, Value
 from rbx1_nav.simulation.surfaces import KEYS, Surface, read_surface
 
@@ -48,7 +48,3 @@ def test_each_value_is_explained(result):
     assert any('too far off' in line for line in lines) == bool(result.warnings)
     printed = table(result, 'low_ply_carpet')
     assert sum(line.split()[0] in KEYS for line in printed if line.split()) == len(KEYS)
-
-
-def test_every_key_is_in_a_part():
-    assert sorted(key for _, keys in PARTS for key in keys) == sorted(KEYS)

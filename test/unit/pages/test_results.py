@@ -73,11 +73,3 @@ def test_a_page_quotes_the_results(page, sentence, keys):
         expected = RESULTS[surface, method, what][unit]
         # the shown result is rounded too
         assert abs(float(number) - expected) <= 0.5 * 10 ** -decimals + 0.05 + 1e-9, (sentence, number, expected)
-
-
-def test_the_answers_show_the_same_results():
-    """The first output in answers.md has lines of the output in why_it_misses.md."""
-    def blocks(page):
-        return [lines for _, language, lines in markdown.split(markdown.read(ROOT, page))
-                if language == 'text' and any('misses its start' in line for line in lines)]
-    assert set(blocks(ANSWERS)[0]) < set(blocks(WHY)[1])
