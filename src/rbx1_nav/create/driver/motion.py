@@ -29,7 +29,7 @@ class Expected(NamedTuple):
     left: float
     right: float
 
-    def plus(self, other: Expected, factor: float = 1.0) -> Expected:
+    def plus(self, other: Expected, factor: float) -> Expected:
         """Return the sum of this and `factor` times another."""
         return Expected(self.left + factor * other.left, self.right + factor * other.right)
 
