@@ -98,7 +98,8 @@ class Leg(ABC):
 
     No robot stops instantly. Its stopping distance depends on the robot, the floor, and all delays in between. The
     trial stop measures this distance. Then the robot continues at its lowest speed, and stops at this distance from the
-    goal. So a leg is driven in two parts, with a rest between them.
+    goal. So a leg is driven in two parts, with a rest between them. What a leg does must be possible for
+    is_reachable(): otherwise the pose seems to jump.
     """
 
     unit: str
