@@ -14,7 +14,7 @@ SPEEDS = {'A': (0.2, 0.0), 'B': (-0.2, 0.0), 'D': (0.0, 1.0), 'C': (0.0, -1.0)} 
 def shutdown():
     cmd_vel.publish(Twist())
     os.system('stty icanon echo min 1')
-    time.sleep(1)
+    time.sleep(0.5)     # the process must exit within 1.4 s
 
 
 with exit_status():

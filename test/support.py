@@ -88,6 +88,11 @@ class Watch:
         self.messages = []
         self.subscriber = rospy.Subscriber(topic, kind, self.messages.append, queue_size=None, tcp_nodelay=True)
 
+    def wait_for_publisher(self, node):
+        """Wait for the connection to a node, which would lose what it publishes before."""
+        wait_for(lambda: any(each.callerid_pub == node for each in self.subscriber.impl.connections),
+                 f'a connection to {self.subscriber.name} of {node}')
+
     @property
     def last(self):
         """Return the latest message, or None."""

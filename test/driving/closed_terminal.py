@@ -26,8 +26,7 @@ class TestClosedTerminal(support.Case):
         self.addCleanup(driver.kill)
         os.close(theirs)
         odom.wait_for_twist(0.01)
-        support.wait_for(lambda: any(each.callerid_pub == '/out_and_back' for each in log.subscriber.impl.connections),
-                         'a connection to /rosout of the driver')
+        log.wait_for_publisher('/out_and_back')
         os.close(ours)
         support.wait_for(lambda: driver.poll() is not None, 'the driver to exit')
         self.assertEqual(driver.returncode, 0)

@@ -21,6 +21,7 @@ class AlteredRobot:
     def __init__(self, odom=lambda message: None, imu=lambda message: None):
         """odom(message), imu(message): alter a message."""
         self.log = support.Watch('/rosout', Log)
+        self.log.wait_for_publisher('/robot_pose_ekf')
         self.truth = support.Watch('/ground_truth', Odometry)
         self.odom = support.OdomWatch()
         self.estimates = support.Watch('/robot_pose_ekf/odom_combined', PoseWithCovarianceStamped)
