@@ -75,8 +75,8 @@ def try_signal(row, script, number, moments, watches, python_start):
     time.sleep(freeze)
     with suspended(pid):
         time.sleep(moment - freeze)
-        before, sent = len(odom.messages), len(commands.messages)
         control = row.start('sleep', str(DEADLINE - 0.1))
+        before, sent = len(odom.messages), len(commands.messages)
         driver.signal(number)
         duration = seconds(driver)
         allowed = max(DEADLINE, DEADLINE - 0.1 + seconds(control))
