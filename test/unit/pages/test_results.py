@@ -56,6 +56,8 @@ QUOTED = [
     (TUTORIAL, 'the mean distance from the start is # cm when timed, # cm with odometry, and # cm with odometry and',
      [(CARPET, method, MISSES, CM) for method in ('timed', 'odom', 'ekf')]),
     (FIGURES, 'the mean distance from the start is # cm straight ahead', [(CARPET, 'ekf', MISSES, CM)]),
+    (ANSWERS, 'It stops 55 cm from its start instead of # cm.', [(CARPET, 'timed', MISSES, CM)]),
+    (ANSWERS, 'it stops 20 cm from its start instead of # cm,', [(CARPET, 'odom', MISSES, CM)]),
     (ANSWERS, '| with odometry and gyro: distance from the start | # cm |', [(CARPET, 'ekf', MISSES, CM)]),
     (ANSWERS, '| angle from the initial heading | # degrees |', [(CARPET, 'ekf', MISSES, DEGREES)]),
     (ANSWERS, '| with odometry alone: distance from the start | # cm | # cm |', 2 * [(CARPET, 'odom', MISSES, CM)]),
