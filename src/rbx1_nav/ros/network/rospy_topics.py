@@ -63,5 +63,5 @@ def _update_publishers(manager: RegManager, topic: str, publishers: Sequence[str
     harm: it refuses the connection."""
     with manager.cond:
         unused = [uri for name, uris in manager.updates if name == topic for uri in uris]
-        manager.updates.append((topic, [*unused, *(uri for uri in publishers if uri not in unused)]))
+        manager.updates.append((topic, list(dict.fromkeys([*unused, *publishers]))))
         manager.cond.notify_all()
