@@ -31,7 +31,7 @@ ONE_NUMBER = 'a number that the node passes on'
 # parameters without a test, and why
 UNTESTED = {
     **{('fake_base.py', name): FOR_HARDWARE for name in ('read_rate', 'sync_read', 'sync_write', 'write_rate')},
-    **{('fleet.py', name): SHARED for name in ('clock_step', 'rate', 'strict')},
+    **{('fleet.py', name): SHARED for name in ('clock_step', 'rate')},
     **{('turtlebot_node.py', name): SHARED for name in ('diagnostic_period', 'publish_tf')},
     ('web_view.py', 'spacing'): ONE_NUMBER,
     ('calibrate_angular.py', 'min_angular_speed'): 'the same leg as in odom_out_and_back.py',

@@ -37,6 +37,7 @@ HOLD = 1.5          # duration of a hold, in intervals between two commands
 FIRST_HOLD = 0.02   # s of wall time: duration of the first hold, before an interval is known
 COMMANDS = 3        # that a driver on the clock may send after one message; stops do not count
 TEST, TESTS = 0.005, 4  # s of wall time in which a thread that polls usually runs more than once; how often to try
+LONG = 0.1          # s of wall time: if a wait takes longer, threads that poll may be the reason
 SLEEP = 0.05        # s: the longest sleep between two checks for a shutdown request
 
 
@@ -134,14 +135,16 @@ class Lockstep:
         later = max(until, monotonic() + hold)
         for driver in self.drivers.values():
             driver.time += min(hold, later - until)     # not part of the interval
-        until = later
+        self._find_pollers()
+        self._sleep(later)
+
+    def _find_pollers(self) -> None:
         if self.processes.have_new_threads():
             runs = self.processes.runs()
             for _ in range(TESTS):
                 self._sleep(monotonic() + TEST)
                 if not self.processes.find_pollers(runs):
                     break
-        self._sleep(until)
 
     def _sleep(self, until: float) -> None:
         while monotonic() < until and not self.ended():
@@ -198,6 +201,8 @@ class Lockstep:
                 del awake[name]
                 if self.processes.forget(name):
                     self._report(name, f'did not become idle within {NODE_TIMEOUT:g} s')
+            if now - begin > LONG:
+                self._find_pollers()
             sleep(min(max(LOOK[0], LOOK_LATER * (now - begin)), LOOK[1]))
 
     def _driver_of(self, header: dict[str, str]) -> DriverConnection:

@@ -15,6 +15,8 @@ from typing import Callable, Iterable, List, Optional, Tuple
 # s: a thread that sleeps for less than this polls. On simulated time, ros::Rate sleeps for 1 ms at a time, which took
 # up to 3.8 ms on a busy machine
 POLL = 0.02
+# the greatest number of processes with threads that poll at which it is usual that none of them has run during a check
+AT_REST = 2
 ENDED = b'X', b'Z'      # states of a thread that has exited
 FUTEX, NANOSLEEP = b'futex_', b'hrtimer_nanosleep'
 TIMED = b'sleep', b'poll', b'select'    # parts of the names of kernel functions that wait with a timeout
@@ -122,10 +124,12 @@ class Process:
             thread.close()
         self.threads = {}
 
-    def cpu_time(self) -> int | None:
-        """Return the CPU time of the threads so far, ns; it is up to date only for waiting threads. None if the process
-        has exited."""
+    def activity(self, without_pollers: bool) -> object:
+        """Return a value that changes when a thread runs: the CPU time so far, ns. It is up to date only for waiting
+        threads. None if the process has exited. without_pollers: whether the threads that poll do not count."""
         try:
+            if without_pollers and self.has_pollers():
+                return [thread.look() for thread in self.threads.values() if not thread.is_poller]
             if self.without is None:
                 return time.clock_gettime_ns(self.clock)
             # the clock of a process does not include the present run of a thread
@@ -147,6 +151,10 @@ class Process:
     def polling(self) -> list[PollingThread]:
         """Return the threads that sleep only briefly."""
         return [(thread, thread.ran) for thread in self.those(Thread.polls)]
+
+    def has_pollers(self) -> bool:
+        """Return whether there are threads that were found to wake by themselves."""
+        return any(thread.is_poller for thread in self.threads.values())
 
     def has_new_threads(self) -> bool:
         """Return whether there are threads that did not exist at the last call."""
@@ -210,20 +218,22 @@ def awake(processes: Iterable[Process], network: Network | None = None) -> Proce
     """Return the first Process that is not asleep, or the Network if messages may be in transit between them; None if
     all of them were asleep at one moment, and nothing was in transit."""
     processes = list(processes)
+    ignore = sum(process.has_pollers() for process in processes) > AT_REST
     # read for all before the first check: a checked process may be woken by another one that then sleeps when checked
-    before = [process.cpu_time() for process in processes]
+    before = [process.activity(ignore) for process in processes]
     # not earlier: if no process has run since `before`, nothing can have been sent after this check
     if network and network.busy():
         return network
-    for process in processes:
+    # a second check finds what a thread that polls has woken after the first one
+    for process in processes * (1 + ignore):
         try:
             if not process.sleeps():
                 return process
         except OSError:
             if not process.ended():
                 return process
-    for process, cpu_time in zip(processes, before):
-        if process.cpu_time() != cpu_time and not process.ended():
+    for process, activity in zip(processes, before):
+        if process.activity(ignore) != activity and not process.ended():
             return process
     return None
 

@@ -7,10 +7,11 @@ from types import SimpleNamespace
 
 import pytest
 
-from rbx1_nav.ros.lockstep.processes import Process, awake, still_polling
+from rbx1_nav.ros.lockstep.processes import Process, awake, runs_since, still_polling
 
 LIMIT = 60      # s
 BEGIN = 'import socket, sys, threading, time\nprint("up", flush=True)\n'
+POLL = 'def poll():\n    while True: time.sleep(0.001)\nthreading.Thread(target=poll, daemon=True).start()\n'
 
 
 def wait_for(condition):
@@ -41,21 +42,51 @@ def make_start():
         child.communicate()
 
 
-def test_what_has_been_woken_is_awake_until_it_has_answered(start):
+def polling_process(child):
+    """Return the Process of a child whose code begins with POLL."""
+    process = Process(child.pid)
+
+    def find():
+        runs = process.runs()
+        time.sleep(0.02)
+        for thread, count in runs_since(runs):
+            thread.is_poller = not thread.is_main and count > 1
+        process.sleeps()        # updates the list of threads
+        return process.has_pollers()
+    wait_for(find)
+    return process
+
+
+@pytest.mark.parametrize('polls', [False, True])
+def test_what_has_been_woken_is_awake_until_it_has_answered(start, polls):
     """The simulated clock relies on this: no answer comes from a process that was asleep."""
     with socket.socket() as server:
         server.bind(('127.0.0.1', 0))
         server.listen()
-        child = start('s = socket.create_connection(("127.0.0.1", %d))\n'
+        child = start(POLL * polls + 's = socket.create_connection(("127.0.0.1", %d))\n'
                       'while s.recv(1): sum(range(1000)); s.send(b"x")' % server.getsockname()[1])
         connection, _ = server.accept()
         with connection:
-            process = Process(child.pid)
+            watched = [Process(child.pid)]
+            if polls:
+                watched = [polling_process(child), *(polling_process(start(POLL + 'sys.stdin.read()')) for _ in '12')]
             for _ in range(2000):
                 connection.send(b'x')
-                while awake([process]):
+                while awake(watched):
                     pass
                 assert connection.recv(1, socket.MSG_DONTWAIT) == b'x'
+
+
+def test_a_thread_that_polls_need_not_be_waited_for(start):
+    child = start(POLL + 'sys.stdin.readline(); sys.stdin.read()')
+    process = polling_process(child)
+    wait_for(lambda: not awake([process]))
+    rest, total = process.activity(True), process.activity(False)
+    wait_for(lambda: process.activity(False) != total)
+    assert process.activity(True) == rest
+    child.stdin.write(b'\n')
+    child.stdin.flush()
+    wait_for(lambda: process.activity(True) != rest)
 
 
 def test_a_stopped_process_has_not_finished(start):
@@ -120,7 +151,8 @@ def test_messages_in_transit(start):
 def test_a_process_that_has_run_between_two_looks_is_awake():
     """A process was asleep when it was checked, but perhaps not at the same moment as the others."""
     times = iter([1, 2])
-    fake = SimpleNamespace(cpu_time=lambda: next(times), sleeps=lambda: True, ended=lambda: False)
+    fake = SimpleNamespace(activity=lambda _: next(times), sleeps=lambda: True, ended=lambda: False,
+                           has_pollers=lambda: False)
     assert awake([fake]) is fake
     times = iter([1, 1])
     assert awake([fake]) is None
@@ -128,7 +160,9 @@ def test_a_process_that_has_run_between_two_looks_is_awake():
 
 def test_a_process_that_ran_while_another_one_was_looked_at_is_awake():
     times = [5]
-    sender = SimpleNamespace(cpu_time=lambda: times[-1], sleeps=lambda: True, ended=lambda: False)
+    sender = SimpleNamespace(activity=lambda _: times[-1], sleeps=lambda: True, ended=lambda: False,
+                             has_pollers=lambda: False)
     # it is asleep when it is checked; then the sender wakes it, and is itself asleep when it is checked
-    woken = SimpleNamespace(cpu_time=lambda: 7, sleeps=lambda: times.append(6) is None, ended=lambda: False)
+    woken = SimpleNamespace(activity=lambda _: 7, sleeps=lambda: times.append(6) is None, ended=lambda: False,
+                            has_pollers=lambda: False)
     assert awake([woken, sender]) is sender

@@ -67,7 +67,8 @@ class World:
 def make_world(monkeypatch):
     monkeypatch.setenv('ROS_MASTER_URI', 'http://127.0.0.1:1')      # nothing listens there
     # the process of pytest itself may have no other thread
-    monkeypatch.setattr(watch, 'own_process', lambda: SimpleNamespace(cpu_time=lambda: 0, sleeps=lambda: True))
+    monkeypatch.setattr(watch, 'own_process', lambda: SimpleNamespace(
+        activity=lambda _: 0, sleeps=lambda: True, has_pollers=lambda: False))
     # other tests on this machine use the network
     monkeypatch.setattr(watch, 'Network', lambda: SimpleNamespace(busy=lambda: False))
     world = World()
