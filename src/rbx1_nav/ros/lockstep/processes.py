@@ -125,8 +125,8 @@ class Process:
         self.threads = {}
 
     def activity(self, without_pollers: bool) -> object:
-        """Return a value that changes when a thread runs: the CPU time so far, ns. It is up to date only for waiting
-        threads. None if the process has exited. without_pollers: whether the threads that poll do not count."""
+        """Return a value that changes when a thread runs, and is up to date for waiting threads. None if the process
+        has exited. without_pollers: whether the threads that poll do not count."""
         try:
             if without_pollers and self.has_pollers():
                 return [thread.look() for thread in self.threads.values() if not thread.is_poller]

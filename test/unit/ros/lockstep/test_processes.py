@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from rbx1_nav.ros.lockstep.processes import Process, awake, runs_since, still_polling
+from rbx1_nav.ros.lockstep.processes import Process, awake, still_polling
 
 LIMIT = 60      # s
 BEGIN = 'import socket, sys, threading, time\nprint("up", flush=True)\n'
@@ -45,16 +45,15 @@ def make_start():
 def polling_process(child):
     """Return the Process of a child whose code begins with POLL."""
     process = Process(child.pid)
-
-    def find():
-        runs = process.runs()
-        time.sleep(0.02)
-        for thread, count in runs_since(runs):
-            thread.is_poller = not thread.is_main and count > 1
-        process.sleeps()        # updates the list of threads
-        return process.has_pollers()
-    wait_for(find)
+    wait_for(lambda: process.sleeps() and len(process.threads) == 2)
+    for thread in process.threads.values():
+        thread.is_poller = not thread.is_main
     return process
+
+
+def fake(activity=lambda _: 0, sleeps=lambda: True, polls=False):
+    """Return something like a Process."""
+    return SimpleNamespace(activity=activity, sleeps=sleeps, ended=lambda: False, has_pollers=lambda: polls)
 
 
 @pytest.mark.parametrize('polls', [False, True])
@@ -151,18 +150,21 @@ def test_messages_in_transit(start):
 def test_a_process_that_has_run_between_two_looks_is_awake():
     """A process was asleep when it was checked, but perhaps not at the same moment as the others."""
     times = iter([1, 2])
-    fake = SimpleNamespace(activity=lambda _: next(times), sleeps=lambda: True, ended=lambda: False,
-                           has_pollers=lambda: False)
-    assert awake([fake]) is fake
+    process = fake(lambda _: next(times))
+    assert awake([process]) is process
     times = iter([1, 1])
-    assert awake([fake]) is None
+    assert awake([process]) is None
 
 
 def test_a_process_that_ran_while_another_one_was_looked_at_is_awake():
     times = [5]
-    sender = SimpleNamespace(activity=lambda _: times[-1], sleeps=lambda: True, ended=lambda: False,
-                             has_pollers=lambda: False)
+    sender = fake(lambda _: times[-1])
     # it is asleep when it is checked; then the sender wakes it, and is itself asleep when it is checked
-    woken = SimpleNamespace(activity=lambda _: 7, sleeps=lambda: times.append(6) is None, ended=lambda: False,
-                            has_pollers=lambda: False)
+    woken = fake(sleeps=lambda: times.append(6) is None)
     assert awake([woken, sender]) is sender
+
+
+def test_what_a_thread_that_polls_has_woken_after_its_check_is_awake():
+    asleep = iter([True, False])
+    woken = fake(sleeps=lambda: next(asleep))
+    assert awake([woken, *(fake(polls=True) for _ in '123')]) is woken
