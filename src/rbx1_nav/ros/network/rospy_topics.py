@@ -10,6 +10,7 @@ from rospy.impl.registration import RegManager
 from rospy.impl.tcpros_base import TCPROSServer
 from rospy.topics import get_topic_manager
 
+HEADER_TIME = 0.2   # s in which a client usually sends its header
 _read_header = TCPROSServer._tcp_server_callback
 
 
@@ -54,8 +55,11 @@ def repair_connections() -> None:
 
 
 def _read_header_in_thread(server: TCPROSServer, connection: socket.socket, address: tuple[str, int]) -> None:
-    """Read the header of a connection, and add the connection to its topic or service."""
-    threading.Thread(target=_read_header, args=(server, connection, address), daemon=True).start()
+    """Read the header of a connection, and add the connection to its topic or service. The next connection waits, so
+    that a node that subscribes to /clock first is first known as a listener to it; but only for a while."""
+    thread = threading.Thread(target=_read_header, args=(server, connection, address), daemon=True)
+    thread.start()
+    thread.join(HEADER_TIME)
 
 
 def _update_publishers(manager: RegManager, topic: str, publishers: Sequence[str]) -> None:
