@@ -6,10 +6,42 @@ usage: clock_mode.py true|false NAME      used by launch files; NAME: the name o
 A node reads /use_sim_time only once, when it starts. Exits with 1 before anything is set if a live base other than NAME
 uses the other value.
 """
-import re
-import sys
+from __future__ import annotations
 
-from rbx1_nav.ros.network import bases
+import re
+import socket
+import sys
+import xmlrpc.client
+
+import rosgraph     # not rospy: a launch file waits for this program, and the import takes most of its time
+
+TIMEOUT = 2.0       # s for the master or a base to answer
+
+
+def bases_on_other_clock(simulated: bool, but: str) -> list[str]:
+    """Return the names of live bases if they run in simulated time and `simulated` is false, or the other way round.
+
+    A base publishes odometry and subscribes to cmd_vel. but: the name of a base that is not listed. Raises OSError,
+    xmlrpc.client.Error or MasterException if the master does not answer.
+    """
+    master = rosgraph.Master('clock_mode')
+    if bool(master.hasParam('/use_sim_time') and master.getParam('/use_sim_time')) == simulated:
+        return []
+    publishers, subscribers, _ = master.getSystemState()
+    odometry = {topic for topic, kind in master.getTopicTypes() if kind == 'nav_msgs/Odometry'}
+    publishing = {name for topic, names in publishers if topic in odometry for name in names}
+    commanded = {name for topic, names in subscribers if topic.endswith('/cmd_vel') for name in names}
+    return sorted(name for name in publishing & commanded - {but} if is_alive(master, name))
+
+
+def is_alive(master: rosgraph.Master, name: str) -> bool:
+    """Return whether a registered node answers, or does not refuse the connection."""
+    try:
+        return bool(xmlrpc.client.ServerProxy(master.lookupNode(name)).getPid('/clock_mode'))
+    except socket.timeout:      # it is suspended, or its host drops packets
+        return True
+    except (OSError, xmlrpc.client.Error, rosgraph.MasterError):
+        return False
 
 
 def main() -> int:
@@ -17,13 +49,17 @@ def main() -> int:
     if len(sys.argv) < 3 or sys.argv[1].lower() not in ('true', 'false'):
         print(__doc__.strip(), file=sys.stderr)
         return 2
+    socket.setdefaulttimeout(TIMEOUT)
     value, name = sys.argv[1].lower(), ' '.join(sys.argv[2:])
     if not re.fullmatch(r'(/[A-Za-z]\w*)+', name, re.ASCII):
         robot = name.rpartition('/')[0].lstrip('/')
         print(f'robot: {robot!r}: expected a name of letters, digits and underscores that begins with a letter',
               file=sys.stderr)
         return 2
-    running = bases.on_other_clock(value == 'true', name)
+    try:
+        running = bases_on_other_clock(value == 'true', name)
+    except (OSError, xmlrpc.client.Error, rosgraph.MasterException):    # no master yet: no base
+        running = []
     if running:
         now = 'simulated' if value == 'false' else 'real'
         print(f"/use_sim_time: {value}: expected no robot in {now} time, but {', '.join(running)} runs: "

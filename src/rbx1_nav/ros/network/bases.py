@@ -8,10 +8,9 @@ from __future__ import annotations
 
 import xmlrpc.client
 
-import rosgraph
 from rospy.impl.masterslave import ROSHandler
 
-from rbx1_nav.ros.network.master import Server, is_alive
+from rbx1_nav.ros.network.master import Server
 
 REFUSALS = 'getRefusals'    # method of the slave API
 
@@ -27,23 +26,6 @@ def namespaces_of_bases(publishers: dict[str, list[str]], subscribers: dict[str,
     found = {topic.rpartition('/')[0] or '/': with_odometry.intersection(names)
              for topic, names in subscribers.items() if topic.endswith(f'/{commands}')}
     return {namespace: names for namespace, names in found.items() if names}
-
-
-def on_other_clock(simulated: bool, but: str) -> list[str]:
-    """Return the names of live bases if they run in simulated time and `simulated` is false, or the other way round.
-
-    but: the name of a base that is not listed. Returns [] without a master.
-    """
-    master = Server(rosgraph.get_master_uri())
-    try:
-        if bool(master.param('/use_sim_time', False)) == simulated:
-            return []
-        publishers, subscribers, _ = master.call('getSystemState')
-        odometry = [topic for topic, kind in master.call('getTopicTypes') if kind == 'nav_msgs/Odometry']
-        names = set().union(*namespaces_of_bases(dict(publishers), dict(subscribers), odometry).values())
-        return sorted(name for name in names - {but} if is_alive(name))
-    except (OSError, xmlrpc.client.Error):
-        return []
 
 
 def private_namespace(base: str, topic: str, master: Server) -> str:
