@@ -3,10 +3,12 @@
 
 If the environment variable RBX1_PICTURE_DIR is set, the screenshots are saved in that directory.
 """
+from contextlib import ExitStack
 import copy
 import os
 import re
 import subprocess
+import sys
 import tempfile
 import time
 
@@ -18,6 +20,9 @@ from PIL import ImageGrab
 from rosgraph_msgs.msg import Log
 
 import support
+
+sys.path.append(os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
+from pages.display import virtual_display
 
 PACKAGE = 'rbx1_nav'
 FRAME_RATE = 4      # Hz: without a GPU, the 30 Hz of the files would use more than a core
@@ -150,7 +155,9 @@ class RvizTest(support.Case):
         self.rosout = []
         rosout = rospy.Subscriber('/rosout', Log, self.on_log)
         self.addCleanup(rosout.unregister)
-        self.start_display()
+        screen = ExitStack()
+        self.addCleanup(screen.close)
+        self.display = screen.enter_context(virtual_display())
 
     def on_log(self, message):
         """Store the errors that RViz logs."""
@@ -170,19 +177,6 @@ class RvizTest(support.Case):
                 process.wait()
         self.addCleanup(end)
         return process
-
-    def start_display(self):
-        """Start an X server, which chooses a free display number."""
-        ours, its = os.pipe()
-        log = open(os.path.join(self.scratch, 'xvfb'), 'w')
-        self.addCleanup(log.close)
-        # without noreset, the server would restart when its last client, a screenshot, disconnects
-        self.start(['Xvfb', '-displayfd', str(its), '-screen', '0', '1280x800x24', '+extension', 'GLX',
-                    '-nolisten', 'tcp', '-noreset'], pass_fds=[its], stdout=log, stderr=log)
-        os.close(its)
-        with open(ours) as answer:
-            self.display = f':{answer.readline().strip()}'
-        self.assertNotEqual(self.display, ':', 'Xvfb did not start')
 
     def start_rviz(self, path):
         """Start RViz with a file, in an empty home directory, so that no user settings apply."""
