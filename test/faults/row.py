@@ -22,7 +22,8 @@ import traceback
 import unittest
 
 FOLDER = os.path.dirname(os.path.abspath(__file__))
-sys.path[:0] = [FOLDER, os.path.dirname(FOLDER)]
+TESTS = os.path.dirname(FOLDER)
+sys.path[:0] = [FOLDER, TESTS, os.path.join(TESTS, 'base'), os.path.join(TESTS, 'create')]
 
 import roslib.packages
 import rospy

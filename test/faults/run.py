@@ -17,7 +17,8 @@ import threading
 import time
 
 FOLDER = os.path.dirname(os.path.abspath(__file__))
-sys.path[:0] = [FOLDER, os.path.dirname(FOLDER)]
+TESTS = os.path.dirname(FOLDER)
+sys.path[:0] = [FOLDER, TESTS, os.path.join(TESTS, 'base'), os.path.join(TESTS, 'create')]
 
 import processes
 from ports import free_port

@@ -1,10 +1,6 @@
 """1 % of the bytes from an emulated Create or Create 2 are corrupted for a whole run."""
-import os
-import sys
 
 import support
-
-sys.path.append(os.path.join(os.path.dirname(__file__), '..', '..', 'create'))
 from driven import CHI_SQUARE, IDEAL, DrivenRobot
 
 FAULT = '1 % of the bytes from a Create 2 or a Create are flipped, dropped or duplicated during the exercise'

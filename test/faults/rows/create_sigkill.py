@@ -1,14 +1,11 @@
 """SIGKILL to the base node of an emulated Create in motion."""
 import os
 import signal
-import sys
 import time
 
 import rospy
 
 import support
-
-sys.path.append(os.path.join(os.path.dirname(__file__), '..', '..', 'create'))
 from driven import STOP, faults_of_both, guardian_of
 
 FAULT = ("SIGKILL to a Create's base node, or to its process group, at a random moment of a motion; in four of five "

@@ -1,15 +1,12 @@
 """SIGSTOP to the base node of an emulated Create in motion, and SIGCONT: a stall, or a computer that was suspended."""
 import os
 import signal
-import sys
 import threading
 import time
 
 import rospy
 
 import support
-
-sys.path.append(os.path.join(os.path.dirname(__file__), '..', '..', 'create'))
 from driven import STOP, faults_of_both
 
 FAULT = ("SIGSTOP to a Create's base node for 0.6 or 0.9 s at a random moment of a motion; its driver sends commands "

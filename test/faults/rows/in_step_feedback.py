@@ -1,13 +1,9 @@
 """Drivers with feedback in lockstep: every run of a driver takes the same path."""
-import os
-import sys
 
 import rospy
 from nav_msgs.msg import Odometry
 
 import support
-
-sys.path.append(os.path.join(os.path.dirname(support.__file__), 'base'))
 import feedback
 
 FAULT = ('drivers with feedback at real_time_factor 20: in rospy and roscpp, at 10 to 50 Hz, with the latest /odom, '

@@ -1,11 +1,7 @@
 """The cable of an emulated Create is pulled during a motion, and plugged in again."""
-import os
-import sys
 import time
 
 import support
-
-sys.path.append(os.path.join(os.path.dirname(__file__), '..', '..', 'create'))
 from driven import CHI_SQUARE, IDEAL, STOP, DrivenRobot
 
 FAULT = "a Create's cable is pulled at a random moment of a motion, and plugged in again"

@@ -2,13 +2,10 @@
 import itertools
 import os
 import signal
-import sys
 import time
 
 import rospy
 import support
-
-sys.path.append(os.path.join(os.path.dirname(__file__), '..', '..', 'create'))
 from driven import STOP
 from emulated import EmulatedRobot
 from rbx1_nav.create.protocol import command

@@ -1,16 +1,48 @@
-"""Stop shuts down the nodes that publish the topic of the commands, under the name to which it is remapped."""
+"""What the messages of the topics change on the page, and which nodes Stop shuts down."""
 import time
 
+from nav_msgs.msg import Odometry
+import pytest
 import rospy
 
-from rbx1_nav.ros.web import system as module
+from rbx1_nav.ros.web import system
 from rbx1_nav.ros.web.state import PageState
 
 LIMIT = 60      # s, after which a wait fails
 PUBLISHERS = [['/cmd_vel', ['/stranger']], ['/other/cmd_vel', ['/driver', '/unnamed']]]
 
 
-def test_stop_shuts_down_the_drivers_of_the_remapped_topic(monkeypatch):
+@pytest.fixture(name='view')
+def make_view(monkeypatch):
+    monkeypatch.setattr(system, 'MIN_PERIOD', 0)
+    return system.System(PageState())
+
+
+def receive(view, connection):
+    """Receive the odometry of a robot at rest."""
+    message = Odometry()
+    message.pose.pose.orientation.w = 1.0
+    message._connection_header = connection
+    view.on_odometry(message, 'odometry')
+
+
+def test_a_new_connection_to_a_base_begins_another_run(view):
+    old, new = {'callerid': '/arbotix'}, {'callerid': '/arbotix'}
+    receive(view, old)
+    receive(view, old)
+    assert view.state.epoch == 0
+    receive(view, new)
+    assert view.state.epoch == 1
+
+
+def test_two_bases_at_once_do_not_begin_a_run_with_each_message(view):
+    first, second = {'callerid': '/arbotix'}, {'callerid': '/turtlebot_node'}
+    for connection in first, second, first, second:
+        receive(view, connection)
+    assert view.state.epoch == 1
+
+
+def test_stop_shuts_down_the_drivers_of_the_remapped_topic(view, monkeypatch):
     shut_down = []
 
     def call(uri, method, *arguments):
@@ -22,11 +54,10 @@ def test_stop_shuts_down_the_drivers_of_the_remapped_topic(monkeypatch):
         return None
     monkeypatch.setattr(rospy.names, '_resolved_mappings', {'/cmd_vel': '/other/cmd_vel'})
     monkeypatch.setattr(rospy, 'get_name', lambda: '/unnamed')
-    monkeypatch.setattr(module, 'call', call)
-    system = module.System(PageState())
-    system.shut_down_drivers()
+    monkeypatch.setattr(system, 'call', call)
+    view.shut_down_drivers()
     end = time.monotonic() + LIMIT
-    while system.pending:
+    while view.pending:
         assert time.monotonic() < end
         time.sleep(0.002)
-    assert shut_down == [('uri of /driver', 'shutdown')] and system.take_shut_down() == (['/driver'], [])
+    assert shut_down == [('uri of /driver', 'shutdown')] and view.take_shut_down() == (['/driver'], [])
