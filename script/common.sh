@@ -83,10 +83,10 @@ changed_files() {       # print the files with uncommitted changes
   git -C "$source_dir" status --porcelain --untracked-files=all 2>/dev/null | cut -c 4-
 }
 
-changed_tests() {       # print the unit tests of the changed modules, found by name, and the tests of declarations and imports
+changed_tests() {       # print the unit tests of the changed modules, found by name, and the tests of lists, imports and scripts that pages show
   local path name
   changed_files | while read -r path; do
-    printf '%s\n' test/unit/test_rooms.py test/unit/pages/test_parameter_tables.py
+    printf 'test/unit/%s.py\n' test_rooms test_promises pages/test_parameter_tables pages/test_the_script
     [[ $path == *.py ]] || continue
     name=${path##*/}; name=${name%.py}
     find test/unit bench -name "test_*${name#test_}*.py"

@@ -1,6 +1,5 @@
 #!/usr/bin/python3
 """Commands above the limits in the YAML file are clamped, keep their sign, and cause a warning."""
-
 from rosgraph_msgs.msg import Log
 
 import support

@@ -1,6 +1,5 @@
 #!/usr/bin/python3
 """The base publishes its wheel joints under the names in another robot's URDF file, so the wheels have frames."""
-
 from sensor_msgs.msg import JointState
 from tf2_msgs.msg import TFMessage
 

@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """A gyro fault in motion: imu/data pauses at once, with an error in the log and /diagnostics, until the gyro works
 again."""
-
 from diagnostic_msgs.msg import DiagnosticStatus
 from sensor_msgs.msg import Imu
 

@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """A wheel drops, or the cable is unplugged, while a script drives: it exits with 1 and the reason, and the robot does
 not move again."""
-
 from driven import DrivenRobot
 import support
 

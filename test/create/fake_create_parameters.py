@@ -1,6 +1,5 @@
 #!/usr/bin/python3
 """Parameters of fake_create.py: valid ones have an effect, an invalid one stops the node with a one-line message."""
-
 import rospy
 
 from emulated import EmulatedRobot

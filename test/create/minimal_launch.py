@@ -1,6 +1,5 @@
 #!/usr/bin/python3
 """turtlebot_minimal_create.launch starts everything that steps 5 to 7 of the tutorial need, on any serial port."""
-
 import rospy
 import tf2_ros
 from sensor_msgs.msg import Imu, JointState

@@ -1,6 +1,5 @@
 #!/usr/bin/python3
 """A command line with a mistake does not move the robot; remappings and node names are accepted."""
-
 import rospy
 from geometry_msgs.msg import Twist
 

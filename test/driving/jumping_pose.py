@@ -1,6 +1,5 @@
 #!/usr/bin/python3
 """If the pose jumps during a run, as when the base restarts, the odometry-based script stops the robot and exits."""
-
 import rospy
 from geometry_msgs.msg import Twist
 from std_srvs.srv import Empty

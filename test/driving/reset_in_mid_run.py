@@ -1,6 +1,5 @@
 #!/usr/bin/python3
 """After a reset during a run, the odometry-based script stops the robot and exits."""
-
 import rospy
 from geometry_msgs.msg import Twist
 from std_srvs.srv import Empty

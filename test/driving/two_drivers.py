@@ -1,6 +1,5 @@
 #!/usr/bin/python3
 """A second driving script takes over the name of the first, which stops the robot and exits; the second finishes."""
-
 from rosgraph_msgs.msg import Log
 
 import support

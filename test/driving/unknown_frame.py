@@ -1,6 +1,5 @@
 #!/usr/bin/python3
 """The error about a frame that does not exist lists the existing frames; an angle that looks like degrees is named."""
-
 from geometry_msgs.msg import Twist
 
 import support

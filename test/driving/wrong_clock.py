@@ -1,6 +1,5 @@
 #!/usr/bin/python3
 """A script that was started before /use_sim_time was set does not drive a base on simulated time."""
-
 import rospy
 
 import support

@@ -1,6 +1,5 @@
 #!/usr/bin/python3
 """Without a base, odom_ekf.launch logs one warning, and one line as soon as there is a base."""
-
 import rospy
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Log

@@ -1,6 +1,5 @@
 #!/usr/bin/python3
 """With start_filter false, the combined pose of another filter is republished as /odom_ekf."""
-
 import rosnode
 import rospy
 from geometry_msgs.msg import PoseWithCovarianceStamped

@@ -1,6 +1,5 @@
 #!/usr/bin/python3
 """The transform leads to the robot's frame, even without child_frame_id, until another node publishes one to it."""
-
 import rospy
 from geometry_msgs.msg import TransformStamped
 from nav_msgs.msg import Odometry

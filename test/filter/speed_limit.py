@@ -1,6 +1,5 @@
 #!/usr/bin/python3
 """A robot at 3 m/s is estimated along its whole path; with a lower ~max_speed, its odometry counts as jumped."""
-
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseWithCovarianceStamped

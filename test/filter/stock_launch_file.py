@@ -1,6 +1,5 @@
 #!/usr/bin/python3
 """With a new pkg and type, robot_pose_ekf's launch file yields the combined pose and one connected tree of frames."""
-
 import rospy
 import tf2_ros
 from geometry_msgs.msg import PoseWithCovarianceStamped

@@ -1,6 +1,5 @@
 #!/usr/bin/python3
 """The filter logs a line for each requested feature of robot_pose_ekf that it does not support, and runs without it."""
-
 import rospy
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from nav_msgs.msg import Odometry

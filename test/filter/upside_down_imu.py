@@ -1,6 +1,5 @@
 #!/usr/bin/python3
 """An IMU that is mounted upside down is used as soon as there is a transform to its frame, which rotates it."""
-
 import rospy
 from geometry_msgs.msg import Quaternion, TransformStamped
 from tf2_msgs.msg import TFMessage

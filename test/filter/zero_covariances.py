@@ -1,6 +1,5 @@
 #!/usr/bin/python3
 """An IMU without covariances is used with robot_pose_ekf's covariances; odometry does not need any."""
-
 from altered import AlteredRobot
 import support
 

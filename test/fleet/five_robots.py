@@ -1,6 +1,5 @@
 #!/usr/bin/python3
 """Five robots on one simulated clock: each ends as one alone, while others are added, removed, or lose their driver."""
-
 from diagnostic_msgs.srv import AddDiagnostics
 import rospy
 import yaml

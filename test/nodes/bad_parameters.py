@@ -1,6 +1,5 @@
 #!/usr/bin/python3
 """A node with an invalid parameter exits with one line that contains the key, the value and what is expected."""
-
 import rospy
 from geometry_msgs.msg import Twist
 

@@ -1,5 +1,4 @@
 """1 % of the bytes from an emulated Create or Create 2 are corrupted for a whole run."""
-
 import support
 from driven import CHI_SQUARE, IDEAL, DrivenRobot
 

@@ -1,5 +1,4 @@
 """Drivers with feedback in lockstep: every run of a driver takes the same path."""
-
 import rospy
 from nav_msgs.msg import Odometry
 

@@ -1,14 +1,15 @@
-"""Each key that a surface declares changes what a simulated robot does, or what it measures."""
+"""Each key that a surface declares changes what a simulated robot does, or what it measures, and suits the fit."""
+import numpy
 import pytest
 
 from rbx1_nav.robot.description import read_robot
 from rbx1_nav.simulation.base import make_base
-from rbx1_nav.simulation.surfaces import KEYS
+from rbx1_nav.simulation.surfaces import KEYS, floor_travel
 from rbx1_nav.units import SECOND
 from sample_surface import SURFACE
 
 ROBOT = read_robot({'controllers': {'base': {'type': 'diff_controller', 'base_width': 0.26}}})
-COMMANDS = (0.0, 0.0), (0.3, 0.0), (0.0, 0.0), (0.0, 1.0), (0.2, 0.5)   # m/s, rad/s, for a second each
+COMMANDS = (0.0, 0.0), (0.3, 0.0), (0.0, 0.0), (0.0, 1.0), (0.2, 0.5), (-0.2, 0.5)     # m/s, rad/s, for a second each
 
 
 def drive(surface):
@@ -27,3 +28,11 @@ def drive(surface):
 def test_a_key_that_is_declared_is_used(key):
     limits = (KEYS[key].to_si(limit) for limit in (KEYS[key].low, KEYS[key].high))
     assert any(drive(SURFACE._replace(**{key: limit})) != drive(SURFACE) for limit in limits)
+
+
+@pytest.mark.parametrize('key', KEYS)
+def test_the_travel_of_arrays_is_that_of_numbers(key):
+    surface = SURFACE._replace(**{key: KEYS[key].limits[1]})
+    found = floor_travel(surface, surface, *numpy.transpose(COMMANDS), numpy.copysign, numpy.maximum)
+    assert numpy.transpose(found) == pytest.approx(numpy.array(
+        [floor_travel(surface, surface, *command) for command in COMMANDS]))
