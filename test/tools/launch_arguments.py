@@ -30,6 +30,11 @@ class TestLaunchArguments(support.Case):
             params = roslaunch('--dump-params', package, file, 'robot:=robot2')
             self.assertIn('/robot2/tf_prefix: robot2\n', params)
 
+    def test_seeds_of_a_fleet(self):
+        for seed, second in ('7', '8'), ('random', 'random'), ('abc', 'abc'):
+            params = roslaunch('--dump-params', 'rbx1_nav', 'fleet.launch', 'n:=2', f'seed:={seed}')
+            self.assertRegex(params, f"/robot2/arbotix/seed: '?{second}'?\n")
+
     def test_no_model(self):
         arguments = '--nodes', 'rbx1_nav', 'fake_turtlebot.launch', 'surface:=low_ply_carpet'
         self.assertIn('/robot_state_publisher', roslaunch(*arguments))

@@ -12,9 +12,9 @@ NO_MASTER = 'ROS_MASTER_URI=http://127.0.0.1:1'
 
 
 class TestUsage(support.Case):
-    def run_to_its_end(self, name, argument):
+    def run_to_its_end(self, name, *arguments):
         node = os.path.join(rospkg.RosPack().get_path('rbx1_nav'), 'nodes', name)
-        process = support.Process('env', NO_MASTER, '/usr/bin/python3', node, argument)
+        process = support.Process('env', NO_MASTER, '/usr/bin/python3', node, *arguments)
         return process.wait(), process
 
     def test_help(self):
@@ -32,6 +32,13 @@ class TestUsage(support.Case):
             self.assertIn(f'usage: {name}', process.output)
             self.assertEqual(process.lines[-1], '%s: error: 0.1: unknown argument: expected _parameter:=value or '
                                                 'topic:=new_topic' % name)
+
+    def test_what_a_launch_file_passes_on(self):
+        for arguments, text in ((('maybe', '/arbotix'), "simulated_time: 'maybe': expected true or false"),
+                                (('true', '/a/b/arbotix'), "robot: 'a/b': expected a name of letters")):
+            status, process = self.run_to_its_end('clock_mode.py', *arguments)
+            self.assertEqual(status, 2, process.output)
+            self.assertEqual(process.output[:len(text)], text)
 
 
 if __name__ == '__main__':
