@@ -37,8 +37,7 @@ class TestUsage(support.Case):
         for arguments, text in ((('maybe', '/arbotix'), "simulated_time: 'maybe': expected true or false"),
                                 (('true', '/a/b/arbotix'), "robot: 'a/b': expected a name of letters")):
             status, process = self.run_to_its_end('clock_mode.py', *arguments)
-            self.assertEqual(status, 2, process.output)
-            self.assertEqual(process.output[:len(text)], text)
+            self.assertEqual((status, process.output[:len(text)]), (2, text))
 
 
 if __name__ == '__main__':

@@ -22,8 +22,7 @@ def shown():
 
 def test_the_whole_timed_script_is_shown_in_its_order():
     script, blocks = code_of('timed_out_and_back.py'), shown()
-    assert [line for block in blocks for line in block][:len(script)] == script, (
-        'docs/the_script.md: expected nodes/timed_out_and_back.py')
+    assert [line for block in blocks for line in block][:len(script)] == script, 'docs/the_script.md: expected it'
 
 
 def test_what_is_shown_of_the_other_script_is_in_it():

@@ -34,5 +34,4 @@ def test_a_key_that_is_declared_is_used(key):
 def test_the_travel_of_arrays_is_that_of_numbers(key):
     surface = SURFACE._replace(**{key: KEYS[key].limits[1]})
     found = floor_travel(surface, surface, *numpy.transpose(COMMANDS), numpy.copysign, numpy.maximum)
-    assert numpy.transpose(found) == pytest.approx(numpy.array(
-        [floor_travel(surface, surface, *command) for command in COMMANDS]))
+    assert numpy.allclose(numpy.transpose(found), [floor_travel(surface, surface, *each) for each in COMMANDS])

@@ -1,17 +1,17 @@
-"""A publisher that registers together with a subscriber is not lost."""
+"""A publisher that registers together with a subscriber is not lost, and connections keep their order."""
+import time
+
 import pytest
 from rospy.impl.registration import RegManager
 
-from rbx1_nav.ros.network.rospy_topics import repair_connections
-
-ORIGINAL = RegManager.publisher_update
+from rbx1_nav.ros.network import rospy_topics
 
 
 @pytest.fixture(name='manager')
 def fixture_manager(monkeypatch):
     """Return a RegManager whose thread is not running."""
-    monkeypatch.setattr(RegManager, 'publisher_update', ORIGINAL)
-    repair_connections()
+    monkeypatch.setattr(RegManager, 'publisher_update', RegManager.publisher_update)
+    rospy_topics.repair_connections()
     return RegManager(None)
 
 
@@ -26,3 +26,12 @@ def test_publishers_of_several_lists_are_named_once_and_topics_are_kept_apart(ma
         for _ in publishers:                # rospy passes on each notice of the master once per publisher
             manager.publisher_update(topic, publishers)
     assert manager.updates[-1] == ('/odom', ['a', 'b', 'c']) and ('/tf', ['d']) in manager.updates
+
+
+def test_connections_are_added_in_the_order_in_which_they_arrive(monkeypatch):
+    added = []
+    monkeypatch.setattr(rospy_topics, 'HEADER_TIME', 60)
+    monkeypatch.setattr(rospy_topics, '_read_header', lambda _, late, __: time.sleep(late) or added.append(late))
+    for late in 0.05, 0:
+        rospy_topics._read_header_in_thread(None, late, None)
+    assert added == [0.05, 0]
