@@ -52,7 +52,21 @@ def wait_for(condition, what, limit=LIMIT):
         if value:
             return value
         time.sleep(0.02)
-    raise AssertionError(f'timed out after {limit:g} s waiting for {what}')
+    raise AssertionError(f'timed out after {limit:g} s waiting for {what}; connections:\n{connections()}')
+
+
+def connections():
+    """Return who is connected with whom, as each node sees it."""
+    found = []
+    try:
+        system = rospy.get_master().getSystemState()[2]
+        for node in sorted({node for topics in system[:2] for _, nodes in topics for node in nodes}):
+            with ServerProxy(rospy.get_master().lookupNode(node)[2]) as server:
+                found += [f'{node} {direction} {topic} {peer}'
+                          for _, peer, direction, _, topic, *_ in server.getBusInfo('/test')[2]]
+    except OSError as error:        # a test may have ended or suspended a node
+        found.append(str(error))
+    return '\n'.join(found)
 
 
 def twist(linear=0.0, angular=0.0):

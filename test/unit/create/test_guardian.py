@@ -10,6 +10,7 @@ import pytest
 from rbx1_nav.create.driver import guardian
 from rbx1_nav.create.driver.link import PortError, open_port
 from rbx1_nav.create.emulator.serial_line import PseudoTerminal
+from waiting import wait_for
 
 STOP = b'\0\0\x91\0\0\0\0\x80'
 LIMIT = 30      # s after which a wait fails
@@ -65,10 +66,7 @@ def start(terminal, command=b'\x91'):
 
 
 def wait_for_end(pid):
-    give_up = time.monotonic() + LIMIT
-    while os.path.exists('/proc/%d' % pid):
-        assert time.monotonic() < give_up
-        time.sleep(0.01)
+    wait_for(lambda: not os.path.exists(f'/proc/{pid}'))
 
 
 @pytest.mark.parametrize('end', [

@@ -21,6 +21,7 @@ from typing import Any, Callable, NamedTuple
 from genpy import Message
 from rosgraph_msgs.msg import Clock
 import rospy
+from rospy.exceptions import TransportException
 from rospy.msg import serialize_message
 
 from rbx1_nav.ros.lockstep.watch import Watch
@@ -250,10 +251,11 @@ def write(connection: Any, data: bytes) -> None:
     try:
         with connection._lock:
             is_free = bool(connection._cond_data_available._waiters)    # its thread waits for a message
-        if is_free and is_writable(connection.socket):
+        sock = connection.socket                        # None once it is closed
+        if is_free and sock and is_writable(sock):
             connection = connection._connection
         connection.write_data(data)
-    except Exception:       # TransportTerminated, or any error of the socket: the node has exited
+    except (TransportException, OSError, ValueError):   # ValueError: the socket was just closed
         connection.close()
 
 

@@ -12,6 +12,8 @@ from rospy.topics import get_topic_manager
 
 HEADER_TIME = 0.2   # s in which a client usually sends its header
 _read_header = TCPROSServer._tcp_server_callback
+_create = rospy.Publisher.__init__
+_creating = threading.Lock()    # held while a publisher is created
 
 
 class NoDelay(rospy.SubscribeListener):
@@ -41,7 +43,7 @@ def connected_nodes(publisher: rospy.Publisher) -> set[str]:
 
 
 def repair_connections() -> None:
-    """Repair two faults of rospy, in this process; to be called before the node starts.
+    """Repair three faults of rospy, in this process; to be called before the node starts.
 
     rospy connects a subscriber to the publishers in the last list that it has received, and drops a list that it has
     not used yet. A publisher that registers at the same moment as the subscriber is in the master's notice, but not in
@@ -49,15 +51,32 @@ def repair_connections() -> None:
 
     rospy accepts connections in one thread, which also waits for the header of each connection, without a limit. After
     a client that sends none, such as a port scanner or a computer that has left the network, nobody can connect.
+
+    rospy registers a publisher before it sets the size of the queue and the SubscribeListener. A subscriber that
+    connects in between never has a queue, and the listener does not hear of it.
     """
     RegManager.publisher_update = _update_publishers
     TCPROSServer._tcp_server_callback = _read_header_in_thread
+    rospy.Publisher.__init__ = _create_before_connections
+
+
+def _create_before_connections(*args: Any, **keywords: Any) -> None:
+    """Create a publisher; who connects to it waits until it is complete."""
+    with _creating:
+        _create(*args, **keywords)
+
+
+def _add_connection(server: TCPROSServer, connection: socket.socket, address: tuple[str, int]) -> None:
+    """Read the header of a connection, and add the connection to its topic or service, which is complete by then."""
+    with _creating:
+        pass
+    _read_header(server, connection, address)
 
 
 def _read_header_in_thread(server: TCPROSServer, connection: socket.socket, address: tuple[str, int]) -> None:
-    """Read the header of a connection, and add the connection to its topic or service. The next connection waits, so
-    that a node that subscribes to /clock first is first known as a listener to it; but only for a while."""
-    thread = threading.Thread(target=_read_header, args=(server, connection, address), daemon=True)
+    """Add a connection. The next one waits, so that a node that subscribes to /clock first is first known as a listener
+    to it; but only for a while."""
+    thread = threading.Thread(target=_add_connection, args=(server, connection, address), daemon=True)
     thread.start()
     thread.join(HEADER_TIME)
 

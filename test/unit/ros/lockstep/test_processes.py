@@ -2,27 +2,15 @@
 import signal
 import socket
 import subprocess
-import time
 from types import SimpleNamespace
 
 import pytest
 
 from rbx1_nav.ros.lockstep.processes import Process, awake, still_polling
+from waiting import wait_for
 
-LIMIT = 60      # s
 BEGIN = 'import socket, sys, threading, time\nprint("up", flush=True)\n'
 POLL = 'def poll():\n    while True: time.sleep(0.001)\nthreading.Thread(target=poll, daemon=True).start()\n'
-
-
-def wait_for(condition):
-    """Wait until condition() is true, and return its result."""
-    end = time.monotonic() + LIMIT
-    while time.monotonic() < end:
-        value = condition()
-        if value:
-            return value
-        time.sleep(0.002)
-    raise AssertionError('timed out')
 
 
 @pytest.fixture(name='start')

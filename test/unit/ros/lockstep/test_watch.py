@@ -8,6 +8,7 @@ import pytest
 
 from rbx1_nav.ros.lockstep import watch
 from rbx1_nav.ros.lockstep.watch import Watch, sources_of
+from waiting import wait_for
 
 PUBLISHERS = [['/cmd_vel', ['/mux']], ['/cmd_vel_raw', ['/driver', '/teleop']], ['/odom', ['/base']],
               ['/goal', ['/rviz']]]
@@ -19,13 +20,6 @@ def test_sources_of_commands():
     assert sources_of(['/goal'], PUBLISHERS, SUBSCRIBERS) == ['/rviz', '/base', '/mux', '/driver', '/teleop']
     assert sources_of(['/nothing'], PUBLISHERS, SUBSCRIBERS) == []
     assert sources_of(['/cmd_vel', '/goal'], PUBLISHERS, SUBSCRIBERS)[:2] == ['/mux', '/rviz']
-
-
-def wait_for(condition):
-    end = time.monotonic() + 60
-    while not condition():
-        assert time.monotonic() < end, 'timed out'
-        time.sleep(0.002)
 
 
 class World:

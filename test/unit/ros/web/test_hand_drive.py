@@ -5,8 +5,7 @@ import time
 import pytest
 
 from rbx1_nav.ros.web.hand_drive import KEY_TIMEOUT, LINGER, HandDrive, Keys
-
-LIMIT = 60      # s, after which a wait fails
+from waiting import wait_for
 
 
 class Base:
@@ -27,13 +26,6 @@ class Clock:
 
     def __call__(self):
         return self.now
-
-
-def wait_for(condition):
-    end = time.monotonic() + LIMIT
-    while not condition():
-        assert time.monotonic() < end
-        time.sleep(0.002)
 
 
 @pytest.fixture(name='driven')

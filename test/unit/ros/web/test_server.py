@@ -3,13 +3,13 @@ import asyncio
 import os
 import re
 import socket
-import time
 
 import pytest
 from tornado.httpclient import HTTPClientError, HTTPRequest
 from tornado.websocket import websocket_connect
 
 from rbx1_nav.ros.web.server import PageServer
+from waiting import wait_for
 
 FOLDER = os.path.join(os.path.dirname(__file__), '..', '..', '..', '..', 'web')
 LIMIT = 60      # s, after which a wait fails
@@ -116,9 +116,7 @@ def test_a_socket(server):
         connection.close()
     asyncio.run(talk())
     assert list(server.connections)[0].messages == ['text']
-    end = time.monotonic() + LIMIT
-    while list(server.connections)[0].browsers:
-        assert time.monotonic() < end
+    wait_for(lambda: not list(server.connections)[0].browsers)
 
 
 def test_no_socket_when_there_are_too_many(server):

@@ -3,15 +3,14 @@ import os
 import signal
 import subprocess
 import sys
-import time
 
 import pytest
 
 from rbx1_nav.ros.web import page_runs as module
 from rbx1_nav.ros.web.page_runs import Runs
+from waiting import wait_for
 
 SOURCE = os.path.join(os.path.dirname(__file__), '..', '..', '..', '..', 'src')
-LIMIT = 60      # s, after which a wait fails
 SCRIPT = '''#!{python}
 import os, signal, sys, time
 def stop(*_):
@@ -22,13 +21,6 @@ while not os.path.exists(sys.argv[1] + '.end'):
     time.sleep(0.01)
 sys.exit({status})
 '''
-
-
-def wait_for(condition):
-    end = time.monotonic() + LIMIT
-    while not condition():
-        assert time.monotonic() < end
-        time.sleep(0.005)
 
 
 @pytest.fixture(name='started')

@@ -1,14 +1,12 @@
 """What the messages of the topics change on the page, and which nodes Stop shuts down."""
-import time
-
 from nav_msgs.msg import Odometry
 import pytest
 import rospy
 
 from rbx1_nav.ros.web import system
 from rbx1_nav.ros.web.state import PageState
+from waiting import wait_for
 
-LIMIT = 60      # s, after which a wait fails
 PUBLISHERS = [['/cmd_vel', ['/stranger']], ['/other/cmd_vel', ['/driver', '/unnamed']]]
 
 
@@ -56,8 +54,5 @@ def test_stop_shuts_down_the_drivers_of_the_remapped_topic(view, monkeypatch):
     monkeypatch.setattr(rospy, 'get_name', lambda: '/unnamed')
     monkeypatch.setattr(system, 'call', call)
     view.shut_down_drivers()
-    end = time.monotonic() + LIMIT
-    while view.pending:
-        assert time.monotonic() < end
-        time.sleep(0.002)
+    wait_for(lambda: not view.pending)
     assert shut_down == [('uri of /driver', 'shutdown')] and view.take_shut_down() == (['/driver'], [])

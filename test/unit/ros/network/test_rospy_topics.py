@@ -1,4 +1,5 @@
-"""A publisher that registers together with a subscriber is not lost, and connections keep their order."""
+"""The connections of a node: none is missed, they keep their order, and a publisher is complete before them."""
+from threading import Event
 import time
 
 import pytest
@@ -35,3 +36,16 @@ def test_connections_are_added_in_the_order_in_which_they_arrive(monkeypatch):
     for late in 0.05, 0:
         rospy_topics._read_header_in_thread(None, late, None)
     assert added == [0.05, 0]
+
+
+def test_a_publisher_is_complete_before_somebody_connects(monkeypatch):
+    events, connected = [], Event()
+
+    def create(_):
+        rospy_topics._read_header_in_thread(None, None, None)       # waits for a while
+        events.append('complete')
+    monkeypatch.setattr(rospy_topics, '_create', create)
+    monkeypatch.setattr(rospy_topics, '_read_header', lambda *_: events.append('connected') or connected.set())
+    rospy_topics._create_before_connections(None)
+    connected.wait()
+    assert events == ['complete', 'connected']
