@@ -35,10 +35,10 @@ def bases_on_other_clock(simulated: bool, but: str) -> list[str]:
 
 
 def is_alive(master: rosgraph.Master, name: str) -> bool:
-    """Return whether a registered node answers, or does not refuse the connection."""
+    """Return whether a registered node answers, or may be alive on a host that cannot be reached."""
     try:
         return bool(xmlrpc.client.ServerProxy(master.lookupNode(name)).getPid('/clock_mode'))
-    except socket.timeout:      # it is suspended, or its host drops packets
+    except (socket.timeout, socket.gaierror):   # suspended; its host drops packets, or has no address here
         return True
     except Exception:       # nothing, or another program, listens at the port of a node that was killed
         return False

@@ -1,15 +1,14 @@
 #!/usr/bin/python3
 """What a base logs at its start, and that a silent client does not block it."""
-import os
 import re
 import socket
 from xmlrpc.client import ServerProxy
 
-import rospkg
 import rospy
 from nav_msgs.msg import Odometry
-import yaml
 
+from rbx1_nav.config import load_yaml
+from rbx1_nav.ros.node import resources
 import support
 
 
@@ -17,8 +16,7 @@ class TestStartMessages(support.Case):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        with open(os.path.join(rospkg.RosPack().get_path('rbx1_nav'), 'config', 'turtlebot.yaml')) as file:
-            cls.config = yaml.safe_load(file)
+        cls.config = load_yaml(resources.path('config', 'turtlebot.yaml'))
 
     def base(self, **params):
         """Start a base with the package's own configuration and these parameters."""

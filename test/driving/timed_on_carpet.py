@@ -1,13 +1,11 @@
 #!/usr/bin/python3
 """On carpet, the timed script misses as in the picture in the tutorial, exactly like the simulation without ROS."""
 import math
-import os
 
-import rospkg
 import rospy
-import yaml
 
-from rbx1_nav.robot.description import read_robot
+from rbx1_nav.robot.description import load_robot
+from rbx1_nav.ros.node import resources
 from rbx1_nav.simulation.exercise import simulate
 from rbx1_nav.simulation.surfaces import load_surface, read_seed
 import support
@@ -31,10 +29,8 @@ class TestTimedOnCarpet(support.Case):
         self.assertLess(math.hypot(x - odom.position()[0], y - odom.position()[1]), 0.20)
 
         # 1e-9 is far above the rounding in a thousand steps
-        folder = os.path.join(rospkg.RosPack().get_path('rbx1_nav'), 'config')
-        with open(os.path.join(folder, 'turtlebot.yaml')) as file:
-            robot = read_robot(yaml.safe_load(file))
-        surface = load_surface('low_ply_carpet', os.path.join(folder, 'surfaces'))
+        robot = load_robot(resources.path('config', 'turtlebot.yaml'))
+        surface = load_surface('low_ply_carpet', resources.surfaces())
         end = simulate('timed', robot, surface, read_seed(rospy.get_param('/arbotix/seed'))).end
         for pose, simulated in (((x, y, yaw), end.truth), (support.pose(odom.last), end.odometry)):
             self.assertAlmostEqual(pose[0], simulated.x, delta=1e-9)

@@ -1,11 +1,14 @@
 #!/usr/bin/python3
-"""The driving script waits for all live subscribers, ignores dead ones, and times out without a base."""
+"""The driving script waits for a base and for all live subscribers, ignores dead ones, and times out without a base."""
 import signal
 
 import rospy
 from geometry_msgs.msg import Twist
 
 import support
+
+LISTENER = ("import rospy; from geometry_msgs.msg import Twist; rospy.init_node('listener'); "
+            "rospy.Subscriber('cmd_vel', Twist); print('ready', flush=True); rospy.spin()")
 
 
 class TestWaitForBase(support.Case):
@@ -40,18 +43,22 @@ class TestWaitForBase(support.Case):
         # the very first command has arrived
         self.assertEqual(commands.messages[0].linear.x, 0.2)
 
-    def test_a_subscriber_that_does_not_answer_is_named_and_ignored(self):
-        suspended = self.base('suspended')
-        suspended.signal(signal.SIGSTOP)
-        # a regular exit, so that the node is unregistered
-        self.addCleanup(suspended.wait)
-        self.addCleanup(suspended.signal, signal.SIGTERM)
-        self.addCleanup(suspended.signal, signal.SIGCONT)
+    def test_a_base_that_does_not_answer_is_waited_for_and_any_other_node_is_ignored(self):
+        base, listener = self.base('base'), support.Process('/usr/bin/python3', '-c', LISTENER)
+        listener.wait_for_line('ready')
+        for process in base, listener:
+            process.signal(signal.SIGSTOP)
+            # a regular exit, so that the node is unregistered
+            self.addCleanup(process.wait)
+            self.addCleanup(process.signal, signal.SIGTERM)
+            self.addCleanup(process.signal, signal.SIGCONT)
         commands = self.subscribe()
         driver = self.start()
-        driver.wait_for_line(r'/suspended is registered as a subscriber of /cmd_vel but does not answer: ignored')
+        driver.wait_for_line(r'/listener is registered as a subscriber of /cmd_vel but does not answer: ignored')
+        driver.wait_for_line('Waiting for /base to answer')
+        self.assertEqual(commands.messages, [])
+        base.signal(signal.SIGCONT)
         driver.wait_for_line('forward: 1.00 m')
-        support.wait_for(lambda: commands.messages, 'a command')
         driver.signal(signal.SIGTERM)
         driver.wait()
 

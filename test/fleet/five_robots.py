@@ -2,8 +2,8 @@
 """Five robots on one simulated clock: each ends as one alone, while others are added, removed, or lose their driver."""
 from diagnostic_msgs.srv import AddDiagnostics
 import rospy
-import yaml
 
+from rbx1_nav.config import load_yaml
 from rbx1_nav.robot.description import read_robot
 from rbx1_nav.ros.node import resources
 from rbx1_nav.simulation.exercise import simulate
@@ -18,8 +18,7 @@ class TestFleet(support.Case):
     def setUpClass(cls):
         super().setUpClass()
         cls.truth = {f'robot{i}': support.Watch(f'/robot{i}/ground_truth', support.Odometry) for i in range(1, 7)}
-        with open(resources.path('config', 'turtlebot.yaml')) as file:
-            cls.robot = yaml.safe_load(file)
+        cls.robot = load_yaml(resources.path('config', 'turtlebot.yaml'))
 
     def request(self, service, name):
         """Call a service of the fleet; return (success, message)."""

@@ -3,6 +3,7 @@
 import os
 import signal
 
+import rosgraph
 import rospy
 import tf2_ros
 
@@ -32,10 +33,15 @@ class TestSecondClock(support.Case):
             support.wait_for(lambda: buffer.can_transform(f'{robot}/odom', f'{robot}/laptop_link', rospy.Time(0)),
                              f'the links of {robot}')
         self.assertFalse(buffer.can_transform('robot1/odom', 'robot2/odom', rospy.Time(0)))
+        # robot0 runs on a host that has no address here
+        with support.ServerProxy(rosgraph.get_master_uri()) as master:
+            for register, *topic in (('registerPublisher', '/robot0/odom', 'nav_msgs/Odometry'),
+                                     ('registerSubscriber', '/robot0/cmd_vel', 'geometry_msgs/Twist')):
+                getattr(master, register)('/robot0/arbotix', *topic, 'http://robot0.invalid:1/')
         refused = self.launch('robot3', SIMULATED)
         self.assertEqual(refused.wait(), 1)
-        self.assertIn('/use_sim_time: true: expected no robot in real time, but /robot1/arbotix, /robot2/arbotix runs',
-                      refused.output)
+        self.assertIn('/use_sim_time: true: expected no robot in real time, but /robot0/arbotix, /robot1/arbotix, '
+                      '/robot2/arbotix runs', refused.output)
         refused = support.Process('roslaunch', 'rbx1_nav', 'fleet.launch', 'n:=1', 'model:=none')
         refused.wait()
         self.assertIn('/robot1/arbotix: expected the name of a robot that is not simulated by another', refused.output)

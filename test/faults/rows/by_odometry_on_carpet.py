@@ -1,12 +1,8 @@
 """The script that measures its pose, in lockstep on carpet: it ends where simulate.py computes."""
-import os
-
 from nav_msgs.msg import Odometry
-from roslib.packages import get_pkg_dir
 import rospy
-import yaml
 
-from rbx1_nav.robot.description import read_robot
+from rbx1_nav.robot.description import load_robot
 from rbx1_nav.ros.node import resources
 from rbx1_nav.simulation.exercise import simulate
 from rbx1_nav.simulation.surfaces import load_surface
@@ -27,8 +23,7 @@ def run(row):
     """See FAULT."""
     row.roscore()
     support.init_node('faults')
-    with open(os.path.join(get_pkg_dir('rbx1_nav'), 'config/turtlebot.yaml'), encoding='utf-8') as file:
-        robot = read_robot(yaml.safe_load(file))
+    robot = load_robot(resources.path('config', 'turtlebot.yaml'))
     truth = simulate('odom', robot, load_surface(SURFACE, resources.surfaces()), SEED).end.truth
     for number in range(row.times):
         loops = number % 2 * BUSY

@@ -5,8 +5,8 @@ import time
 from diagnostic_msgs.srv import AddDiagnostics
 import rospy
 from std_srvs.srv import Empty
-import yaml
 
+from rbx1_nav.config import load_yaml
 from rbx1_nav.ros.node import resources
 import support
 
@@ -49,8 +49,7 @@ def run(row):
     support.init_node('faults')
     names = ['robot1', 'robot2', 'robot3']
     truth = {name: support.Watch(f'/{name}/ground_truth', support.Odometry) for name in names}
-    with open(resources.path('config', 'turtlebot.yaml')) as file:
-        rospy.set_param('/robot3/arbotix', yaml.safe_load(file))
+    rospy.set_param('/robot3/arbotix', load_yaml(resources.path('config', 'turtlebot.yaml')))
     for number in range(row.times):
         kind = ('removed', 'killed', 'suspended')[number % 3]
         with row.fault(f'{kind} ({number})'):

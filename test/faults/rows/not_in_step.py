@@ -3,11 +3,11 @@ import os
 import re
 import time
 
-from roslib.packages import get_pkg_dir
 import rosbag
 import rospy
-import yaml
 
+from rbx1_nav.config import load_yaml
+from rbx1_nav.ros.node import resources
 import support
 
 FAULT = ('drivers on wall time, on a keyboard, or from a bag, at real_time_factor 20 with strict; in every second run '
@@ -28,8 +28,7 @@ def run(row):
     """See FAULT."""
     row.roscore()
     support.init_node('faults')
-    with open(os.path.join(get_pkg_dir('rbx1_nav'), 'config/turtlebot.yaml'), encoding='utf-8') as file:
-        settings = yaml.safe_load(file)
+    settings = load_yaml(resources.path('config', 'turtlebot.yaml'))
     rospy.set_param('/use_sim_time', True)
     rospy.set_param('/arbotix', dict(settings, real_time_factor=20, strict=True))
     write_commands('commands.bag')

@@ -2,6 +2,7 @@
 import errno
 import subprocess
 import sys
+import termios
 
 import pytest
 
@@ -61,11 +62,18 @@ def test_another_process_has_it(terminal):
     open_port(terminal.link, 57600).close()
 
 
+@pytest.mark.parametrize('call', ['tcgetattr', 'tcsetattr', 'tcflush'])
+def test_an_adapter_that_is_unplugged_while_it_is_opened(call, terminal, monkeypatch):
+    do = getattr(termios, call)
+    monkeypatch.setattr(termios, call, lambda *arguments: terminal.unplug() or do(*arguments))
+    assert 'no such device' in refusal(terminal.link)
+
+
 @pytest.mark.parametrize('number, text', [
     (errno.EAGAIN, 'in use by another process'), (errno.EBUSY, 'in use by another process'),
     (errno.EACCES, 'not permitted'), (errno.EPERM, 'not permitted'), (errno.ENOENT, 'no such device'),
     (errno.ENXIO, 'no such device'), (errno.ENODEV, 'no such device'), (errno.ENOTTY, 'not a serial port'),
-    (errno.EINVAL, 'not a serial port'), (errno.EISDIR, 'not a serial port'), (errno.EIO, 'some error'),
+    (errno.EINVAL, 'not a serial port'), (errno.EISDIR, 'not a serial port'), (errno.EIO, 'no such device'),
     (None, 'some error')])
 def test_why_a_port_cannot_be_opened(number, text, tmp_path):
     assert reason(str(tmp_path / 'none'), number, OSError('some error')).startswith(text)

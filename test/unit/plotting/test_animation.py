@@ -4,11 +4,10 @@ import os
 from PIL import Image, ImageChops
 from matplotlib.figure import Figure
 import pytest
-import yaml
 
 from rbx1_nav.config import ConfigError
 from rbx1_nav.plotting import animation
-from rbx1_nav.robot.description import read_robot
+from rbx1_nav.robot.description import load_robot
 from rbx1_nav.simulation.exercise import METHODS, simulate
 
 ROOT = os.path.join(os.path.dirname(__file__), '..', '..', '..')
@@ -16,8 +15,7 @@ ROOT = os.path.join(os.path.dirname(__file__), '..', '..', '..')
 
 @pytest.fixture(scope='module')
 def results():
-    with open(os.path.join(ROOT, 'config', 'turtlebot.yaml'), encoding='utf-8') as file:
-        robot = read_robot(yaml.safe_load(file))
+    robot = load_robot(os.path.join(ROOT, 'config', 'turtlebot.yaml'))
     return {method: simulate(method, robot, None, 0, keep=True) for method in METHODS}
 
 

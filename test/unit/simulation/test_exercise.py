@@ -5,18 +5,16 @@ from statistics import median
 
 import numpy
 import pytest
-import yaml
 
 from rbx1_nav.estimation.priors import priors
-from rbx1_nav.robot.description import read_robot
+from rbx1_nav.robot.description import load_robot
 from rbx1_nav.simulation.exercise import METHODS, simulate
 from rbx1_nav.simulation.surfaces import load_surface
 
 CONFIG = os.path.join(os.path.dirname(__file__), '..', '..', '..', 'config')
 SEEDS = range(20)
 CARPET, FLOOR = (load_surface(name, os.path.join(CONFIG, 'surfaces')) for name in ('low_ply_carpet', 'hard_floor'))
-with open(os.path.join(CONFIG, 'turtlebot.yaml')) as robot:
-    TURTLEBOT = read_robot(yaml.safe_load(robot))
+TURTLEBOT = load_robot(os.path.join(CONFIG, 'turtlebot.yaml'))
 
 
 def angle(pose):

@@ -45,9 +45,10 @@ def open_port(path: str, baud: int) -> serial.Serial:
         if os.major(os.fstat(port.fd).st_rdev) not in PSEUDO_TERMINALS:
             fcntl.ioctl(port.fd, termios.TIOCEXCL)
         return port
-    except (OSError, ValueError) as error:
-        cause = error.__context__       # for a termios error, pyserial passes on only the text
-        number = getattr(error, 'errno', None) or (cause.args[0] if isinstance(cause, termios.error) else None)
+    except (OSError, ValueError, termios.error) as error:
+        # of some termios errors, pyserial passes on only the text; others it does not convert, and they are no OSError
+        number = getattr(error, 'errno', None) or next(
+            (each.args[0] for each in (error, error.__context__) if isinstance(each, termios.error)), None)
         raise PortError(f'{path}: {reason(path, number, error)}') from None
 
 
@@ -62,7 +63,7 @@ def reason(path: str, number: int | None, error: Exception) -> str:
                     'docs/real_robot.md, "The serial port"')
         return (f'not permitted: expected a member of the group {group}; run `sudo adduser $USER {group}`, then log in '
                 'again')
-    if number in (errno.ENOENT, errno.ENXIO, errno.ENODEV):
+    if number in (errno.ENOENT, errno.ENXIO, errno.ENODEV, errno.EIO):
         return "no such device: expected the robot's adapter to be plugged in"
     if number in (errno.ENOTTY, errno.EINVAL, errno.EISDIR):
         return 'not a serial port: expected the device of an adapter, such as /dev/ttyUSB0'

@@ -1,6 +1,7 @@
 """Simulated time, which a base advances in step with its drivers."""
 from __future__ import annotations
 
+from resource import RLIMIT_NOFILE, getrlimit, setrlimit
 import time
 from typing import Any, Callable
 
@@ -81,6 +82,8 @@ class OwnClock(Clock):
         self.strict = strict
         # rospy subscribes each node to /clock. This node sets the time, and receiving it would take a sixth of a tick.
         simtime._clock_sub.unregister()
+        # the usual limit of 1,024 open files is enough for the threads of about 17 drivers; see lockstep/processes.py
+        setrlimit(RLIMIT_NOFILE, 2 * getrlimit(RLIMIT_NOFILE)[1:])
         self.publisher = rospy.Publisher('/clock', ClockMessage, NoDelay(self.greet), queue_size=10)
         self.lockstep = Lockstep(Watch(self.publisher), self.report, life.end_requested.is_set)
         self.not_in_step: dict[str, str] = {}   # reasons, by the name of the node

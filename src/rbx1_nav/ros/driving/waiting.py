@@ -1,6 +1,7 @@
 """Waits for the subscribers of a topic, because messages published before they are connected are lost."""
 from __future__ import annotations
 
+import socket
 import time
 
 import rosgraph
@@ -22,6 +23,7 @@ class _Subscribers:
         self.topic = topic
         self.peers: dict[str, Peer] | None = None       # by name; None until the master has answered
         self.dead: set[str | None] = set()      # addresses
+        self.silent: list[str] = []     # bases that may be suspended: they have not answered, but exist
         self.others: list[str] = []     # namespaces of other bases
         self.next = 0.0     # s of the monotonic clock
 
@@ -38,6 +40,7 @@ class _Subscribers:
             self.others = sorted(namespaces_of_bases(publishers, subscribers, odometry, commands).keys()
                                  - {namespace or '/'})
             names = subscribers.get(self.topic, [])
+            self.silent = []
             found = [self.find(master, name, any(name in publishers.get(topic, ()) for topic in odometry),
                                name in publishers.get('/clock', ())) for name in names]
             self.peers = {peer.name: peer for peer in found if peer}
@@ -46,14 +49,18 @@ class _Subscribers:
         self.next = time.monotonic() + PERIOD
 
     def find(self, master: str, name: str, is_base: bool, keeps_time: bool) -> Peer | None:
-        """Return the Peer of this name if it answers. An address that did not answer is not called again."""
+        """Return the Peer of this name if it answers. An address that did not answer is not called again, unless a base
+        may be suspended there."""
         address = None
         try:
             address = call(master, 'lookupNode', name)
             if address not in self.dead:
                 with Server(address) as server:
                     return Peer(name, address, is_base, keeps_time, ask_refusals(server)[0])
-        except Exception:
+        except Exception as error:
+            if is_base and isinstance(error, socket.timeout):
+                self.silent.append(name)
+                return None
             self.dead.add(address)
             rospy.logwarn('%s is registered as a subscriber of %s but does not answer: ignored '
                           '(`rosnode cleanup` removes it)', name, self.topic)
@@ -81,11 +88,14 @@ def wait_for_subscribers(publisher: rospy.Publisher, timeout: float) -> Listener
         peers, connected = subscribers.peers, connected_nodes(publisher)
         return (f'the master to list the subscribers of {topic}' if peers is None
                 else f"{', '.join(sorted(peers.keys() - connected))} to connect to {topic}" if peers.keys() - connected
+                else f"{', '.join(subscribers.silent)} to answer" if subscribers.silent
                 else 'the time on /clock' if connected else subscribers.missing_base())
 
     def find() -> Listeners | None:
         subscribers.update()
         peers = subscribers.peers or {}
+        if subscribers.silent and not any(peer.is_base for peer in peers.values()):
+            return None
         if not (peers and peers.keys() <= connected_nodes(publisher) and rospy.get_rostime()):
             return None
         for peer in peers.values():

@@ -251,12 +251,14 @@ def write(connection: Any, data: bytes) -> None:
     try:
         with connection._lock:
             is_free = bool(connection._cond_data_available._waiters)    # its thread waits for a message
-        sock = connection.socket                        # None once it is closed
-        if is_free and sock and is_writable(sock):
+        if is_free and is_writable(connection.socket):
             connection = connection._connection
         connection.write_data(data)
-    except (TransportException, OSError, ValueError):   # ValueError: the socket was just closed
-        connection.close()
+    except Exception as error:
+        # another thread may have closed it meanwhile, which causes various errors
+        if not (isinstance(error, (TransportException, OSError)) or connection.done):
+            raise
+        connection.close()      # the node has exited
 
 
 def is_writable(connected: socket.socket) -> bool:

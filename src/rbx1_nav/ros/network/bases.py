@@ -45,7 +45,7 @@ class Refusals:
     @property
     def count(self) -> int:
         """Number of refused commands."""
-        return sum(count for count, _ in self._refused.values())
+        return sum(count for count, _ in list(self._refused.values()))     # threads add to it
 
     def add(self, sender: str, reason: str) -> None:
         """Count a refused command. sender: the name of its node; reason: a text."""

@@ -60,12 +60,12 @@ def call(uri: str, method: str, *args: str, timeout: float = TIMEOUT) -> Any:
 
 
 def is_alive(name: str) -> bool:
-    """Return whether a registered node answers, or does not refuse the connection. Raises OSError, HTTPException or
-    xmlrpc.client.Error if the master does not answer."""
+    """Return whether a registered node answers, or may be alive on a host that cannot be reached. Raises OSError,
+    HTTPException or xmlrpc.client.Error if the master does not answer."""
     address = call(rosgraph.get_master_uri(), 'lookupNode', name)
     try:
         return bool(call(address, 'getPid'))
-    except socket.timeout:      # it is suspended, or its host drops packets
+    except (socket.timeout, socket.gaierror):   # suspended; its host drops packets, or has no address here
         return True
     except Exception:       # nothing, or another program, listens at the port of a node that was killed
         return False

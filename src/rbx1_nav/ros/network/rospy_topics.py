@@ -66,17 +66,12 @@ def _create_before_connections(*args: Any, **keywords: Any) -> None:
         _create(*args, **keywords)
 
 
-def _add_connection(server: TCPROSServer, connection: socket.socket, address: tuple[str, int]) -> None:
-    """Read the header of a connection, and add the connection to its topic or service, which is complete by then."""
-    with _creating:
-        pass
-    _read_header(server, connection, address)
-
-
 def _read_header_in_thread(server: TCPROSServer, connection: socket.socket, address: tuple[str, int]) -> None:
-    """Add a connection. The next one waits, so that a node that subscribes to /clock first is first known as a listener
-    to it; but only for a while."""
-    thread = threading.Thread(target=_add_connection, args=(server, connection, address), daemon=True)
+    """Read the header of a connection, and add the connection to its topic or service. The next connection waits, so
+    that a node that subscribes to /clock first is first known as a listener to it; but only for a while."""
+    with _creating:     # before the thread: of two connections of a node, rospy keeps the one that is added last
+        pass
+    thread = threading.Thread(target=_read_header, args=(server, connection, address), daemon=True)
     thread.start()
     thread.join(HEADER_TIME)
 

@@ -1,5 +1,5 @@
 """The connections of a node: none is missed, they keep their order, and a publisher is complete before them."""
-from threading import Event
+from threading import Event, Thread
 import time
 
 import pytest
@@ -42,7 +42,8 @@ def test_a_publisher_is_complete_before_somebody_connects(monkeypatch):
     events, connected = [], Event()
 
     def create(_):
-        rospy_topics._read_header_in_thread(None, None, None)       # waits for a while
+        Thread(target=rospy_topics._read_header_in_thread, args=(None, None, None)).start()
+        connected.wait(0.1)
         events.append('complete')
     monkeypatch.setattr(rospy_topics, '_create', create)
     monkeypatch.setattr(rospy_topics, '_read_header', lambda *_: events.append('connected') or connected.set())
