@@ -13,7 +13,7 @@ SPEEDS = {'A': (0.2, 0.0), 'B': (-0.2, 0.0), 'D': (0.0, 1.0), 'C': (0.0, -1.0)} 
 
 def shutdown():
     cmd_vel.publish(Twist())
-    os.system('stty icanon echo min 1')
+    os.system('setsid stty icanon echo min 1')
     time.sleep(0.5)     # the process must exit within 1.4 s
 
 
@@ -23,7 +23,7 @@ with exit_status():
         raise rospy.ROSException('keyboard.py: expected a terminal as standard input')
     cmd_vel = rospy.Publisher('cmd_vel', Twist, queue_size=5)
     with TimedDrive(cmd_vel, 20, shutdown) as drive:    # 20 commands per second
-        os.system('stty -icanon -echo min 0')           # read() returns each key at once, and does not wait for a key
+        os.system('setsid stty -icanon -echo min 0')    # read() returns each key at once, and does not wait for a key
         print(__doc__)
         move_cmd, r = Twist(), drive.Rate()
         while True:
