@@ -119,6 +119,8 @@ class TestEkfMessages(support.Case):
 
     def test_another_sender_restarts_the_filter(self):
         self.odom.end()
+        # rospy does not connect again before it has noticed the end of the connection
+        support.wait_for(lambda: '/robot_pose_ekf i /odom ' not in support.connections(), 'the filter to disconnect')
 
         def make():
             message = make_odom()
