@@ -10,6 +10,7 @@ import time
 import unittest
 from xmlrpc.client import ServerProxy
 
+import rosgraph
 import rospkg
 import rospy
 import rostest
@@ -17,6 +18,7 @@ from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
 from roslib.packages import find_node
 
+from rbx1_nav.ros.network.master import call
 from rbx1_nav.ros.network.rospy_topics import repair_connections
 from rbx1_nav.ros.node import resources
 from rbx1_nav.simulation.surfaces import known_surfaces
@@ -59,11 +61,11 @@ def connections():
     """Return who is connected with whom, as each node sees it."""
     found = []
     try:
-        system = rospy.get_master().getSystemState()[2]
-        for node in sorted({node for topics in system[:2] for _, nodes in topics for node in nodes}):
-            with ServerProxy(rospy.get_master().lookupNode(node)[2]) as server:
-                found += [f'{node} {direction} {topic} {peer}'
-                          for _, peer, direction, _, topic, *_ in server.getBusInfo('/test')[2]]
+        master = rosgraph.get_master_uri()
+        publishers, subscribers, _ = call(master, 'getSystemState')
+        for node in sorted({node for _, nodes in publishers + subscribers for node in nodes}):
+            found += [f'{node} {direction} {topic} {peer}'
+                      for _, peer, direction, _, topic, *_ in call(call(master, 'lookupNode', node), 'getBusInfo')]
     except OSError as error:        # a test may have ended or suspended a node
         found.append(str(error))
     return '\n'.join(found)

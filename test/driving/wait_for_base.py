@@ -12,9 +12,6 @@ LISTENER = ("import rospy; from geometry_msgs.msg import Twist; rospy.init_node(
 
 
 class TestWaitForBase(support.Case):
-    def start(self, *arguments):
-        return support.out_and_back(*arguments)
-
     def subscribe(self):
         commands = support.Watch('/cmd_vel', Twist)
         self.addCleanup(commands.subscriber.unregister)
@@ -28,13 +25,13 @@ class TestWaitForBase(support.Case):
 
     def test_without_a_base_it_times_out(self):
         self.addCleanup(rospy.delete_param, '/out_and_back')    # the next test must not find it
-        driver = self.start('_wait_timeout:=1')
+        driver = support.out_and_back('_wait_timeout:=1')
         self.assertNotEqual(driver.wait(), 0)
         self.assertRegex(driver.output, r'Timed out after 1 s waiting for a base that subscribes to /cmd_vel')
         self.assertNotIn('Traceback', driver.output)
 
     def test_it_waits_and_then_drives(self):
-        driver = self.start()
+        driver = support.out_and_back()
         driver.wait_for_line('Waiting for a base that subscribes to /cmd_vel')
         commands = self.subscribe()
         driver.wait_for_line('forward: 1.00 m')
@@ -53,7 +50,7 @@ class TestWaitForBase(support.Case):
             self.addCleanup(process.signal, signal.SIGTERM)
             self.addCleanup(process.signal, signal.SIGCONT)
         commands = self.subscribe()
-        driver = self.start()
+        driver = support.out_and_back()
         driver.wait_for_line(r'/listener is registered as a subscriber of /cmd_vel but does not answer: ignored')
         driver.wait_for_line('Waiting for /base to answer')
         self.assertEqual(commands.messages, [])
