@@ -119,16 +119,15 @@ class TestEkfMessages(support.Case):
 
     def test_another_sender_restarts_the_filter(self):
         self.odom.end()
-        # rospy does not connect again before it has noticed the end of the connection
-        support.wait_for(lambda: '/robot_pose_ekf i /odom ' not in support.connections(), 'the filter to disconnect')
-
-        def make():
-            message = make_odom()
-            message.pose.pose.position.x = 0.48     # too close for a jump
-            return message
-        type(self).odom = Sender('odom', make)
+        other = support.Process(
+            'rostopic', 'pub', '-s', '-r', '50', '/odom', 'nav_msgs/Odometry',
+            '{header: {stamp: now, frame_id: odom}, child_frame_id: base_footprint, '
+            'pose: {pose: {position: {x: 0.48}, orientation: {w: 1.0}}}}')     # too close for a jump
         self.wait_for_log('odom comes from another node: restarting')
         support.wait_for(lambda: abs(self.poses.last.pose.pose.position.x - 0.48) < 1e-9, 'the new pose')
+        other.kill()
+        type(self).odom = Sender('odom', make_odom)
+        support.wait_for(lambda: abs(self.poses.last.pose.pose.position.x - 0.5) < 1e-9, 'the old pose')
 
 
 if __name__ == '__main__':
