@@ -136,16 +136,16 @@ class Lockstep:
         later = max(until, monotonic() + hold)
         for driver in self.drivers.values():
             driver.time += min(hold, later - until)     # not part of the interval
-        self._find_pollers()
+        if self.processes.have_new_threads():
+            self._find_pollers()
         self._sleep(later)
 
     def _find_pollers(self) -> None:
-        if self.processes.have_new_threads():
-            runs = self.processes.runs()
-            for _ in range(TESTS):
-                self._sleep(monotonic() + TEST)
-                if not self.processes.find_pollers(runs):
-                    break
+        runs = self.processes.runs()
+        for _ in range(TESTS):
+            self._sleep(monotonic() + TEST)
+            if not self.processes.find_pollers(runs):
+                break
 
     def _sleep(self, until: float) -> None:
         while monotonic() < until and not self.ended():
@@ -203,7 +203,7 @@ class Lockstep:
                 if self.processes.forget(name):
                     self._report(name, f'did not become idle within {NODE_TIMEOUT:g} s')
             if now - begin > LONG:
-                self._find_pollers()
+                self._find_pollers()    # again: on a busy machine, such a thread may not run for a while
             sleep(min(max(LOOK[0], LOOK_LATER * (now - begin)), LOOK[1]))
 
     def _driver_of(self, header: dict[str, str]) -> DriverConnection:
