@@ -48,9 +48,10 @@ def measure() -> dict[str, float]:
         run = {ODOM_KEY: factor_in_force(base_node, ODOM_KEY, 1.0), GYRO_KEY: factor_in_force(base_node, GYRO_KEY, nan)}
         # The gyro reports its bias while the robot is stationary.
         drive.rest(2)
-        start = rospy.get_time()
+        # on the clock of the gyro, which may differ from this node's
+        begin, start = rospy.get_time(), readings[-1][0] if readings else 0.0
         drive.drive(leg)
-        end = rospy.get_time()
+        end = start + rospy.get_time() - begin
     run['reported'] = degrees(leg.done())
     if isnan(run[GYRO_KEY]):    # use the default of the Create driver
         run[GYRO_KEY] = GYRO_CORRECTION if gyro.last else 1.0

@@ -40,34 +40,36 @@ class Ekf:
         self.log = LimitedLog()
         self.warn = partial(self.log.add, rospy.logwarn)
         self.sender = OneSender('odom', parameters.sensor_timeout, self.warn, self.restart)
+        self.imu_sender = OneSender('imu_data', parameters.sensor_timeout, self.warn)
         self.frames: tuple[str, str] | None = None          # frames of its odometry and of the robot
         self.tree = FrameTree()
         self.publisher = EstimatePublisher(parameters, self.tree, partial(self.log.add, rospy.loginfo))
         self.imu = ImuInput('imu_data', self.tree, partial(self.log.add, rospy.loginfo))
         self.diagnostics = Diagnostics(('odom', 'imu_data')[:1 + parameters.imu_used], parameters.sensor_timeout,
                                        self.lock, lambda: (self.combined, self.publisher.published))
-        self.odom_sub: rospy.Subscriber | None = None   # a message may arrive before it is assigned
+        # a message may arrive before these are assigned
+        self.odom_sub: rospy.Subscriber | None = None
+        self.imu_sub: rospy.Subscriber | None = None
 
     def subscribe(self) -> None:
         """Receive messages from now on."""
         self.tree.listen(True)
         self.odom_sub = rospy.Subscriber('odom', Odometry, self.on_odom, queue_size=None, tcp_nodelay=True)
         if self.parameters.imu_used:
-            rospy.Subscriber('imu_data', Imu, self.on_imu, queue_size=None, tcp_nodelay=True)
+            self.imu_sub = rospy.Subscriber('imu_data', Imu, self.on_imu, queue_size=None, tcp_nodelay=True)
         rospy.Subscriber('reset_odometry', Empty, self.on_reset)
         rospy.Subscriber('set_pose', PoseWithCovarianceStamped, self.on_set_pose)
 
     def on_odom(self, message: Odometry) -> None:
         """Process an odometry message."""
         with self.lock:
-            connections = self.odom_sub.impl.connections if self.odom_sub else []
-            if self.sender.accepts(message._connection_header, connections, rospy.Time.now()):
+            if self.sender.accepts(message._connection_header, self.odom_sub):
                 self.process('odom', self.add_odom, message)
 
     def on_imu(self, message: Imu) -> None:
         """Process an IMU message."""
         with self.lock:
-            if self.frames:
+            if self.imu_sender.accepts(message._connection_header, self.imu_sub) and self.frames:
                 self.process('imu_data', self.add_imu, message)
 
     def on_reset(self, _: Empty) -> None:

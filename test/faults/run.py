@@ -183,9 +183,7 @@ def spread(values):
 def write_table(path, modules, results, seed):
     """Write the rows as a Markdown table."""
     with open(path, 'w', encoding='utf-8') as file:
-        file.write('Seed %d.\n\n| row | fault | times | guarantee | result '
-                   '|\n|---|---|---|---|---|\n'
-                   % seed)
+        file.write('Seed %d.\n\n| row | fault | times | guarantee | result |\n|---|---|---|---|---|\n' % seed)
         for result in results:
             module = modules[result['name']]
             happened = (f"skipped: {result['skipped']}" if result['skipped'] else

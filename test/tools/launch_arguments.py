@@ -20,8 +20,7 @@ class TestLaunchArguments(support.Case):
     def test_how_a_robot_differs_from_the_documents(self):
         for name in 'mode_plus_one', 'drops_fractions':
             for value in 'false', 'true':
-                params = roslaunch('--dump-params', 'rbx1_bringup', 'fake_turtlebot_create.launch',
-                                   f'{name}:={value}')
+                params = roslaunch('--dump-params', 'rbx1_bringup', 'fake_turtlebot_create.launch', f'{name}:={value}')
                 self.assertIn(f'/fake_create/{name}: {value}\n', params)
 
     def test_each_launch_file_sets_the_prefix_because_any_of_them_may_be_the_first(self):

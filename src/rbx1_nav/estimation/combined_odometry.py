@@ -57,9 +57,11 @@ class CombinedOdometry:
         self.restart()
 
     def reset(self, now: int) -> None:
-        """Restart, because the base was reset at `now` (ns). Odometry from before the reset is ignored."""
+        """Restart, because the base was reset at `now` (ns), on a clock that may differ from the clock of the stamps.
+        Odometry from before the reset is ignored if it arrives less than a second late."""
         self.restart()
-        self.start = max([now] + [stamp for stamp in self.arrivals.last_stamp.values() if stamp])
+        last = max((stamp for stamp in self.arrivals.last_stamp.values() if stamp), default=now)
+        self.start = max(last, min(now, last + SECOND))
 
     def restart(self, reason: str = '') -> None:
         """Discard the estimate; the next odometry message gives the initial pose."""

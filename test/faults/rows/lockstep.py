@@ -67,8 +67,7 @@ def station(seed, count):
         driver.reader.join(5)
         # by a new connection: in that of a busy subscriber, old messages may wait
         x, y, yaw = support.pose(rospy.wait_for_message('/odom', Odometry))
-        error = max(abs(x - support.EXACT_X), abs(y - support.EXACT_Y),
-                    abs(support.wrapped(yaw - support.EXACT_TURN)))
+        error = max(abs(x - support.EXACT_X), abs(y - support.EXACT_Y), abs(support.wrapped(yaw - support.EXACT_TURN)))
         trouble = '' if error < support.MICROMETRE and driver.process.returncode == 0 else \
             'status %d, %g m or rad off\n%s\n%s' % (
                 driver.process.returncode, error, driver.output, '\n'.join(launch.lines[-5:]))

@@ -31,8 +31,7 @@ def test_without_a_gyro_the_heading_is_as_uncertain_as_the_slip_of_the_floor():
     estimate = robot.send(100, angular=1.0, imu=False)
     # a turn of 2 rad with a slip of 3 +- 5 %, and the noise of the carpet
     assert estimate.pose.yaw == pytest.approx(2 * 0.97)
-    assert estimate.covariance[2, 2] == pytest.approx(
-        (0.05 * 2) ** 2 + PRIORS.heading_noise_turning ** 2 * 2, rel=0.01)
+    assert estimate.covariance[2, 2] == pytest.approx((0.05 * 2) ** 2 + PRIORS.heading_noise_turning ** 2 * 2, rel=0.01)
 
 
 @pytest.mark.parametrize('late', [False, True])

@@ -18,6 +18,13 @@ def test_odometry_from_the_time_of_a_reset_counts(offset, counts):
     assert bool(robot.combined.estimate) == counts
 
 
+def test_a_reset_is_soon_over_if_the_clock_of_the_robot_is_behind():
+    robot = Robot()
+    robot.send(50)
+    robot.combined.reset(robot.now + 30 * SECOND)
+    assert robot.send(51)
+
+
 def test_a_reset_forgets_what_was_waited_for_but_not_the_bias():
     robot = Robot()
     robot.send(100, bias=0.05)

@@ -7,11 +7,10 @@ from __future__ import annotations
 from math import acos, degrees
 import time
 from types import SimpleNamespace
-from typing import Callable, Iterable, Tuple
+from typing import Callable, Tuple
 
 from nav_msgs.msg import Odometry
 import rospy
-from rospy.impl.tcpros_base import TCPROSTransport
 from sensor_msgs.msg import Imu as ImuMessage
 from tf2_msgs.msg import TFMessage
 
@@ -29,7 +28,7 @@ class OneSender:
     """Accepts the messages of the first node only, until it disconnects or falls silent."""
 
     def __init__(self, topic: str, silence: float, warn: Callable[[str], None],
-                 restart: Callable[[str], None]) -> None:
+                 restart: Callable[[str], None] = lambda name: None) -> None:
         """topic: name; silence: time after which another node is accepted, s; warn(text): logs a warning;
         restart(name): called before the first message of a node is accepted."""
         self.topic = rospy.resolve_name(topic)
@@ -39,9 +38,10 @@ class OneSender:
         self.header: dict[str, str] | None = None   # the header of the connection of the accepted node
         self.heard: rospy.Time | None = None        # arrival time of its last message
 
-    def accepts(self, header: dict[str, str], connections: Iterable[TCPROSTransport], now: rospy.Time) -> bool:
-        """Return whether to accept a message that arrived on the connection with this header. connections: rospy's
-        current connections."""
+    def accepts(self, header: dict[str, str], subscriber: rospy.Subscriber | None) -> bool:
+        """Return whether to accept a message that just arrived on the connection with this header. subscriber: of the
+        topic; None if it is just being created."""
+        connections, now = subscriber.impl.connections if subscriber else [], rospy.Time.now()
         if self.header is not None and header is not self.header and any(
                 connection.header is self.header for connection in connections) and (
                 0 <= (now - self.heard).to_sec() <= self.silence):
