@@ -69,7 +69,7 @@ class Ekf:
     def on_imu(self, message: Imu) -> None:
         """Process an IMU message."""
         with self.lock:
-            if self.imu_sender.accepts(message._connection_header, self.imu_sub) and self.frames:
+            if self.imu_sender.accepts(message._connection_header, self.imu_sub):
                 self.process('imu_data', self.add_imu, message)
 
     def on_reset(self, _: Empty) -> None:

@@ -32,7 +32,7 @@ from rbx1_nav.files import check_yaml, write_file
 from rbx1_nav.fitting.comparison import compare, shares
 from rbx1_nav.fitting.end_poses import read_ends
 from rbx1_nav.fitting.recording import (
-    Recording, in_force, is_commands_file, read_robot as read_text_files, truth_file)
+    Recording, check_end, in_force, is_commands_file, read_robot as read_text_files, truth_file)
 from rbx1_nav.plotting.plots import check_picture, draw_fit
 from rbx1_nav.robot.description import Robot, load_robot
 from rbx1_nav.ros.node import resources
@@ -94,7 +94,7 @@ def read_runs(arguments: argparse.Namespace,
     ends, errors = read_ends(arguments.ends, arguments.runs) if arguments.ends else ([], None)
     topics = TopicNames(arguments.cmd_vel, arguments.odom, arguments.imu, arguments.truth)
     recordings = [read_bag(path, topics, end) for path, end in zip_longest(arguments.runs, ends)]
-    return [each._replace(commands=in_force(each.commands, robot)) for each in recordings], errors
+    return [check_end(each._replace(commands=in_force(each.commands, robot))) for each in recordings], errors
 
 
 def load_files(arguments: argparse.Namespace) -> tuple[Robot, Surface]:

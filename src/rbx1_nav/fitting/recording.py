@@ -19,7 +19,6 @@ from rbx1_nav.units import SECOND, Array
 
 LARGEST = 1e10      # s, m, ...: largest number allowed in a run
 MIN_TRAVEL, MIN_TURN = 0.02, 0.1    # m, rad: thresholds for motion
-LONGEST_TIMEOUT = 1.0       # s after which usual bases stop without a command
 CAMERAS = 0.001, 0.001, 0.003   # m, m, rad: 1 sigma of a motion capture system, from stationary robots
 COMMANDS, TRUTH = '_Odometry.dat', '_Groundtruth.dat'   # suffixes of file names
 
@@ -100,13 +99,18 @@ def check_recording(recording: Recording) -> Recording:
                                     or numpy.ptp(series.yaw) > MIN_TURN):
             raise ConfigError(f'{name}: {field}: the robot did not move, although it was commanded to: expected the '
                               'topic of the robot that was driven')
-    if recording.end and recording.odometry:
-        # the robot stops at the command after the last motion; without one, when the base no longer waits for it
-        moving = numpy.flatnonzero((commands.linear != 0) | (commands.angular != 0))[-1]
-        stop, last = [*commands.time, commands.time[-1] + LONGEST_TIMEOUT][moving + 1], recording.odometry.time[-1]
-        if last < stop:
-            raise ConfigError(f'{name}: odometry until {last:.1f} s, but the robot drives until {stop:.1f} s: expected '
-                              'odometry until the robot is at the measured end pose')
+    return recording
+
+
+def check_end(recording: Recording) -> Recording:
+    """Return a Recording whose odometry lasts until the robot stops, if its end pose was measured by hand. Raises
+    ConfigError for any other. The commands are those in_force()."""
+    time, linear, angular = recording.commands
+    moving = numpy.flatnonzero((linear != 0) | (angular != 0))[-1]
+    stop = numpy.append(time, numpy.inf)[moving + 1]    # inf: without a timeout, the robot drives on
+    if recording.end and recording.odometry and recording.odometry.time[-1] < stop:
+        raise ConfigError(f'{recording.name}: odometry until {recording.odometry.time[-1]:.1f} s, but the robot drives '
+                          f'until {stop:.1f} s: expected odometry until the robot is at the measured end pose')
     return recording
 
 

@@ -6,7 +6,7 @@ import numpy
 import pytest
 
 from rbx1_nav.config import ConfigError
-from rbx1_nav.fitting.recording import Commands, Track, check_recording, in_force, relative
+from rbx1_nav.fitting.recording import Commands, Track, check_end, check_recording, in_force, relative
 from rbx1_nav.robot.description import read_robot
 from rbx1_nav.robot.kinematics import ORIGIN
 from sample_runs import EXERCISE, record
@@ -63,10 +63,10 @@ def test_all_stamps_are_of_one_clock(name):
 def test_a_measured_end_pose_needs_odometry_until_the_stop():
     last = RUN.odometry.time[-1]
     stop = Commands(*map(numpy.append, RUN.commands, (last, 0.0, 0.0)))
-    check_recording(RUN._replace(commands=stop, end=ORIGIN))
-    for commands, end in (stop._replace(time=stop.time + 0.01), last + 0.01), (RUN.commands, RUN.commands.time[-1] + 1):
-        with pytest.raises(ConfigError, match=f'until {last:.1f} s, but the robot drives until {end:.1f} s: expected'):
-            check_recording(RUN._replace(commands=commands, end=ORIGIN))
+    check_end(RUN._replace(commands=stop, end=ORIGIN))
+    for commands, end in (stop._replace(time=stop.time + 0.01), f'{last + 0.01:.1f}'), (RUN.commands, 'inf'):
+        with pytest.raises(ConfigError, match=f'until {last:.1f} s, but the robot drives until {end} s: expected'):
+            check_end(RUN._replace(commands=commands, end=ORIGIN))
 
 
 def test_commands_in_force_are_limited_and_time_out():
