@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from rbx1_nav.ros.driving.script import exit_status, init_node, number, param
 
-from math import degrees, isnan, nan, pi
+from math import degrees, pi
 import sys
 
 import rospy
@@ -20,9 +20,8 @@ from sensor_msgs.msg import Imu
 from rbx1_nav.config import ConfigError
 from rbx1_nav.control.legs import Turn
 from rbx1_nav.create.driver.fractions import LOST
-from rbx1_nav.create.driver.settings import GYRO_CORRECTION
 from rbx1_nav.robot.calibration import corrected, read_measured, turn_by_gyro
-from rbx1_nav.ros.driving.calibrating import COMMON, CalibrationDrive, Diagnosis, ask, factor_in_force
+from rbx1_nav.ros.driving.calibrating import COMMON, CalibrationDrive, Diagnosis, ask, factor_set
 from rbx1_nav.ros.driving.pose_listener import PoseListener
 
 ODOM_KEY, GYRO_KEY = 'odom_angular_scale_correction', 'gyro_scale_correction'
@@ -45,16 +44,15 @@ def measure() -> dict[str, float]:
                                                                        message.angular_velocity.z)))
     base, gyro = Diagnosis(base_node, 'Base'), Diagnosis(base_node, 'Gyro')
     with CalibrationDrive(rate, poses) as drive:
-        run = {ODOM_KEY: factor_in_force(base_node, ODOM_KEY, 1.0), GYRO_KEY: factor_in_force(base_node, GYRO_KEY, nan)}
+        run = {key: factor_set(base_node, key) for key in (ODOM_KEY, GYRO_KEY)}
         # The gyro reports its bias while the robot is stationary.
         drive.rest(2)
         # on the clock of the gyro, which may differ from this node's
         begin, start = rospy.get_time(), readings[-1][0] if readings else 0.0
         drive.drive(leg)
         end = start + rospy.get_time() - begin
+    run.update({key: float(base.value(key) or factor) for key, factor in run.items()})
     run['reported'] = degrees(leg.done())
-    if isnan(run[GYRO_KEY]):    # use the default of the Create driver
-        run[GYRO_KEY] = GYRO_CORRECTION if gyro.last else 1.0
     try:
         if gyro.error:
             raise ConfigError(f'the base reports an error: {gyro.error}')

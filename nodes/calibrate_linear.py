@@ -18,7 +18,7 @@ import rospy
 
 from rbx1_nav.control.legs import Straight
 from rbx1_nav.robot.calibration import corrected, read_measured
-from rbx1_nav.ros.driving.calibrating import COMMON, CalibrationDrive, ask, factor_in_force
+from rbx1_nav.ros.driving.calibrating import COMMON, CalibrationDrive, Diagnosis, ask, factor_set
 from rbx1_nav.ros.driving.pose_listener import PoseListener
 
 KEY = 'odom_linear_scale_correction'
@@ -35,11 +35,12 @@ def measure() -> tuple[float, float]:
     rate, linear_speed = param('rate'), param('linear_speed')
     leg = Straight('forward', param('goal_distance'), linear_speed, param('min_linear_speed'), rate)
     poses = PoseListener(param('odom_frame'), param('base_frame'), linear_speed, 0.0)
+    base = Diagnosis(param('base_node'), 'Base')
     with CalibrationDrive(rate, poses) as drive:
-        factor = factor_in_force(param('base_node'), KEY, 1.0)
+        factor = factor_set(param('base_node'), KEY)
         drive.drive(leg)
     # A tape measures from mark to mark, not along the robot's initial heading.
-    return hypot(leg.last.x - leg.start.x, leg.last.y - leg.start.y), factor
+    return hypot(leg.last.x - leg.start.x, leg.last.y - leg.start.y), float(base.value(KEY) or factor)
 
 
 def calibrate() -> None:

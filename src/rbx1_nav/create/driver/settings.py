@@ -12,7 +12,7 @@ from rbx1_nav.robot.description import WHEEL_JOINTS, Limits, Robot, read_wheel_j
 from rbx1_nav.robot.readings import OdometryErrors
 from rbx1_nav.units import SECOND
 
-GYRO_CORRECTION = 1.35  # create_node's default
+CORRECTIONS = 'odom_linear_scale_correction', 'odom_angular_scale_correction', 'gyro_scale_correction'
 WHEEL_RADIUS = 0.033    # m, radius of the wheels in RViz
 
 
@@ -44,7 +44,7 @@ PARAMETERS = (
     flag('has_gyro', None, 'whether a gyro is connected to the analog input', shown='true; create2: false'),
     number('gyro_measurement_range', 150.0, 'degrees/s', 'measurement range of the gyro chip', 1, 1000, 'a rate',
            note=_CALIBRATED),
-    number('gyro_scale_correction', GYRO_CORRECTION, '', 'factor for the angular velocity of the gyro', 0.01, 100,
+    number('gyro_scale_correction', 1.35, '', 'factor for the angular velocity of the gyro', 0.01, 100,
            'a factor', note=_CALIBRATED),
     number('odom_linear_scale_correction', 1.0, '', 'factor for the distance that the robot reports', 0.01, 100,
            'a factor', note=_CALIBRATED),

@@ -12,6 +12,7 @@ from rbx1_nav.create.driver.contact import BUMPS, CLIFFS, WHEEL_DROPS
 from rbx1_nav.create.driver.driver import Driver
 from rbx1_nav.create.driver.link import Link
 from rbx1_nav.create.driver.motion import CounterTravel
+from rbx1_nav.create.driver.settings import CORRECTIONS
 from rbx1_nav.ros.base.commands import VelocityCommands
 from rbx1_nav.ros.messages import fill_status
 
@@ -90,7 +91,9 @@ class CreateStatus:
                else {}),
             'Mode': 'unknown' if mode is None else protocol.MODE_NAMES[mode],
             'Speed of the left wheel (mm/s)': driver.sender.speeds[0],
-            'Speed of the right wheel (mm/s)': driver.sender.speeds[1]})
+            'Speed of the right wheel (mm/s)': driver.sender.speeds[1],
+            # the calibration scripts read them: a parameter may have been set since the base was started
+            **{key: getattr(driver.settings, key) for key in CORRECTIONS}})
         self.commands.diagnose(status)
         status.add('Commands above the wheel speed limit', driver.saturated)
         return status

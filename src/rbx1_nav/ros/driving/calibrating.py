@@ -72,19 +72,19 @@ class Diagnosis:
         return self.last.message if self.last and self.last.level == DiagnosticStatus.ERROR else ''
 
 
-def factor_in_force(base_node: str, key: str, default: float) -> float:
-    """Return the correction factor `key` from the parameters of the base node; the default if it is not set.
+def factor_set(base_node: str, key: str) -> float:
+    """Return the correction factor `key` from the parameters of the base node; 1 if it is not set.
 
     Raises ROSException if the value is not a valid factor.
     """
     name = rospy.resolve_name(base_node)
     values = rospy.get_param(name, None)
     if not isinstance(values, dict):
-        rospy.logwarn('%s has no parameters: assuming the default for %s. Set _base_node:=NAME if your base node has '
+        rospy.logwarn('%s has no parameters: assuming 1 for %s. Set _base_node:=NAME if your base node has '
                       'another name', name, key)
-        return default
+        return 1.0
     if key not in values:
-        return default
+        return 1.0
     try:
         return Section(values, name).number(key, 1 / MAX_FACTOR, MAX_FACTOR, what='the factor that the base uses now')
     except ConfigError as error:
