@@ -183,6 +183,8 @@ def test_it_works_again_after_a_second_at_rest_with_a_new_offset(rest, broken, r
     assert lines(driven)[1:] == ['Gyro: working again'] and rates == [0] * len(rates) and len(rates) > 100
     assert driven.driver.gyro.offset == (512 if repaired < 0 else repaired)
     assert driven.driver.gyro.yaw == pytest.approx(0, abs=0.001)
+    read(driven, 2, 560)        # a jump within the range at rest
+    assert driven.driver.gyro.offset == 560
 
 
 def test_in_motion_it_does_not_work_again():

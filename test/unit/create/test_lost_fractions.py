@@ -126,4 +126,5 @@ def test_a_correction_is_no_jump():
     """The heading is corrected by up to 120 degrees/s."""
     fractions = Fractions(LOST)
     fractions.update(20.0, 0.5, None)
-    assert [fractions.update(0.0, 0.05, angle).angle for angle in (9, None, None)] == pytest.approx([-6, -4.5, 0])
+    assert [(fractions.update(0.0, 0.05, angle).angle, fractions.unread) for angle in (9, None, None)] == [
+        (-6, 4.5), (-4.5, 0), (0, 0)]

@@ -54,6 +54,10 @@ def test_the_mode_is_requested_until_the_robot_reports_it():
     assert requests[0] == 2 and 1 < len(requests) < 10
     robot = Supervised()
     assert [robot.feed(mode) for mode in (PASSIVE, SAFE, PASSIVE, OFF, PASSIVE)] == [[]] * 5
+    # once it has been in control, a second after the last cause
+    robot.feed(PASSIVE, 2), robot.feed(SAFE, 2)
+    assert not robot.feed(PASSIVE, 2, **WHEEL) + robot.feed(PASSIVE, 9) + robot.feed(PASSIVE, 1, **WHEEL)
+    assert robot.feed(PASSIVE, 15)[0] == 11
 
 
 @pytest.mark.parametrize('wants_motion', [False, True])

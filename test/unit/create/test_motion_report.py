@@ -71,6 +71,6 @@ def test_the_variance_of_the_heading_of_create_node():
     assert state.variances[0] < 1 and state.covariance[0, 0] < 1
     # at rest, and for the odometry itself, it is the calculated variance
     motion.add(3 * SECOND, NOWHERE)
-    state = motion.state(None)
-    assert state.covariance[2, 2] < 1 and state.variances[1] < 1
+    state = motion.state(None, unread_variance=0.5)
+    assert 0.5 < state.covariance[2, 2] < 1 and state.variances[1] < 1
     assert moved()[1].covariance[2, 2] < 1

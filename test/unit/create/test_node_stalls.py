@@ -53,6 +53,7 @@ def test_when_the_guardian_dies_a_sender_is_refused(robot_type):
     driven.pull()
     driven.velocity = DRIVING
     driven.run(0.1)
+    assert driven.speeds == (0, 0)
     driven.connect()
     driven.run(2.0)
     assert driven.speeds == (0, 0) and driven.refusals[0] == f'the guardian process died; {REFUSAL}'

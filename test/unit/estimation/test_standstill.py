@@ -109,7 +109,7 @@ def test_carried_the_heading_turns_with_the_gyro():
     robot.bias = radians(1.0)
     robot.go(3.0)
     robot.go(1.5, carried=1.0)
-    assert robot.case == 'carried'
+    assert robot.case == 'carried' and robot.combined.estimate.covariance[0, 0] > 0.5 ** 2
     error, sigma = robot.go(2.0)
     # the wheels have reported none of the 86 degrees
     assert abs(error) < 2.0 and abs(error) < 4 * sigma and robot.case == 'standstill'

@@ -1,5 +1,4 @@
 """End poses in arrays, and covariances to first order, match the simulated robot."""
-import random
 
 import numpy
 import pytest
@@ -10,7 +9,7 @@ from rbx1_nav.fitting.comparison import inner_share, mahalanobis, simulate_paths
 from rbx1_nav.fitting.prediction import SPREADS, Covariance, Prediction
 from rbx1_nav.fitting.recording import Commands
 from rbx1_nav.fitting.run import STEP, Windows, commanded_travel, grid
-from rbx1_nav.simulation.floor_noise import NOISES, Noise, cell_errors, make_roughness
+from rbx1_nav.simulation.floor_noise import NOISES, make_roughness
 from rbx1_nav.simulation.surfaces import draw_run
 from rbx1_nav.simulation.wheels import Wheels
 from sample_surface import SURFACE
@@ -100,21 +99,6 @@ def test_the_covariance_to_first_order_is_that_of_the_ensemble(keys):
     white = numpy.array([covariance.whitened(error[None]) for error in measured[:3000]])
     # 1 sigma of each of the three variances is below 5 %
     assert spreads_agree(numpy.cov(white.T), numpy.eye(3))
-
-
-def test_the_noise_in_arrays_has_variance_and_tails_of_the_noise_of_a_run():
-    cell, path, count = 0.25, numpy.array([0.1, 0.3, 1.6, 0.0]), 4000
-    arrays = cell_errors(numpy.random.default_rng(5), count, path, cell)
-    noises = [Noise(1.0, cell, random.Random(seed)) for seed in range(count)]
-    single = numpy.array([[noise.over(step) for step in path] for noise in noises])
-    for values in arrays, single:
-        assert (values[:, 3] == 0).all()
-        # sqrt((kurtosis - 1) / count) is below 4 %: five times this
-        assert values.sum(axis=1).var() == pytest.approx(2.0 - cell / 3, rel=0.15)
-        # shorter than a cell: path ** 2 / cell * (1 - path / cell / 3)
-        assert values[:, 0].var() == pytest.approx(0.01 / cell * (1 - 0.1 / cell / 3), rel=0.2)
-        short = values[:, 0] / values[:, 0].std()
-        assert 4.5 < (short ** 4).mean() < 8     # 3: normal
 
 
 def test_the_inner_share_of_an_end_is_that_of_the_simulated_ends_nearer_to_the_mean():

@@ -52,10 +52,12 @@ def test_what_is_passed_on_is_what_came_in_a_delay_earlier(delay, commands):
 def test_wheels_start_and_stop_a_delay_later_and_travel_as_far():
     late, punctual = Wheels(WIDTH, LATE, RUN, 0.02), Wheels(WIDTH, SURFACE, RUN, 0.02)
     late.travel(0.2, 0.0, DELAY)
-    assert late.truth.pose.x == 0
+    assert late.truth.pose.x == 0 and not late.at_rest
     late.travel(0.2, 0.0, 2.0 - DELAY)
     late.travel(0.0, 0.0, DELAY)
-    punctual.travel(0.2, 0.0, 2.0)
+    punctual.travel(0.2, 0.0, 0.01)
+    assert not punctual.at_rest     # before the first tick of the encoders
+    punctual.travel(0.2, 0.0, 1.99)
     assert late.truth.pose == pytest.approx(punctual.truth.pose, abs=1e-12)
     for wheels in (late, punctual):
         wheels.travel(0.0, 0.0, 5.0)
