@@ -17,6 +17,7 @@ import time
 ROOT = os.path.realpath(os.path.join(os.path.dirname(__file__), '..'))
 SOURCE = os.path.join('src', 'rbx1_nav')
 ROOMS = 'control', 'create', 'estimation', 'robot', 'simulation'
+USERS = 'batch', 'fitting', 'plotting', 'pages'     # their tests use the rooms, or compare them with the documents
 SLOWER = 5      # tests that take this many times as long as without a mutation, and START more, hang: they have failed
 START = 30      # s
 TUNING = os.path.join(os.path.dirname(os.path.realpath(__file__)), 'tuning.txt')
@@ -137,8 +138,9 @@ def draw(paths, generator, tuning):
     return Mutation(path, line, change(tree, node, index), ast.unparse(tree))
 
 
-def is_noticed(mutation, limit):
-    """Whether the unit tests of the room fail with a Mutation. limit: seconds after which they hang."""
+def is_noticed(mutation, limits):
+    """Whether the unit tests of the room, or of those that use it, fail with a Mutation. limits: {folder of tests:
+    seconds after which they hang}."""
     room = room_of(mutation.path)
     with tempfile.TemporaryDirectory() as folder:
         for name in os.listdir(ROOT):
@@ -153,8 +155,9 @@ def is_noticed(mutation, limit):
         # the tests that are named after the module first: most mutations make one of them fail
         module = os.path.splitext(os.path.basename(mutation.path))[0]
         named = sorted(glob.glob(os.path.join(ROOT, 'test', 'unit', room, f'test_*{module}*.py')))
-        return any(fails(folder, tests, limit) for tests in ([os.path.relpath(each, ROOT) for each in named],
-                                                             [f'test/unit/{room}']) if tests)
+        return any(fails(folder, tests, limits[name]) for name, tests in (
+            (room, [os.path.relpath(each, ROOT) for each in named]),
+            *((each, [f'test/unit/{each}']) for each in (room, *USERS))) if tests)
 
 
 def fails(folder, tests, limit=None):
@@ -183,13 +186,13 @@ def room_of(path):
     return os.path.relpath(path, SOURCE).split(os.sep)[0]
 
 
-def duration(room):
-    """The time in seconds that the unit tests of a room take without a mutation. Exits if they fail."""
+def duration(name):
+    """The time in seconds that the unit tests in a folder take without a mutation. Exits if they fail."""
     begin = time.monotonic()
-    if fails(ROOT, [f'test/unit/{room}']):
-        sys.exit(f'test/unit/{room} fails without a mutation')
+    if fails(ROOT, [f'test/unit/{name}']):
+        sys.exit(f'test/unit/{name} fails without a mutation')
     took = time.monotonic() - begin
-    print(f'test/unit/{room}: {took:.0f} s without a mutation', flush=True)
+    print(f'test/unit/{name}: {took:.0f} s without a mutation', flush=True)
     return took
 
 
@@ -215,11 +218,11 @@ def main():
     tuning = read_tuning()
     generator = random.Random(arguments.seed)
     mutations = [draw(paths, generator, tuning) for _ in range(arguments.count)]
-    rooms = sorted({room_of(mutation.path) for mutation in mutations})
+    folders = sorted({*USERS, *(room_of(mutation.path) for mutation in mutations)})
     with ThreadPoolExecutor(arguments.jobs) as pool:
         try:
-            limits = {room: SLOWER * each + START for room, each in zip(rooms, pool.map(duration, rooms))}
-            results = pool.map(lambda each: is_noticed(each, limits[room_of(each.path)]), mutations)
+            limits = {name: SLOWER * each + START for name, each in zip(folders, pool.map(duration, folders))}
+            results = pool.map(lambda each: is_noticed(each, limits), mutations)
             noticed = 0
             for mutation, good in zip(mutations, results):
                 noticed += good

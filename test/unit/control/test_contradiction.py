@@ -26,8 +26,7 @@ def test_commands_that_alternate_and_differ():
     assert base.send('b', 0.0, 1.0) and base.senders.contradictions == 2
     assert base.senders.recent(base.now + SECOND, SECOND) and not base.senders.recent(base.now + SECOND, TICK)
     # on simulated time, several commands may arrive at one time
-    assert all(base.send(name, float(name == 'a'), 0.0, after=0) for name in 'abab')
-    assert base.senders.recent(base.now, TICK)
+    assert base.send('a', 0.2, 0.0, after=0) and base.send('b', 0.0, 1.0, after=0) and base.senders.recent(base.now, 0)
 
 
 def test_a_sender_that_takes_over():

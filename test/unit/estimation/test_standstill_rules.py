@@ -64,6 +64,8 @@ def test_the_first_bias_is_a_rate_within_the_limit_that_is_steady_for_a_fifth_of
     # the mean of two parts with a variance of 1e-4 rad^2 each
     assert recorder.calls == [('bias', rate, pytest.approx(2e-4 / 0.25 ** 2))]
     assert standstill.case == STANDSTILL
+    # a bias that is known becomes uncertain if another rate is steady for long
+    assert ('doubt', rate) in rest([rate] * 200, bias=0.02)[1].calls
 
 
 # driving off
