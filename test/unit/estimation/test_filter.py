@@ -116,14 +116,15 @@ def test_a_rest_also_corrects_the_heading_since_the_start():
     assert sqrt(ekf.covariance[YAW, YAW]) < 0.02
 
 
-def test_a_bias_that_has_drifted_has_turned_the_heading_by_half_of_its_change():
+@pytest.mark.parametrize('final', [0.01, -0.01])     # rad/s, after 10 s
+def test_a_bias_that_has_drifted_has_turned_the_heading_by_half_of_its_change(final):
     ekf = Filter(UNKNOWN_FLOOR, ORIGIN)
     ekf.learn_bias(0.0, 1e-9)
-    for number in range(100):       # to 0.01 rad/s in 10 s
-        ekf.step(0.1, ekf.turn(0.1, None, (1e-4 * number * 0.1, 1e-10)))
-    assert ekf.state[YAW] == pytest.approx(0.05, rel=0.05)
-    ekf.learn_bias(0.01, 1e-9)
-    assert ekf.bias == pytest.approx(0.01, abs=1e-4) and ekf.state[YAW] == pytest.approx(0.0, abs=0.002)
+    for number in range(100):
+        ekf.step(0.1, ekf.turn(0.1, None, (final / 100 * number * 0.1, 1e-10)))
+    assert ekf.state[YAW] == pytest.approx(5 * final, rel=0.05)
+    ekf.learn_bias(final, 1e-9)
+    assert ekf.bias == pytest.approx(final, abs=1e-4) and ekf.state[YAW] == pytest.approx(0.0, abs=0.002)
 
 
 def test_wheels_and_gyro_do_not_change_the_errors_that_are_considered():
