@@ -23,8 +23,10 @@ from rbx1_nav.create.driver.fractions import LOST
 from rbx1_nav.robot.calibration import corrected, read_measured, turn_by_gyro
 from rbx1_nav.ros.driving.calibrating import COMMON, CalibrationDrive, Diagnosis, ask, factor_set
 from rbx1_nav.ros.driving.pose_listener import PoseListener
+from rbx1_nav.units import wrap_angle
 
 ODOM_KEY, GYRO_KEY = 'odom_angular_scale_correction', 'gyro_scale_correction'
+MOVED = 1.0     # degrees, by which a robot has turned that is not at rest
 
 PARAMETERS = [
     number('turns', 1, '', 'number of full turns to the left', 0.1, 100),
@@ -40,22 +42,27 @@ def measure() -> dict[str, float]:
     base_node = param('base_node')
     poses = PoseListener(param('odom_frame'), param('base_frame'), 0.0, angular_speed)
     readings: list[tuple[float, float]] = []    # of the gyro: s, rad/s
-    rospy.Subscriber('imu/data', Imu, lambda message: readings.append((message.header.stamp.to_sec(),
-                                                                       message.angular_velocity.z)))
     base, gyro = Diagnosis(base_node, 'Base'), Diagnosis(base_node, 'Gyro')
     with CalibrationDrive(rate, poses) as drive:
         run = {key: factor_set(base_node, key) for key in (ODOM_KEY, GYRO_KEY)}
         # The gyro reports its bias while the robot is stationary.
+        rospy.Subscriber('imu/data', Imu, lambda message: readings.append((message.header.stamp.to_sec(),
+                                                                           message.angular_velocity.z)))
         drive.rest(2)
         # on the clock of the gyro, which may differ from this node's
         begin, start = rospy.get_time(), readings[-1][0] if readings else 0.0
         drive.drive(leg)
         end = start + rospy.get_time() - begin
-    run.update({key: float(base.value(key) or factor) for key, factor in run.items()})
+    run[ODOM_KEY] = float(base.value(ODOM_KEY) or run[ODOM_KEY])
+    # a Create without a gyro does not use the gyro's factor
+    run[GYRO_KEY] = float(gyro.value(GYRO_KEY) or (1 if base.last else run[GYRO_KEY]))
     run['reported'] = degrees(leg.done())
     try:
         if gyro.error:
             raise ConfigError(f'the base reports an error: {gyro.error}')
+        moved = degrees(abs(wrap_angle(leg.start.yaw - drive.start.yaw)))
+        if moved > MOVED:
+            raise ConfigError(f'the robot turned by {moved:.1f} degrees before the turn: expected a robot at rest')
         if not readings:
             raise ConfigError(f"no messages on {rospy.resolve_name('imu/data')}")
         run['gyro'] = degrees(turn_by_gyro(list(readings), start, end, leg.done()))

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Commands above the limits in the YAML file are clamped, keep their sign, and cause a warning."""
+"""Commands above the limits in the YAML file are clamped, keep their sign, and cause a warning; a timed script fails,
+as it does with commands that come too late."""
 from rosgraph_msgs.msg import Log
 
 import support
@@ -14,8 +15,19 @@ class TestClampedCommands(support.Case):
                                    ((0.1, -2.0), (0.1, -0.5))]:
             commander.send(*commanded)
             odom.wait_for_twist(*clamped, since=0)
-        support.wait_for(lambda: any('/cmd_vel: 1 m/s, 0.1 rad/s: expected at most 0.3 and 0.5; clamped' in m.msg
+        support.wait_for(lambda: any('/cmd_vel: 1 m/s, 0.1 rad/s: expected at most 0.3 m/s, 0.5 rad/s; clamped' in m.msg
                                      for m in log.messages), 'the warning')
+
+    def check(self, script, status, text):
+        self.assertEqual(script.wait(), status, script.output)
+        self.assertIn(text, script.output)
+
+    def test_a_script_fails_if_it_relies_on_each_command(self):
+        self.check(support.out_and_back('_linear_speed:=1'), 1,
+                   'rad/s: expected at most 0.3 m/s, 0.5 rad/s: expected it to follow the commands until the end')
+        self.check(support.out_and_back('_rate:=2', '_linear_speed:=0.2', '_angular_speed:=0.4'), 1,
+                   '/arbotix did not follow a command: no command for 0.4 s: stopped')
+        self.check(support.by_odometry('_rate:=20', '_linear_speed:=1'), 0, 'Done: measured in odom')
 
 
 if __name__ == '__main__':

@@ -3,6 +3,7 @@
 import math
 import re
 
+from geometry_msgs.msg import Twist
 import rospy
 
 import support
@@ -31,6 +32,19 @@ class TestAngularCalibration(support.Case):
         self.assertAlmostEqual(factors['odom_angular_scale_correction'], ODOM_FACTOR * real / reported, delta=0.0005)
         # the gyro's scale error has a standard deviation of 0.3 %; with this seed the error is below two of these
         self.assertAlmostEqual(factors['gyro_scale_correction'], GYRO_FACTOR, delta=0.006 * GYRO_FACTOR)
+
+    def test_the_gyro_was_not_at_rest(self):      # the last test: it turns the robot
+        commands, commander = support.Watch('/cmd_vel', Twist), support.Commander()
+        script = support.Process('rosrun', 'rbx1_nav', 'calibrate_angular.py')
+
+        def drive():
+            commander.send(0.0, 0.3)
+            return any(each.angular.z > 0.3 for each in commands.messages)
+        support.wait_for(drive, 'the turn')
+        script.wait_for_line(r'The gyro is not calibrated: the robot turned by \d+\.\d degrees before the turn')
+        script.type('360')
+        self.assertEqual(script.wait(), 0, script.output)
+        self.assertNotIn('gyro_scale_correction', script.output)
 
 
 if __name__ == '__main__':

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""A wheel drops, or the cable is unplugged, while a script drives: it exits with 1 and the reason, and the robot does
-not move again."""
+"""A script commands too high a speed, a wheel drops, or the cable is unplugged while it drives: it exits with 1 and the
+reason, and the robot does not move again."""
 from driven import DrivenRobot
 import support
 
@@ -14,7 +14,12 @@ class TestCreateRefuses(support.Case):
 
     def check_refusal(self, script, reason):
         self.assertEqual(script.wait(), 1, script.output)
-        self.assertRegex(script.lines[-1], r'\[ERROR\].*/cmd_vel: /turtlebot_node refused a command: ' + reason)
+        self.assertRegex(script.lines[-1], r'\[ERROR\].*/cmd_vel: /turtlebot_node did not follow a command: ' + reason)
+
+    def test_faster_than_its_wheels(self):
+        DrivenRobot(self, 'create2')
+        self.check_refusal(support.out_and_back('_linear_speed:=1'),
+                           '1 m/s, 0 rad/s: expected at most 0.5 m/s at each wheel')
 
     def test_a_wheel_drop(self):
         robot = DrivenRobot(self, 'create2')

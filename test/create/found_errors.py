@@ -59,7 +59,7 @@ class TestFoundErrors(support.Case):
             output = self.drive_with_pulled_cable()
             if support.LATE not in output:
                 break
-        self.assertRegex(output, r'\[ERROR\].* refused a command: the robot does not answer')
+        self.assertRegex(output, r'\[ERROR\].* did not follow a command: the robot does not answer')
 
     def test_linear(self):
         found = self.calibrate('calibrate_linear.py', 'The odometry reports',

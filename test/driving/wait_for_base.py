@@ -25,6 +25,9 @@ class TestWaitForBase(support.Case):
 
     def test_without_a_base_it_times_out(self):
         self.addCleanup(rospy.delete_param, '/out_and_back')    # the next test must not find it
+        # this node listens, but also drives, as the page in the browser does
+        self.subscribe()
+        self.addCleanup(rospy.Publisher('/cmd_vel', Twist, queue_size=5).unregister)
         driver = support.out_and_back('_wait_timeout:=1')
         self.assertNotEqual(driver.wait(), 0)
         self.assertRegex(driver.output, r'Timed out after 1 s waiting for a base that subscribes to /cmd_vel')

@@ -24,36 +24,25 @@ class TestBadParameters(support.Case):
             self.assertIn(text, errors[0])
         self.assertNotIn('Traceback', process.output)
 
-    def test_driving_by_time(self):
+    def test_driving(self):
         commands = support.Watch('/cmd_vel', Twist)
-        for argument, name, value in [('_rate:=0', '/rate', '0'), ('_linear_speed:=-0.2', '/linear_speed', '-0.2'),
-                                      ('_angular_speed:=.nan', '/angular_speed', 'nan'),
-                                      ('_goal_distance:=far', '/goal_distance', "'far'"),
-                                      ('_goal_angle:=true', '/goal_angle', 'True'),
-                                      ('_linear_speed:=1.0e+5', 'linear_speed * rate: 0.0005 ticks', 'from 1'),
-                                      ('_linear_speed:=1.0e+300', '/linear_speed', '1e+300')]:
-            self.check(support.out_and_back(argument), [name, value, 'expected'])
-            forget('/out_and_back')
-        self.assertFalse(commands.messages)
-
-    def test_driving_by_odometry(self):
-        commands = support.Watch('/cmd_vel', Twist)
-        for argument, name, value in [('_min_linear_speed:=-1', '/min_linear_speed', '-1'),
-                                      ('_transform_timeout:=0', '/transform_timeout', '0'),
-                                      ('_odom_frame:=7', '/odom_frame', '7'),
-                                      ('_base_frame:=a b', '/base_frame', "'a b'")]:
-            self.check(support.by_odometry(argument), [name, value, 'expected'])
-            forget('/out_and_back')
-        self.assertFalse(commands.messages)
-
-    def test_calibration(self):
-        commands = support.Watch('/cmd_vel', Twist)
-        for node, argument, expected in [
-                ('linear', '_goal_distance:=0', ['/calibrate_linear/goal_distance: 0: expected', 'from 0.1 to 100']),
-                ('linear', '_base_node:=7', ['/calibrate_linear/base_node: 7: expected the name of a node']),
-                ('angular', '_turns:=many', ['/calibrate_angular/turns', "'many'"])]:
-            self.check(support.Process('rosrun', 'rbx1_nav', f'calibrate_{node}.py', argument), expected)
-            forget(f'/calibrate_{node}')
+        for script, argument, *expected in [
+                ('timed_out_and_back', '_rate:=0', '/rate', '0'),
+                ('timed_out_and_back', '_linear_speed:=-0.2', '/linear_speed', '-0.2'),
+                ('timed_out_and_back', '_angular_speed:=.nan', '/angular_speed', 'nan'),
+                ('timed_out_and_back', '_goal_distance:=far', '/goal_distance', "'far'"),
+                ('timed_out_and_back', '_goal_angle:=true', '/goal_angle', 'True'),
+                ('timed_out_and_back', '_linear_speed:=1.0e+5', 'linear_speed * rate: 0.0005 ticks', 'from 1'),
+                ('timed_out_and_back', '_linear_speed:=1.0e+300', '/linear_speed', '1e+300'),
+                ('odom_out_and_back', '_min_linear_speed:=-1', '/min_linear_speed', '-1'),
+                ('odom_out_and_back', '_transform_timeout:=0', '/transform_timeout', '0'),
+                ('odom_out_and_back', '_odom_frame:=7', '/odom_frame', '7'),
+                ('odom_out_and_back', '_base_frame:=a b', '/base_frame', "'a b'"),
+                ('calibrate_linear', '_goal_distance:=0', '/calibrate_linear/goal_distance: 0:', 'from 0.1 to 100'),
+                ('calibrate_linear', '_base_node:=7', '/calibrate_linear/base_node: 7: expected the name of a node'),
+                ('calibrate_angular', '_turns:=many', '/calibrate_angular/turns', "'many'")]:
+            self.check(support.Process('rosrun', 'rbx1_nav', f'{script}.py', argument), [*expected, 'expected'])
+            forget('/out_and_back' if 'out' in script else f'/{script}')
         self.assertFalse(commands.messages)
 
     def test_filter(self):

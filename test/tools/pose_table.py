@@ -41,19 +41,14 @@ class TestPoseTable(support.Case):
             self.assertAlmostEqual(value, number, delta=tolerance, msg=line)
         self.assertNotRegex(line, r'-0\.0+ ')
 
-    def test_without_a_master(self):
-        status, lines = self.pose('env', 'ROS_MASTER_URI=http://127.0.0.1:1')
-        self.assertEqual(status, 1)
-        self.assertEqual(len(lines), 1, lines)
-        self.assertRegex(lines[0], r'^The master at http://127\.0\.0\.1:1 does not answer .*: '
-                                   'expected a running roscore$')
-
-    def test_without_a_base(self):
-        status, lines = self.pose()
-        self.assertEqual(status, 1)
-        self.assertEqual(len(lines), 1, lines)
-        self.assertRegex(lines[0], r'\[ERROR\] .*: No message on /ground_truth, /odom, /odom_ekf for 5 s: '
-                                   'expected a running base$')
+    def test_without_a_master_or_a_base(self):
+        for command, text in [
+                (('env', 'ROS_MASTER_URI=http://127.0.0.1:1'),
+                 r'^The master at http://127\.0\.0\.1:1 does not answer .*: expected a running roscore$'),
+                ((), r'\[ERROR\] .*: No message on /ground_truth, /odom, /odom_ekf for 5 s: expected a running base$')]:
+            status, lines = self.pose(*command)
+            self.assertEqual((status, len(lines)), (1, 1), lines)
+            self.assertRegex(lines[0], text)
 
     def test_base_and_filter(self):
         rospy.set_param('/arbotix', BASE)

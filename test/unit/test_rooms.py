@@ -14,13 +14,8 @@ from rooms import imported_modules, modules, python_files
 # room (a folder or a module of rbx1_nav): the rooms that it may import in addition to itself. A module belongs to the
 # innermost room that contains it
 ALLOWED = {
-    '__init__': set(),
-    'units': set(),
-    'transform_utils': set(),
-    'config': set(),
-    'files': {'config'},
-    'parameters': {'config'},
-    'schedule': {'units'},
+    '__init__': set(), 'config': set(), 'create': set(), 'ros.network': set(), 'transform_utils': set(), 'units': set(),
+    'files': {'config'}, 'parameters': {'config'}, 'schedule': {'units'},
     'robot': {'config', 'parameters', 'units'},
     'control': {'robot', 'units'},
     'simulation': {'config', 'robot', 'units'},
@@ -32,11 +27,9 @@ ALLOWED = {
     'plotting': {'config', 'files', 'fitting', 'robot', 'simulation.exercise', 'units'},
     'batch': {'config', 'control', 'files', 'parameters', 'robot', 'simulation', 'simulation.exercise',
               'simulation.summary', 'units'},
-    'create': set(),
     'create.driver': {'config', 'control', 'create', 'parameters', 'robot', 'schedule', 'units'},
     'create.emulator': {'config', 'create', 'simulation', 'simulation.base', 'units'},
     'ros': {'config', 'estimation', 'robot', 'units'},
-    'ros.network': set(),
     'ros.node': {'config', 'parameters', 'ros.network'},
     'ros.lockstep': {'ros.network', 'schedule'},
     'ros.driving': {'config', 'control', 'parameters', 'robot', 'ros.network', 'ros.node', 'schedule', 'units'},

@@ -18,26 +18,19 @@ def test_the_robot_confirms_the_last_stop(robot_type):
 
 @BOTH
 @pytest.mark.parametrize('garbage', [b'\x8c\x00\xff', b'\x94\xff'], ids=['song', 'stream'])
-def test_the_last_stop_holds_after_garbage(robot_type, garbage):
-    driven = started(robot_type)
-    driven.drive(0.2, 0, 0.5)
-    driven.write(garbage)
-    driven.driver.leave(driven.now)
-    driven.run(0.3)
-    assert driven.driver.left and driven.speeds == (0, 0)
-
-
-@BOTH
-@pytest.mark.parametrize('garbage', [b'\x8c\x00\xff', b'\x94\xff'], ids=['song', 'stream'])
-def test_a_stop_after_a_reconnection_holds_after_garbage(robot_type, garbage):
-    driven = started(robot_type)
-    driven.drive(0.2, 0, 0.5)
-    driven.pull()
-    driven.robot.receive(garbage, driven.now)
-    driven.run(0.5)
-    driven.connect()
-    driven.run(0.3)
-    assert driven.speeds == (0, 0) and driven.driver.contact.answers
+def test_the_last_stop_and_a_stop_after_a_reconnection_hold_after_garbage(robot_type, garbage):
+    last, connected = started(robot_type), started(robot_type)
+    for driven in last, connected:
+        driven.drive(0.2, 0, 0.5)
+        driven.write(garbage)
+    last.driver.leave(last.now)
+    connected.pull()
+    connected.run(0.5)
+    connected.connect()
+    for driven in last, connected:
+        driven.run(0.3)
+        assert driven.speeds == (0, 0)
+    assert last.driver.left and connected.driver.contact.answers
 
 
 @BOTH

@@ -51,7 +51,6 @@ class Driver:
         self.gyro_reading: Reading | None = None        # not reported yet
         self.leaving: int | None = None     # ns, when the final stop was requested
         self.left = False           # whether the robot has confirmed the final stop
-        self.saturated = 0          # commands, for /diagnostics
         self.implausible = 0        # readings, for /diagnostics
         self.use(settings.model)
 
@@ -114,10 +113,11 @@ class Driver:
         try:
             clamped = self.gate.command(now, linear, angular, others)
         finally:
-            self.saturated += is_too_fast(self.gate.linear, self.gate.angular, self.model.wheel_separation)
             self._send_speeds(now)
         self.acceptance.check_obedience(now)
-        return clamped
+        too_fast = is_too_fast(self.gate.linear, self.gate.angular, self.model.wheel_separation)
+        self.gate.clamped += too_fast and not clamped
+        return clamped or too_fast
 
     def _must_stop(self) -> bool:
         return any(self.sender.speeds) and not any(self.acceptance.speeds(self.model))

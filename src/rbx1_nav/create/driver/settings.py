@@ -12,7 +12,6 @@ from rbx1_nav.robot.description import WHEEL_JOINTS, Limits, Robot, read_wheel_j
 from rbx1_nav.robot.readings import OdometryErrors
 from rbx1_nav.units import SECOND
 
-CORRECTIONS = 'odom_linear_scale_correction', 'odom_angular_scale_correction', 'gyro_scale_correction'
 WHEEL_RADIUS = 0.033    # m, radius of the wheels in RViz
 
 

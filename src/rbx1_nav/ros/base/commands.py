@@ -1,6 +1,7 @@
 """Receives the commands of a base and passes them through its gate."""
 from __future__ import annotations
 
+from math import inf
 from threading import Lock
 from typing import Any, Iterable, NamedTuple, Protocol, Sequence
 
@@ -18,6 +19,7 @@ from rbx1_nav.ros.network.bases import Refusals
 from rbx1_nav.units import SECOND
 
 RECENT = SECOND * 3 // 2    # ns: an older contradiction is not shown
+UNITS = 'm/s', 'rad/s', 'm/s at each wheel'     # of the limits
 
 
 class VelocityCommand(NamedTuple):
@@ -41,18 +43,20 @@ class VelocityCommands:
     """Subscribes to cmd_vel, logs what the gate does with a command, and informs the sender of a refused command."""
 
     def __init__(self, base: Base, gate: CommandGate, clock: Clock, lock: Lock, namespace: str = '',
-                 refusals: Refusals | None = None) -> None:
+                 refusals: Refusals | None = None, wheel_limit: float = inf) -> None:
         """gate, lock: the CommandGate and the lock of the base; namespace: of the topic, with a slash at the end, ''
-        for the namespace of this node; refusals: of this node, if it has several bases."""
+        for the namespace of this node; refusals: of this node, if it has several bases; wheel_limit: m/s."""
         self.base = base
         self.gate = gate
         self.clock = clock
         self.lock = lock
         self.namespace = namespace
         self.topic = rospy.resolve_name(f'{namespace}cmd_vel')
+        self.wheel_limit = wheel_limit
         self.senders = Senders()
         self.subscriber: rospy.Subscriber | None = None
         self.refusals = refusals or Refusals()
+        self.sender = ''        # of the command in force
 
     def subscribe(self) -> None:
         """Accept commands from now on."""
@@ -94,17 +98,22 @@ class VelocityCommands:
                 rospy.logwarn_throttle(5, f'{self.topic}: refused a command from {command.sender}: {error}')
             self.refusals.add(command.sender, str(error))
             return
+        self.sender = command.sender
         if clamped:
-            limits = self.gate.limits
-            rospy.logwarn_throttle(5, f'{self.topic}: {command.linear:g} m/s, {command.angular:g} rad/s: expected at '
-                                      f'most {limits.linear:g} and {limits.angular:g}; clamped')
+            limits = *self.gate.limits, self.wheel_limit
+            expected = ', '.join(f'{limit:g} {unit}' for limit, unit in zip(limits, UNITS) if limit < inf)
+            text = f'{command.linear:g} m/s, {command.angular:g} rad/s: expected at most {expected}'
+            rospy.logwarn_throttle(5, f'{self.topic}: {text}; clamped')
+            self.refusals.add(command.sender, text, refused=False)
         if any(command.others):
             rospy.logwarn_throttle(5, f'{self.topic}: linear.y, linear.z, angular.x, angular.y = {command.others}: a '
                                       'differential drive cannot follow these, expected 0; ignored')
 
     def log_timeout(self) -> None:
         """Log that the current command has timed out."""
-        rospy.logwarn_throttle(10, f'{self.topic}: no command for {self.gate.timeout / SECOND:g} s: stopped')
+        text = f'no command for {self.gate.timeout / SECOND:g} s: stopped'
+        rospy.logwarn_throttle(10, f'{self.topic}: {text}')
+        self.refusals.add(self.sender, text, refused=False)
 
     def diagnose(self, status: DiagnosticStatusWrapper) -> None:
         """Add the values of the gate to a DiagnosticStatus."""

@@ -13,6 +13,7 @@ from rbx1_nav.create.driver.driver import Driver
 from rbx1_nav.create.driver.link import Link
 from rbx1_nav.create.driver.motion import State
 from rbx1_nav.create.driver.settings import Settings
+from rbx1_nav.create.protocol import MAX_SPEED
 from rbx1_nav.robot.description import Robot
 from rbx1_nav.robot.readings import Uncertainty
 from rbx1_nav.ros.base.clocks import HardwareClock
@@ -39,7 +40,7 @@ class CreateBase:
         self.joint_schedule = Schedule(10)
         self.diagnostics_schedule = Schedule(1)
         self.publisher = BasePublisher(robot)
-        self.commands = VelocityCommands(self.driver, gate, self.clock, self.lock)
+        self.commands = VelocityCommands(self.driver, gate, self.clock, self.lock, wheel_limit=MAX_SPEED / 1000)
         self.diagnostics = CreateStatus(Updater(), self.driver, self.link, self.commands)
 
     def run(self) -> bool:

@@ -12,7 +12,6 @@ from rbx1_nav.create.driver.contact import BUMPS, CLIFFS, WHEEL_DROPS
 from rbx1_nav.create.driver.driver import Driver
 from rbx1_nav.create.driver.link import Link
 from rbx1_nav.create.driver.motion import CounterTravel
-from rbx1_nav.create.driver.settings import CORRECTIONS
 from rbx1_nav.ros.base.commands import VelocityCommands
 from rbx1_nav.ros.messages import fill_status
 
@@ -92,10 +91,10 @@ class CreateStatus:
             'Mode': 'unknown' if mode is None else protocol.MODE_NAMES[mode],
             'Speed of the left wheel (mm/s)': driver.sender.speeds[0],
             'Speed of the right wheel (mm/s)': driver.sender.speeds[1],
-            # the calibration scripts read them: a parameter may have been set since the base was started
-            **{key: getattr(driver.settings, key) for key in CORRECTIONS}})
+            # for the calibration scripts: the parameters may have been set since the base was started
+            'odom_linear_scale_correction': driver.settings.odom_linear_scale_correction,
+            'odom_angular_scale_correction': driver.settings.odom_angular_scale_correction})
         self.commands.diagnose(status)
-        status.add('Commands above the wheel speed limit', driver.saturated)
         return status
 
     def battery(self, status: DiagnosticStatusWrapper) -> DiagnosticStatusWrapper:
@@ -139,7 +138,8 @@ class CreateStatus:
         return fill_status(status, *summary, {
             **({'Reading (counts)': reading['analog_input']} if reading else {}),
             **({} if gyro.offset is None else {'Offset (counts)': f'{gyro.offset:.2f}'}),
-            'Readings at rest': len(gyro.rest)})
+            'Readings at rest': len(gyro.rest),
+            'gyro_scale_correction': self.driver.settings.gyro_scale_correction})
 
     def line(self, status: DiagnosticStatusWrapper) -> DiagnosticStatusWrapper:
         """Fill in the status of the serial line: the errors on it."""

@@ -50,6 +50,7 @@ class Drive:
     """
 
     listeners: Listeners
+    exact = False       # see wait_for_subscribers()
 
     def __init__(self, cmd_vel: rospy.Publisher, rate: float, stop: Callable[[], None]) -> None:
         """cmd_vel: publisher of Twist messages; rate: command rate, Hz; stop(): stops the robot, however the block is
@@ -77,7 +78,7 @@ class Drive:
 
     def begin(self) -> None:
         """Wait for the base. Messages published before it subscribes would be lost."""
-        self.listeners = wait_for_subscribers(self.cmd_vel, self.wait_timeout)
+        self.listeners = wait_for_subscribers(self.cmd_vel, self.wait_timeout, self.exact)
 
     def finish(self) -> None:
         """Report the result; called when the robot has been stopped without an error."""
@@ -100,6 +101,7 @@ class Drive:
 class TimedDrive(Drive):
     """Drives for a number of ticks."""
 
+    exact = True
     distance = angle = 0.0      # m and rad, commanded so far
 
     def progress(self, name: str, ticks: int, command: Twist) -> Iterator[int]:

@@ -19,8 +19,9 @@ PERIOD = 0.1        # s between two questions to the master
 class _Subscribers:
     """The live subscribers of a topic."""
 
-    def __init__(self, topic: str) -> None:
+    def __init__(self, topic: str, exact: bool) -> None:
         self.topic = topic
+        self.exact = exact
         self.peers: dict[str, Peer] | None = None       # by name; None until the master has answered
         self.dead: set[str | None] = set()      # addresses
         self.silent: list[str] = []     # bases that may be suspended: they have not answered, but exist
@@ -40,10 +41,11 @@ class _Subscribers:
             self.others = sorted(namespaces_of_bases(publishers, subscribers, odometry, commands).keys()
                                  - {namespace or '/'})
             names = subscribers.get(self.topic, [])
+            drivers = publishers.get(self.topic, ())     # such as the page in the browser, which also listens
             self.silent = []
             found = [self.find(master, name, any(name in publishers.get(topic, ()) for topic in odometry),
                                name in publishers.get('/clock', ())) for name in names]
-            self.peers = {peer.name: peer for peer in found if peer}
+            self.peers = {peer.name: peer for peer in found if peer and (peer.is_base or peer.name not in drivers)}
         except Exception as error:
             rospy.logwarn_throttle(5, f'The master at {master} does not answer: {error}')
         self.next = time.monotonic() + PERIOD
@@ -56,7 +58,7 @@ class _Subscribers:
             address = call(master, 'lookupNode', name)
             if address not in self.dead:
                 with Server(address) as server:
-                    return Peer(name, address, is_base, keeps_time, ask_refusals(server)[0])
+                    return Peer(name, address, is_base, keeps_time, ask_refusals(server, self.exact)[0])
         except Exception as error:
             if is_base and isinstance(error, socket.timeout):
                 self.silent.append(name)
@@ -73,23 +75,25 @@ class _Subscribers:
         return f'a base that subscribes to {self.topic}{others}'
 
 
-def wait_for_subscribers(publisher: rospy.Publisher, timeout: float) -> Listeners:
+def wait_for_subscribers(publisher: rospy.Publisher, timeout: float, exact: bool) -> Listeners:
     """Wait until all live subscribers of a publisher's topic are connected to it and simulated time has started.
 
     It waits for all subscribers, not only for the first, because that may be a recorder. Returns them as Listeners.
+    exact: whether the script relies on each command, so that one that the base clamps, or that comes too late, is an
+    error.
 
     Raises ROSException if there is no subscriber, or one is missing, after `timeout` seconds of wall time, or if this
     node and the base are on different clocks, and ROSInterruptException as soon as shutdown is requested.
     """
     topic = publisher.resolved_name
-    subscribers = _Subscribers(topic)
+    subscribers = _Subscribers(topic, exact)
 
     def missing() -> str:
         peers, connected = subscribers.peers, connected_nodes(publisher)
         return (f'the master to list the subscribers of {topic}' if peers is None
                 else f"{', '.join(sorted(peers.keys() - connected))} to connect to {topic}" if peers.keys() - connected
                 else f"{', '.join(subscribers.silent)} to answer" if subscribers.silent
-                else 'the time on /clock' if connected else subscribers.missing_base())
+                else 'the time on /clock' if peers else subscribers.missing_base())
 
     def find() -> Listeners | None:
         subscribers.update()
@@ -102,6 +106,6 @@ def wait_for_subscribers(publisher: rospy.Publisher, timeout: float) -> Listener
             if peer.keeps_time and rospy.rostime.is_wallclock():
                 raise rospy.ROSException('/use_sim_time was false when this node started, but '
                                          f'{peer.name} publishes /clock: start this node again')
-        return Listeners(publisher, peers)
+        return Listeners(publisher, peers, exact)
 
     return wait_for(find, timeout, missing)

@@ -30,17 +30,18 @@ class Peer(NamedTuple):
     uri: str                # the address at which it answers calls
     is_base: bool           # whether it publishes odometry
     keeps_time: bool        # whether it publishes /clock
-    refused: int | None     # number of refused commands of this node; None if it does not report refusals
+    refused: int | None     # number of this node's commands that it did not follow; None if it does not report this
 
 
 class Listener:
     """One connection. ask() calls its node until it has a `problem`, which is a text."""
 
-    def __init__(self, publisher: rospy.Publisher, connection: Any, peer: Peer) -> None:
-        """connection: one of the publisher's."""
+    def __init__(self, publisher: rospy.Publisher, connection: Any, peer: Peer, exact: bool) -> None:
+        """connection: one of the publisher's; exact: see wait_for_subscribers()."""
         self.publisher = publisher
         self.connection = connection
         self.peer = peer
+        self.exact = exact
         self.offset = publisher.impl.seq - connection.stat_num_msg
         self.answered = time.monotonic()    # s: start of the last call that the node answered
         self.problem: str | None = None
@@ -51,10 +52,10 @@ class Listener:
         while not self.problem:
             start, before = time.monotonic(), rospy.get_rostime()
             try:
-                refused, reason = ask_refusals(server)
+                refused, reason = ask_refusals(server, self.exact)
                 self.answered = start
                 if refused and refused > (self.peer.refused or 0):
-                    self.problem = f'refused a command: {reason}'
+                    self.problem = f'did not follow a command: {reason}'
             except ConnectionRefusedError:      # the node has exited
                 self.problem = 'disconnected'
             except Exception:
@@ -83,10 +84,10 @@ class Listener:
 class Listeners:
     """All listeners of a publisher. Those that are bases are called; if there is no base, all of them are."""
 
-    def __init__(self, publisher: rospy.Publisher, peers: Mapping[str, Peer]) -> None:
-        """peers: the Peers that are connected, by name."""
+    def __init__(self, publisher: rospy.Publisher, peers: Mapping[str, Peer], exact: bool) -> None:
+        """peers: the Peers that are connected, by name; exact: see wait_for_subscribers()."""
         self.topic = publisher.resolved_name
-        self.all = [Listener(publisher, connection, peers[connection.endpoint_id])
+        self.all = [Listener(publisher, connection, peers[connection.endpoint_id], exact)
                     for connection in publisher.impl.connections if connection.endpoint_id in peers]
         self.called = [each for each in self.all if each.peer.is_base]
         if not self.called:

@@ -44,7 +44,7 @@ class Server:
         self._proxy('close')()
 
     # Any: what a call returns depends on its method
-    def call(self, method: str, *args: str) -> Any:
+    def call(self, method: str, *args: str | bool) -> Any:
         """Return the result of a call. Raises OSError, http.client.HTTPException or xmlrpc.client.Error if it fails."""
         return getattr(self._proxy, method)(rospy.get_name(), *args)[2]
 

@@ -2,10 +2,14 @@
 
 Import this module first.
 """
+import os
 import signal
 import sys
 
 signal.signal(signal.SIGINT, signal.SIG_DFL)
+for name, mode in ('stdin', 'r'), ('stdout', 'w'), ('stderr', 'w'):
+    if getattr(sys, name) is None:      # closed: the next file or socket would get its number
+        setattr(sys, name, open(os.devnull, mode))
 # also into a file or a pipe, because a script may wait for "Ready"
-if hasattr(sys.stdout, 'reconfigure'):      # missing if stdout is closed
+if hasattr(sys.stdout, 'reconfigure'):      # missing in another stream, such as that of a notebook
     sys.stdout.reconfigure(line_buffering=True)

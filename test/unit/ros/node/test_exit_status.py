@@ -1,4 +1,7 @@
 """A mistake in a driving script is logged with its position, an error that this package detects without."""
+import subprocess
+import sys
+
 import pytest
 import rospy
 from rbx1_nav.control.legs import whole_ticks
@@ -37,3 +40,8 @@ def test_what_is_logged(monkeypatch, statement, status, logged):
         assert lines[0].endswith('(square.py, line 5)')
     else:
         assert lines == ([logged] if logged else [])
+
+
+def test_closed_streams():
+    code = 'import rbx1_nav.ros.node.early_interrupt, sys; print(sys.stdin.read()); assert open(0).fileno() == 0'
+    assert subprocess.run(['sh', '-c', f'"{sys.executable}" -c "{code}" <&- >&- 2>&-']).returncode == 0

@@ -2,8 +2,6 @@
 import ast
 import os
 
-import pytest
-
 from rbx1_nav.ros.base.emulated_create import CHANGEABLE, SWITCHES
 
 ROOT = os.path.join(os.path.dirname(__file__), '..', '..', '..', '..')
@@ -12,11 +10,6 @@ ROOT = os.path.join(os.path.dirname(__file__), '..', '..', '..', '..')
 def read(*path):
     with open(os.path.join(ROOT, *path), encoding='utf-8') as file:
         return file.read()
-
-
-@pytest.mark.parametrize('node', ['odom_ekf.py', 'pose.py'])
-def test_nodes_without_parameters(node):
-    assert 'no parameters' in read('nodes', node) and 'get_param' not in read('nodes', node)
 
 
 def test_the_faults_of_the_emulated_robot():

@@ -55,18 +55,11 @@ def test_a_run(started):
     wait_for(lambda: changes == [('timed', ''), ('timed', 'finished')])
 
 
-def test_stop(started):
-    runs, changes, pid_file, _ = started
-    runs.start('timed', lambda _: None)
-    wait_for(lambda: begun(pid_file))
-    runs.stop()
-    wait_for(lambda: changes[1:] == [('timed', 'stopped')])
-
-
-def test_a_script_that_hangs_is_killed(started, monkeypatch):
+@pytest.mark.parametrize('handler, timeout', [('stop', module.STOP_TIMEOUT), ('signal.SIG_IGN', 0.1)])
+def test_a_run_is_stopped_and_killed_if_it_hangs(started, monkeypatch, handler, timeout):
     runs, changes, pid_file, write = started
-    monkeypatch.setattr(module, 'STOP_TIMEOUT', 0.1)
-    write(handler='signal.SIG_IGN')
+    monkeypatch.setattr(module, 'STOP_TIMEOUT', timeout)
+    write(handler=handler)
     runs.start('timed', lambda _: None)
     wait_for(lambda: begun(pid_file))
     runs.stop()
