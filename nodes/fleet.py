@@ -22,7 +22,7 @@ from tf2_msgs.msg import TFMessage
 
 from rbx1_nav.config import ConfigError, Section
 from rbx1_nav.parameters import choice, number
-from rbx1_nav.robot.description import read_robot
+from rbx1_nav.robot.description import DRIVER_KEYS, PARAMETERS as ROBOT, read_robot
 from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.ros import messages
 from rbx1_nav.ros.base.clocks import Clock
@@ -88,12 +88,13 @@ class Fleet:
             params = rospy.get_param(key, None)
             if not params:
                 raise ConfigError('no parameters: expected those of a base, see docs/several_robots.md')
-            robot, floor = read_robot(params), read_floor(Section(params))
+            section = Section(params, hardware={*DRIVER_KEYS, 'diagnostic_period', *(each.name for each in ROBOT)})
+            robot, floor = read_robot(params), read_floor(section)
         except ConfigError as error:
             text = f'{key}: {error}'
             rospy.logerr('%s', text)
             return False, text
-        robot = with_frames(robot, partial(with_prefix, name))
+        robot = with_frames(robot._replace(unknown=[*robot.unknown, *section.unknown()]), partial(with_prefix, name))
         simulated = SimulatedRobot(robot, *floor, self.clock, self.refusals, name)
         simulated.start()
         self.robots[name] = simulated, Schedule(robot.rate)

@@ -128,6 +128,8 @@ def main() -> int:
         arguments = read_arguments()
         combinations, titles = read_combinations(arguments)
         robot = load_robot(arguments.config)
+        if robot.unknown:
+            print(f"simulate.py: ignoring unknown parameters: {', '.join(robot.unknown)}", file=sys.stderr)
         sweep = Sweep(combinations, arguments.method, robot, range(arguments.seed, arguments.seed + arguments.runs))
         file = sweep.open_file(arguments.output, titles) if arguments.output is not None else None
         simulate_all(sweep, arguments, file)

@@ -11,7 +11,7 @@ import numpy
 
 from rbx1_nav.config import ConfigError
 from rbx1_nav.files import check_writable, write_file
-from rbx1_nav.plotting.plots import ESTIMATE, ODOMETRY, TITLES, TRUTH
+from rbx1_nav.plotting.plots import ESTIMATE, ODOMETRY, TITLES, TRUTH, Extent, widened
 from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.simulation.exercise import SimulationResult, Snapshot
 
@@ -29,12 +29,14 @@ GRID = 0.5          # m
 class Panel:
     """The floor under one robot."""
 
-    def __init__(self, axes: Axes, method: str, path: List[Snapshot]) -> None:
-        """path: the Snapshots of all ticks."""
+    def __init__(self, axes: Axes, method: str, path: List[Snapshot], extent: Extent) -> None:
+        """path: the Snapshots of all ticks; extent: the limits of the floor."""
         self.method, self.path = method, path
         self.axes = axes
-        axes.set(xlim=(-0.45, 1.45), ylim=(-0.65, 1.05), aspect='equal', xticks=[0, GRID, 2 * GRID],
-                 yticks=[-GRID, 0, GRID, 2 * GRID])
+        from matplotlib.ticker import MultipleLocator
+        axes.set(xlim=extent[:2], ylim=extent[2:], aspect='equal')
+        for axis in axes.xaxis, axes.yaxis:
+            axis.set_major_locator(MultipleLocator(GRID))
         axes.grid(True, alpha=0.5)
         axes.tick_params(labelbottom=False, labelleft=False, length=0)
         axes.plot(0, 0, marker='+', markersize=18, markeredgewidth=2, color='black')
@@ -93,7 +95,8 @@ def animate(file: str, surface: str, results: Mapping[str, SimulationResult]) ->
     figure.legend([Line2D([], [], color=color, linestyle=style, linewidth=2) for color, style in shown.values()],
                   list(shown), loc='lower center', ncol=len(shown), frameon=False)
     canvas = FigureCanvasAgg(figure)
-    panels = [Panel(axes, method, result.path or [])
+    extent = widened((-0.45, 1.45, -0.65, 1.05), results.values())
+    panels = [Panel(axes, method, result.path or [], extent)
               for axes, (method, result) in zip(figure.subplots(1, len(results), squeeze=False)[0], results.items())]
     end = max(panel.path[-1].time for panel in panels)
     frames = []

@@ -64,9 +64,10 @@ def draw(file: str, surface: str, results: Mapping[str, Sequence[SimulationResul
     figure.suptitle(f'Out and back on {surface}, {runs}')
     ends = {method: with_heading_errors(truths[method]) for method in results}
     extent = square([poses[:, :2] for poses in ends.values()], 0.05, 0.6)
+    floor = widened((-0.35, 1.25, -0.45, 0.85), [each for kept in results.values() for each in kept])
     norm = common_norm(ends.values())
     for (above, below), method in zip(panels.T, results):
-        draw_paths(above, results[method])
+        draw_paths(above, results[method], floor)
         distances, errors = numpy.hypot(*ends[method].T[:2]), ends[method][:, 2]
         mean = 'mean ' if len(seeds) > 1 else ''
         above.set_title(f'{TITLES[method]}: {mean}{100 * distances.mean():.1f} cm from the start, '
@@ -102,6 +103,13 @@ def square(parts: Sequence[Array], least: float, factor: float) -> Extent:
     return x - half, x + half, y - half, y + half
 
 
+def widened(limits: Extent, results: Iterable[SimulationResult]) -> Extent:
+    """Return limits that also show the true poses of all results, with a margin of 0.15 m."""
+    x, y, _ = zip(*[each.truth for result in results for each in (*(result.path or ()), result.end)])
+    left, right, bottom, top = limits
+    return min(left, min(x) - 0.15), max(right, max(x) + 0.15), min(bottom, min(y) - 0.15), max(top, max(y) + 0.15)
+
+
 def common_norm(ends: Iterable[Array]) -> Normalize | None:
     """Return the color scale of heading errors, from 0 to the largest; None if they are too small to distinguish."""
     from matplotlib.colors import Normalize
@@ -109,17 +117,18 @@ def common_norm(ends: Iterable[Array]) -> Normalize | None:
     return Normalize(0, largest) if largest > 1 else None
 
 
-def draw_paths(axes: Axes, results: Sequence[SimulationResult]) -> None:
-    """Draw the true paths that were kept on a floor with a 0.5 m grid as in RViz, and the first run's start and end
-    poses."""
+def draw_paths(axes: Axes, results: Sequence[SimulationResult], extent: Extent) -> None:
+    """Draw the true paths that were kept on an extent of the floor, and the first run's start and end poses."""
+    from matplotlib.ticker import MaxNLocator
     for result in results:
         if result.path:
             x, y, _ = zip(*[snapshot.truth for snapshot in result.path])
             axes.plot(x, y, color=TRUTH, linewidth=0.8, alpha=0.5)
     draw_robot(axes, ORIGIN, 'black', 'start')
     draw_robot(axes, results[0].end.truth, TRUTH, 'end pose of the first run')
-    axes.set(xlabel='x (m)', ylabel='y (m)', aspect='equal', xlim=(-0.35, 1.25), ylim=(-0.45, 0.85),
-             xticks=[0, 0.5, 1], yticks=[0, 0.5])
+    axes.set(xlabel='x (m)', ylabel='y (m)', aspect='equal', xlim=extent[:2], ylim=extent[2:])
+    for axis in axes.xaxis, axes.yaxis:
+        axis.set_major_locator(MaxNLocator(4, steps=[1, 5, 10]))
     axes.grid(True, alpha=0.5)
     axes.legend(loc='lower right')
 

@@ -35,7 +35,9 @@ def test_frames_and_durations(results, tmp_path, monkeypatch, name):
 
 def test_the_robot_is_drawn_where_it_is(results):
     axes = Figure().subplots()
-    panel = animation.Panel(axes, 'ekf', results['ekf'].path)
+    extent = animation.widened((-0.1, 0.5, -1.0, 1.0), results.values())
+    assert extent == (pytest.approx(-0.15, abs=0.02), pytest.approx(1.15, abs=0.02), -1.0, 1.0)
+    panel = animation.Panel(axes, 'ekf', results['ekf'].path, extent)
     for time in 0.0, 7.0, 1000.0:
         panel.show(time)
         x, y = panel.robot.get_data()
