@@ -8,8 +8,8 @@ import support
 
 FAULT = ('script on one host, base and roscore on another; the link goes down during a leg for 0.3 s, for 3 s, or '
          'permanently')
-PROMISE = ('0.3 s: exit status 0, or 1 if the base timed out; longer: reported within 2 s, exit status 1, and the robot '
-           'keeps moving for at most its timeout of 1 s')
+PROMISE = ('0.3 s: exit status 0, or 1 if the base timed out; longer: reported within 2 s, exit status 1, and the '
+           'robot keeps moving for at most its timeout of 1 s')
 FULL, SHORT = 24, 2
 ROOT, ALONE = True, True
 
