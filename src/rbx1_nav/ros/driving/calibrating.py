@@ -86,7 +86,7 @@ def factor_set(base_node: str, key: str) -> float:
     if key not in values:
         return 1.0
     try:
-        return Section(values, name).number(key, 1 / MAX_FACTOR, MAX_FACTOR, what='the factor that the base uses now')
+        return Section(values, name).number(key, 1 / MAX_FACTOR, MAX_FACTOR, what='the correction factor')
     except ConfigError as error:
         raise rospy.ROSException(str(error)) from None
 

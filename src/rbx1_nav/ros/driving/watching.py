@@ -17,7 +17,7 @@ from rbx1_nav.ros.network.master import Server
 from rbx1_nav.ros.node.life import end_requested, sleep
 
 # s for a base to answer a call; together with ASK_PERIOD less than 2 s. TCP retransmits after 0.2, 0.6 and 1.4 s, so a
-# link failure of 0.3 s is tolerated
+# link failure of 0.3 s is no lost base, although the base may time out before the link is back
 ANSWER_TIMEOUT = 1.4
 ASK_PERIOD = 0.4        # s from an answer to the next call
 STOP_TIME = 1.0         # s that a script waits after its last command
