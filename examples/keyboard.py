@@ -3,12 +3,14 @@
 from rbx1_nav.ros.driving.script import TimedDrive, exit_status, init_node
 
 import os
+import re
 import time
 
 import rospy
 from geometry_msgs.msg import Twist
 
-SPEEDS = {'A': (0.2, 0.0), 'B': (-0.2, 0.0), 'D': (0.0, 1.0), 'C': (0.0, -1.0)}     # up, down, left, right: m/s, rad/s
+# m/s and rad/s for the arrow keys up, down, left and right
+SPEEDS = {b'\x1b[A': (0.2, 0.0), b'\x1b[B': (-0.2, 0.0), b'\x1b[D': (0.0, 1.0), b'\x1b[C': (0.0, -1.0)}
 
 
 def shutdown():
@@ -27,7 +29,7 @@ with exit_status():
         print(__doc__)
         move_cmd, r = Twist(), drive.Rate()
         while True:
-            for key in os.read(0, 100):
-                move_cmd.linear.x, move_cmd.angular.z = SPEEDS.get(chr(key), (0.0, 0.0))
+            for key in re.findall(rb'\x1b\[.|.', os.read(0, 100), re.DOTALL):
+                move_cmd.linear.x, move_cmd.angular.z = SPEEDS.get(key, (0.0, 0.0))
             cmd_vel.publish(move_cmd)
             r.sleep()

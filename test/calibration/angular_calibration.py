@@ -13,10 +13,10 @@ ODOM_FACTOR, GYRO_FACTOR = 0.9, 1.2     # in force; the simulated base does not 
 
 class TestAngularCalibration(support.Case):
     def test_it_finds_both_errors(self):
-        rospy.set_param('/turtlebot_node', {'odom_angular_scale_correction': ODOM_FACTOR,
-                                            'gyro_scale_correction': GYRO_FACTOR})
+        rospy.set_param('/arbotix/odom_angular_scale_correction', ODOM_FACTOR)
+        rospy.set_param('/arbotix/gyro_scale_correction', GYRO_FACTOR)
         odom, truth = support.OdomWatch(), support.Watch('/ground_truth', support.Odometry)
-        script = support.Process('rosrun', 'rbx1_nav', 'calibrate_angular.py', '_turns:=2')
+        script = support.Process('rosrun', 'rbx1_nav', 'calibrate_angular.py', '_turns:=2', '_base_node:=arbotix')
         script.wait_for_line('The gyro reports')
         # both differ from two turns
         real, reported = (720 + math.degrees(support.wrapped(support.yaw(topic.next()))) for topic in (truth, odom))

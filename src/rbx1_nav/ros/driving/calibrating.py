@@ -9,6 +9,7 @@ from typing import Callable, TypeVar
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from geometry_msgs.msg import Twist
+import rosgraph
 from rosgraph.names import is_legal_name
 import rospy
 
@@ -17,6 +18,7 @@ from rbx1_nav.parameters import custom, frame, number
 from rbx1_nav.robot.calibration import MAX_FACTOR
 from rbx1_nav.ros.driving.pose_drive import PoseDrive
 from rbx1_nav.ros.driving.pose_listener import PoseListener
+from rbx1_nav.ros.network.master import call
 from rbx1_nav.ros.node.life import end_requested
 
 Answer = TypeVar('Answer')
@@ -73,15 +75,17 @@ class Diagnosis:
 
 
 def factor_set(base_node: str, key: str) -> float:
-    """Return the correction factor `key` from the parameters of the base node; 1 if it is not set.
+    """Return the correction factor `key` from the parameters of the base node; 1 if it is not set, or the node
+    is not running.
 
     Raises ROSException if the value is not a valid factor.
     """
     name = rospy.resolve_name(base_node)
     values = rospy.get_param(name, None)
-    if not isinstance(values, dict):
-        rospy.logwarn('%s has no parameters: assuming 1 for %s. Set _base_node:=NAME if your base node has '
-                      'another name', name, key)
+    # a node that has ended leaves its parameters behind
+    if not (isinstance(values, dict) and call(rosgraph.get_master_uri(), 'lookupNode', name)):
+        rospy.logwarn('%s is not running or has no parameters: assuming 1 for %s. Set _base_node:=NAME if your base '
+                      'node has another name', name, key)
         return 1.0
     if key not in values:
         return 1.0
