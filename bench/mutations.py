@@ -64,18 +64,19 @@ def constant(node):
 
 
 def walk(node, tuning):
-    """A node and all nodes below it, except hints, which have no effect, and constants that are tuning."""
+    """A node and all nodes below it, except hints and their types, which have no effect, and constants that are
+    tuning."""
     yield node
     for name, value in ast.iter_fields(node):
         if name not in ('annotation', 'returns'):
             for child in value if isinstance(value, list) else [value]:
-                if isinstance(child, ast.AST) and not (isinstance(node, ast.Module) and is_tuning(child, tuning)):
+                if isinstance(child, ast.AST) and not (isinstance(node, ast.Module) and is_left_alone(child, tuning)):
                     yield from walk(child, tuning)
 
 
-def is_tuning(node, tuning):
-    """Whether a node of a module assigns one of these constants."""
-    return constant(node) in tuning
+def is_left_alone(node, tuning):
+    """Whether a node of a module assigns one of these constants, or a type such as Tuple[float, float] for hints."""
+    return constant(node) in tuning or isinstance(node, ast.Assign) and isinstance(node.value, ast.Subscript)
 
 
 def places(tree, tuning):

@@ -188,7 +188,7 @@ class Filter:
         """Learn the bias from the gyro's mean rate (rad/s) and its variance, because the robot is at rest; correct the
         heading and the position by what the bias has caused."""
         innovation = rate - self.bias
-        if self.rested and self.moving > 0.0:
+        if self.rested and self.moving:
             self.walk = max(BIAS_WALK ** 2, self.walk / 2)      # a drift goes on, but not for ever
             if innovation ** 2 > RARE * (self.P[BIAS, BIAS] + variance):
                 self._doubt_drift(innovation / self.moving)

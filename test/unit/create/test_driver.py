@@ -56,17 +56,6 @@ def test_a_command_times_out(robot_type):
     assert driven.speeds == (0, 0)
 
 
-@BOTH
-def test_a_flood_of_commands_does_not_fill_the_line(robot_type):
-    driven = started(robot_type)
-    for index in range(1000):
-        driven.command(0.2 + index / 1e5, 0)
-        driven.run(0.002)
-    driven.command(0, 0)
-    driven.run(0.02)
-    assert driven.speeds == (0, 0)
-
-
 def test_a_bump_does_not_stop_if_it_should_not():
     driven = started('create', stop_motors_on_bump=False)
     driven.body.bumped = True

@@ -108,12 +108,12 @@ def test_the_pose_of_a_robot_that_was_reset_while_disconnected_is_as_uncertain_a
 @BOTH
 def test_more_commands_than_the_line_can_carry_do_not_delay_a_stop(robot_type):
     driven = started(robot_type)
-    for _ in range(500):
+    for index in range(500):
         for _ in range(4):
-            driven.command(0.2, 0)
+            driven.command(0.2 + index / 1e5, 0)
         driven.run(0.002)
     driven.command_zero()
-    driven.run(0.05)
+    driven.run(0.02)
     assert driven.speeds == (0, 0)
 
 

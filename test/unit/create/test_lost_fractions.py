@@ -31,16 +31,9 @@ def test_a_turn_is_reported_whatever_the_robot_does_with_fractions(surface, lost
     # at the next turn, the handling of fractions is known
     reported, true = turn(driven, -rate, pi)
     assert reported == pytest.approx(true, rel=0.03)
-
-
-@pytest.mark.parametrize('drops', [False, True])
-def test_the_base_logs_once_that_fractions_are_lost(drops):
-    driven = started('create', quirks=Quirks(drops_fractions=drops))
-    for _ in range(3):
-        turn(driven, 0.5, 2 * pi)
-    lines = [line for line in driven.log if 'fractions' in line]
-    assert lines == ['The robot loses fractions of a degree: correcting the odometry. Set angle_fractions:=lost to '
-                     'correct it from the start'] * drops
+    text = ('The robot loses fractions of a degree: correcting the odometry. Set angle_fractions:=lost to correct it '
+            'from the start')
+    assert [line for line in driven.log if 'fractions' in line] == [text] * lost
 
 
 PERIOD = 1 / 32         # s between two readings

@@ -2,6 +2,7 @@
 from math import radians
 
 from hypothesis import given, strategies
+import numpy
 import pytest
 
 from rbx1_nav.create import protocol
@@ -29,6 +30,13 @@ def counter_travel():
     counter = CounterTravel(protocol.CREATE, Fractions(KEPT))
     assert counter.update(counters(500, 90), 0.0, STILL, 0.0) == NOWHERE     # counted before
     return counter
+
+
+def test_the_rounding_of_counters():
+    left, right = numpy.random.default_rng(0).random((2, 100_000)) - 0.5        # counts
+    for counter, errors in ((encoder_travel(0, 0), ((left + right) / 2 * COUNT, (right - left) * COUNT / 0.235)),
+                            (counter_travel(), (left / 1000, numpy.radians(right)))):
+        assert counter.rounding == pytest.approx(numpy.std(errors, axis=1), rel=0.01)
 
 
 @given(strategies.integers(0, 65535), strategies.integers(-2000, 2000), strategies.integers(-2000, 2000))

@@ -35,7 +35,7 @@ def true_step(state, errors, by_gyro, turned, forward, left, direction):
 def test_the_covariance_follows_from_the_derivatives_of_a_step(pose, bias, turned, forward, left, direction, by_gyro):
     ekf = Filter(FLAT, Pose(*pose))
     ekf.state[BIAS] = bias
-    ekf.P = 1e-6 * numpy.eye(9)
+    ekf.P, ekf.doubt = 1e-6 * numpy.eye(9), [0.1, 0.2, 0.3]
     ekf.step(0.5, ekf.turn(0.5, (turned, 0.0), (turned, 1e-6) if by_gyro else None, forward), direction, forward, left)
     # the gyro's scale error is 0, and the other errors have the mean of the floor
     errors = numpy.array([bias, 0.2, 0.0, 0.1, -0.05])
@@ -48,6 +48,9 @@ def test_the_covariance_follows_from_the_derivatives_of_a_step(pose, bias, turne
                           left, direction) for sign in (1, -1)]
         columns.append((ends[0] - ends[1]) / (2 * h))
     derivatives = numpy.stack(columns, axis=1)
+    assert ekf.doubt == pytest.approx(derivatives[:3, :3] @ (0.1, 0.2, 0.3), abs=1e-8)
+    doubted = ekf.covariance - ekf.P[:3, :3] - numpy.outer(ekf.doubt, ekf.doubt)
+    assert doubted[[X, X, Y, YAW], [Y, YAW, YAW, YAW]] == pytest.approx(0, abs=1e-12)
     expected = 1e-6 * derivatives @ derivatives.T
     if by_gyro:     # and the noise of its turn, half of which also changes the direction
         by_turn = derivatives[:, YAW] * (0.5, 0.5, 1.0, 0.0) - (0.0, 0.0, 0.0, 1.0)
