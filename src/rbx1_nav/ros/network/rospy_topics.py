@@ -14,6 +14,8 @@ HEADER_TIME = 0.2   # s in which a client usually sends its header
 _read_header = TCPROSServer._tcp_server_callback
 _create = rospy.Publisher.__init__
 _creating = threading.Lock()    # held while a publisher is created
+_connect = RegManager._connect_topic_thread
+_connecting: dict[tuple[str, str], object] = {}     # (topic, URI) to which a thread connects
 
 
 class NoDelay(rospy.SubscribeListener):
@@ -43,11 +45,14 @@ def connected_nodes(publisher: rospy.Publisher) -> set[str]:
 
 
 def repair_connections() -> None:
-    """Repair three faults of rospy, in this process; to be called before the node starts.
+    """Repair four faults of rospy, in this process; to be called before the node starts.
 
     rospy connects a subscriber to the publishers in the last list that it has received, and drops a list that it has
     not used yet. A publisher that registers at the same moment as the subscriber is in the master's notice, but not in
     the answer to the registration of the subscriber. If the answer comes last, they are never connected.
+
+    rospy passes on a notice of the master once per publisher, and may connect to each of them as often. Each connection
+    replaces the one before, whose messages may be lost, and the publisher finds its subscriber disconnected.
 
     rospy accepts connections in one thread, which also waits for the header of each connection, without a limit. After
     a client that sends none, such as a port scanner or a computer that has left the network, nobody can connect.
@@ -56,6 +61,7 @@ def repair_connections() -> None:
     connects in between never has a queue, and the listener does not hear of it.
     """
     RegManager.publisher_update = _update_publishers
+    RegManager._connect_topic_thread = _connect_once
     TCPROSServer._tcp_server_callback = _read_header_in_thread
     rospy.Publisher.__init__ = _create_before_connections
 
@@ -83,3 +89,14 @@ def _update_publishers(manager: RegManager, topic: str, publishers: Sequence[str
         unused = [uri for name, uris in manager.updates if name == topic for uri in uris]
         manager.updates.append((topic, list(dict.fromkeys([*unused, *publishers]))))
         manager.cond.notify_all()
+
+
+def _connect_once(manager: RegManager, topic: str, uri: str) -> None:
+    """Connect to a publisher, unless another thread is connecting to it."""
+    this = object()
+    if _connecting.setdefault((topic, uri), this) is not this:
+        return
+    try:
+        _connect(manager, topic, uri)
+    finally:
+        del _connecting[topic, uri]

@@ -1,4 +1,4 @@
-"""The connections of a node: none is missed, they keep their order, and a publisher is complete before them."""
+"""Connections of a node: none is missed or made twice, the order is kept, and a publisher is complete before them."""
 from threading import Event, Thread
 import time
 
@@ -16,17 +16,25 @@ def fixture_manager(monkeypatch):
     return RegManager(None)
 
 
-def test_an_answer_without_a_publisher_does_not_replace_the_notice_of_it(manager):
-    manager.publisher_update('/odom', ['http://base/'])
-    manager.publisher_update('/odom', [])
-    assert manager.updates[-1] == ('/odom', ['http://base/'])       # rospy uses the last list of a topic
-
-
 def test_publishers_of_several_lists_are_named_once_and_topics_are_kept_apart(manager):
-    for topic, publishers in ('/odom', ['a', 'b']), ('/tf', ['d']), ('/odom', ['b', 'c']):
-        for _ in publishers:                # rospy passes on each notice of the master once per publisher
+    for topic, publishers in ('/odom', ['a', 'b']), ('/tf', ['d']), ('/odom', ['b', 'c']), ('/odom', []):
+        for _ in range(2):      # rospy passes on each notice of the master once per publisher
             manager.publisher_update(topic, publishers)
     assert manager.updates[-1] == ('/odom', ['a', 'b', 'c']) and ('/tf', ['d']) in manager.updates
+
+
+def test_only_one_thread_connects_to_a_publisher(manager, monkeypatch):
+    connected = []
+
+    def connect(_, topic, uri):
+        connected.append((topic, uri))
+        if len(connected) == 1:
+            manager._connect_topic_thread('/odom', 'base')
+            manager._connect_topic_thread('/odom', 'filter')
+    monkeypatch.setattr(rospy_topics, '_connect', connect)
+    for _ in range(2):      # one after another, it may connect again
+        manager._connect_topic_thread('/odom', 'base')
+    assert connected == [('/odom', 'base'), ('/odom', 'filter'), ('/odom', 'base')]
 
 
 def test_connections_are_added_in_the_order_in_which_they_arrive(monkeypatch):
