@@ -15,7 +15,7 @@ _read_header = TCPROSServer._tcp_server_callback
 _create = rospy.Publisher.__init__
 _creating = threading.Lock()    # held while a publisher is created
 _connect = RegManager._connect_topic_thread
-_connecting: dict[tuple[str, str], object] = {}     # (topic, URI) to which a thread connects
+_connecting: dict[tuple[str, str], threading.Lock] = {}     # by topic and URI
 
 
 class NoDelay(rospy.SubscribeListener):
@@ -61,7 +61,7 @@ def repair_connections() -> None:
     connects in between never has a queue, and the listener does not hear of it.
     """
     RegManager.publisher_update = _update_publishers
-    RegManager._connect_topic_thread = _connect_once
+    RegManager._connect_topic_thread = _connect_one_at_a_time
     TCPROSServer._tcp_server_callback = _read_header_in_thread
     rospy.Publisher.__init__ = _create_before_connections
 
@@ -91,12 +91,7 @@ def _update_publishers(manager: RegManager, topic: str, publishers: Sequence[str
         manager.cond.notify_all()
 
 
-def _connect_once(manager: RegManager, topic: str, uri: str) -> None:
-    """Connect to a publisher, unless another thread is connecting to it."""
-    this = object()
-    if _connecting.setdefault((topic, uri), this) is not this:
-        return
-    try:
+def _connect_one_at_a_time(manager: RegManager, topic: str, uri: str) -> None:
+    """Connect to a publisher. A second thread waits, and finds the connection."""
+    with _connecting.setdefault((topic, uri), threading.Lock()):
         _connect(manager, topic, uri)
-    finally:
-        del _connecting[topic, uri]

@@ -23,18 +23,17 @@ def test_publishers_of_several_lists_are_named_once_and_topics_are_kept_apart(ma
     assert manager.updates[-1] == ('/odom', ['a', 'b', 'c']) and ('/tf', ['d']) in manager.updates
 
 
-def test_only_one_thread_connects_to_a_publisher(manager, monkeypatch):
-    connected = []
+def test_only_one_thread_at_a_time_connects_to_a_publisher(manager, monkeypatch):
+    events, filter_connects = [], Event()
 
-    def connect(_, topic, uri):
-        connected.append((topic, uri))
-        if len(connected) == 1:
-            manager._connect_topic_thread('/odom', 'base')
-            manager._connect_topic_thread('/odom', 'filter')
+    def connect(_, __, uri):
+        events.append((uri, 'begin'))
+        filter_connects.set() if uri == 'filter' else filter_connects.wait()
+        events.append((uri, 'end'))
     monkeypatch.setattr(rospy_topics, '_connect', connect)
-    for _ in range(2):      # one after another, it may connect again
-        manager._connect_topic_thread('/odom', 'base')
-    assert connected == [('/odom', 'base'), ('/odom', 'filter'), ('/odom', 'base')]
+    threads = [Thread(target=manager._connect_topic_thread, args=('/odom', uri)) for uri in ('base', 'base', 'filter')]
+    [thread.start() for thread in threads], [thread.join() for thread in threads]
+    assert [what for uri, what in events if uri == 'base'] == 2 * ['begin', 'end'] and len(events) == 6
 
 
 def test_connections_are_added_in_the_order_in_which_they_arrive(monkeypatch):
