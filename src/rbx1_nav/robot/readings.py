@@ -92,8 +92,10 @@ class UncertainOdometry:
         length, turn = self.errors.variances(distance, angle)
         unit = (12 * self.rounding[1]) ** 0.5
         path = HELD if angle * HELD <= unit * distance else unit * distance / angle
-        return (travel.distance_variance + length, self.rounding[1] * distance * max(path, distance / 2),
-                travel.angle_variance + turn)
+        turn += travel.angle_variance
+        # the chord of an arc is shorter than the arc by about distance * angle^2 / 24
+        chord = (distance * angle / 12) ** 2 * (2 * self.rounding[1] + turn)
+        return (travel.distance_variance + length + chord, self.rounding[1] * distance * max(path, distance / 2), turn)
 
     def move(self, travel: Travel) -> None:
         """Add a Travel."""

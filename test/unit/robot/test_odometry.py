@@ -41,9 +41,10 @@ def test_each_step_propagates_the_covariance_to_first_order(steps):
         c, s = cos(middle), sin(middle)
         by_pose = numpy.array([[1, 0, -travel.distance * s], [0, 1, travel.distance * c], [0, 0, 1]])
         by_travel = numpy.array([[c, -s, -travel.distance * s / 2], [s, c, travel.distance * c / 2], [0, 0, 1]])
-        length = travel.distance_variance + ERRORS.linear ** 2 * abs(travel.distance)
         turn = (travel.angle_variance + ERRORS.angular ** 2 * abs(travel.angle)
                 + ERRORS.heading ** 2 * abs(travel.distance))
+        chord = (travel.distance * travel.angle / 12) ** 2 * (2 * ROUNDING[1] ** 2 + turn)
+        length = travel.distance_variance + ERRORS.linear ** 2 * abs(travel.distance) + chord
         expected = (by_pose @ expected @ by_pose.T
                     + by_travel @ numpy.diag([length, aside(travel), turn]) @ by_travel.T)
         odometry.move(travel)
