@@ -113,17 +113,18 @@ def open_cluster(address: str, robot: Robot, surface: Surface | None) -> Iterato
             except Exception as error:      # also what Dask makes of an ImportError
                 raise ConfigError(f'worker {worker}: {error}') from None
         # a worker that joins later checks itself
-        yield Place(partial(client.get_executor(pure=False).submit, checked, requirements), partial(threads, client))
+        submit = partial(connected, client.get_executor(pure=False).submit, checked, requirements)
+        yield Place(submit, lambda: sum(connected(client.nthreads).values()))
     finally:
         with suppress(Exception):       # the scheduler is lost; the error that says so is more useful
             client.close(timeout=2)
 
 
 # Any: Dask has no types
-def threads(client: Any) -> int:
-    """Return the current number of threads of all workers. Raises ConnectionError."""
+def connected(function: Callable[..., Any], *arguments: object) -> Any:
+    """Return function(*arguments), which calls the scheduler. Raises ConnectionError."""
     try:
-        return sum(client.nthreads().values())
+        return function(*arguments)
     except Exception:       # Dask has several for it
         raise ConnectionError('the scheduler is disconnected') from None
 

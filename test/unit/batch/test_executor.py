@@ -39,17 +39,6 @@ def test_few_tasks_are_submitted_before_their_results_are_needed():
         assert next(results) == 0 and len(taken) == 2 * AHEAD + 1
 
 
-@pytest.fixture(name='many')
-def start_many():
-    """Provide the results of more tasks than any test waits for, after the first one."""
-    with open_place(2, None, None, None) as place:
-        results = in_order(place, slow, range(10 ** 6))
-        next(results)
-        yield results
-        for process in multiprocessing.active_children():
-            process.kill()
-
-
 def test_an_error_stops_the_processes():
     with pytest.raises(KeyError):
         with open_place(2, None, None, None) as place:
@@ -59,10 +48,13 @@ def test_an_error_stops_the_processes():
     assert not multiprocessing.active_children()
 
 
-def test_a_process_that_is_killed_is_an_error(many):
-    os.kill(multiprocessing.active_children()[0].pid, signal.SIGKILL)
-    with pytest.raises(BrokenProcessPool):
-        list(many)
+def test_a_process_that_is_killed_is_an_error():
+    with open_place(2, None, None, None) as place:
+        results = in_order(place, slow, range(10 ** 6))
+        next(results)
+        os.kill(multiprocessing.active_children()[0].pid, signal.SIGKILL)
+        with pytest.raises(BrokenProcessPool):
+            list(results)
 
 
 KILLED = """
