@@ -61,7 +61,7 @@ def run(row):
                 drivers['robot3'].wait_for_line('forward: ')
                 disturb(row, kind, drivers['robot3'], fleet)
                 for name in 'robot1', 'robot2':
-                    assert drivers[name].wait() == 0, drivers[name].output
+                    assert drivers[name].wait() == 0, f'{drivers[name].output}\n{fleet.output[-2000:]}'
                     check_exact(truth[name])
                 drivers['robot3'].kill()
             if kind == 'removed':
