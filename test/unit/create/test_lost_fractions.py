@@ -31,7 +31,9 @@ def test_a_turn_is_reported_whatever_the_robot_does_with_fractions(surface, lost
     # at the next turn, the handling of fractions is known
     reported, true = turn(driven, -rate, pi)
     assert reported == pytest.approx(true, rel=0.03)
-    assert sum('The robot loses fractions of a degree' in line for line in driven.log) == lost
+    assert [line for line in driven.log if 'fractions' in line] == [
+        'The robot loses fractions of a degree: correcting the odometry. Set angle_fractions:=lost to correct it from '
+        'the start'] * lost
 
 
 PERIOD = 1 / 32         # s between two readings

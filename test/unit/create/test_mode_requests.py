@@ -58,8 +58,7 @@ def test_the_mode_is_requested_until_the_robot_reports_it():
     robot.feed(PASSIVE, 2), robot.feed(SAFE, 2)
     assert not robot.feed(PASSIVE, 2, **WHEEL) + robot.feed(PASSIVE, 9) + robot.feed(PASSIVE, 1, **WHEEL)
     assert robot.feed(PASSIVE, 15)[0] == 11
-    robot.feed(SAFE, 2)
-    assert robot.feed(PASSIVE, 15)[0] == 12
+    assert not robot.feed(SAFE, 2) and robot.feed(PASSIVE, 15)[0] == 12
 
 
 @pytest.mark.parametrize('wants_motion', [False, True])
