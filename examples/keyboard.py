@@ -4,7 +4,10 @@ from rbx1_nav.ros.driving.script import TimedDrive, exit_status, init_node
 
 import os
 import re
+import select
+import termios
 import time
+import tty
 
 import rospy
 from geometry_msgs.msg import Twist
@@ -15,21 +18,23 @@ SPEEDS = {b'\x1b[A': (0.2, 0.0), b'\x1b[B': (-0.2, 0.0), b'\x1b[D': (0.0, 1.0), 
 
 def shutdown():
     cmd_vel.publish(Twist())
-    os.system('setsid stty icanon echo min 1')
     time.sleep(0.5)     # the process must exit within 1.4 s
+    termios.tcsetattr(0, termios.TCSADRAIN, settings)
 
 
 with exit_status():
     init_node('keyboard', __doc__)
     if not os.isatty(0):
         raise rospy.ROSException('keyboard.py: expected a terminal as standard input')
+    settings = termios.tcgetattr(0)
     cmd_vel = rospy.Publisher('cmd_vel', Twist, queue_size=5)
     with TimedDrive(cmd_vel, 20, shutdown) as drive:    # 20 commands per second
-        os.system('setsid stty -icanon -echo min 0')    # read() returns each key at once, and does not wait for a key
+        tty.setcbreak(0)    # read() returns each key at once
         print(__doc__)
         move_cmd, r = Twist(), drive.Rate()
         while True:
-            for key in re.findall(rb'\x1b\[.|.', os.read(0, 100), re.DOTALL):
+            typed = os.read(0, 100) if select.select([0], [], [], 0)[0] else b''
+            for key in re.findall(rb'\x1b\[.|.', typed, re.DOTALL):
                 move_cmd.linear.x, move_cmd.angular.z = SPEEDS.get(key, (0.0, 0.0))
             cmd_vel.publish(move_cmd)
             r.sleep()
