@@ -2,6 +2,7 @@
 """Drive with the arrow keys. The robot keeps moving until the next key. Any other key stops it; Ctrl-C exits."""
 from rbx1_nav.ros.driving.script import TimedDrive, exit_status, init_node
 
+from contextlib import suppress
 import os
 import re
 import select
@@ -19,7 +20,8 @@ SPEEDS = {b'\x1b[A': (0.2, 0.0), b'\x1b[B': (-0.2, 0.0), b'\x1b[D': (0.0, 1.0), 
 def shutdown():
     cmd_vel.publish(Twist())
     time.sleep(0.5)     # the process must exit within 1.4 s
-    termios.tcsetattr(0, termios.TCSADRAIN, settings)
+    with suppress(termios.error):   # the terminal is closed
+        termios.tcsetattr(0, termios.TCSADRAIN, settings)
 
 
 with exit_status():

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """examples/keyboard.py drives the robot by the keys typed in its terminal, and restores the terminal on Ctrl-C.
 
-Without a terminal, it exits with a one-line error.
+Without a terminal, it exits with a one-line error. When the terminal is closed, it stops the robot.
 """
 import os
 import pty
@@ -17,40 +17,40 @@ UP, DOWN, RIGHT, LEFT = (b'\x1b[' + key for key in (b'A', b'B', b'C', b'D'))
 
 
 class TestKeyboardDriving(support.Case):
-    @classmethod
-    def setUpClass(cls):
-        super().setUpClass()
-        cls.odom = support.OdomWatch()
-
     def setUp(self):
-        self.ours, its = pty.openpty()
-        self.addCleanup(os.close, self.ours)
-        self.addCleanup(os.close, its)
-        self.terminal = its
-        self.before = termios.tcgetattr(its)
+        self.odom = support.OdomWatch()
+        ours, self.terminal = pty.openpty()
+        self.ours = open(ours, 'wb', buffering=0)
+        self.addCleanup(self.ours.close)
+        self.addCleanup(os.close, self.terminal)
+        self.before = termios.tcgetattr(self.terminal)
         # a session of its own, whose terminal is the new one: Ctrl-C typed in it is sent to the script
-        self.process = subprocess.Popen(['setsid', '-c', '-w', '/usr/bin/python3', KEYBOARD], stdin=its, stdout=its,
-                                        stderr=its)
+        self.process = subprocess.Popen(['setsid', '-c', '-w', '/usr/bin/python3', KEYBOARD], stdin=self.terminal,
+                                        stdout=self.terminal, stderr=self.terminal)
         self.addCleanup(self.process.wait)
         self.addCleanup(self.process.kill)
-        support.wait_for(lambda: not termios.tcgetattr(its)[3] & termios.ICANON, 'a terminal that passes on each key')
-
-    def type(self, keys):
-        os.write(self.ours, keys)
+        support.wait_for(lambda: not termios.tcgetattr(self.terminal)[3] & termios.ICANON, 'each key at once')
 
     def test_each_key(self):
         for keys, linear, angular in [(UP, 0.2, 0.0), (LEFT, 0.0, 1.0), (RIGHT, 0.0, -1.0), (DOWN, -0.2, 0.0),
                                       (UP, 0.2, 0.0), (b'A', 0.0, 0.0), (4 * LEFT + UP, 0.2, 0.0)]:
-            self.type(keys)
+            self.ours.write(keys)
             self.odom.wait_for_twist(linear, angular)
 
     def test_ctrl_c(self):
-        self.type(UP)
+        self.ours.write(UP)
         self.odom.wait_for_twist(0.2)
-        self.type(b'\x03')
+        self.ours.write(b'\x03')
         self.assertEqual(self.process.wait(support.LIMIT), 0)
         self.odom.wait_for_twist(0.0)
         self.assertEqual(termios.tcgetattr(self.terminal), self.before)
+
+    def test_closed_terminal(self):
+        self.ours.write(UP)
+        self.odom.wait_for_twist(0.2)
+        self.ours.close()
+        self.assertEqual(self.process.wait(support.LIMIT), 0)
+        self.odom.wait_for_twist(0.0)
 
     def test_without_a_terminal(self):
         result = subprocess.run(['/usr/bin/python3', KEYBOARD, '__name:=piped'], stdin=subprocess.DEVNULL,
