@@ -70,8 +70,7 @@ class EmulatedRobot:
 
     def received(self):
         """Return (s of ROS time, bytes) of each command that the robot has received."""
-        texts = [message.data.split() for message in self.line.messages]
-        return [(float(stamp), bytes.fromhex(data)) for stamp, data in texts]
+        return [(float(stamp), bytes.fromhex(data)) for stamp, data in (m.data.split() for m in self.line.messages)]
 
     def read(self, number):
         """Return the values of a packet or group, by packet name."""
@@ -112,6 +111,8 @@ class EmulatedRobot:
 
     @property
     def moving(self):
-        """Whether the robot moves according to the ground truth."""
-        twist = self.truth.next().twist.twist
+        """Whether the robot moves according to the ground truth, after everything that it has received."""
+        now = rospy.Time.now()
+        truth = support.wait_for(lambda: self.truth.last.header.stamp > now and self.truth.last, 'the ground truth')
+        twist = truth.twist.twist
         return bool(twist.linear.x or twist.angular.z)

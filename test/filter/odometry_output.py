@@ -12,15 +12,15 @@ class TestOdometryOutput(support.Case):
     def test_pose_and_velocity(self):
         truth = support.Watch('/ground_truth', Odometry)
         poses = support.Watch('/robot_pose_ekf/odom_combined', PoseWithCovarianceStamped)
+        poses.wait_for_publisher('/robot_pose_ekf')     # each estimate has a pose, which is published before it
         estimates = support.Watch('/robot_pose_ekf/odometry', Odometry)
         # the filter estimates the gyro bias at standstill
         support.wait_for(lambda: truth.last and len(estimates.messages) > 60, 'estimates at standstill')
         driver = support.out_and_back()
         self.assertEqual(driver.wait(), 0, driver.output)
-        estimates.next()
-
-        by_stamp = {m.header.stamp: m.pose for m in list(poses.messages)}
         checked = list(estimates.messages)[2:]      # the first have no predecessor
+        support.wait_for(lambda: poses.last.header.stamp >= checked[-1].header.stamp, 'the last pose')
+        by_stamp = {m.header.stamp: m.pose for m in list(poses.messages)}
         for message in checked:
             self.assertEqual((message.header.frame_id, message.child_frame_id), ('odom_combined', 'base_footprint'))
             self.assertEqual(message.pose, by_stamp[message.header.stamp])
@@ -44,8 +44,7 @@ class TestOdometryOutput(support.Case):
         self.check([(t.twist.angular.z - turn, t.covariance[35]) for t, _, turn in moving], 0.008)
 
     def check(self, errors, limit):
-        """Check that the rms error is below a limit and not much above the variances. errors: (error, variance)
-        pairs."""
+        """Check that the rms error is below a limit and not much above the variances. errors: (error, variance)."""
         self.assertLess(math.sqrt(sum(error ** 2 for error, _ in errors) / len(errors)), limit)
         self.assertLess(sum(error ** 2 / variance for error, variance in errors) / len(errors), 2)
 
