@@ -63,9 +63,7 @@ class Session:
             'ROS_MASTER_URI': uri, 'ROS_IP': '127.0.0.1', 'DISPLAY': display,
             'PYTHONPYCACHEPREFIX': os.environ.get('PYTHONPYCACHEPREFIX', home),     # not in the source tree
             'OPENBLAS_NUM_THREADS': os.environ.get('OPENBLAS_NUM_THREADS', ''),
-            # the threads of the software renderer take a fifth of the CPU time of RViz
-            'LIBGL_ALWAYS_SOFTWARE': '1', 'LP_NUM_THREADS': '0',
-            'QT_X11_NO_MITSHM': '1', 'QT_QPA_PLATFORM': 'xcb', 'XDG_RUNTIME_DIR': home}
+            'LIBGL_ALWAYS_SOFTWARE': '1', 'QT_X11_NO_MITSHM': '1', 'QT_QPA_PLATFORM': 'xcb', 'XDG_RUNTIME_DIR': home}
 
     def __enter__(self):
         with open(os.path.join(self.home, '.bashrc'), 'w') as file:

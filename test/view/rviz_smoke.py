@@ -189,7 +189,7 @@ class RvizTest(support.Case):
         log = open(self.console, 'w')
         self.addCleanup(log.close)
         env = dict(os.environ, DISPLAY=self.display, HOME=self.scratch, XDG_RUNTIME_DIR=self.scratch,
-                   LIBGL_ALWAYS_SOFTWARE='1', LP_NUM_THREADS='0', QT_X11_NO_MITSHM='1', QT_QPA_PLATFORM='xcb')
+                   LIBGL_ALWAYS_SOFTWARE='1', QT_X11_NO_MITSHM='1', QT_QPA_PLATFORM='xcb')
         self.rviz = self.start(['rosrun', 'rviz', 'rviz', '-d', path], env=env, stdout=log, stderr=log)
 
     def console_errors(self):
