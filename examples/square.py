@@ -1,11 +1,9 @@
 #!/usr/bin/python3
 """Drive a square, timed: four sides of 1 m, and a quarter turn to the left after each.
 
-Ticks are whole numbers. Wait only with r.sleep() and drive.rest(): rospy's own sleep functions ignore Ctrl-C here.
+Ticks are whole numbers.
 """
-from rbx1_nav.ros.driving.script import TimedDrive, exit_status, init_node
-
-import time
+from rbx1_nav.driving import Drive
 
 import rospy
 from geometry_msgs.msg import Twist
@@ -13,13 +11,13 @@ from geometry_msgs.msg import Twist
 
 def shutdown():
     cmd_vel.publish(Twist())
-    time.sleep(1)
+    rospy.sleep(1)
 
 
-with exit_status():
-    init_node('square', __doc__)
-    cmd_vel = rospy.Publisher('cmd_vel', Twist, queue_size=5)
-    with TimedDrive(cmd_vel, 50, shutdown) as drive:    # 50 commands per second
-        for side in range(4):
-            # Fill this in: drive forward, stop and rest; turn left, stop and rest.
-            pass
+rospy.init_node('square')
+rospy.on_shutdown(shutdown)
+cmd_vel = rospy.Publisher('cmd_vel', Twist, queue_size=5)
+with Drive(cmd_vel):
+    for side in range(4):
+        # Fill this in: drive forward, stop and rest; turn left, stop and rest.
+        pass

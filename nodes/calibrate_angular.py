@@ -9,10 +9,9 @@ degrees short of the mark, it has turned 350 degrees. The gyro is calibrated on 
 """
 from __future__ import annotations
 
-from rbx1_nav.ros.driving.script import exit_status, init_node, number, param
+from rbx1_nav.driving import Drive
 
 from math import degrees, pi
-import sys
 
 import rospy
 from sensor_msgs.msg import Imu
@@ -20,9 +19,12 @@ from sensor_msgs.msg import Imu
 from rbx1_nav.config import ConfigError
 from rbx1_nav.control.legs import Turn
 from rbx1_nav.create.driver.fractions import LOST
+from rbx1_nav.driving.calibrating import COMMON, Diagnosis, ask, drive, factor_set, make_publisher
+from rbx1_nav.driving.odometry import PoseListener
+from rbx1_nav.driving.script import start_node
+from rbx1_nav.parameters import number
 from rbx1_nav.robot.calibration import corrected, read_measured, turn_by_gyro
-from rbx1_nav.ros.driving.calibrating import COMMON, CalibrationDrive, Diagnosis, ask, factor_set
-from rbx1_nav.ros.driving.pose_listener import PoseListener
+from rbx1_nav.ros.node.params import param
 from rbx1_nav.units import wrap_angle
 
 ODOM_KEY, GYRO_KEY = 'odom_angular_scale_correction', 'gyro_scale_correction'
@@ -43,15 +45,17 @@ def measure() -> dict[str, float]:
     poses = PoseListener(param('odom_frame'), param('base_frame'), 0.0, angular_speed)
     readings: list[tuple[float, float]] = []    # of the gyro: s, rad/s
     base, gyro = Diagnosis(base_node, 'Base'), Diagnosis(base_node, 'Gyro')
-    with CalibrationDrive(rate, poses) as drive:
+    cmd_vel = make_publisher()
+    with Drive(cmd_vel, timed=False):
+        first = poses.pose()
         run = {key: factor_set(base_node, key) for key in (ODOM_KEY, GYRO_KEY)}
         # The gyro reports its bias while the robot is stationary.
         rospy.Subscriber('imu/data', Imu, lambda message: readings.append((message.header.stamp.to_sec(),
                                                                            message.angular_velocity.z)))
-        drive.rest(2)
+        rospy.sleep(2)
         # on the clock of the gyro, which may differ from this node's
         begin, start = rospy.get_time(), readings[-1][0] if readings else 0.0
-        drive.drive(leg)
+        drive(leg, poses, cmd_vel, rate)
         end = start + rospy.get_time() - begin
     run[ODOM_KEY] = float(base.value(ODOM_KEY) or run[ODOM_KEY])
     # a Create without a gyro does not use the gyro's factor
@@ -60,7 +64,7 @@ def measure() -> dict[str, float]:
     try:
         if gyro.error:
             raise ConfigError(f'the base reports an error: {gyro.error}')
-        moved = degrees(abs(wrap_angle(leg.start.yaw - drive.start.yaw)))
+        moved = degrees(abs(wrap_angle(leg.start.yaw - first.yaw)))
         if moved > MOVED:
             raise ConfigError(f'the robot turned by {moved:.1f} degrees before the turn: expected a robot at rest')
         if not readings:
@@ -79,7 +83,7 @@ def warn_of_gyro(error: ConfigError) -> None:
 
 def calibrate() -> None:
     """Turn, ask, and print the factors."""
-    init_node('calibrate_angular', __doc__, PARAMETERS)
+    start_node('calibrate_angular', __doc__, PARAMETERS)
     run = measure()
     print(f"The odometry reports {run['reported']:.1f} degrees.")
     if run['loses_fractions']:
@@ -111,9 +115,7 @@ def calibrate() -> None:
 
 
 if __name__ == '__main__':
-    with exit_status():
-        try:
-            calibrate()
-        except rospy.ROSInterruptException:
-            rospy.loginfo('Calibration terminated.')
-            sys.exit(130)
+    try:
+        calibrate()
+    except rospy.ROSInterruptException:
+        rospy.loginfo('Calibration terminated.')

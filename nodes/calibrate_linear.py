@@ -9,17 +9,19 @@ measure. If the true distance is shorter than the reported one, the factor decre
 """
 from __future__ import annotations
 
-from rbx1_nav.ros.driving.script import exit_status, init_node, number, param
+from rbx1_nav.driving import Drive
 
 from math import hypot
-import sys
 
 import rospy
 
 from rbx1_nav.control.legs import Straight
+from rbx1_nav.driving.calibrating import COMMON, Diagnosis, ask, drive, factor_set, make_publisher
+from rbx1_nav.driving.odometry import PoseListener
+from rbx1_nav.driving.script import start_node
+from rbx1_nav.parameters import number
 from rbx1_nav.robot.calibration import corrected, read_measured
-from rbx1_nav.ros.driving.calibrating import COMMON, CalibrationDrive, Diagnosis, ask, factor_set
-from rbx1_nav.ros.driving.pose_listener import PoseListener
+from rbx1_nav.ros.node.params import param
 
 KEY = 'odom_linear_scale_correction'
 
@@ -36,16 +38,17 @@ def measure() -> tuple[float, float]:
     leg = Straight('forward', param('goal_distance'), linear_speed, param('min_linear_speed'), rate)
     poses = PoseListener(param('odom_frame'), param('base_frame'), linear_speed, 0.0)
     base = Diagnosis(param('base_node'), 'Base')
-    with CalibrationDrive(rate, poses) as drive:
+    cmd_vel = make_publisher()
+    with Drive(cmd_vel, timed=False):
         factor = factor_set(param('base_node'), KEY)
-        drive.drive(leg)
+        drive(leg, poses, cmd_vel, rate)
     # A tape measures from mark to mark, not along the robot's initial heading.
     return hypot(leg.last.x - leg.start.x, leg.last.y - leg.start.y), float(base.value(KEY) or factor)
 
 
 def calibrate() -> None:
     """Drive, ask, and print the factor."""
-    init_node('calibrate_linear', __doc__, PARAMETERS)
+    start_node('calibrate_linear', __doc__, PARAMETERS)
     reported, before = measure()
     print(f'The odometry reports {reported:.3f} m.')
     measured = ask('How far is the robot from its start, in m?',
@@ -58,9 +61,7 @@ def calibrate() -> None:
 
 
 if __name__ == '__main__':
-    with exit_status():
-        try:
-            calibrate()
-        except rospy.ROSInterruptException:
-            rospy.loginfo('Calibration terminated.')
-            sys.exit(130)
+    try:
+        calibrate()
+    except rospy.ROSInterruptException:
+        rospy.loginfo('Calibration terminated.')

@@ -8,6 +8,7 @@ from __future__ import annotations
 import rbx1_nav.ros.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
 
 import argparse
+import ast
 from concurrent.futures.process import BrokenProcessPool
 import os
 import signal
@@ -21,7 +22,7 @@ from rbx1_nav.batch.runs_file import RunsFile
 from rbx1_nav.batch.sweep import Sweep
 from rbx1_nav.config import ConfigError, show, show_name
 from rbx1_nav.files import check_writable
-from rbx1_nav.parameters import Parameter
+from rbx1_nav.parameters import split_usage
 from rbx1_nav.plotting.animation import animate, check_animation
 from rbx1_nav.plotting.plots import PATHS, check_picture, draw
 from rbx1_nav.robot.description import load_robot
@@ -74,10 +75,9 @@ def read_arguments() -> argparse.Namespace:
 
 def read_combinations(arguments: argparse.Namespace) -> tuple[list[Combination], list[str]]:
     """Return (Combinations of the sweep, titles of its columns). Raises ConfigError."""
-    declared: list[Parameter] = []
-    if arguments.set:   # only then, because it imports rospy
-        sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
-        from odom_out_and_back import PARAMETERS as declared
+    script = os.path.join(os.path.dirname(os.path.realpath(__file__)), 'odom_out_and_back.py')
+    with open(script, encoding='utf-8') as file:
+        _, declared = split_usage(ast.get_docstring(ast.parse(file.read())) or '')
     values = read_sweep(arguments.set, declared)
     surfaces = {name: load_surface(name, resources.surfaces()) for name in arguments.surface}
     combinations = combine(surfaces, values)

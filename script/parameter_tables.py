@@ -28,9 +28,11 @@ def declared(kind, name):
     spec = importlib.util.spec_from_file_location('node', os.path.join(ROOT, 'nodes', name))
     node = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(node)
-    from rbx1_nav.ros.driving import script
-    common = [script.WAIT_TIMEOUT] if getattr(node, 'init_node', None) is script.init_node else []
-    return [*node.PARAMETERS, *common]
+    if not hasattr(node, 'Drive'):
+        return node.PARAMETERS
+    from rbx1_nav.driving.script import WAIT_TIMEOUT
+    from rbx1_nav.parameters import split_usage
+    return [*getattr(node, 'PARAMETERS', split_usage(node.__doc__)[1]), WAIT_TIMEOUT]
 
 
 def surface_table():

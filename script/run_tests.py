@@ -38,7 +38,7 @@ SETS = {
     'set_base': ['consistent_outputs', 'base_timeout', 'rejected_commands', 'reset', 'message_counts'],
     'set_stops': ['closed_terminal', 'stop_on_signal', 'plain_driver_in_simulated_time'],
     'set_scripts': ['remembered_parameters', 'two_drivers'],
-    'set_fast': ['result', 'released_publisher', 'progress_bar'],
+    'set_fast': ['result', 'released_publisher'],
     'set_real_time': ['keyboard_driving', 'contradictory_commands', 'plain_driver'],
     'set_calibration': ['angular_calibration', 'linear_calibration'],
     'set_fake_create': ['fake_create_baud_rate', 'fake_create_cable', 'fake_create_faults', 'fake_create_line',

@@ -2,6 +2,8 @@
 from __future__ import annotations
 
 from functools import partial
+from math import pi
+import re
 import textwrap
 from typing import Any, Callable, Iterable, NamedTuple, Sequence
 
@@ -9,6 +11,8 @@ from rbx1_nav.config import Scalar, Section, YamlValue
 
 POSITIVE = 1e-6, 1e6    # the default range of a number
 WIDTH = 120             # characters per line of a usage text
+# a line of list_parameters(), without the text that follows if it is broken: name, text, details
+LISTED = re.compile(r'    ~(\w+) +(.*) \((.*)\)')
 
 
 class Parameter(NamedTuple):
@@ -93,6 +97,31 @@ def list_parameters(parameters: Sequence[Parameter]) -> str:
                    break_on_hyphens=False)
     lines = (wrap(f'    ~{each.name}'.ljust(indent) + _described(each)) for each in parameters)
     return 'Parameters:\n' + '\n'.join(lines)
+
+
+def split_usage(docstring: str) -> tuple[str, list[Parameter]]:
+    """Return (the text before the list of parameters, the parameters), for a script whose docstring is its usage text.
+
+    The list is as list_parameters() prints it, each parameter in one line. A parameter with a unit is a number; a
+    parameter whose name ends in _frame is the name of a frame. Raises ValueError for any other line.
+    """
+    usage, _, lines = docstring.partition('\nParameters:\n')
+    return usage, [_listed(line) for line in lines.splitlines() if line.strip()]
+
+
+def _listed(line: str) -> Parameter:
+    match = LISTED.fullmatch(line)
+    if not match:
+        raise ValueError(f'{line.strip()}: expected ~NAME TEXT (UNIT; LOW to HIGH; default: VALUE)')
+    name, text, details = match.groups()
+    *details, default = details.split('; ')
+    default = default[len('default: '):]
+    if name.endswith('_frame'):
+        return frame(name, None if ' ' in default else default, text, shown=default)
+    unit, low, high = details[0], *POSITIVE
+    if len(details) > 1:
+        low, high = map(float, details[1].split(' to '))
+    return number(name, pi if default == 'pi' else float(default), unit, text, low, high, shown=default)
 
 
 def _described(parameter: Parameter) -> str:

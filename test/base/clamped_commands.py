@@ -27,7 +27,7 @@ class TestClampedCommands(support.Case):
                    'rad/s: expected at most 0.3 m/s, 0.5 rad/s: expected it to follow the commands until the end')
         self.check(support.out_and_back('_rate:=2', '_linear_speed:=0.2', '_angular_speed:=0.4'), 1,
                    '/arbotix did not follow a command: no command for 0.4 s: stopped')
-        self.check(support.by_odometry('_rate:=20', '_linear_speed:=1'), 0, 'Done: measured in odom')
+        self.check(support.by_odometry('_rate:=20', '_linear_speed:=1'), 0, 'Measured in odom')
 
 
 if __name__ == '__main__':

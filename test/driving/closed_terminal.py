@@ -3,6 +3,7 @@
 import fcntl
 import os
 import pty
+import signal
 import subprocess
 import termios
 
@@ -29,7 +30,7 @@ class TestClosedTerminal(support.Case):
         log.wait_for_publisher('/out_and_back')
         os.close(ours)
         support.wait_for(lambda: driver.poll() is not None, 'the driver to exit')
-        self.assertEqual(driver.returncode, 0)
+        self.assertEqual(driver.returncode, 128 + signal.SIGHUP)
         odom.wait_for_twist(0.0)
         for line in ('Stopping the robot...', 'Out-and-Back node terminated.'):
             support.wait_for(lambda: any(m.msg == line for m in log.messages), f'{line} on /rosout')

@@ -5,6 +5,7 @@ Without a terminal, it exits with a one-line error. When the terminal is closed,
 """
 import os
 import pty
+import signal
 import subprocess
 import termios
 
@@ -41,7 +42,7 @@ class TestKeyboardDriving(support.Case):
         self.ours.write(UP)
         self.odom.wait_for_twist(0.2)
         self.ours.write(b'\x03')
-        self.assertEqual(self.process.wait(support.LIMIT), 0)
+        self.assertEqual(self.process.wait(support.LIMIT), 128 + signal.SIGINT)
         self.odom.wait_for_twist(0.0)
         self.assertEqual(termios.tcgetattr(self.terminal), self.before)
 
@@ -49,7 +50,7 @@ class TestKeyboardDriving(support.Case):
         self.ours.write(UP)
         self.odom.wait_for_twist(0.2)
         self.ours.close()
-        self.assertEqual(self.process.wait(support.LIMIT), 0)
+        self.assertEqual(self.process.wait(support.LIMIT), 128 + signal.SIGHUP)
         self.odom.wait_for_twist(0.0)
 
     def test_without_a_terminal(self):

@@ -31,7 +31,7 @@ class TestLostListener(support.Case):
     def drive(self, *arguments, script=support.out_and_back):
         """Run a script until the robot moves."""
         driver = script(*arguments)
-        driver.wait_for_line('forward: ')
+        driver.wait_for_line('Connected to /arbotix')
         odom = support.OdomWatch()
         self.addCleanup(odom.subscriber.unregister)
         support.wait_for(lambda: odom.last.twist.twist.linear.x > 0, 'a motion')
@@ -63,7 +63,7 @@ class TestLostListener(support.Case):
         self.base.signal(signal.SIGINT)
         self.base.wait()
         driver = support.out_and_back('_linear_speed:=0.01')
-        driver.wait_for_line('forward: 1.00 m')
+        driver.wait_for_line('Connected to /recorder')
         self.recorder.kill()
         self.check_error(driver, '/recorder disconnected')
         subprocess.run(['rosnode', 'cleanup'], input=b'y\n', check=True)
@@ -80,7 +80,7 @@ class TestLostListener(support.Case):
             base = support.Process('rosrun', 'rbx1_nav', 'fake_base.py')
             base.wait_for_line('at the origin')
             driver = script('_linear_speed:=0.01')
-            driver.wait_for_line('forward: 1.00 m')
+            driver.wait_for_line('Connected to /arbotix')
             base.kill()
             self.check_error(driver, '/arbotix disconnected')
 

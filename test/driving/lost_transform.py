@@ -40,7 +40,7 @@ class TestLostTransform(support.Case):
         driver = self.suspend_base('_transform_timeout:=60', '_goal_distance:=0.3')
         os.kill(self.base, signal.SIGCONT)
         self.assertEqual(driver.wait(), 0, driver.output)
-        self.assertIn('turn left', driver.output)
+        self.assertRegex(driver.output, r'0\.00 m forward, 3\.\d+ rad to the left')
 
 
 if __name__ == '__main__':

@@ -24,7 +24,7 @@ class TestRememberedParameters(support.Case):
 
     def warnings(self, driver):
         """Return the warnings that a script logs until it has checked its parameters, without time stamps."""
-        driver.wait_for_line('forward: ')
+        driver.wait_for_line('Connected to ')
         driver.signal(signal.SIGINT)
         driver.wait()
         return [line.split(']: ', 1)[1] for line in driver.lines if '[WARN]' in line]

@@ -32,7 +32,7 @@ ALLOWED = {
     'ros': {'config', 'estimation', 'robot', 'units'},
     'ros.node': {'config', 'parameters', 'ros.network'},
     'ros.lockstep': {'ros.network', 'schedule'},
-    'ros.driving': {'config', 'control', 'parameters', 'robot', 'ros.network', 'ros.node', 'schedule', 'units'},
+    'driving': {'config', 'control', 'parameters', 'robot', 'ros.network', 'ros.node', 'units'},
     'ros.base': {'control', 'create', 'create.driver', 'robot', 'ros', 'ros.network', 'ros.node', 'schedule', 'units'},
     'ros.base.simulated_floor': {'config', 'parameters', 'ros.node', 'simulation'},
     'ros.base.simulated_clock': {'config', 'parameters', 'ros.base', 'ros.lockstep', 'ros.network', 'ros.node',
@@ -47,7 +47,7 @@ ALLOWED = {
     'ros.bags': {'config', 'estimation', 'fitting', 'robot', 'ros', 'units'},
 }
 ALLOWED['nodes'] = set(ALLOWED) - {'__init__'}
-WITH_ROS = {room for room in ALLOWED if room.split('.')[0] == 'ros'} | {'nodes'}
+WITH_ROS = {room for room in ALLOWED if room.split('.')[0] == 'ros'} | {'driving', 'nodes'}
 # what the other rooms may import in addition to Python's own modules
 THIRD_PARTY = {'PIL', 'matplotlib', 'numpy', 'scipy', 'serial', 'yaml'}
 OF_MODULE = {'rbx1_nav.batch.cluster': {'dask', 'distributed'}, 'rbx1_nav.batch.sweep': {'tqdm'}}

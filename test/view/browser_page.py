@@ -104,7 +104,7 @@ class TestBrowserPage(PageTest):
         self.page.key('keyDown', 'Escape')
         self.page.key('keyUp', 'Escape')
         self.odom.wait_for_twist(0.0)
-        self.assertEqual(script.wait(), 0, script.output)
+        self.assertEqual(script.wait(), 128 + signal.SIGTERM, script.output)    # as after `rosnode kill`
         self.assertNotIn('Done', script.output)
 
     def test_a_run_is_refused_while_a_script_of_a_terminal_drives(self):
@@ -116,7 +116,7 @@ class TestBrowserPage(PageTest):
         self.page.wait_for_text('notice', '/out_and_back is driving the robot: stop it first')
         self.odom.wait_for_twist(0.0, 1.0)      # the script goes on
         script.signal(signal.SIGINT)
-        self.assertEqual(script.wait(), 0, script.output)
+        self.assertEqual(script.wait(), 128 + signal.SIGINT, script.output)
 
     def test_stop_ends_driving_by_hand(self):
         self.drive_ahead(0.05)

@@ -18,6 +18,7 @@ SPEED_WINDOW = 0.1  # s over which the robot's speed is measured: a few encoder 
 COASTING = 1.0      # s: how long a robot may continue to move without a command
 POSE_TOLERANCE = 0.1    # m, and twice this value in rad: largest correction of a pose in one message
 TRIAL_REST = 0.5    # s at a trial stop, in which the robot coasts to rest
+REST = 1.0          # s between two motions
 STUCK_TIME = 5.0    # s without progress: something holds the robot, or turns it in the wrong direction
 
 
@@ -103,6 +104,7 @@ class Leg(ABC):
     """
 
     unit: str
+    rests = TRIAL_REST, REST    # s: at the trial stop, and at the goal
     keys: str               # configuration keys, for error messages
     deceleration: float     # m/s^2 or rad/s^2
     start: Pose             # pose at the first call of next_speed()

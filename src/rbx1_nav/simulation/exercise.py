@@ -8,7 +8,7 @@ from functools import partial
 from math import pi
 from typing import Callable, Mapping, NamedTuple
 
-from rbx1_nav.control.legs import TRIAL_REST, Leg, Motion, out_and_back, out_and_back_by_odometry
+from rbx1_nav.control.legs import REST, TRIAL_REST, Leg, Motion, out_and_back, out_and_back_by_odometry
 from rbx1_nav.estimation.combined_odometry import CombinedOdometry
 from rbx1_nav.estimation.inputs import Imu, Odom
 from rbx1_nav.estimation.priors import Priors, priors
@@ -25,7 +25,6 @@ EXERCISE = dict(linear_speed=0.2, goal_distance=1.0, angular_speed=1.0, goal_ang
 MIN_SPEEDS = dict(min_linear_speed=0.05, min_angular_speed=0.2)
 PARAMETERS: dict[str, float] = {**EXERCISE, **MIN_SPEEDS}
 TICK = round(SECOND / EXERCISE['rate'])     # ns
-REST = 1.0          # s between two motions
 CALIBRATION = 2.0   # s at rest before the first motion, during which the filter estimates the gyro's bias
 
 

@@ -72,7 +72,7 @@ def run(row):
 def try_one(row, start, poses, names, cables, outage, delay):
     """Drive, and pull the cable."""
     driver = start()
-    driver.wait_for_line('forward: ')
+    driver.wait_for_line('Connected to ')
     time.sleep(delay)
     ip('-n', names[0], 'link', 'set', cables[0], 'down')
     pulled, x = time.monotonic(), position(poses)

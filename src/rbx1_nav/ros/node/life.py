@@ -1,19 +1,17 @@
 """Starts and stops a node without hanging on the master or on a lock that a signal has interrupted.
 
 Signals never interrupt the main thread. A thread waits for them and sets `end_requested`; so does every other kind of
-shutdown request. The main thread checks it, does its final work, and calls leave().
-docs/decisions/nodes.md explains why.
+shutdown request. The main thread checks it, does its final work, and calls leave(). A driving script is plain rospy
+instead: see rbx1_nav/driving/script.py. docs/decisions/nodes.md explains why.
 """
 from __future__ import annotations
 
-from contextlib import contextmanager
 import os
 import signal
 import sys
 import threading
 import time
-import traceback
-from typing import Any, Callable, Iterator, NoReturn, Sequence, TextIO, TypeVar, cast
+from typing import Any, Callable, NoReturn, Sequence, TextIO, TypeVar, cast
 
 import rosgraph
 import rospy
@@ -30,7 +28,6 @@ from rbx1_nav.ros.node.params import (
 EXIT_DEADLINE = 1.4         # s of wall time from the request to the exit of the process, whatever hangs
 UNREGISTER_TIMEOUT = 0.25   # s of wall time for the master to unregister the node
 MAX_SLEEP = 0.05            # s
-PACKAGE = os.path.realpath(os.path.join(os.path.dirname(__file__), '..', '..')) + os.sep
 
 # rospy of Debian 11 calls Thread.isAlive() on shutdown, which Python 3.9 has removed
 if not hasattr(threading.Thread, 'isAlive'):
@@ -38,8 +35,9 @@ if not hasattr(threading.Thread, 'isAlive'):
 
 Found = TypeVar('Found')
 end_requested = threading.Event()
+exit_status = [1]       # of a process that does not exit in time
 _leaving = threading.Event()
-_exit_status = [1]      # of a process that does not exit in time
+_init_node = rospy.init_node
 
 
 class _Terminal:
@@ -69,41 +67,42 @@ class _Terminal:
 
 
 def init_node(name: str, usage: str, parameters: Sequence[Parameter] = (), requires_master: bool = False,
-              check: Callable[[dict[str, YamlValue]], object] | None = None, wall_time: bool = False) -> None:
+              check: Callable[[dict[str, YamlValue]], object] | None = None, wall_time: bool = False,
+              on_signal: Callable[[int], object] | None = None, **options: Any) -> None:
     """Start the node `name`. From here on, Ctrl-C, kill, a closed terminal and `rosnode kill` set end_requested.
 
     usage: printed with the list of parameters for --help and for an invalid command line; in both cases, the process
-    exits.
+    exits. '' for a program that reads its command line itself.
     parameters: the parameters of the node. They are checked before the node can shut down an older one with the same
     name, and are then read with params.param().
     requires_master: whether a master that does not answer is an error. Otherwise the node waits for it, for at most
     ~wait_timeout if it has this parameter.
     check(params): raises ConfigError for private parameters that are inconsistent.
     wall_time: whether to use the wall clock even in simulated time; the node then does not subscribe to /clock.
+    on_signal(number): called in a thread, in place of request_end().
+    options: further arguments of rospy.init_node.
     Raises ROSInterruptException if shutdown is requested before the node is registered, and ROSException if the master
     does not answer or a parameter is invalid.
     """
     names = [each.name for each in parameters]
     # cast, because only the wrapped stream has the other methods of TextIO
     sys.stdout, sys.stderr = cast(TextIO, _Terminal(sys.stdout)), cast(TextIO, _Terminal(sys.stderr))
-    check_command_line('\n\n'.join(filter(None, [usage.strip(), list_parameters(parameters)])), names)
+    if usage:
+        check_command_line(f'{usage.strip()}\n\n{list_parameters(parameters)}'.strip(), names)
     if requires_master:
         require_master()
-    read_end, write_end = os.pipe()
-    os.set_blocking(write_end, False)
-    signal.set_wakeup_fd(write_end)     # a signal writes to the pipe; the handler itself does nothing
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        if number != signal.SIGHUP or signal.getsignal(number) is not signal.SIG_IGN:   # as under nohup
-            signal.signal(number, lambda *_: None)
-    threading.Thread(target=_wait_for_signal, args=(read_end,), daemon=True).start()
-    rospy.on_shutdown(_request_end)
+    if on_signal is None:
+        on_signal = request_end
+        rospy.on_shutdown(_request_end)
+    if not options.pop('disable_signals', False):
+        _take_signals(on_signal)
     wait_for_master(future_name(name), lambda: read_wait_timeout(name, parameters), end_requested.is_set, sleep)
     if not end_requested.is_set():
         check_before_start(name, parameters, check)
     check_end()
     repair_connections()
     try:
-        rospy.init_node(name, disable_signals=True, disable_rostime=wall_time)
+        _init_node(name, disable_signals=True, **{'disable_rostime': wall_time, **options})
     except (OSError, rospy.ROSInitException) as error:
         if not end_requested.is_set():
             raise rospy.ROSException(f'The master at {rosgraph.get_master_uri()} does not answer ({error}): '
@@ -113,25 +112,32 @@ def init_node(name: str, usage: str, parameters: Sequence[Parameter] = (), requi
     # master that has given the name to another node would register this one again. The cached value avoids the call.
     get_param_server_cache().set('/rosout_disable_topics_generation', False)
     stored = stored_params()
-    report_parameters(stored, names)
+    if usage:
+        report_parameters(stored, names)
     load_params(parameters, stored)
 
 
-def _wait_for_signal(pipe: int) -> None:
-    os.read(pipe, 1)
-    _set_end_requested()
+def _take_signals(on_signal: Callable[[int], object]) -> None:
+    read_end, write_end = os.pipe()
+    os.set_blocking(write_end, False)
+    signal.set_wakeup_fd(write_end)     # a signal writes its number to the pipe; the handler itself does nothing
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        if number != signal.SIGHUP or signal.getsignal(number) is not signal.SIG_IGN:   # as under nohup
+            signal.signal(number, lambda *_: None)
+    threading.Thread(target=lambda: on_signal(os.read(read_end, 1)[0]), daemon=True).start()
 
 
-def _set_end_requested() -> None:
+def request_end(_: int = 0) -> None:
+    """Set end_requested. The process exits within EXIT_DEADLINE."""
     end_requested.set()
-    last_resort = threading.Timer(EXIT_DEADLINE, lambda: os._exit(_exit_status[0]))
+    last_resort = threading.Timer(EXIT_DEADLINE, lambda: os._exit(exit_status[0]))
     last_resort.daemon = True
     last_resort.start()
 
 
 def _request_end() -> None:
     """Request shutdown; called by rospy in its own thread. Publishers stay open until this function returns."""
-    _set_end_requested()
+    request_end()
     _leaving.wait(EXIT_DEADLINE)
 
 
@@ -171,7 +177,7 @@ def wait_for(find: Callable[[], Found | None], timeout: float, missing: Callable
 
 def leave(status: int) -> NoReturn:
     """Unregister the node and exit with a status, without waiting for a master that hangs."""
-    _exit_status[0] = status    # the final work is done
+    exit_status[0] = status    # the final work is done
     time.sleep(0.02)    # lets the last line reach /rosout
     _leaving.set()
     threading.Thread(target=rospy.signal_shutdown, args=('done',), daemon=True).start()
@@ -199,39 +205,3 @@ def run(main: Callable[[], int]) -> NoReturn:
         rospy.logfatal('The master at %s does not answer (%s)', rosgraph.get_master_uri(), error)
         status = 1
     leave(status)
-
-
-@contextmanager
-def exit_status() -> Iterator[None]:
-    """Run a `with` block and exit the process.
-
-    The exit status is 0, also after an interrupt; or the status of sys.exit(), whose text is logged; or 1 after an
-    error, which is logged in one line. If the mistake is in the script itself, the line contains its position.
-    """
-    status = 0
-    try:
-        yield
-    except SystemExit as error:
-        status = error.code if isinstance(error.code, int) else int(error.code is not None)
-        if isinstance(error.code, str):
-            rospy.logerr('%s', error.code)
-    except rospy.ROSInterruptException:     # shutdown was requested
-        pass
-    except (rospy.ROSException, ValueError, OSError) as error:  # StuckError; the master does not answer
-        rospy.logerr('%s%s', error, position(error))
-        status = 1
-    leave(status)
-
-
-def position(error: Exception) -> str:
-    """Return the position of a mistake in a script as text, such as ' (square.py, line 21)'.
-
-    It is empty for an error that rospy or this package has detected.
-    """
-    frames = traceback.extract_tb(error.__traceback__)[1:]      # without the frame of exit_status()
-    if (not frames or isinstance(error, rospy.ROSException)
-            or any(os.path.realpath(frame.filename).startswith(PACKAGE) for frame in frames)):
-        return ''
-    script = frames[0].filename
-    line = [frame.lineno for frame in frames if frame.filename == script][-1]
-    return f' ({os.path.basename(script)}, line {line})'

@@ -75,7 +75,7 @@ class Runs:
         status = process.wait()
         with self.lock:
             self.process = None
-        if self.stop_requested:
+        if self.stop_requested or status > 128:     # a script that was interrupted adds the number of the signal
             return 'stopped'
         return 'finished' if status == 0 else f'failed with exit status {status}; see the log'
 

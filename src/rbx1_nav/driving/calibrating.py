@@ -4,7 +4,6 @@ from __future__ import annotations
 import os
 import select
 import sys
-import time
 from typing import Callable, TypeVar
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
@@ -14,10 +13,10 @@ from rosgraph.names import is_legal_name
 import rospy
 
 from rbx1_nav.config import ConfigError, Section, YamlValue, show
+from rbx1_nav.control.legs import Leg
+from rbx1_nav.driving.odometry import PoseListener
 from rbx1_nav.parameters import custom, frame, number
 from rbx1_nav.robot.calibration import MAX_FACTOR
-from rbx1_nav.ros.driving.pose_drive import PoseDrive
-from rbx1_nav.ros.driving.pose_listener import PoseListener
 from rbx1_nav.ros.network.master import call
 from rbx1_nav.ros.node.life import end_requested
 
@@ -39,17 +38,32 @@ COMMON = (
     custom('base_node', 'turtlebot_node', 'node whose parameters are calibrated', check_node_name))
 
 
-class CalibrationDrive(PoseDrive):
-    """A PoseDrive with its own publisher and shutdown function, for the calibration scripts."""
+def make_publisher() -> rospy.Publisher:
+    """Return the publisher of the commands. When the script is shut down, it stops the robot."""
+    cmd_vel = rospy.Publisher('cmd_vel', Twist, queue_size=5)
 
-    def __init__(self, rate: float, poses: PoseListener) -> None:
-        super().__init__(rospy.Publisher('cmd_vel', Twist, queue_size=5), rate, self.shutdown, poses)
-
-    def shutdown(self) -> None:
-        """Stop the robot, and give it time to stop."""
-        self.cmd_vel.publish(Twist())
+    def shutdown() -> None:
         rospy.loginfo('Stopping the robot...')
-        time.sleep(1)   # wall time, since a simulated clock may have stopped
+        cmd_vel.publish(Twist())
+        rospy.sleep(1)
+    rospy.on_shutdown(shutdown)
+    return cmd_vel
+
+
+def drive(leg: Leg, poses: PoseListener, cmd_vel: rospy.Publisher, rate: float) -> None:
+    """Drive a leg to its goal and come to rest, in a Drive block; leg.done() and leg.last are then valid for the
+    stationary robot. rate: commands per second, Hz. Raises StuckError."""
+    for rest in leg.rests:
+        move_cmd, r = Twist(), rospy.Rate(rate)
+        speed = leg.next_speed(poses.pose())
+        while speed:
+            move_cmd.linear.x, move_cmd.angular.z = leg.velocity(speed)
+            cmd_vel.publish(move_cmd)
+            r.sleep()
+            speed = leg.next_speed(poses.pose())
+        cmd_vel.publish(Twist())
+        rospy.sleep(rest)
+    leg.next_speed(poses.pose())
 
 
 class Diagnosis:

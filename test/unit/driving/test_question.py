@@ -5,7 +5,7 @@ import threading
 import pytest
 
 from rbx1_nav.config import ConfigError
-from rbx1_nav.ros.driving import calibrating as question
+from rbx1_nav.driving import calibrating as question
 
 
 def check(text):

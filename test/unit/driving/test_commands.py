@@ -1,0 +1,150 @@
+"""What a script has commanded: distances, the number of commands, and how late they were."""
+from math import inf, nan
+
+from geometry_msgs.msg import Twist
+import pytest
+import rospy
+
+from rbx1_nav.driving import commands as module
+from rbx1_nav.driving import rate as rates
+from rbx1_nav.driving.commands import Commands
+from rbx1_nav.driving.rate import Rate
+from rbx1_nav.units import SECOND
+
+MS = SECOND // 1000
+
+
+class Listeners:
+    """Listeners that follow all commands."""
+
+    def __init__(self, on_clock_of_base):
+        self.on_clock_of_base = on_clock_of_base
+
+    def problem(self):
+        return ''
+
+
+class Publisher:
+    data_class = Twist
+    resolved_name = '/cmd_vel'
+
+
+class Clock:
+    """A clock that only sleep() and the test advance, and what is published on it."""
+
+    def __init__(self, monkeypatch, on_clock_of_base=False, timed=True):
+        self.now = 7 * SECOND
+        self.sent = []      # (ns, linear.x, angular.z)
+        self.failures = []
+        monkeypatch.setattr(module, 'now', lambda: self.now)
+        monkeypatch.setattr(rates, 'now', lambda: self.now)
+        monkeypatch.setattr(rates, 'sleep', self.sleep)
+        monkeypatch.setattr(module, 'fail', self.failures.append)
+        monkeypatch.setattr(rates, 'fail', self.failures.append)
+        monkeypatch.setattr(module, '_publish', lambda _, message: self.sent.append(
+            (self.now, message.linear.x, message.angular.z)))
+        monkeypatch.setattr(module, '_moving', {})
+        monkeypatch.setattr(rospy, 'loginfo', lambda *_: None)
+        monkeypatch.setattr(rospy.rostime, 'get_rostime', lambda: rospy.Time(0, self.now))
+        self.commands = Commands(Publisher, Listeners(on_clock_of_base), timed)
+        monkeypatch.setattr(Commands, 'current', self.commands)
+
+    def sleep(self, duration):
+        self.now = max(self.now, self.now + duration.to_nsec())
+
+    def publish(self, linear=0.0, angular=0.0):
+        message = Twist()
+        message.linear.x, message.angular.z = linear, angular
+        module.publish(Publisher, message)
+
+    def intervals(self):
+        """Milliseconds between the commands."""
+        return [(after[0] - before[0]) / MS for before, after in zip(self.sent, self.sent[1:])]
+
+
+def test_distance_and_angle(monkeypatch):
+    clock = Clock(monkeypatch)
+    for linear, angular, milliseconds in (0.3, 0.0, 500), (0.2, -0.7, 250), (0.0, 0.0, 1000), (-0.1, 0.4, 100):
+        clock.publish(linear, angular)
+        clock.now += milliseconds * MS
+    clock.publish()
+    assert clock.commands.distance == pytest.approx(0.15 + 0.05 - 0.01)
+    assert clock.commands.angle == pytest.approx(-0.7 * 0.25 + 0.04)
+    assert (clock.commands.motions, clock.commands.ticks) == (2, 1)
+
+
+def drive(clock, stall_at, stall, ticks=10):
+    """Drive for a number of ticks of 20 ms; the script stalls after one of the commands, for a number of ms."""
+    r = Rate(50)
+    for tick in range(ticks):
+        clock.publish(0.2)
+        if tick == stall_at:
+            clock.now += stall * MS
+        r.sleep()
+    clock.publish()
+
+
+def test_a_delay_is_made_up_for(monkeypatch):
+    clock = Clock(monkeypatch)
+    drive(clock, 2, 45)
+    # at least 0.6 periods apart, and 10 periods in all
+    assert clock.intervals() == [20, 20, 45, 12, 12, 12, 19, 20, 20, 20]
+    assert clock.commands.longest == 25 * MS and not clock.failures
+    assert clock.commands.result()[0] is rospy.logwarn
+
+
+def test_a_delay_of_a_resting_robot_is_not(monkeypatch):
+    clock = Clock(monkeypatch)
+    r = Rate(50)        # made once, as in the book
+    for _ in range(2):
+        for _ in range(3):
+            clock.publish(0.2)
+            r.sleep()
+        clock.publish()
+        clock.now += SECOND
+    assert clock.intervals() == [20, 20, 20, 1000, 20, 20, 20]
+    assert clock.commands.longest == 0 and clock.commands.result()[0] is rospy.loginfo
+
+
+def test_on_the_clock_of_the_base_ticks_follow_immediately(monkeypatch):
+    clock = Clock(monkeypatch, on_clock_of_base=True)
+    drive(clock, 2, 45)
+    assert clock.intervals() == [20, 20, 45, 0, 15, 20, 20, 20, 20, 20]
+
+
+@pytest.mark.parametrize('timed, failures', [(True, 1), (False, 0)])
+def test_a_late_stop_fails(monkeypatch, timed, failures):
+    clock = Clock(monkeypatch, timed=timed)
+    drive(clock, 9, 75)
+    assert len(clock.failures) == failures
+    assert clock.sent[-1] == (7 * SECOND + 255 * MS, 0.0, 0.0)
+    assert not failures or clock.failures[0].startswith('The robot was stopped 0.06 s late')
+
+
+def test_a_delay_of_more_than_a_second_fails(monkeypatch):
+    clock = Clock(monkeypatch)
+    drive(clock, 2, 1030)
+    assert clock.failures[0].startswith('A command is 1.0 s late')
+
+
+@pytest.mark.parametrize('field', ['linear.x', 'linear.y', 'linear.z', 'angular.x', 'angular.y', 'angular.z'])
+@pytest.mark.parametrize('value', [-1e-9, nan, inf])
+def test_after_a_request_only_a_zero_twist_is_published(monkeypatch, field, value):
+    clock = Clock(monkeypatch)
+    message = Twist()
+    vector, axis = field.split('.')
+    setattr(getattr(message, vector), axis, value)
+    module.publish(Publisher, message)
+    assert len(clock.sent) == 1 and list(module._moving) == ['/cmd_vel']
+    module.end_requested.set()
+    try:
+        with pytest.raises(rospy.ROSInterruptException):
+            module.publish(Publisher, message)
+        assert len(clock.sent) == 1
+        module.stop_robots()
+        module.publish(Publisher, Twist())
+        assert len(clock.sent) == 3 and not module._moving
+        module.stop_robots()
+        assert len(clock.sent) == 3
+    finally:
+        module.end_requested.clear()

@@ -1,0 +1,48 @@
+"""An error that rospy or this package detects is one line; a mistake in a script has Python's traceback."""
+import sys
+
+import pytest
+import rospy
+
+from rbx1_nav.driving import commands, script
+from rbx1_nav.driving.odometry import Straight
+
+
+def report(monkeypatch, function):
+    """Report the error that a function raises; return the lines that are logged, and the error with a traceback."""
+    lines, traced = [], []
+    monkeypatch.setattr(rospy, 'logerr', lambda text, *values: lines.append(text % values))
+    monkeypatch.setattr(sys, '__excepthook__', lambda kind, *_: traced.append(kind))
+    try:
+        function()
+    except Exception:
+        script._report(*sys.exc_info())
+    return lines, traced
+
+
+def raise_(error):
+    raise error
+
+
+@pytest.mark.parametrize('error, line', [
+    (rospy.ROSException('no base: 100 %'), 'no base: 100 %'),
+    (rospy.exceptions.ROSTimeMovedBackwardsException(2.0), 'ROS time moved backwards'),
+    (ConnectionRefusedError('refused'), 'does not answer (refused)')])
+def test_an_error_of_rospy_is_one_line(monkeypatch, error, line):
+    lines, traced = report(monkeypatch, lambda: raise_(error))
+    assert not traced and len(lines) == 1 and line in lines[0]
+
+
+def test_an_error_of_this_package_is_one_line(monkeypatch):
+    lines, traced = report(monkeypatch, lambda: Straight('forward', 1e-9, 0.2, 0.05, 50))
+    assert not traced and len(lines) == 1 and 'goal_distance, min_linear_speed' in lines[0]
+
+
+def test_a_mistake_in_the_script_has_a_traceback(monkeypatch):
+    assert report(monkeypatch, lambda: float('a')) == ([], [ValueError])
+    assert report(monkeypatch, lambda: open('/nowhere')) == ([], [FileNotFoundError])
+
+
+def test_an_interrupt_is_quiet(monkeypatch):
+    monkeypatch.setattr(commands, 'is_shutdown', lambda: True)
+    assert report(monkeypatch, lambda: raise_(rospy.ROSInterruptException('shutdown requested'))) == ([], [])
