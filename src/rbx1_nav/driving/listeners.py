@@ -59,22 +59,26 @@ class Listener:
         """Call the node repeatedly, until it has a problem. For the arguments, see wait_for_listeners()."""
         server = Server(self.uri, ANSWER_TIMEOUT)      # kept: a new connection costs both nodes more than the call
         while not (self.finished or self.problem()):
-            start, before = time.monotonic(), rospy.get_rostime()
-            try:
-                refused, reason = ask_refusals(server, exact)
-                self.answered = start
-                if (refused or 0) > self.refused:
-                    self.error = f'did not follow a command: {reason}'
-            except ConnectionRefusedError:      # the node has exited
-                self.error = 'disconnected'
-            except Exception:
-                if self.keeps_time and rospy.get_rostime() != before:
-                    self.answered = start       # a busy node whose clock advances is alive
-                elif time.monotonic() - self.answered > ANSWER_TIMEOUT:
-                    self.error = 'has stopped responding'
+            self.call(server, exact)
             time.sleep(ASK_PERIOD)
         if not self.finished:
             fail(self.problem())
+
+    def call(self, server: Server, exact: bool) -> None:
+        """Call the node once."""
+        start, before = time.monotonic(), rospy.get_rostime()
+        try:
+            refused, reason = ask_refusals(server, exact)
+            self.answered = start
+            if (refused or 0) > self.refused:
+                self.error = f'did not follow a command: {reason}'
+        except ConnectionRefusedError:      # the node has exited
+            self.error = 'disconnected'
+        except Exception:
+            if self.keeps_time and rospy.get_rostime() != before:
+                self.answered = start       # a busy node whose clock advances is alive
+            elif time.monotonic() - self.answered > ANSWER_TIMEOUT:
+                self.error = 'has stopped responding'
 
     @property
     def is_connected(self) -> bool:
@@ -99,6 +103,7 @@ class Listeners:
     def __init__(self, listeners: list[Listener], exact: bool, fail: Callable[[str], object]) -> None:
         """For the arguments, see wait_for_listeners()."""
         self.all = listeners
+        self.exact = exact
         self.called = [each for each in listeners if each.is_base]
         if not self.called:
             rospy.logwarn('%s: none of the subscribers (%s) publishes odometry: expected a base among them',
@@ -118,10 +123,13 @@ class Listeners:
 
         Raises ROSException if a listener that publishes /clock was not sent all, or has a problem.
         """
-        deadline = time.monotonic() + ANSWER_TIMEOUT + ASK_PERIOD
-        while time.monotonic() < deadline and not (end_requested.is_set() or self.problem() or (
-                all(each.answered > last for each in self.called) and not any(each.lost() for each in self.all))):
+        deadline = time.monotonic() + ANSWER_TIMEOUT
+        while time.monotonic() < deadline and not end_requested.is_set() and any(each.lost() for each in self.all):
             sleep(0.02)
+        for each in self.called:
+            if each.answered <= last:
+                with Server(each.uri, ANSWER_TIMEOUT) as server:
+                    each.call(server, self.exact)
         if self.problem():
             raise rospy.ROSException(self.problem())
         for each in self.all:

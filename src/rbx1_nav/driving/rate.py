@@ -9,12 +9,11 @@ import genpy
 import rospy
 import rospy.timer
 
-from rbx1_nav.driving.commands import Commands, check_shutdown, fail, is_shutdown_function, now
+from rbx1_nav.driving.commands import Commands, check_shutdown, fail, is_shutdown, is_shutdown_function, now
 from rbx1_nav.ros.node import life
 from rbx1_nav.units import SECOND
 
 MAX_DELAY = SECOND      # ns
-_sleep = rospy.timer.sleep
 
 
 # Any: seconds or a rospy.Duration
@@ -22,19 +21,38 @@ def sleep(duration: Any) -> None:
     """Sleep for a duration of ROS time: rospy.sleep. Inside a shutdown function, it is wall time, because a simulated
     clock may have stopped.
 
-    Raises ROSInterruptException in the main thread as soon as shutdown is requested.
+    Raises ROSInterruptException as soon as shutdown is requested, on the wall clock only in the main thread, and
+    ROSTimeMovedBackwardsException.
     """
+    nanoseconds = duration.to_nsec() if isinstance(duration, genpy.Duration) else round(duration * SECOND)
+    if is_shutdown_function():
+        time.sleep(max(0, nanoseconds) / SECOND)
+        return
     commands = Commands.current
     if commands and commands.thread == threading.get_ident():
         commands.due = None     # the script waits on purpose
-    if not (rospy.rostime.is_wallclock() or is_shutdown_function()):
-        _sleep(duration)
-        return
-    end = time.monotonic() + (duration.to_sec() if isinstance(duration, genpy.Duration) else duration)
-    check_shutdown()
-    while time.monotonic() < end:
-        life.sleep(end - time.monotonic())
+    while not now():        # before the first message on /clock
+        time.sleep(0.02)
         check_shutdown()
+    _wait_until(now() + nanoseconds)
+
+
+def _wait_until(end: int) -> None:
+    """Wait until now() is `end` (ns). Raises like sleep()."""
+    if rospy.rostime.is_wallclock():
+        check_shutdown()
+        while now() < end:
+            life.sleep((end - now()) / SECOND)
+            check_shutdown()
+        return
+    begin, clock_moved = now(), rospy.rostime.get_rostime_cond()
+    with clock_moved:
+        while begin <= now() < end and not is_shutdown():
+            clock_moved.wait(0.5)
+    if now() < begin:
+        raise rospy.exceptions.ROSTimeMovedBackwardsException((begin - now()) / SECOND)
+    if is_shutdown():
+        raise rospy.ROSInterruptException('shutdown requested')
 
 
 def wait_for_tick() -> None:
@@ -69,7 +87,8 @@ class Rate(rospy.timer.Rate):
             self._motion, self._due = commands.motions, commands.begin
         self._due += self._period
         shortest = 0 if commands.listeners.on_clock_of_base else self._period * 6 // 10
-        sleep(rospy.Duration(0, max(self._due, commands.time + shortest) - now()))
+        _wait_until(max(self._due, commands.time + shortest))
+        self.last_time = rospy.rostime.get_rostime()    # for remaining()
         late = now() - self._due
         if late > MAX_DELAY:
             fail(f'A command is {late / SECOND:.1f} s late: expected at most {MAX_DELAY / SECOND:g} s, after which a '

@@ -52,7 +52,8 @@ def init_node(name: str, *args: Any, **options: Any) -> None:
     parameter, ~wait_timeout. Raises like life.init_node().
     """
     usage, parameters = split_usage(sys._getframe(1).f_globals.get('__doc__') or '')
-    options.update(zip(('argv', 'anonymous', 'log_level'), args))
+    names = 'argv', 'anonymous', 'log_level', 'disable_rostime', 'disable_rosout', 'disable_signals'
+    options.update(zip(names, args))
     start_node(name, usage if parameters else '', parameters, **options)
 
 

@@ -30,7 +30,7 @@ class Publisher:
 
 
 class Clock:
-    """A clock that only sleep() and the test advance, and what is published on it."""
+    """A clock that only a Rate and the test advance, and what is published on it."""
 
     def __init__(self, monkeypatch, on_clock_of_base=False, timed=True):
         self.now = 7 * SECOND
@@ -38,7 +38,7 @@ class Clock:
         self.failures = []
         monkeypatch.setattr(module, 'now', lambda: self.now)
         monkeypatch.setattr(rates, 'now', lambda: self.now)
-        monkeypatch.setattr(rates, 'sleep', self.sleep)
+        monkeypatch.setattr(rates, '_wait_until', self.wait_until)
         monkeypatch.setattr(module, 'fail', self.failures.append)
         monkeypatch.setattr(rates, 'fail', self.failures.append)
         monkeypatch.setattr(module, '_publish', lambda _, message: self.sent.append(
@@ -49,8 +49,8 @@ class Clock:
         self.commands = Commands(Publisher, Listeners(on_clock_of_base), timed)
         monkeypatch.setattr(Commands, 'current', self.commands)
 
-    def sleep(self, duration):
-        self.now = max(self.now, self.now + duration.to_nsec())
+    def wait_until(self, end):
+        self.now = max(self.now, end)
 
     def publish(self, linear=0.0, angular=0.0):
         message = Twist()
