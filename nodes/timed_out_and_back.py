@@ -46,9 +46,8 @@ class OutAndBack:
         angular_speed = rospy.get_param('~angular_speed', 1.0)
         goal_angle = rospy.get_param('~goal_angle', pi)
         angular_duration = goal_angle / angular_speed
-        if min(linear_duration, angular_duration) * rate < 1 - 1e-9:
-            raise rospy.ROSException(f'goal_distance / linear_speed: {linear_duration:g} s, goal_angle / angular_speed: '
-                                     f'{angular_duration:g} s: expected at least one tick, {1 / rate:g} s')
+        if min(linear_duration, angular_duration) * rate < 1:
+            raise rospy.ROSException(f'goal_distance {goal_distance}, goal_angle {goal_angle}: expected a tick or more')
 
         # Wait for the base, and monitor it from here on. However this block is left, the robot is stopped.
         with Drive(self.cmd_vel):

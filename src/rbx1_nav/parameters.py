@@ -11,8 +11,8 @@ from rbx1_nav.config import Scalar, Section, YamlValue
 
 POSITIVE = 1e-6, 1e6    # the default range of a number
 WIDTH = 120             # characters per line of a usage text
-# a line of list_parameters(), without the text that follows if it is broken: name, text, details
-LISTED = re.compile(r'    ~(\w+) +(.*) \((.*)\)')
+# a line of list_parameters(): name, text, unit, range, default
+LISTED = re.compile(r'    ~(\w+) +(.*) \((?:(\S+); )?(?:(\S+ to \S+); )?default: (.*)\)')
 
 
 class Parameter(NamedTuple):
@@ -103,24 +103,27 @@ def split_usage(docstring: str) -> tuple[str, list[Parameter]]:
     """Return (the text before the list of parameters, the parameters), for a script whose docstring is its usage text.
 
     The list is as list_parameters() prints it, each parameter in one line. A parameter with a unit is a number; a
-    parameter whose name ends in _frame is the name of a frame. Raises ValueError for any other line.
+    parameter whose name ends in _frame is the name of a frame; any other value is not checked. A list of another form
+    counts as text.
     """
     usage, _, lines = docstring.partition('\nParameters:\n')
-    return usage, [_listed(line) for line in lines.splitlines() if line.strip()]
+    try:
+        return usage, [_listed(line) for line in lines.splitlines() if line.strip()]
+    except ValueError:
+        return docstring, []
 
 
 def _listed(line: str) -> Parameter:
+    """Return the parameter in a line. Raises ValueError."""
     match = LISTED.fullmatch(line)
     if not match:
-        raise ValueError(f'{line.strip()}: expected ~NAME TEXT (UNIT; LOW to HIGH; default: VALUE)')
-    name, text, details = match.groups()
-    *details, default = details.split('; ')
-    default = default[len('default: '):]
+        raise ValueError(line)
+    name, text, unit, limits, default = match.groups()
     if name.endswith('_frame'):
         return frame(name, None if ' ' in default else default, text, shown=default)
-    unit, low, high = details[0], *POSITIVE
-    if len(details) > 1:
-        low, high = map(float, details[1].split(' to '))
+    if unit is None:
+        return elsewhere(name, text, default)
+    low, high = map(float, limits.split(' to ')) if limits else POSITIVE
     return number(name, pi if default == 'pi' else float(default), unit, text, low, high, shown=default)
 
 

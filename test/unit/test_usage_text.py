@@ -51,6 +51,14 @@ def test_a_script_without_a_list():
     assert split_usage('') == ('', [])
 
 
-def test_a_line_that_is_no_parameter():
-    with pytest.raises(ValueError, match='speed of the robot: expected ~NAME TEXT'):
-        split_usage('Drives.\nParameters:\n    speed of the robot')
+def test_a_value_that_is_not_checked():
+    _, (parameter,) = split_usage('Drives.\nParameters:\n    ~mode   forward or back (default: forward)')
+    assert (parameter.name, parameter.default, parameter.read) == ('mode', 'forward', None)
+
+
+@pytest.mark.parametrize('line', [
+    'speed of the robot', '~speed   forward speed (m/s)', '~speed   forward speed (Hz, default=20)',
+    '~speed   forward speed (m/s; default: fast)', '~speed   forward speed (m/s; low to high; default: 1)'])
+def test_a_list_of_another_form_is_text(line):
+    docstring = f'Drives.\nParameters:\n    {line}'
+    assert split_usage(docstring) == (docstring, [])

@@ -23,6 +23,7 @@ import rospy.client
 import rospy.core
 import rospy.impl.masterslave
 import rospy.timer
+from geometry_msgs.msg import Twist
 
 from rbx1_nav.driving import commands, rate
 from rbx1_nav.driving.commands import Commands, end, shutdown_wanted
@@ -42,6 +43,7 @@ _started: list[int] = []    # id of the process that has started a node
 _functions_called = threading.Event()       # those of rospy.on_shutdown
 _results: list[tuple[Callable[..., None], str]] = []    # of the blocks that have been completed: how to log, and a text
 _failed: list[BaseException] = []       # errors with which blocks have been left
+_interrupted: list[BaseException] = []  # ROSInterruptExceptions that the script has not caught
 
 
 def init_node(name: str, *args: Any, **options: Any) -> None:
@@ -101,11 +103,14 @@ def _exit() -> None:
     sys.stderr.flush()
     if end_requested.is_set() or _failed:
         os._exit(life.exit_status[0])
+    if _interrupted:        # the script itself has called rospy.signal_shutdown()
+        os._exit(0)
 
 
 def _report(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
     """Log an error that rospy or this package has detected in one line; print the traceback of any other."""
     if issubclass(kind, rospy.ROSInterruptException) and commands.is_shutdown():
+        _interrupted.append(error)
         return
     frames = traceback.extract_tb(trace)
     if issubclass(kind, ConnectionError):
@@ -135,12 +140,15 @@ class Drive:
     def __init__(self, cmd_vel: rospy.Publisher, timed: bool = True) -> None:
         """cmd_vel: publisher of Twist messages; timed: whether the robot goes wrong if a command is late, clamped or
         lost. It does, unless the script uses its pose."""
+        if getattr(cmd_vel, 'data_class', None) is not Twist:
+            raise rospy.ROSException(f'Drive: {cmd_vel!r}: expected a rospy.Publisher of geometry_msgs/Twist')
         self.cmd_vel = cmd_vel
         self.timed = timed
 
     def __enter__(self: Self) -> Self:
         if not _started:
-            raise rospy.ROSException('Import rbx1_nav.driving before you call rospy.init_node')
+            raise rospy.ROSException('Drive: expected rospy.init_node() before it, and rbx1_nav.driving to be imported '
+                                     'before that')
         listeners = wait_for_listeners(self.cmd_vel, param('wait_timeout'), self.timed, commands.fail)
         rate.wait_for_tick()
         rospy.loginfo('Connected to %s', ', '.join(each.name for each in listeners.called))

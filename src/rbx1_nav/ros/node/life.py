@@ -94,8 +94,7 @@ def init_node(name: str, usage: str, parameters: Sequence[Parameter] = (), requi
     if on_signal is None:
         on_signal = request_end
         rospy.on_shutdown(_request_end)
-    if not options.pop('disable_signals', False):
-        _take_signals(on_signal)
+    _take_signals(on_signal, options.pop('disable_signals', False))
     wait_for_master(future_name(name), lambda: read_wait_timeout(name, parameters), end_requested.is_set, sleep)
     if not end_requested.is_set():
         check_before_start(name, parameters, check)
@@ -117,14 +116,27 @@ def init_node(name: str, usage: str, parameters: Sequence[Parameter] = (), requi
     load_params(parameters, stored)
 
 
-def _take_signals(on_signal: Callable[[int], object]) -> None:
+def _take_signals(on_signal: Callable[[int], object], disabled: bool) -> None:
+    """disabled: whether the program handles signals itself: Ctrl-C is a KeyboardInterrupt, and its handlers stay."""
     read_end, write_end = os.pipe()
     os.set_blocking(write_end, False)
     signal.set_wakeup_fd(write_end)     # a signal writes its number to the pipe; the handler itself does nothing
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        if number != signal.SIGHUP or signal.getsignal(number) is not signal.SIG_IGN:   # as under nohup
-            signal.signal(number, lambda *_: None)
-    threading.Thread(target=lambda: on_signal(os.read(read_end, 1)[0]), daemon=True).start()
+        handler = signal.getsignal(number)
+        if not (handler is signal.SIG_IGN and number == signal.SIGHUP       # as under nohup
+                or disabled and handler is not signal.SIG_DFL):
+            signal.signal(number, signal.default_int_handler if disabled and number == signal.SIGINT else _do_nothing)
+
+    def wait() -> None:
+        while True:
+            number = os.read(read_end, 1)[0]
+            if signal.getsignal(number) is _do_nothing:     # not a handler of the program, such as for SIGALRM
+                on_signal(number)
+    threading.Thread(target=wait, daemon=True).start()
+
+
+def _do_nothing(*_: object) -> None:
+    """Handle a signal."""
 
 
 def request_end(_: int = 0) -> None:
