@@ -12,6 +12,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 
 ROOT = os.path.realpath(os.path.join(os.path.dirname(__file__), '..'))
@@ -30,6 +31,7 @@ OTHER = {
 STATEMENTS = ast.Assign, ast.AugAssign, ast.Expr, ast.Raise, ast.Delete
 
 RUNNING = set()     # processes of tests
+STOPPING = threading.Event()
 
 Mutation = namedtuple('Mutation', 'path line what source')
 Mutation.__doc__ = 'A changed file: path, line, description of the change, and the complete source.'
@@ -60,7 +62,7 @@ def constant(node):
     """The name of the constant that a node assigns, several joined by commas, or None."""
     if not isinstance(node, ast.Assign):
         return None
-    return ast.unparse(node.targets[0]).strip('()').replace(' ', '')
+    return ','.join(each.id for each in ast.walk(node.targets[0]) if isinstance(each, ast.Name))
 
 
 def walk(node, tuning):
@@ -163,6 +165,8 @@ def is_noticed(mutation, limits):
 
 def fails(folder, tests, limit=None):
     """Whether unit tests in a copy of the package fail, or take longer than `limit` seconds."""
+    if STOPPING.is_set():
+        return True
     process = subprocess.Popen(['/usr/bin/python3', '-m', 'pytest', '-q', '-x', '-p', 'no:cacheprovider', *tests],
                                cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     RUNNING.add(process)
@@ -177,6 +181,7 @@ def fails(folder, tests, limit=None):
 
 def stop(number, _):
     """End all tests, and this program, on a signal."""
+    STOPPING.set()
     for process in list(RUNNING):
         process.kill()
     sys.exit(128 + number)
@@ -221,17 +226,13 @@ def main():
     mutations = [draw(paths, generator, tuning) for _ in range(arguments.count)]
     folders = sorted({*USERS, *(room_of(mutation.path) for mutation in mutations)})
     with ThreadPoolExecutor(arguments.jobs) as pool:
-        try:
-            limits = {name: SLOWER * each + START for name, each in zip(folders, pool.map(duration, folders))}
-            results = pool.map(lambda each: is_noticed(each, limits), mutations)
-            noticed = 0
-            for mutation, good in zip(mutations, results):
-                noticed += good
-                print(f"{'noticed' if good else 'MISSED '} {mutation.path}:{mutation.line}: {mutation.what}",
-                      flush=True)
-        except SystemExit:
-            pool.shutdown(wait=False, cancel_futures=True)
-            raise
+        limits = {name: SLOWER * each + START for name, each in zip(folders, pool.map(duration, folders))}
+        results = pool.map(lambda each: is_noticed(each, limits), mutations)
+        noticed = 0
+        for mutation, good in zip(mutations, results):
+            noticed += good
+            print(f"{'noticed' if good else 'MISSED '} {mutation.path}:{mutation.line}: {mutation.what}",
+                  flush=True)
     print(f'{noticed} of {len(mutations)} mutations noticed')
     return 0
 

@@ -9,6 +9,7 @@ import os
 import signal
 import threading
 from typing import Any, Callable, Deque, Iterable, Iterator, NamedTuple, TypeVar
+from weakref import WeakSet
 
 from rbx1_nav.robot.description import Robot
 from rbx1_nav.simulation.surfaces import Surface
@@ -67,10 +68,18 @@ def open_place(jobs: int, scheduler: str | None, robot: Robot, surface: Surface 
         yield None
     else:
         pool = ProcessPoolExecutor(jobs, initializer=_follow_the_parent)
+        submitted: WeakSet[Future[Any]] = WeakSet()
+
+        def submit(function: Callable[[Any], Any], task: Any) -> Future[Any]:
+            future = pool.submit(function, task)
+            submitted.add(future)
+            return future
         try:
-            yield Place(pool.submit, lambda: jobs)
-        finally:        # do not compute runs whose results are not needed
-            pool.shutdown(cancel_futures=True)
+            yield Place(submit, lambda: jobs)
+        finally:
+            for each in submitted:      # do not compute runs whose results are not needed
+                each.cancel()
+            pool.shutdown()
 
 
 def add_arguments(parser: Any, jobs: int | None = os.cpu_count()) -> None:

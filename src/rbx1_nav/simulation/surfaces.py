@@ -9,7 +9,7 @@ from math import copysign, degrees, radians
 import os
 import random
 import re
-from typing import Annotated, Any, NamedTuple, get_type_hints
+from typing import Any, NamedTuple
 
 from rbx1_nav.config import ConfigError, Section, YamlValue, load_yaml, show, show_name, suggestion
 
@@ -41,45 +41,65 @@ class Key(NamedTuple):
 
 
 class Surface(NamedTuple):
-    """A surface. Each Key of its file is declared here: with a default, the key is optional. Values are in the units of
-    the file, but rad/s instead of degrees/s."""
+    """A surface: its name, and a value for each of KEYS. With a default, the key of the file is optional. Values are in
+    the units of the file, but rad/s instead of degrees/s."""
 
     name: str
-    lag: Annotated[float, Key('s', 1e-4, 60, 'time constant of a motor')]
-    accel_limit: Annotated[float, Key('m/s^2', 1e-3, 1000, 'largest acceleration of a wheel')]
-    drag_straight: Annotated[float, Key('m/s', 1e-6, 10, 'speed lost in straight motion')]
-    drag_turning: Annotated[float, Key('m/s', 1e-6, 10, 'speed lost in a turn on the spot, at the wheel')]
-    slip_straight: Annotated[float, Key('', -0.5, 0.5,
-        "fraction of the wheels' travel that does not move the robot, in straight motion: mean", 'a fraction')]
-    slip_straight_spread: Annotated[float, Key('', 0, 0.5,
-        'standard deviation of `slip_straight` from run to run', 'a fraction')]
-    slip_turning: Annotated[float, Key('', -0.5, 0.5,
-        "fraction of the wheels' travel that does not turn the robot, in turns: mean", 'a fraction')]
-    slip_turning_spread: Annotated[float, Key('', 0, 0.5,
-        'standard deviation of `slip_turning` from run to run', 'a fraction')]
-    ticks_meter: Annotated[float, Key('1/m', 1, 1e6, 'encoder ticks per meter')]
-    gyro_noise: Annotated[float, Key('degrees/s', 1e-3, 1000, 'noise of a reading at 50 readings per second, rms')]
-    gyro_bias: Annotated[float, Key('degrees/s', 0, 1000,
-        'standard deviation of the bias, which is constant during a run')]
-    gyro_scale_error: Annotated[float, Key('', 0, 0.5,
-        'standard deviation of the scale error, a fraction of the rate that is constant during a run', 'a fraction')]
-    gyro_measurement_range: Annotated[float, Key('degrees/s', 1, 1e5, 'largest reading in either direction')]
-    delay: Annotated[float, Key('s', 0, 5, 'time from a command to its arrival at the motors')] = 0.0
-    curvature: Annotated[float, Key('rad/m', -10, 10,
-        'turn to the left of a robot that is commanded to go straight')] = 0.0
-    turning_loss: Annotated[float, Key('m/rad', 0, 1,
-        'forward travel lost for each radian turned while driving, at most all of it')] = 0.0
-    heading_noise_turning: Annotated[float, Key('rad', 0, 1,
-        'error of the heading after 1 rad, 1 sigma; grows with the square root of the angle')] = 0.0
-    heading_noise_straight: Annotated[float, Key('rad', 0, 1,
-        'error of the heading after 1 m, 1 sigma; grows with the square root of the distance')] = 0.0
-    distance_noise: Annotated[float, Key('m', 0, 1,
-        'error of the distance after 1 m, 1 sigma; grows with the square root of the distance')] = 0.0
+    lag: float
+    accel_limit: float
+    drag_straight: float
+    drag_turning: float
+    slip_straight: float
+    slip_straight_spread: float
+    slip_turning: float
+    slip_turning_spread: float
+    ticks_meter: float
+    gyro_noise: float
+    gyro_bias: float
+    gyro_scale_error: float
+    gyro_measurement_range: float
+    delay: float = 0.0
+    curvature: float = 0.0
+    turning_loss: float = 0.0
+    heading_noise_turning: float = 0.0
+    heading_noise_straight: float = 0.0
+    distance_noise: float = 0.0
 
 
-# by name, in the order of the declarations
-KEYS: dict[str, Key] = {name: hint.__metadata__[0]
-                        for name, hint in get_type_hints(Surface, include_extras=True).items() if name != 'name'}
+# the keys of a file, in the order of the fields of a Surface
+KEYS: dict[str, Key] = {
+    'lag': Key('s', 1e-4, 60, 'time constant of a motor'),
+    'accel_limit': Key('m/s^2', 1e-3, 1000, 'largest acceleration of a wheel'),
+    'drag_straight': Key('m/s', 1e-6, 10, 'speed lost in straight motion'),
+    'drag_turning': Key('m/s', 1e-6, 10, 'speed lost in a turn on the spot, at the wheel'),
+    'slip_straight': Key('', -0.5, 0.5,
+        "fraction of the wheels' travel that does not move the robot, in straight motion: mean", 'a fraction'),
+    'slip_straight_spread': Key('', 0, 0.5,
+        'standard deviation of `slip_straight` from run to run', 'a fraction'),
+    'slip_turning': Key('', -0.5, 0.5,
+        "fraction of the wheels' travel that does not turn the robot, in turns: mean", 'a fraction'),
+    'slip_turning_spread': Key('', 0, 0.5,
+        'standard deviation of `slip_turning` from run to run', 'a fraction'),
+    'ticks_meter': Key('1/m', 1, 1e6, 'encoder ticks per meter'),
+    'gyro_noise': Key('degrees/s', 1e-3, 1000, 'noise of a reading at 50 readings per second, rms'),
+    'gyro_bias': Key('degrees/s', 0, 1000,
+        'standard deviation of the bias, which is constant during a run'),
+    'gyro_scale_error': Key('', 0, 0.5,
+        'standard deviation of the scale error, a fraction of the rate that is constant during a run', 'a fraction'),
+    'gyro_measurement_range': Key('degrees/s', 1, 1e5, 'largest reading in either direction'),
+    'delay': Key('s', 0, 5, 'time from a command to its arrival at the motors'),
+    'curvature': Key('rad/m', -10, 10,
+        'turn to the left of a robot that is commanded to go straight'),
+    'turning_loss': Key('m/rad', 0, 1,
+        'forward travel lost for each radian turned while driving, at most all of it'),
+    'heading_noise_turning': Key('rad', 0, 1,
+        'error of the heading after 1 rad, 1 sigma; grows with the square root of the angle'),
+    'heading_noise_straight': Key('rad', 0, 1,
+        'error of the heading after 1 m, 1 sigma; grows with the square root of the distance'),
+    'distance_noise': Key('m', 0, 1,
+        'error of the distance after 1 m, 1 sigma; grows with the square root of the distance'),
+}
+assert tuple(KEYS) == Surface._fields[1:]
 
 
 class RandomErrors(NamedTuple):
