@@ -64,6 +64,8 @@ def room_of(module):
 def is_standard(module):
     """Whether a module is part of Python."""
     spec = importlib.util.find_spec(module) if module.isidentifier() else None
+    if module in sys.builtin_module_names:      # of sys, Python 3.8 does not know the origin
+        return True
     if spec is None or spec.origin is None:
         return False
     return spec.origin in ('built-in', 'frozen') or (

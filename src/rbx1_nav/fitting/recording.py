@@ -64,7 +64,7 @@ def check_series(name: str, series: Commands | Track | Rates) -> None:
     name: name of the series in messages, including its file.
     """
     for field, values in zip(series._fields, series):
-        bad = numpy.flatnonzero(~(abs(values) < LARGEST))
+        bad = numpy.flatnonzero(numpy.nan_to_num(abs(values), nan=LARGEST) >= LARGEST)
         if bad.size:
             raise ConfigError(f'{name}: {field} of message {bad[0] + 1}: {values[bad[0]]}: expected a finite number '
                               'below 1e10')

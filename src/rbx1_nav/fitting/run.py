@@ -98,8 +98,9 @@ class PreparedRun:
 
     def windows(self, length: float, stride: float | None = None) -> Windows:
         """Return the Windows without gaps in the truth. length: s; stride: s between their starts; default: length."""
-        count = round(length / (self.times[1] - self.times[0]))
-        apart = count if stride is None else round(stride / (self.times[1] - self.times[0]))
+        step = float(self.times[1] - self.times[0])     # numpy 1.17 rounds its own floats to floats
+        count = round(length / step)
+        apart = count if stride is None else round(stride / step)
         truth = self.recording.truth
         assert truth
         x, y, yaw = (numpy.interp(self.times, truth.time, values) for values in truth[1:])

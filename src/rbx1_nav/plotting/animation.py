@@ -70,8 +70,10 @@ def outline(pose: Pose) -> tuple[list[float], list[float]]:
 
 def check_animation(path: str) -> None:
     """Check that an animation can be written to this path. Raises ConfigError."""
-    if os.path.splitext(path)[1].lower() not in FORMATS:
-        raise ConfigError(f"expected a file name with the extension {' or '.join(FORMATS)}")
+    Image.init()
+    formats = [extension for extension, name in FORMATS.items() if name in Image.SAVE_ALL]  # Pillow 7.0 lacks PNG
+    if os.path.splitext(path)[1].lower() not in formats:
+        raise ConfigError(f"expected a file name with the extension {' or '.join(formats)}")
     check_writable(path)
 
 

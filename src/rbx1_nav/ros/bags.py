@@ -116,7 +116,8 @@ def track(series: TopicMessages | None) -> Track | None:
     if not (series and series.rows):
         return None
     time, x, y, yaw = series.columns(4)
-    return Track(time, x, y, numpy.unwrap(yaw))
+    with numpy.errstate(invalid='ignore'):      # nan is rejected later
+        return Track(time, x, y, numpy.unwrap(yaw))
 
 
 def check_jumps(name: str, topic: str, poses: Track | None) -> None:

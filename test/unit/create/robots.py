@@ -10,7 +10,7 @@ from rbx1_nav.units import SECOND
 # commands from off to each mode
 ENTER = {OFF: b'', PASSIVE: command('start'), SAFE: command('start') + command('safe'),
          FULL: command('start') + command('full')}
-both = pytest.mark.parametrize('model', MODELS.values(), ids=MODELS)
+both = pytest.mark.parametrize('model', MODELS.values(), ids=list(MODELS))
 
 
 class Robot:

@@ -27,7 +27,7 @@ def test_the_robot_stands_after_any_beginning_of_a_command(robot_type, stop):
             assert driven.speeds == (0, 0), beginning.hex()
 
 
-@pytest.mark.parametrize('model', protocol.MODELS.values(), ids=protocol.MODELS)
+@pytest.mark.parametrize('model', protocol.MODELS.values(), ids=list(protocol.MODELS))
 def test_nothing_that_is_sent_to_a_robot_that_is_off_resets_it(model):
     # a robot that is off takes each byte for a command
     reset = protocol.OPCODES['reset']

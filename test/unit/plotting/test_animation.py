@@ -19,7 +19,8 @@ def results():
     return {method: simulate(method, robot, None, 0, keep=True) for method in METHODS}
 
 
-@pytest.mark.parametrize('name', ('run.gif', 'run.png'))
+@pytest.mark.parametrize('name', ('run.gif', pytest.param('run.png', marks=pytest.mark.skipif(
+    'PNG' not in Image.SAVE_ALL, reason='this Pillow writes no animated PNG'))))
 def test_frames_and_durations(results, tmp_path, monkeypatch, name):
     monkeypatch.setattr(animation, 'SPEED', 40.0)       # a tenth of the frames
     file = str(tmp_path / name)
@@ -48,5 +49,5 @@ def test_the_robot_is_drawn_where_it_is(results):
 
 
 def test_other_endings_are_rejected(tmp_path):
-    with pytest.raises(ConfigError, match='expected a file name with the extension .gif or .png'):
+    with pytest.raises(ConfigError, match='expected a file name with the extension .gif( or .png)?$'):
         animation.check_animation(str(tmp_path / 'run.mp4'))

@@ -101,7 +101,7 @@ def test_a_picture_takes_the_place_of_an_older_one(tmp_path, kind, start):
 
 # check_picture() checks before the runs that a plot can be written
 
-@pytest.mark.parametrize('name', ['a.png', 'a.PNG', 'a.svg', 'a.pdf', 'a.b.jpg'])
+@pytest.mark.parametrize('name', ['a.png', 'a.PNG', 'a.svg', 'a.pdf', 'a.b.svg'])
 def test_a_good_path_is_left_as_it_was(tmp_path, name):
     check_picture(str(tmp_path / name))
     assert list(tmp_path.iterdir()) == []
