@@ -10,13 +10,24 @@ source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
 # ROS is installed for the system's Python, even if another Python comes first in the PATH.
 export PATH=/usr/sbin:/usr/bin:/sbin:/bin:$PATH
 
+# The ROS that is sourced, or Noetic; '' for the ROS packages of Debian's or Ubuntu's own archive, which have no setup file
+ros_name=noetic ros_root=${ROS_ROOT:-}
+[ "${ROS_VERSION:-2}" = 2 ] || ros_name=${ROS_DISTRO:-noetic}
+for ros in "${ros_root%/share/ros}" "/opt/ros/$ros_name" ''; do [ ! -f "$ros/setup.bash" ] || break; done
+
+source_ros() { [ -z "$ros" ] || { set +u; source "$ros/setup.bash"; set -u; } }
+source_ros
+
 # packages needed to build and start the package
 tool_packages=(catkin g++ make ros-environment)
 # packages of the commands that the tutorial uses; the Debian packages depend on them
 command_packages=(ros-core rosbash rospack-tools)
+case $(. /etc/os-release; echo "${VERSION_ID:-14}") in   # as long as Debian 14 is not released, it has no number
+  13) tool_packages+=(qt6-svg-plugins);;        # RViz uses Qt 6 and does not depend on the plugin that reads its icons
+  14) command_packages=(python3-rosmsg python3-rosnode python3-rosparam python3-rosservice python3-rostopic rosbash
+                        rospack-tools);;
+esac
 tool_packages+=("${command_packages[@]}")
-# Debian 13's RViz uses Qt 6 and does not depend on the plugin that reads its icons.
-if . /etc/os-release; [ "${VERSION_ID:-0}" = 13 ]; then tool_packages+=(qt6-svg-plugins); fi
 
 dependencies() {        # KIND...: print the Debian packages of these kinds of dependencies in package.xml: exec, test
   local kind name
@@ -48,8 +59,32 @@ package_version() {     # print the version of the Debian packages: it is higher
 }
 
 missing_packages() {    # PACKAGE...: print the packages that are not installed
+  if [ -n "$ros" ]; then missing_in_ros "$@"; return; fi
   comm -23 <(printf '%s\n' "$@" | sort -u) <(dpkg-query -W -f '${binary:Package} ${db:Status-Status}\n' "$@" 2>/dev/null |
     sed -n 's/:[^ ]* installed$//p; s/ installed$//p' | sort -u)
+}
+
+missing_in_ros() {      # PACKAGE...: print the packages whose content cannot be found, by the names of ROS's archive
+  local name key
+  for name in "$@"; do
+    key=${name#python3-}; key=${key#lib}; key=${key%-dev}; key=${key//-/_}
+    case $name in
+      python3-pil) key=PIL;; xvfb) key=Xvfb;; chromium-driver) key=chromedriver;; iproute2) key=ip;;
+      ros-core) key=rostopic;; ros-robot-*) key=${key#ros_};; rospack-tools) key=rospack;; liburdfdom-tools) key=check_urdf;;
+    esac
+    { rospack find "$key" || command -v "$key" || /usr/bin/python3 -c "import $key"; } >/dev/null 2>&1 && continue
+    case $key in catkin|ros_environment|rosbash|rospack) ;; *) grep -q ">$key<" "$source_dir/package.xml";; esac &&
+      name=ros-$ros_name-${key//_/-}
+    echo "$name"
+  done | sort -u
+}
+
+available() {           # PACKAGE...: print the packages, without RViz if the archive does not have it
+  local name
+  for name in "$@"; do
+    [[ $name != *rviz ]] || apt-cache show "$name" >/dev/null 2>&1 || continue
+    echo "$name"
+  done
 }
 
 require_packages() {    # PACKAGE...: fail with one line if some are missing
@@ -59,7 +94,10 @@ require_packages() {    # PACKAGE...: fail with one line if some are missing
 
 install_missing() {     # PACKAGE...: install the missing packages
   local missing run=()
+  [ -z "$ros" ] || echo "ROS $ros_name in $ros, $(/usr/bin/python3 --version)"
   mapfile -t missing < <(missing_packages "$@")
+  # without the package lists, nothing is known to be unavailable
+  ! apt-cache show g++ >/dev/null 2>&1 || mapfile -t missing < <(available "${missing[@]}")
   [ ${#missing[@]} -gt 0 ] || return 0
   if [ "$(id -u)" -ne 0 ]; then
     command -v sudo >/dev/null || { echo "These packages are missing: ${missing[*]}. Run this as root, or install sudo." >&2; return 1; }
@@ -67,10 +105,13 @@ install_missing() {     # PACKAGE...: install the missing packages
   fi
   echo "Installing ${missing[*]}"
   # One script at a time: a second one waits, and then finds nothing to do. If another apt is running, wait up to ten minutes.
-  "${run[@]}" flock /run/lock env DEBIAN_FRONTEND=noninteractive bash -euc '
-    log=$(mktemp); trap "rm -f $log" EXIT
+  "${run[@]}" flock -o /run/lock env DEBIAN_FRONTEND=noninteractive bash -euc "$(declare -f available)"'
+    log=$(mktemp)
+    while sleep 10 >/dev/null 2>&1; do
+      echo "Installing: $SECONDS s, $(grep -c "^Get:" "$log") packages downloaded, $(grep -c "^Setting up" "$log") set up"
+    done & trap "kill $!; rm -f $log" EXIT
     for try in $(seq 120); do
-      { apt-get update -qq && apt-get install -y -qq --no-install-recommends "$@"; } >"$log" 2>&1 && exit
+      { apt-get update -qq && apt-get install -y -q --no-install-recommends $(available "$@"); } >"$log" 2>&1 && exit
       grep -Eq "(Could not get|Unable to acquire).*lock" "$log" || break
       [ $try -gt 1 ] || echo "Waiting for another apt, which holds the lock"
       sleep 5
@@ -137,6 +178,7 @@ use_workspace() {       # DIR: set the environment as in a terminal in which onl
 clean_environment() {   # remove other ROS installations from the environment, and keep bytecode out of the source tree
   unset CMAKE_PREFIX_PATH ROS_PACKAGE_PATH ROS_MASTER_URI ROS_HOSTNAME ROS_NAMESPACE PYTHONPATH
   export PYTHONDONTWRITEBYTECODE=1
+  source_ros
 }
 
 build_workspace() {     # see make_workspace
