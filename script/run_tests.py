@@ -3,7 +3,9 @@
 
 The last line has two numbers: how many tests have passed, and how many have failed.
 
-usage: run_tests.py --results DIR [--jobs N] TESTS...
+usage: run_tests.py --results DIR [--jobs N] [--repeat] TESTS...
+
+--repeat: rostests that fail are repeated once, one at a time. Those that pass then are flaky; three fail the run.
 
 TESTS: a rostest, such as test/base/reset.test, or unit tests for one process, such as test/unit/create,test/unit/robot
 
@@ -32,6 +34,7 @@ PACKAGE = 'rbx1_nav'
 LIMIT = 3600        # s after which a job counts as hung, even on a busy machine
 LOOK = 60       # s between two checks for jobs that hang
 LISTED = 10     # jobs in the list of the slowest ones
+FLAKY = 3       # flaky rostests that fail the run
 # Rostests with the same set-up that leave nothing behind in it. Each set runs on one master, one after another.
 SETS = {
     'set_tools': ['interrupted_start', 'launch_arguments', 'simulate_command', 'usage'],
@@ -70,6 +73,7 @@ class Job:
         """log: path for the output; target(*arguments): runs the tests."""
         self.name = name
         self.log = log
+        self.task = target, *arguments
         self.used = multiprocessing.Value('d', 0.0)     # CPU time of the process and its children, s
         self.process = multiprocessing.get_context('fork').Process(target=self.run, args=(target, *arguments))
 
@@ -103,12 +107,16 @@ class Job:
         self.process.kill()
         return True
 
+    def output(self):
+        """Return the lines of the output."""
+        if not os.path.exists(self.log):    # the process was killed at its start
+            return []
+        with open(self.log, encoding='utf-8', errors='replace') as file:
+            return file.read().splitlines()
+
     def trouble(self):
         """Return the end of the output if the process has failed, or ''."""
-        lines = []
-        if os.path.exists(self.log):    # not if the process was killed at its start
-            with open(self.log, encoding='utf-8', errors='replace') as file:
-                lines = file.read().splitlines()
+        lines = self.output()
         # if a required node exits, roslaunch interrupts the test; rostest then counts no tests, and succeeds
         if self.process.exitcode == 0 and ' * TESTS: 0' not in lines:
             return ''
@@ -183,6 +191,16 @@ def run_jobs(jobs, count):
     return failed
 
 
+def repeat(jobs, failed):
+    """Run the rostests that have failed once more, one at a time. Returns the names of those that passed."""
+    again = [Job(job.name, job.log, *job.task) for job in jobs if job.name in failed and job.task[0] is run_rostest]
+    bad = run_jobs(again, 1)
+    flaky = [job for job in again if job.name not in bad]
+    for job in flaky:
+        print('\n'.join([f'{job.name}: failed above, and passed alone:', *job.output()[-40:]]))
+    return [job.name for job in flaky]
+
+
 def read(path):
     """Return the test cases of a result file; None if it cannot be read, such as the file of a killed test."""
     try:
@@ -242,18 +260,25 @@ def main():
     parser.add_argument('tests', nargs='+', metavar='TESTS')
     parser.add_argument('--results', required=True, metavar='DIR')
     parser.add_argument('--jobs', type=int, default=1, metavar='N')
+    parser.add_argument('--repeat', action='store_true')
     arguments = parser.parse_args()
     results = os.path.realpath(arguments.results)
     os.makedirs(os.path.join(results, PACKAGE), exist_ok=True)
     jobs = make_jobs(results, arguments.tests)
     try:
         troubled = run_jobs(jobs, arguments.jobs)
+        flaky = repeat(jobs, troubled) if arguments.repeat else []
     except KeyboardInterrupt:       # rostest would take 10 s to stop its nodes; script/test kills them
         for process in multiprocessing.active_children():
             process.kill()
         return 130
     passed, failed, names = summarize(results)
     print_slowest(jobs)
+    troubled = [name for name in troubled if name not in flaky]
+    if flaky:
+        print(f"{len(flaky)} flaky: {', '.join(flaky)}. Each needs a line in test/flaky.md.")
+    if len(flaky) >= FLAKY:
+        troubled.append(f'{len(flaky)} rostests are flaky')
     for name in names + troubled:   # once more, because the output above may be long
         print('Failed:', name)
     # a job can also fail without a result

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Runs the fault suite: the rows below rows/, each in a process and with a ROS master of its own.
 
-A row that fails is repeated once, with the same seed, before it counts as failed.
+A row that fails is repeated once, with the same seed, before it counts as failed. If it passes then, it is flaky: three
+flaky rows fail the suite.
 """
 import argparse
 import importlib
@@ -23,6 +24,7 @@ sys.path[:0] = [FOLDER, TESTS, os.path.join(TESTS, 'base'), os.path.join(TESTS, 
 import processes
 from ports import free_port
 
+FLAKY = 3           # flaky rows that fail the suite
 LIMIT = 20 * 60     # s of wall time for a row: longer means that it hangs
 
 ending = threading.Event()
@@ -205,16 +207,21 @@ def main():
         signal.signal(number, on_signal)
     print('Seed %d: `script/test --faults --seed %d%s ROW` repeats a row' % (
         arguments.seed, arguments.seed, ' --short' if arguments.short else ''), flush=True)
+    start = time.monotonic()
     results = Suite(modules, arguments).run()
     if arguments.table:
         write_table(arguments.table, modules, results, arguments.seed)
     failed = [result['name'] for result in results if result['failures']]
     skipped = [result['name'] for result in results if result['skipped']]
+    flaky = [result['name'] for result in results if result['repeated'] and not result['failures']]
+    if flaky:
+        print(f"{len(flaky)} flaky: {', '.join(flaky)}. Each needs a line in test/flaky.md.")
+    print(f'Time: {time.monotonic() - start:.0f} s')
     print('%d faults in %d rows: %d passed, %d failed%s, %d skipped%s' % (
         sum(result['faults'] for result in results if not result['skipped']), len(results),
         len(results) - len(failed) - len(skipped), len(failed), ' (%s)' % ', '.join(failed) if failed else '',
         len(skipped), ' (%s)' % ', '.join(skipped) if skipped else ''))
-    return 1 if failed or not results else 0
+    return 1 if failed or len(flaky) >= FLAKY or not results else 0
 
 
 if __name__ == '__main__':

@@ -40,6 +40,23 @@ def test_a_job_that_hangs(make_job, monkeypatch):
     assert run_tests.run_jobs([make_job('hangs', lambda: time.sleep(1000))], 1) == ['hangs']
 
 
+def test_a_rostest_that_passes_when_it_is_repeated_is_flaky(make_job, monkeypatch, tmp_path, capsys):
+    def run(name):
+        if name == 'bad' or not (tmp_path / 'before').exists():
+            (tmp_path / 'before').touch()
+            os.write(1, b'first output')
+            sys.exit(1)
+        os.write(1, b'second output')
+    monkeypatch.setattr(run_tests, 'run_rostest', run)
+    jobs = [run_tests.Job(name, str(tmp_path / name), run, name) for name in ('flaky', 'bad')]
+    jobs.append(make_job('unit-1', lambda: sys.exit(1)))
+    failed = run_tests.run_jobs(jobs, 1)
+    assert failed == ['flaky', 'bad', 'unit-1']
+    assert run_tests.repeat(jobs, failed) == ['flaky']
+    output = capsys.readouterr().out
+    assert 'first output' in output and 'flaky: failed above, and passed alone:\nsecond output' in output
+
+
 def test_results(tmp_path, capsys):
     for name, text in [('rosunit-a', PASSED + PASSED), ('rostest-test_base_a', PASSED), ('rosunit-b', PASSED + FAILED),
                        ('rostest-test_c', FAILED), ('rosunit-set_create', PASSED), ('rostest-set_create', PASSED)]:

@@ -184,7 +184,8 @@ def from_set_pose(message: PoseWithCovarianceStamped, output_frame: str) -> tupl
     deviations = numpy.sqrt(covariance.diagonal())
     correlations = covariance / numpy.outer(deviations, deviations)
     good = (numpy.isfinite(correlations).all() and abs(correlations).max() < 1 + ROUNDING
-            and abs(correlations - correlations.T).max() < ROUNDING and numpy.linalg.eigvalsh(correlations).min() > -ROUNDING)
+            and abs(correlations - correlations.T).max() < ROUNDING
+            and numpy.linalg.eigvalsh(correlations).min() > -ROUNDING)
     check('pose.covariance', show(covariance.tolist()), good, 'a covariance: symmetric, no correlation above 1')
     return pose, (covariance + covariance.T) / 2
 
