@@ -12,7 +12,6 @@ TESTS: a rostest, such as test/base/reset.test, or unit tests for one process, s
 Each rostest runs in a copy of this process: in a new process, the imports of rostest would take longer than most tests.
 """
 import argparse
-import glob
 import multiprocessing
 from multiprocessing.connection import wait
 import os
@@ -29,25 +28,14 @@ ROOT = os.path.realpath(os.path.join(os.path.dirname(__file__), '..'))
 sys.path.insert(0, os.path.join(ROOT, 'test'))
 
 from ports import own_loopback
+from results import SETS, failures_of_sets, summarize
 
 PACKAGE = 'rbx1_nav'
 LIMIT = 3600        # s after which a job counts as hung, even on a busy machine
 LOOK = 60       # s between two checks for jobs that hang
+LINES = 40      # of the output of a job that has failed
 LISTED = 10     # jobs in the list of the slowest ones
 FLAKY = 3       # flaky rostests that fail the run
-# Rostests with the same set-up that leave nothing behind in it. Each set runs on one master, one after another.
-SETS = {
-    'set_tools': ['interrupted_start', 'launch_arguments', 'simulate_command', 'usage'],
-    'set_base': ['consistent_outputs', 'base_timeout', 'rejected_commands', 'reset', 'message_counts'],
-    'set_stops': ['closed_terminal', 'stop_on_signal', 'plain_driver_in_simulated_time'],
-    'set_scripts': ['remembered_parameters', 'two_drivers'],
-    'set_fast': ['result', 'released_publisher'],
-    'set_real_time': ['keyboard_driving', 'contradictory_commands', 'plain_driver'],
-    'set_calibration': ['angular_calibration', 'linear_calibration'],
-    'set_fake_create': ['fake_create_baud_rate', 'fake_create_cable', 'fake_create_faults', 'fake_create_line',
-                        'fake_create_parameters', 'fake_create_truth', 'independent_client'],
-    'set_create': ['create_drives', 'create_gyro', 'create_port'],
-    'set_create_fails': ['create_killed', 'create_refuses', 'create_safety', 'create_silence']}
 # the longest first, so that none of them is still running when the others have finished
 LONGEST = ['documents', 'in_step', 'calibration_without_gyro', *SETS, 'unit-1', 'unit-2', 'unit-3', 'unit-4',
            'browser_page']
@@ -120,8 +108,8 @@ class Job:
         # if a required node exits, roslaunch interrupts the test; rostest then counts no tests, and succeeds
         if self.process.exitcode == 0 and ' * TESTS: 0' not in lines:
             return ''
-        reasons = [line for line in lines[:-40] if '[FATAL]' in line]
-        return '\n'.join([f'{self.name}: status {self.process.exitcode}', *reasons, *lines[-40:]])
+        reasons = [line for line in lines[:-LINES] if '[FATAL]' in line]
+        return '\n'.join([f'{self.name}: status {self.process.exitcode}', *reasons, *lines[-LINES:]])
 
 
 def read_setup(path):
@@ -191,58 +179,19 @@ def run_jobs(jobs, count):
     return failed
 
 
-def repeat(jobs, failed):
+def repeat(results, jobs, failed):
     """Run the rostests that have failed once more, one at a time. Returns the names of those that passed."""
-    again = [Job(job.name, job.log, *job.task) for job in jobs if job.name in failed and job.task[0] is run_rostest]
-    bad = run_jobs(again, 1)
+    of_sets = failures_of_sets(results)
+    again = []
+    for job in jobs:
+        if job.task[0] is run_rostest and job.name in [*failed, *of_sets]:
+            print('\n'.join([f'{job.name} has failed, and is repeated.', *of_sets.get(job.name, [])]))
+            again.append(Job(job.name, job.log, *job.task))
+    bad = [*run_jobs(again, 1), *failures_of_sets(results)]
     flaky = [job for job in again if job.name not in bad]
     for job in flaky:
-        print('\n'.join([f'{job.name}: failed above, and passed alone:', *job.output()[-40:]]))
+        print('\n'.join([f'{job.name} has passed. Its output:', *job.output()[-LINES:]]))
     return [job.name for job in flaky]
-
-
-def read(path):
-    """Return the test cases of a result file; None if it cannot be read, such as the file of a killed test."""
-    try:
-        return list(ElementTree.parse(path).iter('testcase'))
-    except (ElementTree.ParseError, LookupError):       # LookupError: an unknown encoding
-        return None
-
-
-def has_own_result(results, path):
-    """Whether the test of a rostest has left a result."""
-    # test/unit/test_rostests.py: a test has the name of its file, with the folder if two files have the same name
-    name = os.path.basename(path)[len('rostest-'):]
-    name = name[len('test_'):] if name.startswith('test_') else name
-    return any(read(own) for each in {name, name.partition('_')[2]}
-               for own in glob.glob(os.path.join(results, '**', 'rosunit-' + each), recursive=True))
-
-
-def summarize(results):
-    """Print all results in a folder. Returns the numbers of tests that passed and that failed, and the names of those
-    that failed."""
-    passed = failed = 0
-    names = []
-    for path in sorted(glob.glob(os.path.join(results, '**', '*.xml'), recursive=True)):
-        cases = read(path)
-        # rostest's own file counts if the test left no file because it crashed, hung, or did not start
-        if '/rosunit-' in path and cases is None or '/rostest-' in path and has_own_result(results, path):
-            continue
-        cases = cases or []
-        bad = [(case, trouble) for case in cases for trouble in [case.find('failure'), case.find('error')]
-               if trouble is not None]
-        name = os.path.splitext(os.path.basename(path))[0]
-        if name.partition('-')[2] in SETS and cases:    # the tests of a set have results of their own
-            cases = [case for case, _ in bad]
-            if not bad:
-                continue
-        print('%-32s %d of %d' % (name, len(cases) - len(bad), len(cases)))
-        for case, trouble in bad:
-            names.append(f"{name} {case.get('name')}")
-            print(f"FAILED: {names[-1]}\n{trouble.text or ''}")
-        passed += len(cases) - len(bad)
-        failed += len(bad) or not cases
-    return passed, failed, names
 
 
 def print_slowest(jobs):
@@ -267,7 +216,7 @@ def main():
     jobs = make_jobs(results, arguments.tests)
     try:
         troubled = run_jobs(jobs, arguments.jobs)
-        flaky = repeat(jobs, troubled) if arguments.repeat else []
+        flaky = repeat(results, jobs, troubled) if arguments.repeat else []
     except KeyboardInterrupt:       # rostest would take 10 s to stop its nodes; script/test kills them
         for process in multiprocessing.active_children():
             process.kill()

@@ -52,9 +52,9 @@ def test_a_rostest_that_passes_when_it_is_repeated_is_flaky(make_job, monkeypatc
     jobs.append(make_job('unit-1', lambda: sys.exit(1)))
     failed = run_tests.run_jobs(jobs, 1)
     assert failed == ['flaky', 'bad', 'unit-1']
-    assert run_tests.repeat(jobs, failed) == ['flaky']
+    assert run_tests.repeat(str(tmp_path), jobs, failed) == ['flaky']
     output = capsys.readouterr().out
-    assert 'first output' in output and 'flaky: failed above, and passed alone:\nsecond output' in output
+    assert 'first output' in output and 'flaky has passed. Its output:\nsecond output' in output
 
 
 def test_results(tmp_path, capsys):
