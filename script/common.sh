@@ -10,7 +10,7 @@ source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
 # ROS is installed for the system's Python, even if another Python comes first in the PATH.
 export PATH=/usr/sbin:/usr/bin:/sbin:/bin:$PATH
 
-# The ROS that is sourced, or Noetic; '' for the ROS packages of Debian's or Ubuntu's own archive, which have no setup file
+# the prefix of the ROS that is sourced, or Noetic's; '' for the ROS packages of Debian's or Ubuntu's own archive
 ros_name=noetic ros_root=${ROS_ROOT:-}
 [ "${ROS_VERSION:-2}" = 2 ] || ros_name=${ROS_DISTRO:-noetic}
 for ros in "${ros_root%/share/ros}" "/opt/ros/$ros_name" ''; do [ ! -f "$ros/setup.bash" ] || break; done
@@ -64,13 +64,14 @@ missing_packages() {    # PACKAGE...: print the packages that are not installed
     sed -n 's/:[^ ]* installed$//p; s/ installed$//p' | sort -u)
 }
 
-missing_in_ros() {      # PACKAGE...: print the packages whose content cannot be found, by the names of ROS's archive
+missing_in_ros() {      # PACKAGE...: print those whose content cannot be found, by the names of ROS's archive
   local name key
   for name in "$@"; do
     key=${name#python3-}; key=${key#lib}; key=${key%-dev}; key=${key//-/_}
     case $name in
       python3-pil) key=PIL;; xvfb) key=Xvfb;; chromium-driver) key=chromedriver;; iproute2) key=ip;;
-      ros-core) key=rostopic;; ros-robot-*) key=${key#ros_};; rospack-tools) key=rospack;; liburdfdom-tools) key=check_urdf;;
+      ros-core) key=rostopic;; ros-robot-*) key=${key#ros_};; rospack-tools) key=rospack;;
+      liburdfdom-tools) key=check_urdf;;
     esac
     { rospack find "$key" || command -v "$key" || /usr/bin/python3 -c "import $key"; } >/dev/null 2>&1 && continue
     case $key in catkin|ros_environment|rosbash|rospack) ;; *) grep -q ">$key<" "$source_dir/package.xml";; esac &&
@@ -79,10 +80,10 @@ missing_in_ros() {      # PACKAGE...: print the packages whose content cannot be
   done | sort -u
 }
 
-available() {           # PACKAGE...: print the packages, without RViz if the archive does not have it
+available() {           # PACKAGE...: print the packages, without RViz and Chromium if the archive does not have them
   local name
   for name in "$@"; do
-    [[ $name != *rviz ]] || apt-cache show "$name" >/dev/null 2>&1 || continue
+    [[ $name != *rviz && $name != chromium* ]] || apt-cache show "$name" >/dev/null 2>&1 || continue
     echo "$name"
   done
 }
@@ -108,7 +109,7 @@ install_missing() {     # PACKAGE...: install the missing packages
   "${run[@]}" flock -o /run/lock env DEBIAN_FRONTEND=noninteractive bash -euc "$(declare -f available)"'
     log=$(mktemp)
     while sleep 10 >/dev/null 2>&1; do
-      echo "Installing: $SECONDS s, $(grep -c "^Get:" "$log") packages downloaded, $(grep -c "^Setting up" "$log") set up"
+      echo "Installing: $SECONDS s, $(grep -c ^Get: "$log") packages downloaded, $(grep -c "^Setting up" "$log") set up"
     done & trap "kill $!; rm -f $log" EXIT
     for try in $(seq 120); do
       { apt-get update -qq && apt-get install -y -q --no-install-recommends $(available "$@"); } >"$log" 2>&1 && exit
