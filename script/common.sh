@@ -179,6 +179,7 @@ use_workspace() {       # DIR: set the environment as in a terminal in which onl
 clean_environment() {   # remove other ROS installations from the environment, and keep bytecode out of the source tree
   unset CMAKE_PREFIX_PATH ROS_PACKAGE_PATH ROS_MASTER_URI ROS_HOSTNAME ROS_NAMESPACE PYTHONPATH
   export PYTHONDONTWRITEBYTECODE=1
+  export CMAKE_POLICY_VERSION_MINIMUM=3.5       # for CMake 4, which rejects catkin's toplevel.cmake
   source_ros
 }
 

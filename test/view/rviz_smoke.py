@@ -16,13 +16,12 @@ import numpy
 import rospkg
 import rospy
 import yaml
-from PIL import ImageGrab
 from rosgraph_msgs.msg import Log
 
 import support
 
 sys.path.append(os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
-from pages.display import virtual_display
+from pages.display import screenshot, virtual_display
 
 PACKAGE = 'rbx1_nav'
 FRAME_RATE = 4      # Hz: without a GPU, the 30 Hz of the files would use more than a core
@@ -202,16 +201,16 @@ class RvizTest(support.Case):
         deadline = time.monotonic() + WAIT
         while True:
             self.assertIsNone(self.rviz.poll(), 'RViz has exited')
-            screenshot = ImageGrab.grab(xdisplay=self.display)
-            picture = Picture(screenshot, self.config)
+            image = screenshot(self.display)
+            picture = Picture(image, self.config)
             if picture.opened and condition(picture):
                 break
             if time.monotonic() > deadline:
-                screenshot.save(os.path.join(self.pictures, 'failed.png'))
+                image.save(os.path.join(self.pictures, 'failed.png'))
                 self.fail('%s: not seen. %s. Arrows: %s. Errors: %s%s' % (
                     what, picture.status, picture.opened and picture.drawn(), self.console_errors(), self.rosout))
             time.sleep(0.5)
-        screenshot.save(os.path.join(self.pictures, f'{what}.png'))
+        image.save(os.path.join(self.pictures, f'{what}.png'))
         return picture
 
 
