@@ -56,8 +56,9 @@ def test_rules_write_the_dependencies_of_package_xml(tmp_path):
     written = value.split(',')
     assert len(set(written)) == len(written)
     # common.sh lists the packages with the commands that the tutorial uses
-    commands = subprocess.run(['bash', '-c', 'set -eu; source script/common.sh; echo "${command_packages[@]}"'], cwd=ROOT,
-                              stdout=subprocess.PIPE, universal_newlines=True, check=True).stdout.split()
+    command = ['bash', '-c', 'set -eu; source script/common.sh; echo "${command_packages[@]}"']
+    commands = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, universal_newlines=True,
+                              check=True).stdout.split()
     assert len(written) == len(listed('package.xml', 'exec_depend') | set(commands))
     assert {'python3-rospy', 'python3-yaml', 'ros-robot-state-publisher', 'rviz', *commands} <= set(written)
 
