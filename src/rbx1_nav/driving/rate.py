@@ -65,9 +65,9 @@ class Rate(rospy.timer.Rate):
     """rospy.Rate. In the thread that drives the robot in a Drive block, it makes up for delays.
 
     Its ticks begin with the first command of a motion. On the clock of a simulated base, which waits for this script,
-    they are those of rospy.Rate. On any other clock, a delay is made up for over the next ticks, each at least 0.6
-    periods long: otherwise a base could receive two commands in one step. A delay of more than MAX_DELAY is an error,
-    because the base has stopped by then.
+    they equal the ticks of rospy.Rate. On any other clock, a delay is made up for over the next ticks, each at least
+    0.6 periods long: otherwise a base could receive two commands in one step. A delay of more than MAX_DELAY is an
+    error, because the base has stopped by then.
     """
 
     def __init__(self, hz: float, reset: bool = False) -> None:

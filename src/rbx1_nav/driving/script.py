@@ -40,7 +40,7 @@ PACKAGE = os.path.realpath(os.path.join(os.path.dirname(__file__), '..')) + os.s
 
 Self = TypeVar('Self', bound='Drive')
 _started: list[int] = []    # id of the process that has started a node
-_functions_called = threading.Event()       # those of rospy.on_shutdown
+_functions_called = threading.Event()       # the functions of rospy.on_shutdown
 _results: list[tuple[Callable[..., None], str]] = []    # of the blocks that have been completed: how to log, and a text
 _failed: list[BaseException] = []       # errors with which blocks have been left
 _interrupted: list[BaseException] = []  # ROSInterruptExceptions that the script has not caught

@@ -17,7 +17,7 @@ IDIOMS = ('rate', 'sleep', 'timer', 'time_sleep', 'threads', 'is_shutdown', 'wai
 FAULT = ('SIGINT, SIGTERM, SIGHUP or `rosnode kill` to a script that drives as rospy tutorials do (%s), in real time, '
          'in simulated time, with a frozen master, and with a stopped /clock' % ', '.join(IDIOMS))
 PROMISE = ('the last command is a stop, within 0.1 s; the function of rospy.on_shutdown is called; the process exits '
-           'within 1.5 s; its status is 128 plus the number of the signal, that of SIGTERM for `rosnode kill`')
+           'within 1.5 s; its status is 128 plus the number of the signal, or 143 after `rosnode kill`')
 FULL, SHORT = 192, 48
 ROOT = False
 ALONE = True
