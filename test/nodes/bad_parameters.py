@@ -43,7 +43,7 @@ class TestBadParameters(support.Case):
                 ('calibrate_angular', '_turns:=many', '/calibrate_angular/turns', "'many'")]:
             self.check(support.Process('rosrun', 'rbx1_nav', f'{script}.py', argument), [*expected, 'expected'])
             forget('/out_and_back' if 'out' in script else f'/{script}')
-        self.assertFalse(commands.messages)
+        self.assertFalse([each for each in commands.messages if each != Twist()])   # a script that gives up stops
 
     def test_filter(self):
         for params, expected in [
