@@ -6,7 +6,8 @@ import time
 import support
 
 FAULT = 'the timed script is suspended for 0.1, 0.3 or 0.9 s at a random moment of a motion, in real time'
-PROMISE = 'the robot is within 2 mm and 0.2 degrees of the exact end pose, or the exit status is 1'
+PROMISE = ('the robot is within 2 mm and 0.2 degrees of the exact end pose, or the last line is a warning that names '
+           'the delay, or the exit status is 1')
 FULL, SHORT = 60, 6
 ROOT = False
 ALONE = True
@@ -42,4 +43,6 @@ def run(row):
             assert status in (0, 1), driver.output
             if status == 0:
                 row.figure('distance from the exact end pose with status 0 (m)', off)
-                assert off < 0.002 and turned < 0.2, f'{off:.4f} m and {turned:.2f} degrees off\n{driver.output}'
+                warned = 'more than a period' in driver.lines[-1]
+                assert warned or off < 0.002 and turned < 0.2, (
+                    f'{off:.4f} m and {turned:.2f} degrees off\n{driver.output}')
