@@ -7,6 +7,7 @@ kernel buffers tens of thousands of commands for a silent node.
 """
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 import socket
 import threading
 import time
@@ -27,26 +28,22 @@ ANSWER_TIMEOUT = 1.4
 ASK_PERIOD = 0.4        # s from an answer to the next call
 
 
+@dataclass(eq=False)
 class Listener:
     """A subscribed node."""
 
+    topic: str
+    name: str
+    uri: str                # at which it answers calls
+    is_base: bool           # whether it publishes odometry
+    keeps_time: bool        # whether it publishes /clock
+    refused: int            # number of this node's commands that it did not follow
+    error: str = ''
+    finished: bool = False      # whether the run is over
+    answered: float = field(default_factory=time.monotonic)     # s: start of the last call that the node answered
     # Any: rospy has no types
-    connection: Any     # of the publisher
-    offset: int         # commands that were published before it was connected
-
-    def __init__(self, topic: str, name: str, uri: str, is_base: bool, keeps_time: bool, refused: int | None) -> None:
-        """uri: the address at which it answers calls; is_base: whether it publishes odometry; keeps_time: whether it
-        publishes /clock; refused: number of this node's commands that it did not follow; None if it does not report
-        this."""
-        self.topic = topic
-        self.name = name
-        self.uri = uri
-        self.is_base = is_base
-        self.keeps_time = keeps_time
-        self.refused = refused or 0
-        self.error = ''
-        self.finished = False       # whether the run is over
-        self.answered = time.monotonic()    # s: start of the last call that the node answered
+    connection: Any = None      # of the publisher
+    offset: int = 0             # commands that were published before it was connected
 
     def connect(self, publisher: rospy.Publisher) -> Listener:
         """Find the connection to the node."""
@@ -188,7 +185,8 @@ class _Search:
             address = call(master, 'lookupNode', name)
             if address not in self.dead:
                 with Server(address) as server:
-                    return Listener(self.topic, name, address, is_base, keeps_time, ask_refusals(server, self.exact)[0])
+                    return Listener(self.topic, name, address, is_base, keeps_time,
+                                    ask_refusals(server, self.exact)[0] or 0)
         except Exception as error:
             if is_base and isinstance(error, socket.timeout):
                 self.silent.append(name)

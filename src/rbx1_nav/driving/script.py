@@ -9,10 +9,8 @@ from __future__ import annotations
 import atexit
 from math import pi, radians
 import os
-import signal
 import sys
 import threading
-import time
 import traceback
 from types import TracebackType
 from typing import Any, Callable, Sequence, TypeVar
@@ -21,7 +19,6 @@ import rosgraph
 import rospy
 import rospy.client
 import rospy.core
-import rospy.impl.masterslave
 import rospy.timer
 from geometry_msgs.msg import Twist
 
@@ -65,7 +62,6 @@ def start_node(name: str, usage: str, parameters: Sequence[Parameter], **options
         _started.append(os.getpid())
         rospy.core.add_preshutdown_hook(_finish)    # the first one: rospy's own waits for the master
         threading.Thread(target=_shut_down, daemon=True).start()
-        setattr(rospy.impl.masterslave, 'signal_shutdown', lambda _: end(128 + signal.SIGTERM))     # `rosnode kill`
     life.init_node(name, usage, [*parameters, WAIT_TIMEOUT], on_signal=lambda number: end(128 + number), **options)
     for each in parameters:
         angle = param(each.name) if each.unit == 'rad' else 0.0
@@ -96,11 +92,7 @@ def _exit() -> None:
         return
     shutdown_wanted.set()
     _functions_called.wait()
-    give_up = time.monotonic() + life.UNREGISTER_TIMEOUT
-    while not commands.is_shutdown_of_rospy() and time.monotonic() < give_up:
-        time.sleep(0.01)
-    sys.stdout.flush()
-    sys.stderr.flush()
+    life.wait_for_shutdown()
     if end_requested.is_set() or _failed:
         os._exit(life.exit_status[0])
     if _interrupted:        # the script itself has called rospy.signal_shutdown()

@@ -58,7 +58,7 @@ def run(row):
             with row.busy(LOOPS * (number // 3 % 2)):
                 drivers = {name: row.start('rosrun', 'rbx1_nav', 'timed_out_and_back.py', ROS_NAMESPACE=name)
                            for name in names}
-                drivers['robot3'].wait_for_line('forward: ')
+                drivers['robot3'].wait_for_line('Connected to ')
                 disturb(row, kind, drivers['robot3'], fleet)
                 for name in 'robot1', 'robot2':
                     assert drivers[name].wait() == 0, f'{drivers[name].output}\n{fleet.output[-2000:]}'

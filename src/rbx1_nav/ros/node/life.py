@@ -15,6 +15,7 @@ from typing import Any, Callable, NoReturn, Sequence, TextIO, TypeVar, cast
 
 import rosgraph
 import rospy
+import rospy.impl.masterslave
 from rospy.impl.paramserver import get_param_server_cache
 
 from rbx1_nav.config import ConfigError, YamlValue
@@ -36,8 +37,7 @@ if not hasattr(threading.Thread, 'isAlive'):
 Found = TypeVar('Found')
 end_requested = threading.Event()
 exit_status = [1]       # of a process that does not exit in time
-_leaving = threading.Event()
-_init_node = rospy.init_node
+_init_node, _is_shutdown = rospy.init_node, rospy.is_shutdown
 
 
 class _Terminal:
@@ -91,10 +91,11 @@ def init_node(name: str, usage: str, parameters: Sequence[Parameter] = (), requi
         check_command_line(f'{usage.strip()}\n\n{list_parameters(parameters)}'.strip(), names)
     if requires_master:
         require_master()
+    take = on_signal or request_end
+    setattr(rospy.impl.masterslave, 'signal_shutdown', lambda _: take(signal.SIGTERM))      # `rosnode kill`
     if on_signal is None:
-        on_signal = request_end
-        rospy.on_shutdown(_request_end)
-    _take_signals(on_signal, options.pop('disable_signals', False))
+        rospy.on_shutdown(request_end)      # rospy itself gives up, such as after a failure of its server
+    _take_signals(take, options.pop('disable_signals', False))
     wait_for_master(future_name(name), lambda: read_wait_timeout(name, parameters), end_requested.is_set, sleep)
     if not end_requested.is_set():
         check_before_start(name, parameters, check)
@@ -147,12 +148,6 @@ def request_end(_: int = 0) -> None:
     last_resort.start()
 
 
-def _request_end() -> None:
-    """Request shutdown; called by rospy in its own thread. Publishers stay open until this function returns."""
-    request_end()
-    _leaving.wait(EXIT_DEADLINE)
-
-
 def sleep(seconds: float) -> None:
     """Sleep for `seconds` of wall time, at most MAX_SLEEP. To be called in a loop that checks end_requested.
 
@@ -187,17 +182,21 @@ def wait_for(find: Callable[[], Found | None], timeout: float, missing: Callable
         check_end()
 
 
+def wait_for_shutdown() -> None:
+    """Wait until rospy has unregistered the node, for at most UNREGISTER_TIMEOUT, and flush the output."""
+    give_up = time.monotonic() + UNREGISTER_TIMEOUT
+    while not _is_shutdown() and time.monotonic() < give_up:
+        time.sleep(0.01)
+    sys.stdout.flush()
+    sys.stderr.flush()
+
+
 def leave(status: int) -> NoReturn:
     """Unregister the node and exit with a status, without waiting for a master that hangs."""
     exit_status[0] = status    # the final work is done
     time.sleep(0.02)    # lets the last line reach /rosout
-    _leaving.set()
     threading.Thread(target=rospy.signal_shutdown, args=('done',), daemon=True).start()
-    give_up = time.monotonic() + UNREGISTER_TIMEOUT
-    while not rospy.is_shutdown() and time.monotonic() < give_up:
-        time.sleep(0.01)
-    sys.stdout.flush()
-    sys.stderr.flush()
+    wait_for_shutdown()
     os._exit(status)
 
 
