@@ -11,6 +11,7 @@ from math import pi, radians
 import os
 import sys
 import threading
+import time
 import traceback
 from types import TracebackType
 from typing import Any, Callable, Sequence, TypeVar
@@ -38,6 +39,7 @@ PACKAGE = os.path.realpath(os.path.join(os.path.dirname(__file__), '..')) + os.s
 Self = TypeVar('Self', bound='Drive')
 _started: list[int] = []    # id of the process that has started a node
 _functions_called = threading.Event()       # the functions of rospy.on_shutdown
+_script_ended = threading.Event()
 _results: list[tuple[Callable[..., None], str]] = []    # of the blocks that have been completed: how to log, and a text
 _failed: list[BaseException] = []       # errors with which blocks have been left
 _interrupted: list[BaseException] = []  # ROSInterruptExceptions that the script has not caught
@@ -83,6 +85,8 @@ def _finish(_: str) -> None:
         if not (end_requested.is_set() or _failed):
             log('%s', text)
     _functions_called.set()
+    _script_ended.wait(0.1)     # with a line that goes to /rosout, too
+    time.sleep(0.02)
 
 
 @atexit.register
@@ -90,6 +94,7 @@ def _exit() -> None:
     """Call the functions of rospy.on_shutdown, and unregister the node, without waiting for a master that hangs."""
     if _started != [os.getpid()]:       # not in a child process
         return
+    _script_ended.set()
     shutdown_wanted.set()
     _functions_called.wait()
     life.wait_for_shutdown()
