@@ -39,6 +39,8 @@ FLAKY = 3       # flaky rostests that fail the run
 # the longest first, so that none of them is still running when the others have finished
 LONGEST = ['documents', 'in_step', 'calibration_without_gyro', *SETS, 'unit-1', 'unit-2', 'unit-3', 'unit-4',
            'browser_page']
+# use more than a core each, and fail if they get less: one at a time, when the others have finished
+ALONE = ['eight_models', 'browser_comparison', 'feedback_roscpp']
 
 
 def run_rostest(results, name, path):
@@ -215,7 +217,8 @@ def main():
     os.makedirs(os.path.join(results, PACKAGE), exist_ok=True)
     jobs = make_jobs(results, arguments.tests)
     try:
-        troubled = run_jobs(jobs, arguments.jobs)
+        troubled = [*run_jobs([job for job in jobs if job.name not in ALONE], arguments.jobs),
+                    *run_jobs([job for job in jobs if job.name in ALONE], 1)]
         flaky = repeat(results, jobs, troubled) if arguments.repeat else []
     except KeyboardInterrupt:       # rostest would take 10 s to stop its nodes; script/test kills them
         for process in multiprocessing.active_children():
