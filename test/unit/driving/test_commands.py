@@ -41,8 +41,7 @@ class Clock:
         monkeypatch.setattr(rates, '_wait_until', self.wait_until)
         monkeypatch.setattr(module, 'fail', self.failures.append)
         monkeypatch.setattr(rates, 'fail', self.failures.append)
-        monkeypatch.setattr(module, '_publish', lambda _, message: self.sent.append(
-            (self.now, message.linear.x, message.angular.z)))
+        monkeypatch.setattr(module, '_publish', self.send)
         monkeypatch.setattr(module, '_moving', {})
         monkeypatch.setattr(rospy, 'loginfo', lambda *_: None)
         monkeypatch.setattr(rospy.rostime, 'get_rostime', lambda: rospy.Time(0, self.now))
@@ -51,6 +50,10 @@ class Clock:
 
     def wait_until(self, end):
         self.now = max(self.now, end)
+
+    def send(self, _, message):
+        assert module._lock.locked()    # or a command to move may follow a stop of another thread
+        self.sent.append((self.now, message.linear.x, message.angular.z))
 
     def publish(self, linear=0.0, angular=0.0):
         message = Twist()

@@ -1,0 +1,112 @@
+"""The filter node passes each message to the filter, one at a time, and names what it rejects."""
+import importlib.util
+import os
+from math import pi
+
+from diagnostic_updater import DiagnosticStatusWrapper
+from geometry_msgs.msg import PoseWithCovarianceStamped, Vector3
+from nav_msgs.msg import Odometry
+import pytest
+import rospy
+from sensor_msgs.msg import Imu
+
+from rbx1_nav.ros.filter import filter_status
+from rbx1_nav.ros.filter.ekf_parameters import read_parameters
+from fake_topics import replace_topics
+
+NODE = os.path.join(os.path.dirname(__file__), '..', '..', '..', 'nodes', 'ekf.py')
+HEADER = {'callerid': '/base'}
+
+
+class Updater:
+    """A diagnostic_updater.Updater."""
+
+    def __init__(self):
+        self.tasks = []
+
+    def setHardwareID(self, _):
+        pass
+
+    def add(self, _, task):
+        self.tasks.append(task)
+
+    def force_update(self):
+        for task in self.tasks:
+            task(DiagnosticStatusWrapper())
+
+
+@pytest.fixture(name='ekf')
+def fixture_ekf(monkeypatch):
+    """The node, with the messages of one base; ekf.lines: its log; ekf.now: ROS time."""
+    spec = importlib.util.spec_from_file_location('ekf_node', NODE)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    monkeypatch.setattr(rospy.rostime, '_rostime_initialized', True)
+    replace_topics(monkeypatch)
+    lines = []
+    for name in 'loginfo', 'logwarn', 'logerr':
+        monkeypatch.setattr(rospy, name, lambda form, *values: lines.append(form % values))
+    monkeypatch.setattr(filter_status, 'Updater', Updater)
+    ekf = module.Ekf(read_parameters(dict(surface='unknown', publish_tf=False)))
+    ekf.lines = lines
+
+    def send(callback, message, now):
+        monkeypatch.setattr(rospy.rostime, '_rostime_current', rospy.Time.from_sec(now))
+        message._connection_header = HEADER
+        if hasattr(message, 'header'):
+            message.header.stamp = rospy.Time.from_sec(now)
+        callback(message)
+        return ekf.combined and ekf.combined.estimate
+    ekf.send = send
+    return ekf
+
+
+def odometry(x):
+    message = Odometry(child_frame_id='base')
+    message.header.frame_id, message.pose.pose.position.x, message.pose.pose.orientation.w = 'odom', x, 1.0
+    return message
+
+
+def imu(rate):
+    return Imu(angular_velocity=Vector3(0.0, 0.0, rate), angular_velocity_covariance=[0.001, 0, 0] * 3,
+               orientation_covariance=[-1.0] + [0.0] * 8)
+
+
+def test_the_gyro_turns_the_path_of_the_odometry(ekf):
+    for tick in range(101):
+        ekf.send(ekf.on_imu, imu(0.5), 10 + tick * 0.02)
+        estimate = ekf.send(ekf.on_odom, odometry(tick * 0.01), 10 + tick * 0.02)
+    # 2 s at 0.5 rad/s and 0.5 m/s, which the bias before the first standstill and the wheels make uncertain
+    assert 0.2 < estimate.pose.yaw < 1.1 and 0.3 < estimate.pose.y < 0.6
+    # placed at the time of the last odometry
+    message = PoseWithCovarianceStamped()
+    message.pose.pose.position.x, message.pose.pose.orientation.w = 7.0, 1.0
+    message.pose.covariance = [0.01 if index % 7 == 0 else 0.0 for index in range(36)]
+    ekf.send(ekf.on_set_pose, message, 12.01)
+    ekf.send(ekf.on_imu, imu(0.0), 12.02)
+    assert ekf.send(ekf.on_odom, odometry(1.0), 12.02).pose.x == pytest.approx(7, abs=0.01)
+    assert not [line for line in ekf.lines if 'rejected' in line]
+
+
+def test_what_is_rejected_is_counted_and_named(ekf):
+    ekf.send(ekf.on_set_pose, PoseWithCovarianceStamped(), 10.0)
+    ekf.send(ekf.on_odom, odometry(0.0), 10.0)
+    ekf.send(ekf.on_odom, odometry(float('nan')), 10.02)
+    ekf.send(ekf.on_imu, imu(pi * 1e7), 10.02)
+    assert ekf.diagnostics.rejected == {'odom': 1, 'imu_data': 1, 'set_pose': 1}
+    rejected = [line.split(':')[0] for line in ekf.lines if line.endswith('; rejected')]
+    assert rejected == ['/set_pose', '/odom', '/imu_data']
+
+
+def test_messages_of_different_threads_reach_the_filter_one_at_a_time(ekf, monkeypatch):
+    calls = []
+    monkeypatch.setattr(ekf, 'process', lambda topic, *_: calls.append((topic, ekf.lock.locked())))
+    for callback, message in (ekf.on_odom, odometry(0.0)), (ekf.on_imu, imu(0.0)), (
+            ekf.on_set_pose, PoseWithCovarianceStamped()):
+        ekf.send(callback, message, 10.0)
+    monkeypatch.setattr(ekf.combined, 'reset', lambda _: calls.append(('reset', ekf.lock.locked())))
+    ekf.on_reset(None)
+    assert calls == [(each, True) for each in ('odom', 'imu_data', 'set_pose', 'reset')]
+    monkeypatch.setattr(ekf.diagnostics, 'get_filter', lambda: calls.append(ekf.lock.locked()) or (None, 0))
+    ekf.diagnostics.publish()
+    assert calls[4:] == [True] * 3
