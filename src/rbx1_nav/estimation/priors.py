@@ -42,8 +42,10 @@ class Floor(Protocol):
 
 # any floor. The noise was measured with five real robots, config/surfaces/create_lab_floor.yaml; the spreads are as
 # wide as the differences between the slips of all files
-UNKNOWN_FLOOR = Priors(0.0, 0.05, 0.0, 0.3, 0.0, Bounds().gyro_scale_error, Bounds().max_turn_rate, 0.084, 0.066, 0.044,
-                       0.05)
+UNKNOWN_FLOOR = Priors(
+    slip_straight=0.0, slip_straight_spread=0.05, slip_turning=0.0, slip_turning_spread=0.3, curvature=0.0,
+    gyro_scale_error=Bounds().gyro_scale_error, gyro_measurement_range=Bounds().max_turn_rate,
+    heading_noise_turning=0.084, heading_noise_straight=0.066, distance_noise=0.044, curvature_spread=0.05)
 
 
 def priors(surface: Floor | None) -> Priors:

@@ -207,7 +207,7 @@ def read_robot(params: YamlValue) -> Robot:
         wheel_radius=keys['wheel_radius'],
         rate=keys['rate'],
         timeout=round(SECOND * timeout),
-        limits=Limits(keys['max_linear_speed'], keys['max_angular_speed']),
+        limits=Limits(linear=keys['max_linear_speed'], angular=keys['max_angular_speed']),
         publish_tf=values['publish_tf'],
         joints=joints,
         wheel_joints=wheel_joints,

@@ -4,7 +4,7 @@ from __future__ import annotations
 from math import atan2, cos, isnan, nan, pi, sin, sqrt
 from typing import Any, Mapping, Sequence
 
-from geometry_msgs.msg import Pose as PoseMessage, PoseWithCovarianceStamped, Quaternion, TransformStamped, Twist
+from geometry_msgs.msg import Pose as PoseMessage, PoseWithCovarianceStamped, Quaternion, TransformStamped
 from nav_msgs.msg import Odometry
 import numpy
 import rospy
@@ -27,13 +27,6 @@ def diagonal(*variances: float) -> list[float]:
     matrix = [0.0] * 36
     matrix[::7] = variances
     return matrix
-
-
-def from_twist(twist: Twist) -> tuple[float, float, tuple[float, float, float, float]]:
-    """Return (linear, angular, others) of a Twist: m/s forward, rad/s to the left, and the four velocities that a
-    differential drive cannot follow."""
-    return (twist.linear.x, twist.angular.z,
-            (twist.linear.y, twist.linear.z, twist.angular.x, twist.angular.y))
 
 
 def squared_norm(rotation: Quaternion) -> float:
@@ -97,12 +90,13 @@ def odometry(stamp: rospy.Time, frames: tuple[str, str], pose: Pose, velocity: t
     """
     message = _stamped(Odometry(), stamp, *frames)
     _set_pose(message.pose.pose, pose)
-    position, yaw, linear, angular = uncertainty
-    message.pose.covariance = (diagonal(position, position, UNKNOWN, UNKNOWN, UNKNOWN, yaw) if covariance is None
-                               else planar(covariance))
+    position = uncertainty.position
+    message.pose.covariance = (planar(covariance) if covariance is not None else
+                               diagonal(position, position, UNKNOWN, UNKNOWN, UNKNOWN, uncertainty.yaw))
     message.twist.twist.linear.x, message.twist.twist.angular.z = velocity
     # wheels do not roll sideways, so the lateral speed is known
-    message.twist.covariance = diagonal(linear, MEASURED, UNKNOWN, UNKNOWN, UNKNOWN, angular)
+    message.twist.covariance = diagonal(
+        uncertainty.linear, MEASURED, UNKNOWN, UNKNOWN, UNKNOWN, uncertainty.angular)
     return message
 
 

@@ -31,7 +31,7 @@ def test_turtlebot():
     assert (robot.name, robot.odom_frame_id, robot.base_frame_id) == ('base_controller', 'odom', 'base_footprint')
     # the driver's rate is for its hardware; the controller's rate is the rate of the odometry
     assert (robot.base_width, robot.rate, robot.timeout) == (0.26, 50, SECOND)
-    assert robot.limits == (inf, inf) and robot.publish_tf is True
+    assert (robot.limits.linear, robot.limits.angular) == (inf, inf) and robot.publish_tf is True
     assert robot.joints == [] and robot.unknown == []
     assert {'port', 'rate', 'controllers/base_controller/Kp'} <= set(robot.hardware)
 

@@ -108,7 +108,7 @@ def read_settings(params: YamlValue) -> tuple[Settings, Robot]:
     robot = Robot(
         name=name, odom_frame_id=values['odom_frame'], base_frame_id=values['base_frame'],
         base_width=model.wheel_separation, wheel_radius=WHEEL_RADIUS, rate=settings.update_rate,
-        timeout=round(SECOND * values['cmd_vel_timeout']), limits=Limits(inf, max_yaw_speed),
+        timeout=round(SECOND * values['cmd_vel_timeout']), limits=Limits(linear=inf, angular=max_yaw_speed),
         publish_tf=values['publish_tf'], joints=[],
         wheel_joints=read_wheel_joints(section), hardware=[], unknown=[])
     if robot.odom_frame_id == robot.base_frame_id:

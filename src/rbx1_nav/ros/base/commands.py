@@ -19,7 +19,6 @@ from rbx1_nav.ros.network.bases import Refusals
 from rbx1_nav.units import SECOND
 
 RECENT = SECOND * 3 // 2    # ns: an older contradiction is not shown
-UNITS = 'm/s', 'rad/s', 'm/s at each wheel'     # of the limits
 
 
 class VelocityCommand(NamedTuple):
@@ -79,9 +78,12 @@ class VelocityCommands:
     def on_twist(self, twist: Twist) -> None:
         """Process a command, which takes effect now or when the clock applies it."""
         header = twist._connection_header       # one object for each connection
-        command = VelocityCommand(*messages.from_twist(twist), header['callerid'])
-        text = self.senders.contradiction(self.clock.now(), header, command.sender, command[:2],
-                                          lambda: [connection.header for connection in self.connections()])
+        command = VelocityCommand(
+            linear=twist.linear.x, angular=twist.angular.z, sender=header['callerid'],
+            others=(twist.linear.y, twist.linear.z, twist.angular.x, twist.angular.y))
+        text = self.senders.contradiction(
+            self.clock.now(), header, command.sender, (command.linear, command.angular),
+            lambda: [connection.header for connection in self.connections()])
         if text:
             rospy.logwarn_throttle(5, f'{self.topic}: contradictory commands: {text}: expected only one driving node')
         self.clock.receive(self, header, command)
@@ -90,7 +92,8 @@ class VelocityCommands:
         """Put a command in force."""
         try:
             with self.lock:
-                clamped = self.base.command(self.clock.now(), *command)
+                clamped = self.base.command(self.clock.now(), command.linear, command.angular, command.others,
+                                            command.sender)
         except (RejectedCommand, RefusedCommand) as error:
             if isinstance(error, RejectedCommand):
                 rospy.logerr_throttle(1, f'{self.topic}: {error}; rejected, base stopped')
@@ -100,8 +103,9 @@ class VelocityCommands:
             return
         self.sender = command.sender
         if clamped:
-            limits = *self.gate.limits, self.wheel_limit
-            expected = ', '.join(f'{limit:g} {unit}' for limit, unit in zip(limits, UNITS) if limit < inf)
+            limits = ((self.gate.limits.linear, 'm/s'), (self.gate.limits.angular, 'rad/s'),
+                      (self.wheel_limit, 'm/s at each wheel'))
+            expected = ', '.join(f'{limit:g} {unit}' for limit, unit in limits if limit < inf)
             text = f'{command.linear:g} m/s, {command.angular:g} rad/s: expected at most {expected}'
             rospy.logwarn_throttle(5, f'{self.topic}: {text}; clamped')
             self.refusals.add(command.sender, text, refused=False)

@@ -105,8 +105,9 @@ class CreateBase:
             self.publisher.robot = self.publisher.robot._replace(base_width=width)
         stamp = self.clock.stamp(state.time)
         self.publisher.publish_transform(stamp, state.pose)
-        self.publisher.publish_odometry(stamp, state.pose, state.velocity, Uncertainty(0.0, 0.0, *state.variances),
-                                        state.covariance)
+        linear, angular = state.variances
+        self.publisher.publish_odometry(stamp, state.pose, state.velocity, Uncertainty(
+            position=0.0, yaw=0.0, linear=linear, angular=angular), state.covariance)
         if state.gyro:
             self.publisher.publish_imu(stamp, state.gyro)
         if self.joint_schedule.due(now):
