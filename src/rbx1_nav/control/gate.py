@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from math import inf
 from threading import Lock
-from typing import Callable, Iterable, NamedTuple
+from typing import Callable, Iterable, NamedTuple, Sequence
 
 from rbx1_nav.robot.description import Limits
 from rbx1_nav.units import SECOND, clamp
@@ -43,7 +43,7 @@ class CommandGate:
         self.rejected = 0
         self.clamped = 0
 
-    def command(self, now: int, linear: float, angular: float, others: Iterable[float] = ()) -> bool:
+    def command(self, now: int, linear: float, angular: float, others: Sequence[float] = ()) -> bool:
         """Put a command in force at `now` (ns), and return whether a limit clamped it.
 
         linear: m/s forward; angular: rad/s to the left; others: velocities that a differential drive cannot follow, but
@@ -51,7 +51,7 @@ class CommandGate:
         """
         self.command_time = now
         self.expiry = now + self.timeout if self.timeout else inf
-        if linear == self.linear and angular == self.angular and not others:    # repeated, so it was checked before
+        if linear == self.linear and angular == self.angular and not any(others):    # repeated: checked before
             return False
         for value in (linear, angular, *others):
             if not abs(value) <= MAX_COMMAND:   # written so that nan is rejected too

@@ -1,7 +1,7 @@
 """A simulated differential-drive base: the command gate, the wheels that follow the commands, odometry, and a gyro."""
 from __future__ import annotations
 
-from typing import Iterable
+from typing import Sequence
 
 from rbx1_nav.control.gate import CommandGate
 from rbx1_nav.robot.description import Robot
@@ -69,7 +69,7 @@ class SimulatedBase:
         """Whether the robot is stationary and no command will change that."""
         return not self.gate.moving and self.wheels.at_rest
 
-    def command(self, now: int, linear: float, angular: float, others: Iterable[float] = (), _sender: str = '') -> bool:
+    def command(self, now: int, linear: float, angular: float, others: Sequence[float] = (), _sender: str = '') -> bool:
         """Put a command in force from `now` on; for arguments, result and errors see CommandGate.command()."""
         self.advance(now)
         return self.gate.command(now, linear, angular, others)
