@@ -20,8 +20,8 @@ from rbx1_nav.estimation.inputs import Imu, Odom
 from rbx1_nav.robot.description import Limits, read_robot
 from rbx1_nav.ros.node import resources
 from rbx1_nav.robot.kinematics import ORIGIN
+from rbx1_nav.robot.surfaces import load_surface
 from rbx1_nav.simulation.base import make_base
-from rbx1_nav.simulation.surfaces import load_surface
 from rbx1_nav.units import SECOND
 
 LIMITS = Limits(4.0, 8.0)       # m/s, rad/s; no limits for these paths

@@ -11,9 +11,9 @@ from rbx1_nav.control.legs import StuckError
 from rbx1_nav.estimation.combined_odometry import CombinedOdometry
 from rbx1_nav.estimation.priors import UNKNOWN_FLOOR, priors
 from rbx1_nav.robot.description import read_robot
+from rbx1_nav.robot.surfaces import known_surfaces, load_surface
 from rbx1_nav.ros.node import resources
 from rbx1_nav.simulation.exercise import EXERCISE, METHODS, feed, simulate
-from rbx1_nav.simulation.surfaces import known_surfaces, load_surface
 from rbx1_nav.units import SECOND
 
 PATH = 2 * EXERCISE['goal_distance']    # m, out and back

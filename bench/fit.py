@@ -14,10 +14,10 @@ from rbx1_nav.fitting.recording import Commands, Rates, Recording, Track
 from rbx1_nav.fitting.surface_fit import WholeFit
 from rbx1_nav.robot.description import read_robot
 from rbx1_nav.robot.kinematics import Pose
+from rbx1_nav.robot.surfaces import Surface, load_surface
 from rbx1_nav.ros.node import resources
 from rbx1_nav.simulation.base import make_base
 from rbx1_nav.simulation.exercise import EXERCISE, TICK
-from rbx1_nav.simulation.surfaces import Surface, load_surface
 from rbx1_nav.units import SECOND
 
 RUNS = 10

@@ -12,7 +12,7 @@ import rosbag
 from replay import pose_variances, replay
 from rbx1_nav.estimation.priors import UNKNOWN_FLOOR
 from rbx1_nav.estimation.gyro_input import GyroInput
-from rbx1_nav.ros import messages
+from rbx1_nav.ros.filter import conversions
 from rbx1_nav.units import SECOND
 
 TYPES = 'nav_msgs/Odometry', 'sensor_msgs/Imu', 'sensor_msgs/NavSatFix'
@@ -40,7 +40,7 @@ def read_record(path, odom, imu, fix):
             raise ValueError(f'{topic}: {len(each)} messages of type {kind}: expected at least 2')
         each.sort(key=lambda message: message.header.stamp)
     twists = [message.twist.twist for message in found[odom]]
-    return Record([(messages.from_odometry(message), pose_variances(message)) for message in found[odom]],
+    return Record([(conversions.from_odometry(message), pose_variances(message)) for message in found[odom]],
                   gyro_readings(found[imu]),
                   [(twist.linear.x, twist.angular.z) for twist in twists],
                   [(message.header.stamp.to_nsec(), message.latitude, message.longitude) for message in found[fix]])
@@ -53,7 +53,7 @@ def gyro_readings(imus):
     vertical = tuple((up / numpy.linalg.norm(up)).tolist())
     gyro, readings = GyroInput(), []
     for imu in imus:
-        data = messages.from_imu(imu)
+        data = conversions.from_imu(imu)
         readings.append((gyro.read(data, vertical), None))
         gyro.accepted(data)
     return readings

@@ -12,8 +12,8 @@ from base_cases import Case
 import bases
 from floors import squared_errors
 from rbx1_nav.robot.description import read_robot
+from rbx1_nav.robot.surfaces import load_surface
 from rbx1_nav.ros.node import resources
-from rbx1_nav.simulation.surfaces import load_surface
 
 SLIP, UNEQUAL, BIAS = 0.3, 0.05, 6.0    # largest slips; difference of the wheels; bias of the gyro, degrees/s
 SIGMAS = 5.0            # an error of more standard deviations than this must have been announced

@@ -17,8 +17,8 @@ from rbx1_nav.estimation.priors import UNKNOWN_FLOOR, priors
 from rbx1_nav.estimation.inputs import MAX_VARIANCE, Imu, Odom, RejectedMessage
 from rbx1_nav.robot.kinematics import Pose, arc
 from rbx1_nav.robot.readings import MIN_VARIANCE
+from rbx1_nav.robot.surfaces import known_surfaces, load_surface
 from rbx1_nav.ros.node import resources
-from rbx1_nav.simulation.surfaces import known_surfaces, load_surface
 from rbx1_nav.units import SECOND
 
 LEAST_RATIO = -1e-12    # smallest eigenvalue / largest one

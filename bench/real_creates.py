@@ -20,9 +20,9 @@ from rbx1_nav.fitting.prediction import SPREADS, Prediction
 from rbx1_nav.fitting.recording import CAMERAS, COMMANDS, read_robot, truth_file
 from rbx1_nav.fitting.run import PreparedRun, Windows
 from rbx1_nav.plotting.plots import check_picture
+from rbx1_nav.robot.surfaces import load_surface
 from rbx1_nav.ros.node import resources
 from rbx1_nav.simulation.floor_noise import NOISES
-from rbx1_nav.simulation.surfaces import load_surface
 
 BASE_WIDTH = 0.26       # m, of a Create in these files
 LENGTHS = 5, 10, 20, 40     # s

@@ -96,6 +96,7 @@ def read(path):
     import rosbag
     from rbx1_nav.estimation.gyro_input import GyroInput
     from rbx1_nav.ros import messages
+    from rbx1_nav.ros.filter import conversions
     gyro = GyroInput()
     found = replay.Recording([], [], {}, [], [], {}, [])
     headers = {topic: [] for topic in TOPICS[:4]}
@@ -105,9 +106,9 @@ def read(path):
                 stamp = message.header.stamp.to_nsec()
                 headers[topic].append((message.header.seq, stamp))
             if topic == '/odom':
-                found.odom.append((messages.from_odometry(message), replay.pose_variances(message)))
+                found.odom.append((conversions.from_odometry(message), replay.pose_variances(message)))
             elif topic == '/imu/data':
-                data = messages.from_imu(message)
+                data = conversions.from_imu(message)
                 found.imu.append((gyro.read(data), (messages.yaw_of(message.orientation), data.yaw_variance)))
                 gyro.accepted(data)
             elif topic in ('/odom_combined', '/ground_truth'):
@@ -131,7 +132,7 @@ def evaluate(path, surface):
     """The figures of a bag, and the log lines of the filter. Raises Failure."""
     import rosbag
     from rbx1_nav.estimation.priors import priors
-    from rbx1_nav.simulation.surfaces import load_surface
+    from rbx1_nav.robot.surfaces import load_surface
     from rbx1_nav.ros.node import resources
     try:
         recording = read(path)

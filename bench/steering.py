@@ -11,10 +11,10 @@ import numpy
 from rbx1_nav.control.legs import Straight, out_and_back_by_odometry
 from rbx1_nav.robot.description import load_robot
 from rbx1_nav.robot.kinematics import ORIGIN
+from rbx1_nav.robot.surfaces import load_surface
 from rbx1_nav.ros.node import resources
 from rbx1_nav.simulation import exercise
 from rbx1_nav.simulation.summary import HEADER, Summary
-from rbx1_nav.simulation.surfaces import load_surface
 
 ANSWER = os.path.join(os.path.dirname(os.path.realpath(__file__)), '..', 'examples', 'answers', 'steering.py')
 

@@ -10,8 +10,8 @@ from rbx1_nav.control.legs import out_and_back
 from rbx1_nav.estimation.combined_odometry import CombinedOdometry
 from rbx1_nav.estimation.priors import priors
 from rbx1_nav.robot.description import read_robot
+from rbx1_nav.robot.surfaces import load_surface
 from rbx1_nav.simulation.exercise import EXERCISE, TICK, Simulation, feed
-from rbx1_nav.simulation.surfaces import load_surface
 from rbx1_nav.units import SECOND
 
 CONFIG = os.path.join(os.path.dirname(__file__), '..', 'config')

@@ -9,8 +9,8 @@ import pytest
 import steering
 from rbx1_nav.robot.description import load_robot
 from rbx1_nav.robot.kinematics import Pose
+from rbx1_nav.robot.surfaces import load_surface
 from rbx1_nav.simulation import exercise
-from rbx1_nav.simulation.surfaces import load_surface
 
 CONFIG = os.path.join(os.path.dirname(__file__), '..', 'config')
 ANSWER = steering.load_answer()

@@ -21,7 +21,7 @@ from std_msgs.msg import Empty
 
 from rbx1_nav.estimation.combined_odometry import CombinedOdometry
 from rbx1_nav.estimation.inputs import RejectedMessage, check
-from rbx1_nav.ros import messages
+from rbx1_nav.ros.filter.conversions import from_odometry, from_set_pose
 from rbx1_nav.ros.filter.ekf_parameters import PARAMETERS, load_parameters, make_filter, read_parameters
 from rbx1_nav.ros.filter.estimate_publisher import EstimatePublisher
 from rbx1_nav.ros.filter.filter_status import Diagnostics, LimitedLog
@@ -89,7 +89,7 @@ class Ekf:
         check('odom', None, combined, 'a message before this one')
         if combined:
             combined.set_pose(combined.arrivals.last_stamp['odom'] or now,
-                              *messages.from_set_pose(message, self.parameters.output_frame))
+                              *from_set_pose(message, self.parameters.output_frame))
 
     def add_imu(self, combined: CombinedOdometry, now: int, message: Imu) -> None:
         """Pass an Imu to the filter."""
@@ -99,7 +99,7 @@ class Ekf:
     def add_odom(self, combined: CombinedOdometry, now: int, message: Odometry) -> None:
         """Pass an Odometry to the filter."""
         frames = frames_of(message, self.parameters)
-        combined.add_odom(now, messages.from_odometry(message))
+        combined.add_odom(now, from_odometry(message))
         self.frames = frames
 
     def restart(self, sender: str) -> None:

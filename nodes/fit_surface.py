@@ -29,15 +29,15 @@ from tqdm import tqdm
 from rbx1_nav.batch.executor import add_arguments, in_order, open_place
 from rbx1_nav.config import ConfigError, show_name
 from rbx1_nav.files import check_yaml, write_file
+from rbx1_nav.fitting.bags import TopicNames, read_bag
 from rbx1_nav.fitting.comparison import compare, shares
 from rbx1_nav.fitting.end_poses import read_ends
 from rbx1_nav.fitting.recording import (
     Recording, check_end, in_force, is_commands_file, read_robot as read_text_files, truth_file)
 from rbx1_nav.plotting.plots import check_picture, draw_fit
 from rbx1_nav.robot.description import Robot, load_robot
+from rbx1_nav.robot.surfaces import Surface, known_surfaces, load_surface
 from rbx1_nav.ros.node import resources
-from rbx1_nav.ros.bags import TopicNames, read_bag
-from rbx1_nav.simulation.surfaces import Surface, known_surfaces, load_surface
 
 START, CREATE_START = 'low_ply_carpet', 'create_lab_floor'
 

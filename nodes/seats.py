@@ -17,9 +17,10 @@ import time
 from typing import Sequence
 
 from rbx1_nav.config import ConfigError
+from rbx1_nav.robot.surfaces import known_surfaces, load_surface
 from rbx1_nav.ros.node import resources
 from rbx1_nav.ros.web.seat import Seat
-from rbx1_nav.simulation.surfaces import RANDOM, known_surfaces, load_surface, read_seed
+from rbx1_nav.simulation.surfaces import RANDOM, read_seed
 
 STOP_TIMEOUT = 20.0     # s for all seats to stop
 MAX_SEATS = 100

@@ -26,9 +26,10 @@ from rbx1_nav.parameters import split_usage
 from rbx1_nav.plotting.animation import animate, check_animation
 from rbx1_nav.plotting.plots import PATHS, check_picture, draw
 from rbx1_nav.robot.description import load_robot
+from rbx1_nav.robot.surfaces import KEYS, known_surfaces, load_surface
 from rbx1_nav.ros.node import resources
 from rbx1_nav.simulation.exercise import METHODS, PARAMETERS
-from rbx1_nav.simulation.surfaces import KEYS, MAX_SEED, known_surfaces, load_surface
+from rbx1_nav.simulation.surfaces import MAX_SEED
 
 
 def read_arguments() -> argparse.Namespace:

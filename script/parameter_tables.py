@@ -37,7 +37,7 @@ def declared(kind, name):
 
 def surface_table():
     """Return the lines of the table of surface files, with a column for each."""
-    from rbx1_nav.simulation.surfaces import KEYS, Surface, known_surfaces, load_surface
+    from rbx1_nav.robot.surfaces import KEYS, Surface, known_surfaces, load_surface
     loaded = [load_surface(name, SURFACE_FILES) for name in known_surfaces(SURFACE_FILES)]
     surfaces = [surface for surface in loaded if surface]       # without the ideal one, which has no values
     rows = [['key', 'unit', 'range', *(surface.name for surface in surfaces), ''], ['---'] * (len(surfaces) + 4)]
@@ -51,7 +51,7 @@ def surface_table():
 def filled_in(text):
     """Return the text of a file with up-to-date tables and surfaces."""
     from rbx1_nav.parameters import table
-    from rbx1_nav.simulation.surfaces import known_surfaces
+    from rbx1_nav.robot.surfaces import known_surfaces
 
     def fill(match):
         kind, name = match.groups()

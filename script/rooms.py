@@ -64,14 +64,25 @@ def folder_of(module):
     return ''.join(f'{part}/' for part in package.split('.')[1:])
 
 
-def arrows():
-    """Return a set of pairs: the folder of a module, and another folder that it imports from."""
+def file_arrows():
+    """Return a set of pairs: a module, and another module of the package that it imports."""
     found = set()
     for path, module, is_package in modules():
         with open(path, encoding='utf-8') as file:
             imported = imported_modules(file.read(), module, is_package)
-            found.update((folder_of(module), folder_of(name)) for name in imported if name.startswith('rbx1_nav'))
+            found.update((module, name) for name in imported if name.startswith('rbx1_nav'))
+    return found
+
+
+def arrows():
+    """Return a set of pairs: the folder of a module, and another folder that it imports from."""
+    found = {(folder_of(module), folder_of(name)) for module, name in file_arrows()}
     return {(room, other) for room, other in found if room and other and room != other}
+
+
+def circles(pairs):
+    """Return a sorted list of all that a chain of arrows leads back to."""
+    return sorted({start for start, _ in pairs if start in reachable(pairs, start)})
 
 
 def reachable(pairs, room):

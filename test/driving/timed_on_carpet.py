@@ -5,9 +5,10 @@ import math
 import rospy
 
 from rbx1_nav.robot.description import load_robot
+from rbx1_nav.robot.surfaces import load_surface
 from rbx1_nav.ros.node import resources
 from rbx1_nav.simulation.exercise import simulate
-from rbx1_nav.simulation.surfaces import load_surface, read_seed
+from rbx1_nav.simulation.surfaces import read_seed
 import support
 
 

@@ -5,9 +5,9 @@ import rospy
 
 from rbx1_nav.config import load_yaml
 from rbx1_nav.robot.description import read_robot
+from rbx1_nav.robot.surfaces import load_surface
 from rbx1_nav.ros.node import resources
 from rbx1_nav.simulation.exercise import simulate
-from rbx1_nav.simulation.surfaces import load_surface
 import support
 
 SURFACE = 'low_ply_carpet'

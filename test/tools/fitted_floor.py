@@ -11,7 +11,7 @@ import rospy
 import yaml
 
 from rbx1_nav.fitting.recording import relative
-from rbx1_nav.simulation.surfaces import load_surface
+from rbx1_nav.robot.surfaces import load_surface
 import support
 
 TOPICS = '/cmd_vel', '/odom', '/imu/data', '/ground_truth'

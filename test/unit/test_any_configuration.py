@@ -9,10 +9,11 @@ import yaml
 
 from rbx1_nav.config import ConfigError
 from rbx1_nav.robot.description import read_robot
+from rbx1_nav.robot.surfaces import KEYS, Surface, read_surface
 from rbx1_nav.ros.filter.ekf_parameters import read_parameters
 from rbx1_nav.schedule import Schedule
 from rbx1_nav.simulation.base import make_base, make_wheels_and_gyro
-from rbx1_nav.simulation.surfaces import KEYS, Surface, draw_run, read_seed, read_surface
+from rbx1_nav.simulation.surfaces import draw_run, read_seed
 
 CONFIG = os.path.join(os.path.dirname(__file__), '..', '..', 'config')
 ROBOTS, SURFACES = ([yaml.safe_load(open(path)) for path in sorted(glob.glob(os.path.join(CONFIG, *pattern)))]

@@ -11,9 +11,9 @@ from rbx1_nav.control.legs import StuckError
 from rbx1_nav.parameters import Parameter
 from rbx1_nav.robot.description import Robot
 from rbx1_nav.robot.kinematics import Pose
+from rbx1_nav.robot.surfaces import KEYS, Surface
 from rbx1_nav.simulation.exercise import PARAMETERS, SimulationResult, legs, motions, simulate
 from rbx1_nav.simulation.summary import Summary
-from rbx1_nav.simulation.surfaces import KEYS, Surface
 
 # the results of a run: name and unit of each column of a file
 RESULTS = (*(f'{name}_{field}' for name in ('true', 'odometry', 'estimate')

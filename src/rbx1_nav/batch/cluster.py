@@ -3,6 +3,7 @@ the program that uses it.
 """
 from __future__ import annotations
 
+from concurrent.futures import Future
 from contextlib import contextmanager, suppress
 from functools import partial
 import hashlib
@@ -14,12 +15,11 @@ from typing import Any, Callable, Iterator, NamedTuple, Sequence, TypeVar
 import warnings
 
 from rbx1_nav.batch.cases import Case, Row, simulate_row
-from rbx1_nav.batch.executor import Place
 from rbx1_nav.config import ConfigError, show_name
 from rbx1_nav.control.legs import StuckError
 from rbx1_nav.robot.description import Robot
+from rbx1_nav.robot.surfaces import Surface
 from rbx1_nav.simulation.exercise import METHODS, PARAMETERS
-from rbx1_nav.simulation.surfaces import Surface
 
 Task = TypeVar('Task')
 Result = TypeVar('Result')
@@ -34,6 +34,13 @@ class Requirements(NamedTuple):
 
     versions: dict[str, str]
     runs: Sequence[tuple[Case, int, Row]]   # with the seed
+
+
+class Place(NamedTuple):
+    """Where tasks are computed."""
+
+    submit: Callable[[Callable[[Any], Any], Any], Future[Any]]      # submits a task: function, argument
+    jobs: Callable[[], int]     # returns the current number of processes; raises ConnectionError if a cluster is lost
 
 
 def versions() -> dict[str, str]:

@@ -8,23 +8,17 @@ import multiprocessing
 import os
 import signal
 import threading
-from typing import Any, Callable, Deque, Iterable, Iterator, NamedTuple, TypeVar
+from typing import Any, Callable, Deque, Iterable, Iterator, TypeVar
 from weakref import WeakSet
 
+from rbx1_nav.batch.cluster import Place, open_cluster
 from rbx1_nav.robot.description import Robot
-from rbx1_nav.simulation.surfaces import Surface
+from rbx1_nav.robot.surfaces import Surface
 
 LOOK = 1.0          # s between two checks of a cluster whose result is late
 AHEAD = 4           # tasks per process that are submitted before their results are needed
 Task = TypeVar('Task')
 Result = TypeVar('Result')
-
-
-class Place(NamedTuple):
-    """Where tasks are computed."""
-
-    submit: Callable[[Callable[[Any], Any], Any], Future[Any]]      # submits a task: function, argument
-    jobs: Callable[[], int]     # returns the current number of processes; raises ConnectionError if a cluster is lost
 
 
 def in_order(place: Place | None, function: Callable[[Task], Result], tasks: Iterable[Task]) -> Iterator[Result]:
@@ -61,7 +55,6 @@ def open_place(jobs: int, scheduler: str | None, robot: Robot, surface: Surface 
     ConfigError if the cluster cannot be used.
     """
     if scheduler is not None:
-        from rbx1_nav.batch.cluster import open_cluster     # only now, because it imports Dask
         with open_cluster(scheduler, robot, surface) as cluster:
             yield cluster
     elif jobs == 1:

@@ -9,8 +9,8 @@ import numpy
 from tqdm import tqdm
 
 from rbx1_nav.batch.cases import Chunk, Combination, Row, add_row, chunks, simulate_paths, simulate_row, simulate_rows
-from rbx1_nav.batch.cluster import code_version
-from rbx1_nav.batch.executor import Place, in_order, open_place
+from rbx1_nav.batch.cluster import Place, code_version
+from rbx1_nav.batch.executor import in_order, open_place
 from rbx1_nav.batch.runs_file import RunsFile
 from rbx1_nav.config import ConfigError
 from rbx1_nav.robot.description import Robot

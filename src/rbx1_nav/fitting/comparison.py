@@ -8,8 +8,8 @@ import numpy
 from rbx1_nav.fitting.prediction import Prediction, integrate
 from rbx1_nav.fitting.recording import Recording, relative
 from rbx1_nav.fitting.run import PreparedRun, Windows
+from rbx1_nav.robot.surfaces import Surface
 from rbx1_nav.simulation.floor_noise import KINDS, cell_errors
-from rbx1_nav.simulation.surfaces import Surface
 from rbx1_nav.units import Array
 
 ENDS = 500      # number of simulated end poses per run

@@ -18,8 +18,9 @@ from rbx1_nav.fitting.floor_fit import MEANS, Fitter
 from rbx1_nav.fitting.prediction import SPREADS, with_values
 from rbx1_nav.fitting.run import PreparedRun, Windows
 from rbx1_nav.robot.kinematics import Pose
+from rbx1_nav.robot.surfaces import Surface
 from rbx1_nav.simulation.floor_noise import NOISES
-from rbx1_nav.simulation.surfaces import Surface, floor_travel
+from rbx1_nav.simulation.surfaces import floor_travel
 
 FARTHEST, MOST = 1000.0, 36000.0    # m, degrees
 ERRORS = dict(position_error=(1e-4, 10.0, 0.01, 'm'), heading_error=(0.01, 90.0, 2.0, 'degrees'))

@@ -13,7 +13,7 @@ from scipy.optimize import OptimizeResult, approx_fprime, brentq, least_squares,
 
 from rbx1_nav.fitting.prediction import Covariance, Prediction, with_values
 from rbx1_nav.fitting.run import PreparedRun, Windows
-from rbx1_nav.simulation.surfaces import KEYS, Surface
+from rbx1_nav.robot.surfaces import KEYS, Surface
 from rbx1_nav.units import Array
 
 # key: step of a numerical derivative; standard error above which the recordings do not determine the value

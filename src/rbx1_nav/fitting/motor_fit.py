@@ -10,7 +10,7 @@ from rbx1_nav.fitting.floor_fit import BOUNDS
 from rbx1_nav.fitting.prediction import with_values
 from rbx1_nav.fitting.recording import Recording, Track
 from rbx1_nav.fitting.run import MOTORS, commanded_travel, reported_travel
-from rbx1_nav.simulation.surfaces import Surface
+from rbx1_nav.robot.surfaces import Surface
 from rbx1_nav.units import Array, NDArray
 
 INTERVAL = 0.2      # s: the travel in intervals of about this length is compared

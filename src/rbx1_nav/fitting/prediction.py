@@ -9,8 +9,9 @@ from typing import Mapping
 import numpy
 
 from rbx1_nav.fitting.run import Steps, Windows
+from rbx1_nav.robot.surfaces import Surface
 from rbx1_nav.simulation.floor_noise import KINDS, NOISES, NoiseKind, cell_covariance
-from rbx1_nav.simulation.surfaces import Surface, floor_travel
+from rbx1_nav.simulation.surfaces import floor_travel
 from rbx1_nav.units import Array
 
 SPREADS = ('slip_straight_spread', 'slip_turning_spread')

@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy
 
 from rbx1_nav.fitting.recording import Commands, Recording, Track, relative
+from rbx1_nav.robot.surfaces import Surface
 from rbx1_nav.simulation.motors import Motor
-from rbx1_nav.simulation.surfaces import Surface
 from rbx1_nav.units import Array, NDArray, wrap_angle
 
 STEP = 0.05     # s

@@ -8,7 +8,7 @@ import numpy
 
 from rbx1_nav.config import as_yaml_number, show_name
 from rbx1_nav.fitting.surface_fit import FitResult, Value
-from rbx1_nav.simulation.surfaces import KEYS
+from rbx1_nav.robot.surfaces import KEYS
 
 PARTS = [
     ('Motors: delay and lag after a command, and the speed that a wheel loses by drag.',

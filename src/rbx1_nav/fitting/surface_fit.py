@@ -14,8 +14,8 @@ from rbx1_nav.fitting.motor_fit import LIMITS, fit_motors
 from rbx1_nav.fitting.prediction import SPREADS, with_values
 from rbx1_nav.fitting.recording import CAMERAS, Recording
 from rbx1_nav.fitting.run import MOTORS, PreparedRun
+from rbx1_nav.robot.surfaces import KEYS, Surface
 from rbx1_nav.simulation.floor_noise import NOISES
-from rbx1_nav.simulation.surfaces import KEYS, Surface
 
 FLOOR = ('slip_straight', 'slip_turning', 'curvature', 'turning_loss')
 RESOLUTION = 0.0003, 0.0003, 0.001  # m, m, rad: resolution of encoders, the smallest error of an end pose

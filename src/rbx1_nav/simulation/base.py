@@ -7,9 +7,10 @@ from rbx1_nav.control.gate import CommandGate
 from rbx1_nav.robot.description import Robot
 from rbx1_nav.robot.kinematics import ORIGIN, Odometry
 from rbx1_nav.robot.readings import Reading
+from rbx1_nav.robot.surfaces import Surface
 from rbx1_nav.simulation.floor_noise import make_roughness
 from rbx1_nav.simulation.gyro import AnyGyro, Gyro, IdealGyro
-from rbx1_nav.simulation.surfaces import Surface, draw_run
+from rbx1_nav.simulation.surfaces import draw_run
 from rbx1_nav.simulation.wheels import AnyWheels, IdealWheels, Wheels
 from rbx1_nav.units import SECOND
 

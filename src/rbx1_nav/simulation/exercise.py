@@ -14,8 +14,8 @@ from rbx1_nav.estimation.inputs import Imu, Odom
 from rbx1_nav.estimation.priors import Priors, priors
 from rbx1_nav.robot.description import Robot
 from rbx1_nav.robot.kinematics import Pose
+from rbx1_nav.robot.surfaces import Surface
 from rbx1_nav.simulation.base import make_base
-from rbx1_nav.simulation.surfaces import Surface
 from rbx1_nav.units import SECOND, Array
 
 METHODS = ('timed', 'odom', 'ekf')

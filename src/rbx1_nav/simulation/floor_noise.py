@@ -7,11 +7,9 @@ from typing import NamedTuple
 
 import numpy
 
-from rbx1_nav.simulation.surfaces import Surface
+from rbx1_nav.robot.surfaces import CELL_TRAVELLED, CELL_TURNED, Surface
 from rbx1_nav.units import Array
 
-CELL_TURNED = 0.25      # rad } cell sizes, determined from recordings of five Creates: docs/real_runs.md
-CELL_TRAVELLED = 0.1    # m   }
 ROWS = 256      # rows of a matrix that are computed at a time
 
 

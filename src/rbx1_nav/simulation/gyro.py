@@ -8,7 +8,8 @@ import random
 from typing import Union
 
 from rbx1_nav.robot.readings import MEASURED, MIN_VARIANCE, Reading
-from rbx1_nav.simulation.surfaces import RandomErrors, Surface
+from rbx1_nav.robot.surfaces import Surface
+from rbx1_nav.simulation.surfaces import RandomErrors
 from rbx1_nav.units import clamp
 
 NOISE_RATE = 50.0   # Hz, the rate that gyro_noise refers to: white noise grows with the square root of the rate

@@ -3,9 +3,9 @@ from nav_msgs.msg import Odometry
 import rospy
 
 from rbx1_nav.robot.description import load_robot
+from rbx1_nav.robot.surfaces import load_surface
 from rbx1_nav.ros.node import resources
 from rbx1_nav.simulation.exercise import simulate
-from rbx1_nav.simulation.surfaces import load_surface
 import support
 
 FAULT = ('odom_out_and_back.py on low_ply_carpet at real_time_factor 20, with a new base for each run; in every second '

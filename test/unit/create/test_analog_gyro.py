@@ -5,7 +5,7 @@ import pytest
 
 from rbx1_nav.create.driver.analog_gyro import FEW
 from rbx1_nav.create.emulator.body import BodyErrors, Quirks
-from rbx1_nav.simulation.surfaces import load_surface
+from rbx1_nav.robot.surfaces import load_surface
 
 from driven_create import SURFACES, DrivenCreate, started
 

@@ -5,7 +5,7 @@ import numpy
 import pytest
 
 from rbx1_nav.create import protocol
-from rbx1_nav.simulation.surfaces import load_surface
+from rbx1_nav.robot.surfaces import load_surface
 from rbx1_nav.units import wrap_angle
 
 from driven_create import BOTH, SURFACES, DrivenCreate, started

@@ -5,7 +5,7 @@ import pytest
 
 from rbx1_nav.create.driver.fractions import AUTO, KEPT, LOST, Fractions
 from rbx1_nav.create.emulator.body import Quirks
-from rbx1_nav.simulation.surfaces import load_surface
+from rbx1_nav.robot.surfaces import load_surface
 
 from driven_create import SURFACES, started
 

@@ -8,7 +8,7 @@ from driven_create import SURFACES, DrivenCreate
 from rbx1_nav.estimation.combined_odometry import CombinedOdometry
 from rbx1_nav.estimation.priors import UNKNOWN_FLOOR
 from rbx1_nav.estimation.inputs import Imu, Odom
-from rbx1_nav.simulation.surfaces import load_surface
+from rbx1_nav.robot.surfaces import load_surface
 from rbx1_nav.units import SECOND, wrap_angle
 
 STALL = 0.35    # s; after 0.5 s, the driver would detect a silent robot

@@ -5,7 +5,7 @@ import pytest
 
 from rbx1_nav.estimation.combined_odometry import CombinedOdometry
 from rbx1_nav.estimation.priors import MIN_SPREADS, UNKNOWN_FLOOR, Bounds, Priors, priors
-from rbx1_nav.simulation.surfaces import load_surface
+from rbx1_nav.robot.surfaces import load_surface
 from rbx1_nav.units import SECOND
 from sample_priors import IDEAL, SURFACES
 

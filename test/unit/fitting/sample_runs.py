@@ -5,8 +5,8 @@ import numpy
 
 from rbx1_nav.fitting.recording import Commands, Rates, Recording, Track
 from rbx1_nav.robot.description import read_robot
+from rbx1_nav.robot.surfaces import Surface
 from rbx1_nav.simulation.base import make_base
-from rbx1_nav.simulation.surfaces import Surface
 from rbx1_nav.units import SECOND
 
 TICK = SECOND // 50     # ns

@@ -6,7 +6,7 @@ import yaml
 
 from rbx1_nav.fitting.surface_file import surface_text, table
 from rbx1_nav.fitting.surface_fit import FitResult, Value
-from rbx1_nav.simulation.surfaces import KEYS, Surface, read_surface
+from rbx1_nav.robot.surfaces import KEYS, Surface, read_surface
 
 VALUES = {key: st.floats(*KEYS[key].limits) | st.sampled_from(KEYS[key].limits) for key in KEYS}      # in SI units
 ERRORS = st.none() | st.floats(1e-9, 1e4)       # as a fraction of the value

@@ -1,15 +1,10 @@
-"""Each value of a message is converted to and from its own field: no two values of these messages are equal."""
+"""Each value of a message is converted to its own field: no two values of these messages are equal."""
 from math import atan2, cos, pi, sin
 
-from geometry_msgs.msg import Vector3
-from nav_msgs.msg import Odometry
 import numpy
 import pytest
 import rospy
-from sensor_msgs.msg import Imu
 
-from rbx1_nav.estimation.gyro_input import ImuData
-from rbx1_nav.estimation.inputs import Odom
 from rbx1_nav.robot.description import Joint
 from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.robot.readings import Reading, Uncertainty
@@ -82,22 +77,6 @@ def test_joints_and_wheels():
         ('arm', 0.25, 0.5), ('left', 3.0, 4.0), ('right', 5.0, 6.0)]
 
 
-@pytest.mark.parametrize('of_twist, expected', [
-    ([0.5, 0.6], (0.5, 0.6)), ([0.0, 0.6], (0.1, 0.6)), ([0.5, 0.0], (0.5, 0.2)), ([1e13, -1.0], (0.0, 0.0))])
-def test_odometry_for_the_filter(of_twist, expected):
-    message = Odometry()
-    message.header.stamp = STAMP
-    point, rotation = message.pose.pose.position, message.pose.pose.orientation
-    point.x, point.y, rotation.z, rotation.w = 1.0, -2.0, *YAW
-    # pose.covariance: x, y and yaw; twist.covariance: x and yaw
-    message.pose.covariance[::7] = [0.1, 0.3, 0.0, 0.0, 0.0, 0.2]
-    message.twist.covariance[0], message.twist.covariance[35] = of_twist
-    linear, angular = expected
-    odom = messages.from_odometry(message)
-    assert odom.pose == pytest.approx((1.0, -2.0, 3.0))
-    assert odom == Odom(stamp=7 * 10 ** 9 + 250, pose=odom.pose, linear_variance=linear, angular_variance=angular)
-
-
 def test_the_yaw_of_a_robot_on_a_slope():
     """A quaternion with roll, pitch and yaw, not quite of length 1."""
     roll, pitch, yaw, scale = 0.1, -0.2, 2.0, 1.01
@@ -110,18 +89,3 @@ def test_the_yaw_of_a_robot_on_a_slope():
     x, y, z, w = messages.unit_quaternion(rotation)
     assert x * x + y * y + z * z + w * w == pytest.approx(1)
     assert atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)) == pytest.approx(yaw)
-
-
-def test_an_imu_for_the_filter():
-    message = Imu(angular_velocity=Vector3(0.1, 0.2, 0.3), angular_velocity_covariance=range(1, 10),
-                  orientation_covariance=range(11, 20))
-    message.header.stamp = STAMP
-    message.orientation.z, message.orientation.w = YAW
-    data = messages.from_imu(message)
-    assert data.orientation == pytest.approx((0.0, 0.0, *YAW))
-    assert data == ImuData(stamp=7 * 10 ** 9 + 250, rates=(0.1, 0.2, 0.3), rate_variances=range(1, 10, 4),
-                           orientation=data.orientation, yaw_variance=19)
-    message.angular_velocity_covariance = [-1.0] + [0.0] * 8
-    assert messages.from_imu(message).rates is None and messages.from_imu(message).orientation
-    message.orientation_covariance = [-1.0] + [0.0] * 8
-    assert messages.from_imu(message).orientation is None

@@ -8,8 +8,8 @@ import pytest
 
 from rbx1_nav.estimation.priors import priors
 from rbx1_nav.robot.description import load_robot
+from rbx1_nav.robot.surfaces import load_surface
 from rbx1_nav.simulation.exercise import METHODS, simulate
-from rbx1_nav.simulation.surfaces import load_surface
 
 CONFIG = os.path.join(os.path.dirname(__file__), '..', '..', '..', 'config')
 SEEDS = range(20)

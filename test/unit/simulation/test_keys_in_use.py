@@ -3,8 +3,9 @@ import numpy
 import pytest
 
 from rbx1_nav.robot.description import read_robot
+from rbx1_nav.robot.surfaces import KEYS
 from rbx1_nav.simulation.base import make_base
-from rbx1_nav.simulation.surfaces import KEYS, floor_travel
+from rbx1_nav.simulation.surfaces import floor_travel
 from rbx1_nav.units import SECOND
 from sample_surface import SURFACE
 

@@ -5,8 +5,8 @@ from math import degrees, floor, trunc
 from typing import NamedTuple
 
 from rbx1_nav.create.protocol import BUMP_LEFT, BUMP_RIGHT, CREATE, UPDATE_PERIOD, WHEEL_DROP_LEFT, Model
+from rbx1_nav.robot.surfaces import Surface
 from rbx1_nav.simulation.base import make_wheels_and_gyro
-from rbx1_nav.simulation.surfaces import Surface
 from rbx1_nav.units import SECOND
 
 

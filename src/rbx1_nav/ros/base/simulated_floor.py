@@ -3,8 +3,9 @@ from __future__ import annotations
 
 from rbx1_nav.config import Section
 from rbx1_nav.parameters import Parameter, custom, read
+from rbx1_nav.robot.surfaces import Surface, known_surfaces, load_surface
 from rbx1_nav.ros.node import resources
-from rbx1_nav.simulation.surfaces import MAX_SEED, RANDOM, Surface, known_surfaces, load_surface, read_seed
+from rbx1_nav.simulation.surfaces import MAX_SEED, RANDOM, read_seed
 
 SURFACE = custom(
     'surface', 'ideal', 'name of the floor, or absolute path of a surface file',

@@ -12,6 +12,7 @@ from std_msgs.msg import Empty
 from std_srvs.srv import Empty as EmptyService, EmptyRequest, EmptyResponse
 
 from rbx1_nav.robot.description import JointGroup, Robot
+from rbx1_nav.robot.surfaces import Surface
 from rbx1_nav.ros import messages
 from rbx1_nav.ros.base.clocks import Clock
 from rbx1_nav.ros.base.commands import VelocityCommands, subscribe_joints
@@ -21,7 +22,6 @@ from rbx1_nav.ros.network.rospy_topics import NoDelay
 from rbx1_nav.ros.node.frames import with_prefix
 from rbx1_nav.schedule import Schedule
 from rbx1_nav.simulation.base import make_base
-from rbx1_nav.simulation.surfaces import Surface
 from rbx1_nav.simulation.wheels import IdealWheels
 
 

@@ -15,12 +15,12 @@ from rbx1_nav.estimation.combined_odometry import CombinedOdometry
 from rbx1_nav.estimation.priors import UNKNOWN_FLOOR, Bounds, Priors, priors
 from rbx1_nav.estimation.sensors import MAX_AGE, MAX_LEAD
 from rbx1_nav.parameters import custom, flag, frame, number, read
+from rbx1_nav.robot.surfaces import load_surface
 from rbx1_nav.ros.network.bases import private_namespace
 from rbx1_nav.ros.network.master import Server
 from rbx1_nav.ros.node import resources
 from rbx1_nav.ros.node.frames import check_prefix, find_prefix, with_prefix
 from rbx1_nav.ros.node.params import named_errors, stored_params
-from rbx1_nav.simulation.surfaces import load_surface
 from rbx1_nav.units import SECOND
 
 AUTO = 'auto'       # the surface of a simulated base, otherwise ANY

@@ -16,11 +16,11 @@ from rbx1_nav.estimation.filter import BIAS, CARRY_SPEED, SCALE, SLIP_STRAIGHT, 
 from rbx1_nav.estimation.sensors import IMU
 from rbx1_nav.robot.kinematics import relative_frame
 from rbx1_nav.robot.readings import MEASURED
+from rbx1_nav.robot.surfaces import CELL_TRAVELLED, CELL_TURNED
 from rbx1_nav.ros import messages
 from rbx1_nav.ros.filter.sensor_inputs import FrameTree
 from rbx1_nav.ros.network.rospy_topics import NoDelay
 from rbx1_nav.schedule import Schedule
-from rbx1_nav.simulation.floor_noise import CELL_TRAVELLED, CELL_TURNED
 from rbx1_nav.units import SECOND, wrap_angle
 
 TRANSFORM_TIME = 2 * SECOND   # ns after the first estimate to wait for a transform to the robot's frame

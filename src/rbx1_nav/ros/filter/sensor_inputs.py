@@ -17,7 +17,8 @@ from tf2_msgs.msg import TFMessage
 from rbx1_nav.config import show
 from rbx1_nav.estimation.gyro_input import UPRIGHT, GyroInput, Vector, inverse, multiply, vertical_axis
 from rbx1_nav.estimation.inputs import Imu, check
-from rbx1_nav.ros import messages
+from rbx1_nav.ros.filter.conversions import from_imu
+from rbx1_nav.ros.messages import unit_quaternion
 
 TRANSFORM_WARN_TIME = 1.0      # s of wall time to wait for a transform before a line is logged
 
@@ -115,7 +116,7 @@ class FrameTree:
     def _on_transforms(self, message: TFMessage) -> None:
         node = message._connection_header['callerid']
         for transform in message.transforms if node != rospy.get_name() else ():
-            rotation = messages.unit_quaternion(transform.transform.rotation)
+            rotation = unit_quaternion(transform.transform.rotation)
             if rotation:
                 self.frames[transform.child_frame_id.lstrip('/')] = (
                     transform.header.frame_id.lstrip('/'), node, rotation)
@@ -150,7 +151,7 @@ class ImuInput:
                 check('header.frame_id', show(frames[1]), time.monotonic() < self.deadline,
                       f'a transform from {base_frame} to it')
                 return
-        data = messages.from_imu(message)
+        data = from_imu(message)
         accept(self.gyro.read(data, self.vertical))
         self.gyro.accepted(data)
 

@@ -6,10 +6,10 @@ import sys
 import numpy
 import pytest
 
-from rbx1_nav.simulation.surfaces import load_surface
+from rbx1_nav.robot.surfaces import load_surface
 from sample_bags import run_messages, write_bag
 
-ROOT = os.path.normpath(os.path.join(os.path.dirname(__file__), '..', '..', '..', '..'))
+ROOT = os.path.normpath(os.path.join(os.path.dirname(__file__), '..', '..', '..'))
 SURFACES = os.path.join(ROOT, 'config', 'surfaces')
 NODE = os.path.join(ROOT, 'nodes', 'fit_surface.py')
 PATHS = [os.path.join(ROOT, 'src')] + [path for path in sys.path if path]

@@ -7,7 +7,7 @@ import rosbag
 from std_msgs.msg import String
 
 from rbx1_nav.config import ConfigError
-from rbx1_nav.ros.bags import TopicNames, read_bag
+from rbx1_nav.fitting.bags import TopicNames, read_bag
 import sample_bags
 from sample_bags import odometry, pose_stamped, run_messages, twist, write_bag
 

@@ -7,7 +7,8 @@ import pytest
 import yaml
 
 from rbx1_nav.config import ConfigError
-from rbx1_nav.simulation.surfaces import KEYS, Surface, draw_run, known_surfaces, load_surface, read_seed, read_surface
+from rbx1_nav.robot.surfaces import KEYS, Surface, known_surfaces, load_surface, read_surface
+from rbx1_nav.simulation.surfaces import draw_run, read_seed
 
 FOLDER = os.path.join(os.path.dirname(__file__), '..', '..', '..', 'config', 'surfaces')
 OPTIONAL = list(Surface._field_defaults)

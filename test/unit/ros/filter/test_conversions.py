@@ -1,11 +1,18 @@
-"""Messages on set_pose are converted for the filter, and invalid ones are rejected."""
+"""Messages are converted for the filter, each value from its own field; invalid poses are rejected."""
 from math import cos, inf, nan, sin
 
-from geometry_msgs.msg import PoseWithCovarianceStamped
+from geometry_msgs.msg import PoseWithCovarianceStamped, Vector3
+from nav_msgs.msg import Odometry
 import pytest
+import rospy
+from sensor_msgs.msg import Imu
 
-from rbx1_nav.estimation.inputs import RejectedMessage
-from rbx1_nav.ros.messages import from_set_pose
+from rbx1_nav.estimation.gyro_input import ImuData
+from rbx1_nav.estimation.inputs import Odom, RejectedMessage
+from rbx1_nav.ros.filter.conversions import from_imu, from_odometry, from_set_pose
+
+STAMP = rospy.Time(7, 250)
+YAW = sin(1.5), cos(1.5)        # z and w of a rotation by 3 rad
 
 
 def make(frame_id='odom_combined', **changes):
@@ -53,3 +60,34 @@ def test_pose_and_covariance(frame_id):
 def test_a_rejected_message_is_named_by_its_field(message, text):
     with pytest.raises(RejectedMessage, match=text):
         from_set_pose(message, 'odom_combined')
+
+
+@pytest.mark.parametrize('of_twist, expected', [
+    ([0.5, 0.6], (0.5, 0.6)), ([0.0, 0.6], (0.1, 0.6)), ([0.5, 0.0], (0.5, 0.2)), ([1e13, -1.0], (0.0, 0.0))])
+def test_odometry_for_the_filter(of_twist, expected):
+    message = Odometry()
+    message.header.stamp = STAMP
+    point, rotation = message.pose.pose.position, message.pose.pose.orientation
+    point.x, point.y, rotation.z, rotation.w = 1.0, -2.0, *YAW
+    # pose.covariance: x, y and yaw; twist.covariance: x and yaw
+    message.pose.covariance[::7] = [0.1, 0.3, 0.0, 0.0, 0.0, 0.2]
+    message.twist.covariance[0], message.twist.covariance[35] = of_twist
+    linear, angular = expected
+    odom = from_odometry(message)
+    assert odom.pose == pytest.approx((1.0, -2.0, 3.0))
+    assert odom == Odom(stamp=7 * 10 ** 9 + 250, pose=odom.pose, linear_variance=linear, angular_variance=angular)
+
+
+def test_an_imu_for_the_filter():
+    message = Imu(angular_velocity=Vector3(0.1, 0.2, 0.3), angular_velocity_covariance=range(1, 10),
+                  orientation_covariance=range(11, 20))
+    message.header.stamp = STAMP
+    message.orientation.z, message.orientation.w = YAW
+    data = from_imu(message)
+    assert data.orientation == pytest.approx((0.0, 0.0, *YAW))
+    assert data == ImuData(stamp=7 * 10 ** 9 + 250, rates=(0.1, 0.2, 0.3), rate_variances=range(1, 10, 4),
+                           orientation=data.orientation, yaw_variance=19)
+    message.angular_velocity_covariance = [-1.0] + [0.0] * 8
+    assert from_imu(message).rates is None and from_imu(message).orientation
+    message.orientation_covariance = [-1.0] + [0.0] * 8
+    assert from_imu(message).orientation is None
