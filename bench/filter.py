@@ -13,7 +13,8 @@ from rbx1_nav.estimation.priors import UNKNOWN_FLOOR, priors
 from rbx1_nav.robot.description import read_robot
 from rbx1_nav.robot.surfaces import known_surfaces, load_surface
 from rbx1_nav.ros.node import resources
-from rbx1_nav.simulation.exercise import EXERCISE, METHODS, feed, simulate
+from rbx1_nav.control.methods import METHODS
+from rbx1_nav.simulation.exercise import EXERCISE, feed, simulate
 from rbx1_nav.units import SECOND
 
 PATH = 2 * EXERCISE['goal_distance']    # m, out and back
@@ -26,7 +27,7 @@ def run(robot, surface, assumed, method, seed):
 
     `assumed` must contain one floor if the method is ekf, because the robot then follows the filter. Raises StuckError.
     """
-    prior = next(iter(assumed.values())) if method == 'ekf' else None
+    prior = next(iter(assumed.values())) if METHODS[method].pose == 'estimate' else None
     filters = {} if prior else {name: CombinedOdometry(each, SECOND) for name, each in assumed.items()}
     port = RobotPoseEkf()
     best = KnownHeading(surface.slip_straight if surface else 0.0)
@@ -76,7 +77,8 @@ def tasks(robot, surfaces, assumed, methods, seeds):
         count = seeds if surface else 1     # nothing is drawn on the ideal floor
         for method in methods:
             # a robot that follows the filter drives a different path with each prior
-            for group in ([{name: prior} for name, prior in assumed.items()] if method == 'ekf' else [assumed]):
+            follows = METHODS[method].pose == 'estimate'
+            for group in [{name: prior} for name, prior in assumed.items()] if follows else [assumed]:
                 for start in range(0, count, CHUNK):
                     yield robot, true, surface, group, method, range(start, min(start + CHUNK, count))
 

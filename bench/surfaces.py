@@ -12,7 +12,8 @@ from floors import Follower, consistency
 from rbx1_nav.robot.description import read_robot
 from rbx1_nav.robot.surfaces import load_surface
 from rbx1_nav.ros.node import resources
-from rbx1_nav.simulation.exercise import METHODS, simulate
+from rbx1_nav.control.methods import METHODS
+from rbx1_nav.simulation.exercise import simulate
 
 TIMED_SEEDS = 20    # runs of each method whose speed is measured
 

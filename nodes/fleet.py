@@ -21,6 +21,7 @@ import rospy
 from tf2_msgs.msg import TFMessage
 
 from rbx1_nav.config import ConfigError, Section
+from rbx1_nav.control.methods import OF_PAGE
 from rbx1_nav.parameters import choice, number
 from rbx1_nav.robot.description import DRIVER_KEYS, PARAMETERS as ROBOT, read_robot
 from rbx1_nav.robot.kinematics import Pose
@@ -42,7 +43,8 @@ PARAMETERS = [
            'below robot1/arbotix', 0, 200, 'a number'),
     number('spacing', 1.0, 'm', 'distance between the origins of the odometry of neighbors, in the frame map', 0, 1000,
            'a distance'),
-    choice('method', ('none', 'timed', 'odometry'), 'none', 'script that fleet.launch starts for each robot'),
+    choice('method', ('none', *(name for name, each in OF_PAGE.items() if each.pose != 'estimate')), 'none',
+           'script that fleet.launch starts for each robot'),
     number('rate', 50.0, 'Hz', 'rate at which the bases are updated; odometry at most', 1, 1000, 'a rate'),
     *CLOCK]
 Result = Tuple[bool, str]   # whether something was possible, and a text

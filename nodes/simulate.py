@@ -21,6 +21,7 @@ from rbx1_nav.batch.executor import add_arguments
 from rbx1_nav.batch.runs_file import RunsFile
 from rbx1_nav.batch.sweep import Sweep
 from rbx1_nav.config import ConfigError, show, show_name
+from rbx1_nav.control.methods import METHODS
 from rbx1_nav.files import check_writable
 from rbx1_nav.parameters import split_usage
 from rbx1_nav.plotting.animation import animate, check_animation
@@ -28,7 +29,7 @@ from rbx1_nav.plotting.plots import PATHS, check_picture, draw
 from rbx1_nav.robot.description import load_robot
 from rbx1_nav.robot.surfaces import KEYS, known_surfaces, load_surface
 from rbx1_nav.ros.node import resources
-from rbx1_nav.simulation.exercise import METHODS, PARAMETERS
+from rbx1_nav.simulation.exercise import PARAMETERS
 from rbx1_nav.simulation.surfaces import MAX_SEED
 
 
@@ -39,8 +40,8 @@ def read_arguments() -> argparse.Namespace:
                         help=f"one of {', '.join(known_surfaces(resources.surfaces()))}, or a YAML file; default: "
                              'ideal. Can be given more than once')
     parser.add_argument('--method', choices=METHODS, action='append',
-                        help='timed: fixed durations, no feedback; odom: stops at the odometry goal; ekf: stops at the '
-                             'estimated goal. Can be given more than once; default: all three')
+                        help='; '.join(f'{each.name}: {each.text}' for each in METHODS.values())
+                        + '. Can be given more than once; default: all three')
     parser.add_argument('--set', action='append', default=[], metavar='KEY=VALUE,...',
                         help=f"values of {', '.join([*PARAMETERS, *KEYS])}. Can be given more than once: all "
                              'combinations are simulated')
@@ -137,8 +138,7 @@ def main() -> int:
     except (OSError, ValueError, RuntimeError, ImportError) as error:   # also a robot that is stuck, and a worker's
         text = ' '.join(str(error).split())
         if isinstance(error, BrokenProcessPool):
-            text = ('a process was killed, perhaps because memory ran out: '
-                    f'expected all of --jobs {arguments.jobs} to run')
+            text = f'a process was killed, perhaps because memory ran out: expected all of --jobs {arguments.jobs} to run'
         # the device of the output may be full, and Python would try to write to it again at exit
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         print('; '.join(filter(None, [f'simulate.py: {text}', missing()])), file=sys.stderr)

@@ -25,7 +25,7 @@ ALLOWED = {
     'estimation': {'robot', 'units'},
     'fitting': {'config', 'robot', 'simulation', 'units'},
     'fitting.bags': {'config', 'estimation', 'fitting', 'robot', 'ros', 'units'},
-    'plotting': {'config', 'files', 'fitting', 'robot', 'simulation.exercise', 'units'},
+    'plotting': {'config', 'control', 'files', 'fitting', 'robot', 'simulation.exercise', 'units'},
     'batch': {'config', 'control', 'files', 'parameters', 'robot', 'simulation.exercise', 'simulation.summary',
               'units'},
     'create.driver': {'config', 'control', 'create', 'parameters', 'robot', 'schedule', 'units'},
@@ -44,7 +44,7 @@ ALLOWED = {
                                  'ros.node'},
     'ros.filter': {'config', 'estimation', 'parameters', 'robot', 'ros', 'ros.network', 'ros.node', 'schedule',
                    'units'},
-    'ros.web': {'ros', 'ros.network', 'ros.node', 'units'},
+    'ros.web': {'control', 'ros', 'ros.network', 'ros.node', 'units'},
 }
 ALLOWED['nodes'] = set(ALLOWED) - {'__init__'}
 WITH_ROS = {room for room in ALLOWED if room.split('.')[0] == 'ros'} | {'driving', 'fitting.bags', 'nodes'}

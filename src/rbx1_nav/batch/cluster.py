@@ -17,9 +17,10 @@ import warnings
 from rbx1_nav.batch.cases import Case, Row, simulate_row
 from rbx1_nav.config import ConfigError, show_name
 from rbx1_nav.control.legs import StuckError
+from rbx1_nav.control.methods import METHODS
 from rbx1_nav.robot.description import Robot
 from rbx1_nav.robot.surfaces import Surface
-from rbx1_nav.simulation.exercise import METHODS, PARAMETERS
+from rbx1_nav.simulation.exercise import PARAMETERS
 
 Task = TypeVar('Task')
 Result = TypeVar('Result')

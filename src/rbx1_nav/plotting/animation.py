@@ -10,8 +10,9 @@ from PIL import Image
 import numpy
 
 from rbx1_nav.config import ConfigError
+from rbx1_nav.control.methods import METHODS
 from rbx1_nav.files import check_writable, write_file
-from rbx1_nav.plotting.plots import ESTIMATE, ODOMETRY, TITLES, TRUTH, Extent, widened
+from rbx1_nav.plotting.plots import ESTIMATE, ODOMETRY, TRUTH, Extent, widened
 from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.simulation.exercise import SimulationResult, Snapshot
 
@@ -47,7 +48,7 @@ class Panel:
         self.trail, = axes.plot([], [], color=TRUTH, linewidth=1.5)
         self.robot, = axes.plot([], [], color=TRUTH, linewidth=2.5)
         # on top, so that it is also visible where the robot is
-        color = ESTIMATE if method == 'ekf' else ODOMETRY
+        color = ESTIMATE if METHODS[method].pose == 'estimate' else ODOMETRY
         self.believed, = axes.plot([], [], color=color, linestyle='--', linewidth=1.8)
 
     def show(self, time: float) -> None:
@@ -58,7 +59,7 @@ class Panel:
         self.robot.set_data(*outline(last.truth))
         self.believed.set_data(*outline(last.estimate or last.odometry))
         distance = f'{100 * hypot(last.truth.x, last.truth.y):.0f} cm from the start'
-        self.axes.set_title(f'{TITLES[self.method]}\n{distance if last is self.path[-1] else ""}')
+        self.axes.set_title(f'{METHODS[self.method].title}\n{distance if last is self.path[-1] else ""}')
 
 
 def outline(pose: Pose) -> tuple[list[float], list[float]]:
@@ -90,9 +91,10 @@ def animate(file: str, surface: str, results: Mapping[str, SimulationResult]) ->
     figure.subplots_adjust(left=0.01, right=0.99, bottom=0.1, top=0.8, wspace=0.04)
     figure.suptitle(f'Out and back on {surface}')
     shown = {'true pose': (TRUTH, '-')}
-    if set(results) - {'ekf'}:
+    by_estimate = [METHODS[method].pose == 'estimate' for method in results]
+    if not all(by_estimate):
         shown['odometry'] = ODOMETRY, '--'
-    if 'ekf' in results:
+    if any(by_estimate):
         shown['estimate from odometry and gyro'] = ESTIMATE, '--'
     figure.legend([Line2D([], [], color=color, linestyle=style, linewidth=2) for color, style in shown.values()],
                   list(shown), loc='lower center', ncol=len(shown), frameon=False)

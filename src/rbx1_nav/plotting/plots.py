@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Iterable, Mapping, Sequence, Tuple
 import numpy
 
 from rbx1_nav.config import ConfigError
+from rbx1_nav.control.methods import METHODS
 from rbx1_nav.files import check_writable, write_file
 from rbx1_nav.fitting.comparison import Comparison, mahalanobis, shares
 from rbx1_nav.robot.kinematics import ORIGIN, Pose
@@ -31,7 +32,6 @@ ODOMETRY = '#f21000'    # red
 ESTIMATE = '#00a64d'    # green
 
 PATHS = 20      # number of paths in a plot; more would hide each other
-TITLES = {'timed': 'timed', 'odom': 'with odometry', 'ekf': 'with odometry and gyro'}
 
 Extent = Tuple[float, float, float, float]    # xmin, xmax, ymin, ymax, m
 SIMULATED = ESTIMATE    # results of a model, as opposed to measurements
@@ -70,7 +70,7 @@ def draw(file: str, surface: str, results: Mapping[str, Sequence[SimulationResul
         draw_paths(above, results[method], floor)
         distances, errors = numpy.hypot(*ends[method].T[:2]), ends[method][:, 2]
         mean = 'mean ' if len(seeds) > 1 else ''
-        above.set_title(f'{TITLES[method]}: {mean}{100 * distances.mean():.1f} cm from the start, '
+        above.set_title(f'{METHODS[method].title}: {mean}{100 * distances.mean():.1f} cm from the start, '
                         f'{errors.mean():.1f} degrees off', fontsize='medium')
         points = draw_ends(below, ends[method], extent, norm)
     if norm:

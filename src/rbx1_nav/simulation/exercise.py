@@ -9,6 +9,7 @@ from math import pi
 from typing import Callable, Mapping, NamedTuple
 
 from rbx1_nav.control.legs import REST, TRIAL_REST, Leg, Motion, out_and_back, out_and_back_by_odometry
+from rbx1_nav.control.methods import METHODS
 from rbx1_nav.estimation.combined_odometry import CombinedOdometry
 from rbx1_nav.estimation.inputs import Imu, Odom
 from rbx1_nav.estimation.priors import Priors, priors
@@ -17,8 +18,6 @@ from rbx1_nav.robot.kinematics import Pose
 from rbx1_nav.robot.surfaces import Surface
 from rbx1_nav.simulation.base import make_base
 from rbx1_nav.units import SECOND, Array
-
-METHODS = ('timed', 'odom', 'ekf')
 
 # the tutorial's values, which are the nodes' defaults: m/s, m, rad/s, rad, Hz
 EXERCISE = dict(linear_speed=0.2, goal_distance=1.0, angular_speed=1.0, goal_angle=pi, rate=50)
@@ -142,7 +141,8 @@ def simulate(method: str, robot: Robot, surface: Surface | None, seed: int, filt
     filter, which `ekf` always runs; keep: whether to keep the path; prior: Priors of the filter, if they differ from
     the surface; listen(Snapshot, Messages): called at each tick; parameters: all PARAMETERS with their values.
     """
-    simulation = Simulation(robot, surface, seed, filtered or method == 'ekf', keep, prior, listen, parameters['rate'])
+    filtered = filtered or METHODS[method].pose == 'estimate'
+    simulation = Simulation(robot, surface, seed, filtered, keep, prior, listen, parameters['rate'])
     simulation.rest(CALIBRATION)
     distances = []
     for drive in _drives(simulation, method, parameters):
@@ -166,9 +166,10 @@ def legs(parameters: Mapping[str, float]) -> list[Leg]:
 
 def _drives(simulation: Simulation, method: str, parameters: Mapping[str, float]) -> list[Callable[[], None]]:
     """Return four functions, each of which drives one motion of the exercise."""
-    if method == 'timed':
+    pose = METHODS[method].pose
+    if not pose:
         return [partial(simulation.drive_by_time, motion) for motion in motions(parameters)]
-    combined = simulation.filter if method == 'ekf' else None
+    combined = simulation.filter if pose == 'estimate' else None
 
     def get_pose() -> Pose:
         estimate = combined.pose if combined else None

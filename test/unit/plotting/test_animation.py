@@ -6,9 +6,10 @@ from matplotlib.figure import Figure
 import pytest
 
 from rbx1_nav.config import ConfigError
+from rbx1_nav.control.methods import METHODS
 from rbx1_nav.plotting import animation
 from rbx1_nav.robot.description import load_robot
-from rbx1_nav.simulation.exercise import METHODS, simulate
+from rbx1_nav.simulation.exercise import simulate
 
 ROOT = os.path.join(os.path.dirname(__file__), '..', '..', '..')
 

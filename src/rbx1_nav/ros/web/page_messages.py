@@ -7,9 +7,10 @@ from __future__ import annotations
 import json
 from typing import Any, NamedTuple, Union
 
+from rbx1_nav.control.methods import OF_PAGE
+
 MAX_MESSAGE = 1024      # bytes
 MAX_NUMBER = 2 ** 53     # largest integer that JavaScript represents exactly
-METHODS = ('timed', 'odometry', 'gyro')
 
 
 class InvalidMessage(ValueError):
@@ -25,7 +26,7 @@ class Hello(NamedTuple):
 class RunRequest(NamedTuple):
     """Start a run."""
 
-    method: str = ''            # one of METHODS
+    method: str = ''            # a key of OF_PAGE
     reset: bool = False         # whether to reset a simulated robot before the run
     confirmed: bool = False     # whether the user has confirmed that a real robot may move
     clock: float = 0.0          # s: `clock` of the last frame that the browser has received
@@ -86,8 +87,8 @@ def parse(text: object) -> Hello | Request:
 def _checked(name: str, value: object, default: Any) -> Any:
     """Return the value of a field. Raises InvalidMessage."""
     if name == 'method':
-        if value not in METHODS:
-            raise InvalidMessage(f'method: expected one of {", ".join(METHODS)}')
+        if value not in OF_PAGE:
+            raise InvalidMessage(f'method: expected one of {", ".join(OF_PAGE)}')
     elif name not in RANGES:
         if not isinstance(value, type(default)):
             raise InvalidMessage(f"{name}: expected {'text' if default == '' else 'true or false'}")

@@ -8,11 +8,8 @@ from threading import Lock, Thread
 from types import MappingProxyType
 from typing import Callable, Mapping, Sequence
 
-# by method: displayed name, script, arguments. The frame is always set, because the master keeps it from earlier runs
-SCRIPTS: dict[str, tuple[str, str, Sequence[str]]] = {
-    'timed': ('timed', 'timed_out_and_back.py', ()),
-    'odometry': ('with odometry', 'odom_out_and_back.py', ('_odom_frame:=odom',)),
-    'gyro': ('with odometry and gyro', 'odom_out_and_back.py', ('_odom_frame:=odom_combined',))}
+from rbx1_nav.control.methods import OF_PAGE
+
 STOP_TIMEOUT = 3.0  # s after which a script that does not exit is killed; a script should exit within 1.4 s
 
 
@@ -35,7 +32,7 @@ class Runs:
         self.process: subprocess.Popen[bytes] | None = None
 
     def start(self, method: str, before: Callable[[Callable[[], bool]], None]) -> bool:
-        """Call before(cancelled), and then start a run. method: a key of SCRIPTS; cancelled(): returns whether the run
+        """Call before(cancelled), and then start a run. method: a key of OF_PAGE; cancelled(): returns whether the run
         was stopped. Returns False if a run is in progress.
 
         If before() raises an exception, the run is not started, and the outcome contains the error.
@@ -49,11 +46,11 @@ class Runs:
 
     def _run(self, method: str, before: Callable[[Callable[[], bool]], None]) -> None:
         # this thread must live as long as the script: pdeathsig is sent when the thread that started the script exits
-        name, script, arguments = SCRIPTS[method]
-        self.on_change(name, '')
+        chosen = OF_PAGE[method]
+        self.on_change(chosen.title, '')
         try:
             before(lambda: self.stop_requested)
-            outcome = self._execute([os.path.join(self.folder, script), *arguments, *self.remappings])
+            outcome = self._execute([os.path.join(self.folder, chosen.script), *chosen.arguments, *self.remappings])
         except Exception as error:
             outcome = f'not started: {error}'
         try:
@@ -62,7 +59,7 @@ class Runs:
             pass    # the master has exited, so the parameters are gone as well
         with self.lock:
             self.busy = False
-        self.on_change(name, outcome)
+        self.on_change(chosen.title, outcome)
 
     def _execute(self, command: Sequence[str]) -> str:
         with self.lock:

@@ -6,6 +6,7 @@ import sys
 
 import pytest
 
+from rbx1_nav.control.methods import METHODS
 from rbx1_nav.ros.web import page_runs as module
 from rbx1_nav.ros.web.page_runs import Runs
 from waiting import wait_for
@@ -35,7 +36,8 @@ def make(tmp_path, monkeypatch):
         script.write_text(SCRIPT.format(python=sys.executable, handler=handler, status=status))
         script.chmod(0o755)
     write()
-    monkeypatch.setattr(module, 'SCRIPTS', {'timed': ('timed', 'script.py', (str(pid_file),))})
+    monkeypatch.setattr(module, 'OF_PAGE', {'timed': METHODS['timed']._replace(
+        script='script.py', arguments=(str(pid_file),))})
     yield runs, changes, pid_file, write
     runs.stop()
     wait_for(lambda: not runs.busy)
@@ -70,7 +72,8 @@ def test_a_run_ends_with_a_view_that_is_killed(started):
     runs, _, pid_file, _ = started
     code = ('import sys, time; sys.path.insert(0, sys.argv[1])\n'
             'from rbx1_nav.ros.web import page_runs as runs\n'
-            'runs.SCRIPTS = {"timed": ("timed", "script.py", (sys.argv[3],))}\n'
+            'timed = runs.OF_PAGE["timed"]._replace(script="script.py", arguments=(sys.argv[3],))\n'
+            'runs.OF_PAGE = {"timed": timed}\n'
             'runs.Runs(sys.argv[2], lambda *_: None, lambda: None).start("timed", lambda _: None)\n'
             'time.sleep(600)')
     with subprocess.Popen([sys.executable, '-c', code, SOURCE, runs.folder, str(pid_file)]) as view:
