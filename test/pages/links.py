@@ -11,7 +11,6 @@ TARGET = r'<?(?P<target>(?:[^()\s<>]|\([^()\s]*\))+)>?(?: +"[^"]*")?\)'
 LINK = re.compile(r'\]\(' + TARGET + r'|^ {0,3}\[[^\]]+\]: *<?(?P<defined>[^\s>]+)'
                   r'|<a [^>]*href="(?P<html>[^"]+)"|<(?P<auto>\w[\w+.-]*:[^\s>]*)>')
 IMAGE = re.compile(r'!\[[^\]]*\]\(' + TARGET + r'|<img [^>]*src="(?P<html>[^"]+)"')
-MOVED = re.compile(r'# .*\n\nThis page has moved:\n')      # the beginning of a page that only leads to other pages
 PICTURES = ('.png', '.svg', '.jpg', '.jpeg', '.gif')
 
 
@@ -35,11 +34,6 @@ def anchors(text):
             found.add(name)
         found.update(ANCHOR.findall(line))
     return found
-
-
-def has_moved(text):
-    """Whether a page only leads to the new places of what it contained."""
-    return MOVED.match(text) is not None
 
 
 def prose(text):
@@ -72,17 +66,14 @@ def trouble(root, page, target):
         return 'no such file'
     if not path.endswith('.md'):
         return 'expected an anchor in a Markdown page only' if url.fragment else None
-    text = markdown.read(root, path)
-    if has_moved(text):
-        return 'leads to a page that has moved'
-    return None if not url.fragment or url.fragment in anchors(text) else 'no such heading'
+    good = not url.fragment or url.fragment in anchors(markdown.read(root, path))
+    return None if good else 'no such heading'
 
 
 def problems(root):
     """All problems in a repository, one line each.
 
-    These are broken links, pages in docs/ that README.md does not lead to unless they have moved, and pictures that no
-    page shows.
+    These are broken links, pages in docs/ that README.md does not lead to, and pictures that no page shows.
     """
     found, graph, shown = [], {}, set()
     for page in markdown.files(root, '.md'):
@@ -101,6 +92,6 @@ def problems(root):
             reached.add(page)
             ahead.extend(graph.get(page, ()))
     found += [f'{page}: README.md does not lead to this page' for page in graph
-              if page.startswith('docs/') and page not in reached and not has_moved(markdown.read(root, page))]
+              if page.startswith('docs/') and page not in reached]
     found += [f'{each}: no page shows this picture' for each in markdown.files(root, PICTURES) if each not in shown]
     return found
