@@ -92,9 +92,8 @@ def read_combinations(arguments: argparse.Namespace) -> tuple[list[Combination],
 def simulate_all(sweep: Sweep, arguments: argparse.Namespace, file: RunsFile | None) -> None:
     """Simulate, print and draw."""
     print(sweep.title(), flush=True)
-    results, truths = {}, {}
-    for each in sweep.run(arguments.jobs, arguments.scheduler, file, bool(arguments.plot),
-                          PATHS if arguments.plot else int(bool(arguments.animate))):
+    results, truths, paths = {}, {}, PATHS if arguments.plot else int(bool(arguments.animate))
+    for each in sweep.run(arguments.jobs, arguments.scheduler, file, bool(arguments.plot), paths):
         with tqdm.external_write_mode():        # above the progress bar
             if len(sweep.combinations) > 1 and each.method == sweep.methods[0]:
                 print(f'{each.combination.title()}:')
@@ -138,7 +137,8 @@ def main() -> int:
     except (OSError, ValueError, RuntimeError, ImportError) as error:   # also a robot that is stuck, and a worker's
         text = ' '.join(str(error).split())
         if isinstance(error, BrokenProcessPool):
-            text = f'a process was killed, perhaps because memory ran out: expected all of --jobs {arguments.jobs} to run'
+            text = ('a process was killed, perhaps because memory ran out: '
+                    f'expected all of --jobs {arguments.jobs} to run')
         # the device of the output may be full, and Python would try to write to it again at exit
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         print('; '.join(filter(None, [f'simulate.py: {text}', missing()])), file=sys.stderr)

@@ -87,8 +87,7 @@ def test_a_section_is_a_mapping(values):
 
 @pytest.mark.parametrize('key, shown', [
     ('two\nlines', r"'two\nlines'"), ('\x1b[31m', r"'\x1b[31m'"), (7, '7'),
-    ('radius of the wheel', 'radius of the wheel'),
-    (1 << 20000, 'an integer of 20001 bits')], ids=lambda value: type(value).__name__)
+    ('radius of the wheel', 'radius of the wheel')], ids=lambda value: type(value).__name__)
 def test_a_key_is_shown_in_one_line(key, shown):
     assert Section({key: 1}, 'base').unknown() == [f'base/{shown}'] and show_name(key) == shown
     assert rejection(Section({key: 0}).flag, key, True).startswith(f'{shown}: 0: ')

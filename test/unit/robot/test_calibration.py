@@ -40,8 +40,7 @@ def test_a_comma_is_not_guessed(text):
 @pytest.mark.parametrize('value, shown', [
     (96, '96'), ('96', '96.0'), ('0.49', '0.49'), (-1, '-1'), (nan, 'nan'), ('nan', 'nan'), ('inf', 'inf'),
     (True, 'True'), ('', "''"), ('95 cm', "'95 cm'"), ('m', "'m'"), ('1 deg', "'1 deg'"), ('1 m m', "'1 m m'"),
-    (None, 'None'), ([1], '[1]'),
-    (10 ** 400, 'an integer of')])
+    (None, 'None'), ([1], '[1]')])
 def test_what_is_no_such_distance_is_rejected(value, shown):
     text = rejection(measured, value)
     assert text.startswith(f'measured: {shown}') and text.endswith('expected a distance from 0.5 to 2 in m')
