@@ -16,7 +16,11 @@ class Base:
     def send(self, name, *command, after=TICK):
         """Send a command, and return the contradiction that it causes."""
         self.now += after
-        return self.senders.contradiction(self.now, self.live[name], name, command, self.live.values)
+        return self.senders.contradiction(self.now, self.live[name], name, command, self.connections)
+
+    def connections(self):
+        assert self.senders.lock.locked()       # commands of other senders arrive in other threads
+        return self.live.values()
 
 
 def test_commands_that_alternate_and_differ():
