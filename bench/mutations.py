@@ -17,8 +17,10 @@ import time
 
 ROOT = os.path.realpath(os.path.join(os.path.dirname(__file__), '..'))
 SOURCE = os.path.join('src', 'rbx1_nav')
-ROOMS = 'control', 'create', 'estimation', 'robot', 'simulation'
+ROOMS = ('control', 'create', 'estimation', 'robot', 'simulation',
+         'driving', 'ros/base', 'ros/filter', 'ros/messages.py', 'nodes')
 USERS = 'batch', 'fitting', 'plotting', 'pages'     # their tests use the rooms, or compare them with the documents
+WITH_ROS = 'driving', 'ros', 'nodes'    # no other room uses these
 SLOWER = 5      # tests that take this many times as long as without a mutation, and START more, hang: they have failed
 START = 30      # s
 TUNING = os.path.join(os.path.dirname(os.path.realpath(__file__)), 'tuning.txt')
@@ -120,9 +122,15 @@ def parse(path):
 
 def files_of(rooms):
     """The paths of the modules of rooms."""
-    return sorted(os.path.relpath(os.path.join(folder, name), ROOT) for room in rooms
-                  for folder, _, names in os.walk(os.path.join(ROOT, SOURCE, room))
-                  for name in names if name.endswith('.py') and name != '__init__.py')
+    return sorted(os.path.relpath(path, ROOT) for room in rooms
+                  for path in (glob.glob(os.path.join(folder_of(room), '**', '*.py'), recursive=True)
+                               or [os.path.join(ROOT, SOURCE, room)])
+                  if os.path.basename(path) != '__init__.py')
+
+
+def folder_of(room):
+    """The folder of a room."""
+    return os.path.join(ROOT, room if room == 'nodes' else os.path.join(SOURCE, room))
 
 
 def unknown_tuning():
@@ -147,20 +155,25 @@ def is_noticed(mutation, limits):
     room = room_of(mutation.path)
     with tempfile.TemporaryDirectory() as folder:
         for name in os.listdir(ROOT):
-            if name != 'src' and not name.startswith('.'):
+            if name not in ('src', 'nodes') and not name.startswith('.'):
                 os.symlink(os.path.join(ROOT, name), os.path.join(folder, name))
         # the tests find the package next to their own folder
         os.remove(os.path.join(folder, 'test'))
-        for name in 'src', 'test':
+        for name in 'src', 'test', 'nodes':
             shutil.copytree(os.path.join(ROOT, name), os.path.join(folder, name))
         with open(os.path.join(folder, mutation.path), 'w', encoding='utf-8') as file:
             file.write(mutation.source)
         # the tests that are named after the module first: most mutations make one of them fail
         module = os.path.splitext(os.path.basename(mutation.path))[0]
-        named = sorted(glob.glob(os.path.join(ROOT, 'test', 'unit', room, f'test_*{module}*.py')))
+        named = sorted(glob.glob(os.path.join(ROOT, 'test', 'unit', room, '**', f'test_*{module}*.py'), recursive=True))
         return any(fails(folder, tests, limits[name]) for name, tests in (
             (room, [os.path.relpath(each, ROOT) for each in named]),
-            *((each, [f'test/unit/{each}']) for each in (room, *USERS))) if tests)
+            *((each, [f'test/unit/{each}']) for each in tests_of(room))) if tests)
+
+
+def tests_of(room):
+    """The folders of the unit tests that may notice a change of a room."""
+    return (room, *(WITH_ROS if room in WITH_ROS else USERS))
 
 
 def fails(folder, tests, limit=None):
@@ -189,7 +202,7 @@ def stop(number, _):
 
 def room_of(path):
     """The room that a file of the package belongs to."""
-    return os.path.relpath(path, SOURCE).split(os.sep)[0]
+    return 'nodes' if path.startswith('nodes') else os.path.relpath(path, SOURCE).split(os.sep)[0]
 
 
 def duration(name):
@@ -214,9 +227,9 @@ def main():
         if getattr(arguments, name) < 1:
             parser.error(f'--{name}: {getattr(arguments, name)}: expected a number from 1')
     rooms = [name for name in sorted(os.listdir(os.path.join(ROOT, 'test', 'unit')))
-             if os.path.isdir(os.path.join(ROOT, SOURCE, name))]
+             if os.path.isdir(folder_of(name))]
     for room in arguments.rooms:
-        if room not in rooms:
+        if room.split('/')[0] not in rooms:
             parser.error(f"{room}: no such room: expected one of {', '.join(rooms)}")
     for number in signal.SIGINT, signal.SIGTERM:
         signal.signal(number, stop)
@@ -224,7 +237,7 @@ def main():
     tuning = read_tuning()
     generator = random.Random(arguments.seed)
     mutations = [draw(paths, generator, tuning) for _ in range(arguments.count)]
-    folders = sorted({*USERS, *(room_of(mutation.path) for mutation in mutations)})
+    folders = sorted({each for mutation in mutations for each in tests_of(room_of(mutation.path))})
     with ThreadPoolExecutor(arguments.jobs) as pool:
         limits = {name: SLOWER * each + START for name, each in zip(folders, pool.map(duration, folders))}
         results = pool.map(lambda each: is_noticed(each, limits), mutations)
