@@ -44,19 +44,9 @@ class TestEkfMessages(support.Case):
         before = self.poses.next().pose.pose.position.x
         for sender, change, words in [
                 (self.odom, lambda m: setattr(m.pose.pose.position, 'x', nan), ('/odom: pose.pose.position.x: nan',)),
-                (self.odom, lambda m: setattr(m.pose.pose.orientation, 'z', 1e308), ('/odom: pose.pose.orientation: '
-                                                                                     'nan',)),
-                (self.odom, lambda m: setattr(m.pose.pose.orientation, 'w', 0.0), ('/odom: pose.pose.orientation',)),
                 (self.odom, lambda m: setattr(m.header, 'stamp', m.header.stamp - rospy.Duration(5)),
                  ('/odom: header.stamp', 'later than the last')),
-                (self.odom, lambda m: setattr(m.header, 'stamp', m.header.stamp + rospy.Duration(5)),
-                 ('/odom: header.stamp', 'not later than now')),
-                (self.odom, lambda m: setattr(m.header, 'frame_id', ''), ("/odom: header.frame_id: ''",)),
                 (self.imu, lambda m: setattr(m.angular_velocity, 'z', nan), ('/imu_data: angular_velocity.z: nan',)),
-                (self.imu, lambda m: setattr(m, 'angular_velocity_covariance', [-0.5] * 9),
-                 ('/imu_data: angular_velocity_covariance[8]: -0.5',)),
-                (self.imu, lambda m: setattr(m, 'angular_velocity_covariance', [-1.0] + [0.0] * 8),
-                 ('/imu_data: angular_velocity_covariance[0]: -1', 'an angular velocity or an orientation')),
                 (self.imu, lambda m: setattr(m.header, 'stamp', m.header.stamp + rospy.Duration(3600)),
                  ('/imu_data: header.stamp', 'not later than now'))]:
             self.wait_for_log(*words, 'expected', 'rejected', send=partial(sender.send, change))

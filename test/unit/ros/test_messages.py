@@ -1,5 +1,5 @@
 """Each value of a message is converted to its own field: no two values of these messages are equal."""
-from math import atan2, cos, pi, sin
+from math import atan2, cos, isnan, pi, sin
 
 import numpy
 import pytest
@@ -86,6 +86,8 @@ def test_the_yaw_of_a_robot_on_a_slope():
     for name in 'xyzw':
         setattr(rotation, name, scale * getattr(rotation, name))
     assert messages.yaw_of(rotation) == pytest.approx(yaw)
+    for wrong in messages.Quaternion(), messages.Quaternion(0.0, 0.0, 1e308, 1.0):     # of another length
+        assert isnan(messages.yaw_of(wrong)) and messages.unit_quaternion(wrong) is None
     x, y, z, w = messages.unit_quaternion(rotation)
     assert x * x + y * y + z * z + w * w == pytest.approx(1)
     assert atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)) == pytest.approx(yaw)

@@ -1,11 +1,14 @@
 """The parameters of the filter reach it in its units, and its frames have the prefix."""
 from math import radians
 
+from nav_msgs.msg import Odometry
 import pytest
 
 from rbx1_nav.config import ConfigError
+from rbx1_nav.estimation.inputs import RejectedMessage
 from rbx1_nav.estimation.priors import Bounds
 from rbx1_nav.ros.filter.ekf_parameters import read_parameters
+from rbx1_nav.ros.filter.sensor_inputs import frames_of
 
 BASE = 'base_footprint_frame'
 
@@ -26,6 +29,22 @@ def test_the_limits_of_the_robot():
 def test_frames(params, output, base, default):
     found = read_parameters(params)
     assert (found.output_frame, found.base_footprint_frame, found.default_base_frame) == (output, base, default)
+
+
+@pytest.mark.parametrize('params, child, base', [
+    ({}, 'base_link', 'base_link'), ({}, '/base_link', 'base_link'), ({}, '', 'base_footprint'),
+    (dict(tf_prefix='r'), '', 'r/base_footprint'), ({BASE: 'mine'}, 'base_link', 'mine')])
+def test_the_frame_of_the_robot(params, child, base):
+    message = Odometry(child_frame_id=child)
+    message.header.frame_id = '/odom'
+    assert frames_of(message, read_parameters(params)) == ('odom', base)
+    message.header.frame_id = ''
+    with pytest.raises(RejectedMessage, match="header.frame_id: '': expected the name of a frame"):
+        frames_of(message, read_parameters(params))
+    message.header.frame_id, message.child_frame_id = 'odom', 'map'
+    if BASE not in params:
+        with pytest.raises(RejectedMessage, match='a frame other than output_frame'):
+            frames_of(message, read_parameters(dict(params, output_frame='/map')))
 
 
 def test_what_is_not_supported():
