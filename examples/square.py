@@ -1,8 +1,5 @@
 #!/usr/bin/python3
-"""Drive a square, timed: four sides of 1 m, and a quarter turn to the left after each.
-
-Ticks are whole numbers.
-"""
+"""Drive a square, timed: four sides of 1 m, and a quarter turn to the left after each."""
 from rbx1_nav.driving import Drive
 
 import rospy
@@ -19,5 +16,5 @@ rospy.on_shutdown(shutdown)
 cmd_vel = rospy.Publisher('cmd_vel', Twist, queue_size=5)
 with Drive(cmd_vel):
     for side in range(4):
-        # Fill this in: drive forward, stop and rest; turn left, stop and rest.
+        # Fill this in: drive forward, stop and rest; turn left, stop and rest. How many ticks is a quarter turn?
         pass

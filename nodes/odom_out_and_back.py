@@ -30,13 +30,13 @@ from rbx1_nav.driving.odometry import PoseListener, Straight, Turn
 
 
 class OutAndBack:
-    """Drives the robot once out and back; creating one runs it."""
+    """Creating an object of this class drives the robot out and back once."""
 
     def __init__(self):
         # Start the node under this name.
         rospy.init_node('out_and_back', anonymous=False)
 
-        # Whenever the node shuts down, this function stops the robot first.
+        # Call this function when the node shuts down, so that the robot does not keep moving.
         rospy.on_shutdown(self.shutdown)
 
         # The base subscribes to this topic. With a queue, a slow subscriber does not hold up the others.
@@ -55,18 +55,20 @@ class OutAndBack:
         goal_angle = rospy.get_param('~goal_angle', pi)
         min_angular_speed = rospy.get_param('~min_angular_speed', 0.2)
 
-        # Two legs: out and back. Each motion calculates the distance to its goal, and the speed to get there.
-        legs = [(Straight('forward', goal_distance, linear_speed, min_linear_speed, self.rate),
-                 Turn('turn left', goal_angle, angular_speed, min_angular_speed, self.rate)) for _ in range(2)]
+        # Out and back: four motions. Each calculates the distance to its goal, and the speed to get there.
+        motions = [(Straight('forward', goal_distance, linear_speed, min_linear_speed, self.rate),
+                    Turn('turn left', goal_angle, angular_speed, min_angular_speed, self.rate)) for _ in range(2)]
 
-        # Where the robot is: the transform from the frame of its odometry to its base, looked up with tf2.
+        # Where the robot is: the transform from the frame of its odometry to its base, looked up with tf2. A pose that
+        # the robot cannot have reached at these speeds is an error.
         self.odom = PoseListener(rospy.get_param('~odom_frame', 'odom'), rospy.get_param('~base_frame', None),
                                  linear_speed, angular_speed, rospy.get_param('~transform_timeout', 5))
 
-        # Wait for the base, and monitor it from here on. However this block is left, the robot is stopped.
+        # Wait for the base, and monitor it from here on. However this block is left, the robot is stopped. A late
+        # command is no error (timed=False), because the script looks at the pose.
         with Drive(self.cmd_vel, timed=False):
             start = self.odom.pose()
-            for forward, turn_left in legs:
+            for forward, turn_left in motions:
                 self.drive(forward)
                 self.drive(turn_left)
             # Stop the robot for good.
@@ -77,14 +79,14 @@ class OutAndBack:
                           degrees(abs(remainder(end.yaw - start.yaw, 2 * pi))))
 
     def drive(self, leg):
-        """Drive until the robot has arrived."""
-        # Twice: to a stop just before the goal, which shows how far the robot coasts, and then to the goal.
+        """Drive a leg or a turn until its goal is reached."""
+        # In two parts: to a stop just before the goal, which shows how far the robot coasts, and then to the goal.
         for rest in leg.rests:
             move_cmd = Twist()
             r = rospy.Rate(self.rate)
             # On every tick, look at the pose, publish the command, then sleep until the next tick.
             speed = leg.next_speed(self.odom.pose())
-            while speed:
+            while speed:    # 0 at the goal
                 move_cmd.linear.x, move_cmd.angular.z = leg.velocity(speed)
                 self.cmd_vel.publish(move_cmd)
                 r.sleep()

@@ -22,13 +22,13 @@ from geometry_msgs.msg import Twist
 
 
 class OutAndBack:
-    """Drives the robot once out and back; creating one runs it."""
+    """Creating an object of this class drives the robot out and back once."""
 
     def __init__(self):
         # Start the node under this name.
         rospy.init_node('out_and_back', anonymous=False)
 
-        # Whenever the node shuts down, this function stops the robot first.
+        # Call this function when the node shuts down, so that the robot does not keep moving.
         rospy.on_shutdown(self.shutdown)
 
         # The base subscribes to this topic. With a queue, a slow subscriber does not hold up the others.
@@ -46,19 +46,21 @@ class OutAndBack:
         angular_speed = rospy.get_param('~angular_speed', 1.0)
         goal_angle = rospy.get_param('~goal_angle', pi)
         angular_duration = goal_angle / angular_speed
+
+        # Each motion needs at least one tick, which is one period of the rate: otherwise it would send no command.
         if min(linear_duration, angular_duration) * rate < 1:
             raise rospy.ROSException(f'goal_distance {goal_distance}, goal_angle {goal_angle}: expected a tick or more')
 
         # Wait for the base, and monitor it from here on. However this block is left, the robot is stopped.
         with Drive(self.cmd_vel):
             # Two legs: out and back.
-            for _ in range(2):
+            for leg in range(2):
                 # Drive forward: on every tick, publish the command, then sleep until the next tick.
                 move_cmd = Twist()
                 move_cmd.linear.x = linear_speed
-                r = rospy.Rate(rate)    # a new one for each motion: after a rest, an old one would be late
-                ticks = int(linear_duration * rate + 1e-9)     # 0.3 / 0.1 is slightly less than 3
-                for _ in range(ticks):
+                r = rospy.Rate(rate)    # a new one for each motion: an old one would skip its first sleep
+                ticks = int(linear_duration * rate + 1e-9)     # int() rounds down; 0.3 / 0.1 is slightly below 3
+                for tick in range(ticks):
                     self.cmd_vel.publish(move_cmd)
                     r.sleep()
                 # Stop the robot, and let it come to rest before the turn.
@@ -69,7 +71,7 @@ class OutAndBack:
                 move_cmd.angular.z = angular_speed
                 r = rospy.Rate(rate)
                 ticks = int(angular_duration * rate + 1e-9)
-                for _ in range(ticks):
+                for tick in range(ticks):
                     self.cmd_vel.publish(move_cmd)
                     r.sleep()
                 # Stop and rest again before the next leg.

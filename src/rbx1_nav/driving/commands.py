@@ -18,7 +18,8 @@ MAX_LATE_STOP = SECOND // 20    # ns: a robot that stops later has moved by more
 LOCK_TIMEOUT = 0.1      # s: a stop does not wait longer for a publisher that hangs
 _publish, _signal_shutdown = rospy.Publisher.publish, rospy.core.signal_shutdown
 is_shutdown_of_rospy = rospy.core.is_shutdown     # true only after the functions of rospy.on_shutdown
-_lock = threading.Lock()        # a command to move is published before a stop, or not at all
+# a command to move is published before a stop, or not at all; a script's own signal handler may publish within publish()
+_lock = threading.RLock()
 _moving: dict[str, rospy.Publisher] = {}    # publishers whose last command was to move, by topic
 shutdown_wanted = threading.Event()     # makes a thread call rospy.signal_shutdown, see script.py
 _shutdown_threads: set[int] = set()     # threads that are calling the functions of rospy.on_shutdown
@@ -30,8 +31,7 @@ def now() -> int:
 
 
 def signal_shutdown(reason: str) -> None:
-    """Stop the robots, then call the functions of rospy.on_shutdown: rospy.signal_shutdown."""
-    stop_robots()
+    """Stop the robots, see script.start_node(), then call the functions of rospy.on_shutdown: rospy.signal_shutdown."""
     _shutdown_threads.add(threading.get_ident())
     try:
         _signal_shutdown(reason)

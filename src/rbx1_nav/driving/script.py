@@ -9,6 +9,7 @@ from __future__ import annotations
 import atexit
 from math import pi, radians
 import os
+import signal
 import sys
 import threading
 import time
@@ -43,6 +44,7 @@ _script_ended = threading.Event()
 _results: list[tuple[Callable[..., None], str]] = []    # of the blocks that have been completed: how to log, and a text
 _failed: list[BaseException] = []       # errors with which blocks have been left
 _interrupted: list[BaseException] = []  # ROSInterruptExceptions that the script has not caught
+_thread_excepthook = threading.excepthook
 
 
 def init_node(name: str, *args: Any, **options: Any) -> None:
@@ -62,7 +64,9 @@ def start_node(name: str, usage: str, parameters: Sequence[Parameter], **options
     """Start the node of a driving script, like life.init_node()."""
     if not _started:
         _started.append(os.getpid())
-        rospy.core.add_preshutdown_hook(_finish)    # the first one: rospy's own waits for the master
+        # both are the first ones: from here on, no command to move is published; rospy's own hook waits for the master
+        rospy.core.add_client_shutdown_hook(commands.stop_robots)
+        rospy.core.add_preshutdown_hook(_finish)
         threading.Thread(target=_shut_down, daemon=True).start()
     life.init_node(name, usage, [*parameters, WAIT_TIMEOUT], on_signal=lambda number: end(128 + number), **options)
     for each in parameters:
@@ -110,19 +114,20 @@ def _report(kind: type[BaseException], error: BaseException, trace: TracebackTyp
         _interrupted.append(error)
         return
     frames = traceback.extract_tb(trace)
-    if issubclass(kind, ConnectionError):
+    if issubclass(kind, ConnectionError) and any('/rospy/' in each.filename for each in frames):
         rospy.logerr('The master at %s does not answer (%s)', rosgraph.get_master_uri(), error)
     elif issubclass(kind, rospy.ROSException) or (
             issubclass(kind, ValueError) and os.path.realpath(frames[-1].filename).startswith(PACKAGE)):
         rospy.logerr('%s', error)
     else:
         sys.__excepthook__(kind, error, trace)
+    end(128 + signal.SIGINT if issubclass(kind, KeyboardInterrupt) else 1)      # also for a thread that drives on
 
 
 def _report_in_thread(arguments: Any) -> None:
     """Like _report(), for threading.excepthook."""
     if not (issubclass(arguments.exc_type, rospy.ROSInterruptException) and commands.is_shutdown()):
-        threading.__excepthook__(arguments)     # type: ignore[attr-defined]
+        _thread_excepthook(arguments)
 
 
 class Drive:
@@ -146,8 +151,13 @@ class Drive:
         if not _started:
             raise rospy.ROSException('Drive: expected rospy.init_node() before it, and rbx1_nav.driving to be imported '
                                      'before that')
-        listeners = wait_for_listeners(self.cmd_vel, param('wait_timeout'), self.timed, commands.fail)
-        rate.wait_for_tick()
+        try:
+            listeners = wait_for_listeners(self.cmd_vel, param('wait_timeout'), self.timed, commands.fail)
+            rate.wait_for_tick()
+        except rospy.ROSException as problem:
+            if not commands.is_shutdown():
+                _failed.append(problem)
+            raise
         rospy.loginfo('Connected to %s', ', '.join(each.name for each in listeners.called))
         self.commands = Commands.current = Commands(self.cmd_vel, listeners, self.timed)
         return self
@@ -169,7 +179,9 @@ class Drive:
             self.commands.listeners.release()
         if end_requested.is_set():      # the lines of the log are then in order
             _functions_called.wait(life.EXIT_DEADLINE)
-        elif isinstance(error, (rospy.ROSException, ValueError)) and not commands.is_shutdown():
+        elif isinstance(error, SystemExit):
+            end(error.code if isinstance(error.code, int) else int(error.code is not None))
+        elif error and not commands.is_shutdown():
             _failed.append(error)
 
 

@@ -6,6 +6,7 @@ instead: see rbx1_nav/driving/script.py. docs/decisions/nodes.md explains why.
 """
 from __future__ import annotations
 
+from contextlib import suppress
 import os
 import signal
 import sys
@@ -28,6 +29,7 @@ from rbx1_nav.ros.node.params import (
 
 EXIT_DEADLINE = 1.4         # s of wall time from the request to the exit of the process, whatever hangs
 UNREGISTER_TIMEOUT = 0.25   # s of wall time for the master to unregister the node
+SIGNALS = signal.SIGINT, signal.SIGTERM, signal.SIGHUP
 MAX_SLEEP = 0.05            # s
 
 # rospy of Debian 11 calls Thread.isAlive() on shutdown, which Python 3.9 has removed
@@ -119,25 +121,36 @@ def init_node(name: str, usage: str, parameters: Sequence[Parameter] = (), requi
 
 def _take_signals(on_signal: Callable[[int], object], disabled: bool) -> None:
     """disabled: whether the program handles signals itself: Ctrl-C is a KeyboardInterrupt, and its handlers stay."""
+    if disabled and threading.current_thread() is not threading.main_thread():      # which alone can take signals
+        return
     read_end, write_end = os.pipe()
     os.set_blocking(write_end, False)
-    signal.set_wakeup_fd(write_end)     # a signal writes its number to the pipe; the handler itself does nothing
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+    signal.set_wakeup_fd(write_end)     # a signal writes its number to the pipe
+
+    def pass_on(number: int, _: object) -> None:
+        """Handle a signal: a library may have taken the wakeup_fd, such as asyncio or matplotlib's windows."""
+        with suppress(BlockingIOError):
+            os.write(write_end, bytes([number]))
+
+    def leave_to_child() -> None:
+        """In a child process, handle signals as usual: multiprocessing ends its processes with SIGTERM."""
+        signal.set_wakeup_fd(-1)
+        for number in SIGNALS:
+            if signal.getsignal(number) is pass_on:
+                signal.signal(number, signal.SIG_DFL)
+    os.register_at_fork(after_in_child=leave_to_child)
+    for number in SIGNALS:
         handler = signal.getsignal(number)
         if not (handler is signal.SIG_IGN and number == signal.SIGHUP       # as under nohup
                 or disabled and handler is not signal.SIG_DFL):
-            signal.signal(number, signal.default_int_handler if disabled and number == signal.SIGINT else _do_nothing)
+            signal.signal(number, signal.default_int_handler if disabled and number == signal.SIGINT else pass_on)
 
     def wait() -> None:
         while True:
             number = os.read(read_end, 1)[0]
-            if signal.getsignal(number) is _do_nothing:     # not a handler of the program, such as for SIGALRM
+            if signal.getsignal(number) is pass_on:     # not a handler of the program, such as for SIGALRM
                 on_signal(number)
     threading.Thread(target=wait, daemon=True).start()
-
-
-def _do_nothing(*_: object) -> None:
-    """Handle a signal."""
 
 
 def request_end(_: int = 0) -> None:
