@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Whatever way a script leaves its Drive block, its last command is a stop, it exits, and its status says how it went."""
+"""However a script leaves its Drive block, its last command is a stop, it exits, and its status says how it went."""
 import os
 
 from geometry_msgs.msg import Twist

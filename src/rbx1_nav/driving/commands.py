@@ -18,7 +18,7 @@ MAX_LATE_STOP = SECOND // 20    # ns: a robot that stops later has moved by more
 LOCK_TIMEOUT = 0.1      # s: a stop does not wait longer for a publisher that hangs
 _publish, _signal_shutdown = rospy.Publisher.publish, rospy.core.signal_shutdown
 is_shutdown_of_rospy = rospy.core.is_shutdown     # true only after the functions of rospy.on_shutdown
-# a command to move is published before a stop, or not at all; a script's own signal handler may publish within publish()
+# a command to move is published before a stop, or not at all; reentrant, for a script's own signal handler
 _lock = threading.RLock()
 _moving: dict[str, rospy.Publisher] = {}    # publishers whose last command was to move, by topic
 shutdown_wanted = threading.Event()     # makes a thread call rospy.signal_shutdown, see script.py
