@@ -52,7 +52,7 @@ class Clock:
         self.now = max(self.now, end)
 
     def send(self, _, message):
-        assert module._lock.locked()    # or a command to move may follow a stop of another thread
+        assert module._lock._is_owned()    # or a command to move may follow a stop of another thread
         self.sent.append((self.now, message.linear.x, message.angular.z))
 
     def publish(self, linear=0.0, angular=0.0):
