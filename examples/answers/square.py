@@ -1,8 +1,5 @@
 #!/usr/bin/python3
-"""Drive a square, timed: four sides of 1 m, and a quarter turn to the left after each.
-
-Ticks are whole numbers.
-"""
+"""Drive a square, timed: four sides of 1 m, and a quarter turn to the left after each."""
 from rbx1_nav.driving import Drive
 
 import rospy

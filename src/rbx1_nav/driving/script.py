@@ -121,7 +121,7 @@ def _report(kind: type[BaseException], error: BaseException, trace: TracebackTyp
         rospy.logerr('%s', error)
     else:
         sys.__excepthook__(kind, error, trace)
-    end(128 + signal.SIGINT if issubclass(kind, KeyboardInterrupt) else 1)      # also for a thread that drives on
+    end(128 + signal.SIGINT if kind is KeyboardInterrupt else 1)     # also for a thread that drives on
 
 
 def _report_in_thread(arguments: Any) -> None:

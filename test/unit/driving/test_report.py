@@ -13,6 +13,7 @@ def report(monkeypatch, function):
     lines, traced = [], []
     monkeypatch.setattr(rospy, 'logerr', lambda text, *values: lines.append(text % values))
     monkeypatch.setattr(sys, '__excepthook__', lambda kind, *_: traced.append(kind))
+    monkeypatch.setattr(script, 'end', lambda status: lines.append(f'status {status}'))
     try:
         function()
     except Exception:
@@ -26,21 +27,27 @@ def raise_(error):
 
 @pytest.mark.parametrize('error, line', [
     (rospy.ROSException('no base: 100 %'), 'no base: 100 %'),
-    (rospy.exceptions.ROSTimeMovedBackwardsException(2.0), 'ROS time moved backwards'),
-    (ConnectionRefusedError('refused'), 'does not answer (refused)')])
+    (rospy.exceptions.ROSTimeMovedBackwardsException(2.0), 'ROS time moved backwards')])
 def test_an_error_of_rospy_is_one_line(monkeypatch, error, line):
     lines, traced = report(monkeypatch, lambda: raise_(error))
-    assert not traced and len(lines) == 1 and line in lines[0]
+    assert not traced and line in lines[0] and lines[1:] == ['status 1']
+
+
+def test_a_master_that_does_not_answer_is_one_line(monkeypatch):
+    monkeypatch.setenv('ROS_MASTER_URI', 'http://127.0.0.1:1')
+    lines, traced = report(monkeypatch, lambda: rospy.get_param('/rate'))
+    assert not traced and 'The master at http://127.0.0.1:1 does not answer' in lines[0] and lines[1:] == ['status 1']
 
 
 def test_an_error_of_this_package_is_one_line(monkeypatch):
     lines, traced = report(monkeypatch, lambda: Straight('forward', 1e-9, 0.2, 0.05, 50))
-    assert not traced and len(lines) == 1 and 'goal_distance, min_linear_speed' in lines[0]
+    assert not traced and 'goal_distance, min_linear_speed' in lines[0] and lines[1:] == ['status 1']
 
 
 def test_a_mistake_in_the_script_has_a_traceback(monkeypatch):
-    assert report(monkeypatch, lambda: float('a')) == ([], [ValueError])
-    assert report(monkeypatch, lambda: open('/nowhere')) == ([], [FileNotFoundError])
+    assert report(monkeypatch, lambda: float('a')) == (['status 1'], [ValueError])
+    assert report(monkeypatch, lambda: raise_(ConnectionRefusedError('a camera'))) == (
+        ['status 1'], [ConnectionRefusedError])
 
 
 def test_an_interrupt_is_quiet(monkeypatch):
