@@ -11,7 +11,7 @@ import rospkg
 import support
 
 SCRIPT = os.path.join(rospkg.RosPack().get_path('rbx1_nav'), 'nodes', 'timed_out_and_back.py')
-WAIT = """while self.cmd_vel.get_num_connections() == 0:
+WAIT = """while self.cmd_vel.get_num_connections() == 0 and not rospy.is_shutdown():
             rospy.sleep(0.1)
         rospy.sleep(1)
         if True:"""
