@@ -17,7 +17,8 @@ import os, signal, sys, time
 def stop(*_):
     sys.exit(130)
 signal.signal(signal.SIGINT, {handler})
-open(sys.argv[1], 'w').write(str(os.getpid()))
+with open(sys.argv[1], 'w') as file:     # Python ignores an exception from a signal in the close of a lost file
+    file.write(str(os.getpid()))
 while not os.path.exists(sys.argv[1] + '.end'):
     time.sleep(0.01)
 sys.exit({status})
