@@ -82,7 +82,8 @@ def try_signal(row, script, number, moments, watches, python_start):
         allowed = max(DEADLINE, DEADLINE - 0.1 + seconds(control))
     row.figure('process exited after (s)', duration)
     assert duration <= allowed, f'the process had gone after {duration:.3f} s\n{driver.output}'
-    assert driver.process.returncode in (128 + number, -number), driver.output
+    lost = 'has stopped responding' in driver.output    # a base that was suspended long before the signal
+    assert driver.process.returncode in (128 + number, -number, *([1] if lost else [])), driver.output
     assert 'Traceback' not in driver.output or moment < python_start or EARLY in driver.output, driver.output
     support.wait_for(lambda: not commands.subscriber.get_num_connections(), 'the end of the connection')
     moves = [(message.linear.x, message.angular.z) != (0, 0) for message in commands.messages]
