@@ -114,10 +114,11 @@ def _report(kind: type[BaseException], error: BaseException, trace: TracebackTyp
         _interrupted.append(error)
         return
     frames = traceback.extract_tb(trace)
-    if issubclass(kind, ConnectionError) and any('/rospy/' in each.filename for each in frames):
+    by_us = [os.path.realpath(each.filename).startswith(PACKAGE) for each in frames]
+    if issubclass(kind, ConnectionError) and (any(by_us) or any('/rospy/' in each.filename for each in frames)):
         rospy.logerr('The master at %s does not answer (%s)', rosgraph.get_master_uri(), error)
     elif issubclass(kind, rospy.ROSException) or (
-            issubclass(kind, ValueError) and os.path.realpath(frames[-1].filename).startswith(PACKAGE)):
+            issubclass(kind, ValueError) and by_us[-1]):
         rospy.logerr('%s', error)
     else:
         sys.__excepthook__(kind, error, trace)

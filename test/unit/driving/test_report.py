@@ -6,6 +6,7 @@ import rospy
 
 from rbx1_nav.driving import commands, script
 from rbx1_nav.driving.odometry import Straight
+from rbx1_nav.ros.network.master import call
 
 
 def report(monkeypatch, function):
@@ -33,9 +34,11 @@ def test_an_error_of_rospy_is_one_line(monkeypatch, error, line):
     assert not traced and line in lines[0] and lines[1:] == ['status 1']
 
 
-def test_a_master_that_does_not_answer_is_one_line(monkeypatch):
+@pytest.mark.parametrize('function', [
+    lambda: rospy.get_param('/rate'), lambda: call('http://127.0.0.1:1', 'lookupNode', '/arbotix')])
+def test_a_master_that_does_not_answer_is_one_line(monkeypatch, function):
     monkeypatch.setenv('ROS_MASTER_URI', 'http://127.0.0.1:1')
-    lines, traced = report(monkeypatch, lambda: rospy.get_param('/rate'))
+    lines, traced = report(monkeypatch, function)
     assert not traced and 'The master at http://127.0.0.1:1 does not answer' in lines[0] and lines[1:] == ['status 1']
 
 

@@ -22,7 +22,7 @@ def xyz(vector):
 
 
 def is_at_pose(point, rotation):
-    """Whether a point and a quaternion of a message are those of POSE."""
+    """Whether a message has the point and the quaternion of POSE."""
     return xyz(point) == (1.0, -2.0, 0.0) and (rotation.x, rotation.y, rotation.z, rotation.w) == pytest.approx(
         (0.0, 0.0, *YAW))
 
