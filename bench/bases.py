@@ -14,15 +14,15 @@ from base_cases import CASES
 from floors import aligned, consistency, digits, markdown_value, misses, report, squared_errors
 from replay import replay
 from robot_pose_ekf import RobotPoseEkf
-from rbx1_nav.batch.executor import add_arguments, in_order, open_place
-from rbx1_nav.estimation.priors import UNKNOWN_FLOOR
-from rbx1_nav.estimation.inputs import Imu, Odom
-from rbx1_nav.robot.description import Limits, read_robot
-from rbx1_nav.ros.node import resources
-from rbx1_nav.robot.kinematics import ORIGIN
-from rbx1_nav.robot.surfaces import load_surface
-from rbx1_nav.simulation.base import make_base
-from rbx1_nav.units import SECOND
+from rbx1_nav.base.description import Limits, read_robot
+from rbx1_nav.base.kinematics import ORIGIN
+from rbx1_nav.base.surfaces import load_surface
+from rbx1_nav.base.units import SECOND
+from rbx1_nav.extras.many_runs.executor import add_arguments, in_order, open_place
+from rbx1_nav.filter.inputs import Imu, Odom
+from rbx1_nav.filter.priors import UNKNOWN_FLOOR
+from rbx1_nav.node import resources
+from rbx1_nav.simulation.simulated_base import make_base
 
 LIMITS = Limits(4.0, 8.0)       # m/s, rad/s; no limits for these paths
 RUN_UP = 2.0            # s of driving before the first message, if there is no rest

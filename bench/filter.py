@@ -6,16 +6,16 @@ import yaml
 
 from floors import UNKNOWN, Follower, KnownHeading, figures, limits, misses, markdown, report, table
 from robot_pose_ekf import RobotPoseEkf
-from rbx1_nav.batch.executor import add_arguments, in_order, open_place
-from rbx1_nav.control.legs import StuckError
-from rbx1_nav.estimation.combined_odometry import CombinedOdometry
-from rbx1_nav.estimation.priors import UNKNOWN_FLOOR, priors
-from rbx1_nav.robot.description import read_robot
-from rbx1_nav.robot.surfaces import known_surfaces, load_surface
-from rbx1_nav.ros.node import resources
-from rbx1_nav.control.methods import METHODS
-from rbx1_nav.simulation.exercise import EXERCISE, feed, simulate
-from rbx1_nav.units import SECOND
+from rbx1_nav.base.description import read_robot
+from rbx1_nav.base.surfaces import known_surfaces, load_surface
+from rbx1_nav.base.units import SECOND
+from rbx1_nav.exercise.legs import StuckError
+from rbx1_nav.exercise.methods import METHODS
+from rbx1_nav.extras.many_runs.executor import add_arguments, in_order, open_place
+from rbx1_nav.extras.many_runs.simulated_run import EXERCISE, feed, simulate
+from rbx1_nav.filter.combined_odometry import CombinedOdometry
+from rbx1_nav.filter.priors import UNKNOWN_FLOOR, priors
+from rbx1_nav.node import resources
 
 PATH = 2 * EXERCISE['goal_distance']    # m, out and back
 CHUNK = 5       # seeds per task of a process

@@ -8,17 +8,17 @@ import time
 import numpy
 import yaml
 
-from rbx1_nav.control.legs import out_and_back
-from rbx1_nav.fitting.comparison import ENDS, inner_share, predict, simulate_paths
-from rbx1_nav.fitting.recording import Commands, Rates, Recording, Track
-from rbx1_nav.fitting.surface_fit import WholeFit
-from rbx1_nav.robot.description import read_robot
-from rbx1_nav.robot.kinematics import Pose
-from rbx1_nav.robot.surfaces import Surface, load_surface
-from rbx1_nav.ros.node import resources
-from rbx1_nav.simulation.base import make_base
-from rbx1_nav.simulation.exercise import EXERCISE, TICK
-from rbx1_nav.units import SECOND
+from rbx1_nav.base.description import read_robot
+from rbx1_nav.base.kinematics import Pose
+from rbx1_nav.base.surfaces import Surface, load_surface
+from rbx1_nav.base.units import SECOND
+from rbx1_nav.exercise.legs import out_and_back
+from rbx1_nav.extras.fitting.comparison import ENDS, inner_share, predict, simulate_paths
+from rbx1_nav.extras.fitting.recording import Commands, Rates, Recording, Track
+from rbx1_nav.extras.fitting.surface_fit import WholeFit
+from rbx1_nav.extras.many_runs.simulated_run import EXERCISE, TICK
+from rbx1_nav.node import resources
+from rbx1_nav.simulation.simulated_base import make_base
 
 RUNS = 10
 RATE = 50           # Hz

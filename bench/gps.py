@@ -10,10 +10,10 @@ import numpy
 import rosbag
 
 from replay import pose_variances, replay
-from rbx1_nav.estimation.priors import UNKNOWN_FLOOR
-from rbx1_nav.estimation.gyro_input import GyroInput
-from rbx1_nav.ros.filter import conversions
-from rbx1_nav.units import SECOND
+from rbx1_nav.base.units import SECOND
+from rbx1_nav.filter import conversions
+from rbx1_nav.filter.gyro_input import GyroInput
+from rbx1_nav.filter.priors import UNKNOWN_FLOOR
 
 TYPES = 'nav_msgs/Odometry', 'sensor_msgs/Imu', 'sensor_msgs/NavSatFix'
 STILL = 0.01        # m/s and rad/s

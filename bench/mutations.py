@@ -17,10 +17,10 @@ import time
 
 ROOT = os.path.realpath(os.path.join(os.path.dirname(__file__), '..'))
 SOURCE = os.path.join('src', 'rbx1_nav')
-ROOMS = ('control', 'create', 'estimation', 'robot', 'simulation',
-         'driving', 'ros/base', 'ros/filter', 'ros/messages.py', 'nodes')
-USERS = 'batch', 'fitting', 'plotting', 'pages'     # their tests use the rooms, or compare them with the documents
-WITH_ROS = 'driving', 'ros', 'nodes'    # no other room uses these
+sys.path.insert(0, os.path.join(ROOT, 'script'))
+from rooms import arrows
+
+ROOMS = 'base', 'driving', 'exercise', 'filter', 'node', 'simulation', 'extras/create', 'nodes'
 SLOWER = 5      # tests that take this many times as long as without a mutation, and START more, hang: they have failed
 START = 30      # s
 TUNING = os.path.join(os.path.dirname(os.path.realpath(__file__)), 'tuning.txt')
@@ -123,8 +123,7 @@ def parse(path):
 def files_of(rooms):
     """The paths of the modules of rooms."""
     return sorted(os.path.relpath(path, ROOT) for room in rooms
-                  for path in (glob.glob(os.path.join(folder_of(room), '**', '*.py'), recursive=True)
-                               or [os.path.join(ROOT, SOURCE, room)])
+                  for path in glob.glob(os.path.join(folder_of(room), '**', '*.py'), recursive=True)
                   if os.path.basename(path) != '__init__.py')
 
 
@@ -172,8 +171,10 @@ def is_noticed(mutation, limits):
 
 
 def tests_of(room):
-    """The folders of the unit tests that may notice a change of a room."""
-    return (room, *(WITH_ROS if room in WITH_ROS else USERS))
+    """The folders of the unit tests that may notice a change of a room: of the room, of those that import it, and the
+    tests that compare it with the documents."""
+    users = {user.strip('/') for user, used in arrows() if used.strip('/') == room}
+    return (room, *sorted(user for user in users if user in rooms_with_tests()), 'pages')
 
 
 def fails(folder, tests, limit=None):
@@ -200,9 +201,17 @@ def stop(number, _):
     sys.exit(128 + number)
 
 
+def rooms_with_tests():
+    """The names of all rooms with a folder in test/unit."""
+    tests = os.path.join(ROOT, 'test', 'unit')
+    names = [os.path.relpath(folder, tests) for folder, _, files in os.walk(tests) if files]
+    return sorted(name for name in names if os.path.isdir(folder_of(name)))
+
+
 def room_of(path):
-    """The room that a file of the package belongs to."""
-    return 'nodes' if path.startswith('nodes') else os.path.relpath(path, SOURCE).split(os.sep)[0]
+    """The innermost room with tests that a file of the package belongs to."""
+    return max((room for room in rooms_with_tests()
+                if os.path.join(ROOT, path).startswith(folder_of(room) + os.sep)), key=len)
 
 
 def duration(name):
@@ -226,11 +235,9 @@ def main():
     for name in 'count', 'jobs':
         if getattr(arguments, name) < 1:
             parser.error(f'--{name}: {getattr(arguments, name)}: expected a number from 1')
-    rooms = [name for name in sorted(os.listdir(os.path.join(ROOT, 'test', 'unit')))
-             if os.path.isdir(folder_of(name))]
     for room in arguments.rooms:
-        if room.split('/')[0] not in rooms:
-            parser.error(f"{room}: no such room: expected one of {', '.join(rooms)}")
+        if room not in rooms_with_tests():
+            parser.error(f"{room}: no such room: expected one of {', '.join(rooms_with_tests())}")
     for number in signal.SIGINT, signal.SIGTERM:
         signal.signal(number, stop)
     paths = files_of(arguments.rooms)

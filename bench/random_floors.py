@@ -11,9 +11,9 @@ import yaml
 from base_cases import Case
 import bases
 from floors import squared_errors
-from rbx1_nav.robot.description import read_robot
-from rbx1_nav.robot.surfaces import load_surface
-from rbx1_nav.ros.node import resources
+from rbx1_nav.base.description import read_robot
+from rbx1_nav.base.surfaces import load_surface
+from rbx1_nav.node import resources
 
 SLIP, UNEQUAL, BIAS = 0.3, 0.05, 6.0    # largest slips; difference of the wheels; bias of the gyro, degrees/s
 SIGMAS = 5.0            # an error of more standard deviations than this must have been announced

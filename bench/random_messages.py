@@ -12,14 +12,14 @@ import sys
 
 import numpy
 
-from rbx1_nav.estimation.combined_odometry import CombinedOdometry
-from rbx1_nav.estimation.priors import UNKNOWN_FLOOR, priors
-from rbx1_nav.estimation.inputs import MAX_VARIANCE, Imu, Odom, RejectedMessage
-from rbx1_nav.robot.kinematics import Pose, arc
-from rbx1_nav.robot.readings import MIN_VARIANCE
-from rbx1_nav.robot.surfaces import known_surfaces, load_surface
-from rbx1_nav.ros.node import resources
-from rbx1_nav.units import SECOND
+from rbx1_nav.base.kinematics import Pose, arc
+from rbx1_nav.base.readings import MIN_VARIANCE
+from rbx1_nav.base.surfaces import known_surfaces, load_surface
+from rbx1_nav.base.units import SECOND
+from rbx1_nav.filter.combined_odometry import CombinedOdometry
+from rbx1_nav.filter.inputs import MAX_VARIANCE, Imu, Odom, RejectedMessage
+from rbx1_nav.filter.priors import UNKNOWN_FLOOR, priors
+from rbx1_nav.node import resources
 
 LEAST_RATIO = -1e-12    # smallest eigenvalue / largest one
 LONG = 100      # steps after which a filter counts as long-running

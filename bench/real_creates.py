@@ -13,15 +13,15 @@ import time
 import numpy
 
 from real_pictures import draw_ends, draw_paths
-from rbx1_nav.config import ConfigError, show_name
-from rbx1_nav.fitting.comparison import inner_share, simulate_paths
-from rbx1_nav.fitting.floor_fit import Fitter, fit_floor
-from rbx1_nav.fitting.prediction import SPREADS, Prediction
-from rbx1_nav.fitting.recording import CAMERAS, COMMANDS, read_robot, truth_file
-from rbx1_nav.fitting.run import PreparedRun, Windows
-from rbx1_nav.plotting.plots import check_picture
-from rbx1_nav.robot.surfaces import load_surface
-from rbx1_nav.ros.node import resources
+from rbx1_nav.base.surfaces import load_surface
+from rbx1_nav.extras.fitting.comparison import inner_share, simulate_paths
+from rbx1_nav.extras.fitting.floor_fit import Fitter, fit_floor
+from rbx1_nav.extras.fitting.prediction import SPREADS, Prediction
+from rbx1_nav.extras.fitting.recording import CAMERAS, COMMANDS, read_robot, truth_file
+from rbx1_nav.extras.fitting.run import PreparedRun, Windows
+from rbx1_nav.extras.many_runs.plots import check_picture
+from rbx1_nav.node import resources
+from rbx1_nav.node.config import ConfigError, show_name
 from rbx1_nav.simulation.floor_noise import NOISES
 
 BASE_WIDTH = 0.26       # m, of a Create in these files

@@ -2,10 +2,10 @@
 from matplotlib.figure import Figure
 import numpy
 
-from rbx1_nav.fitting.comparison import simulate_paths
-from rbx1_nav.fitting.prediction import Prediction
-from rbx1_nav.fitting.recording import relative
-from rbx1_nav.plotting.plots import PATHS, SIMULATED, TRUTH, draw_regions, save
+from rbx1_nav.extras.fitting.comparison import simulate_paths
+from rbx1_nav.extras.fitting.prediction import Prediction
+from rbx1_nav.extras.fitting.recording import relative
+from rbx1_nav.extras.many_runs.plots import PATHS, SIMULATED, TRUTH, draw_regions, save
 
 QUARTILES = (0.25, 'first quartile'), (0.5, 'median'), (0.75, 'third quartile')
 HALF = 0.32     # m, half the size of a panel with end poses: the largest region fits

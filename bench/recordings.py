@@ -94,9 +94,9 @@ def record(path, seed, args):
 def read(path):
     """The Recording in a bag."""
     import rosbag
-    from rbx1_nav.estimation.gyro_input import GyroInput
-    from rbx1_nav.ros import messages
-    from rbx1_nav.ros.filter import conversions
+    from rbx1_nav.filter.gyro_input import GyroInput
+    from rbx1_nav.base import messages
+    from rbx1_nav.filter import conversions
     gyro = GyroInput()
     found = replay.Recording([], [], {}, [], [], {}, [])
     headers = {topic: [] for topic in TOPICS[:4]}
@@ -131,9 +131,9 @@ def read(path):
 def evaluate(path, surface):
     """The figures of a bag, and the log lines of the filter. Raises Failure."""
     import rosbag
-    from rbx1_nav.estimation.priors import priors
-    from rbx1_nav.robot.surfaces import load_surface
-    from rbx1_nav.ros.node import resources
+    from rbx1_nav.filter.priors import priors
+    from rbx1_nav.base.surfaces import load_surface
+    from rbx1_nav.node import resources
     try:
         recording = read(path)
     except (OSError, rosbag.ROSBagException) as error:

@@ -7,8 +7,8 @@ import math
 import re
 
 from floors import consistency, squared_errors
-from rbx1_nav.estimation.combined_odometry import CombinedOdometry
-from rbx1_nav.units import SECOND
+from rbx1_nav.base.units import SECOND
+from rbx1_nav.filter.combined_odometry import CombinedOdometry
 from robot_pose_ekf import RobotPoseEkf
 
 STILL = 1e-3        # m and rad: odometry has moved if it differs by more than this from a pose at rest

@@ -8,13 +8,13 @@ import os
 
 import numpy
 
-from rbx1_nav.control.legs import Straight, out_and_back_by_odometry
-from rbx1_nav.robot.description import load_robot
-from rbx1_nav.robot.kinematics import ORIGIN
-from rbx1_nav.robot.surfaces import load_surface
-from rbx1_nav.ros.node import resources
-from rbx1_nav.simulation import exercise
-from rbx1_nav.simulation.summary import HEADER, Summary
+from rbx1_nav.base.description import load_robot
+from rbx1_nav.base.kinematics import ORIGIN
+from rbx1_nav.base.surfaces import load_surface
+from rbx1_nav.exercise.legs import Straight, out_and_back_by_odometry
+from rbx1_nav.extras.many_runs import simulated_run
+from rbx1_nav.extras.many_runs.summary import HEADER, Summary
+from rbx1_nav.node import resources
 
 ANSWER = os.path.join(os.path.dirname(os.path.realpath(__file__)), '..', 'examples', 'answers', 'steering.py')
 
@@ -70,9 +70,9 @@ def main():
     print(HEADER)
     for title, legs in (('Straight ahead', out_and_back_by_odometry),
                         ('Steered', partial(steered_legs, load_answer().steering))):
-        exercise.out_and_back_by_odometry = legs
+        simulated_run.out_and_back_by_odometry = legs
         for method in 'odom', 'ekf':
-            results = [exercise.simulate(method, robot, surface, seed) for seed in range(arguments.runs)]
+            results = [simulated_run.simulate(method, robot, surface, seed) for seed in range(arguments.runs)]
             summary = Summary()
             for result in results:
                 end = result.end

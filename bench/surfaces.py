@@ -9,11 +9,11 @@ import numpy
 import yaml
 
 from floors import Follower, consistency
-from rbx1_nav.robot.description import read_robot
-from rbx1_nav.robot.surfaces import load_surface
-from rbx1_nav.ros.node import resources
-from rbx1_nav.control.methods import METHODS
-from rbx1_nav.simulation.exercise import simulate
+from rbx1_nav.base.description import read_robot
+from rbx1_nav.base.surfaces import load_surface
+from rbx1_nav.exercise.methods import METHODS
+from rbx1_nav.extras.many_runs.simulated_run import simulate
+from rbx1_nav.node import resources
 
 TIMED_SEEDS = 20    # runs of each method whose speed is measured
 

@@ -8,8 +8,8 @@ import yaml
 
 import bases
 from base_cases import CASES, Case
-from rbx1_nav.robot.description import read_robot
-from rbx1_nav.robot.surfaces import load_surface
+from rbx1_nav.base.description import read_robot
+from rbx1_nav.base.surfaces import load_surface
 
 CONFIG = os.path.join(os.path.dirname(__file__), '..', 'config')
 GOOD = dict(case='a', seeds=1, heading=1.0, port_heading=2.0, reckoned_heading=1.0, position=0.1, port_position=0.1,

@@ -6,11 +6,11 @@ import numpy
 import pytest
 
 import random_messages
-from rbx1_nav.estimation import combined_odometry
-from rbx1_nav.estimation.priors import UNKNOWN_FLOOR, priors
-from rbx1_nav.estimation.inputs import MAX_VARIANCE, Imu
-from rbx1_nav.robot.readings import MIN_VARIANCE
-from rbx1_nav.units import SECOND
+from rbx1_nav.base.readings import MIN_VARIANCE
+from rbx1_nav.base.units import SECOND
+from rbx1_nav.filter import combined_odometry
+from rbx1_nav.filter.inputs import MAX_VARIANCE, Imu
+from rbx1_nav.filter.priors import UNKNOWN_FLOOR, priors
 
 GOOD = numpy.diag([1.0, 2.0, 3.0])
 

@@ -6,13 +6,13 @@ import pytest
 import yaml
 
 import replay
-from rbx1_nav.control.legs import out_and_back
-from rbx1_nav.estimation.combined_odometry import CombinedOdometry
-from rbx1_nav.estimation.priors import priors
-from rbx1_nav.robot.description import read_robot
-from rbx1_nav.robot.surfaces import load_surface
-from rbx1_nav.simulation.exercise import EXERCISE, TICK, Simulation, feed
-from rbx1_nav.units import SECOND
+from rbx1_nav.base.description import read_robot
+from rbx1_nav.base.surfaces import load_surface
+from rbx1_nav.base.units import SECOND
+from rbx1_nav.exercise.legs import out_and_back
+from rbx1_nav.extras.many_runs.simulated_run import EXERCISE, TICK, Simulation, feed
+from rbx1_nav.filter.combined_odometry import CombinedOdometry
+from rbx1_nav.filter.priors import priors
 
 CONFIG = os.path.join(os.path.dirname(__file__), '..', 'config')
 CARPET = load_surface('low_ply_carpet', os.path.join(CONFIG, 'surfaces'))

@@ -7,10 +7,10 @@ import re
 import numpy
 import pytest
 import steering
-from rbx1_nav.robot.description import load_robot
-from rbx1_nav.robot.kinematics import Pose
-from rbx1_nav.robot.surfaces import load_surface
-from rbx1_nav.simulation import exercise
+from rbx1_nav.base.description import load_robot
+from rbx1_nav.base.kinematics import Pose
+from rbx1_nav.base.surfaces import load_surface
+from rbx1_nav.extras.many_runs import simulated_run
 
 CONFIG = os.path.join(os.path.dirname(__file__), '..', 'config')
 ANSWER = steering.load_answer()
@@ -28,8 +28,8 @@ def test_the_pages_quote_the_gain(monkeypatch):
     """docs/answers.md, why_it_misses.md and figures.md: steered, the mean distance and the rms of y of 100 runs, cm."""
     carpet = load_surface('low_ply_carpet', os.path.join(CONFIG, 'surfaces'))
     robot = load_robot(os.path.join(CONFIG, 'turtlebot.yaml'))
-    monkeypatch.setattr(exercise, 'out_and_back_by_odometry', partial(steering.steered_legs, ANSWER.steering))
-    ends = numpy.array([exercise.simulate('ekf', robot, carpet, seed).end.truth for seed in range(100)])
+    monkeypatch.setattr(simulated_run, 'out_and_back_by_odometry', partial(steering.steered_legs, ANSWER.steering))
+    ends = numpy.array([simulated_run.simulate('ekf', robot, carpet, seed).end.truth for seed in range(100)])
     gain = 100 * numpy.hypot(*ends.T[:2]).mean(), 100 * numpy.sqrt((ends[:, 1] ** 2).mean())
     texts = {}
     for page in 'answers', 'why_it_misses', 'figures':

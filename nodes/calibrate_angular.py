@@ -16,16 +16,16 @@ from math import degrees, pi
 import rospy
 from sensor_msgs.msg import Imu
 
-from rbx1_nav.config import ConfigError
-from rbx1_nav.control.legs import Turn
-from rbx1_nav.create.driver.fractions import LOST
+from rbx1_nav.base.calibration import corrected, read_measured, turn_by_gyro
+from rbx1_nav.base.units import wrap_angle
 from rbx1_nav.driving.calibrating import COMMON, Diagnosis, ask, drive, factor_set, make_publisher
 from rbx1_nav.driving.odometry import PoseListener
 from rbx1_nav.driving.script import start_node
-from rbx1_nav.parameters import number
-from rbx1_nav.robot.calibration import corrected, read_measured, turn_by_gyro
-from rbx1_nav.ros.node.params import param
-from rbx1_nav.units import wrap_angle
+from rbx1_nav.exercise.legs import Turn
+from rbx1_nav.extras.create.fractions import LOST
+from rbx1_nav.node.config import ConfigError
+from rbx1_nav.node.parameters import number
+from rbx1_nav.node.private_parameters import param
 
 ODOM_KEY, GYRO_KEY = 'odom_angular_scale_correction', 'gyro_scale_correction'
 MOVED = 1.0     # degrees, by which a robot has turned that is not at rest

@@ -15,13 +15,13 @@ from math import hypot
 
 import rospy
 
-from rbx1_nav.control.legs import Straight
+from rbx1_nav.base.calibration import corrected, read_measured
 from rbx1_nav.driving.calibrating import COMMON, Diagnosis, ask, drive, factor_set, make_publisher
 from rbx1_nav.driving.odometry import PoseListener
 from rbx1_nav.driving.script import start_node
-from rbx1_nav.parameters import number
-from rbx1_nav.robot.calibration import corrected, read_measured
-from rbx1_nav.ros.node.params import param
+from rbx1_nav.exercise.legs import Straight
+from rbx1_nav.node.parameters import number
+from rbx1_nav.node.private_parameters import param
 
 KEY = 'odom_linear_scale_correction'
 

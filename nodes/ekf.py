@@ -5,7 +5,7 @@ usage: ekf.py [_parameter:=value ...] [topic:=new_topic ...]      usually starte
 """
 from __future__ import annotations
 
-import rbx1_nav.ros.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
+import rbx1_nav.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
 
 from functools import partial
 import threading
@@ -19,15 +19,15 @@ from nav_msgs.msg import Odometry
 from sensor_msgs.msg import Imu
 from std_msgs.msg import Empty
 
-from rbx1_nav.estimation.combined_odometry import CombinedOdometry
-from rbx1_nav.estimation.inputs import RejectedMessage, check
-from rbx1_nav.ros.filter.conversions import from_odometry, from_set_pose
-from rbx1_nav.ros.filter.ekf_parameters import PARAMETERS, load_parameters, make_filter, read_parameters
-from rbx1_nav.ros.filter.estimate_publisher import EstimatePublisher
-from rbx1_nav.ros.filter.filter_status import Diagnostics, LimitedLog
-from rbx1_nav.ros.filter.sensor_inputs import FrameTree, ImuInput, OneSender, frames_of
-from rbx1_nav.ros.node import life
-from rbx1_nav.schedule import Schedule
+from rbx1_nav.base.schedule import Schedule
+from rbx1_nav.filter.combined_odometry import CombinedOdometry
+from rbx1_nav.filter.conversions import from_odometry, from_set_pose
+from rbx1_nav.filter.ekf_parameters import PARAMETERS, load_parameters, make_filter, read_parameters
+from rbx1_nav.filter.estimate_publisher import EstimatePublisher
+from rbx1_nav.filter.filter_status import Diagnostics, LimitedLog
+from rbx1_nav.filter.inputs import RejectedMessage, check
+from rbx1_nav.filter.sensor_inputs import FrameTree, ImuInput, OneSender, frames_of
+from rbx1_nav.node import life
 
 
 class Ekf:

@@ -13,7 +13,7 @@ A pseudo-terminal has no RTS and DTR lines: a driver that requires them gets an 
 """
 from __future__ import annotations
 
-import rbx1_nav.ros.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
+import rbx1_nav.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
 
 import time
 
@@ -21,16 +21,16 @@ import rospy
 from nav_msgs.msg import Odometry
 from std_msgs.msg import String
 
-from rbx1_nav.create.emulator.emulator import EmulatedCreate
-from rbx1_nav.create.emulator.serial_line import PseudoTerminal
-from rbx1_nav.ros import messages
-from rbx1_nav.ros.base.clocks import as_ros_time
-from rbx1_nav.ros.base.emulated_create import PARAMETERS, RobotFaults, make_robot
-from rbx1_nav.ros.node import life
-from rbx1_nav.ros.node.params import param
-from rbx1_nav.schedule import Schedule
+from rbx1_nav.base import messages
+from rbx1_nav.base.clocks import as_ros_time
+from rbx1_nav.base.schedule import Schedule
+from rbx1_nav.base.units import SECOND
+from rbx1_nav.extras.create.emulator.emulated_create import PARAMETERS, RobotFaults, make_robot
+from rbx1_nav.extras.create.emulator.emulator import EmulatedCreate
+from rbx1_nav.extras.create.emulator.serial_line import PseudoTerminal
+from rbx1_nav.node import life
+from rbx1_nav.node.private_parameters import param
 from rbx1_nav.simulation.wheels import IdealWheels
-from rbx1_nav.units import SECOND
 
 TRUTH_RATE = 50     # Hz
 CLIENT_TIMEOUT = 0.7    # s: half of the time that a node has to exit

@@ -13,7 +13,7 @@ The --ends file has one line per bag: its name without folder, and the end pose 
 """
 from __future__ import annotations
 
-import rbx1_nav.ros.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
+import rbx1_nav.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
 
 import argparse
 from itertools import zip_longest
@@ -26,18 +26,18 @@ os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
 
 from tqdm import tqdm
 
-from rbx1_nav.batch.executor import add_arguments, in_order, open_place
-from rbx1_nav.config import ConfigError, show_name
-from rbx1_nav.files import check_yaml, write_file
-from rbx1_nav.fitting.bags import TopicNames, read_bag
-from rbx1_nav.fitting.comparison import compare, shares
-from rbx1_nav.fitting.end_poses import read_ends
-from rbx1_nav.fitting.recording import (
+from rbx1_nav.extras.fitting.bags import TopicNames, read_bag
+from rbx1_nav.extras.fitting.comparison import compare, shares
+from rbx1_nav.extras.fitting.end_poses import read_ends
+from rbx1_nav.extras.many_runs.executor import add_arguments, in_order, open_place
+from rbx1_nav.node.config import ConfigError, show_name
+from rbx1_nav.node.files import check_yaml, write_file
+from rbx1_nav.extras.fitting.recording import (
     Recording, check_end, in_force, is_commands_file, read_robot as read_text_files, truth_file)
-from rbx1_nav.plotting.plots import check_picture, draw_fit
-from rbx1_nav.robot.description import Robot, load_robot
-from rbx1_nav.robot.surfaces import Surface, known_surfaces, load_surface
-from rbx1_nav.ros.node import resources
+from rbx1_nav.base.description import Robot, load_robot
+from rbx1_nav.base.surfaces import Surface, known_surfaces, load_surface
+from rbx1_nav.extras.many_runs.plots import check_picture, draw_fit
+from rbx1_nav.node import resources
 
 START, CREATE_START = 'low_ply_carpet', 'create_lab_floor'
 
@@ -117,8 +117,8 @@ def main() -> int:
             bar.set_description('Reading the runs')
             recordings, end_errors = read_runs(arguments, robot)
             # only now, because they import scipy, which takes longer than the checks
-            from rbx1_nav.fitting.surface_file import surface_text, table
-            from rbx1_nav.fitting.surface_fit import WholeFit
+            from rbx1_nav.extras.fitting.surface_file import surface_text, table
+            from rbx1_nav.extras.fitting.surface_fit import WholeFit
             result = WholeFit(recordings, robot.base_width, start, end_errors).run(
                 lambda part: bar.set_description(f'Fitting the {part}'))
             bar.set_description('Simulating the runs on the new surface')

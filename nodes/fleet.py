@@ -7,7 +7,7 @@ Robots can be added and removed while others drive: rosservice call /fleet/add r
 """
 from __future__ import annotations
 
-import rbx1_nav.ros.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
+import rbx1_nav.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
 
 from concurrent.futures import Future
 from functools import partial
@@ -20,23 +20,23 @@ from geometry_msgs.msg import TransformStamped
 import rospy
 from tf2_msgs.msg import TFMessage
 
-from rbx1_nav.config import ConfigError, Section
-from rbx1_nav.control.methods import OF_PAGE
-from rbx1_nav.parameters import choice, number
-from rbx1_nav.robot.description import DRIVER_KEYS, PARAMETERS as ROBOT, read_robot
-from rbx1_nav.robot.kinematics import Pose
-from rbx1_nav.ros import messages
-from rbx1_nav.ros.base.clocks import Clock
-from rbx1_nav.ros.base.publisher import with_frames
-from rbx1_nav.ros.base.simulated_clock import PARAMETERS as CLOCK, read_clock
-from rbx1_nav.ros.base.simulated_floor import read_floor
-from rbx1_nav.ros.base.simulated_robot import SimulatedRobot
-from rbx1_nav.ros.network.bases import Refusals
-from rbx1_nav.ros.network.master import is_alive
-from rbx1_nav.ros.node import life
-from rbx1_nav.ros.node.frames import with_prefix
-from rbx1_nav.ros.node.params import param
-from rbx1_nav.schedule import Schedule
+from rbx1_nav.base import messages
+from rbx1_nav.base.clocks import Clock
+from rbx1_nav.base.description import DRIVER_KEYS, PARAMETERS as ROBOT, read_robot
+from rbx1_nav.base.kinematics import Pose
+from rbx1_nav.base.publisher import with_frames
+from rbx1_nav.base.running_bases import Refusals
+from rbx1_nav.base.schedule import Schedule
+from rbx1_nav.exercise.methods import OF_PAGE
+from rbx1_nav.extras.lockstep.simulated_clock import PARAMETERS as CLOCK, read_clock
+from rbx1_nav.node import life
+from rbx1_nav.node.config import ConfigError, Section
+from rbx1_nav.node.frames import with_prefix
+from rbx1_nav.node.master import is_alive
+from rbx1_nav.node.parameters import choice, number
+from rbx1_nav.node.private_parameters import param
+from rbx1_nav.simulation.floor_parameters import read_floor
+from rbx1_nav.simulation.simulated_robot import SimulatedRobot
 
 PARAMETERS = [
     number('robots', 0, '', 'number of robots at the beginning: robot1, robot2 and so on; the parameters of a base are '

@@ -7,7 +7,7 @@ usage: odom_ekf.py [topic:=new_topic ...]      usually started by odom_ekf.launc
 """
 from __future__ import annotations
 
-import rbx1_nav.ros.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
+import rbx1_nav.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
 
 from math import inf
 import time
@@ -16,9 +16,9 @@ import rospy
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from nav_msgs.msg import Odometry
 
-from rbx1_nav.ros import messages
-from rbx1_nav.ros.network.rospy_topics import NoDelay
-from rbx1_nav.ros.node import life
+from rbx1_nav.base import messages
+from rbx1_nav.node import life
+from rbx1_nav.node.rospy_topics import NoDelay
 
 MESSAGE_WARN_TIME = 5    # s of wall time without a message before a warning
 

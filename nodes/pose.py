@@ -8,7 +8,7 @@ simulated base publishes /ground_truth, and only odom_ekf.launch starts a publis
 """
 from __future__ import annotations
 
-import rbx1_nav.ros.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
+import rbx1_nav.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
 
 from math import degrees, hypot
 import time
@@ -17,9 +17,9 @@ from typing import Mapping
 import rospy
 from nav_msgs.msg import Odometry
 
-from rbx1_nav.ros import messages
-from rbx1_nav.ros.node import life
-from rbx1_nav.units import rounded
+from rbx1_nav.base import messages
+from rbx1_nav.base.units import rounded
+from rbx1_nav.node import life
 
 TOPICS = {'ground_truth': 'truth', 'odom': 'odometry', 'odom_ekf': 'estimate'}
 TIMEOUT = 5.0       # s of wall time to wait for a base, and for a message on each topic that is published

@@ -6,7 +6,7 @@ learner. Ctrl-C stops all seats.
 """
 from __future__ import annotations
 
-import rbx1_nav.ros.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
+import rbx1_nav.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
 
 import argparse
 import signal
@@ -16,11 +16,11 @@ import sys
 import time
 from typing import Sequence
 
-from rbx1_nav.config import ConfigError
-from rbx1_nav.robot.surfaces import known_surfaces, load_surface
-from rbx1_nav.ros.node import resources
-from rbx1_nav.ros.web.seat import Seat
-from rbx1_nav.simulation.surfaces import RANDOM, read_seed
+from rbx1_nav.base.surfaces import known_surfaces, load_surface
+from rbx1_nav.extras.web.seat import Seat
+from rbx1_nav.node import resources
+from rbx1_nav.node.config import ConfigError
+from rbx1_nav.simulation.floor import RANDOM, read_seed
 
 STOP_TIMEOUT = 20.0     # s for all seats to stop
 MAX_SEATS = 100

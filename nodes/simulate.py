@@ -5,7 +5,7 @@ It uses the same motions, base and filter as the nodes.
 """
 from __future__ import annotations
 
-import rbx1_nav.ros.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
+import rbx1_nav.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
 
 import argparse
 import ast
@@ -16,21 +16,21 @@ import sys
 
 from tqdm import tqdm
 
-from rbx1_nav.batch.cases import Combination, combine, read_sweep, units
-from rbx1_nav.batch.executor import add_arguments
-from rbx1_nav.batch.runs_file import RunsFile
-from rbx1_nav.batch.sweep import Sweep
-from rbx1_nav.config import ConfigError, show, show_name
-from rbx1_nav.control.methods import METHODS
-from rbx1_nav.files import check_writable
-from rbx1_nav.parameters import split_usage
-from rbx1_nav.plotting.animation import animate, check_animation
-from rbx1_nav.plotting.plots import PATHS, check_picture, draw
-from rbx1_nav.robot.description import load_robot
-from rbx1_nav.robot.surfaces import KEYS, known_surfaces, load_surface
-from rbx1_nav.ros.node import resources
-from rbx1_nav.simulation.exercise import PARAMETERS
-from rbx1_nav.simulation.surfaces import MAX_SEED
+from rbx1_nav.base.description import load_robot
+from rbx1_nav.base.surfaces import KEYS, known_surfaces, load_surface
+from rbx1_nav.exercise.methods import METHODS
+from rbx1_nav.extras.many_runs.animation import animate, check_animation
+from rbx1_nav.extras.many_runs.cases import Combination, combine, read_sweep, units
+from rbx1_nav.extras.many_runs.executor import add_arguments
+from rbx1_nav.extras.many_runs.plots import PATHS, check_picture, draw
+from rbx1_nav.extras.many_runs.runs_file import RunsFile
+from rbx1_nav.extras.many_runs.simulated_run import PARAMETERS
+from rbx1_nav.extras.many_runs.sweep import Sweep
+from rbx1_nav.node import resources
+from rbx1_nav.node.config import ConfigError, show, show_name
+from rbx1_nav.node.files import check_writable
+from rbx1_nav.node.parameters import split_usage
+from rbx1_nav.simulation.floor import MAX_SEED
 
 
 def read_arguments() -> argparse.Namespace:

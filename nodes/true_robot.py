@@ -7,7 +7,7 @@ RViz's own RobotModel display shows the robot at its odometry pose.
 """
 from __future__ import annotations
 
-import rbx1_nav.ros.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
+import rbx1_nav.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
 
 import time
 from typing import Mapping, Sequence
@@ -22,11 +22,11 @@ from tf.transformations import (
 import tf2_ros
 from visualization_msgs.msg import Marker, MarkerArray
 
-from rbx1_nav.parameters import elsewhere
-from rbx1_nav.robot.urdf import Visual, read_visuals
-from rbx1_nav.ros.node import life
-from rbx1_nav.schedule import Schedule
-from rbx1_nav.units import Array
+from rbx1_nav.base.schedule import Schedule
+from rbx1_nav.base.units import Array
+from rbx1_nav.base.urdf import Visual, read_visuals
+from rbx1_nav.node import life
+from rbx1_nav.node.parameters import elsewhere
 
 PARAMETERS = [elsewhere('robot_description', "the robot's URDF, as text")]
 SHAPES = {'box': Marker.CUBE, 'cylinder': Marker.CYLINDER, 'sphere': Marker.SPHERE, 'mesh': Marker.MESH_RESOURCE}

@@ -7,16 +7,16 @@ The parameters are named as in create_node.
 """
 from __future__ import annotations
 
-import rbx1_nav.ros.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
+import rbx1_nav.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
 
 import rospy
 
-from rbx1_nav.create.driver.settings import PARAMETERS, read_settings
-from rbx1_nav.ros.base.create_base import CreateBase
-from rbx1_nav.ros.base.publisher import with_frames
-from rbx1_nav.ros.node import life
-from rbx1_nav.ros.node.frames import resolve_frame
-from rbx1_nav.ros.node.params import stored_params
+from rbx1_nav.base.publisher import with_frames
+from rbx1_nav.extras.create.create_base import CreateBase
+from rbx1_nav.extras.create.settings import PARAMETERS, read_settings
+from rbx1_nav.node import life
+from rbx1_nav.node.frames import resolve_frame
+from rbx1_nav.node.private_parameters import stored_params
 
 
 def main() -> int:

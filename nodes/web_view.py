@@ -7,7 +7,7 @@ Prints the address to open. It contains the token that is needed to move the rob
 """
 from __future__ import annotations
 
-import rbx1_nav.ros.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
+import rbx1_nav.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
 
 from functools import partial
 import os
@@ -19,18 +19,18 @@ from typing import Callable
 import rospy
 from rospy.names import get_resolved_mappings
 
-from rbx1_nav.config import ConfigError, YamlValue, show
-from rbx1_nav.parameters import custom, flag, number
-from rbx1_nav.ros.node import life, resources
-from rbx1_nav.ros.node.params import param
-from rbx1_nav.ros.web.checks import LOCALHOST, TOKEN_VARIABLE, make_token, page_address
-from rbx1_nav.ros.web.connections import Connections
-from rbx1_nav.ros.web.controls import Controls
-from rbx1_nav.ros.web.hand_drive import HandDrive, command_publisher
-from rbx1_nav.ros.web.page_runs import Runs
-from rbx1_nav.ros.web.server import PageServer
-from rbx1_nav.ros.web.state import PageState
-from rbx1_nav.ros.web.system import System
+from rbx1_nav.extras.web.checks import LOCALHOST, TOKEN_VARIABLE, make_token, page_address
+from rbx1_nav.extras.web.connections import Connections
+from rbx1_nav.extras.web.controls import Controls
+from rbx1_nav.extras.web.hand_drive import HandDrive, command_publisher
+from rbx1_nav.extras.web.page_runs import Runs
+from rbx1_nav.extras.web.server import PageServer
+from rbx1_nav.extras.web.state import PageState
+from rbx1_nav.extras.web.system import System
+from rbx1_nav.node import life, resources
+from rbx1_nav.node.config import ConfigError, YamlValue, show
+from rbx1_nav.node.parameters import custom, flag, number
+from rbx1_nav.node.private_parameters import param
 
 
 MAX_TEXT = 60

@@ -23,7 +23,7 @@ os.environ['ROS_PACKAGE_PATH'] = ROOT      # needed to find the surface files
 def declared(kind, name):
     """Return the parameters of a node, or the keys of a part of a YAML file."""
     if kind == 'key':
-        from rbx1_nav.robot import description
+        from rbx1_nav.base import description
         return getattr(description, name)
     spec = importlib.util.spec_from_file_location('node', os.path.join(ROOT, 'nodes', name))
     node = importlib.util.module_from_spec(spec)
@@ -31,13 +31,13 @@ def declared(kind, name):
     if not hasattr(node, 'Drive'):
         return node.PARAMETERS
     from rbx1_nav.driving.script import WAIT_TIMEOUT
-    from rbx1_nav.parameters import split_usage
+    from rbx1_nav.node.parameters import split_usage
     return [*getattr(node, 'PARAMETERS', split_usage(node.__doc__)[1]), WAIT_TIMEOUT]
 
 
 def surface_table():
     """Return the lines of the table of surface files, with a column for each."""
-    from rbx1_nav.robot.surfaces import KEYS, Surface, known_surfaces, load_surface
+    from rbx1_nav.base.surfaces import KEYS, Surface, known_surfaces, load_surface
     loaded = [load_surface(name, SURFACE_FILES) for name in known_surfaces(SURFACE_FILES)]
     surfaces = [surface for surface in loaded if surface]       # without the ideal one, which has no values
     rows = [['key', 'unit', 'range', *(surface.name for surface in surfaces), ''], ['---'] * (len(surfaces) + 4)]
@@ -50,8 +50,8 @@ def surface_table():
 
 def filled_in(text):
     """Return the text of a file with up-to-date tables and surfaces."""
-    from rbx1_nav.parameters import table
-    from rbx1_nav.robot.surfaces import known_surfaces
+    from rbx1_nav.node.parameters import table
+    from rbx1_nav.base.surfaces import known_surfaces
 
     def fill(match):
         kind, name = match.groups()
@@ -68,7 +68,7 @@ def files():
 
 def main():
     """Update all files."""
-    from rbx1_nav.config import ConfigError
+    from rbx1_nav.node.config import ConfigError
     changed = {}
     for path in files():
         with open(path, encoding='utf-8') as file:

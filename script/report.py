@@ -7,7 +7,7 @@ import matplotlib
 import rosbag
 from nav_msgs.msg import Odometry
 
-from rbx1_nav.plotting.plots import ESTIMATE, ODOMETRY, TRUTH
+from rbx1_nav.extras.many_runs.plots import ESTIMATE, ODOMETRY, TRUTH
 
 matplotlib.use('Agg')
 from matplotlib import pyplot       # noqa: E402  (the backend comes first)

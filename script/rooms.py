@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Draws in docs/design.md which rooms import which. A room is a folder of src/rbx1_nav, or nodes/.
 
-Modules that are in no room, such as units.py, are left out, and so is an arrow to a room to which other arrows lead.
+An arrow to a room to which other arrows lead is left out.
 """
 import ast
 import importlib.util
@@ -46,7 +46,7 @@ def imported_modules(source, module, is_package):
             parent = node.module or ''
             if node.level:
                 parent = importlib.util.resolve_name('.' * node.level + parent, package)
-            # the imported name may itself be a module: `from rbx1_nav import units`
+            # the imported name may itself be a module: `from rbx1_nav.base import units`
             yield from {name if is_module(name) else parent for name in (
                 f'{parent}.{alias.name}' for alias in node.names)}
         elif isinstance(node, ast.Call):
@@ -57,7 +57,7 @@ def imported_modules(source, module, is_package):
 
 
 def folder_of(module):
-    """Return the folder of a module as it is drawn, such as 'create/driver/'; '' if it is in no room."""
+    """Return the folder of a module as it is drawn, such as 'extras/create/'; '' if it is in no room."""
     if module.startswith('nodes.'):
         return 'nodes/'
     package = module if os.path.isdir(os.path.join(SOURCE, *module.split('.'))) else module.rpartition('.')[0]

@@ -7,7 +7,7 @@ usage: run_tests.py --results DIR [--jobs N] [--repeat] TESTS...
 
 --repeat: rostests that fail are repeated once, one at a time. Those that pass then are flaky; three fail the run.
 
-TESTS: a rostest, such as test/base/reset.test, or unit tests for one process, such as test/unit/create,test/unit/robot
+TESTS: a rostest, such as test/base/reset.test, or unit tests for one process, such as test/unit/base,test/unit/node
 
 Each rostest runs in a copy of this process: in a new process, the imports of rostest would take longer than most tests.
 """

@@ -1,4 +1,1 @@
-"""The out-and-back exercise for a differential-drive robot.
-
-Only the subpackage `ros` may import rospy.
-"""
+"""The out-and-back exercise for a differential-drive robot. What the exercise can do without is in `extras`."""

@@ -7,8 +7,8 @@ from xmlrpc.client import ServerProxy
 import rospy
 from nav_msgs.msg import Odometry
 
-from rbx1_nav.config import load_yaml
-from rbx1_nav.ros.node import resources
+from rbx1_nav.node import resources
+from rbx1_nav.node.config import load_yaml
 import support
 
 

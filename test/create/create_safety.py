@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """The robot leaves safe mode: the node reports the cause, and takes control again only when the cause is removed."""
 from driven import DrivenRobot
-from rbx1_nav.create.protocol import command
+from rbx1_nav.extras.create.protocol import command
 import support
 
 

@@ -12,7 +12,7 @@ import rospy
 from diagnostic_msgs.msg import DiagnosticArray
 
 from emulated import EmulatedRobot
-from rbx1_nav.create.protocol import command, drive_direct
+from rbx1_nav.extras.create.protocol import command, drive_direct
 import support
 
 STOP = drive_direct(0, 0)

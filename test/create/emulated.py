@@ -9,7 +9,7 @@ from nav_msgs.msg import Odometry
 from std_msgs.msg import Float64, String
 from std_srvs.srv import SetBool, Trigger
 
-from rbx1_nav.create.protocol import MODELS, command, packets_format, single_packets
+from rbx1_nav.extras.create.protocol import MODELS, command, packets_format, single_packets
 import support
 
 

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """At a wrong baud rate, only garbage passes the line; after the Baud command, the new rate is right."""
 from emulated import EmulatedRobot
-from rbx1_nav.create.protocol import PASSIVE, command, drive_direct
+from rbx1_nav.extras.create.protocol import PASSIVE, command, drive_direct
 import support
 
 

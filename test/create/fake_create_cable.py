@@ -7,7 +7,7 @@ import serial
 from std_srvs.srv import SetBool
 
 from emulated import EmulatedRobot
-from rbx1_nav.create.protocol import FULL, command, drive_direct
+from rbx1_nav.extras.create.protocol import FULL, command, drive_direct
 import support
 
 

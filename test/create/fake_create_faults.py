@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Faults and events of the emulated robot: wheel drop, cliff, bump, dock, power, battery, bad bytes, a stuck gyro."""
 from emulated import EmulatedRobot
-from rbx1_nav.create.protocol import OFF, PASSIVE, SAFE, checksum, command, drive_direct
+from rbx1_nav.extras.create.protocol import OFF, PASSIVE, SAFE, checksum, command, drive_direct
 import support
 
 

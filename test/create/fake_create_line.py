@@ -3,7 +3,7 @@
 import time
 
 from emulated import EmulatedRobot
-from rbx1_nav.create.protocol import command, drive_direct
+from rbx1_nav.extras.create.protocol import command, drive_direct
 import support
 
 CLOCKS = 0.001      # s: the robot and the stamps use different clocks

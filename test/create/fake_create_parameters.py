@@ -3,7 +3,7 @@
 import rospy
 
 from emulated import EmulatedRobot
-from rbx1_nav.create.protocol import SAFE, command, drive_direct, encode_frame
+from rbx1_nav.extras.create.protocol import SAFE, command, drive_direct, encode_frame
 import support
 
 

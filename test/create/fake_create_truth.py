@@ -3,7 +3,7 @@
 from math import pi
 
 from emulated import EmulatedRobot
-from rbx1_nav.create.protocol import command, drive_direct
+from rbx1_nav.extras.create.protocol import command, drive_direct
 import support
 
 COUNTS = 508.8 / (pi * 0.072)   # encoder counts per meter

@@ -21,7 +21,7 @@ class TestByOdometry(support.Case):
         support.wait_for(lambda: truth.last, '/ground_truth')
         for topic in topics:
             rospy.wait_for_message(topic, rospy.AnyMsg, support.LIMIT)
-        # the filter estimates the gyro bias at standstill, for 2 s as in simulation/exercise.py
+        # the filter estimates the gyro bias at standstill, for 2 s as in extras/many_runs/simulated_run.py
         start = truth.last.header.stamp
         support.wait_for(lambda: (truth.last.header.stamp - start).to_sec() > 2, 'two seconds')
 

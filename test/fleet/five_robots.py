@@ -3,11 +3,11 @@
 from diagnostic_msgs.srv import AddDiagnostics
 import rospy
 
-from rbx1_nav.config import load_yaml
-from rbx1_nav.robot.description import read_robot
-from rbx1_nav.robot.surfaces import load_surface
-from rbx1_nav.ros.node import resources
-from rbx1_nav.simulation.exercise import simulate
+from rbx1_nav.base.description import read_robot
+from rbx1_nav.base.surfaces import load_surface
+from rbx1_nav.extras.many_runs.simulated_run import simulate
+from rbx1_nav.node import resources
+from rbx1_nav.node.config import load_yaml
 import support
 
 SURFACE = 'low_ply_carpet'

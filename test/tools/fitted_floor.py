@@ -10,8 +10,8 @@ import rospkg
 import rospy
 import yaml
 
-from rbx1_nav.fitting.recording import relative
-from rbx1_nav.robot.surfaces import load_surface
+from rbx1_nav.base.surfaces import load_surface
+from rbx1_nav.extras.fitting.recording import relative
 import support
 
 TOPICS = '/cmd_vel', '/odom', '/imu/data', '/ground_truth'

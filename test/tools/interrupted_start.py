@@ -23,7 +23,7 @@ class TestInterruptedStart(support.Case):
         self.addCleanup(process.kill)
         os.close(write_end)
         with open(read_end, 'rb', buffering=0) as lines:
-            while not lines.readline().rstrip().endswith(b'rbx1_nav.ros.node.early_interrupt'):
+            while not lines.readline().rstrip().endswith(b'rbx1_nav.node.early_interrupt'):
                 self.assertIsNone(process.poll())
             process.send_signal(signal.SIGINT)
             return process.wait(support.LIMIT), lines.read().decode()

@@ -61,10 +61,10 @@ class TestTwoWorkers(support.Case):
 
     def copy_package(self):
         """Return a folder with another version of the package."""
-        import rbx1_nav.batch
+        import rbx1_nav
         folder = tempfile.mkdtemp(dir=self.folder)
-        shutil.copytree(os.path.dirname(os.path.dirname(rbx1_nav.batch.__file__)), os.path.join(folder, 'rbx1_nav'))
-        with open(os.path.join(folder, 'rbx1_nav', 'units.py'), 'a', encoding='utf-8') as file:
+        shutil.copytree(os.path.dirname(rbx1_nav.__file__), os.path.join(folder, 'rbx1_nav'))
+        with open(os.path.join(folder, 'rbx1_nav', 'base', 'units.py'), 'a', encoding='utf-8') as file:
             file.write('# another version\n')
         return folder
 

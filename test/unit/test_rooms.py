@@ -1,6 +1,7 @@
 """Which rooms of the package may import which, where ROS may be imported, and the maximum length of a file."""
 import importlib.util
 import os
+import subprocess
 import sys
 import sysconfig
 
@@ -11,54 +12,44 @@ sys.path.insert(0, os.path.join(ROOT, 'script'))
 import rooms
 from rooms import imported_modules, modules, python_files
 
-# room (a folder or a module of rbx1_nav): the rooms that it may import in addition to itself. A module belongs to the
-# innermost room that contains it
+# room, a folder of rbx1_nav: the other rooms that it may import. '' is the package itself
 ALLOWED = {
-    '__init__': set(), 'config': set(), 'create': set(), 'ros.network': set(), 'transform_utils': set(), 'units': set(),
-    'files': {'config'}, 'parameters': {'config'}, 'schedule': {'units'},
-    'robot': {'config', 'parameters', 'units'},
-    'control': {'robot', 'units'},
-    'simulation': {'config', 'robot', 'units'},
-    'simulation.base': {'control', 'robot', 'simulation', 'units'},
-    'simulation.exercise': {'control', 'estimation', 'robot', 'simulation.base', 'units'},
-    'simulation.summary': {'robot', 'units'},
-    'estimation': {'robot', 'units'},
-    'fitting': {'config', 'robot', 'simulation', 'units'},
-    'fitting.bags': {'config', 'estimation', 'fitting', 'robot', 'ros', 'units'},
-    'plotting': {'config', 'control', 'files', 'fitting', 'robot', 'simulation.exercise', 'units'},
-    'batch': {'config', 'control', 'files', 'parameters', 'robot', 'simulation.exercise', 'simulation.summary',
-              'units'},
-    'create.driver': {'config', 'control', 'create', 'parameters', 'robot', 'schedule', 'units'},
-    'create.emulator': {'config', 'create', 'robot', 'simulation.base', 'units'},
-    'ros': {'robot', 'units'},
-    'ros.node': {'config', 'parameters', 'ros.network'},
-    'ros.lockstep': {'ros.network', 'schedule'},
-    'driving': {'config', 'control', 'parameters', 'robot', 'ros.network', 'ros.node', 'units'},
-    'ros.base': {'control', 'create', 'create.driver', 'robot', 'ros', 'ros.network', 'ros.node', 'schedule', 'units'},
-    'ros.base.simulated_floor': {'config', 'parameters', 'robot', 'ros.node', 'simulation'},
-    'ros.base.simulated_clock': {'config', 'parameters', 'ros.base', 'ros.lockstep', 'ros.network', 'ros.node',
-                                 'schedule', 'units'},
-    'ros.base.simulated_robot': {'robot', 'ros', 'ros.base', 'ros.network', 'ros.node', 'schedule', 'simulation',
-                                 'simulation.base'},
-    'ros.base.emulated_create': {'config', 'create', 'create.emulator', 'parameters', 'ros.base.simulated_floor',
-                                 'ros.node'},
-    'ros.filter': {'config', 'estimation', 'parameters', 'robot', 'ros', 'ros.network', 'ros.node', 'schedule',
-                   'units'},
-    'ros.web': {'control', 'ros', 'ros.network', 'ros.node', 'units'},
+    '': set(), 'node': set(), 'extras': set(),
+    'base': {'node'},
+    'exercise': {'base'},
+    'driving': {'base', 'exercise', 'node'},
+    'simulation': {'base', 'node'},
+    'filter': {'base', 'node'},
+    'extras.create': {'base', 'node'},
+    'extras.create.emulator': {'base', 'extras.create', 'node', 'simulation'},
+    'extras.fitting': {'base', 'filter', 'node', 'simulation'},
+    'extras.lockstep': {'base', 'node'},
+    'extras.many_runs': {'base', 'exercise', 'extras.fitting', 'filter', 'node', 'simulation'},
+    'extras.web': {'base', 'exercise', 'node'},
 }
-ALLOWED['nodes'] = set(ALLOWED) - {'__init__'}
-WITH_ROS = {room for room in ALLOWED if room.split('.')[0] == 'ros'} | {'driving', 'fitting.bags', 'nodes'}
+ALLOWED['nodes'] = set(ALLOWED) - {''}
+# the files that need ROS; all others also run where there is none
+WITH_ROS = {f'rbx1_nav.{room}.{name}' for room, names in {
+    'node': 'frames life master private_parameters resources rospy_topics',
+    'base': 'clocks messages publisher running_bases velocity_commands',
+    'driving': 'calibrating commands listeners odometry rate script',
+    'simulation': 'floor_parameters simulated_robot',
+    'filter': 'conversions ekf_parameters estimate_publisher filter_status sensor_inputs',
+    'extras.create': 'create_base create_status',
+    'extras.create.emulator': 'emulated_create',
+    'extras.fitting': 'bags',
+    'extras.lockstep': 'lockstep simulated_clock watch',
+    'extras.web': 'connections controls hand_drive server system',
+}.items() for name in names.split()} | {'rbx1_nav.driving'}
 # what the other rooms may import in addition to Python's own modules
 THIRD_PARTY = {'PIL', 'matplotlib', 'numpy', 'scipy', 'serial', 'yaml'}
-OF_MODULE = {'rbx1_nav.batch.cluster': {'dask', 'distributed'}, 'rbx1_nav.batch.sweep': {'tqdm'}}
+OF_MODULE = {'rbx1_nav.extras.many_runs.cluster': {'dask', 'distributed'}, 'rbx1_nav.extras.many_runs.sweep': {'tqdm'}}
 MAX_NODE_LINES, MAX_LINES = 150, 300
 
 
 def room_of(module):
-    """The room of a module or package below rbx1_nav; its first folder if it is in no room of the table."""
-    parts = module.split('.')[1:] or ['__init__']
-    rooms = ['.'.join(parts[:length]) for length in range(len(parts), 0, -1)]
-    return next((room for room in rooms if room in ALLOWED), parts[0])
+    """The room of a module or package, as in ALLOWED."""
+    return 'nodes' if module.startswith('nodes.') else rooms.folder_of(module).strip('/').replace('/', '.')
 
 
 def is_standard(module):
@@ -74,15 +65,15 @@ def is_standard(module):
 
 def violations(source, module, is_package=False):
     """The imports of a module that its room does not allow. module: full name; nodes.<name> for a node."""
-    room = room_of(module) if module.startswith('rbx1_nav') else 'nodes'
+    room = room_of(module)
     found = []
     for name in imported_modules(source, module, is_package):
         top = name.split('.')[0]
         if top == 'rbx1_nav':
             allowed = room_of(name) in ALLOWED[room] | {room}
         else:
-            allowed = top != '?' and (room in WITH_ROS or top in THIRD_PARTY | OF_MODULE.get(module, set())
-                                      or is_standard(top))
+            known = THIRD_PARTY | OF_MODULE.get(module, set())
+            allowed = top != '?' and (room == 'nodes' or module in WITH_ROS or top in known or is_standard(top))
         if not allowed:
             found.append(name)
     return found
@@ -96,15 +87,36 @@ def test_a_module_imports_only_what_its_room_may(path, module, is_package):
 
 def test_every_module_is_found_and_every_room_is_in_the_table():
     names = {module for _, module, _ in modules()}
-    assert {'rbx1_nav', 'rbx1_nav.units', 'rbx1_nav.control.gate', 'rbx1_nav.ros.node.life', 'nodes.fake_base'} <= names
-    assert {room_of(name) for name in names if name.startswith('rbx1_nav')} == set(ALLOWED) - {'nodes'}
+    assert {'rbx1_nav', 'rbx1_nav.base.gate', 'nodes.fake_base'} | WITH_ROS <= names
+    assert {room_of(name) for name in names} == set(ALLOWED)
+
+
+def test_only_extras_import_extras():
+    assert [room for room, allowed in ALLOWED.items() if room != 'nodes' and not room.startswith('extras')
+            and any(each.startswith('extras') for each in allowed)] == []
+
+
+def test_only_the_files_in_the_list_need_ros():
+    code = ('import importlib, sys\n'
+            'for name in "genpy", "rosgraph", "rospkg", "rospy":\n'
+            '    sys.modules[name] = None\n'
+            'for name in sys.argv[1:]:\n'
+            '    try:\n'
+            '        importlib.import_module(name)\n'
+            '    except ImportError:\n'
+            '        print(name)\n')
+    names = [module for _, module, _ in modules() if module.startswith('rbx1_nav')]
+    path = os.pathsep.join([rooms.SOURCE, os.environ.get('PYTHONPATH', '')])
+    found = subprocess.run([sys.executable, '-c', code, *names], env={**os.environ, 'PYTHONPATH': path},
+                           stdout=subprocess.PIPE, check=True, encoding='utf-8')
+    assert set(found.stdout.split()) == WITH_ROS
 
 
 def test_a_room_may_import_only_what_it_imports():
     """So the diagram in docs/design.md, which is made from the imports, shows what ALLOWED permits."""
     used = {room: set() for room in ALLOWED}
     for path, module, is_package in modules():
-        room = room_of(module) if module.startswith('rbx1_nav') else 'nodes'
+        room = room_of(module)
         with open(path, encoding='utf-8') as file:
             names = imported_modules(file.read(), module, is_package)
             used[room].update(room_of(name) for name in names if name.startswith('rbx1_nav'))
@@ -130,29 +142,29 @@ def test_the_diagram_leaves_out_an_arrow_if_others_lead_to_the_same_room(monkeyp
 
 
 @pytest.mark.parametrize('node, needed, extra', [
-    ('turtlebot_node', 'create.driver.link', ('simulation', 'create.emulator', 'estimation', 'fitting')),
-    ('fake_base', 'simulation.wheels', ('create', 'estimation', 'fitting')),
-    ('ekf', 'estimation.filter', ('simulation', 'create', 'fitting'))])
+    ('turtlebot_node', 'extras.create.link', ('simulation', 'extras.create.emulator', 'filter', 'extras.fitting')),
+    ('fake_base', 'simulation.wheels', ('extras.create', 'filter', 'extras.fitting')),
+    ('ekf', 'filter.filter', ('simulation', 'extras'))])
 def test_a_node_needs_nothing_of_the_others(node, needed, extra):
     found = rooms.reachable(rooms.file_arrows(), f'nodes.{node}')
     assert f'rbx1_nav.{needed}' in found
-    assert [name for name in found if name.startswith(tuple(f'rbx1_nav.{room}' for room in extra))] == []
+    assert [name for name in found if name.startswith(tuple(f'rbx1_nav.{room}.' for room in extra))] == []
 
 
 @pytest.mark.parametrize('module, source', [
     ('rbx1_nav.simulation.wheels', 'import rospy'),
-    ('rbx1_nav.create.driver.link', 'from rbx1_nav.create.emulator.body import Body'),
-    ('rbx1_nav.ros.base.create_base', 'from rbx1_nav.simulation.wheels import Wheels'),
-    ('rbx1_nav.simulation.exercise', 'def path():\n    import rospkg'),
-    ('rbx1_nav.plotting.plots', 'name = "rospy"\n__import__(name)'),
-    ('rbx1_nav.simulation.wheels', 'from rbx1_nav.control.gate import CommandGate'),
-    ('rbx1_nav.simulation.wheels', 'from ..control import gate'),
-    ('rbx1_nav.simulation.wheels', 'import importlib\nimportlib.import_module("rbx1_nav.control.gate")'),
-    ('rbx1_nav.simulation.wheels', 'import importlib\nimportlib.import_module("..control.gate", __package__)'),
-    ('rbx1_nav.estimation.filter', 'from rbx1_nav.simulation.exercise import simulate'),
-    ('rbx1_nav.units', 'from rbx1_nav.config import Section'),
-    ('rbx1_nav.batch.sweep', 'import distributed'),
-    ('rbx1_nav.ros.base.clocks', 'from rbx1_nav.simulation.base import make_base'),
+    ('rbx1_nav.extras.create.link', 'from rbx1_nav.extras.create.emulator.body import Body'),
+    ('rbx1_nav.extras.create.create_base', 'from rbx1_nav.simulation.wheels import Wheels'),
+    ('rbx1_nav.extras.many_runs.simulated_run', 'def path():\n    import rospkg'),
+    ('rbx1_nav.extras.many_runs.plots', 'name = "rospy"\n__import__(name)'),
+    ('rbx1_nav.simulation.wheels', 'from rbx1_nav.exercise.legs import Leg'),
+    ('rbx1_nav.simulation.wheels', 'from ..exercise import legs'),
+    ('rbx1_nav.simulation.wheels', 'import importlib\nimportlib.import_module("rbx1_nav.exercise.legs")'),
+    ('rbx1_nav.simulation.wheels', 'import importlib\nimportlib.import_module("..exercise.legs", __package__)'),
+    ('rbx1_nav.filter.filter', 'from rbx1_nav.extras.many_runs.simulated_run import simulate'),
+    ('rbx1_nav.node.config', 'from rbx1_nav.base.units import SECOND'),
+    ('rbx1_nav.extras.many_runs.sweep', 'import distributed'),
+    ('rbx1_nav.base.clocks', 'from rbx1_nav.simulation.simulated_base import make_base'),
     ('nodes.ekf', 'from rbx1_nav.no_such_room import anything'),
 ])
 def test_an_import_that_is_not_allowed_is_found(module, source):
@@ -160,11 +172,11 @@ def test_an_import_that_is_not_allowed_is_found(module, source):
 
 
 @pytest.mark.parametrize('module, source', [
-    ('rbx1_nav.simulation.wheels', 'from . import kinematics\nfrom .gyro import Gyro\nfrom ..units import SECOND'),
-    ('rbx1_nav.simulation.wheels', 'from rbx1_nav import config, units'),
-    ('rbx1_nav.estimation.filter', 'import os.path, numpy.linalg\nfrom math import pi\nimport importlib'),
-    ('rbx1_nav.ros.filter.ekf_parameters', 'import rospy\nfrom rbx1_nav.ros import messages'),
-    ('nodes.ekf', 'import rospy\nfrom rbx1_nav.simulation.exercise import simulate\nfrom tqdm import tqdm'),
+    ('rbx1_nav.simulation.wheels', 'from . import floor\nfrom .gyro import Gyro\nfrom ..base.units import SECOND'),
+    ('rbx1_nav.simulation.wheels', 'from rbx1_nav.base import kinematics, units'),
+    ('rbx1_nav.filter.filter', 'import os.path, numpy.linalg\nfrom math import pi\nimport importlib'),
+    ('rbx1_nav.filter.ekf_parameters', 'import rospy\nfrom rbx1_nav.base import messages'),
+    ('nodes.ekf', 'import rospy\nfrom rbx1_nav.extras.many_runs.simulated_run import simulate\nfrom tqdm import tqdm'),
 ])
 def test_an_import_that_is_allowed_is_not_reported(module, source):
     assert violations(source, module) == []

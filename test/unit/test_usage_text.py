@@ -5,8 +5,8 @@ import os
 
 import pytest
 
-from rbx1_nav.config import ConfigError, Section
-from rbx1_nav.parameters import list_parameters, read, split_usage
+from rbx1_nav.node.config import ConfigError, Section
+from rbx1_nav.node.parameters import list_parameters, read, split_usage
 
 ROOT = os.path.join(os.path.dirname(__file__), '..', '..')
 LINE = '\nParameters:\n    ~speed   forward speed (m/s; 0.1 to 2; default: 0.5)\n'

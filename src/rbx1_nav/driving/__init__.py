@@ -2,7 +2,7 @@
 
 docs/the_script.md shows how to use it.
 """
-import rbx1_nav.ros.node.early_interrupt    # noqa: F401
+import rbx1_nav.node.early_interrupt    # noqa: F401
 from rbx1_nav.driving.script import Drive
 
 __all__ = ['Drive']

@@ -12,13 +12,13 @@ import rosgraph
 from rosgraph.names import is_legal_name
 import rospy
 
-from rbx1_nav.config import ConfigError, Section, YamlValue, show
-from rbx1_nav.control.legs import Leg
+from rbx1_nav.base.calibration import MAX_FACTOR
 from rbx1_nav.driving.odometry import PoseListener
-from rbx1_nav.parameters import custom, frame, number
-from rbx1_nav.robot.calibration import MAX_FACTOR
-from rbx1_nav.ros.network.master import call
-from rbx1_nav.ros.node.life import end_requested
+from rbx1_nav.exercise.legs import Leg
+from rbx1_nav.node.config import ConfigError, Section, YamlValue, show
+from rbx1_nav.node.life import end_requested
+from rbx1_nav.node.master import call
+from rbx1_nav.node.parameters import custom, frame, number
 
 Answer = TypeVar('Answer')
 

@@ -10,9 +10,9 @@ import rospy
 from geometry_msgs.msg import Twist
 from rospy.msg import args_kwds_to_message
 
+from rbx1_nav.base.units import SECOND
 from rbx1_nav.driving.listeners import Listeners
-from rbx1_nav.ros.node.life import end_requested, exit_status, request_end
-from rbx1_nav.units import SECOND
+from rbx1_nav.node.life import end_requested, exit_status, request_end
 
 MAX_LATE_STOP = SECOND // 20    # ns: a robot that stops later has moved by more than a timed script can ignore
 LOCK_TIMEOUT = 0.1      # s: a stop does not wait longer for a publisher that hangs

@@ -9,9 +9,9 @@ import genpy
 import rospy
 import rospy.timer
 
+from rbx1_nav.base.units import SECOND
 from rbx1_nav.driving.commands import Commands, check_shutdown, fail, is_shutdown, is_shutdown_function, now
-from rbx1_nav.ros.node import life
-from rbx1_nav.units import SECOND
+from rbx1_nav.node import life
 
 MAX_DELAY = SECOND      # ns
 

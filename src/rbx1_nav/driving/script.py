@@ -27,10 +27,10 @@ from geometry_msgs.msg import Twist
 from rbx1_nav.driving import commands, rate
 from rbx1_nav.driving.commands import Commands, end, shutdown_wanted
 from rbx1_nav.driving.listeners import wait_for_listeners
-from rbx1_nav.parameters import Parameter, number, split_usage
-from rbx1_nav.ros.node import life
-from rbx1_nav.ros.node.life import end_requested
-from rbx1_nav.ros.node.params import param
+from rbx1_nav.node import life
+from rbx1_nav.node.life import end_requested
+from rbx1_nav.node.parameters import Parameter, number, split_usage
+from rbx1_nav.node.private_parameters import param
 
 WAIT_TIMEOUT = number('wait_timeout', 30, 's', 'maximum wait for roscore, and then for the base and its pose',
                       note='wall time')

@@ -1,1 +1,1 @@
-"""A simulated robot, the floor below it, and a simulated clock that stays in step with the drivers."""
+"""A simulated robot and the floor below it."""

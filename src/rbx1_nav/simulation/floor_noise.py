@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy
 
-from rbx1_nav.robot.surfaces import CELL_TRAVELLED, CELL_TURNED, Surface
-from rbx1_nav.units import Array
+from rbx1_nav.base.surfaces import CELL_TRAVELLED, CELL_TURNED, Surface
+from rbx1_nav.base.units import Array
 
 ROWS = 256      # rows of a matrix that are computed at a time
 

@@ -2,10 +2,10 @@
 from nav_msgs.msg import Odometry
 import rospy
 
-from rbx1_nav.robot.description import load_robot
-from rbx1_nav.robot.surfaces import load_surface
-from rbx1_nav.ros.node import resources
-from rbx1_nav.simulation.exercise import simulate
+from rbx1_nav.base.description import load_robot
+from rbx1_nav.base.surfaces import load_surface
+from rbx1_nav.extras.many_runs.simulated_run import simulate
+from rbx1_nav.node import resources
 import support
 
 FAULT = ('odom_out_and_back.py on low_ply_carpet at real_time_factor 20, with a new base for each run; in every second '

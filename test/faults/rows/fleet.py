@@ -6,8 +6,8 @@ from diagnostic_msgs.srv import AddDiagnostics
 import rospy
 from std_srvs.srv import Empty
 
-from rbx1_nav.config import load_yaml
-from rbx1_nav.ros.node import resources
+from rbx1_nav.node import resources
+from rbx1_nav.node.config import load_yaml
 import support
 
 FAULT = ('one of three robots of a fleet, which all drive, is removed, or its driver is killed, or suspended for good, '

@@ -7,7 +7,7 @@ import time
 import rospy
 from geometry_msgs.msg import Twist
 
-from rbx1_nav.ros.network.master import call
+from rbx1_nav.node.master import call
 import support
 
 # as rospy tutorials drive a robot, see the file

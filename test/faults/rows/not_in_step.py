@@ -6,8 +6,8 @@ import time
 import rosbag
 import rospy
 
-from rbx1_nav.config import load_yaml
-from rbx1_nav.ros.node import resources
+from rbx1_nav.node import resources
+from rbx1_nav.node.config import load_yaml
 import support
 
 FAULT = ('drivers on wall time, on a keyboard, or from a bag, at real_time_factor 20 with strict; in every second run '

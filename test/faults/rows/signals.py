@@ -23,7 +23,7 @@ FACTOR = 8          # the whole run takes 3 s of wall time
 DEADLINE = 1.5      # s of wall time
 STANDSTILL = 0.1    # s of simulated time
 PERIOD = 0.02       # s of simulated time, of odometry and commands
-EARLY = 'import rbx1_nav.ros.node.early_interrupt'   # in a traceback: Python is not yet as far as our first line
+EARLY = 'import rbx1_nav.node.early_interrupt'   # in a traceback: Python is not yet as far as our first line
 PYTHON_START = 0.04     # s, or as long as Python takes here: its own traceback of a KeyboardInterrupt
 
 

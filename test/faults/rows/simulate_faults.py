@@ -20,7 +20,7 @@ SIMULATE = os.path.join(rospkg.RosPack().get_path('rbx1_nav'), 'nodes', 'simulat
 LONG = ['--surface', 'low_ply_carpet', '--runs', '5000', '--jobs', '2']     # takes minutes
 FOLDER = 'pictures'
 MARK = 'RBX1_NAV_FAULT'
-EARLY = 'import rbx1_nav.ros.node.early_interrupt'
+EARLY = 'import rbx1_nav.node.early_interrupt'
 HANGS = 40          # s of wall time without an end
 FULL_AT = 8192      # bytes: no picture is that small
 

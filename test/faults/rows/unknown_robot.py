@@ -8,7 +8,7 @@ import rospy
 import support
 from driven import STOP
 from emulated import EmulatedRobot
-from rbx1_nav.create.protocol import command
+from rbx1_nav.extras.create.protocol import command
 
 FAULT = ('a base node with each robot_type is connected to each kind of robot at each baud rate; half of the nodes '
          'are killed by SIGKILL during the search')

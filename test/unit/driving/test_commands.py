@@ -5,11 +5,11 @@ from geometry_msgs.msg import Twist
 import pytest
 import rospy
 
+from rbx1_nav.base.units import SECOND
 from rbx1_nav.driving import commands as module
 from rbx1_nav.driving import rate as rates
 from rbx1_nav.driving.commands import Commands
 from rbx1_nav.driving.rate import Rate
-from rbx1_nav.units import SECOND
 
 MS = SECOND // 1000
 

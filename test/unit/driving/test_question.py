@@ -4,8 +4,8 @@ import threading
 
 import pytest
 
-from rbx1_nav.config import ConfigError
 from rbx1_nav.driving import calibrating as question
+from rbx1_nav.node.config import ConfigError
 
 
 def check(text):

@@ -6,7 +6,7 @@ import rospy
 
 from rbx1_nav.driving import commands, script
 from rbx1_nav.driving.odometry import Straight
-from rbx1_nav.ros.network.master import call
+from rbx1_nav.node.master import call
 
 
 def report(monkeypatch, function):

@@ -2,9 +2,9 @@
 import pytest
 import rospy
 
+from rbx1_nav.base.units import SECOND
 from rbx1_nav.driving import commands, rate as module
 from rbx1_nav.driving.rate import Rate, sleep
-from rbx1_nav.units import SECOND
 
 MS = SECOND // 1000
 

@@ -10,8 +10,8 @@ import pytest
 import rospy
 from sensor_msgs.msg import Imu
 
-from rbx1_nav.ros.filter import filter_status
-from rbx1_nav.ros.filter.ekf_parameters import read_parameters
+from rbx1_nav.filter import filter_status
+from rbx1_nav.filter.ekf_parameters import read_parameters
 from fake_topics import replace_topics
 
 NODE = os.path.join(os.path.dirname(__file__), '..', '..', '..', 'nodes', 'ekf.py')

@@ -5,14 +5,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rbx1_nav.control.gate import CommandGate, RejectedCommand
-from rbx1_nav.control.legs import out_and_back
-from rbx1_nav.robot.description import Limits
-from rbx1_nav.robot.kinematics import ORIGIN, arc
-from rbx1_nav.simulation.base import SimulatedBase
+from rbx1_nav.base.description import Limits
+from rbx1_nav.base.gate import CommandGate, RejectedCommand
+from rbx1_nav.base.kinematics import ORIGIN, arc
+from rbx1_nav.base.units import SECOND
+from rbx1_nav.exercise.legs import out_and_back
 from rbx1_nav.simulation.gyro import IdealGyro
+from rbx1_nav.simulation.simulated_base import SimulatedBase
 from rbx1_nav.simulation.wheels import IdealWheels
-from rbx1_nav.units import SECOND
 
 STEP = SECOND // 50
 

@@ -5,13 +5,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rbx1_nav.control.gate import CommandGate
-from rbx1_nav.robot.description import Limits
-from rbx1_nav.robot.kinematics import ORIGIN
-from rbx1_nav.simulation.base import SimulatedBase
+from rbx1_nav.base.description import Limits
+from rbx1_nav.base.gate import CommandGate
+from rbx1_nav.base.kinematics import ORIGIN
+from rbx1_nav.base.units import SECOND
 from rbx1_nav.simulation.gyro import IdealGyro
+from rbx1_nav.simulation.simulated_base import SimulatedBase
 from rbx1_nav.simulation.wheels import Wheels
-from rbx1_nav.units import SECOND
 from sample_surface import RUN, SURFACE
 
 WIDTH = 0.26

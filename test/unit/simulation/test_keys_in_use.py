@@ -2,11 +2,11 @@
 import numpy
 import pytest
 
-from rbx1_nav.robot.description import read_robot
-from rbx1_nav.robot.surfaces import KEYS
-from rbx1_nav.simulation.base import make_base
-from rbx1_nav.simulation.surfaces import floor_travel
-from rbx1_nav.units import SECOND
+from rbx1_nav.base.description import read_robot
+from rbx1_nav.base.surfaces import KEYS
+from rbx1_nav.base.units import SECOND
+from rbx1_nav.simulation.floor import floor_travel
+from rbx1_nav.simulation.simulated_base import make_base
 from sample_surface import SURFACE
 
 ROBOT = read_robot({'controllers': {'base': {'type': 'diff_controller', 'base_width': 0.26}}})

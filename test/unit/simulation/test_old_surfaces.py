@@ -2,11 +2,11 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rbx1_nav.robot.kinematics import Odometry
-from rbx1_nav.robot.surfaces import read_surface
-from rbx1_nav.simulation.base import make_wheels_and_gyro
-from rbx1_nav.simulation.surfaces import draw_run
+from rbx1_nav.base.kinematics import Odometry
+from rbx1_nav.base.surfaces import read_surface
+from rbx1_nav.simulation.floor import draw_run
 from rbx1_nav.simulation.motors import Motor
+from rbx1_nav.simulation.simulated_base import make_wheels_and_gyro
 
 ALL = dict(lag=0.1, accel_limit=1.0, ticks_meter=4100, gyro_noise=0.1, gyro_bias=0.5, gyro_scale_error=0.003,
            gyro_measurement_range=150)

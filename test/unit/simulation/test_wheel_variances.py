@@ -3,9 +3,9 @@ from math import pi
 
 import pytest
 
-from rbx1_nav.robot.kinematics import ORIGIN
-from rbx1_nav.robot.readings import MEASURED
-from rbx1_nav.simulation.surfaces import RandomErrors
+from rbx1_nav.base.kinematics import ORIGIN
+from rbx1_nav.base.readings import MEASURED
+from rbx1_nav.simulation.floor import RandomErrors
 from rbx1_nav.simulation.wheels import IdealWheels, Wheels
 from sample_surface import RUN, SURFACE
 

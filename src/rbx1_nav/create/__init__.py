@@ -1,1 +1,0 @@
-"""The iRobot Create on a serial line: its protocol, a driver, and an emulated robot."""

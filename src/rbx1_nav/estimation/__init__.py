@@ -1,1 +1,0 @@
-"""Pose estimation: an extended Kalman filter for odometry and gyro."""

@@ -1,0 +1,1 @@
+"""The exercise: its motions, out and back, and the methods by which a script performs them."""

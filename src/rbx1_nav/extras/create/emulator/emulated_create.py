@@ -1,0 +1,142 @@
+"""An emulated Create with the parameters of a node, and services and topics that trigger events on it, such as a pulled
+cable or a dropped wheel."""
+from __future__ import annotations
+
+from concurrent.futures import Future
+from functools import partial
+from math import floor
+import queue
+from typing import Callable
+
+import rospy
+from std_msgs.msg import Float64
+from std_srvs.srv import SetBool, SetBoolResponse, Trigger, TriggerResponse
+
+from rbx1_nav.extras.create.emulator.body import CAPACITY, Body, BodyErrors, Quirks
+from rbx1_nav.extras.create.emulator.emulator import EmulatedCreate
+from rbx1_nav.extras.create.emulator.serial_line import PseudoTerminal, SerialLine
+from rbx1_nav.extras.create.protocol import BAUD_RATES, CREATE, CREATE_2, MODELS
+from rbx1_nav.node import life
+from rbx1_nav.node.config import ConfigError, Section, YamlValue, show
+from rbx1_nav.node.parameters import Parameter, choice, custom, flag, number, read
+from rbx1_nav.node.private_parameters import param
+from rbx1_nav.simulation.floor_parameters import SURFACE, seed
+
+
+def _check_link(link: YamlValue) -> str:
+    if not isinstance(link, str):
+        raise ConfigError(f'link: {show(link)}: expected a path')
+    return link
+
+
+_BODY = {
+    'gyro_sensitivity': "ratio of the gyro's sensitivity to its nominal value",
+    'wheel_travel': 'ratio of the distance counted by the encoders to the distance traveled by the wheels',
+    'wheel_base': 'ratio of the true wheel separation to its nominal value'}
+_QUIRKS = {
+    'mode_plus_one': 'whether the robot reports its mode plus one, like a Roomba 642 and other models with Wi-Fi',
+    'drops_fractions': 'whether each reading of the angle starts at 0 and loses the fraction of a degree'}
+
+PARAMETERS = (
+    choice('robot_type', tuple(MODELS), CREATE.name, 'model of the robot'),
+    choice('baud', BAUD_RATES, None, 'rate after the robot is switched on; 19200: its power button was held',
+           'bits per second', shown=f'{CREATE.baud}; {CREATE_2.name}: {CREATE_2.baud}'),
+    custom('link', '', 'path of a symbolic link to the device', _check_link, shown='none',
+           note="the log shows the device's name"),
+    SURFACE,
+    seed('slip, gyro errors and corruption'),
+    number('charge', 1.0, '', 'charge that the robot reports, as a fraction of the capacity of its battery', 0, 2),
+    number('battery_temperature', 25.0, 'degrees C', 'temperature of the battery', -40, 100, 'a temperature'),
+    number('battery_voltage', 0.0, 'V', 'voltage of the battery; 0: it follows the charge', 0, 25, 'a voltage'),
+    number('corruption', 0.0, '', 'fraction of the bytes to the host that are flipped, lost or doubled', 0, 1),
+    number('gyro_measurement_range', 150.0, 'degrees/s', 'full-scale turn rate of the gyro', 1, 1e5),
+    *(number(name, 1.0, '', _BODY[name], 0.1, 10, 'a factor') for name in BodyErrors._fields),
+    number('gyro_stuck', -1.0, '', 'count at which the analog input is stuck; -1: it is not stuck', -1, 1023,
+           'a count'),
+    *(flag(name, False, _QUIRKS[name]) for name in Quirks._fields))
+
+# parameters that a topic can change: what they set, a part of the robot and its attribute, and the conversion
+CHANGEABLE: dict[str, tuple[str, str, Callable[[float], float]]] = {
+    'charge': ('body', 'charge', lambda value: value * CAPACITY),
+    'battery_temperature': ('body', 'temperature', round),
+    'battery_voltage': ('body', 'voltage', lambda value: round(1000 * value)),
+    'corruption': ('line', 'corruption', float),
+    'gyro_stuck': ('body', 'gyro_stuck', floor)}
+# services that switch an attribute of a part of the robot
+SWITCHES = {
+    'silence': ('line', 'silent'), 'drop_wheel': ('body', 'wheel_dropped'), 'cliff': ('body', 'cliff'),
+    'bump': ('body', 'bumped'), 'dock': ('body', 'docked'), 'charging_fault': ('body', 'charging_fault')}
+
+
+def _set(robot: EmulatedCreate, name: str, value: float) -> None:
+    part, attribute, convert = CHANGEABLE[name]
+    setattr(getattr(robot, part), attribute, convert(value))
+
+
+def make_robot(now: int) -> EmulatedCreate:
+    """Return an EmulatedCreate with the parameters of this node. now: ns."""
+    model = MODELS[param('robot_type')]
+    body = Body(model, param('surface'), param('seed'), BodyErrors(*map(param, BodyErrors._fields)),
+                param('gyro_measurement_range'), Quirks(*map(param, Quirks._fields)))
+    robot = EmulatedCreate(model, body, SerialLine(param('baud') or model.baud, param('seed')), now)
+    for name in CHANGEABLE:
+        _set(robot, name, param(name))
+    return robot
+
+
+class RobotFaults:
+    """The services and topics. Requests take effect when the thread that owns the robot calls apply()."""
+
+    def __init__(self, robot: EmulatedCreate, terminal: PseudoTerminal) -> None:
+        self.robot = robot
+        self.terminal = terminal
+        # functions to be called, each with a Future for its result: an error text, or ''
+        self.requests: queue.Queue[tuple[Callable[[], object], Future[str]]] = queue.Queue()
+
+    def serve(self) -> None:
+        """Offer the services and topics."""
+        self._offer_switch('pull_cable', lambda on: self.terminal.unplug() if on else self.terminal.plug())
+        for name, (part, attribute) in SWITCHES.items():
+            self._offer_switch(name, partial(setattr, getattr(self.robot, part), attribute))
+        rospy.Service('~power_cycle', Trigger, lambda _: TriggerResponse(
+            *self._request('power_cycle', lambda: self.robot.switch_on(self.robot.now))))
+        for each in PARAMETERS:
+            if each.name in CHANGEABLE:
+                rospy.Subscriber(f'~{each.name}', Float64, self._on_number, each)
+
+    def apply(self) -> None:
+        """Execute all pending requests."""
+        while not self.requests.empty():
+            function, done = self.requests.get()
+            try:
+                function()
+                done.set_result('')
+            except ConfigError as error:    # the link cannot be created any more
+                done.set_result(str(error))
+
+    def _offer_switch(self, name: str, switch: Callable[[bool], None]) -> None:
+        rospy.Service(f'~{name}', SetBool, lambda request: SetBoolResponse(
+            *self._request(f'{name}: {request.data}', lambda: switch(request.data))))
+
+    def _on_number(self, message: Float64, parameter: Parameter) -> None:
+        name = parameter.name
+        try:
+            read([parameter], Section({name: message.data}, rospy.get_name()))
+        except ConfigError as error:
+            rospy.logerr('%s; rejected', error)
+        else:
+            self._request(f'{name}: {message.data:g}', lambda: _set(self.robot, name, message.data))
+
+    def _request(self, text: str, function: Callable[[], object]) -> tuple[bool, str]:
+        """Request a call of a function and wait for it; return whether it succeeded, and the text that is logged."""
+        done: Future[str] = Future()
+        self.requests.put((function, done))
+        while not done.done():
+            if life.end_requested.is_set():
+                return False, f'{text}: the node is shutting down'
+            life.sleep(0.001)
+        if done.result():
+            rospy.logerr('%s: %s', text, done.result())
+            return False, f'{text}: {done.result()}'
+        rospy.loginfo('%s', text)
+        return True, text

@@ -1,0 +1,256 @@
+"""An emulated Create: the robot's electronics, which execute the bytes on its serial line. All times are in ns."""
+from __future__ import annotations
+
+from math import inf
+from struct import Struct
+from typing import Callable, Sequence
+
+from rbx1_nav.extras.create.emulator.body import Body
+from rbx1_nav.extras.create.emulator.programs import CIRCLE, Programs
+from rbx1_nav.extras.create.emulator.serial_line import SerialLine
+from rbx1_nav.extras.create.protocol import (
+    BAUD_RATES, COUNTED, CREATE, IN_PLACE_LEFT, IN_PLACE_RIGHT, MAX_SPEED, OFF, PASSIVE, ROBOT_RADIUS, SAFE, STRAIGHT,
+    UPDATE_PERIOD, Command, Model, encode_frame, frame_format, packets_format, single_packets)
+from rbx1_nav.base.units import SECOND, clamp
+
+TICK = round(UPDATE_PERIOD * SECOND)
+BOOT_TIME = SECOND      # time after power-on during which the robot receives nothing
+CREATE_RESET_TIME = 3 * SECOND      # this time after a reset of a Create: its boot loader takes 3 s (Create p. 10)
+# text with the firmware version, which the Create 2 sends at power-on
+BOOT_TEXT = b'bl-start\r\nSTR730\r\nRoomba by iRobot!\r\nr3_robot/tags/release-3.5.4\r\n'
+MAX_FRAME = 255         # data bytes in a frame of the stream
+MAX_PWM = 255
+PAIR = Struct('>hh')
+
+
+def command_size(model: Model, data: bytes | bytearray) -> int | None:
+    """Return the size in bytes of the command at the start of `data`; None if there are too few bytes to determine it.
+    """
+    size = model.commands[data[0]].size
+    if isinstance(size, int):
+        return 1 + size
+    if size == COUNTED:
+        return 2 + data[1] if len(data) > 1 else None
+    return 3 + 2 * data[2] if len(data) > 2 else None
+
+
+class EmulatedCreate:
+    """The robot on a SerialLine."""
+
+    def __init__(self, model: Model, body: Body, line: SerialLine, now: int,
+                 on_command: Callable[[int, bytes], None] | None = None) -> None:
+        """line: at the robot's initial baud rate.
+
+        on_command(time, data): called with the bytes of each command that arrives, even if the robot ignores it.
+        """
+        self.model = model
+        self.body = body
+        self.line = line
+        self.on_command = on_command or (lambda time, data: None)
+        self.programs = Programs(body)
+        self._baud = line.baud
+        self._deaf_until: float = now
+        self._start(now)
+
+    def switch_on(self, now: int) -> None:
+        """Restart, as after inserting the battery."""
+        self._start(now)
+        self._deaf_until = now + BOOT_TIME
+        if self.model is not CREATE:
+            self.line.from_robot(BOOT_TEXT, now)
+
+    def _start(self, now: int) -> None:
+        self.mode = OFF
+        self.now = now
+        self.line.baud = self._baud
+        self.body.drive(0, 0)
+        self.body.reset_counters()
+        self.programs.stop()
+        self._input = bytearray()
+        self._next_update = now + TICK
+        self._requested = dict.fromkeys(('requested_velocity', 'requested_radius', 'requested_right_velocity',
+                                         'requested_left_velocity'), 0)
+        self._stream: list[int] = []
+        self._streaming = False
+
+    # time
+
+    def receive(self, data: bytes, now: int) -> None:
+        """Receive bytes that the host sends."""
+        self._run(now)
+        self.line.from_host(data, now)
+
+    def advance(self, now: int) -> bytes:
+        """Advance to `now`. Returns the bytes that have arrived at the host."""
+        self._run(now)
+        return self.line.received(now)
+
+    @property
+    def next_time(self) -> int:
+        """The time at which advance() next has something to do."""
+        times = (self._next_update, self.line.next_to_robot, self.line.next_to_host)
+        return min(time for time in times if time is not None)
+
+    def _run(self, now: int) -> None:
+        while True:
+            arrival = self.line.next_to_robot
+            if arrival is not None and arrival <= min(now, self._next_update):
+                self._go_to(arrival)
+                self._on_byte(self.line.receive_byte())
+            elif self._next_update <= now:
+                self._go_to(self._next_update)
+                self._next_update += TICK
+                self._update()
+            else:
+                break
+        self._go_to(now)
+
+    def _go_to(self, time: int) -> None:
+        self.now = max(time, self.now)
+        self.body.advance(self.now)
+
+    # the update every 15 ms
+
+    def _update(self) -> None:
+        # the robot charges only in these modes (Create 2 p. 7)
+        self.body.sample(UPDATE_PERIOD, self.mode in (OFF, PASSIVE))
+        if not self.body.charge:
+            self._start(self.now)
+            return
+        if self.mode == SAFE and self._unsafe():
+            self._enter(PASSIVE)
+        if self.body.wheel_dropped or self.body.cliff or self.body.docked:
+            self.programs.stop()
+        if self.programs.running:
+            self._drive_curve(*CIRCLE)
+        if self._streaming:
+            self.line.from_robot(encode_frame(self.model, self._stream, self._values(self._stream)), self.now)
+
+    def _unsafe(self) -> bool:
+        """Return whether something has happened that stops safe mode (Create p. 6, Create 2 p. 7)."""
+        body = self.body
+        linear, angular = body.velocity
+        small_radius = abs(linear) < abs(angular) * ROBOT_RADIUS
+        return body.wheel_dropped or body.docked or (body.cliff and (linear > 0 or small_radius))
+
+    def _enter(self, mode: int) -> None:
+        if mode in (OFF, PASSIVE):
+            self._drive(0, 0)
+            self._requested = dict.fromkeys(self._requested, 0)
+        self.mode = mode
+
+    # bytes and commands
+
+    def _on_byte(self, byte: int) -> None:
+        if self.now < self._deaf_until or not self.body.charge:
+            return
+        self._input.append(byte)
+        self._execute()
+
+    def _execute(self) -> None:
+        """Execute the complete commands."""
+        while self._input:
+            command = self.model.commands.get(self._input[0])
+            if command is None or (self.mode == OFF and OFF not in command.modes):
+                del self._input[0]      # while the interface is off, data bytes are not skipped
+                continue
+            size = command_size(self.model, self._input)
+            if size is None or size > len(self._input):
+                break
+            data = bytes(self._input[:size])
+            del self._input[:size]
+            self.on_command(self.now, data)
+            if self.mode in command.modes:
+                self._do(command, data[1:])
+
+    def _do(self, command: Command, data: bytes) -> None:
+        of_programs = getattr(self.programs, f'do_{command.name}', None)
+        handler = of_programs or getattr(self, f'_do_{command.name}', None)
+        if handler:     # the other commands have no visible effect
+            handler(data)
+        if command.mode is not None:
+            self._enter(command.mode)
+            if not of_programs:
+                self.programs.stop()
+
+    def _do_reset(self, _: bytes) -> None:
+        self.switch_on(self.now)
+        if self.model is CREATE:
+            self._deaf_until = self.now + CREATE_RESET_TIME
+
+    def _do_power(self, _: bytes) -> None:
+        self._start(self.now)
+        self._deaf_until = inf      # until power-on
+
+    def _do_stop(self, _: bytes) -> None:
+        self._streaming = False
+
+    def _do_baud(self, data: bytes) -> None:
+        if data[0] < len(BAUD_RATES):
+            self.line.baud = BAUD_RATES[data[0]]
+
+    # wheels
+
+    def _drive(self, left: float, right: float) -> None:
+        self.body.drive(clamp(left, MAX_SPEED), clamp(right, MAX_SPEED))
+
+    def _do_drive(self, data: bytes) -> None:
+        velocity, radius = PAIR.unpack(data)
+        velocity = int(clamp(velocity, MAX_SPEED))
+        self._requested.update(requested_velocity=velocity, requested_radius=radius)
+        self._drive_curve(velocity, radius)
+
+    def _drive_curve(self, velocity: float, radius: float) -> None:
+        """Drive in a curve. velocity: mm/s; radius: mm, or a special value of the Drive command."""
+        if radius in STRAIGHT:
+            self._drive(velocity, velocity)
+        elif radius in (IN_PLACE_LEFT, IN_PLACE_RIGHT):
+            self._drive(-velocity * radius, velocity * radius)
+        else:
+            # the documents do not define a radius of 0
+            half = 500 * self.model.wheel_separation / radius if radius else 0
+            self._drive(velocity * (1 - half), velocity * (1 + half))
+
+    def _do_drive_direct(self, data: bytes) -> None:
+        right, left = (int(clamp(speed, MAX_SPEED)) for speed in PAIR.unpack(data))
+        self._requested.update(requested_right_velocity=right, requested_left_velocity=left)
+        self._drive(left, right)
+
+    def _do_drive_pwm(self, data: bytes) -> None:
+        right, left = (clamp(pwm, MAX_PWM) * MAX_SPEED / MAX_PWM for pwm in PAIR.unpack(data))
+        self._drive(left, right)
+
+    # sensors
+
+    def _values(self, numbers: Sequence[int]) -> dict[str, int]:
+        """Return the values of all packets, by name. Reading a requested distance or angle restarts its count.
+
+        numbers: requested packets and groups.
+        """
+        body = self.body
+        names = {packet.name for packet in single_packets(self.model, numbers)}
+        return dict(
+            body.values, **self._requested, mode=self.mode + int(self.body.quirks.mode_plus_one),
+            stream_packets=len(self._stream),
+            distance=body.distance.take() if 'distance' in names else 0,
+            angle=body.angle.take() if 'angle' in names else 0)
+
+    def _known(self, numbers: Sequence[int]) -> bool:
+        return all(number in self.model.packets or number in self.model.groups for number in numbers)
+
+    def _do_sensors(self, data: bytes) -> None:
+        self._do_query_list(bytes((1,)) + data)
+
+    def _do_query_list(self, data: bytes) -> None:
+        numbers = data[1:]
+        if self._known(numbers):
+            packets, values = single_packets(self.model, numbers), self._values(numbers)
+            self.line.from_robot(packets_format(packets).pack(*(values[packet.name] for packet in packets)), self.now)
+
+    def _do_stream(self, data: bytes) -> None:
+        numbers = list(data[1:])
+        if self._known(numbers) and frame_format(self.model, numbers).size - 3 <= MAX_FRAME:
+            self._stream, self._streaming = numbers, bool(numbers)
+
+    def _do_pause_resume_stream(self, data: bytes) -> None:
+        self._streaming = bool(data[0] and self._stream)

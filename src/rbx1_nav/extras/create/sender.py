@@ -1,0 +1,74 @@
+"""Sends bytes and wheel speeds to the robot, and integrates the travel that the speeds command. All times are in ns."""
+from __future__ import annotations
+
+from typing import Callable
+
+from rbx1_nav.base.units import SECOND
+from rbx1_nav.extras.create import protocol
+from rbx1_nav.extras.create import sequences
+from rbx1_nav.extras.create.motion import STILL, Expected
+
+BACKLOG = SECOND // 100     # backlog of bytes on the line beyond which only a stop is sent at once
+
+
+def is_too_fast(linear: float, angular: float, width: float) -> bool:
+    """Return whether a velocity in m/s and rad/s exceeds the speed limit of a wheel."""
+    return 1000 * (abs(linear) + abs(angular) * width / 2) > protocol.MAX_SPEED
+
+
+def wheel_speeds(linear: float, angular: float, width: float) -> tuple[float, float]:
+    """Return (left, right) in mm/s for m/s and rad/s. Above the limit, both are reduced by one factor, which preserves
+    the curvature."""
+    difference = angular * width / 2
+    left, right = 1000 * (linear - difference), 1000 * (linear + difference)
+    excess = max(abs(left), abs(right)) / protocol.MAX_SPEED
+    return (left / excess, right / excess) if excess > 1 else (left, right)
+
+
+class Sender:
+    """The sending side of the line on the host. The robot always keeps executing the last command."""
+
+    def __init__(self) -> None:
+        self.write: Callable[[bytes], None] | None = None   # sends bytes; None without a line
+        self.error: OSError | None = None           # error that disconnected the line
+        self.byte = 0               # transmission time of a byte
+        self.speeds = 0, 0          # left, right: mm/s, sent last
+        self._travel = STILL        # total travel at the speeds that were sent
+        self._time = 0              # end of the integration so far
+        self.line_free = 0          # time at which all bytes have been transmitted
+
+    def use_line(self, write: Callable[[bytes], None] | None) -> None:
+        """Start using a line that was opened. write(data): may raise OSError; None: the line has disconnected."""
+        self.write, self.error = write, None
+
+    def is_busy(self, now: int) -> bool:
+        """Return whether the backlog on the line is so long that speeds should wait."""
+        return self.line_free - now > BACKLOG
+
+    def travel(self, now: int) -> Expected:
+        """Return the total commanded travel up to `now`."""
+        self._travel = self._travel.plus(Expected(*self.speeds), max(0, now - self._time) / SECOND / 1000)
+        self._time = now
+        return self._travel
+
+    def send(self, now: int, data: bytes) -> None:
+        """Send bytes, if there is a line. After an error the line is no longer used."""
+        if self.write is None:
+            return
+        self.line_free = max(now, self.line_free) + len(data) * self.byte
+        try:
+            self.write(data)
+        except OSError as error:
+            self.write, self.error = None, error
+
+    def stop(self, now: int, stop: bytes = sequences.STOP) -> None:
+        """Send a stop: bytes that stop the robot."""
+        self.travel(now)
+        self.speeds = 0, 0
+        self.send(now, stop)
+
+    def drive(self, now: int, speeds: tuple[float, float]) -> None:
+        """Send wheel speeds (left, right; mm/s), rounded to whole numbers."""
+        self.travel(now)
+        left, right = self.speeds = round(speeds[0]), round(speeds[1])
+        self.send(now, protocol.drive_direct(right, left))

@@ -1,0 +1,268 @@
+"""Keeps a simulated clock in step with the nodes that use it to drive, whatever they wait for.
+
+The base delivers the messages of a tick one topic after another, and the clock last. After each of them, it waits until
+every process that the message may have woken is asleep again. So a node that wakes at a tick finds all messages of the
+tick, and its commands have arrived before the next tick begins. The result does not depend on the machine.
+
+A node that something else wakes, such as the wall clock, is found by a test: now and then, the clock is held for a
+while when everything is asleep. A command that arrives then was not prompted by a message of the base.
+"""
+from __future__ import annotations
+
+from collections import Counter
+from io import BytesIO
+from random import Random
+import select
+import socket
+from threading import Event, Lock
+from time import monotonic, sleep
+from typing import Any, Callable, NamedTuple
+
+from genpy import Message
+from rosgraph_msgs.msg import Clock
+import rospy
+from rospy.exceptions import TransportException
+from rospy.msg import serialize_message
+
+from rbx1_nav.base.schedule import NODE_TIMEOUT
+from rbx1_nav.extras.lockstep.watch import Watch
+
+ANSWER_TIME = 3e-4      # s of wall time in which a driver usually answers
+LOOK = 2e-5, 5e-3   # s of wall time between two checks of the processes: at least, at most
+LONGEST_LOOK = 0.1  # s: if it takes longer from one check to the next, the base itself was suspended
+LOOK_LATER = 0.05   # s between two checks per s of waiting so far: a node that is starting needs the processor itself
+INTERVALS = 2       # between the first commands of a motion, of which one may be unusual
+HOLDS = 3           # ticks with commands at which the clock is held, at the beginning of a motion
+HOLD_LATER = 1 / 128    # fraction of the later ticks at which the clock is held
+HOLD = 1.5          # duration of a hold, in intervals between two commands
+FIRST_HOLD = 0.02   # s of wall time: duration of the first hold, before an interval is known
+COMMANDS = 3        # that a driver on the clock may send after one message; stops do not count
+TEST, TESTS = 0.005, 4  # s of wall time in which a thread that polls usually runs more than once; how often to try
+LONG = 0.1          # s of wall time: if a wait takes longer, threads that poll may be the reason
+SLEEP = 0.05        # s: the longest sleep between two checks for a shutdown request
+
+
+class Received(NamedTuple):
+    """A command that has arrived."""
+
+    # Any: a base, whose apply(command) is called later, and a velocity with `linear` (m/s) and `angular` (rad/s)
+    target: Any
+    header: dict[str, str]      # of the connection; one object for each connection
+    command: Any
+    time: float                 # s of the monotonic clock
+    idle: bool                  # whether it arrived although everything was asleep
+
+    def moves(self) -> bool:
+        """Return whether it is not a stop."""
+        return bool(self.command.linear or self.command.angular)
+
+
+class DriverConnection:
+    """A connection on which commands arrive, and what is known of its node."""
+
+    def __init__(self, header: dict[str, str]) -> None:
+        self.header = header
+        self.name = header['callerid']
+        self.in_step = True
+        self.motions = 0        # motions that have begun
+        self.moving = False     # whether the last command was not a stop
+        self.tick = 0           # of the last command
+        self.time = 0.0         # s of the monotonic clock: of the last command
+        self.intervals: list[float] = []    # s of wall time between the first commands of the motion
+        self.holds = 0          # ticks with commands at which the clock will be held
+
+
+class Lockstep:
+    """Delivers messages, and applies each command at the tick at which it was sent."""
+
+    def __init__(self, processes: Watch, report: Callable[[str, str], None], ended: Callable[[], bool]) -> None:
+        """report(name, reason): reports a node that is not in step; ended(): whether to stop waiting."""
+        self.processes = processes
+        self.add, self.remove = processes.add, processes.remove     # a subscriber to commands
+        self.report = report
+        self.ended = ended
+        # by the id of the header, which stays unique because the DriverConnection keeps the header alive
+        self.drivers: dict[int, DriverConnection] = {}
+        self.lock = Lock()
+        self.heard = Event()    # set when a command arrives
+        self.arrived: list[Received] = []       # commands that settle() has not ordered yet
+        self.ready: list[tuple[Any, Any]] = []   # commands in the order in which they take effect
+        self.idle = True        # whether everything was asleep, and nothing has been delivered since
+        self.held = False       # whether the clock was held after the last tick
+        self.tick = 0
+        self.random = Random(0)
+
+    def receive(self, target: Any, header: dict[str, str], command: Any) -> None:
+        """Accept a command that just arrived, in any thread. header: see Received."""
+        with self.lock:
+            self.arrived.append(Received(target, header, command, monotonic(), self.idle))
+        self.heard.set()
+
+    def begin(self) -> None:
+        """Begin a tick. What has woken by itself still belongs to the tick before."""
+        self.tick += 1
+        moving = {driver.name for driver in self.drivers.values() if driver.moving}
+        if self.processes.update() or self.held or not self.processes.drivers or not self.processes.drivers <= moving:
+            self._settle()      # otherwise, all of them wait for the tick
+        while self._has_arrived():
+            self._settle()
+
+    def deliver(self, publisher: rospy.Publisher, message: Message) -> None:
+        """Publish a message, and wait until everything that it has woken is asleep again."""
+        topic = publisher.impl
+        if not topic.connections:
+            return
+        topic.seq += 1
+        buffer = BytesIO()
+        serialize_message(buffer, topic.seq, message)
+        for connections, wait in self.processes.groups(topic.connections):
+            self.heard.clear()
+            for connection in connections:
+                write(connection, buffer.getvalue())
+            if wait:
+                self.heard.wait(ANSWER_TIME)    # before a command arrives, there is no need to look
+                self._settle(isinstance(message, Clock))
+
+    def take(self) -> list[tuple[Any, Any]]:
+        """Return the commands that take effect now, each with its target."""
+        ready, self.ready = self.ready, []
+        return ready
+
+    def listen(self, until: float) -> None:
+        """Wait until a time (s of the monotonic clock), or longer if this tick tests who sends without being woken."""
+        self.idle = True
+        hold = max(map(self._hold, self.drivers.values()), default=0.0)
+        self.held = hold > 0
+        later = max(until, monotonic() + hold)
+        for driver in self.drivers.values():
+            driver.time += min(hold, later - until)     # not part of the interval
+        if self.processes.have_new_threads():
+            self._find_pollers()
+        self._sleep(later)
+
+    def _find_pollers(self) -> None:
+        runs = self.processes.runs()
+        for _ in range(TESTS):
+            self._sleep(monotonic() + TEST)
+            if not self.processes.find_pollers(runs):
+                break
+
+    def _sleep(self, until: float) -> None:
+        while monotonic() < until and not self.ended():
+            sleep(max(0.0, min(until - monotonic(), SLEEP)))
+
+    def _hold(self, driver: DriverConnection) -> float:
+        """Return for how long to hold the clock after this tick because of a driver, s of wall time."""
+        if not (driver.moving and driver.name in self.processes.drivers):
+            return 0.0
+        if driver.holds:
+            if driver.tick != self.tick:
+                return 0.0
+            driver.holds -= 1
+            is_first = driver.motions == 1 and driver.holds == HOLDS - 1
+            return FIRST_HOLD if is_first else HOLD * max(driver.intervals, default=0.0)
+        return HOLD * min(driver.intervals) if self.random.random() < HOLD_LATER else 0.0
+
+    def _has_arrived(self) -> bool:
+        """Return whether a command of the tick before has arrived that is not ordered yet. If not, the next tick has
+        begun."""
+        with self.lock:
+            self.idle = bool(self.arrived)
+            return self.idle
+
+    def _settle(self, new_time: bool = False) -> None:
+        """Wait until everything is asleep, and order the commands that have arrived. new_time: whether the time was
+        delivered, for which some threads poll."""
+        self._wait_while_awake()
+        polling = new_time and self.processes.polling()     # these may not have seen the time yet
+        if polling:
+            while self.processes.still_polling(polling) and not self.ended():
+                sleep(LOOK[0])
+            self._wait_while_awake()
+        with self.lock:
+            arrived, self.arrived = self.arrived, []
+        # the order must not depend on chance
+        arrived.sort(key=lambda each: each.header['callerid'])
+        counts = Counter(id(each.header) for each in arrived if each.moves())
+        for each in arrived:
+            self._check(self._driver_of(each.header), each, counts[id(each.header)])
+            self.ready.append((each.target, each.command))
+
+    def _wait_while_awake(self) -> None:
+        begin = last = monotonic()
+        awake: dict[str, float] = {}    # s of wall time for which each node was awake
+        while not self.ended():
+            name = self.processes.awake()
+            if not name:
+                return
+            now = monotonic()
+            awake[name] = awake.get(name, 0.0) + min(now - last, LONGEST_LOOK)
+            last = now
+            if awake[name] > NODE_TIMEOUT:
+                del awake[name]
+                if self.processes.forget(name):
+                    self._report(name, f'did not become idle within {NODE_TIMEOUT:g} s')
+            if now - begin > LONG:
+                self._find_pollers()    # again: on a busy machine, such a thread may not run for a while
+            sleep(min(max(LOOK[0], LOOK_LATER * (now - begin)), LOOK[1]))
+
+    def _driver_of(self, header: dict[str, str]) -> DriverConnection:
+        """Return the DriverConnection of a connection."""
+        if id(header) not in self.drivers:
+            self.drivers = {key: driver for key, driver in self.drivers.items()
+                            if self.processes.is_connected(driver.header)}
+            self.drivers[id(header)] = DriverConnection(header)
+        return self.drivers[id(header)]
+
+    def _check(self, driver: DriverConnection, received: Received, count: int) -> None:
+        """Update what is known of a driver with a command, and report it if the command is not in step. count: of the
+        moving commands that have arrived together."""
+        first = not driver.moving
+        driver.moving = received.moves()
+        if not driver.moving:
+            return
+        if first:
+            driver.motions += 1
+            driver.intervals, driver.holds = [], HOLDS
+        elif len(driver.intervals) < INTERVALS:
+            driver.intervals.append(received.time - driver.time)
+        driver.tick, driver.time = self.tick, received.time
+        if not driver.in_step or first and driver.motions == 1:
+            return      # a node may wait by the wall clock before its first motion
+        # a node that has exited since it sent the command is no longer visible
+        reason = self.processes.obstacle(driver.name) if self.processes.is_connected(driver.header) else None
+        if not reason and count > COMMANDS:
+            reason = f'sends more than {COMMANDS} commands at once'
+        elif not reason and received.idle and not self.processes.find_sources():
+            reason = 'sends commands that no tick of /clock has prompted'
+        if reason:
+            self.processes.forget(driver.name)
+            self._report(driver.name, reason)
+
+    def _report(self, name: str, reason: str) -> None:
+        for driver in self.drivers.values():
+            driver.in_step = driver.in_step and driver.name != name
+        self.report(name, reason)
+
+
+def write(connection: Any, data: bytes) -> None:
+    """Send a serialized message; without a detour through the thread of the connection, unless that has work to do or
+    the receiver does not read."""
+    try:
+        with connection._lock:
+            is_free = bool(connection._cond_data_available._waiters)    # its thread waits for a message
+        if is_free and is_writable(connection.socket):
+            connection = connection._connection
+        connection.write_data(data)
+    except Exception as error:
+        # another thread may have closed it meanwhile, which causes various errors
+        if not (isinstance(error, (TransportException, OSError)) or connection.done):
+            raise
+        connection.close()      # the node has exited
+
+
+def is_writable(connected: socket.socket) -> bool:
+    """Return whether a message can be sent without waiting for the receiver."""
+    poll = select.poll()
+    poll.register(connected, select.POLLOUT)
+    return bool(poll.poll(0))

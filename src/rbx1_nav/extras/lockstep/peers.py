@@ -1,0 +1,81 @@
+"""Finds the process at the other end of a connection, the process that listens on a port, and the own process.
+
+Source: proc(5).
+"""
+from __future__ import annotations
+
+import os
+import socket
+import sys
+import threading
+from typing import Callable
+
+from rbx1_nav.extras.lockstep.processes import Process
+
+LISTEN = '0A'           # state of a socket in /proc/net/tcp
+
+
+def own_process() -> Process | None:
+    """Return the Process of the caller without the calling thread; None if the kernel does not show its threads."""
+    try:
+        process = Process(os.getpid(), threading.get_native_id())
+        # the others wait for messages
+        return process if any(thread.waits_in() != b'0' for thread in process.threads.values()) else None
+    except OSError:
+        return None
+
+
+def peer_process(sock: socket.socket) -> Process | None:
+    """Return the Process of the peer of a TCP connection; None if it is not visible from here: on another machine, in
+    another container, or of another user."""
+    try:
+        peer, own = sock.getpeername(), sock.getsockname()
+        addresses = [_address(sock.family, each) for each in (peer, own)]
+    except (OSError, AttributeError):   # closed
+        return None
+    return _process_with(lambda fields: fields[1:3] == addresses)
+
+
+def listening_process(port: int) -> Process | None:
+    """Return the Process that listens on a TCP port of this machine; None if it is not visible from here."""
+    return _process_with(lambda fields: fields[3] == LISTEN and fields[1].endswith(f':{port:04X}'))
+
+
+def _process_with(matches: Callable[[list[str]], bool]) -> Process | None:
+    """Return the Process that owns a socket; matches(fields): whether a line of /proc/net/tcp describes the socket."""
+    link = f'socket:[{_inode(matches)}]'
+    for pid in filter(str.isdigit, os.listdir('/proc')):
+        folder = f'/proc/{pid}/fd/'
+        try:
+            if int(pid) != os.getpid() and any(_read_link(folder + file) == link for file in os.listdir(folder)):
+                return Process(int(pid))
+        except OSError:     # it has exited, or belongs to another user
+            pass
+    return None
+
+
+def _inode(matches: Callable[[list[str]], bool]) -> str | None:
+    """Return the inode of the first matching socket as a text; None if there is none."""
+    for table in ('/proc/net/tcp', '/proc/net/tcp6'):
+        try:
+            with open(table, encoding='ascii') as file:
+                for fields in map(str.split, file):
+                    if matches(fields):
+                        return fields[9]
+        except OSError:     # no IPv6
+            pass
+    return None
+
+
+def _address(family: int, address: tuple[str, int]) -> str:
+    """Return an address as in /proc/net/tcp: words of 32 bits in the machine's byte order, and the port."""
+    host = socket.inet_pton(family, address[0])
+    words = (int.from_bytes(host[i:i + 4], sys.byteorder) for i in range(0, len(host), 4))
+    return '%s:%04X' % (''.join('%08X' % word for word in words), address[1])
+
+
+def _read_link(path: str) -> str | None:
+    try:
+        return os.readlink(path)
+    except OSError:     # closed in between
+        return None

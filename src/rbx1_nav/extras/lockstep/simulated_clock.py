@@ -1,0 +1,147 @@
+"""Simulated time, which a base advances in step with its drivers."""
+from __future__ import annotations
+
+from resource import RLIMIT_NOFILE, getrlimit, setrlimit
+import time
+from typing import Any, Callable
+
+import rospy
+from diagnostic_msgs.msg import DiagnosticStatus
+import rosgraph
+from rosgraph_msgs.msg import Clock as ClockMessage
+from rospy.impl import simtime
+
+from rbx1_nav.base.clocks import Clock, RealTimeClock
+from rbx1_nav.base.schedule import CLOCK_STEP, Schedule
+from rbx1_nav.base.units import SECOND
+from rbx1_nav.extras.lockstep.lockstep import Lockstep
+from rbx1_nav.extras.lockstep.watch import Watch
+from rbx1_nav.node import life
+from rbx1_nav.node.config import ConfigError
+from rbx1_nav.node.master import call, is_alive
+from rbx1_nav.node.parameters import flag, number
+from rbx1_nav.node.private_parameters import param
+from rbx1_nav.node.rospy_topics import NoDelay
+
+CATCH_UP = 0.1      # s of wall time: a delay up to this is made up for
+
+PARAMETERS = (
+    number('real_time_factor', None, '', 'highest speed of simulated time, relative to real time', 0.01, 1000,
+           shown='real time', note='see [Simulated time](reference.md#simulated-time)'),
+    number('clock_step', CLOCK_STEP, 's', 'step of simulated time', 0.001, 0.1, 'a time'),
+    flag('strict', False, 'whether this node exits if a driver is not in step with simulated time',
+         note='see [Simulated time](reference.md#simulated-time)'))
+
+
+def read_clock(rate: float) -> Clock:
+    """Return the clock selected by the private parameters real_time_factor, clock_step and strict, and /use_sim_time.
+
+    rate: odometry rate, Hz. Raises ConfigError.
+    """
+    factor, step, strict = param('real_time_factor'), param('clock_step'), param('strict')
+    if factor is not None:
+        if rospy.rostime.is_wallclock():
+            raise ConfigError(f'real_time_factor: {factor:g}: expected /use_sim_time to be true')
+        clock = OwnClock(factor, rate, round(step * SECOND), strict)
+        other = earlier_clock()
+        if other:
+            raise ConfigError(f'real_time_factor: {factor:g}: expected no other clock, but {other} publishes /clock: '
+                              'fleet.launch simulates several robots on one clock')
+        return clock
+    if strict or rospy.has_param('~clock_step'):
+        given = 'strict: true' if strict else f'clock_step: {step:g}'
+        raise ConfigError(f'{given}: expected a simulated clock of this node: real_time_factor is not set')
+    if not rospy.rostime.is_wallclock():
+        raise ConfigError('real_time_factor: missing: expected one, because /use_sim_time is true. fleet.launch '
+                          'simulates several robots on one clock')
+    return RealTimeClock(rate)
+
+
+def earlier_clock() -> str | None:
+    """Return the name of a live node that registered as a publisher of /clock before this node, or None.
+
+    The master keeps the order, so of two nodes that start at the same time, only the second one finds the other.
+    """
+    publishers, _, _ = call(rosgraph.get_master_uri(), 'getSystemState')
+    names = dict(publishers).get('/clock', [])
+    return next((name for name in names[:names.index(rospy.get_name())] if is_alive(name)), None)
+
+
+class OwnClock(Clock):
+    """Simulated time that this node advances: at most `factor` times as fast as real time, in step with the drivers."""
+
+    waits = True
+
+    def __init__(self, factor: float, rate: float, period: int, strict: bool) -> None:
+        """factor, rate: see read_clock(); period: clock period, ns; strict: whether a driver that is not in step is an
+        error."""
+        self.time = 0       # ns
+        self.schedule = Schedule(rate)
+        self.factor = factor
+        self.period = period
+        self.strict = strict
+        # rospy subscribes each node to /clock. This node sets the time, and receiving it would take a sixth of a tick.
+        simtime._clock_sub.unregister()
+        # the usual limit of 1,024 open files is enough for the threads of about 17 drivers; see lockstep/processes.py
+        setrlimit(RLIMIT_NOFILE, 2 * getrlimit(RLIMIT_NOFILE)[1:])
+        self.publisher = rospy.Publisher('/clock', ClockMessage, NoDelay(self.greet), queue_size=10)
+        self.lockstep = Lockstep(Watch(self.publisher), self.report, life.end_requested.is_set)
+        self.not_in_step: dict[str, str] = {}   # reasons, by the name of the node
+
+    def greet(self, _: str, publish: Callable[[ClockMessage], None]) -> None:
+        """Send the time to a new subscriber: otherwise, other messages may arrive before the time."""
+        if self.time:
+            publish(ClockMessage(self.stamp(self.time)))
+
+    def now(self) -> int:
+        return self.time
+
+    def stamp(self, instant: int) -> rospy.Time:
+        return rospy.Time(0, instant)
+
+    def watch(self, subscriber: Any) -> None:
+        self.lockstep.add(subscriber)
+
+    def unwatch(self, subscriber: Any) -> None:
+        self.lockstep.remove(subscriber)
+
+    def receive(self, target: Any, header: dict[str, str], command: Any) -> None:
+        self.lockstep.receive(target, header, command)
+
+    def publish(self, publisher: rospy.Publisher, message: Any) -> None:
+        self.lockstep.deliver(publisher, message)
+
+    def report(self, name: str, reason: str) -> None:
+        """Report that a node is not in step. Raises ROSException if that is an error."""
+        if self.strict:
+            raise rospy.ROSException(f'strict: {name} {reason}: expected nodes that are in step with /clock')
+        self.not_in_step[name] = reason
+        rospy.logwarn('%s %s: not in step with /clock. The clock no longer waits for it, and the end pose of the robot '
+                      'depends on the speed of the machine. Expected a node that sleeps on simulated time, as '
+                      'rospy.Rate does', name, reason)
+
+    def diagnose(self, status: DiagnosticStatus) -> None:
+        if self.not_in_step:
+            status.mergeSummary(DiagnosticStatus.WARN, f"Not in step with /clock: {', '.join(self.not_in_step)}")
+        status.add('Nodes not in step with /clock',
+                   '; '.join(f'{name} {reason}' for name, reason in self.not_in_step.items()) or 'none')
+
+    def run(self, step: Callable[[], None]) -> None:
+        beat = time.monotonic()
+        while not life.end_requested.is_set():
+            self.lockstep.begin()
+            self.apply()
+            self.time += self.period
+            stamp = self.stamp(self.time)
+            rospy.rostime._set_rostime(stamp)
+            if self.schedule.due(self.time):
+                step()
+            self.publish(self.publisher, ClockMessage(stamp))
+            self.apply()
+            beat = max(beat + self.period / SECOND / self.factor, time.monotonic() - CATCH_UP)
+            self.lockstep.listen(beat)
+
+    def apply(self) -> None:
+        """Put the commands that have arrived in force."""
+        for target, command in self.lockstep.take():
+            target.apply(command)

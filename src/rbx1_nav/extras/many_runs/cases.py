@@ -1,0 +1,154 @@
+"""What a simulated run is made of, what it results in, and the combinations of a sweep."""
+from __future__ import annotations
+
+import itertools
+from typing import Iterator, Mapping, NamedTuple, Sequence, Tuple
+
+import yaml
+
+from rbx1_nav.base.description import Robot
+from rbx1_nav.base.kinematics import Pose
+from rbx1_nav.base.surfaces import KEYS, Surface
+from rbx1_nav.exercise.legs import StuckError
+from rbx1_nav.extras.many_runs.simulated_run import PARAMETERS, SimulationResult, legs, motions, simulate
+from rbx1_nav.extras.many_runs.summary import Summary
+from rbx1_nav.node.config import ConfigError, Section, show, show_name, suggestion
+from rbx1_nav.node.parameters import Parameter
+
+# the results of a run: name and unit of each column of a file
+RESULTS = (*(f'{name}_{field}' for name in ('true', 'odometry', 'estimate')
+             for field in ('x (m)', 'y (m)', 'heading (rad)')),
+           *(f'covariance_{name}' for name in ('x_x (m^2)', 'x_y (m^2)', 'x_heading (m rad)', 'y_y (m^2)',
+                                               'y_heading (m rad)', 'heading_heading (rad^2)')),
+           'first_leg (m)', 'time (s)')
+CHUNK = 200     # runs that are computed and written together, at most
+CHUNKS = 100    # chunks of each method, at least
+
+Row = Tuple[object, ...]    # the values of RESULTS; None without a filter
+
+
+class Case(NamedTuple):
+    """All that determines a run, except for its seed."""
+
+    method: str
+    robot: Robot
+    surface: Surface | None
+    parameters: Mapping[str, float]     # of the exercise
+
+
+class Combination(NamedTuple):
+    """One combination of a sweep."""
+
+    surface_name: str
+    values: dict[str, float]    # in the units of the declarations
+    surface: Surface | None
+    parameters: Mapping[str, float]
+
+    def title(self) -> str:
+        """Return the surface and the values as text."""
+        return ', '.join([self.surface_name, *(f'{key} {value:g}' for key, value in self.values.items())])
+
+
+class Chunk(NamedTuple):
+    """Runs that are computed and written together."""
+
+    combination: Combination
+    method: str
+    seeds: range
+    is_last: bool       # of this combination and method
+
+    def case(self, robot: Robot) -> Case:
+        """Return the Case of its runs."""
+        return Case(self.method, robot, self.combination.surface, self.combination.parameters)
+
+
+def simulate_row(case: Case, seed: int) -> Row:
+    """Return the RESULTS of a run. Raises StuckError, which names the run."""
+    try:
+        result = simulate(case.method, case.robot, case.surface, seed, parameters=case.parameters)
+    except StuckError as error:
+        raise StuckError(f'{case.method}, seed {seed}: {error}') from None
+    end, covariance = result.end, result.covariance
+    upper = [None if covariance is None else float(covariance[row, column])
+             for row in range(3) for column in range(row, 3)]
+    estimate = map(float, end.estimate) if end.estimate else (None,) * 3
+    return (*map(float, end.truth), *map(float, end.odometry), *estimate, *upper, float(result.first_leg), end.time)
+
+
+def simulate_rows(task: tuple[Case, Sequence[int]]) -> list[Row]:
+    """Return the RESULTS of the runs of a Case with several seeds."""
+    case, seeds = task
+    return [simulate_row(case, seed) for seed in seeds]
+
+
+def simulate_paths(task: tuple[Case, Sequence[int]]) -> list[SimulationResult]:
+    """Return the results of such runs, with their paths."""
+    (method, robot, surface, parameters), seeds = task
+    return [simulate(method, robot, surface, seed, keep=True, parameters=parameters) for seed in seeds]
+
+
+def add_row(summary: Summary, row: Row) -> None:
+    """Add the RESULTS of a run to a Summary."""
+    truth, odometry, estimate = (Pose(*row[first:first + 3]) for first in (0, 3, 6))    # type: ignore[arg-type]
+    summary.add(truth, odometry, None if estimate.x is None else estimate, row[-2])     # type: ignore[arg-type]
+
+
+def chunks(combinations: Sequence[Combination], methods: Sequence[str], seeds: range) -> Iterator[Chunk]:
+    """Yield the Chunks of a sweep, in the order of the file."""
+    size = max(1, min(CHUNK, len(seeds) // CHUNKS))
+    for combination, method in itertools.product(combinations, methods):
+        for start in range(0, len(seeds), size):
+            yield Chunk(combination, method, seeds[start:start + size], start + size >= len(seeds))
+
+
+def read_sweep(texts: Sequence[str], declared: Sequence[Parameter]) -> dict[str, list[float]]:
+    """Return the values of `key=a,b,c` texts by key. declared: the parameters of a driving script. Raises
+    ConfigError."""
+    readers = {each.name: each.read for each in declared if each.name in PARAMETERS and each.read}
+    values: dict[str, list[float]] = {}
+    for text in texts:
+        key, _, listed = text.partition('=')
+        if key not in readers and key not in KEYS:
+            known = [*readers, *KEYS]
+            raise ConfigError(f"--set: {show_name(key)}{suggestion(key, known)}: expected KEY=VALUE,... with one of "
+                              f"{', '.join(known)}")
+        if key in values:
+            raise ConfigError(f'--set: {key}: given twice: expected all its values in one list')
+        values[key] = []
+        for each in listed.split(','):
+            try:
+                section = Section({key: yaml.safe_load(each or "''")}, '--set')
+            except yaml.YAMLError:
+                raise ConfigError(f'--set: {key}: {show(each)}: expected a number') from None
+            declaration = KEYS.get(key)
+            value = (section.number(key, declaration.low, declaration.high, None, declaration.what, declaration.unit)
+                     if declaration else readers[key](section))
+            if value in values[key]:
+                raise ConfigError(f'--set: {key}: {value:g}: given twice')
+            values[key].append(value)
+    return values
+
+
+def combine(surfaces: Mapping[str, Surface | None], values: Mapping[str, Sequence[float]]) -> list[Combination]:
+    """Return all combinations of surfaces and values. Raises ConfigError if one of them cannot be driven."""
+    found = []
+    for (name, surface), *each in itertools.product(surfaces.items(), *values.values()):
+        chosen = dict(zip(values, each))
+        of_surface = {key: KEYS[key].to_si(value) for key, value in chosen.items() if key in KEYS}
+        if of_surface and surface is None:
+            raise ConfigError(f"--set: {next(iter(of_surface))}: the surface {show_name(name)} has no such value: "
+                              'expected another --surface')
+        parameters = {**PARAMETERS, **{key: value for key, value in chosen.items() if key in PARAMETERS}}
+        combination = Combination(name, chosen, surface._replace(**of_surface) if surface else None, parameters)
+        try:
+            motions(parameters), legs(parameters)
+        except ValueError as error:
+            raise ConfigError(f'--set: {combination.title()}: {error}') from None
+        found.append(combination)
+    return found
+
+
+def units(keys: Sequence[str], declared: Sequence[Parameter]) -> list[str]:
+    """Return the names of keys of read_sweep(), followed by their units, for a header."""
+    found = {**{each.name: each.unit for each in declared}, **{name: key.unit for name, key in KEYS.items()}}
+    return [f'{key} ({found[key]})' if found[key] else key for key in keys]

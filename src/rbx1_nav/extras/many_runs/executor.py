@@ -1,0 +1,97 @@
+"""The executor of many runs: processes of this machine, or the workers of a Dask cluster."""
+from __future__ import annotations
+
+from collections import deque
+from concurrent.futures import CancelledError, Future, ProcessPoolExecutor, wait
+from contextlib import contextmanager
+import multiprocessing
+import os
+import signal
+import threading
+from typing import Any, Callable, Deque, Iterable, Iterator, TypeVar
+from weakref import WeakSet
+
+from rbx1_nav.base.description import Robot
+from rbx1_nav.base.surfaces import Surface
+from rbx1_nav.extras.many_runs.cluster import Place, open_cluster
+
+LOOK = 1.0          # s between two checks of a cluster whose result is late
+AHEAD = 4           # tasks per process that are submitted before their results are needed
+Task = TypeVar('Task')
+Result = TypeVar('Result')
+
+
+def in_order(place: Place | None, function: Callable[[Task], Result], tasks: Iterable[Task]) -> Iterator[Result]:
+    """Yield the results of a function for all tasks, in the order of the tasks. Few of them are in memory at a time.
+
+    place: None for this process. Raises ConnectionError if a cluster is lost.
+    """
+    if place is None:
+        yield from map(function, tasks)
+        return
+    waiting: Deque[Future[Result]] = deque()
+    try:
+        for task in tasks:
+            waiting.append(place.submit(function, task))
+            if len(waiting) > AHEAD * place.jobs():
+                yield _result(place, waiting.popleft())
+        while waiting:
+            yield _result(place, waiting.popleft())
+    except CancelledError:
+        raise ConnectionError('the scheduler is disconnected') from None
+
+
+def _result(place: Place, future: Future[Result]) -> Result:
+    while not wait([future], LOOK).done:
+        place.jobs()
+    return future.result()
+
+
+@contextmanager
+def open_place(jobs: int, scheduler: str | None, robot: Robot, surface: Surface | None) -> Iterator[Place | None]:
+    """Provide a Place with so many local processes, or with a Dask scheduler (an address).
+
+    It is None for one job. robot, surface: for the runs with which the workers of a cluster are checked. Raises
+    ConfigError if the cluster cannot be used.
+    """
+    if scheduler is not None:
+        with open_cluster(scheduler, robot, surface) as cluster:
+            yield cluster
+    elif jobs == 1:
+        yield None
+    else:
+        pool = ProcessPoolExecutor(jobs, initializer=_follow_the_parent)
+        submitted: WeakSet[Future[Any]] = WeakSet()
+
+        def submit(function: Callable[[Any], Any], task: Any) -> Future[Any]:
+            future = pool.submit(function, task)
+            submitted.add(future)
+            return future
+        try:
+            yield Place(submit, lambda: jobs)
+        finally:
+            for each in submitted:      # do not compute runs whose results are not needed
+                each.cancel()
+            pool.shutdown()
+
+
+def add_arguments(parser: Any, jobs: int | None = os.cpu_count()) -> None:
+    """Add --jobs and --scheduler to an ArgumentParser. jobs: the default."""
+    parser.add_argument('--jobs', type=int, default=jobs, metavar='N', help='number of processes; default: '
+                        + ('the number of processor cores' if jobs != 1 else '1'))
+    parser.add_argument('--scheduler', metavar='ADDRESS',
+                        help='compute on the Dask cluster of this scheduler, such as tcp://192.168.1.2:8786')
+
+
+def _follow_the_parent() -> None:
+    """Make a new process leave Ctrl-C to its parent, and exit when its parent exits, even if the parent is killed."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    threading.Thread(target=_end_with_the_parent, daemon=True).start()
+
+
+def _end_with_the_parent() -> None:
+    parent = multiprocessing.parent_process()
+    if parent:
+        parent.join()
+    os._exit(1)

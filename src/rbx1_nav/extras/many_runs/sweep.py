@@ -1,0 +1,128 @@
+"""Computes all runs of a sweep that its file lacks, and shows the progress in a terminal."""
+from __future__ import annotations
+
+from array import array
+import time
+from typing import Iterable, Iterator, NamedTuple, Sequence, TypeVar
+
+import numpy
+from tqdm import tqdm
+
+from rbx1_nav.base.description import Robot
+from rbx1_nav.base.units import Array
+from rbx1_nav.extras.many_runs.cases import (
+    Chunk, Combination, Row, add_row, chunks, simulate_paths, simulate_row, simulate_rows)
+from rbx1_nav.extras.many_runs.cluster import Place, code_version
+from rbx1_nav.extras.many_runs.executor import in_order, open_place
+from rbx1_nav.extras.many_runs.runs_file import RunsFile
+from rbx1_nav.extras.many_runs.simulated_run import SimulationResult
+from rbx1_nav.extras.many_runs.summary import HEADER, Summary
+from rbx1_nav.node.config import ConfigError
+
+MOMENT = 1.0    # s: shorter sweeps show no bar, and use one process
+_T = TypeVar('_T')
+
+
+class Finished(NamedTuple):
+    """All runs of one method in one Combination."""
+
+    combination: Combination
+    method: str
+    summary: Summary
+    truths: Array       # (n, 3): the true end poses, if they were kept
+    paths: list[SimulationResult]
+
+
+def in_turn(values: Iterable[_T]) -> list[_T]:
+    """Return the different values, in their order."""
+    return list(dict.fromkeys(values))
+
+
+class Sweep:
+    """The runs of a command."""
+
+    def __init__(self, combinations: Sequence[Combination], methods: Sequence[str], robot: Robot, seeds: range) -> None:
+        """seeds: of each method in each Combination."""
+        self.combinations, self.methods, self.robot, self.seeds = combinations, methods, robot, seeds
+        self.chunks = list(chunks(combinations, methods, seeds))
+        self.total = len(combinations) * len(methods) * len(seeds)
+        self.done = 0       # runs
+
+    def title(self) -> str:
+        """Return the lines above the table."""
+        first, last, count = self.seeds[0], self.seeds[-1], len(self.combinations)
+        runs, of = (('1 run', f'seed {first}') if first == last
+                    else (f'{len(self.seeds)} runs', f'seeds {first} to {last}'))
+        on = self.combinations[0].title() if count == 1 else f'each of {count} combinations'
+        return f'{runs} of each method on {on}, {of}. Mean and standard deviation of the end poses:\n{HEADER}'
+
+    def open_file(self, path: str, keys: Sequence[str]) -> RunsFile:
+        """Return the RunsFile of this sweep. keys: titles of the columns of its values. Raises ConfigError, OSError."""
+        return RunsFile(path, {
+            'rbx1_nav': code_version(), 'config': self.robot, 'method': self.methods, 'seed': self.seeds[0],
+            'runs': len(self.seeds),
+            **{key: in_turn(each.values[key] for each in self.combinations) for key in self.combinations[0].values},
+            'surface': in_turn(each.surface_name for each in self.combinations),
+            'values of the surface': {each.surface_name: each.surface for each in self.combinations}}, keys)
+
+    def run(self, jobs: int, scheduler: str | None, file: RunsFile | None = None, keep_truths: bool = False,
+            paths: int = 0) -> Iterator[Finished]:
+        """Compute the runs, and yield each method of each Combination when it is finished.
+
+        jobs, scheduler: see open_place(); keep_truths: whether to return the true end poses; paths: number of runs with
+        paths to return. Raises ConfigError, OSError, StuckError and the errors of the executor.
+        """
+        kept = Kept(keep_truths)
+        start = time.monotonic()
+        first = simulate_row(self.chunks[0].case(self.robot), self.seeds[0])
+        long = (time.monotonic() - start) * self.total > MOMENT
+        number = 0
+        for chunk, rows in file.read(self.chunks) if file else ():
+            if number == 0 and rows[0] != first:
+                raise ConfigError(f'{self.methods[0]}, seed {self.seeds[0]}: this computer has another result for the '
+                                  'run: expected a file from one with an equal processor and equal libraries')
+            kept.add(rows)
+            number, self.done = number + 1, self.done + len(rows)
+            if chunk.is_last:
+                yield kept.finished(chunk, self._paths(None, chunk, paths))
+        missing = self.chunks[number:]
+        if not missing:
+            return
+        with open_place(jobs if long else 1, scheduler, self.robot, self.chunks[0].combination.surface) as place, tqdm(
+                total=self.total, initial=self.done, unit='run', leave=False, disable=None if long else True) as bar:
+            tasks = ((chunk.case(self.robot), chunk.seeds) for chunk in missing)
+            for chunk, rows in zip(missing, in_order(place, simulate_rows, tasks)):
+                kept.add(rows)
+                if file:
+                    file.append(chunk, rows)
+                self.done += len(rows)
+                bar.set_description(chunk.method, refresh=False)
+                bar.update(len(rows))
+                if chunk.is_last:
+                    yield kept.finished(chunk, self._paths(place, chunk, paths))
+
+    def _paths(self, place: Place | None, chunk: Chunk, count: int) -> list[SimulationResult]:
+        """Return the first results of a method, with their paths."""
+        tasks = [(chunk.case(self.robot), [seed]) for seed in self.seeds[:count]]
+        return [result for results in in_order(place, simulate_paths, tasks) for result in results]
+
+
+class Kept:
+    """What is kept of the runs of a method until all of them are done."""
+
+    def __init__(self, keep_truths: bool) -> None:
+        self.keep_truths = keep_truths
+        self.summary, self.truths = Summary(), array('d')
+
+    def add(self, rows: Sequence[Row]) -> None:
+        """Add runs."""
+        for row in rows:
+            add_row(self.summary, row)
+            if self.keep_truths:
+                self.truths.extend(row[:3])     # type: ignore[arg-type]
+
+    def finished(self, chunk: Chunk, paths: list[SimulationResult]) -> Finished:
+        """Return all runs of a method, and forget them. chunk: the last one."""
+        found = Finished(chunk.combination, chunk.method, self.summary, numpy.array(self.truths).reshape(-1, 3), paths)
+        self.summary, self.truths = Summary(), array('d')
+        return found

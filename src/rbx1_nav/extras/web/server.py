@@ -1,0 +1,119 @@
+"""The HTTP server, which serves the files of the page and the WebSocket. It runs in a separate thread."""
+from __future__ import annotations
+
+import asyncio
+import logging
+from threading import Event, Thread
+from typing import Mapping
+
+from tornado.httpserver import HTTPServer
+from tornado.ioloop import PeriodicCallback
+from tornado.netutil import bind_sockets
+from tornado.web import Application, HTTPError, StaticFileHandler
+from tornado.websocket import WebSocketHandler
+
+from rbx1_nav.extras.web.checks import accepted_hosts
+from rbx1_nav.extras.web.connections import Connections
+from rbx1_nav.extras.web.page_messages import MAX_MESSAGE
+
+FRAME_PERIOD = 50       # ms
+IDLE_TIMEOUT = 5.0      # s in which a request must arrive; s after which an unused connection is closed
+PING_PERIOD = 10.0      # s: a browser that does not answer three pings is disconnected
+MAX_HEADER = 8192       # bytes
+HEADERS = {
+    # load nothing from other hosts; no other page may embed this one, which prevents clickjacking
+    'Content-Security-Policy': "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; "
+                               "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+    'X-Frame-Options': 'DENY',
+    'X-Content-Type-Options': 'nosniff',
+    'Referrer-Policy': 'no-referrer',
+    'Cross-Origin-Resource-Policy': 'same-origin',
+    'Cross-Origin-Opener-Policy': 'same-origin',
+    'Cache-Control': 'no-cache'}
+
+for logger in 'tornado.access', 'tornado.general':
+    logging.getLogger(logger).setLevel(logging.CRITICAL)    # otherwise, any client could fill the log
+
+
+class FileHandler(StaticFileHandler):
+    """Serves the files of the page."""
+
+    def set_default_headers(self) -> None:
+        """Called by tornado."""
+        for name, value in HEADERS.items():
+            self.set_header(name, value)
+
+
+class SocketHandler(WebSocketHandler):
+    """The WebSocket of a browser. tornado rejects a foreign Origin."""
+
+    def initialize(self, connections: Connections) -> None:
+        """Called by tornado."""
+        self.connections = connections
+
+    def prepare(self) -> None:
+        if self.connections.full:
+            raise HTTPError(503)
+
+    def open(self, *_: str, **__: str) -> None:
+        self.set_nodelay(True)
+        self.connections.opened(self)
+
+    def on_message(self, message: str | bytes) -> None:
+        self.connections.received(self, message)
+
+    def on_close(self) -> None:
+        self.connections.closed(self)
+
+
+class PageServer:
+    """Serves the page."""
+
+    def __init__(self, folder: str, connections: Mapping[str, Connections], address: str, port: int) -> None:
+        """folder: directory of the page's files; connections: by the path of the socket; address: where the server
+        listens; port: 0 for any free port. Raises OSError."""
+        self.connections = set(connections.values())
+        self.sockets = bind_sockets(port, address)
+        self.port = int(self.sockets[0].getsockname()[1])
+        self.application = Application(
+            websocket_ping_interval=PING_PERIOD, websocket_max_message_size=MAX_MESSAGE,
+            log_function=lambda handler: None)
+        self.application.add_handlers(accepted_hosts(address), [
+            *((path, SocketHandler, dict(connections=each)) for path, each in connections.items()),
+            ('/(.*)', FileHandler, dict(path=folder, default_filename='index.html'))])
+        self.loop: asyncio.AbstractEventLoop | None = None
+        self.ready = Event()
+        self.thread = Thread(target=self._run, daemon=True)
+
+    def start(self) -> None:
+        """Start the thread, and wait until it accepts connections."""
+        self.thread.start()
+        self.ready.wait()
+
+    def _run(self) -> None:
+        asyncio.run(self._serve())
+
+    async def _serve(self) -> None:
+        self.loop, self.end = asyncio.get_running_loop(), asyncio.Event()
+        server = HTTPServer(self.application, max_header_size=MAX_HEADER, max_body_size=MAX_HEADER,
+                            idle_connection_timeout=IDLE_TIMEOUT, body_timeout=IDLE_TIMEOUT)
+        server.add_sockets(self.sockets)
+        frames = PeriodicCallback(self._send_frames, FRAME_PERIOD)
+        frames.start()
+        self.ready.set()
+        await self.end.wait()
+        frames.stop()
+        server.stop()
+        for socket in [socket for each in self.connections for socket in each.browsers]:
+            socket.close(1001, 'the web view has shut down')
+        await asyncio.sleep(0.05)   # until the close frames have been sent
+
+    def _send_frames(self) -> None:
+        for each in self.connections:
+            each.send_frames()
+
+    def stop(self) -> None:
+        """Close the connections and stop the thread; wait for at most 0.5 s."""
+        if self.loop:
+            self.loop.call_soon_threadsafe(self.end.set)
+        self.thread.join(0.5)

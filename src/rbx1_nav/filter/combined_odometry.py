@@ -1,0 +1,248 @@
+"""The combined odometry: sorts the messages, handles dropouts and jumps, and steps the filter."""
+from __future__ import annotations
+
+from collections import deque
+from copy import copy
+from math import cos, sin
+from typing import Callable, Deque, NamedTuple
+
+from rbx1_nav.base.kinematics import Pose
+from rbx1_nav.base.units import SECOND, Array, wrap_angle
+from rbx1_nav.filter.filter import YAW, Filter
+from rbx1_nav.filter.inputs import Imu, Odom, check_imu, check_odom, distance, format_pose, has_jumped
+from rbx1_nav.filter.priors import UNKNOWN_FLOOR, Priors, Bounds
+from rbx1_nav.filter.sensors import IMU, MAX_LEAD, MAX_WAIT, ODOM, Arrivals, Doubts
+from rbx1_nav.filter.standstill import STANDSTILL, Part, Standstill
+from rbx1_nav.filter.turns import Measurement, Readings
+
+
+class Estimate(NamedTuple):
+    """The estimated pose."""
+
+    stamp: int          # ns
+    pose: Pose
+    covariance: Array   # 3x3, of x, y (m) and yaw (rad)
+    odom: Odom          # the last odometry that the estimate is based on
+
+
+class CombinedOdometry:
+    """Runs the filter on messages in the order of their stamps, with one step per odometry message.
+
+    A step waits until the gyro has reported up to the stamp of the odometry. So the result depends only on stamps (ns),
+    not on arrivals, as long as no sensor times out. A sensor has timed out if the other sensor's stamps are ahead by
+    more than `timeout`, and nothing has arrived from it for that time: a late sensor is not silent. A sensor that has
+    timed out is not used until it recovers. Without the gyro, the wheels measure the turn. Without odometry, there is
+    no estimate; when it recovers, both sensors have measured the turn in the dropout.
+    """
+
+    def __init__(self, prior: Priors, timeout: int, gyro_used: bool = True,
+                 warn: Callable[[str], None] = lambda text: None, clock: Callable[[], int] | None = None,
+                 max_lead: int = MAX_LEAD, limits: Bounds = Bounds()) -> None:
+        """timeout: ns; gyro_used: whether to wait for a gyro at all; warn(text): logs a warning; clock(): returns the
+        arrival time (ns) if `now` may be simulated time; max_lead: ns that a stamp may be ahead."""
+        self.prior = prior
+        if prior == UNKNOWN_FLOOR:
+            self.prior = prior._replace(gyro_scale_error=limits.gyro_scale_error,
+                                        gyro_measurement_range=limits.max_turn_rate)
+        self.limits = limits
+        self.timeout = timeout
+        self.gyro_used = gyro_used
+        self.warn = warn
+        self.arrivals = Arrivals(timeout, warn, clock, max_lead)
+        self.readings = Readings(limits)
+        self.filter: Filter | None = None
+        self.learned: Filter | None = None
+        self.standstill = Standstill(limits.gyro_bias)
+        self.doubts = Doubts(warn)
+        self.restart()
+
+    def reset(self, now: int) -> None:
+        """Restart, because the base was reset at `now` (ns), on a clock that may differ from the clock of the stamps.
+        Odometry from before the reset is ignored if it arrives less than a second late."""
+        self.restart()
+        last = max((stamp for stamp in self.arrivals.last_stamp.values() if stamp), default=now)
+        self.start = max(last, min(now, last + SECOND))
+
+    def restart(self, reason: str = '') -> None:
+        """Discard the estimate; the next odometry message gives the initial pose."""
+        if reason:
+            self.warn(f'{reason}: restarting at the odometry pose')
+        self.start = 0              # ns, stamp of the first message that counts
+        self.learned = self.filter or self.learned      # about the sensors, which a restart does not change
+        self.filter = None
+        self._estimate: Estimate | None = None      # the latest one, once it was requested
+        self.pending: Deque[tuple[int, Odom]] = deque()     # with arrival times (ns), until the gyro has caught up
+        self.readings.waiting.clear()
+        self.odom: Odom | None = None       # the last odometry that was used in a step
+        self.odom_yaw = 0.0         # rad, the filter's yaw after that step
+        self.doubts.contradicted = None
+        self.standstill.restart()
+        self.placed: tuple[int, Pose, Array] | None = None      # arguments of set_pose(), until the first step after it
+        self.suspect: Odom | None = None    # odometry that has jumped, until the next message confirms it
+        self.arrivals.restart()
+
+    @property
+    def pose(self) -> Pose | None:
+        """The pose of the filter; None before the first odometry."""
+        return Pose(*self.filter.state[:3]) if self.filter else None
+
+    @property
+    def estimate(self) -> Estimate | None:
+        """The latest Estimate, the same object until the next step; None before the first odometry."""
+        ekf, odom = self.filter, self.odom
+        if not self._estimate and ekf and odom:
+            self._estimate = Estimate(odom.stamp, Pose(*ekf.state[:3]), ekf.covariance, odom)
+        return self._estimate
+
+    @property
+    def timed_out(self) -> dict[str, bool]:
+        """For each sensor, whether it has timed out and is not used."""
+        return self.arrivals.timed_out
+
+    @property
+    def contradicts(self) -> bool:
+        """Whether wheels and gyro contradict each other, or did so recently."""
+        return self.odom is not None and self.doubts.contradicts(self.odom.stamp)
+
+    @property
+    def case(self) -> str | None:
+        """The rule that the last step has followed: 'standstill', 'agreement', 'contradiction' or 'carried'; None if a
+        sensor is missing."""
+        if not self.filter or not self.gyro_used or self.suspect or any(self.timed_out.values()):
+            return None
+        return self.standstill.case or ('contradiction' if self.contradicts else 'agreement')
+
+    # input
+
+    def set_pose(self, now: int, pose: Pose, covariance: Array) -> None:
+        """Set the robot's Pose at `now` (ns), with its covariance (3x3) of x, y (m) and yaw (rad). It takes effect at
+        once, or before the first step beyond `now`. The filter keeps what it has learned about the sensors."""
+        self.placed = now, pose, covariance
+        if self.filter and self.odom and self.odom.stamp >= now:
+            self._place(self.filter)
+            self._estimate = None
+
+    def add_odom(self, now: int, odom: Odom) -> None:
+        """Process an Odom that arrived at `now` (ns). Raises RejectedMessage."""
+        check_odom(odom)
+        self._arrive(ODOM, now, odom.stamp)
+        if odom.stamp >= self.start:
+            self.pending.append((self.arrivals.time, odom))
+            self._make_steps()
+
+    def add_imu(self, now: int, imu: Imu) -> None:
+        """Process an Imu that arrived at `now` (ns). Raises RejectedMessage."""
+        check_imu(imu)
+        before = self._arrive(IMU, now, imu.stamp)
+        # the first reading after a dropout covers a period whose start is unknown
+        if (self.odom or self.pending) and before is not None and imu.stamp - before <= self.timeout:
+            self.readings.add(imu, self.standstill.case == STANDSTILL)
+        self.readings.last = imu
+        self._make_steps()
+
+    def _arrive(self, sensor: str, now: int, stamp: int) -> int | None:
+        """Check and store a stamp; return the previous stamp, or None."""
+        back = self.arrivals.notice_step_back(now)
+        if back:
+            self.restart(f'The clock jumped back by {back / SECOND:.3f} s')
+        return self.arrivals.add(sensor, now, stamp)
+
+    # steps
+
+    def _make_steps(self) -> None:
+        """Make all steps for which there are messages."""
+        while self.pending and self._gyro_is_ready():
+            self._step(self.pending.popleft()[1])
+        reported = self.arrivals.last_stamp[IMU] or 0
+        if (self.odom and not self.pending and reported - self.odom.stamp > self.timeout
+                and self.arrivals.is_silent(ODOM, 0)):
+            self.arrivals.set_timed_out(ODOM)
+
+    def _gyro_is_ready(self) -> bool:
+        """Return whether the gyro has reported up to the first pending odometry, or there is no need to wait for it."""
+        (arrival, first), (_, last) = self.pending[0], self.pending[-1]
+        reported = self.arrivals.last_stamp[IMU]
+        if not self.gyro_used or self.timed_out[IMU] or (reported is not None and reported >= first.stamp):
+            return True
+        if self.arrivals.time - arrival > MAX_WAIT:
+            self.arrivals.set_timed_out(IMU, f'its messages arrive more than {MAX_WAIT / SECOND:g} s late')
+        elif (last.stamp - (first.stamp if reported is None else reported) > self.timeout
+              and self.arrivals.is_silent(IMU, arrival)):
+            self.arrivals.set_timed_out(IMU)
+        return self.timed_out[IMU]
+
+    def _step(self, odom: Odom) -> None:
+        """Make a step up to an Odom."""
+        if self.odom and self._reject_outlier(self.odom, odom):
+            return
+        ekf, last = self.filter, self.odom
+        if not ekf or not last:
+            self._begin(odom)
+            return
+        if self.placed and odom.stamp > self.placed[0]:
+            self._place(ekf)
+        duration = (odom.stamp - last.stamp) / SECOND
+        gyro = self.readings.turn(last.stamp, odom.stamp, self.prior.gyro_measurement_range,
+                                  self.standstill.max_density)
+        if self.standstill.follow(odom.stamp, odom.pose) and gyro:
+            self.standstill.add(Part(duration, *gyro), ekf)
+            self.odom_yaw = ekf.state[YAW]
+        else:
+            self._leave_standstill(ekf)
+            self._drive(ekf, last, odom, duration, gyro)
+        self.odom, self._estimate = odom, None
+
+    def _begin(self, odom: Odom) -> None:
+        """Begin at the pose of the first Odom."""
+        ekf = self.filter = copy(self.learned) or Filter(self.prior, odom.pose, self.limits.gyro_bias)
+        ekf.place(odom.pose)
+        self.odom_yaw = odom.pose.yaw
+        if self.placed:
+            self._place(ekf)
+        self.odom, self._estimate = odom, None
+
+    def _reject_outlier(self, last: Odom, odom: Odom) -> bool:
+        """Store an Odom that has jumped, and return True: it is ignored. If a second one agrees, restart there."""
+        suspect, self.suspect = self.suspect, None
+        if suspect and not has_jumped(suspect, odom, self.limits) and distance(suspect, odom) <= distance(last, odom):
+            self.restart(f'odom: jumped from {format_pose(last)} to {format_pose(odom)}')
+        elif has_jumped(last, odom, self.limits):
+            self.warn(f'odom: {format_pose(odom)} is too far from {format_pose(last)} for the '
+                      f'{(odom.stamp - last.stamp) / SECOND:.3f} s between them (~max_speed, ~max_turn_rate): ignored')
+            self.suspect = odom
+        return self.suspect is not None
+
+    def _drive(self, ekf: Filter, last: Odom, odom: Odom, duration: float, gyro: Measurement | None) -> None:
+        """Move the robot from one Odom to the next. duration: between them, s; gyro: its turn in that time."""
+        dx, dy = odom.pose.x - last.pose.x, odom.pose.y - last.pose.y
+        turned = wrap_angle(odom.pose.yaw - last.pose.yaw)
+        # in the frame of the wheels' heading halfway through the turn
+        heading = last.pose.yaw + turned / 2
+        c, s = cos(heading), sin(heading)
+        forward, left = dx * c + dy * s, dy * c - dx * s
+        turn = ekf.turn(duration, (turned, odom.angular_variance * duration ** 2), gyro, forward)
+        # this heading in the filter's frame: halfway between the yaws at the last odometry and at this one
+        yaw = ekf.state[YAW]
+        end = yaw + turn.angle
+        ahead = turned + wrap_angle(end - self.odom_yaw - turned)
+        ekf.step(duration, turn, self.odom_yaw + ahead / 2 - yaw - turn.angle / 2, forward, left,
+                 odom.linear_variance * duration ** 2)
+        self.odom_yaw = end
+        verdict = ekf.close_window()
+        if verdict:
+            self.doubts.report(verdict, ekf, odom.stamp)
+
+    def _leave_standstill(self, ekf: Filter) -> None:
+        """After a rest, use the gyro's turn in its last part, in which the robot may have begun to turn."""
+        last = self.standstill.leave(ekf) if self.standstill.case else None
+        if last and last.time:
+            before = ekf.state[YAW]
+            ekf.step(last.time, ekf.turn(last.time, None, (last.angle, last.variance)))
+            self.odom_yaw += ekf.state[YAW] - before
+
+    def _place(self, ekf: Filter) -> None:
+        """Move the filter to the pose of set_pose()."""
+        assert self.placed
+        (_, pose, covariance), self.placed = self.placed, None
+        self.odom_yaw += pose.yaw - ekf.state[YAW]
+        ekf.place(pose, covariance)

@@ -1,0 +1,65 @@
+"""Conversions of the messages that the filter receives."""
+from __future__ import annotations
+
+from math import isnan
+
+from geometry_msgs.msg import PoseWithCovarianceStamped
+from nav_msgs.msg import Odometry
+import numpy
+from sensor_msgs.msg import Imu
+
+from rbx1_nav.base.kinematics import Pose
+from rbx1_nav.base.messages import unit_quaternion, yaw_of
+from rbx1_nav.base.units import Array
+from rbx1_nav.filter.gyro_input import ImuData
+from rbx1_nav.filter.inputs import MAX_VARIANCE, Odom, check, check_number, check_variance
+from rbx1_nav.node.config import show
+
+ROUNDING = 1e-6     # tolerance for rounding errors of a received correlation
+
+
+def from_odometry(message: Odometry) -> Odom:
+    """Return the Odom of an Odometry message, for the filter. Without variances of the speeds, the variances of the
+    pose are used for one second's travel, as in robot_pose_ekf."""
+    pose, twist = message.pose, message.twist
+    linear, angular = (twist.covariance[index] or pose.covariance[index] for index in (0, 35))
+    return Odom(message.header.stamp.to_nsec(),
+                Pose(pose.pose.position.x, pose.pose.position.y, yaw_of(pose.pose.orientation)),
+                *(value if 0 < value < MAX_VARIANCE else 0.0 for value in (linear, angular)))
+
+
+def from_imu(message: Imu) -> ImuData:
+    """Return the ImuData of an Imu message. By its definition, a first variance of -1 means not measured."""
+    rate = message.angular_velocity
+    has_rates, has_orientation = (covariance[0] != -1 for covariance in (
+        message.angular_velocity_covariance, message.orientation_covariance))
+    return ImuData(message.header.stamp.to_nsec(), (rate.x, rate.y, rate.z) if has_rates else None,
+                   message.angular_velocity_covariance[::4],
+                   unit_quaternion(message.orientation) if has_orientation else None,
+                   message.orientation_covariance[8])
+
+
+def from_set_pose(message: PoseWithCovarianceStamped, output_frame: str) -> tuple[Pose, Array]:
+    """Return (Pose, 3x3 covariance of x, y and yaw) of a message on set_pose. Raises RejectedMessage.
+
+    output_frame: the required frame of the pose; an empty frame_id stands for this frame.
+    """
+    frame = message.header.frame_id.lstrip('/')
+    check('header.frame_id', show(frame), frame in ('', output_frame), f'{output_frame}, the output_frame')
+    point = message.pose.pose.position
+    orientation = message.pose.pose.orientation
+    pose = Pose(point.x, point.y, yaw_of(orientation))
+    check('pose.pose.orientation', f'({orientation.x:g}, {orientation.y:g}, {orientation.z:g}, {orientation.w:g})',
+          not isnan(pose.yaw), 'a normalized quaternion (x, y, z, w)')
+    for field, value in zip(('position.x', 'position.y'), pose):
+        check_number(f'pose.pose.{field}', value)
+    covariance = numpy.reshape(message.pose.covariance, (6, 6))[numpy.ix_((0, 1, 5), (0, 1, 5))]
+    for index, value in zip((0, 7, 35), covariance.diagonal().tolist()):
+        check_variance(f'pose.covariance[{index}]', value)
+    deviations = numpy.sqrt(covariance.diagonal())
+    correlations = covariance / numpy.outer(deviations, deviations)
+    good = (numpy.isfinite(correlations).all() and abs(correlations).max() < 1 + ROUNDING
+            and abs(correlations - correlations.T).max() < ROUNDING
+            and numpy.linalg.eigvalsh(correlations).min() > -ROUNDING)
+    check('pose.covariance', show(covariance.tolist()), good, 'a covariance: symmetric, no correlation above 1')
+    return pose, (covariance + covariance.T) / 2

@@ -1,0 +1,135 @@
+"""Which sensor is silent, and which one is doubted: stamps and arrivals of the messages, and reports to the user."""
+from __future__ import annotations
+
+from math import degrees
+from typing import Callable
+
+from rbx1_nav.base.units import SECOND
+from rbx1_nav.filter.filter import BIAS, SLIP_TURNING, YAW, Filter, Verdict
+from rbx1_nav.filter.inputs import RejectedMessage
+
+ODOM, IMU = 'odom', 'imu_data'  # the sensors, by their topics
+
+MAX_LEAD = SECOND // 2  # ns that a stamp may be ahead of the clock: clocks of computers differ
+MAX_AGE = 60 * SECOND   # ns that a stamp may be behind; simulated time may be ahead or behind by the same amount
+MAX_WAIT = 5 * SECOND   # ns that odometry waits for a gyro that is late but not silent
+CONTRADICTION = 5 * SECOND  # ns for which a contradiction is reported
+FADED = 0.1                 # rad: a smaller doubt of the heading is none
+REASONS = {'imu_data': 'the bias of the gyro has drifted',
+           'wheels': 'the wheels slip; the heading follows the gyro',
+           'both': 'one of them is wrong; the heading is uncertain'}
+
+
+def rejection(stamp: int, expected: str, time: int) -> RejectedMessage:
+    """Return the error for a stamp (ns) that is not as expected, compared with a time (ns)."""
+    return RejectedMessage(f'header.stamp: {stamp / SECOND:.9f}: expected {expected}, {time / SECOND:.9f}')
+
+
+class Arrivals:
+    """Stamps and arrivals of messages by sensor, and the sensors that have timed out. All times are in ns."""
+
+    def __init__(self, timeout: int, warn: Callable[[str], None], clock: Callable[[], int] | None,
+                 max_lead: int) -> None:
+        """For the arguments see CombinedOdometry."""
+        self.timeout = timeout
+        self.warn = warn
+        self.clock = clock
+        self.max_lead = max_lead
+        self.now = 0
+        self.last_stamp: dict[str, int | None] = {ODOM: None, IMU: None}
+        self.time = 0               # when the last message of either sensor arrived, see _count()
+        self.last_clock = 0         # the clock at that time
+        self.last_time: dict[str, int | None] = {ODOM: None, IMU: None}
+        self.timed_out = {ODOM: False, IMU: False}
+
+    def restart(self) -> None:
+        """Mark both sensors as not timed out."""
+        self.timed_out = {ODOM: False, IMU: False}
+
+    def notice_step_back(self, now: int) -> int:
+        """Discard the stamps if the clock has jumped back. Returns how far (ns), or 0."""
+        back = self.now - now
+        if back <= MAX_LEAD:
+            return 0
+        self.last_stamp = {ODOM: None, IMU: None}
+        return back
+
+    def add(self, sensor: str, now: int, stamp: int) -> int | None:
+        """Check and store the stamp of a message that arrives at `now`, and return the previous stamp.
+
+        Raises RejectedMessage.
+        """
+        self.now = now
+        before = self.last_stamp[sensor]
+        if stamp > now + self.max_lead:
+            raise rejection(stamp, 'a stamp not later than now', now)
+        if stamp < now - MAX_AGE:
+            raise rejection(stamp, 'a stamp not much older than now', now)
+        if before is not None and stamp <= before:
+            raise rejection(stamp, 'a stamp later than the last', before)
+        self.last_stamp[sensor] = stamp
+        self._count(sensor, self.clock() if self.clock else now)
+        other = self.last_stamp[ODOM if sensor == IMU else IMU]
+        # not if it is still as late as when it timed out
+        if self.timed_out[sensor] and (sensor == ODOM or (other or 0) - stamp <= MAX_WAIT):
+            self.timed_out[sensor] = False
+            self.warn(f'{sensor} has recovered')
+        return before
+
+    def _count(self, sensor: str, clock: int) -> None:
+        """Update the arrival times with a message.
+
+        A pause of both sensors counts only partly: the process may have been asleep, and then it processes all messages
+        of one sensor before the messages of the other.
+        """
+        self.time += min(max(0, clock - self.last_clock), self.timeout // 4)
+        self.last_clock = clock
+        self.last_time[sensor] = self.time
+
+    def is_silent(self, sensor: str, since: int) -> bool:
+        """Return whether no message of a sensor has arrived for longer than the timeout.
+
+        since: start of the period if no message has arrived yet.
+        """
+        last = self.last_time[sensor]
+        return self.time - (since if last is None else last) > self.timeout
+
+    def set_timed_out(self, sensor: str, reason: str = '') -> None:
+        """Stop using a sensor until it recovers."""
+        if not self.timed_out[sensor]:
+            self.timed_out[sensor] = True
+            reason = reason or f'no valid message for more than {self.timeout / SECOND:g} s'
+            self.warn(f'{sensor} has timed out: {reason}; not used until it recovers')
+
+
+class Doubts:
+    """Warns when wheels and gyro begin to contradict each other, and when they agree again."""
+
+    def __init__(self, warn: Callable[[str], None]) -> None:
+        """warn(text): logs a warning."""
+        self.warn = warn
+        self.doubted = 'nothing'
+        self.contradicted: int | None = None    # ns, when wheels and gyro last contradicted each other
+        self.warned = False     # whether there was a warning that the bias is unknown
+
+    def contradicts(self, time: int) -> bool:
+        """Return whether wheels and gyro contradict each other at a time (ns), or did so recently."""
+        return self.contradicted is not None and time - self.contradicted < CONTRADICTION
+
+    def report(self, verdict: Verdict, ekf: Filter, time: int) -> None:
+        """Report a Verdict of a Filter at a time (ns)."""
+        if not (ekf.rested or self.warned):
+            self.warned = True
+            self.warn('the robot has not been at rest yet, so the bias of the gyro is unknown: the heading may drift '
+                      f'by {degrees(ekf.sigma(BIAS)):.1f} degrees/s or more')
+        sums, doubted = verdict
+        if doubted:
+            self.contradicted = time
+            if self.doubted == 'nothing':
+                self.warn(f'odom turned by {sums.wheels:.2f} rad, imu_data by {sums.gyro:.2f} rad in '
+                          f'{sums.time:.1f} s: {REASONS[doubted]}')
+                self.doubted = f'{doubted} since {time / SECOND:.1f} s'
+        elif (self.doubted != 'nothing' and ekf.doubt[YAW] < FADED
+              and ekf.sigma(SLIP_TURNING) < 1.001 * ekf.prior.slip_turning_spread):
+            self.warn('odom and imu_data agree again')
+            self.doubted = 'nothing'

@@ -1,1 +1,0 @@
-"""Access to the master and to other nodes, and monitoring of their connections and processes."""

@@ -1,1 +1,0 @@
-"""Start and shutdown of a node, and its command line, parameters, logging and interrupts."""

@@ -1,0 +1,22 @@
+"""The bases that the master lists."""
+from types import SimpleNamespace
+
+from rbx1_nav.base.running_bases import namespaces_of_bases, private_namespace
+
+PUBLISHERS = {'/odom': ['/arbotix'], '/r1/odom': ['/fleet'], '/r2/odom': ['/fleet'],
+              '/r2/cmd_vel': ['/r2/out_and_back']}
+SUBSCRIBERS = {'/cmd_vel': ['/arbotix', '/recorder'], '/r1/cmd_vel': ['/fleet'], '/r2/cmd_vel': ['/fleet'],
+               '/r3/cmd_vel': ['/recorder'], '/odom': ['/recorder']}
+
+
+def test_a_base_publishes_odometry_and_subscribes_to_commands():
+    found = namespaces_of_bases(PUBLISHERS, SUBSCRIBERS, ['/odom', '/r1/odom', '/r2/odom'])
+    assert found == {'/': {'/arbotix'}, '/r1': {'/fleet'}, '/r2': {'/fleet'}}
+
+
+def test_private_names_of_a_fleet_are_those_of_its_robots():
+    parameters = {'/fleet/robots'}
+    master = SimpleNamespace(call=lambda _, key: key in parameters)
+    assert private_namespace('/fleet', '/r1/odom', master) == '/r1/arbotix'
+    assert private_namespace('/r1/arbotix', '/r1/odom', master) == '/r1/arbotix'
+    assert private_namespace('/turtlebot_node', '/odom', master) == '/turtlebot_node'

@@ -1,9 +1,0 @@
-"""The priors that the tests of the filter use."""
-import os
-
-from rbx1_nav.estimation.priors import priors
-from rbx1_nav.robot.surfaces import load_surface
-
-SURFACES = os.path.join(os.path.dirname(__file__), '..', '..', '..', 'config', 'surfaces')
-PRIORS = priors(load_surface('low_ply_carpet', SURFACES))
-IDEAL = priors(None)

@@ -1,0 +1,209 @@
+"""The driver handles faults of an emulated robot and its line."""
+import random
+
+import numpy
+import pytest
+
+from rbx1_nav.base.surfaces import load_surface
+from rbx1_nav.base.units import wrap_angle
+from rbx1_nav.extras.create import protocol
+
+from driven_create import BOTH, SURFACES, DrivenCreate, started
+
+STOP = protocol.drive_direct(0, 0)
+NO_ERRORS = {'odom_linear_error': 0.0, 'odom_angular_error': 0.0, 'odom_heading_error': 0.0}
+CHI_SQUARE = 16.3       # 99.9 % quantile for 3 degrees of freedom
+
+
+def normalized_error(driven):
+    """Return the squared error of the odometry, normalized by its covariance."""
+    error = numpy.array(driven.pose) - driven.truth
+    error[2] = wrap_angle(error[2])
+    return error @ numpy.linalg.solve(driven.driver.motion.odometry.covariance, error)
+
+
+def pull_cable(robot_type, seed, surface, **params):
+    """Return the normalized squared error after a gap at a random moment of a random motion, and check the stop."""
+    choose = random.Random(seed)
+    driven = started(robot_type, surface=surface, seed=seed, **params)
+    driven.drive(choose.uniform(-0.3, 0.3), choose.choice([0, choose.uniform(-1, 1)]), choose.uniform(0.5, 3))
+    driven.run(0.002 * choose.randrange(17))
+    driven.pull()
+    driven.run(choose.uniform(0.05, 4))
+    assert driven.body.moving       # nothing stops the robot
+    count = len(driven.commands)
+    driven.connect()
+    driven.run(0.5)
+    assert driven.commands[count][1] == STOP
+    assert driven.driver.contact.answers and driven.speeds == (0, 0)
+    return normalized_error(driven)
+
+
+@pytest.mark.parametrize('surface, params', [('ideal', NO_ERRORS), ('low_ply_carpet', {})])
+@BOTH
+def test_the_odometry_knows_how_uncertain_a_gap_is(robot_type, surface, params):
+    floor = load_surface(surface, SURFACES)
+    errors = [pull_cable(robot_type, seed, floor, **params) for seed in (*range(50), 475)]      # the last: an arc
+    assert max(errors) < CHI_SQUARE
+    assert 0.5 < sum(errors) / len(errors) < 6
+
+
+@BOTH
+def test_a_silent_line_is_stopped_and_recovers(robot_type):
+    driven = started(robot_type)
+    driven.drive(0.2, 0, 1)
+    driven.line.silent = True
+    driven.drive(0.2, 0, 2)
+    assert not driven.driver.contact.answers and driven.driver.state() is None
+    assert driven.speeds == (200, 200)
+    driven.line.silent = False
+    driven.run(1.5)
+    assert driven.speeds == (0, 0) and driven.driver.contact.answers
+    assert normalized_error(driven) < CHI_SQUARE
+    driven.drive(0.2, 0, 0.5)
+    assert driven.speeds == (200, 200)
+
+
+def test_a_robot_that_never_answers_is_reported_once():
+    driven = DrivenCreate('create')
+    driven.line.silent = True
+    driven.connect()
+    driven.run(10)
+    assert driven.log == ['No robot answers at 57600, 115200, 19200 baud: expected a Create, Create 2 or Roomba that '
+                          'is switched on and connected']
+
+
+@BOTH
+def test_a_reset_is_no_travel(robot_type):
+    driven = started(robot_type)
+    driven.drive(0.2, 0.3, 3)
+    driven.run(1)
+    before = driven.pose
+    driven.robot.switch_on(driven.now)
+    driven.run(5)
+    assert driven.robot.mode == protocol.SAFE
+    assert driven.pose == before
+    driven.drive(0.2, 0, 1)
+    assert driven.speeds == (200, 200)
+
+
+@BOTH
+@pytest.mark.parametrize('linear, angular, index', [(0.2, 0, 0), (0, 0.8, 2)])
+def test_the_pose_of_a_robot_that_was_reset_while_disconnected_is_as_uncertain_as_its_commanded_travel(
+        robot_type, linear, angular, index):
+    driven = started(robot_type, **NO_ERRORS)
+    driven.drive(linear, angular, 1)
+    covariance, before = driven.driver.motion.odometry.covariance, driven.pose
+    driven.pull()
+    driven.run(4)
+    driven.robot.switch_on(driven.now)
+    driven.connect()
+    driven.run(5)
+    grown = driven.driver.motion.odometry.covariance - covariance
+    assert driven.robot.mode == protocol.SAFE and driven.pose == before
+    # uniform from 0 to the travel in 4 s; 1 % in variance for the 20 ms of an incomplete reading
+    assert grown[index, index] == pytest.approx((4 * (linear or angular)) ** 2 / 3, rel=0.02)
+
+
+@BOTH
+def test_more_commands_than_the_line_can_carry_do_not_delay_a_stop(robot_type):
+    driven = started(robot_type)
+    for index in range(500):
+        for _ in range(4):
+            driven.command(0.2 + index / 1e5, 0)
+        driven.run(0.002)
+    driven.command_zero()
+    driven.run(0.02)
+    assert driven.speeds == (0, 0)
+
+
+@BOTH
+@pytest.mark.parametrize('fault', ['wheel_dropped', 'cliff'])
+def test_control_comes_back_when_the_cause_is_gone(robot_type, fault):
+    driven = started(robot_type)
+    driven.drive(0.2, 0, 1)
+    setattr(driven.body, fault, True)
+    driven.drive(0.2, 0, 3)
+    assert driven.speeds == (0, 0) and driven.robot.mode == protocol.PASSIVE
+    assert driven.driver.supervisor.reason in ('a wheel dropped', 'a cliff')
+    assert protocol.command('safe') not in [data for time, data in driven.commands[-50:]]
+    setattr(driven.body, fault, False)
+    driven.drive(0.2, 0, 0.9)
+    assert driven.robot.mode == protocol.PASSIVE    # held for a second
+    driven.drive(0.2, 0, 0.5)
+    assert driven.robot.mode == protocol.SAFE
+    # the sender has not noticed the stop: with a hand on the robot, the robot must not continue
+    assert driven.speeds == (0, 0) and 'expected a zero command, or none for 0.6 s' in driven.refusals[-1]
+    driven.command_zero()
+    driven.drive(0.2, 0, 0.1)
+    assert driven.speeds == (200, 200)
+
+
+@pytest.mark.parametrize('seed', range(4))
+def test_a_corrupted_line_leaves_the_odometry_as_it_is(seed):
+    driven = started('create2', seed=seed)
+    driven.line.corruption = 0.01
+    for linear, angular in ((0.2, 0.0), (0.0, 1.0), (0.2, 0.3), (-0.1, -0.5)):
+        driven.drive(linear, angular, 3)
+    driven.run(1)
+    driven.line.corruption = 0.0
+    driven.run(1)
+    # as large as without corruption: rounding along the path
+    for value, truth in zip(driven.pose, driven.truth):
+        assert value == pytest.approx(truth, abs=0.003)
+    assert driven.driver.queries.rejected > 20 and driven.driver.contact.dropouts == 0
+
+
+@pytest.mark.parametrize('seed', range(4))
+def test_lost_replies_of_a_create_are_bridged(seed):
+    driven = started('create', seed=seed, **NO_ERRORS)
+    driven.line.corruption = 0.01
+    for linear, angular in ((0.2, 0.0), (0.0, 1.0), (0.2, 0.3), (-0.1, -0.5)):
+        driven.drive(linear, angular, 3)
+    driven.run(1)
+    assert driven.driver.queries.missed > 20
+    assert normalized_error(driven) < CHI_SQUARE
+
+
+def test_the_covariance_holds_what_a_line_without_a_checksum_corrupts():
+    errors = []
+    for seed in range(6):
+        driven = started('create', seed=seed, **NO_ERRORS)
+        driven.line.corruption = 0.01
+        for linear, angular in ((0.2, 0.0), (0.0, 1.0), (0.2, 0.0), (0.0, 1.0)):
+            driven.drive(linear, angular, 3)
+        driven.line.corruption = 0.0
+        driven.run(1)
+        errors.append(normalized_error(driven))
+    assert 0.1 < sum(errors) / len(errors) < 6      # mostly too large: few corrupted counts pass the checks
+
+
+def test_a_clock_that_went_on_while_the_computer_was_suspended_stops_the_robot():
+    driven = started('create2')
+    driven.drive(0.2, 0, 1)
+    driven.connected = False    # the processes are suspended, the robot continues
+    driven.run(20)
+    driven.connected = True
+    driven.run(0.1)
+    assert driven.speeds == (0, 0)
+    driven.run(1)
+    assert normalized_error(driven) < CHI_SQUARE
+
+
+@pytest.mark.parametrize('corruption', [0.05, 0.1])
+def test_a_robot_on_a_very_bad_line_is_stopped(corruption):
+    for seed in range(8):
+        driven = started('create', seed=seed, **NO_ERRORS)
+        driven.drive(0.2, 0.0, 2.0)
+        driven.line.corruption = corruption
+        driven.drive(0.0, 1.0, 5.0)
+        assert driven.speeds == (0, 0)
+        assert any('% of the replies of the robot are lost or corrupted' in text or 'the robot does not answer' in text
+                   or 'the robot did not answer' in text for text in driven.refusals), driven.refusals
+        driven.line.corruption = 0.0
+        driven.run(3.0)
+        assert normalized_error(driven) < CHI_SQUARE, seed
+        # a zero command allows it to be driven again
+        driven.command_zero()
+        driven.drive(0.2, 0.0, 1.0)
+        assert driven.speeds == (200, 200)

@@ -1,0 +1,88 @@
+"""Senders that have not noticed a stop, and robots that are exchanged, disturbed or blocked."""
+import pytest
+
+from rbx1_nav.extras.create import protocol
+from rbx1_nav.extras.create import sequences
+
+from driven_create import BOTH, DrivenCreate, started
+
+
+def drop_a_wheel(driven):
+    driven.body.wheel_dropped = True
+    driven.drive(0.2, 0, 1)
+    driven.body.wheel_dropped = False
+
+
+def reset(driven):
+    driven.robot.switch_on(driven.now)
+
+
+def pull_the_cable(driven):
+    driven.pull()
+    driven.drive(0.2, 0, 0.5)
+    driven.connect()
+
+
+def silence(driven):
+    driven.line.silent = True
+    driven.drive(0.2, 0, 1)
+    driven.line.silent = False
+
+
+@BOTH
+@pytest.mark.parametrize('mode', [protocol.SAFE, protocol.FULL])
+@pytest.mark.parametrize('event', [drop_a_wheel, reset, pull_the_cable, silence])
+def test_a_sender_that_has_not_noticed_does_not_drive_the_robot_on(robot_type, mode, event):
+    driven = started(robot_type, operation_mode=mode)
+    driven.drive(0.2, 0, 1)
+    assert driven.speeds == (200, 200) and not driven.refusals
+    event(driven)
+    driven.drive(0.2, 0, 0.1)       # until a byte reaches the robot, it continues
+    for _ in range(50):
+        driven.drive(0.2, 0, 0.1)
+        assert driven.speeds == (0, 0)
+    assert driven.driver.supervisor.in_control and driven.refusals
+    driven.command_zero()
+    driven.drive(0.2, 0, 0.2)
+    assert driven.speeds == (200, 200)
+
+
+@BOTH
+def test_a_short_outage_does_no_harm(robot_type):
+    driven = started(robot_type)
+    driven.drive(0.2, 0, 1)
+    driven.pull()
+    driven.drive(0.2, 0, 0.2)
+    driven.connect()
+    driven.drive(0.2, 0, 0.3)
+    assert driven.speeds == (200, 200) and not driven.refusals
+
+
+@BOTH
+def test_a_bump_refuses_forward_motion_at_once_and_no_longer_than_it_lasts(robot_type):
+    driven = started(robot_type)
+    driven.drive(0.2, 0, 0.5)
+    driven.body.bumped = True
+    driven.drive(0.2, 0, 0.1)
+    assert set(driven.refusals) == {'a bumper is pressed'}
+    count = len(driven.refusals)
+    driven.drive(-0.2, 0, 0.5)
+    driven.body.bumped = False
+    driven.run(0.1)
+    driven.drive(0.2, 0, 0.5)
+    assert driven.speeds == (200, 200) and len(driven.refusals) == count
+
+
+def test_another_robot_at_another_adapter_gets_no_command_before_it_is_known():
+    driven = started('auto', robot='create')
+    driven.pull()
+    other = DrivenCreate('auto', robot='create2')
+    driven.line, driven.robot, driven.body = other.line, other.robot, other.body
+    driven.is_same = False
+    driven.run(1)
+    driven.connect()
+    driven.run(2)
+    assert {data for _, data in other.commands} <= {sequences.START, b'\x8e\x03', b'\x8e\x2b', b'\x8e\x08', b'\x96\x00'}
+    assert not other.robot.programs.started
+    assert driven.log[-1] == ('A create2 answers at 115200 baud: expected a create; to drive it, restart this node '
+                              'with robot_type:=create2, or auto')

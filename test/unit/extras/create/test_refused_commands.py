@@ -1,0 +1,113 @@
+"""When a command is refused, and which speeds the wheels may have: see docs/bases.md, 'A command is refused'."""
+from types import SimpleNamespace
+
+import pytest
+
+from rbx1_nav.base.gate import CommandGate, RefusedCommand
+from rbx1_nav.base.units import SECOND
+from rbx1_nav.extras.create.acceptance import Acceptance
+from rbx1_nav.extras.create.contact import CLIFFS
+from rbx1_nav.extras.create.motion import NOWHERE, Expected
+from rbx1_nav.extras.create.protocol import CREATE
+from rbx1_nav.extras.create.settings import read_settings
+
+NOW = 10 * SECOND
+
+
+class Base:
+    """An Acceptance whose robot answers and is in the requested mode."""
+
+    def __init__(self, **params):
+        settings, robot = read_settings(params)
+        self.gate = CommandGate(robot.limits, robot.timeout)
+        self.contact = SimpleNamespace(answers=True, queries=SimpleNamespace(read=SimpleNamespace(time=NOW)))
+        self.supervisor = SimpleNamespace(in_control=True, reason='')
+        self.acceptance = Acceptance(settings, self.gate, self.contact, self.supervisor)
+        self.feel(0, 0)
+
+    def feel(self, *bits):
+        """Feed readings with these bumps and wheel drops. Returns the result of the last one."""
+        no_cliff = dict.fromkeys(CLIFFS, 0)
+        return [self.acceptance.feel({**no_cliff, 'bumps_and_wheel_drops': each}) for each in bits][-1]
+
+    def command(self, linear, angular, now=NOW):
+        """Put a command in force. Returns why it is refused, or ''."""
+        self.gate.command(now, linear, angular, ())
+        try:
+            self.acceptance.check_obedience(now)
+        except RefusedCommand as error:
+            return str(error)
+        return ''
+
+    def follow(self, metres, travel=NOWHERE, elapsed=0.1):
+        self.acceptance.follow(elapsed, Expected(metres, metres), travel, 0.26)
+
+    @property
+    def speeds(self):
+        return self.acceptance.speeds(CREATE)
+
+
+@pytest.mark.parametrize('bits', [1, 2, 3])
+def test_a_bump_stops_forward_motion_at_once_and_is_refused_after_two_readings(bits):
+    base = Base()
+    base.command(0.2, 0)
+    assert base.speeds == (200, 200)
+    base.feel(bits)
+    assert base.speeds == (0, 0) and base.command(0.2, 0) == ''
+    base.feel(bits)
+    assert base.command(0.2, 0) == 'a bumper is pressed'
+    assert base.command(-0.2, 0) == base.command(0, 1) == ''
+    base.feel(0)
+    assert base.command(0.2, 0) == ''
+
+
+@pytest.mark.parametrize('bits', [4, 8, 16])
+def test_two_readings_show_a_dropped_wheel(bits):
+    base = Base()
+    base.command(-0.2, 0)
+    assert not base.feel(bits) and base.speeds == (0, 0)
+    assert base.feel(bits) and not base.feel(0) and base.speeds == (-200, -200)
+    assert not base.feel(4, 8) and not base.feel(3, 3)
+
+
+@pytest.mark.parametrize('metres, refused', [(0.099, False), (0.101, True)])
+def test_wheels_that_do_not_turn_in_a_tenth_of_a_metre(metres, refused):
+    base = Base()
+    for _ in range(10):
+        base.follow(metres / 10)
+    assert ('its wheels do not turn' in base.command(0.2, 0)) == refused
+    base.gate.halt()
+    base.acceptance.check_obedience(NOW)        # nothing to refuse at rest
+    # the refusal locks out, and then the wheels have another chance
+    assert base.command(0.2, 0) == ''
+
+
+def test_a_robot_that_does_not_answer_for_0_3_s():
+    base = Base()
+    base.contact.answers = False
+    assert base.command(0.2, 0, NOW + SECOND * 3 // 10) == '' and base.speeds == (0, 0)
+    assert base.command(0.2, 0, NOW + SECOND * 3 // 10 + 1) == 'the robot does not answer'
+    base.contact.queries.read = None
+    assert base.command(0.2, 0) == 'the robot does not answer'
+
+
+@pytest.mark.parametrize('reason, text', [
+    ('a cliff', 'the robot cannot be driven: a cliff'),
+    ('', 'the robot cannot be driven: it does not change to the requested mode')])
+def test_a_robot_that_is_not_in_the_requested_mode_for_0_3_s(reason, text):
+    base = Base()
+    base.supervisor.in_control, base.supervisor.reason = False, reason
+    assert base.command(0.2, 0) == base.command(0.2, 0, NOW + SECOND * 3 // 10 - 1) == '' and base.speeds == (0, 0)
+    assert base.command(0.2, 0, NOW + SECOND * 3 // 10) == text
+    # the time starts again when the robot follows
+    base.supervisor.in_control = True
+    assert base.command(0.2, 0, NOW + SECOND) == ''
+    base.supervisor.in_control = False
+    assert base.command(0.2, 0, NOW + 2 * SECOND) == ''
+
+
+def test_a_command_to_stop_is_never_refused():
+    base = Base()
+    base.supervisor.in_control = False
+    base.command(0.2, 0)
+    assert base.command(0, 0, NOW + SECOND) == '' and base.command(0.2, 0, NOW + SECOND) == ''

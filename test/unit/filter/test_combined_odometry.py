@@ -1,0 +1,115 @@
+"""The combined odometry: the order of messages, jumps, restarts and set_pose."""
+from math import cos, pi, sin
+
+import numpy
+import pytest
+
+from rbx1_nav.base.kinematics import ORIGIN, Pose, arc
+from rbx1_nav.base.units import SECOND
+from rbx1_nav.filter.inputs import Imu
+from sample_priors import IDEAL
+from sample_robot import STEP, Robot, exact
+
+
+def test_the_estimate_follows_sensors_without_errors_exactly():
+    robot = Robot(IDEAL)
+    robot.send(50)
+    robot.send(100, 0.2, 0.5)
+    robot.send(100, -0.1, -1.0)
+    assert exact(robot.combined.estimate, robot.pose)
+
+
+# the order of messages
+
+@pytest.mark.parametrize('rate', [20, 73, 100])
+def test_a_gyro_may_have_another_rate(rate):
+    robot = Robot(IDEAL)
+    next_reading = robot.now
+    for _ in range(200):
+        robot.now += STEP
+        robot.pose = arc(robot.pose, 0.004, 0.01)
+        robot.combined.add_odom(robot.now, robot.odom())
+        while next_reading <= robot.now:
+            robot.combined.add_imu(robot.now, Imu(next_reading, 0.5, 3e-6))
+            next_reading += SECOND // rate
+    behind = (robot.now - robot.combined.estimate.stamp) / SECOND
+    assert 0 <= behind <= 1.1 / rate + 0.02
+    expected = arc(ORIGIN, 0.2 * (4 - 0.02 - behind), 0.5 * (4 - 0.02 - behind))
+    start = arc(ORIGIN, 0.004, 0.01)
+    c, s = cos(start.yaw), sin(start.yaw)
+    assert exact(robot.combined.estimate, Pose(start.x + c * expected.x - s * expected.y,
+                                               start.y + s * expected.x + c * expected.y, start.yaw + expected.yaw))
+
+
+# restarts
+
+@pytest.mark.parametrize('there', [Pose(-1.0, 2.0, pi / 2), Pose(0.4, 0.0, 0.0), Pose(0.2, 0.0, 0.5)])
+def test_odometry_that_jumps_restarts_the_filter_there(there):
+    robot = Robot()
+    robot.send(50, 0.2)
+    robot.pose = there
+    assert exact(robot.send(2), there) and 'jumped' in robot.warnings[-1]
+
+
+def test_a_single_jump_is_an_outlier():
+    robot, undisturbed = Robot(IDEAL), Robot(IDEAL)
+    for each in (robot, undisturbed):
+        each.send(50, 0.2)
+    home, robot.pose = robot.pose, Pose(-1.0, 2.0, pi / 2)
+    robot.send()
+    robot.pose = home
+    robot.send(50, 0.2)
+    undisturbed.send()
+    undisturbed.send(50, 0.2)
+    assert exact(robot.combined.estimate, undisturbed.combined.estimate.pose) and 'ignored' in robot.warnings[0]
+
+
+# set_pose
+
+def test_set_pose_puts_the_robot_there_and_keeps_what_was_learned():
+    robot = Robot()
+    robot.send(200, bias=0.05)
+    covariance = numpy.array([[0.04, 0.01, 0.0], [0.01, 0.09, 0.0], [0.0, 0.0, 0.01]])
+    robot.combined.set_pose(robot.now, Pose(3.0, -2.0, pi / 2), covariance)
+    assert exact(robot.combined.estimate, Pose(3.0, -2.0, pi / 2))
+    numpy.testing.assert_allclose(robot.combined.estimate.covariance, covariance, atol=1e-8)
+    assert robot.combined.filter.bias == pytest.approx(0.05, abs=1e-4)
+    robot.pose = ORIGIN
+    estimate = robot.send(100, 0.1, bias=0.05)
+    # 0.2 m, of which 2 % slip, in the new direction
+    assert exact(estimate, Pose(3.0, -2.0 + 0.2 * 0.98, pi / 2), abs=1e-3)
+
+
+def test_set_pose_takes_effect_while_the_odometry_has_timed_out():
+    robot = Robot(IDEAL)
+    robot.send(100, 0.2)
+    last = robot.now
+    robot.send(75, 0.2, odom=False)
+    robot.combined.set_pose(last, Pose(0.0, 0.0, pi / 2), 0.01 * numpy.eye(3))
+    assert robot.combined.timed_out['odom'] and exact(robot.combined.estimate, Pose(0.0, 0.0, pi / 2), abs=1e-6)
+    assert exact(robot.send(1, 0.2), Pose(0.0, 76 * 0.004, pi / 2), abs=1e-6)
+
+
+def test_set_pose_waits_for_the_step_to_its_time():
+    robot = Robot(IDEAL)
+    robot.send(50)
+    robot.send(4, imu=False)
+    robot.combined.set_pose(robot.now, Pose(5.0, 0.0, 0.0), 0.01 * numpy.eye(3))
+    assert exact(robot.combined.estimate, ORIGIN)
+    robot.combined.add_imu(robot.now, Imu(robot.now, 0.0, 3e-6))
+    assert exact(robot.send(1, 0.2), Pose(5.004, 0.0, 0.0), abs=1e-6)
+
+
+def test_set_pose_does_not_depend_on_the_order_of_the_messages():
+    results = []
+    for late in False, True:
+        robot = Robot()
+        robot.send(100, 0.2, 0.5)
+        at = robot.now + 5 * STEP
+        if not late:
+            robot.combined.set_pose(at, ORIGIN, 0.01 * numpy.eye(3))
+        robot.send(5, 0.2, 0.5)
+        if late:
+            robot.combined.set_pose(at, ORIGIN, 0.01 * numpy.eye(3))
+        results.append(robot.send(20, 0.2, 0.5).pose)
+    assert results[0] == pytest.approx(results[1], abs=1e-9)

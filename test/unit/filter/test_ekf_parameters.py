@@ -1,0 +1,55 @@
+"""The parameters of the filter reach it in its units, and its frames have the prefix."""
+from math import radians
+
+from nav_msgs.msg import Odometry
+import pytest
+
+from rbx1_nav.filter.ekf_parameters import read_parameters
+from rbx1_nav.filter.inputs import RejectedMessage
+from rbx1_nav.filter.priors import Bounds
+from rbx1_nav.filter.sensor_inputs import frames_of
+from rbx1_nav.node.config import ConfigError
+
+BASE = 'base_footprint_frame'
+
+
+def test_the_limits_of_the_robot():
+    found = read_parameters(dict(max_speed=1.0, max_turn_rate=2.0, max_angular_acceleration=3.0, gyro_bias=4.0,
+                                 gyro_scale_error=0.05)).limits
+    assert found._asdict() == dict(max_speed=1.0, max_turn_rate=2.0, max_angular_acceleration=3.0,
+                                   gyro_bias=radians(4), gyro_scale_error=0.05)
+    assert read_parameters({}).limits == pytest.approx(Bounds())
+
+
+@pytest.mark.parametrize('params, output, base, default', [
+    ({}, 'odom_combined', '', 'base_footprint'), ({BASE: 'base'}, 'odom_combined', 'base', 'base'),
+    (dict(tf_prefix='r'), 'r/odom_combined', '', 'r/base_footprint'),
+    ({'tf_prefix': 'r', 'output_frame': 'map', BASE: 'base'}, 'r/map', 'r/base', 'r/base'),
+    ({'tf_prefix': 'r', 'output_frame': '/map', BASE: '/base'}, 'map', 'base', 'base')])
+def test_frames(params, output, base, default):
+    found = read_parameters(params)
+    assert (found.output_frame, found.base_footprint_frame, found.default_base_frame) == (output, base, default)
+
+
+@pytest.mark.parametrize('params, child, base', [
+    ({}, 'base_link', 'base_link'), ({}, '/base_link', 'base_link'), ({}, '', 'base_footprint'),
+    (dict(tf_prefix='r'), '', 'r/base_footprint'), ({BASE: 'mine'}, 'base_link', 'mine')])
+def test_the_frame_of_the_robot(params, child, base):
+    message = Odometry(child_frame_id=child)
+    message.header.frame_id = '/odom'
+    assert frames_of(message, read_parameters(params)) == ('odom', base)
+    message.header.frame_id = ''
+    with pytest.raises(RejectedMessage, match="header.frame_id: '': expected the name of a frame"):
+        frames_of(message, read_parameters(params))
+    message.header.frame_id, message.child_frame_id = 'odom', 'map'
+    if BASE not in params:
+        with pytest.raises(RejectedMessage, match='a frame other than output_frame'):
+            frames_of(message, read_parameters(dict(params, output_frame='/map')))
+
+
+def test_what_is_not_supported():
+    assert read_parameters(dict(vo_used=True, debug=False)).unsupported == [
+        'vo_used: visual odometry is not supported and not used']
+    for params in dict(odom_used=False), {'output_frame': 'map', BASE: 'map'}, dict(surface='no_such_floor'):
+        with pytest.raises(ConfigError):
+            read_parameters(params)

@@ -1,0 +1,204 @@
+"""The four named cases: standstill, agreement, contradiction, carried."""
+from math import degrees, hypot, radians, sqrt
+
+import numpy
+import pytest
+
+from rbx1_nav.base.kinematics import ORIGIN, arc
+from rbx1_nav.base.units import SECOND
+from rbx1_nav.filter.combined_odometry import CombinedOdometry
+from rbx1_nav.filter.inputs import Imu, Odom
+from rbx1_nav.filter.priors import UNKNOWN_FLOOR
+
+ODOM_STEP, IMU_STEP = SECOND // 25, SECOND // 50
+NOISE = radians(0.1)    # rad/s, of a reading
+
+
+class Robot:
+    """A robot with a noisy gyro, which is driven and carried."""
+
+    def __init__(self, imu_variance=NOISE ** 2):
+        self.warnings = []
+        self.combined = CombinedOdometry(UNKNOWN_FLOOR, SECOND, warn=self.warnings.append)
+        self.generator = numpy.random.default_rng(1)
+        self.imu_variance = imu_variance
+        self.now = 1000 * SECOND
+        self.wheels, self.yaw, self.bias = ORIGIN, 0.0, 0.0
+        self.stuck = False          # whether the gyro reports no motion
+
+    def go(self, time, linear=0.0, angular=0.0, carried=0.0, ratio=1.0):
+        """Drive for a time (s), and return the error of the heading and its sigma, degrees.
+
+        carried: rad/s, by which a hand turns the robot; ratio: turn that the wheels report / true turn.
+        """
+        end = self.now + round(time * SECOND)
+        while self.now < end:
+            self.now += IMU_STEP
+            turn = angular * IMU_STEP / SECOND
+            self.wheels = arc(self.wheels, linear * IMU_STEP / SECOND, ratio * turn)
+            self.yaw += turn + carried * IMU_STEP / SECOND
+            rate = (angular + carried) * (not self.stuck) + self.bias + self.generator.normal(0, NOISE)
+            self.combined.add_imu(self.now, Imu(self.now, rate, self.imu_variance))
+            if self.now % ODOM_STEP == 0:
+                self.combined.add_odom(self.now, Odom(self.now, self.wheels))
+        estimate = self.combined.estimate
+        return degrees(estimate.pose.yaw - self.yaw), degrees(sqrt(estimate.covariance[2, 2]))
+
+    @property
+    def case(self):
+        return self.combined.case
+
+
+@pytest.mark.parametrize('bias', [-6.0, 0.5, 3.0, 6.0])
+def test_standstill_any_bias_is_learned_in_3_seconds(bias):
+    robot = Robot()
+    robot.bias = radians(bias)
+    robot.go(3.0)
+    assert robot.case == 'standstill'
+    # 0.1 degrees/s at 50 Hz, averaged over the last 2.5 s without the parts not used yet: 0.01 degrees/s, 4 sigma
+    assert degrees(robot.combined.filter.bias) == pytest.approx(bias, abs=0.04)
+    error, sigma = robot.go(20.0, 0.2, 0.3)
+    # 20 s of 0.01 degrees/s
+    assert abs(error) < 1.0 and abs(error) < 4 * sigma and not robot.warnings
+    assert robot.case == 'agreement'
+
+
+def test_standstill_a_claimed_variance_that_is_far_too_large_is_not_believed():
+    robot = Robot(imu_variance=0.005)
+    robot.go(3.0)
+    _, sigma = robot.go(20.0, 0.2)
+    # by the reported variance: 0.01 rad/s * sqrt(1 s) in each second, and an equally uncertain bias: 7 degrees
+    assert sigma < 1.5
+
+
+def test_standstill_the_noise_of_the_gyro_is_measured():
+    robot = Robot()
+    robot.go(30.0)
+    # rad^2/s: variance of a reading times its time; the variance of 90 or more differences, 4 sigma
+    assert robot.combined.standstill.density == pytest.approx(NOISE ** 2 * IMU_STEP / SECOND, rel=4 * sqrt(3 / 90))
+
+
+def test_standstill_wheels_that_report_later_than_the_gyro_are_not_carried():
+    robot = Robot()
+    robot.go(3.0)
+    for number in range(20):
+        robot.go(0.04, carried=0.5)     # the wheels will report it in the next message
+        robot.wheels = arc(robot.wheels, 0.0, 0.02)
+        robot.go(1.0, 0.1, 0.5)
+        error, sigma = robot.go(1.5 + 0.02 * number)
+    # 0.04 s of 0.5 rad/s are 1.1 degrees each time
+    assert not robot.combined.filter.carried and abs(error) < 3.0 and sigma < 15.0
+
+
+def test_a_drifting_bias_makes_the_heading_as_uncertain_as_it_is_wrong():
+    robot = Robot()
+    robot.go(3.0)
+    squares = []
+    for _ in range(5):
+        for _ in range(20):
+            robot.bias += radians(0.5) / 60     # degrees/s in a minute
+            error, sigma = robot.go(1.0, 0.2)
+        squares.append((error / sigma) ** 2)
+        robot.go(2.0)
+    # 1.7 degrees in each leg; the drift is known from the first standstill after a leg
+    assert max(squares[1:]) < 9.0
+
+
+def test_carried_the_heading_turns_with_the_gyro():
+    robot = Robot()
+    robot.bias = radians(1.0)
+    robot.go(3.0)
+    robot.go(1.5, carried=1.0)
+    assert robot.case == 'carried' and robot.combined.estimate.covariance[0, 0] > 0.5 ** 2
+    error, sigma = robot.go(2.0)
+    # the wheels have reported none of the 86 degrees
+    assert abs(error) < 2.0 and abs(error) < 4 * sigma and robot.case == 'standstill'
+    assert degrees(robot.combined.filter.bias) == pytest.approx(1.0, abs=0.1)
+
+
+@pytest.mark.parametrize('rate', [2.0, 5.0, 9.0])
+def test_carried_slowly_and_steadily_is_no_bias(rate):
+    robot = Robot()
+    robot.go(3.0)
+    robot.go(8.0, carried=radians(rate))
+    assert robot.case == 'carried'
+    error, _ = robot.go(2.0)
+    assert abs(error) < 1.0
+    assert abs(degrees(robot.combined.filter.bias)) < 0.1
+
+
+def test_a_bias_that_has_changed_is_uncertain_after_a_rest_and_learned_in_the_next():
+    robot = Robot()
+    robot.go(3.0)
+    robot.bias = radians(2.5)
+    robot.go(5.0)
+    error, sigma = robot.go(30.0, 0.2)
+    assert abs(error) > 70.0 and abs(error) < 3 * sigma
+    robot.go(3.0)
+    assert robot.case == 'standstill' and degrees(robot.combined.filter.bias) == pytest.approx(2.5, abs=0.1)
+
+
+def test_carried_a_rate_above_the_limit_is_never_a_bias():
+    robot = Robot()
+    robot.go(3.0)
+    robot.go(20.0, carried=radians(15))     # for longer than a bias that has changed must be steady
+    assert robot.case == 'carried' and abs(degrees(robot.combined.filter.bias)) < 0.1
+    assert degrees(robot.combined.estimate.pose.yaw) == pytest.approx(300, abs=2.0)
+
+
+def test_a_rate_that_is_steady_for_longer_than_a_hand_can_be_is_a_bias():
+    robot = Robot()
+    robot.go(3.0)
+    robot.bias = radians(4.0)
+    robot.go(15.0)
+    assert robot.case == 'standstill' and degrees(robot.combined.filter.bias) == pytest.approx(4.0, abs=0.1)
+    assert abs(degrees(robot.combined.estimate.pose.yaw)) < 2.0     # it has not turned
+
+
+def test_agreement_does_not_change_a_bias_that_was_learned_at_rest():
+    robot = Robot()
+    robot.bias = radians(1.0)
+    robot.go(3.0)
+    robot.go(20.0, 0.2, 0.3, ratio=1.06)
+    assert robot.case == 'agreement' and degrees(robot.combined.filter.bias) == pytest.approx(1.0, abs=0.04)
+
+
+@pytest.mark.parametrize('ratio', [1.5, 2.0, 3.0])
+def test_a_skid_steer_follows_the_gyro(ratio):
+    robot = Robot()
+    robot.go(3.0)
+    errors = []
+    for angular in (0.5, -0.5, 0.5, -0.5, 0.5, -0.5, 0.5, -0.5):
+        errors.append(robot.go(4.0, 0.2, angular, ratio=ratio))
+        robot.go(1.0)
+    assert max(abs(error) for error, _ in errors) < 2.0 and len(robot.warnings) <= 1
+    assert errors[-1][1] < 6.0 and all(abs(error) < 4 * sigma for error, sigma in errors)
+
+
+def test_contradiction_of_a_gyro_that_was_stuck_leaves_its_doubt():
+    robot = Robot()
+    robot.go(3.0)
+    robot.stuck = True
+    error, _ = robot.go(6.0, 0.2, 0.5)
+    robot.stuck = False
+    for _ in range(4):
+        error, sigma = robot.go(4.0, 0.2, 0.5)
+    assert abs(error) > 90.0 and abs(error) < 3 * sigma
+
+
+def test_contradiction_of_a_gyro_upside_down_is_noticed_in_the_first_turn():
+    for ratio in -0.97, -1.0, -1.03:
+        robot = Robot()
+        robot.go(3.0)
+        robot.go(4.0, 0.2, -0.5, ratio=ratio)
+        assert robot.case == 'contradiction' and len(robot.warnings) == 1
+
+
+def test_without_a_gyro_there_is_no_case():
+    robot = Robot()
+    assert robot.case is None
+    robot.go(3.0)
+    for _ in range(60):
+        robot.now += ODOM_STEP
+        robot.combined.add_odom(robot.now, Odom(robot.now, robot.wheels))
+    assert robot.case is None and hypot(*robot.combined.estimate.pose[:2]) < 1e-6
