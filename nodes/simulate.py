@@ -41,7 +41,7 @@ def read_arguments() -> argparse.Namespace:
                              'ideal. Can be given more than once')
     parser.add_argument('--method', choices=METHODS, action='append',
                         help='; '.join(f'{each.name}: {each.text}' for each in METHODS.values())
-                        + '. Can be given more than once; default: all three')
+                        + '. Can be given more than once; default: all')
     parser.add_argument('--set', action='append', default=[], metavar='KEY=VALUE,...',
                         help=f"values of {', '.join([*PARAMETERS, *KEYS])}. Can be given more than once: all "
                              'combinations are simulated')

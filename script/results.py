@@ -32,6 +32,12 @@ def failures(cases):
             if trouble is not None]
 
 
+def failed_tests(results):
+    """Return the names of all test cases that have failed."""
+    return {case.get('name') for path in glob.glob(os.path.join(results, '**', 'rosunit-*.xml'), recursive=True)
+            for case, _ in failures(read(path) or [])}
+
+
 def failures_of_sets(results):
     """Return the failures of sets, as texts by the name of the set: the job of a set does not fail if its tests do."""
     found = {}

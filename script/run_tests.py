@@ -28,7 +28,7 @@ ROOT = os.path.realpath(os.path.join(os.path.dirname(__file__), '..'))
 sys.path.insert(0, os.path.join(ROOT, 'test'))
 
 from ports import own_loopback
-from results import SETS, failures_of_sets, summarize
+from results import SETS, failed_tests, failures_of_sets, summarize
 
 PACKAGE = 'rbx1_nav'
 LIMIT = 3600        # s after which a job counts as hung, even on a busy machine
@@ -182,8 +182,12 @@ def run_jobs(jobs, count):
 
 
 def repeat(results, jobs, failed):
-    """Run the rostests that have failed once more, one at a time. Returns the names of those that passed."""
+    """Run the rostests that have failed once more, one at a time. Returns the names of those that passed.
+
+    Their environment has the names of all tests that have failed, for a rostest that can repeat only these.
+    """
     of_sets = failures_of_sets(results)
+    os.environ['FAILED_TESTS'] = ' '.join(sorted(failed_tests(results)))
     again = []
     for job in jobs:
         if job.task[0] is run_rostest and job.name in [*failed, *of_sets]:

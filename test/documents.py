@@ -66,17 +66,23 @@ class Documents(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         # in parallel: the pages mostly wait for robots that move in real time, but with more they compete
-        with ThreadPoolExecutor(PARALLEL) as pool:
+        with ThreadPoolExecutor(1 if cls.repeated else PARALLEL) as pool:
             cls.results = {page: pool.submit(follow, page) for page in cls.pages}
 
     @classmethod
     def add_tests(cls, names):
-        """Add tests for the pages whose name contains one of these names; without names, for all pages."""
-        cls.pages = [page for page in markdown.documents(ROOT) if any(name in page for name in names or [''])]
-        for page in cls.pages:
-            # no dots or slashes: rosunit would truncate the name there
-            name = re.sub(r'\W+', '_', os.path.splitext(page)[0])
-            setattr(cls, f'test_{name}', lambda self, page=page: self.check(page))
+        """Add tests for the pages whose name contains one of these names; without names, for all pages.
+
+        If script/run_tests.py repeats this test, only for the pages that have failed.
+        """
+        # no dots or slashes: rosunit would truncate the name there
+        pages = {'test_' + re.sub(r'\W+', '_', os.path.splitext(page)[0]): page for page in markdown.documents(ROOT)
+                 if any(name in page for name in names or [''])}
+        cls.repeated = pages.keys() & set(os.environ.get('FAILED_TESTS', '').split())
+        cls.pages = [page for test, page in pages.items() if not cls.repeated or test in cls.repeated]
+        for test, page in pages.items():
+            if page in cls.pages:
+                setattr(cls, test, lambda self, page=page: self.check(page))
 
     def check(self, page):
         """Fail with the message of the page, without the traceback of its thread."""

@@ -239,12 +239,12 @@ export class Drive {
     if (running && this.hand) {     // another browser has started a run
       this.setHand(false);
     }
+    const unfiltered = this.runs.filter(run => run.dataset.pose === 'estimate' && !('estimate' in this.model.poses));
     for (const run of this.runs) {
-      const missing = run.dataset.method === 'gyro' && !('estimate' in this.model.poses);
       if (running && run === document.activeElement) {
         this.stop.focus();      // a button that is disabled loses the focus
       }
-      run.disabled = !ready || running || missing;
+      run.disabled = !ready || running || unfiltered.includes(run);
     }
     document.getElementById('reset').disabled = !ready || running || !status.can_reset;
     document.getElementById('reset-first').disabled = !status.can_reset;
@@ -259,7 +259,7 @@ export class Drive {
       : this.hand ? 'The arrow keys drive the robot.'
       : status.started ? `${status.started[0].toUpperCase()}${status.started.slice(1)}: ${status.outcome}` : '';
     const why = !ready || running ? [] : [
-      !('estimate' in this.model.poses) && 'With odometry and gyro needs the filter: roslaunch rbx1_bringup odom_ekf.launch.',
+      ...unfiltered.map(run => `${run.textContent} needs the filter: roslaunch rbx1_bringup odom_ekf.launch.`),
       !status.can_reset && 'Only a simulated robot can be reset.'];
     for (const [id, shown] of Object.entries({'run-state': text, why: why.filter(Boolean).join(' ')})) {
       const line = document.getElementById(id);
