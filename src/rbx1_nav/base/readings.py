@@ -63,7 +63,7 @@ class UncertainOdometry:
     """
 
     def __init__(self, width: float, errors: OdometryErrors, rounding: tuple[float, float]) -> None:
-        """width: distance between the wheels, m; rounding: see motion.py."""
+        """width: distance between the wheels, m; rounding: error of a count, 1 sigma, m and rad."""
         self.odometry = Odometry(width)
         self.errors = errors
         self.rounding = rounding[0] ** 2, rounding[1] ** 2      # m^2, rad^2

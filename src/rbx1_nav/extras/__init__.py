@@ -1,1 +1,1 @@
-"""Features beside the exercise. The rooms outside this folder never import them; only nodes do."""
+"""Features beside the exercise. Outside this folder, only nodes import them."""

@@ -138,8 +138,9 @@ def simulate(method: str, robot: Robot, surface: Surface | None, seed: int, filt
     """Run the exercise with one of METHODS, and return a SimulationResult. Raises StuckError.
 
     robot: a Robot; surface: a Surface, or None; seed: seed of the run's random errors; filtered: whether to run the
-    filter, which always runs if its pose stops the motions; keep: whether to keep the path; prior: Priors of the filter, if they differ from
-    the surface; listen(Snapshot, Messages): called at each tick; parameters: all PARAMETERS with their values.
+    filter, which always runs if its pose stops the motions; keep: whether to keep the path; prior: Priors of the
+    filter, if they differ from the surface; listen(Snapshot, Messages): called at each tick; parameters: all PARAMETERS
+    with their values.
     """
     filtered = filtered or METHODS[method].pose == 'estimate'
     simulation = Simulation(robot, surface, seed, filtered, keep, prior, listen, parameters['rate'])
