@@ -11,7 +11,6 @@ import os
 import random
 import signal
 import subprocess
-import sys
 import time
 
 import bench
@@ -57,7 +56,7 @@ def exercise(robot_type, surface, seed, driver, *others):
             status = f'none after {LIMIT} s'
         if status or not probe.ask('settled', bench.SETTLE):
             raise bench.Failure(f'the exercise failed, exit status: {status}\n{session.output()}')
-        row, _, _ = figures.run_figures(*probe.ask('record'), [], 0, None)
+        row, _ = figures.run_figures(*probe.ask('record'), [], 0, None)
     return row['distance_m'], row['angle_deg']
 
 
@@ -108,11 +107,11 @@ def measure_node(robot_type, seed, count):
         processes.stop(commands)
         with multiprocessing.get_context('fork').Pool(1) as pool:
             delays = pool.apply(line_delays, (session.changes, count))
-    shown = figures.spread([delay for delay in delays if delay is not None])
+    shown = [delay for delay in delays if delay is not None]
     if not shown:
         raise bench.Failure('no command was shown on /line')
-    numbers = ', '.join(f'{key} {1e3 * shown[key]:.2f}' for key in ('min', 'p50', 'p99', 'max'))
-    yield 'command to line', f'{numbers} ms; {shown["count"]} of {count} shown'
+    numbers = ', '.join(f'{key} {1e3 * value:.2f}' for key, value in figures.spread(shown).items())
+    yield 'command to line', f'{numbers} ms; {len(shown)} of {count} shown'
 
 
 def measure(args):
@@ -135,21 +134,12 @@ def main():
     parser.add_argument('--runs', type=int, default=3, help='runs of each exercise and robot (default 3)')
     parser.add_argument('--seed', type=int, default=1, help='seed of the first run (default 1)')
     args = parser.parse_args()
-    bench.prepare()
-    print(', '.join(f'{key} {value}' for key, value in bench.host().items()))
     print(f'{"load":>5}  {"robot":8} {"figure":26} measured', flush=True)
     load = os.getloadavg()[0]
-    try:
+    with bench.cleaned_up():
         for robot_type, what, text in measure(args):
             print(f'{load:5.2f}  {robot_type:8} {what:26} {text}', flush=True)
             load = os.getloadavg()[0]
-    except bench.Failure as failure:
-        sys.exit(f'bench: {failure}')
-    except bench.Interrupted as signalled:
-        print(f'bench: {signalled}', file=sys.stderr)
-        sys.exit(130)
-    finally:
-        processes.kill_rest()
 
 
 if __name__ == '__main__':

@@ -15,6 +15,7 @@ import figures
 
 QUIET = 0.5  # s: the robot is at a standstill if its odometry has not changed for this time
 STILL = 1e-4  # m and rad: smaller changes are noise
+SPEED = 0.1  # m/s, of the commands whose latency is measured
 
 
 class Probe:
@@ -64,8 +65,8 @@ def run_probe(ours, pipe, environment, cmd_vel, odom, publish):
     def settled(timeout):
         return wait(lambda: stands_still(odometry), timeout)
 
-    def latency(count, speed):
-        return measure_latency(publisher, Twist, odometry, count, speed)
+    def latency(count):
+        return measure_latency(publisher, Twist, odometry, count)
 
     def record():
         return decode_commands(commands), decode_odometry(odometry)
@@ -105,14 +106,14 @@ def stands_still(odometry):
     return all(max(figures.deviation(pose, poses[0])) < STILL for pose in poses)
 
 
-def measure_latency(publisher, twist, odometry, count, speed):
-    """Alternately publish `speed` (m/s) and 0, at random phases; returns the delays (s) until odometry shows each."""
+def measure_latency(publisher, twist, odometry, count):
+    """Alternately publish SPEED and 0, at random phases; returns the delays (s) until odometry shows each."""
     published = []
     for index in range(count):
         # Longer than odometry ever takes to show a command, and shorter than the command timeout of a base.
         time.sleep(random.uniform(0.3, 0.6))
         message = twist()
-        message.linear.x = 0.0 if index % 2 else speed
+        message.linear.x = 0.0 if index % 2 else SPEED
         published.append((time.monotonic(), message.linear.x))
         publisher.publish(message)
     time.sleep(0.6)

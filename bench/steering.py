@@ -8,13 +8,11 @@ import os
 
 import numpy
 
-from rbx1_nav.base.description import load_robot
+import simulated
 from rbx1_nav.base.kinematics import ORIGIN
-from rbx1_nav.base.surfaces import load_surface
 from rbx1_nav.exercise.legs import Straight, out_and_back_by_odometry
 from rbx1_nav.extras.many_runs import simulated_run
 from rbx1_nav.extras.many_runs.summary import HEADER, Summary
-from rbx1_nav.node import resources
 
 ANSWER = os.path.join(os.path.dirname(os.path.realpath(__file__)), '..', 'examples', 'answers', 'steering.py')
 
@@ -62,17 +60,15 @@ def across(results):
 def main():
     """Simulate and print."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument('--surface', default='low_ply_carpet')
     parser.add_argument('--runs', type=int, default=100, help='runs of each method, seeds from 0; default: 100')
     arguments = parser.parse_args()
-    surface = load_surface(arguments.surface, resources.surfaces())
-    robot = load_robot(resources.path('config', 'turtlebot.yaml'))
+    robot, carpet = simulated.robot(), simulated.floor('low_ply_carpet')
     print(HEADER)
     for title, legs in (('Straight ahead', out_and_back_by_odometry),
                         ('Steered', partial(steered_legs, load_answer().steering))):
         simulated_run.out_and_back_by_odometry = legs
         for method in 'odom', 'ekf':
-            results = [simulated_run.simulate(method, robot, surface, seed) for seed in range(arguments.runs)]
+            results = [simulated_run.simulate(method, robot, carpet, seed) for seed in range(arguments.runs)]
             summary = Summary()
             for result in results:
                 end = result.end

@@ -74,7 +74,7 @@ def test_cpu_time_is_counted_within_the_interval():
 def test_a_run_is_measured_from_the_pose_at_its_start():
     commands = [(1.0, 0.2, 0), (1.02, 0.2, 0), (1.04, 0, 0)]
     odometry = standing([0.9, 0.99], x=7.0) + standing([1.01, 1.03], x=7.004) + standing([1.05, 2.0], x=7.009)
-    row, periods, _ = figures.run_figures(commands, odometry, [], 1.0, None)
+    row, periods = figures.run_figures(commands, odometry, [], 1.0, None)
     assert (row['forward'], row['turning'], row['zero'], row['total']) == (2, 0, 1, 3)
     assert row['distance_m'] == pytest.approx(0.009, abs=EXACT)
     assert row['deviation_m'] == pytest.approx(0.001, abs=EXACT)

@@ -1,18 +1,16 @@
 """Steering on the legs: the answer to exercise 5 steers toward the line, and the pages quote what this gains."""
 from functools import partial
 from math import pi
-import os
 import re
 
 import numpy
 import pytest
+import simulated
 import steering
-from rbx1_nav.base.description import load_robot
 from rbx1_nav.base.kinematics import Pose
-from rbx1_nav.base.surfaces import load_surface
 from rbx1_nav.extras.many_runs import simulated_run
 
-CONFIG = os.path.join(os.path.dirname(__file__), '..', 'config')
+DOCS = f'{simulated.CONFIG}/../docs'
 ANSWER = steering.load_answer()
 
 
@@ -26,14 +24,13 @@ def test_it_turns_toward_the_line(pose, direction, sign):
 
 def test_the_pages_quote_the_gain(monkeypatch):
     """docs/answers.md, why_it_misses.md and figures.md: steered, the mean distance and the rms of y of 100 runs, cm."""
-    carpet = load_surface('low_ply_carpet', os.path.join(CONFIG, 'surfaces'))
-    robot = load_robot(os.path.join(CONFIG, 'turtlebot.yaml'))
+    robot, carpet = simulated.robot(), simulated.floor('low_ply_carpet')
     monkeypatch.setattr(simulated_run, 'out_and_back_by_odometry', partial(steering.steered_legs, ANSWER.steering))
     ends = numpy.array([simulated_run.simulate('ekf', robot, carpet, seed).end.truth for seed in range(100)])
     gain = 100 * numpy.hypot(*ends.T[:2]).mean(), 100 * numpy.sqrt((ends[:, 1] ** 2).mean())
     texts = {}
     for page in 'answers', 'why_it_misses', 'figures':
-        with open(os.path.join(CONFIG, '..', 'docs', f'{page}.md'), encoding='utf-8') as file:
+        with open(f'{DOCS}/{page}.md', encoding='utf-8') as file:
             texts[page] = ' '.join(file.read().split())
     for page, sentence, value in [
             ('answers', r'distance from the start \| 7.6 cm \| (\S+) cm', gain[0]),
