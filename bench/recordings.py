@@ -16,7 +16,8 @@ from typing import NamedTuple
 import numpy
 
 import bench
-from floors import consistency, squared_errors
+from figures import deviation
+from floors import consistency
 import processes
 from probe import Probe
 from replay import gyro, odometry, replay, run_port
@@ -146,8 +147,8 @@ def exercise(recording):
 
 def difference(pose, other):
     """(m, degrees) between two poses."""
-    heading, position = squared_errors(pose, other)
-    return math.sqrt(position), math.sqrt(heading)
+    metres, angle = deviation(pose, other)
+    return metres, math.degrees(angle)
 
 
 def evaluate(recording, prior):

@@ -18,10 +18,6 @@ def test_a_half_circle_ends_a_diameter_to_the_left():
     assert pose == pytest.approx((0, 2, math.pi), abs=EXACT)
 
 
-def test_a_nearly_straight_arc_continues_the_general_case():
-    assert figures.arc((0, 0, 0), 1, 1e-9, 1) == pytest.approx((1, 5e-10, 1e-9), abs=EXACT)
-
-
 def test_a_command_ends_with_the_timeout():
     assert figures.integrate([(0, 0.2, 0), (5, 0, 0)], 9, 1.0)[0] == pytest.approx(0.2, abs=EXACT)
     assert figures.integrate([(0, 0.2, 0), (5, 0, 0)], 9, 0)[0] == pytest.approx(1.0, abs=EXACT)
@@ -35,11 +31,6 @@ def test_a_relative_pose_is_in_the_frame_of_the_start():
     assert figures.relative((1, 3, math.pi), (1, 1, math.pi / 2)) == pytest.approx((2, 0, math.pi / 2), abs=EXACT)
 
 
-def test_percentiles_are_values_of_the_data():
-    values = list(range(100, 0, -1))
-    assert [figures.percentile(values, p) for p in (0, 1, 50, 99, 100)] == [1, 1, 50, 99, 100]
-
-
 def test_periods_follow_moving_commands_and_are_no_pauses():
     commands = [(0, 1, 0), (0.02, 1, 0), (0.05, 0, 0), (0.06, 0, 0), (1.06, 0, 1), (2.06, 0, 1)]
     assert figures.command_periods(commands) == pytest.approx([0.02, 0.03], abs=EXACT)
@@ -48,15 +39,6 @@ def test_periods_follow_moving_commands_and_are_no_pauses():
 def test_the_latency_ends_with_the_first_message_that_shows_the_command():
     odometry = standing([0.0, 0.1]) + standing([0.2, 0.3], v=0.1) + standing([0.4, 0.5])
     assert figures.shown_after([(0.05, 0.1), (0.35, 0.0)], odometry) == pytest.approx([0.15, 0.05], abs=EXACT)
-
-
-def test_the_latency_of_a_base_that_reports_no_speed():
-    odometry = standing([0.0, 0.1]) + standing([0.2], x=0.01)
-    assert figures.shown_after([(0.05, 0.1)], odometry) == pytest.approx([0.15], abs=EXACT)
-
-
-def test_a_command_that_is_never_shown_has_no_latency():
-    assert figures.shown_after([(0.05, 0.1)], standing([0.0, 0.1, 0.2])) == [None]
 
 
 def test_a_command_on_the_line_is_shown_by_its_speed():
