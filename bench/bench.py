@@ -76,12 +76,11 @@ class Session:
 
     def close(self):
         """Stop all commands in reverse order, with SIGINT, or with SIGKILL if a command does not exit."""
-        with uninterrupted():
-            for process, command, _ in reversed(self.started):
-                if not processes.stop(process):
-                    print(f'bench: "{command}" did not exit on SIGINT: killed', file=sys.stderr)
-            processes.kill_rest()
-            shutil.rmtree(self.folder, ignore_errors=True)
+        for process, command, _ in reversed(self.started):
+            if not processes.stop(process):
+                print(f'bench: "{command}" did not exit on SIGINT: killed', file=sys.stderr)
+        processes.kill_rest()
+        shutil.rmtree(self.folder, ignore_errors=True)
 
     def start(self, command):
         """Start a shell command, with its output in a file for error messages."""
@@ -131,17 +130,10 @@ class Session:
         return self.wait(lambda: self.call(uri, 'getPid'), f'the process id of {name}')
 
 
-@contextlib.contextmanager
-def uninterrupted():
-    """Ignore signals within this context, because the shutdown must complete."""
-    before = [signal.signal(number, signal.SIG_IGN) for number in SIGNALS]
-    yield
-    for number, handler in zip(SIGNALS, before):
-        signal.signal(number, handler)
-
-
 def interrupt(number, _):
-    """Signal handler that raises an exception, so that all commands are stopped."""
+    """Signal handler that raises an exception, so that all commands are stopped; the next signals are ignored."""
+    for each in SIGNALS:
+        signal.signal(each, signal.SIG_IGN)
     raise Interrupted(f'interrupted by {signal.Signals(number).name}')
 
 

@@ -8,7 +8,6 @@ import argparse
 import glob
 import os
 import sys
-import time
 
 import numpy
 
@@ -187,7 +186,6 @@ def main():
     parser.add_argument('--leave-out', action='store_true', help='also fit without each parameter (takes minutes)')
     parser.add_argument('--plot', metavar='DIR', help='write %s and %s to this folder' % PICTURES)
     args = parser.parse_args()
-    start = time.monotonic()
     first, second = halves(read_set(args.data, args.set))
     surface, errors = fit(first, MOTIONS, NOISES)
     print('Fitted to the first halves of set %d:' % args.set)
@@ -204,7 +202,6 @@ def main():
     show(old, errors)
     if args.leave_out:
         leave_out(first, second, judgements)
-    print(f'{time.monotonic() - start:.0f} s')
 
 
 if __name__ == '__main__':
