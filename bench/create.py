@@ -5,16 +5,13 @@ All processes are cleaned up, even after Ctrl-C.
 """
 import argparse
 import math
-import multiprocessing
 import os
-import random
-import signal
 import time
 
 import bench
 import figures
 import processes
-from probe import Probe, wait
+from probe import Probe
 
 ROBOTS = 'create', 'create2'
 BASE = 'roslaunch rbx1_bringup fake_turtlebot_create.launch'
@@ -44,31 +41,6 @@ def cpu(pids):
     return 100 * figures.usage(samples, -math.inf, math.inf)
 
 
-def line_delays(environment, count):
-    """The delays (s) from `count` commands at random phases to their last byte at the robot; runs in a new process."""
-    # Ctrl-C in the terminal reaches this process too, but the parent decides when to stop it
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    signal.signal(signal.SIGTERM, signal.SIG_DFL)
-    os.environ.update(environment)
-    import rospy
-    from geometry_msgs.msg import Twist
-    from std_msgs.msg import String
-    rospy.init_node('bench_line', anonymous=True, disable_rostime=True, disable_rosout=True, disable_signals=True)
-    texts, published = [], []
-    rospy.Subscriber('/line', String, lambda message: texts.append(message.data), tcp_nodelay=True)
-    publisher = rospy.Publisher('/cmd_vel', Twist, queue_size=1, tcp_nodelay=True)
-    if not wait(lambda: texts and publisher.get_num_connections(), bench.START):
-        raise bench.Failure('timed out waiting for /line')
-    for index in range(count):
-        time.sleep(random.uniform(0.05, 0.15))
-        message = Twist()
-        message.linear.x = 0.0 if index % 2 else 0.1
-        published.append((time.time(), message.linear.x))   # /line uses ROS time, which equals this time
-        publisher.publish(message)
-    time.sleep(0.5)
-    return figures.shown_after(published, figures.line_speeds(texts))
-
-
 def measure(robot_type, count):
     """Yield (what, text) for the node's CPU time, and for its latency with `count` commands."""
     with bench.Session() as session:
@@ -81,8 +53,9 @@ def measure(robot_type, count):
         time.sleep(REST)
         yield 'CPU, commands at 50 Hz', f'{cpu(pids):.2f} % of a core'
         processes.stop(commands)
-        with multiprocessing.get_context('fork').Pool(1) as pool:
-            delays = pool.apply(line_delays, (session.changes, count))
+        line = Probe(session.changes, '/cmd_vel', '/line', publish=True)
+        session.wait(lambda: line.ask('arrived', 1), '/line')
+        delays = line.ask('latency', count)
     shown = [delay for delay in delays if delay is not None]
     if not shown:
         raise bench.Failure('no command was shown on /line')

@@ -90,14 +90,16 @@ def shown_after(published, odometry):
     return delays
 
 
-def line_speeds(texts):
-    """An odometry record for each Drive Direct command (145) in texts of /line: its time, and the mean speed as v."""
+def line_speeds(texts, offset):
+    """An odometry record for each Drive Direct command (145) in texts of /line: its time plus `offset` (s), and the
+    mean speed as v."""
     records = []
     for text in texts:
         stamp, data = text.split()
         if data.startswith('91'):
             right, left = struct.unpack('>hh', bytes.fromhex(data[2:]))  # mm/s
-            records.append((float(stamp), float(stamp), 0.0, 0.0, 0.0, (right + left) / 2000, 0.0))
+            received = float(stamp) + offset
+            records.append((received, received, 0.0, 0.0, 0.0, (right + left) / 2000, 0.0))
     return records
 
 

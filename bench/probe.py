@@ -138,8 +138,13 @@ def decode_commands(received):
 
 
 def decode_odometry(received):
-    """(received, stamp, x, y, heading, v, w) of each Odometry."""
+    """(received, stamp, x, y, heading, v, w) of each Odometry, or of each Drive Direct command on a serial line."""
     from nav_msgs.msg import Odometry
+    from std_msgs.msg import String
+    if received and received[0][1]._connection_header['type'] == String._type:
+        # /line has the time at which its last byte was received, in ROS time, which equals the wall clock
+        return figures.line_speeds([decode(message, String).data for _, message in received],
+                                   time.monotonic() - time.time())
     records = []
     for arrival, message in received:
         odom = decode(message, Odometry)

@@ -72,8 +72,8 @@ def main():
         if is_worse or is_silent:
             print(f'seed {seed}, rest {rest:g} s: heading {heading:.2f}, gyro {gyro:.2f}, wheels {wheels:.2f} '
                   f'degrees; {sigmas:.1f} sigma; {warnings or "no warning"}')
-    print(f'{len(tasks)} drives: {worse} worse than twice the worse sensor; beyond {SIGMAS:g} sigma: {silent} without a '
-          f'warning, {announced} with one')
+    print(f'{len(tasks)} drives: {worse} worse than twice the worse sensor; beyond {SIGMAS:g} sigma: {silent} without '
+          f'a warning, {announced} with one')
 
 
 if __name__ == '__main__':

@@ -195,11 +195,9 @@ def main():
     judgements = judge('fitted', second, surface)
     if args.plot:
         plot(args.plot, surface, judgements)
-    old, errors = fit(first, OLD_MOTIONS, SPREADS)
+    old, _ = fit(first, OLD_MOTIONS, SPREADS)
     judge('constant slip, fitted', second, old)
     judge('ideal', second, ideal_surface())
-    print('Constant slip, no delay:')
-    show(old, errors)
     if args.leave_out:
         leave_out(first, second, judgements)
 

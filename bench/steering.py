@@ -57,18 +57,26 @@ def across(results):
     return line
 
 
+def simulate(method, runs, steering=None):
+    """The results of runs on low_ply_carpet, with the seeds from 0. steering: of the answer; None: straight ahead."""
+    robot, carpet = simulated.robot(), simulated.floor('low_ply_carpet')
+    simulated_run.out_and_back_by_odometry = (
+        partial(steered_legs, steering) if steering else out_and_back_by_odometry)
+    try:
+        return [simulated_run.simulate(method, robot, carpet, seed) for seed in range(runs)]
+    finally:
+        simulated_run.out_and_back_by_odometry = out_and_back_by_odometry
+
+
 def main():
     """Simulate and print."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('--runs', type=int, default=100, help='runs of each method, seeds from 0; default: 100')
     arguments = parser.parse_args()
-    robot, carpet = simulated.robot(), simulated.floor('low_ply_carpet')
     print(HEADER)
-    for title, legs in (('Straight ahead', out_and_back_by_odometry),
-                        ('Steered', partial(steered_legs, load_answer().steering))):
-        simulated_run.out_and_back_by_odometry = legs
+    for title, steering in ('Straight ahead', None), ('Steered', load_answer().steering):
         for method in 'odom', 'ekf':
-            results = [simulated_run.simulate(method, robot, carpet, seed) for seed in range(arguments.runs)]
+            results = simulate(method, arguments.runs, steering)
             summary = Summary()
             for result in results:
                 end = result.end

@@ -43,7 +43,7 @@ def test_the_latency_ends_with_the_first_message_that_shows_the_command():
 
 def test_a_command_on_the_line_is_shown_by_its_speed():
     texts = ['0.1 9100000000', '0.2 8c00', '0.32 9100c80000', '0.4 9100000000']
-    odometry = figures.line_speeds(texts)
+    odometry = figures.line_speeds(texts, 0.0)
     assert [record[5] for record in odometry] == [0, 0.1, 0]
     assert figures.shown_after([(0.3, 0.1), (0.35, 0.0)], odometry) == pytest.approx([0.02, 0.05], abs=EXACT)
 

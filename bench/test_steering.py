@@ -1,21 +1,18 @@
 """Steering on the legs: the pages quote what the answer to exercise 5 gains."""
-from functools import partial
 import re
 
 import numpy
 import pytest
 import simulated
 import steering
-from rbx1_nav.extras.many_runs import simulated_run
 
 DOCS = f'{simulated.CONFIG}/../docs'
 
 
-def test_the_pages_quote_the_gain(monkeypatch):
+def test_the_pages_quote_the_gain():
     """docs/answers.md, why_it_misses.md and figures.md: steered, the mean distance and the rms of y of 100 runs, cm."""
-    robot, carpet = simulated.robot(), simulated.floor('low_ply_carpet')
-    monkeypatch.setattr(simulated_run, 'out_and_back_by_odometry', partial(steering.steered_legs, steering.load_answer().steering))
-    ends = numpy.array([simulated_run.simulate('ekf', robot, carpet, seed).end.truth for seed in range(100)])
+    results = steering.simulate('ekf', 100, steering.load_answer().steering)
+    ends = numpy.array([result.end.truth for result in results])
     gain = 100 * numpy.hypot(*ends.T[:2]).mean(), 100 * numpy.sqrt((ends[:, 1] ** 2).mean())
     texts = {}
     for page in 'answers', 'why_it_misses', 'figures':
