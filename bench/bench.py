@@ -25,7 +25,7 @@ import table
 from probe import Probe
 
 START = 30  # s of wall time for a roscore or a base to come up
-SETTLE = 5  # s of wall time for the robot to come to a standstill after the driver has exited
+SETTLE = 3  # s of wall time after the driver has exited, for the robot to come to a standstill
 SAMPLE = 0.25  # s between two samples of CPU time and memory
 LIMIT = 120  # s of wall time for a run
 SIGNALS = signal.SIGINT, signal.SIGTERM, signal.SIGHUP
@@ -162,7 +162,7 @@ def bring_up(session, args, publish=False):
     session.start(args.base)
     probe = Probe(session.changes, args.cmd_vel, args.odom, publish)
     pids = [session.node_process(name) for name in args.base_node]
-    session.wait(lambda: probe.ask('arrived', 1), args.odom)
+    session.wait(lambda: probe.ask('arrived'), args.odom)
     return probe, pids
 
 
@@ -184,7 +184,7 @@ def measure_run(args, load):
                 raise Failure(f'"{args.base}" exited during the run')
             time.sleep(SAMPLE)
         proportional = processes.proportional(pids)
-        settled = probe.ask('settled', SETTLE)
+        time.sleep(SETTLE)
         for loop in loops:
             loop.kill()
         commands, odometry = probe.ask('record')
@@ -194,7 +194,6 @@ def measure_run(args, load):
     row.update(rss_mb=max(s[2] for s in samples) / 1e6, pss_mb=proportional and proportional / 1e6)
     remarks = [f'{load} loops'] if load else []
     remarks += [f'driver exit status {driver.returncode}'] if driver.returncode else []
-    remarks += [] if settled else ['still moving at the end']
     return row, periods, ', '.join(remarks)
 
 

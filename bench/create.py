@@ -20,19 +20,6 @@ REST = 5        # s that the robot is stationary at first, so that the gyro offs
 CPU_TIME = 20   # s of each measurement of CPU time
 
 
-def start_robot(session, robot_type):
-    """Start the robot and the base node, and wait until the robot can be driven."""
-    session.environment['PYTHONUNBUFFERED'] = '1'   # each line reaches the log as soon as it is printed
-    session.start(f'{BASE} robot_type:={robot_type} port:={session.folder}/port')
-    log = session.started[-1][2]
-
-    def ready():
-        with open(log, errors='replace') as file:
-            return 'in safe mode' in file.read()
-    session.wait(ready, 'the robot to be in safe mode')
-    time.sleep(REST)
-
-
 def cpu(pids):
     """CPU time of the processes and their children for the next CPU_TIME seconds, in % of a core."""
     samples = [processes.sample(pids)]
@@ -44,17 +31,20 @@ def cpu(pids):
 def measure(robot_type, count):
     """Yield (what, text) for the node's CPU time, and for its latency with `count` commands."""
     with bench.Session() as session:
-        start_robot(session, robot_type)
+        session.environment['PYTHONUNBUFFERED'] = '1'   # each line reaches the log as soon as it is printed
+        session.start(f'{BASE} robot_type:={robot_type} port:={session.folder}/port')
+        session.wait(lambda: 'in safe mode' in session.output(), 'the robot to be in safe mode')
+        time.sleep(REST)
         pids = [session.node_process('/turtlebot_node')]
         probe = Probe(session.changes, '/cmd_vel', '/odom')
-        session.wait(lambda: probe.ask('arrived', 1), '/odom')
+        session.wait(lambda: probe.ask('arrived'), '/odom')
         yield 'CPU at rest', f'{cpu(pids):.2f} % of a core'
         commands = session.start(COMMANDS)
         time.sleep(REST)
         yield 'CPU, commands at 50 Hz', f'{cpu(pids):.2f} % of a core'
         processes.stop(commands)
         line = Probe(session.changes, '/cmd_vel', '/line', publish=True)
-        session.wait(lambda: line.ask('arrived', 1), '/line')
+        session.wait(lambda: line.ask('arrived'), '/line')
         delays = line.ask('latency', count)
     shown = [delay for delay in delays if delay is not None]
     if not shown:

@@ -13,8 +13,6 @@ import time
 
 import figures
 
-QUIET = 0.5  # s: the robot is at a standstill if its odometry has not changed for this time
-STILL = 1e-4  # m and rad: smaller changes are noise
 SPEED = 0.1  # m/s, of the commands whose latency is measured
 
 
@@ -59,11 +57,8 @@ def run_probe(ours, pipe, environment, cmd_vel, odom, publish):
     else:
         rospy.Subscriber(cmd_vel, rospy.AnyMsg, lambda m: commands.append((time.monotonic(), m)), tcp_nodelay=True)
 
-    def arrived(timeout):
-        return wait(lambda: odometry and (not publish or publisher.get_num_connections()), timeout)
-
-    def settled(timeout):
-        return wait(lambda: stands_still(odometry), timeout)
+    def arrived():
+        return bool(odometry and (not publish or publisher.get_num_connections()))
 
     def latency(count):
         return measure_latency(publisher, Twist, odometry, count)
@@ -71,7 +66,7 @@ def run_probe(ours, pipe, environment, cmd_vel, odom, publish):
     def record():
         return decode_commands(commands), decode_odometry(odometry)
 
-    answers = {'arrived': arrived, 'settled': settled, 'latency': latency, 'record': record}
+    answers = {'arrived': arrived, 'latency': latency, 'record': record}
     while True:
         try:
             what, *arguments = pipe.recv()
@@ -80,30 +75,6 @@ def run_probe(ours, pipe, environment, cmd_vel, odom, publish):
             os._exit(0)  # rospy's shutdown would call a master that is shutting down
         except Exception as error:
             pipe.send(RuntimeError(f'{what}: {error}'))
-
-
-def wait(condition, timeout):
-    """Whether condition() became true within `timeout` (s of wall time)."""
-    end = time.monotonic() + timeout
-    while not condition():
-        if time.monotonic() > end:
-            return False
-        time.sleep(0.02)
-    return True
-
-
-def stands_still(odometry):
-    """Whether all poses of the last QUIET seconds are equal."""
-    since = time.monotonic() - QUIET
-    recent = []
-    for received, message in reversed(odometry):
-        recent.append((received, message))
-        if received < since:
-            break
-    if len(recent) < 3 or recent[-1][0] >= since:
-        return False
-    poses = [record[2:5] for record in decode_odometry(recent)]
-    return all(max(figures.deviation(pose, poses[0])) < STILL for pose in poses)
 
 
 def measure_latency(publisher, twist, odometry, count):

@@ -82,7 +82,7 @@ def record(path, seed, args):
         session.start(FILTER)
         probe = Probe(session.changes, '/cmd_vel', '/odom_ekf')
         session.wait(lambda: NODE in subscribers(session, '/imu/data'), 'the filter')
-        session.wait(lambda: probe.ask('arrived', 1), '/odom_ekf')
+        session.wait(lambda: probe.ask('arrived'), '/odom_ekf')
         time.sleep(1)       # a registered node may not be connected yet
 
         loops = [subprocess.Popen([sys.executable, '-c', 'while True: pass']) for _ in range(args.load)]
