@@ -120,10 +120,6 @@ class Session:
         """The XML-RPC address of a node; None if it is not registered."""
         return self.call(self.changes['ROS_MASTER_URI'], 'lookupNode', name)
 
-    def parameter(self, name):
-        """The value of a ROS parameter; None if it is not set."""
-        return self.call(self.changes['ROS_MASTER_URI'], 'getParam', name)
-
     def node_process(self, name):
         """The process id of a node, once it is running."""
         uri = self.wait(lambda: self.node_uri(name), f'the node {name}')
@@ -171,7 +167,7 @@ def measure_run(args, load):
     remarks."""
     with Session() as session:
         probe, pids = bring_up(session, args)
-        simulated = bool(session.parameter('/use_sim_time'))
+        simulated = bool(session.call(session.changes['ROS_MASTER_URI'], 'getParam', '/use_sim_time'))
         loops = [subprocess.Popen([sys.executable, '-c', 'while True: pass']) for _ in range(load)]
         driver = session.start(args.driver)
         end = time.monotonic() + LIMIT
