@@ -43,6 +43,7 @@ def measure(robot_type, count):
         time.sleep(REST)
         yield 'CPU, commands at 50 Hz', f'{cpu(pids):.2f} % of a core'
         processes.stop(commands)
+        session.started.pop()   # or wait() would report that it has exited
         line = Probe(session.changes, '/cmd_vel', '/line', publish=True)
         session.wait(lambda: line.ask('arrived'), '/line')
         delays = line.ask('latency', count)
