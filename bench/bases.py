@@ -8,20 +8,16 @@ import random
 from typing import NamedTuple
 
 import numpy
-import yaml
 
 from base_cases import CASES
-from floors import aligned, consistency, digits, markdown_value, misses, report, squared_errors
-from replay import replay
-from robot_pose_ekf import RobotPoseEkf
-from rbx1_nav.base.description import Limits, read_robot
+from floors import consistency, markdown_value, misses, report, squared_errors
+from replay import reckon, replay, run_port
+import simulated
+from rbx1_nav.base.description import Limits
 from rbx1_nav.base.kinematics import ORIGIN
-from rbx1_nav.base.surfaces import load_surface
 from rbx1_nav.base.units import SECOND
-from rbx1_nav.extras.many_runs.executor import add_arguments, in_order, open_place
 from rbx1_nav.filter.inputs import Imu, Odom
 from rbx1_nav.filter.priors import UNKNOWN_FLOOR
-from rbx1_nav.node import resources
 from rbx1_nav.simulation.simulated_base import make_base
 
 LIMITS = Limits(4.0, 8.0)       # m/s, rad/s; no limits for these paths
@@ -41,7 +37,7 @@ PATHS = {
     'squares': (((5, 1, 0), (1.6, 0.5, 1)) * 27,),
     'straight': (((180, 1, 0),),),
     'spins': (((5, 1, 0), (3.5, 0, 3.6)) * 6,)}
-RANDOM = 600            # s, duration of the random path
+RANDOM = 600            # s, default duration of the random path
 FAULT = 10.0, 4.0       # s: begin after the first motion, and duration
 SPIN, HAND = 0.3, 0.4   # m/s, rad/s: speed of a wheel without grip; a hand that turns the robot
 ESTIMATORS = '', 'port_', 'reckoned_', 'wheels_'       # prefixes of their figures; the first is the filter
@@ -59,8 +55,9 @@ class Record(NamedTuple):
     restarts: list  # numbers of the Odoms at which the odometry restarts at the origin; the truth does, too
 
 
-def drive(robot, case, surface, seed):
-    """The Record of a run. The seed also selects the path and its direction of turning."""
+def drive(robot, case, surface, seed, duration=RANDOM):
+    """The Record of a run. The seed also selects the path and its direction of turning. duration: of a random path,
+    s."""
     rng = random.Random('bases %d' % seed)
     if case.ratio != 1:     # equal noise in a true turn, although the wheels turn farther
         surface = surface._replace(heading_noise_turning=surface.heading_noise_turning / math.sqrt(case.ratio))
@@ -71,7 +68,7 @@ def drive(robot, case, surface, seed):
         base.gyro.run = base.gyro.run._replace(gyro_scale_error=case.scale)
     # wheels that report twice the turn are commanded to turn twice as fast, so the paths are equal
     side = case.ratio * (1, -1)[seed // len(PATHS) % 2]
-    legs = [(case.rest or RUN_UP, *((0, 0) if case.rest else (1, 0.1))), *path_of(case.path, rng, seed)]
+    legs = [(case.rest or RUN_UP, *((0, 0) if case.rest else (1, 0.1))), *path_of(case.path, rng, seed, duration)]
     if case.rest:
         legs.append((1, 0, 0))
     begin = legs[0][0] * SECOND     # of the motion whose errors count
@@ -86,11 +83,11 @@ def drive(robot, case, surface, seed):
     for stamp, is_odom in sorted(stamps):
         base.advance(stamp)
         at_fault = 0 <= stamp - begin - FAULT[0] * SECOND < FAULT[1] * SECOND
-        duration, before = (stamp - before) / SECOND, stamp
+        elapsed, before = (stamp - before) / SECOND, stamp
         if case.fault == 'spin' and at_fault:
-            base.odometry.update(0.0, SPIN * duration)
+            base.odometry.update(0.0, SPIN * elapsed)
         elif case.fault == 'carried' and at_fault:
-            base.wheels.truth.move(0.0, HAND * duration)
+            base.wheels.truth.move(0.0, HAND * elapsed)
         elif case.fault == 'restart' and at_fault and is_odom and not record.restarts:
             restart(base, record)
         if is_odom:
@@ -122,12 +119,12 @@ def drive(robot, case, surface, seed):
     return record
 
 
-def path_of(name, rng, seed):
+def path_of(name, rng, seed, duration):
     """The legs of a path."""
     if name != 'random':
         return PATHS[name][seed % len(PATHS[name])]
     legs = []
-    while sum(leg[0] for leg in legs) < RANDOM:
+    while sum(leg[0] for leg in legs) < duration:
         legs.append((rng.uniform(1, 8), rng.uniform(0.3, 1), rng.choice((0, rng.uniform(-1, 1)))))
     return legs
 
@@ -155,37 +152,9 @@ def run_filter(record, warn=lambda text: None):
     return [estimates[stamps[bisect_right(stamps, odom.stamp) - 1]] for odom, _ in record.odom]
 
 
-def yaw_at_odometry(record, yaws):
-    """The values of the IMU messages, interpolated at the odometry stamps, as in robot_pose_ekf."""
-    return numpy.interp([odom.stamp for odom, _ in record.odom], [imu.stamp for imu, _ in record.imu], yaws)
-
-
-def run_port(record, start=0):
-    """The poses of robot_pose_ekf's arithmetic from an Odom on. The IMU's yaw is integrated after its calibration at
-    rest."""
-    port, poses = RobotPoseEkf(), []
-    yaws, variances = (yaw_at_odometry(record, [each[1][index] for each in record.imu]) for index in (0, 1))
-    for (odom, pose_variances), yaw, variance in list(zip(record.odom, yaws, variances))[start:]:
-        port.update(odom.stamp / SECOND, odom.pose, pose_variances, yaw, variance)
-        poses.append(port.state)
-    return poses
-
-
-def reckon(record, rest, start=0):
-    """The poses of dead reckoning from an Odom on: wheel distance along the gyro heading. The mean gyro rate of the
-    first `rest` seconds is subtracted before the integration."""
-    stamps = numpy.array([imu.stamp for imu, _ in record.imu]) / SECOND
-    rates = numpy.array([imu.rate for imu, _ in record.imu])
-    durations = numpy.diff(stamps, prepend=stamps[0] if record.odom[0][0].stamp else 0.0)
-    resting = stamps <= rest
-    bias = numpy.average(rates[resting], weights=durations[resting]) if rest else 0.0
-    yaws = yaw_at_odometry(record, numpy.cumsum((rates - bias) * durations))[start:]
-    x, y, yaw = numpy.array([odom.pose for odom, _ in record.odom[start:]]).T
-    yaws += yaw[0] - yaws[0]
-    reported, turned = (each[:-1] + numpy.diff(each) / 2 for each in (yaw, yaws))
-    forward = numpy.diff(x) * numpy.cos(reported) + numpy.diff(y) * numpy.sin(reported)
-    x, y = (numpy.cumsum([first, *forward * f(turned)]) for first, f in ((x[0], numpy.cos), (y[0], numpy.sin)))
-    return numpy.stack([x, y, yaws], axis=1)
+def rest_of(rest):
+    """The stamps between which a robot is calibrated that rests for so many seconds at first."""
+    return -1, rest * SECOND if rest else -1
 
 
 def judge(case, record):
@@ -195,7 +164,8 @@ def judge(case, record):
     estimates, truth = run_filter(record)[start:], record.truth[start:]
     first, step = round(((0 if start else case.rest) + SAMPLE) * case.odom_rate), round(SAMPLE * case.odom_rate)
     values = []
-    for poses in ([estimate.pose for estimate in estimates], run_port(record, start), reckon(record, case.rest, start),
+    for poses in ([estimate.pose for estimate in estimates], run_port(record, record.odom[start][0].stamp),
+                  reckon(record, rest_of(case.rest), start),
                   [odom.pose for odom, _ in record.odom[start:]]):
         pairs = zip(poses[first::step], truth[first::step])
         values += numpy.mean([squared_errors(*pair) for pair in pairs], axis=0).tolist()
@@ -213,7 +183,7 @@ def run(task):
 def figures(name, seeds, sums):
     """The row of a case: root mean squares over the seeds (degrees, m), and the mean NEES / 3."""
     means = [float(value) / seeds for value in sums]
-    row = dict(case=name, seeds=seeds, nees=means[-2], claimed=math.sqrt(means[-1]))
+    row = dict(case=name, nees=means[-2], claimed=math.sqrt(means[-1]))
     for prefix, heading, position in zip(ESTIMATORS, means[0::2], means[1::2]):
         row.update({f'{prefix}heading': math.sqrt(heading), f'{prefix}position': math.sqrt(position)})
     return row
@@ -236,24 +206,15 @@ def judged(row, unbiased=None):
     return dict(row, misses=misses(row, row['limits']))
 
 
-def measure(robot, names, seeds, jobs, scheduler=None):
+def measure(names, seeds, jobs):
     """One row per case, in the order of `names` (of the cases)."""
-    surfaces = {floor: load_surface(floor, resources.surfaces()) for floor in {CASES[name].floor for name in names}}
+    robot, surfaces = simulated.robot(), simulated.floors()
     tasks = [(robot, CASES[name], surfaces[CASES[name].floor], seed) for name in names for seed in range(seeds)]
     sums = dict.fromkeys(names, 0.0)
-    with open_place(jobs, scheduler, robot, None) as place:
-        for name, values in in_order(place, run, tasks):
-            sums[name] = sums[name] + values
+    for name, values in simulated.in_processes(jobs, run, tasks):
+        sums[name] = sums[name] + values
     rows = {name: figures(name, seeds, values) for name, values in sums.items()}
     return [judged(row, rows.get(CASES[name].unbiased)) for name, row in rows.items()]
-
-
-def table(rows):
-    """One line per row."""
-    lines = [['case', *(title for _, title, _ in COLUMNS), 'misses']]
-    lines += [[row['case'], *(digits(row.get(name, math.nan)) for name, _, _ in COLUMNS),
-               ', '.join(row['misses']) or '-'] for row in rows]
-    return aligned(lines, 1)
 
 
 def markdown(rows):
@@ -266,29 +227,18 @@ def markdown(rows):
 
 
 def main():
-    """Measure, print, and write JSON."""
+    """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('--seeds', type=int, default=20, metavar='N', help='runs of each case; default: 20')
-    parser.add_argument('--case', action='append', metavar='NAME', help='only this case; can be repeated')
-    add_arguments(parser, 1)
-    parser.add_argument('--markdown', action='store_true', help='print the table in Markdown')
-    parser.add_argument('--json', metavar='FILE')
+    parser.add_argument('--case', action='append', choices=CASES, metavar='NAME',
+                        help='only this case, and the one with a bias of 0 that it is compared with; can be repeated')
+    parser.add_argument('--jobs', type=int, default=1, metavar='N', help='processes; default: 1')
     arguments = parser.parse_args()
-    for name in 'seeds', 'jobs':
-        if getattr(arguments, name) < 1:
-            parser.error('--%s: %d: expected an integer above 0' % (name, getattr(arguments, name)))
-    for name in arguments.case or ():
-        if name not in CASES:
-            parser.error(f"--case: {name}: expected one of {', '.join(CASES)}")
     wanted = set(arguments.case or CASES)
     wanted |= {CASES[name].unbiased for name in wanted}     # limits are relative to these
-    with open(resources.path('config', 'turtlebot.yaml'), encoding='utf-8') as file:
-        robot = read_robot(yaml.safe_load(file))
-    rows = measure(robot, [name for name in CASES if name in wanted], arguments.seeds, arguments.jobs,
-                   arguments.scheduler)
-    report(rows, (markdown if arguments.markdown else table)(rows), arguments.json)
+    rows = measure([name for name in CASES if name in wanted], arguments.seeds, arguments.jobs)
+    report(markdown(rows), rows)
 
 
 if __name__ == '__main__':
-    import bases     # the workers of a cluster import its functions by this name
-    bases.main()
+    main()

@@ -7,26 +7,27 @@ every odometry message. All processes are cleaned up, even after Ctrl-C.
 import argparse
 import contextlib
 import importlib.util
-import json
 import os
-import platform
 import shutil
 import signal
-import socket
 import subprocess
 import sys
 import tempfile
 import time
 import xmlrpc.client
 
+sys.path.append(os.path.join(os.path.dirname(os.path.realpath(__file__)), '..', 'test'))
+
 import figures
+from ports import free_port
 import processes
 import table
 from probe import Probe
 
 START = 30  # s of wall time for a roscore or a base to come up
-SETTLE = 5  # s of wall time for the robot to come to a standstill after the driver has exited
+SETTLE = 3  # s of wall time after the driver has exited, for the robot to come to a standstill
 SAMPLE = 0.25  # s between two samples of CPU time and memory
+LIMIT = 120  # s of wall time for a run
 SIGNALS = signal.SIGINT, signal.SIGTERM, signal.SIGHUP
 # End pose of the exercise if each command is in force for exactly 1/50 s: out 1 m, 3.14 rad, back 1 m, 3.14 rad.
 TUTORIAL = figures.arc(figures.arc(figures.arc(figures.arc((0, 0, 0), 1, 0, 1), 0, 1, 3.14), 1, 0, 1), 0, 1, 3.14)
@@ -55,9 +56,7 @@ class Session:
     def __init__(self):
         self.folder = tempfile.mkdtemp(prefix='bench_')
         self.started = []
-        with socket.socket() as free:
-            free.bind(('127.0.0.1', 0))
-            port = free.getsockname()[1]
+        port = free_port()
         self.changes = {'ROS_MASTER_URI': f'http://127.0.0.1:{port}', 'ROS_IP': '127.0.0.1', 'ROS_LOG_DIR': self.folder}
         self.environment = {**os.environ, **self.changes}
         self.environment.pop('ROS_HOSTNAME', None)  # it would take precedence over ROS_IP
@@ -77,12 +76,11 @@ class Session:
 
     def close(self):
         """Stop all commands in reverse order, with SIGINT, or with SIGKILL if a command does not exit."""
-        with uninterrupted():
-            for process, command, _ in reversed(self.started):
-                if not processes.stop(process):
-                    print(f'bench: "{command}" did not exit on SIGINT: killed', file=sys.stderr)
-            processes.kill_rest()
-            shutil.rmtree(self.folder, ignore_errors=True)
+        for process, command, _ in reversed(self.started):
+            if not processes.stop(process):
+                print(f'bench: "{command}" did not exit on SIGINT: killed', file=sys.stderr)
+        processes.kill_rest()
+        shutil.rmtree(self.folder, ignore_errors=True)
 
     def start(self, command):
         """Start a shell command, with its output in a file for error messages."""
@@ -122,38 +120,37 @@ class Session:
         """The XML-RPC address of a node; None if it is not registered."""
         return self.call(self.changes['ROS_MASTER_URI'], 'lookupNode', name)
 
-    def parameter(self, name):
-        """The value of a ROS parameter; None if it is not set."""
-        return self.call(self.changes['ROS_MASTER_URI'], 'getParam', name)
-
     def node_process(self, name):
         """The process id of a node, once it is running."""
         uri = self.wait(lambda: self.node_uri(name), f'the node {name}')
         return self.wait(lambda: self.call(uri, 'getPid'), f'the process id of {name}')
 
 
-@contextlib.contextmanager
-def uninterrupted():
-    """Ignore signals within this context, because the shutdown must complete."""
-    before = [signal.signal(number, signal.SIG_IGN) for number in SIGNALS]
-    yield
-    for number, handler in zip(SIGNALS, before):
-        signal.signal(number, handler)
-
-
 def interrupt(number, _):
-    """Signal handler that raises an exception, so that all commands are stopped."""
+    """Signal handler that raises an exception, so that all commands are stopped; the next signals are ignored."""
+    for each in SIGNALS:
+        signal.signal(each, signal.SIG_IGN)
     raise Interrupted(f'interrupted by {signal.Signals(number).name}')
 
 
-def prepare():
-    """Make sure that rospy is installed and that all processes are cleaned up."""
+@contextlib.contextmanager
+def cleaned_up():
+    """Kill all processes that are left at the end of this context. A Failure or a signal ends the program."""
     if not importlib.util.find_spec('rospy'):
         sys.exit(f'bench: {sys.executable} has no rospy: expected the Python of your ROS, as in\n'
                  f'  /usr/bin/python3 {sys.argv[0]} ...')
     processes.adopt_orphans()
     for number in SIGNALS:
         signal.signal(number, interrupt)
+    try:
+        yield
+    except Failure as failure:
+        sys.exit(f'bench: {failure}')
+    except Interrupted as signalled:
+        print(f'bench: {signalled}', file=sys.stderr)
+        sys.exit(130)
+    finally:
+        processes.kill_rest()
 
 
 def bring_up(session, args, publish=False):
@@ -161,59 +158,48 @@ def bring_up(session, args, publish=False):
     session.start(args.base)
     probe = Probe(session.changes, args.cmd_vel, args.odom, publish)
     pids = [session.node_process(name) for name in args.base_node]
-    session.wait(lambda: probe.ask('arrived', 1), args.odom)
+    session.wait(lambda: probe.ask('arrived'), args.odom)
     return probe, pids
 
 
 def measure_run(args, load):
-    """Measure one run with `load` busy loops in parallel; returns its figures, and its periods (s) for pooling."""
+    """Measure one run with `load` busy loops in parallel; returns its figures, its command periods (s) for pooling, and
+    remarks."""
     with Session() as session:
         probe, pids = bring_up(session, args)
-        simulated = bool(session.parameter('/use_sim_time'))
+        simulated = bool(session.call(session.changes['ROS_MASTER_URI'], 'getParam', '/use_sim_time'))
         loops = [subprocess.Popen([sys.executable, '-c', 'while True: pass']) for _ in range(load)]
         driver = session.start(args.driver)
-        end = time.monotonic() + args.limit
+        end = time.monotonic() + LIMIT
         samples = []
         while driver.poll() is None:
             samples.append(processes.sample(pids))
             if time.monotonic() > end:
-                raise Failure(f'the driver did not exit within {args.limit:g} s\n{session.output()}')
+                raise Failure(f'the driver did not exit within {LIMIT} s\n{session.output()}')
             if session.started[1][0].poll() is not None:
                 raise Failure(f'"{args.base}" exited during the run')
             time.sleep(SAMPLE)
         proportional = processes.proportional(pids)
-        settled = probe.ask('settled', SETTLE)
+        time.sleep(SETTLE)
         for loop in loops:
             loop.kill()
         commands, odometry = probe.ask('record')
         if driver.returncode:
             print(f'bench: the driver exited with status {driver.returncode}:\n{session.output()}', file=sys.stderr)
-    row, periods, odom_periods = figures.run_figures(commands, odometry, samples, args.timeout,
-                                                     args.exact if simulated else None)
-    row.update(load=load, simulated_time=simulated, driver_exit=driver.returncode, settled=settled,
-               rss_peak_mb=max(s[2] for s in samples) / 1e6, pss_mb=proportional and proportional / 1e6)
-    return row, periods, odom_periods
+    row, periods = figures.run_figures(commands, odometry, samples, args.timeout, TUTORIAL if simulated else None)
+    row.update(rss_mb=max(s[2] for s in samples) / 1e6, pss_mb=proportional and proportional / 1e6)
+    remarks = [f'{load} loops'] if load else []
+    remarks += [f'driver exit status {driver.returncode}'] if driver.returncode else []
+    return row, periods, ', '.join(remarks)
 
 
 def measure_latency(args):
-    """The delays from commands at random phases to the first odometry that shows them, starting at rest."""
+    """The delays from commands at random phases to the first odometry that shows them, starting at rest; None for a
+    command that is never shown."""
     with Session() as session:
         probe, _ = bring_up(session, args, publish=True)
         time.sleep(1)
-        delays = probe.ask('latency', args.latency, args.latency_speed)
-    shown = [delay for delay in delays if delay is not None]
-    return {'commands': len(delays), 'not_shown': len(delays) - len(shown), 'latency_s': figures.spread(shown)}
-
-
-def host():
-    """The machine and the software on which the numbers depend."""
-    model = 'unknown'
-    with contextlib.suppress(OSError), open('/proc/cpuinfo') as file:
-        model = next((line.split(':')[1].strip() for line in file if line.startswith('model name')), model)
-    rospy = subprocess.run(['rosversion', 'rospy'], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
-    return {'cpus': os.cpu_count(), 'cpu': model, 'kernel': platform.release(), 'python': platform.python_version(),
-            'rospy': rospy.stdout.strip(), 'load_average': os.getloadavg()[0],
-            'time': time.strftime('%Y-%m-%dT%H:%M:%SZ', time.gmtime())}
+        return probe.ask('latency', args.latency)
 
 
 def arguments():
@@ -224,14 +210,9 @@ def arguments():
     parser.add_argument('--runs', type=int, default=10, help='number of runs (default 10)')
     parser.add_argument('--latency', type=int, default=0, metavar='N',
                         help='after the runs, measure the latency of N commands')
-    parser.add_argument('--latency-speed', type=float, default=0.1, help='speed of these commands, m/s (default 0.1)')
     parser.add_argument('--load', type=int, default=0, metavar='N', help='run N busy loops during every second run')
-    parser.add_argument('--json', metavar='FILE', help='write all figures to this file')
     parser.add_argument('--timeout', type=float, default=1.0,
                         help='timeout of a command in the base, s (default 1.0; 0: none)')
-    parser.add_argument('--exact', type=float, nargs=3, default=TUTORIAL, metavar=('X', 'Y', 'HEADING'),
-                        help='on simulated time: the exact final pose, m and rad (default: of the exercise)')
-    parser.add_argument('--limit', type=float, default=120, help='timeout of a run, s of wall time (default 120)')
     parser.add_argument('--cmd-vel', default='/cmd_vel', help='topic of the commands (default /cmd_vel)')
     parser.add_argument('--odom', default='/odom', help='topic of the odometry (default /odom)')
     parser.add_argument('--base-node', nargs='+', default=['/arbotix'],
@@ -242,51 +223,29 @@ def arguments():
     return args
 
 
-def measure(args, result):
-    """Measure what the command line requests: print the figures, and add them to `result`."""
-    paths = [path for _, path, *_ in table.COLUMNS]
-    periods, odom_periods = [], []
-    if args.runs:
-        print(table.header(), flush=True)
+def measure(args):
+    """Measure and print what the command line requests."""
+    rows, periods = [], []
+    print(f'load average {os.getloadavg()[0]:.2f}\n{table.header()}', flush=True)
     for number in range(args.runs):
-        row, new, new_odom = measure_run(args, args.load if number % 2 else 0)
+        row, new, remarks = measure_run(args, args.load if number % 2 else 0)
+        rows.append(row)
         periods += new
-        odom_periods += new_odom
-        result['runs'].append(row)
-        print(table.line(number + 1, [table.look_up(row, path) for path in paths], table.remarks(row)), flush=True)
-    if args.runs:
-        for name, values in table.summary(result['runs']).items():
-            print(table.line(name, values))
-            result['summary'][name] = dict(zip(paths, values))
-        result.update(command_period_s=figures.spread(periods), odom_period_s=figures.spread(odom_periods))
-        table.print_spread('command period', result['command_period_s'])
-        table.print_spread('odometry period', result['odom_period_s'])
+        print(table.line(number + 1, row, remarks), flush=True)
+    for line in table.summary(rows) if rows else ():
+        print(line)
+    table.print_spread('command period', periods)
     if args.latency:
-        result['latency'] = measure_latency(args)
-        table.print_spread('command to odometry', result['latency']['latency_s'])
-        if result['latency']['not_shown']:
-            print(f'{result["latency"]["not_shown"]} of {args.latency} commands were never shown by the odometry')
+        delays = measure_latency(args)
+        shown = [delay for delay in delays if delay is not None]
+        table.print_spread('command to odometry', shown)
+        print(f'{len(delays) - len(shown)} of {len(delays)} commands were never shown by the odometry')
 
 
 def main():
     args = arguments()
-    prepare()
-    result = {'base': args.base, 'driver': args.driver, 'timeout_s': args.timeout, 'host': host(),
-              'runs': [], 'summary': {}}
-    try:
-        measure(args, result)
-    except Failure as failure:
-        result['failure'] = str(failure)
-        sys.exit(f'bench: {failure}')
-    except Interrupted as signalled:
-        result['failure'] = str(signalled)
-        print(f'bench: {signalled}', file=sys.stderr)
-        sys.exit(130)
-    finally:
-        processes.kill_rest()
-        if args.json:
-            with open(args.json, 'w') as file:
-                json.dump(result, file, indent=1)
+    with cleaned_up():
+        measure(args)
 
 
 if __name__ == '__main__':

@@ -57,13 +57,9 @@ def percentile(values, percent):
 
 
 def spread(values):
-    """Count, min, p1, p50, p99 and max of the values; None if there are none."""
-    if not values:
-        return None
-    row = {'count': len(values), 'min': min(values)}
-    row.update((f'p{percent}', percentile(values, percent)) for percent in (1, 50, 99))
-    row['max'] = max(values)
-    return row
+    """min, p1, p50, p99 and max of the values."""
+    return {name: percentile(values, percent)
+            for name, percent in (('min', 0), ('p1', 1), ('p50', 50), ('p99', 99), ('max', 100))}
 
 
 def command_periods(commands):
@@ -94,14 +90,16 @@ def shown_after(published, odometry):
     return delays
 
 
-def line_speeds(texts):
-    """An odometry record for each Drive Direct command (145) in texts of /line: its time, and the mean speed as v."""
+def line_speeds(texts, offset):
+    """An odometry record for each Drive Direct command (145) in texts of /line: its time plus `offset` (s), and the
+    mean speed as v."""
     records = []
     for text in texts:
         stamp, data = text.split()
         if data.startswith('91'):
             right, left = struct.unpack('>hh', bytes.fromhex(data[2:]))  # mm/s
-            records.append((float(stamp), float(stamp), 0.0, 0.0, 0.0, (right + left) / 2000, 0.0))
+            received = float(stamp) + offset
+            records.append((received, received, 0.0, 0.0, 0.0, (right + left) / 2000, 0.0))
     return records
 
 
@@ -114,29 +112,25 @@ def usage(samples, begin, end):
 
 
 def run_figures(commands, odometry, samples, timeout, exact):
-    """All figures of a run, and its periods (s) for pooling. exact: the expected pose; None: integrate the commands."""
+    """All figures of a run, and its command periods (s) for pooling. exact: the expected pose; None: integrate the
+    commands."""
     moving = [c for c in commands if c[1] or c[2]]
     row = {'forward': sum(1 for c in commands if c[1]), 'turning': sum(1 for c in commands if c[2]),
            'zero': len(commands) - len(moving), 'total': len(commands)}
     if not moving:
-        return row, [], []
+        return row, []
     begin, end = moving[0][0], commands[-1][0]
     start = ([r for r in odometry if r[0] <= begin] or odometry)[-1 if odometry[0][0] <= begin else 0][2:5]
     final = relative(odometry[-1][2:5], start)
-    reference = exact or integrate(commands, odometry[-1][0], timeout)
-    off, off_heading = deviation(final, reference)
-    row.update(final_pose=final, distance_m=math.hypot(final[0], final[1]), angle_deg=abs(math.degrees(final[2])),
-               reference_pose=reference, deviation_m=off, deviation_rad=off_heading)
-
+    off, off_heading = deviation(final, exact or integrate(commands, odometry[-1][0], timeout))
     periods = command_periods(commands)
+    row.update(distance_m=math.hypot(final[0], final[1]), angle_deg=abs(math.degrees(final[2])),
+               deviation_m=off, deviation_rad=off_heading, **(spread(periods) if periods else {}))
     driving = [r for r in odometry if begin <= r[0] <= end]
-    odom_periods = [b[0] - a[0] for a, b in zip(driving, driving[1:])]
-    row.update(command_period_s=spread(periods), odom_period_s=spread(odom_periods))
     if len(driving) > 1:
         wall, ros = driving[-1][0] - driving[0][0], driving[-1][1] - driving[0][1]
-        row.update(duration_s=end - begin, odom_hz=(len(driving) - 1) / wall, real_time_factor=ros / wall,
-                   odom_hz_ros_time=(len(driving) - 1) / ros if ros > 0 else None)
+        row.update(odom_hz=(len(driving) - 1) / wall, real_time_factor=ros / wall)
         share = usage(samples, begin, end)
         if share is not None:
             row.update(cpu_percent=100 * share, cpu_percent_per_odom_hz=100 * share / row['odom_hz'])
-    return row, periods, odom_periods
+    return row, periods

@@ -5,7 +5,6 @@ from collections import Counter, defaultdict
 import math
 import os
 import subprocess
-import sys
 import time
 
 import bench
@@ -94,20 +93,15 @@ def measure(count, together):
 
 
 def main():
-    """Run the benchmark; returns the exit status."""
+    """Run the benchmark."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('count', type=int, nargs='+', help='number of robots, one or several numbers')
     parser.add_argument('--together', action='store_true', help='all bases in one process; default: a process each')
     arguments = parser.parse_args()
-    bench.prepare()
-    try:
+    with bench.cleaned_up():
         for count in arguments.count:
             measure(count, arguments.together)
-    except (bench.Failure, bench.Interrupted) as error:
-        print(f'bench: {error}', file=sys.stderr)
-        return 1
-    return 0
 
 
 if __name__ == '__main__':
-    sys.exit(main())
+    main()

@@ -1,23 +1,20 @@
-"""The figures of a filter under a true and an assumed floor, and their limits; without ROS and without a simulator.
+"""The errors of a filter under a true and an assumed floor, and their limits; without ROS and without a simulator.
 
 Units: meters, radians; headings in the results in degrees. A pose is (x, y, yaw).
 """
 from collections import namedtuple
-import json
 import math
 
 import numpy
 
 IDEAL, UNKNOWN = 'ideal', 'unknown'
-COLUMNS = (('heading', 'heading deg'), ('port_heading', 'port'), ('heading_ratio', 'ratio'),
-           ('position', 'position m'), ('port_position', 'port'), ('position_ratio', 'ratio'),
-           ('best_position', 'best'), ('nees', 'NEES'), ('end_heading', 'end deg'), ('end_position', 'end m'))
+TITLES = 'true floor', 'assumed', 'heading (degrees)', 'the port', 'position (cm)', 'the port', 'best', 'NEES'
 CELLS = (('heading', 1, 2), ('port_heading', 1, 2), ('position', 100, 2), ('port_position', 100, 2),
-         ('best_position', 100, 2), ('nees', 1, 1))
+         ('best_position', 100, 2), ('nees', 1, 1))     # figure, factor to the unit shown, decimals
 
-Errors = namedtuple('Errors', 'ticks heading position end_heading end_position nees')
+Errors = namedtuple('Errors', 'ticks heading position nees')
 Errors.__doc__ = """Sums over runs: number of ticks; squared errors of heading (degrees^2) and position (m^2) at all
-ticks, and at the end; normalized estimation error squared at the end (0 for the port)."""
+ticks; normalized estimation error squared at the end (0 for the port)."""
 
 
 def squared_errors(pose, truth):
@@ -53,9 +50,9 @@ class Follower:
         self.position += position
 
     def errors(self, covariance=None):
-        """The Errors of the run, as an array. covariance: of the estimate at the end."""
-        return numpy.array([self.ticks, self.heading, self.position, *squared_errors(*self.last),
-                            0.0 if covariance is None else consistency(*self.last, covariance)])
+        """The Errors of the run. covariance: of the estimate at the end."""
+        return Errors(self.ticks, self.heading, self.position,
+                      0.0 if covariance is None else consistency(*self.last, covariance))
 
 
 class KnownHeading:
@@ -77,19 +74,14 @@ class KnownHeading:
         self.odom = tuple(odom)
 
 
-def figures(runs, stuck, errors, port, best):
-    """Root mean squares, their ratios, and the mean NEES. runs: number of runs; stuck: number of runs that never
-    finished; errors, port, best: Errors of the filter, the port and KnownHeading, summed over the runs."""
-    errors, port, best = (Errors(*map(float, each)) for each in (errors, port, best))
-    values = dict(runs=runs, stuck=stuck, nees=errors.nees / runs)
+def figures(runs):
+    """Root mean squares over all ticks, and the mean NEES. runs: for each run, the Errors of the filter, of the port
+    and of KnownHeading."""
+    errors, port, best = (Errors(*map(float, each)) for each in numpy.sum(runs, axis=0))
+    values = dict(nees=errors.nees / len(runs))
     for name, sums in ('', errors), ('port_', port), ('best_', best):
-        values.update({f'{name}heading': math.sqrt(sums.heading / sums.ticks),
-                       f'{name}position': math.sqrt(sums.position / sums.ticks),
-                       f'{name}end_heading': math.sqrt(sums.end_heading / runs),
-                       f'{name}end_position': math.sqrt(sums.end_position / runs)})
-    for name in 'heading', 'position':
-        if values[f'port_{name}'] > 1e-9:   # on the ideal floor, the port only has rounding errors
-            values[f'{name}_ratio'] = values[name] / values[f'port_{name}']
+        values[f'{name}heading'] = math.sqrt(sums.heading / sums.ticks)
+        values[f'{name}position'] = math.sqrt(sums.position / sums.ticks)
     return values
 
 
@@ -109,47 +101,20 @@ def limits(true, assumed, values, unobservable):
 
 
 def misses(values, bounds):
-    """The figures that are beyond their limits, and `stuck` if a run never finished."""
-    return ([name for name, (least, greatest) in bounds.items() if not least <= values[name] <= greatest]
-            + ['stuck'] * (values.get('stuck', 0) > 0))
+    """The figures that are beyond their limits."""
+    return [name for name, (least, greatest) in bounds.items() if not least <= values[name] <= greatest]
 
 
-def digits(value):
-    """A figure as text, with three significant digits."""
-    return '-' if math.isnan(value) else f'{value:.3g}' if value < 100 or value >= 1e5 else f'{value:.0f}'
-
-
-def aligned(lines, texts):
-    """Lines of cells as columns. texts: the number of leading text columns; the last column is text, too."""
-    widths = [max(map(len, column)) for column in zip(*lines)]
-    for line in lines:
-        yield '  '.join(text.ljust(width) if number < texts or number == len(line) - 1 else text.rjust(width)
-                        for number, (text, width) in enumerate(zip(line, widths))).rstrip()
-
-
-def report(rows, lines, path):
-    """Print the lines of a table and how many of its rows have no `misses`; write the rows to `path` (JSON) if
-    given."""
+def report(lines, rows):
+    """Print the lines of a table, and how many of its rows have no `misses`."""
     print('\n'.join(lines))
     print('%d of %d rows within all limits' % (sum(not row['misses'] for row in rows), len(rows)))
-    if path:
-        with open(path, 'w', encoding='utf-8') as file:
-            json.dump(rows, file, indent=1)
-
-
-def table(rows):
-    """One line per row: a dict with `true`, `assumed`, `method`, `misses` and what figures() returns."""
-    lines = [['true', 'assumed', 'method', *(title for _, title in COLUMNS), 'misses']]
-    lines += [[row['true'], row['assumed'], row['method'], *(digits(row.get(name, math.nan)) for name, _ in COLUMNS),
-               ', '.join(row['misses']) or '-'] for row in rows]
-    return aligned(lines, 3)
 
 
 def markdown(rows):
     """The rows in Markdown, one line per pair of floors. Each cell has a value per method, bold if beyond its limit."""
-    titles = 'true floor', 'assumed', 'heading (degrees)', 'the port', 'position (cm)', 'the port', 'best', 'NEES'
-    yield f"| {' | '.join(titles)} |"
-    yield f"|{'---|' * len(titles)}"
+    yield f"| {' | '.join(TITLES)} |"
+    yield f"|{'---|' * len(TITLES)}"
     pairs = {}
     for row in rows:
         pairs.setdefault((row['true'], row['assumed']), []).append(row)
@@ -160,4 +125,4 @@ def markdown(rows):
 
 def markdown_value(row, name, factor, places):
     """A figure of a row, multiplied by a factor."""
-    return ('**%.*f**' if name in row['misses'] else '%.*f') % (places, factor * row.get(name, math.nan))
+    return ('**%.*f**' if name in row['misses'] else '%.*f') % (places, factor * row[name])

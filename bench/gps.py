@@ -9,10 +9,7 @@ from typing import NamedTuple
 import numpy
 import rosbag
 
-from replay import pose_variances, replay
-from rbx1_nav.base.units import SECOND
-from rbx1_nav.filter import conversions
-from rbx1_nav.filter.gyro_input import GyroInput
+from replay import gyro, odometry, reckon, replay
 from rbx1_nav.filter.priors import UNKNOWN_FLOOR
 
 TYPES = 'nav_msgs/Odometry', 'sensor_msgs/Imu', 'sensor_msgs/NavSatFix'
@@ -22,8 +19,8 @@ RADIUS, SQUARED_ECCENTRICITY = 6378137.0, 6.69437999014e-3     # m; of the WGS 8
 
 class Record(NamedTuple):
     """The contents of a bag, each list in stamp order (ns)."""
-    odom: list      # (Odom, variances of its pose's x, y (m^2) and yaw (rad^2))
-    imu: list       # (Imu, None)
+    odom: list      # these two: see replay.py
+    imu: list
     speeds: list    # (m/s, rad/s) of each Odom
     fixes: list     # (stamp, latitude, longitude in degrees)
 
@@ -40,23 +37,9 @@ def read_record(path, odom, imu, fix):
             raise ValueError(f'{topic}: {len(each)} messages of type {kind}: expected at least 2')
         each.sort(key=lambda message: message.header.stamp)
     twists = [message.twist.twist for message in found[odom]]
-    return Record([(conversions.from_odometry(message), pose_variances(message)) for message in found[odom]],
-                  gyro_readings(found[imu]),
+    return Record(odometry(found[odom]), gyro(found[imu]),
                   [(twist.linear.x, twist.angular.z) for twist in twists],
                   [(message.header.stamp.to_nsec(), message.latitude, message.longitude) for message in found[fix]])
-
-
-def gyro_readings(imus):
-    """(Imu, None) for each message. The vertical axis is the mean up direction of the orientations."""
-    x, y, z, w = numpy.array([[getattr(imu.orientation, name) for name in 'xyzw'] for imu in imus]).T
-    up = numpy.array([2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]).mean(1)
-    vertical = tuple((up / numpy.linalg.norm(up)).tolist())
-    gyro, readings = GyroInput(), []
-    for imu in imus:
-        data = conversions.from_imu(imu)
-        readings.append((gyro.read(data, vertical), None))
-        gyro.accepted(data)
-    return readings
 
 
 def local(fixes):
@@ -90,22 +73,6 @@ def longest_rest(record):
     return record.odom[first][0].stamp, record.odom[last][0].stamp
 
 
-def reckon(record):
-    """The path (n x 2) of dead reckoning: wheel distance along the gyro heading. The mean gyro rate in the longest rest
-    is subtracted."""
-    stamps, rates = numpy.array([(imu.stamp, imu.rate) for imu, _ in record.imu]).T
-    first, last = longest_rest(record)
-    at_rest = (stamps > first) & (stamps <= last)
-    rates -= rates[at_rest].mean() if at_rest.any() else 0.0
-    turned = numpy.interp([odom.stamp for odom, _ in record.odom], stamps,
-                          numpy.cumsum(rates * numpy.diff(stamps, prepend=stamps[0]) / SECOND))
-    x, y, yaw = numpy.array([odom.pose for odom, _ in record.odom]).T
-    turned, yaw = (each[:-1] + numpy.diff(each) / 2 for each in (turned, numpy.unwrap(yaw)))
-    forward = numpy.diff(x) * numpy.cos(yaw) + numpy.diff(y) * numpy.sin(yaw)
-    steps = numpy.stack([forward * numpy.cos(turned), forward * numpy.sin(turned)], 1)
-    return numpy.cumsum(numpy.vstack([[0.0, 0.0], steps]), axis=0)
-
-
 def judge(record):
     """A dict: rms distances from the GPS (m), and the final uncertainty of the filter (1 sigma, m and rad)."""
     stamps, gps = [odom.stamp for odom, _ in record.odom], local(record.fixes)
@@ -116,7 +83,7 @@ def judge(record):
     return dict(
         filter=rms_to_gps(sorted(estimates), [estimates[stamp].pose[:2] for stamp in sorted(estimates)], gps),
         wheels=rms_to_gps(stamps, [odom.pose[:2] for odom, _ in record.odom], gps),
-        reckoned=rms_to_gps(stamps, reckon(record), gps),
+        reckoned=rms_to_gps(stamps, reckon(record, longest_rest(record))[:, :2], gps),
         position_sigma=math.sqrt(numpy.linalg.eigvalsh(last.covariance[:2, :2])[-1]),
         yaw_sigma=math.sqrt(last.covariance[2, 2]))
 

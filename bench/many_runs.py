@@ -26,19 +26,18 @@ def resident(pid):
         return 0.0
 
 
-def simulate(path, arguments, watched, at_half=None):
-    """Run simulate.py. Returns (s of wall time, {name: memory samples}). watched(): {name: pid}; at_half(): called when
-    half of the rows have been written."""
+def simulate(path, runs, place, pids, at_half=None):
+    """Run simulate.py. Returns (s of wall time, {name: memory samples}). place: its options; pids(pid of simulate.py):
+    {name: pid} of the processes that are watched; at_half(): called when half of the rows have been written."""
     samples = {}
     start = time.monotonic()
     with subprocess.Popen([sys.executable, SIMULATE, '--surface', 'low_ply_carpet', '--method', 'timed', '--runs',
-                           str(arguments.runs), '--output', path, *watched.arguments]) as process:
-        watched.client = process.pid
+                           str(runs), '--output', path, *place]) as process:
         while process.poll() is None:
             time.sleep(SAMPLE)
-            for name, pid in watched.pids().items():
+            for name, pid in pids(process.pid).items():
                 samples.setdefault(name, []).append(resident(pid))
-            if at_half and os.path.exists(path) and os.path.getsize(path) > arguments.runs * 85:
+            if at_half and os.path.exists(path) and os.path.getsize(path) > runs * 85:
                 at_half = at_half()
     took = time.monotonic() - start
     if process.returncode:
@@ -46,34 +45,9 @@ def simulate(path, arguments, watched, at_half=None):
     return took, samples
 
 
-class Local:
-    """The processes of simulate.py."""
-
-    arguments = '--jobs', '2'
-    client = None
-
-    def pids(self):
-        """The processes by name."""
-        return {'client': self.client,
-                **{f'process {pid}': pid for pid in sorted(tree([self.client]) - {self.client})}}
-
-
-class OnCluster(Local):
-    """The processes of simulate.py and a Cluster."""
-
-    def __init__(self, cluster):
-        self.cluster = cluster
-        self.arguments = '--scheduler', cluster.address
-
-    def pids(self):
-        """The processes by name."""
-        return {'client': self.client, 'scheduler': self.cluster.scheduler.pid,
-                **{f'worker {worker.pid}': worker.pid for worker in self.cluster.workers}}
-
-    def replace_a_worker(self):
-        """Kill a worker, and start another one."""
-        self.cluster.workers.pop(0).kill()
-        self.cluster.workers.append(self.cluster.start_worker())
+def local_pids(client):
+    """The processes of simulate.py by name."""
+    return {'client': client, **{f'process {pid}': pid for pid in sorted(tree([client]) - {client})}}
 
 
 def show(title, took, samples):
@@ -94,12 +68,20 @@ def main():
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         local, clustered = (os.path.join(folder, name) for name in ('local.csv', 'cluster.csv'))
-        first, samples = simulate(local, arguments, Local())
+        first, samples = simulate(local, arguments.runs, ['--jobs', '2'], local_pids)
         show('two local processes', first, samples)
         cluster = Cluster(folder, DASK_DISTRIBUTED__WORKER__PROFILE__ENABLED='False')
+
+        def pids(client):
+            return {'client': client, 'scheduler': cluster.scheduler.pid,
+                    **{f'worker {worker.pid}': worker.pid for worker in cluster.workers}}
+
+        def replace_a_worker():
+            cluster.workers.pop(0).kill()
+            cluster.workers.append(cluster.start_worker())
         try:
-            watched = OnCluster(cluster)
-            second, samples = simulate(clustered, arguments, watched, watched.replace_a_worker)
+            second, samples = simulate(clustered, arguments.runs, ['--scheduler', cluster.address], pids,
+                                       replace_a_worker)
             show('scheduler and two workers, one of them killed and replaced', second, samples)
         finally:
             cluster.stop()

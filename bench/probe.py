@@ -13,8 +13,7 @@ import time
 
 import figures
 
-QUIET = 0.5  # s: the robot is at a standstill if its odometry has not changed for this time
-STILL = 1e-4  # m and rad: smaller changes are noise
+SPEED = 0.1  # m/s, of the commands whose latency is measured
 
 
 class Probe:
@@ -58,19 +57,16 @@ def run_probe(ours, pipe, environment, cmd_vel, odom, publish):
     else:
         rospy.Subscriber(cmd_vel, rospy.AnyMsg, lambda m: commands.append((time.monotonic(), m)), tcp_nodelay=True)
 
-    def arrived(timeout):
-        return wait(lambda: odometry and (not publish or publisher.get_num_connections()), timeout)
+    def arrived():
+        return bool(odometry and (not publish or publisher.get_num_connections()))
 
-    def settled(timeout):
-        return wait(lambda: stands_still(odometry), timeout)
-
-    def latency(count, speed):
-        return measure_latency(publisher, Twist, odometry, count, speed)
+    def latency(count):
+        return measure_latency(publisher, Twist, odometry, count)
 
     def record():
         return decode_commands(commands), decode_odometry(odometry)
 
-    answers = {'arrived': arrived, 'settled': settled, 'latency': latency, 'record': record}
+    answers = {'arrived': arrived, 'latency': latency, 'record': record}
     while True:
         try:
             what, *arguments = pipe.recv()
@@ -81,38 +77,14 @@ def run_probe(ours, pipe, environment, cmd_vel, odom, publish):
             pipe.send(RuntimeError(f'{what}: {error}'))
 
 
-def wait(condition, timeout):
-    """Whether condition() became true within `timeout` (s of wall time)."""
-    end = time.monotonic() + timeout
-    while not condition():
-        if time.monotonic() > end:
-            return False
-        time.sleep(0.02)
-    return True
-
-
-def stands_still(odometry):
-    """Whether all poses of the last QUIET seconds are equal."""
-    since = time.monotonic() - QUIET
-    recent = []
-    for received, message in reversed(odometry):
-        recent.append((received, message))
-        if received < since:
-            break
-    if len(recent) < 3 or recent[-1][0] >= since:
-        return False
-    poses = [record[2:5] for record in decode_odometry(recent)]
-    return all(max(figures.deviation(pose, poses[0])) < STILL for pose in poses)
-
-
-def measure_latency(publisher, twist, odometry, count, speed):
-    """Alternately publish `speed` (m/s) and 0, at random phases; returns the delays (s) until odometry shows each."""
+def measure_latency(publisher, twist, odometry, count):
+    """Alternately publish SPEED and 0, at random phases; returns the delays (s) until odometry shows each."""
     published = []
     for index in range(count):
         # Longer than odometry ever takes to show a command, and shorter than the command timeout of a base.
         time.sleep(random.uniform(0.3, 0.6))
         message = twist()
-        message.linear.x = 0.0 if index % 2 else speed
+        message.linear.x = 0.0 if index % 2 else SPEED
         published.append((time.monotonic(), message.linear.x))
         publisher.publish(message)
     time.sleep(0.6)
@@ -137,8 +109,13 @@ def decode_commands(received):
 
 
 def decode_odometry(received):
-    """(received, stamp, x, y, heading, v, w) of each Odometry."""
+    """(received, stamp, x, y, heading, v, w) of each Odometry, or of each Drive Direct command on a serial line."""
     from nav_msgs.msg import Odometry
+    from std_msgs.msg import String
+    if received and received[0][1]._connection_header['type'] == String._type:
+        # /line has the time at which its last byte was received, in ROS time, which equals the wall clock
+        return figures.line_speeds([decode(message, String).data for _, message in received],
+                                   time.monotonic() - time.time())
     records = []
     for arrival, message in received:
         odom = decode(message, Odometry)

@@ -32,17 +32,15 @@ def stop(process, timeout=5):
 
 
 def kill_rest():
-    """Kill every process below this one; returns their number."""
-    killed = set()
+    """Kill every process below this one."""
     while True:
         rest = tree([os.getpid()]) - {os.getpid()}
         if not rest:
-            return len(killed)
+            return
         for pid in rest:
             try:
                 if stat(pid)[0] != b'Z':
                     os.kill(pid, signal.SIGKILL)
-                    killed.add(pid)
                 os.waitpid(pid, os.WNOHANG)
             except (OSError, ValueError):
                 pass  # it has exited, or is not yet a child of this process: the next round checks again

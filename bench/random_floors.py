@@ -1,19 +1,16 @@
 #!/usr/bin/env python3
 """Drive randomly on random floors, and compare the filter with its two sensors. See README.md."""
 import argparse
-from concurrent.futures import ProcessPoolExecutor
 import math
 import random
 
 import numpy
-import yaml
 
 from base_cases import Case
 import bases
 from floors import squared_errors
-from rbx1_nav.base.description import read_robot
-from rbx1_nav.base.surfaces import load_surface
-from rbx1_nav.node import resources
+from replay import reckon
+import simulated
 
 SLIP, UNEQUAL, BIAS = 0.3, 0.05, 6.0    # largest slips; difference of the wheels; bias of the gyro, degrees/s
 SIGMAS = 5.0            # an error of more standard deviations than this must have been announced
@@ -33,10 +30,10 @@ def make_floor(floor, seed, width):
 
 def run(task):
     """(seed, rest, warnings, rms heading errors of filter, gyro and wheels (degrees), largest error in sigmas)."""
-    robot, floor, bias, seed = task
+    robot, floor, bias, seed, duration = task
     rest = 3.0 * (seed % 2)
     case = Case('random', '', bias=bias, rest=rest, path='random')
-    record = bases.drive(robot, case, floor, seed)
+    record = bases.drive(robot, case, floor, seed, duration)
     warnings = []
     estimates = bases.run_filter(record, warnings.append)
     start = round(rest * case.odom_rate) + 1
@@ -47,7 +44,7 @@ def run(task):
     squares = errors([estimate.pose for estimate in estimates])
     sigmas = [math.degrees(math.sqrt(estimate.covariance[2, 2])) for estimate in estimates[start::step]]
     worst = max(math.sqrt(square) / sigma for square, sigma in zip(squares, sigmas))
-    means = [numpy.mean(each) for each in (squares, errors(bases.reckon(record, rest)),
+    means = [numpy.mean(each) for each in (squares, errors(reckon(record, bases.rest_of(rest))),
                                            errors([odom.pose for odom, _ in record.odom]))]
     return seed, rest, warnings, [math.sqrt(mean) for mean in means], worst
 
@@ -60,29 +57,23 @@ def main():
     parser.add_argument('--duration', type=float, default=120, metavar='S', help='of a drive; default: 120')
     parser.add_argument('--jobs', type=int, default=1, metavar='N', help='processes; default: 1')
     arguments = parser.parse_args()
-    bases.RANDOM = arguments.duration
-    with open(resources.path('config', 'turtlebot.yaml'), encoding='utf-8') as file:
-        robot = read_robot(yaml.safe_load(file))
-    lab = load_surface('create_lab_floor', resources.surfaces())
+    robot, lab = simulated.robot(), simulated.floor('create_lab_floor')
     tasks = []
     for number in range(arguments.floors):
         floor, bias = make_floor(lab, number, robot.base_width)
-        tasks += [(robot, floor, bias, number * arguments.drives + drive) for drive in range(arguments.drives)]
-    worse = silent = 0
-    ratios = []
-    with ProcessPoolExecutor(arguments.jobs) as pool:
-        for seed, rest, warnings, (heading, gyro, wheels), sigmas in pool.map(run, tasks):
-            is_worse = heading > 2 * max(gyro, wheels) + MARGIN
-            is_silent = sigmas > SIGMAS and not warnings
-            worse, silent = worse + is_worse, silent + is_silent
-            ratios.append((heading / max(gyro, wheels), sigmas))
-            if is_worse or is_silent:
-                print(f'seed {seed}, rest {rest:g} s: heading {heading:.2f}, gyro {gyro:.2f}, wheels {wheels:.2f} '
-                      f'degrees; {sigmas:.1f} sigma; {warnings or "no warning"}')
-    print(f'{len(tasks)} drives: {worse} worse than twice the worse sensor, '
-          f'{silent} beyond {SIGMAS:g} sigma in silence; '
-          f'rms of the heading at most {max(each for each, _ in ratios):.2f} times as large as with the worse sensor; '
-          f'beyond {SIGMAS:g} sigma at all: {sum(sigma > SIGMAS for _, sigma in ratios)}')
+        tasks += [(robot, floor, bias, number * arguments.drives + drive, arguments.duration)
+                  for drive in range(arguments.drives)]
+    worse = silent = announced = 0
+    for seed, rest, warnings, (heading, gyro, wheels), sigmas in simulated.in_processes(arguments.jobs, run, tasks):
+        is_worse = heading > 2 * max(gyro, wheels) + MARGIN
+        is_silent = sigmas > SIGMAS and not warnings
+        worse, silent = worse + is_worse, silent + is_silent
+        announced += sigmas > SIGMAS and not is_silent
+        if is_worse or is_silent:
+            print(f'seed {seed}, rest {rest:g} s: heading {heading:.2f}, gyro {gyro:.2f}, wheels {wheels:.2f} '
+                  f'degrees; {sigmas:.1f} sigma; {warnings or "no warning"}')
+    print(f'{len(tasks)} drives: {worse} worse than twice the worse sensor; beyond {SIGMAS:g} sigma: {silent} without '
+          f'a warning, {announced} with one')
 
 
 if __name__ == '__main__':

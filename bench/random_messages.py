@@ -1,32 +1,23 @@
 #!/usr/bin/env python3
 """Send random messages to the filter, and check each covariance that it would publish. See README.md."""
 import argparse
-from collections import Counter
-from concurrent.futures import ProcessPoolExecutor
-from contextlib import nullcontext
-from functools import partial
-import json
 import math
 import random
 import sys
 
 import numpy
 
+from floors import UNKNOWN
+import simulated
 from rbx1_nav.base.kinematics import Pose, arc
 from rbx1_nav.base.readings import MIN_VARIANCE
-from rbx1_nav.base.surfaces import known_surfaces, load_surface
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.filter.combined_odometry import CombinedOdometry
 from rbx1_nav.filter.inputs import MAX_VARIANCE, Imu, Odom, RejectedMessage
 from rbx1_nav.filter.priors import UNKNOWN_FLOOR, priors
-from rbx1_nav.node import resources
 
 LEAST_RATIO = -1e-12    # smallest eigenvalue / largest one
-LONG = 100      # steps after which a filter counts as long-running
 START = 1000 * SECOND   # ns, of the first message
-WARNINGS = (('dropouts', 'has timed out'), ('recoveries', 'has recovered'), ('restarts', 'restarting'),
-            ('outliers', ': ignored'), ('contradictions', 'one of them is wrong'),
-            ('slips', 'the wheels slip'))
 
 
 def log_uniform(rng, low, high):
@@ -124,107 +115,72 @@ def make_messages(rng, count):
     return messages
 
 
-def judge(poses, covariances):
-    """(minimum of smallest / largest eigenvalue, number of the first bad estimate or None, what is bad).
-
-    poses: n x 3; covariances: n x 3 x 3.
-    """
-    finite = numpy.isfinite(poses).all(axis=1) & numpy.isfinite(covariances).all(axis=(1, 2))
-    symmetric = (covariances == covariances.transpose(0, 2, 1)).all(axis=(1, 2))
-    values = numpy.linalg.eigvalsh(numpy.where(finite[:, None, None], covariances, numpy.eye(3)))
-    positive = values[:, 2] > 0
-    ratios = values[:, 0] / numpy.where(positive, values[:, 2], 1.0)
-    checks = (('not finite', finite), ('not symmetric', symmetric), ('no eigenvalue above 0', positive),
-              ('a negative eigenvalue', ratios >= LEAST_RATIO))
-    bad = [(int(numpy.argmin(good)), text) for text, good in checks if not good.all()]
-    return float(ratios.min()), *(min(bad) if bad else (None, ''))
+def judge(pose, covariance):
+    """(smallest / largest eigenvalue of a covariance, what is bad about an estimate, '' if nothing is)."""
+    if not numpy.isfinite(pose).all() or not numpy.isfinite(covariance).all():
+        return math.inf, 'not finite'
+    values = numpy.linalg.eigvalsh(covariance)
+    if values[-1] <= 0:
+        return math.inf, 'no eigenvalue above 0'
+    ratio = float(values[0] / values[-1])
+    if (covariance != covariance.T).any():
+        return ratio, 'not symmetric'
+    return ratio, 'a negative eigenvalue' if ratio < LEAST_RATIO else ''
 
 
-def run(floors, count, seed):
-    """Run one sequence; returns a dict of counts, the worst ratio, and `failure`, a text ('' if there is none)."""
+def run(task):
+    """(seed, number of estimates, of messages and of rejected messages, the least ratio of judge(), what is bad) of one
+    sequence. task: (seed, {floor: Priors}, number of messages)."""
+    seed, floors, count = task
     rng = random.Random(seed)
-    floor = rng.choice(sorted(floors))
+    prior = floors[rng.choice(sorted(floors))]
     clock = [0]     # ns, of a computer on which simulated time runs at a different rate
     factor = rng.choice([None, 1.0, log_uniform(rng, 0.1, 30.0)])
-    counts = Counter(sequences=1)
-
-    def warn(text):
-        counts.update(name for name, part in WARNINGS if part in text)
-    combined = CombinedOdometry(floors[floor], round(rng.choice([1.0, 1.0, log_uniform(rng, 0.1, 10.0)]) * SECOND),
-                                rng.random() < 0.95, warn, factor and (lambda: clock[0]))
-    estimate = ekf = None
-    poses, covariances, numbers, steps = [], [], [], 0
-    failure = ''
-    for number, (now, message) in enumerate(make_messages(rng, count)):
+    combined = CombinedOdometry(prior, round(rng.choice([1.0, 1.0, log_uniform(rng, 0.1, 10.0)]) * SECOND),
+                                rng.random() < 0.95, clock=factor and (lambda: clock[0]))
+    estimate, estimates, rejected, least = None, 0, 0, math.inf
+    messages = make_messages(rng, count)
+    for number, (now, message) in enumerate(messages):
         clock[0] = round((now - START) / (factor or 1.0))
-        counts['messages'] += 1
         try:
             if isinstance(message, Imu):
                 combined.add_imu(now, message)
             else:
                 combined.add_odom(now, message)
         except RejectedMessage:
-            counts['rejected'] += 1
+            rejected += 1
         except Exception as error:
-            failure = 'message %d: %s: %s' % (number, type(error).__name__, error)
-            break
+            return seed, estimates, number, rejected, least, f'message {number}: {type(error).__name__}: {error}'
         if combined.estimate is not None and combined.estimate is not estimate:
-            steps = steps + 1 if combined.filter is ekf else 1
-            estimate, ekf = combined.estimate, combined.filter
-            poses.append(estimate.pose)
-            covariances.append(estimate.covariance)
-            numbers.append(number)
-            counts['late estimates'] += steps > LONG
-            counts['longest'] = max(counts['longest'], steps)
-    counts['estimates'] = len(poses)
-    ratio, at, what = judge(numpy.array(poses), numpy.array(covariances)) if poses else (math.inf, None, '')
-    if at is not None:
-        failure = 'message %d: %s\n%s' % (numbers[at], what, covariances[at])
-    return dict(seed=seed, floor=floor, counts=dict(counts), ratio=ratio, failure=failure)
-
-
-def summary(results):
-    """The sums of the counts, the worst ratio, and the shares that show whether the filter was really exercised."""
-    counts = sum((Counter(result['counts']) for result in results), Counter())
-    counts['longest'] = max(result['counts'].get('longest', 0) for result in results)
-    worst = min(results, key=lambda result: result['ratio'])
-    return dict(counts=dict(counts), worst_ratio=worst['ratio'], worst_seed=worst['seed'],
-                accepted=1 - counts['rejected'] / counts['messages'],
-                late=counts['late estimates'] / max(1, counts['estimates']))
+            estimate = combined.estimate
+            estimates += 1
+            ratio, what = judge(estimate.pose, estimate.covariance)
+            least = min(least, ratio)
+            if what:
+                return seed, estimates, number, rejected, least, f'message {number}: {what}\n{estimate.covariance}'
+    return seed, estimates, len(messages), rejected, least, ''
 
 
 def main():
-    """Run, print, and write JSON. Returns the exit status."""
+    """Run and print. Returns the exit status."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('--sequences', type=int, default=2000, metavar='N', help='default: 2000')
     parser.add_argument('--messages', type=int, default=1000, metavar='N', help='messages per sequence; default: 1000')
     parser.add_argument('--seed', type=int, default=0, help='seed of the first sequence; default: 0')
     parser.add_argument('--jobs', type=int, default=1, metavar='N', help='processes; default: 1')
-    parser.add_argument('--json', metavar='FILE')
     arguments = parser.parse_args()
-    for name in 'sequences', 'messages', 'jobs':
-        if getattr(arguments, name) < 1:
-            parser.error('--%s: %d: expected an integer above 0' % (name, getattr(arguments, name)))
-    folder = resources.surfaces()
-    floors = {**{name: priors(load_surface(name, folder)) for name in known_surfaces(folder)}, 'unknown': UNKNOWN_FLOOR}
-    seeds = range(arguments.seed, arguments.seed + arguments.sequences)
-    with ProcessPoolExecutor(arguments.jobs) if arguments.jobs > 1 else nullcontext() as pool:
-        work = partial(run, floors, arguments.messages)
-        results = list(pool.map(work, seeds, chunksize=10) if pool else map(work, seeds))
-    sums = summary(results)
-    print(', '.join('%d %s' % (sums['counts'].get(name, 0), name) for name in (
-        'sequences', 'messages', 'rejected', 'estimates', *(name for name, _ in WARNINGS))))
-    print('accepted messages: %.1f %%; estimates of a filter that has run for more than %d steps: %.1f %%; longest: %d '
-          'steps' % (100 * sums['accepted'], LONG, 100 * sums['late'], sums['counts']['longest']))
-    print('smallest eigenvalue / largest: at least %.3g (seed %d)' % (sums['worst_ratio'], sums['worst_seed']))
-    failures = [result for result in results if result['failure']]
-    for result in failures:
-        print('--seed %d --sequences 1 --messages %d: %s: %s'
-              % (result['seed'], arguments.messages, result['floor'], result['failure']))
-    print(f'{len(failures)} of {len(results)} sequences failed')
-    if arguments.json:
-        with open(arguments.json, 'w', encoding='utf-8') as file:
-            json.dump(dict(sums, messages=arguments.messages, failures=failures), file, indent=1)
+    floors = {**{name: priors(surface) for name, surface in simulated.floors().items()}, UNKNOWN: UNKNOWN_FLOOR}
+    tasks = [(arguments.seed + number, floors, arguments.messages) for number in range(arguments.sequences)]
+    sums, leasts, failures = numpy.zeros(3, int), [], 0
+    for seed, *counts, least, what in simulated.in_processes(arguments.jobs, run, tasks):
+        sums += counts
+        leasts.append((least, seed))
+        if what:
+            failures += 1
+            print(f'--seed {seed} --sequences 1 --messages {arguments.messages}: {what}', flush=True)
+    print('%d estimates from %d messages, of which the filter rejected %d' % tuple(sums))
+    print('smallest eigenvalue / largest: at least %.3g (seed %d)' % min(leasts))
+    print(f'{failures} of {len(tasks)} sequences failed')
     return 1 if failures else 0
 
 

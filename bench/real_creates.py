@@ -1,27 +1,23 @@
 #!/usr/bin/env python3
 """Evaluate how well a simulated floor predicts the real Creates of the UTIAS dataset. See README.md.
 
-Unless a surface is given, fits one to the first half of each robot's record. Then compares the prediction with the real
-poses in the second half, some seconds after a known pose.
+Fits a surface to the first half of each robot's record. Then compares the prediction with the real poses in the second
+half, some seconds after a known pose.
 """
 import argparse
 import glob
 import os
 import sys
-import time
 
 import numpy
 
 from real_pictures import draw_ends, draw_paths
-from rbx1_nav.base.surfaces import load_surface
+import simulated
 from rbx1_nav.extras.fitting.comparison import inner_share, simulate_paths
 from rbx1_nav.extras.fitting.floor_fit import Fitter, fit_floor
 from rbx1_nav.extras.fitting.prediction import SPREADS, Prediction
 from rbx1_nav.extras.fitting.recording import CAMERAS, COMMANDS, read_robot, truth_file
 from rbx1_nav.extras.fitting.run import PreparedRun, Windows
-from rbx1_nav.extras.many_runs.plots import check_picture
-from rbx1_nav.node import resources
-from rbx1_nav.node.config import ConfigError, show_name
 from rbx1_nav.simulation.floor_noise import NOISES
 
 BASE_WIDTH = 0.26       # m, of a Create in these files
@@ -38,11 +34,10 @@ OLD_MOTIONS = 'lag', 'slip_straight', 'slip_turning', 'drag_straight', 'drag_tur
 
 
 def read_set(folder, number):
-    """The Recordings of all robots of a set in a folder: for set 6, D6R1_Odometry.dat and so on. Raises ConfigError."""
-    pattern = f'D{number}R*{COMMANDS}'
-    paths = sorted(glob.glob(os.path.join(glob.escape(folder), pattern)))
+    """The Recordings of all robots of a set in a folder: for set 6, D6R1_Odometry.dat and so on."""
+    paths = sorted(glob.glob(os.path.join(glob.escape(folder), f'D{number}R*{COMMANDS}')))
     if not paths:
-        raise ConfigError(f'{show_name(folder)}: no files {pattern}: expected the folder of an unpacked set')
+        sys.exit(f'real_creates: --data: {folder}: no files of set {number}: expected the folder of an unpacked set')
     return [read_robot(path, truth_file(path)) for path in paths]
 
 
@@ -73,7 +68,7 @@ def separate(windows):
 
 def starting_surface(**values):
     """A surface without errors, as the start of a fit."""
-    surface = load_surface('hard_floor', resources.surfaces())
+    surface = simulated.floor('hard_floor')
     zeros = dict.fromkeys(('slip_straight', 'slip_turning') + SPREADS, 0.0)
     return surface._replace(**{**zeros, 'drag_straight': 1e-6, 'drag_turning': 1e-6, **values})
 
@@ -146,9 +141,10 @@ def judge(name, runs, surface):
     return judgements
 
 
-def plot(folder, surface, floor, judgements):
-    """Write the pictures. floor: name of the Surface in the titles. Raises OSError."""
+def plot(folder, surface, judgements):
+    """Write the pictures."""
     paths, ends = (os.path.join(folder, name) for name in PICTURES)
+    floor = 'a floor fitted to the first halves of their recordings'
     draw_paths(paths, 'The same commands for %d s: real robots, and simulated ones on %s\n'
                'The window with the median score of each robot, from the second half of its recording' % (
                    PATH_LENGTH, floor), judgements[PATH_LENGTH], surface, ideal_surface())
@@ -187,45 +183,23 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument('--data', required=True, metavar='DIR', help='folder of files such as D6R1_Odometry.dat')
     parser.add_argument('--set', type=int, default=6, metavar='N', help='number of the set (default 6)')
-    parser.add_argument('--surface', metavar='NAME', help='a surface, or its YAML file, instead of a fit')
     parser.add_argument('--leave-out', action='store_true', help='also fit without each parameter (takes minutes)')
     parser.add_argument('--plot', metavar='DIR', help='write %s and %s to this folder' % PICTURES)
     args = parser.parse_args()
-    if args.plot:
-        try:
-            for name in PICTURES:
-                check_picture(os.path.join(args.plot, name))
-        except ConfigError as error:
-            parser.error(f'--plot: {show_name(args.plot)}: {error}')
-    start = time.monotonic()
-    try:
-        surfaces = resources.surfaces()     # the fit also starts from one of them
-        first, second = halves(read_set(args.data, args.set))
-        given = load_surface(args.surface, surfaces) if args.surface else None
-    except ConfigError as error:
-        sys.exit(f'real_creates: {error}')
-    surface, errors = (given, {}) if args.surface else fit(first, MOTIONS, NOISES)
-    if errors:
-        print('Fitted to the first halves of set %d:' % args.set)
-        show(surface, errors)
+    first, second = halves(read_set(args.data, args.set))
+    surface, errors = fit(first, MOTIONS, NOISES)
+    print('Fitted to the first halves of set %d:' % args.set)
+    show(surface, errors)
     print('%-22s %3s  %4s  %16s  %16s  %8s  %8s' % (
         'surface', 's', 'ends', 'in 50 % (90 % CI)', 'in 90 % (90 % CI)', 'm, med.', 'rad, med.'))
-    judgements = judge(args.surface or 'fitted', second, surface)
+    judgements = judge('fitted', second, surface)
     if args.plot:
-        floor = show_name(args.surface) if args.surface else 'a floor fitted to the first halves of their recordings'
-        try:
-            plot(args.plot, surface, floor, judgements)
-        except OSError as error:
-            sys.exit(f'real_creates: --plot: {show_name(args.plot)}: {error.strerror}')
-    if not args.surface:
-        old, errors = fit(first, OLD_MOTIONS, SPREADS)
-        judge('constant slip, fitted', second, old)
-        judge('ideal', second, ideal_surface())
-        print('Constant slip, no delay:')
-        show(old, errors)
-        if args.leave_out:
-            leave_out(first, second, judgements)
-    print(f'{time.monotonic() - start:.0f} s')
+        plot(args.plot, surface, judgements)
+    old, _ = fit(first, OLD_MOTIONS, SPREADS)
+    judge('constant slip, fitted', second, old)
+    judge('ideal', second, ideal_surface())
+    if args.leave_out:
+        leave_out(first, second, judgements)
 
 
 if __name__ == '__main__':

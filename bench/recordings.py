@@ -5,33 +5,51 @@ arithmetic. See README.md.
 Each run has its own roscore on a free port of the loopback interface. All processes are cleaned up, even after Ctrl-C.
 """
 import argparse
-import json
 import math
 import os
-import shutil
 import subprocess
 import sys
 import tempfile
 import time
+from typing import NamedTuple
+
+import numpy
 
 import bench
+from figures import deviation
+from floors import consistency
 import processes
-import replay
 from probe import Probe
+from replay import gyro, odometry, replay, run_port
+import simulated
+from rbx1_nav.base.messages import yaw_of
+from rbx1_nav.base.units import SECOND
+from rbx1_nav.filter.priors import priors
 
-BASE = 'roslaunch rbx1_bringup fake_turtlebot.launch'
+SURFACE = 'low_ply_carpet'
+BASE = f'roslaunch rbx1_bringup fake_turtlebot.launch surface:={SURFACE}'
 FILTER = 'roslaunch rbx1_bringup odom_ekf.launch'
 DRIVER = 'rosrun rbx1_nav timed_out_and_back.py'
 RESET = 'rosservice call /arbotix/reset'
 RECORDER = 'rosbag record --tcpnodelay'
-TOPICS = '/odom', '/imu/data', '/odom_combined', '/ground_truth', '/rosout', '/statistics'
+TOPICS = '/odom', '/imu/data', '/odom_combined', '/ground_truth', '/rosout'
 NODE = '/robot_pose_ekf'
-FREQ = 10       # Hz, of odom_combined, as in odom_ekf.launch
+REPORTS = 'has timed out', 'has recovered', '; rejected'    # log lines about dropouts and rejected messages
 REST = 2        # s of simulated time before and after the exercise, and of wall time after it
 STOP = 60       # s of wall time for the recorder to write the rest of its bag
-RUNS = '%4s %6s %6s %5s %5s %5s %4s %8s %8s %7s %7s %7s %7s %6s  %s'
-TITLES = ('seed', 'x real', 'sim s', 'lines', 'rec.', 'filt.', 'same', 'diff mm', 'diff deg', 'end mm', 'end deg',
-          'port mm', 'deg', 'NEES', 'remarks')
+LIMIT = 180     # s of wall time for the exercise
+STILL = 1e-3    # m and rad: odometry has moved if it differs by more than this from a pose at rest
+COLUMNS = (('lines', 1, 0), ('diff mm', 1e3, 4), ('diff deg', 1, 5), ('end mm', 1e3, 2), ('end deg', 1, 3),
+           ('port mm', 1e3, 2), ('port deg', 1, 3), ('NEES', 1, 2))  # title, factor, decimals
+
+
+class Record(NamedTuple):
+    """The contents of a bag, each list in stamp order (ns). A pose is (x, y, yaw) in m and rad."""
+    odom: list      # these two: see replay.py
+    imu: list
+    truth: dict     # {stamp: pose}
+    combined: list  # (stamp, pose, variance of the yaw) of each published estimate
+    lines: list     # log lines of the filter
 
 
 def subscribers(session, topic):
@@ -40,199 +58,138 @@ def subscribers(session, topic):
     return dict(state[1]).get(topic, [])
 
 
-def finish(session, process, limit):
-    """Wait until a command exits on its own. Raises Failure."""
+def run(session, command):
+    """Run a shell command to its end. Raises Failure."""
     try:
-        status = process.wait(limit)
-    except subprocess.TimeoutExpired:
-        status = f'none after {limit:g} s'
-    if status:
-        command = next(command for started, command, _ in session.started if started is process)
-        raise bench.Failure(f'"{command}": exit status {status}\n{session.output()}')
-    session.started = [each for each in session.started if each[0] is not process]     # the others must keep running
+        subprocess.run(command, shell=True, env=session.environment, check=True, timeout=LIMIT,
+                       stdout=subprocess.DEVNULL)
+    except subprocess.SubprocessError as error:
+        raise bench.Failure(error)
 
 
 def record(path, seed, args):
-    """Record one run to a bag; returns the real-time factor that it reached. Raises Failure."""
+    """Record one run to a bag. Raises Failure."""
     with bench.Session() as session:
-        session.start(f'{BASE} surface:={args.surface} seed:={seed} real_time_factor:={args.factor:g}')
+        session.start(f'{BASE} seed:={seed} real_time_factor:={args.factor:g}')
         session.wait(lambda: session.node_uri('/arbotix'), 'the base')
         recorder = session.start(f'{RECORDER} -O {path} {" ".join(TOPICS)}')
         session.wait(lambda: all(any(name.startswith('/record') for name in subscribers(session, topic))
                                  for topic in TOPICS), 'the recorder')
-        finish(session, session.start(RESET), bench.START)
-        # the filter counts its lost messages; only on its own subscriptions, so that nothing else is slowed down
-        master = session.changes['ROS_MASTER_URI']
-        session.call(master, 'setParam', '/enable_statistics', True)
+        run(session, RESET)
         session.start(FILTER)
         probe = Probe(session.changes, '/cmd_vel', '/odom_ekf')
         session.wait(lambda: NODE in subscribers(session, '/imu/data'), 'the filter')
-        session.call(master, 'setParam', '/enable_statistics', False)
-        session.wait(lambda: probe.ask('arrived', 1), '/odom_ekf')
+        session.wait(lambda: probe.ask('arrived'), '/odom_ekf')
         time.sleep(1)       # a registered node may not be connected yet
 
         loops = [subprocess.Popen([sys.executable, '-c', 'while True: pass']) for _ in range(args.load)]
-        began = time.monotonic()
         time.sleep(REST / args.factor)
-        finish(session, session.start(DRIVER), args.limit)
+        run(session, DRIVER)
         time.sleep(REST)
         for loop in loops:
             loop.kill()
         for process, command, _ in session.started:
             if process.poll() is not None:
                 raise bench.Failure(f'"{command}" exited during the run')
-        received = [row[:2] for row in probe.ask('record')[1] if row[0] > began]
         processes.stop(recorder, STOP)
         end = time.monotonic() + STOP
         while not os.path.exists(path):     # `rosbag` may exit before its recording process
             if time.monotonic() > end:
                 raise bench.Failure(f'the recorder did not write {path} within {STOP} s')
             time.sleep(0.05)
-    return (received[-1][1] - received[0][1]) / (received[-1][0] - received[0][0]) if len(received) > 1 else math.nan
 
 
 def read(path):
-    """The Recording in a bag."""
+    """The Record of a bag."""
     import rosbag
-    from rbx1_nav.filter.gyro_input import GyroInput
-    from rbx1_nav.base import messages
-    from rbx1_nav.filter import conversions
-    gyro = GyroInput()
-    found = replay.Recording([], [], {}, [], [], {}, [])
-    headers = {topic: [] for topic in TOPICS[:4]}
+    found = {topic: [] for topic in TOPICS}
     with rosbag.Bag(path) as bag:
         for topic, message, _ in bag.read_messages(TOPICS):
-            if topic in headers:
-                stamp = message.header.stamp.to_nsec()
-                headers[topic].append((message.header.seq, stamp))
-            if topic == '/odom':
-                found.odom.append((conversions.from_odometry(message), replay.pose_variances(message)))
-            elif topic == '/imu/data':
-                data = conversions.from_imu(message)
-                found.imu.append((gyro.read(data), (messages.yaw_of(message.orientation), data.yaw_variance)))
-                gyro.accepted(data)
-            elif topic in ('/odom_combined', '/ground_truth'):
-                pose = message.pose.pose
-                pose = pose.position.x, pose.position.y, messages.yaw_of(pose.orientation)
-                if topic == '/ground_truth':
-                    found.truth[stamp] = pose
-                else:
-                    found.combined.append(replay.Published(stamp, pose, message.pose.covariance[35]))
-            elif topic == '/statistics':
-                if message.node_sub == NODE and message.topic in TOPICS[:2]:
-                    found.statistics.append((message.window_start.to_nsec(), message.window_stop.to_nsec(),
-                                             message.dropped_msgs))
-            elif message.name == NODE:
-                found.lines.append(message.msg)
-    found.missing.update((topic, replay.gaps(those)) for topic, those in headers.items())
-    return found
+            found[topic].append(message)
+
+    def poses(topic):
+        for message in found[topic]:
+            pose = message.pose.pose
+            yield message.header.stamp.to_nsec(), (pose.position.x, pose.position.y, yaw_of(pose.orientation))
+    return Record(odometry(found['/odom']), gyro(found['/imu/data']), dict(poses('/ground_truth')),
+                  [(*each, message.pose.covariance[35])
+                   for each, message in zip(poses('/odom_combined'), found['/odom_combined'])],
+                  [log.msg for log in found['/rosout'] if log.name == NODE])
 
 
-def evaluate(path, surface):
-    """The figures of a bag, and the log lines of the filter. Raises Failure."""
-    import rosbag
-    from rbx1_nav.filter.priors import priors
-    from rbx1_nav.base.surfaces import load_surface
-    from rbx1_nav.node import resources
-    try:
-        recording = read(path)
-    except (OSError, rosbag.ROSBagException) as error:
-        raise bench.Failure(f'{path}: expected a bag: {error}')
-    prior = priors(load_surface(surface, resources.surfaces()))
-    try:
-        return {**replay.live_figures(recording, prior, round(1e9 / FREQ)), **replay.end_figures(recording, prior),
-                'messages': {'odom': len(recording.odom), 'imu': len(recording.imu),
-                             'combined': len(recording.combined)}, 'lines': recording.lines}
-    except replay.Unusable as error:
-        raise bench.Failure(f'{path}: {error}')
+def find_start(recording, prior):
+    """The stamp of the first odometry that the live filter received.
+
+    How small the variance of the yaw is at the first published estimate depends on the number of steps until then.
+    """
+    first, _, variance = recording.combined[0]
+    starts = [odom.stamp for odom, _ in recording.odom if first - SECOND < odom.stamp <= first]
+
+    def deviation(start):
+        estimate = replay(recording, prior, start, first).get(first)
+        return abs(estimate.covariance[2, 2] - variance) if estimate else math.inf
+    return min(starts, key=deviation)
 
 
-def line(row):
+def exercise(recording):
+    """The stamps from REST before the first motion to REST after the last one."""
+    poses = numpy.array([odom.pose for odom, _ in recording.odom])
+    moved = [abs(poses - rest).max(axis=1) > STILL for rest in (poses[0], poses[-1])]
+    stamps = [odom.stamp for (odom, _), *moves in zip(recording.odom, *moved) if all(moves)]
+    return stamps[0] - REST * SECOND, stamps[-1] + REST * SECOND
+
+
+def difference(pose, other):
+    """(m, degrees) between two poses."""
+    metres, angle = deviation(pose, other)
+    return metres, math.degrees(angle)
+
+
+def evaluate(recording, prior):
+    """The figures of a run, in the order of COLUMNS."""
+    begin, end = exercise(recording)
+    # the live filter, and a filter that receives what was recorded, from the start of the live one on
+    live = replay(recording, prior, find_start(recording, prior), end)
+    stamp, pose, _ = max(each for each in recording.combined if each[0] in live)
+    # the errors: from one standstill to the other, so they do not depend on how long the driver took to start
+    estimates = replay(recording, prior, begin, end)
+    last = max(stamp for stamp in estimates if stamp in recording.truth)
+    truth, estimate = recording.truth[last], estimates[last]
+    return (sum(any(text in line for text in REPORTS) for line in recording.lines),
+            *difference(pose, live[stamp].pose), *difference(estimate.pose, truth),
+            *difference(run_port(recording, min(estimates), last)[-1], truth),
+            consistency(estimate.pose, truth, estimate.covariance))
+
+
+def line(name, values):
     """One line of the table."""
-    count = row['timed_out'], row['recovered'], row['rejected']
-    remarks = [f'{number} {name}' for name, number in zip(('timed out', 'recovered', 'rejected'), count) if number]
-    remarks += [] if row['scheduled'] else ['other stamps']
-    remarks += [] if row['differs_after_s'] is None else [f'differs after {row["differs_after_s"]:.2f} s']
-    return RUNS % (row['seed'], f'{row["real_time_factor"]:.2f}', f'{row["replayed_s"]:.1f}', sum(count),
-                   sum(row['missing'][topic] for topic in TOPICS[:3]), row['dropped'], 'yes' if row['same'] else 'no',
-                   f'{1e3 * row["difference_m"]:.4f}', f'{row["difference_deg"]:.5f}', f'{1e3 * row["error_m"]:.2f}',
-                   f'{row["error_deg"]:.3f}', f'{1e3 * row["port_m"]:.2f}', f'{row["port_deg"]:.3f}',
-                   f'{row["nees"]:.2f}', ', '.join(remarks))
+    return ' '.join([f'{name:>6}', *(f'{factor * value:8.{places}f}' for (_, factor, places), value in zip(
+        COLUMNS, values))])
 
 
-def report(rows):
-    """Print the means and the figures beyond the limits; returns both."""
-    mean, found = replay.means(rows), replay.misses(rows)
-    print(f'mean of {len(rows)}: end {1e3 * mean["error_m"]:.2f} mm, {mean["error_deg"]:.3f} degrees; '
-          f'the port {1e3 * mean["port_m"]:.2f} mm, {mean["port_deg"]:.3f} degrees; NEES {mean["nees"]:.2f}')
-    same = [row for row in rows if row['same']]
-    print(f'{sum(row["timed_out"] + row["recovered"] + row["rejected"] for row in rows)} lines about dropouts and '
-          f'rejected messages; in {len(same)} runs the filter got the messages that were recorded'
-          + (f': at most {1e3 * max(row["difference_m"] for row in same):.4f} mm and '
-             f'{max(row["difference_deg"] for row in same):.5f} degrees from the replay' if same else ''))
-    print('\n'.join(f'beyond the limits: {text}' for text in found) or 'within all limits')
-    return mean, found
+def measure(args, folder):
+    """Record, evaluate and print all runs."""
+    prior = priors(simulated.floor(SURFACE))
+    print(' '.join(['  seed', *(f'{title:>8}' for title, *_ in COLUMNS)]), flush=True)
+    rows = []
+    for seed in range(args.runs):
+        path = os.path.join(folder, f'seed_{seed}.bag')
+        record(path, seed, args)
+        rows.append(evaluate(read(path), prior))
+        print(line(seed, rows[-1]), flush=True)
+        os.remove(path)
+    print(line('mean', numpy.mean(rows, axis=0)))
+    print(line('max', numpy.max(rows, axis=0)))
 
 
-def arguments():
-    """The command line."""
+def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument('--runs', type=int, default=10, help='number of runs, with the seeds from 0 (default 10)')
     parser.add_argument('--factor', type=float, default=20, help='real_time_factor of the base (default 20)')
     parser.add_argument('--load', type=int, default=0, metavar='N', help='busy loops during each run (default 0)')
-    parser.add_argument('--surface', default='low_ply_carpet', help='the floor (default low_ply_carpet)')
-    parser.add_argument('--limit', type=float, default=180, help='timeout of the driver, s of wall time (default 180)')
-    parser.add_argument('--bags', metavar='DIR', help='keep the bags in this folder')
-    parser.add_argument('--replay', action='store_true', help='record nothing, but evaluate the bags in that folder')
-    parser.add_argument('--json', metavar='FILE', help='write all figures to this file')
     args = parser.parse_args()
-    for name, good in (('runs', args.runs > 0), ('factor', args.factor > 0), ('limit', args.limit > 0)):
-        if not good:
-            parser.error(f'--{name}: {getattr(args, name):g}: expected a number above 0')
-    if args.load < 0:
-        parser.error(f'--load: {args.load}: expected at least 0')
-    if args.replay and not args.bags:
-        parser.error('--replay: expected --bags DIR as well')
-    return args
-
-
-def measure(args, folder, result):
-    """Record and evaluate all runs; adds the figures to `result`."""
-    print(RUNS % TITLES, flush=True)
-    for seed in range(args.runs):
-        path = os.path.join(folder, f'seed_{seed}.bag')
-        factor = math.nan if args.replay else record(path, seed, args)
-        row = dict(seed=seed, real_time_factor=factor, **evaluate(path, args.surface))
-        result['runs'].append(row)
-        print(line(row), flush=True)
-        if not args.bags:
-            os.remove(path)
-    result['mean'], result['misses'] = report(result['runs'])
-
-
-def main():
-    args = arguments()
-    bench.prepare()
-    if args.bags:
-        os.makedirs(args.bags, exist_ok=True)
-    folder = os.path.abspath(args.bags) if args.bags else tempfile.mkdtemp(prefix='bench_bags_')
-    result = {'arguments': vars(args), 'host': bench.host(), 'runs': []}
-    try:
-        measure(args, folder, result)
-    except bench.Failure as failure:
-        result['failure'] = str(failure)
-        sys.exit(f'bench: {failure}')
-    except bench.Interrupted as signalled:
-        result['failure'] = str(signalled)
-        print(f'bench: {signalled}', file=sys.stderr)
-        sys.exit(130)
-    finally:
-        processes.kill_rest()
-        if not args.bags:
-            shutil.rmtree(folder, ignore_errors=True)
-        if args.json:
-            with open(args.json, 'w') as file:
-                json.dump(result, file, indent=1)
+    with bench.cleaned_up(), tempfile.TemporaryDirectory(prefix='bench_bags_') as folder:
+        measure(args, folder)
 
 
 if __name__ == '__main__':

@@ -8,6 +8,8 @@ import math
 
 import numpy
 
+from figures import relative
+
 SYSTEM_NOISE = 1000.0 ** 2      # added to each variance in each update: only the measurements count
 PRIOR_VARIANCE = 0.001 ** 2     # of the initial pose
 IMU = numpy.array([[0.0, 0.0, 1.0]])    # an IMU measures the yaw, odometry measures the complete state
@@ -55,13 +57,6 @@ class RobotPoseEkf:
         gain = gain_times_s @ numpy.linalg.inv(model @ gain_times_s + noise)
         self.state = gain @ (measured - model @ self.state) + self.state
         self.covariance = self.covariance - gain @ model @ self.covariance
-
-
-def relative(pose, start):
-    """A pose in the frame of another pose."""
-    dx, dy = pose[0] - start[0], pose[1] - start[1]
-    c, s = math.cos(start[2]), math.sin(start[2])
-    return dx * c + dy * s, dy * c - dx * s, pose[2] - start[2]
 
 
 def compose(start, motion):

@@ -8,13 +8,11 @@ import os
 
 import numpy
 
-from rbx1_nav.base.description import load_robot
+import simulated
 from rbx1_nav.base.kinematics import ORIGIN
-from rbx1_nav.base.surfaces import load_surface
 from rbx1_nav.exercise.legs import Straight, out_and_back_by_odometry
 from rbx1_nav.extras.many_runs import simulated_run
 from rbx1_nav.extras.many_runs.summary import HEADER, Summary
-from rbx1_nav.node import resources
 
 ANSWER = os.path.join(os.path.dirname(os.path.realpath(__file__)), '..', 'examples', 'answers', 'steering.py')
 
@@ -59,20 +57,26 @@ def across(results):
     return line
 
 
+def simulate(method, runs, steering=None):
+    """The results of runs on low_ply_carpet, with the seeds from 0. steering: of the answer; None: straight ahead."""
+    robot, carpet = simulated.robot(), simulated.floor('low_ply_carpet')
+    simulated_run.out_and_back_by_odometry = (
+        partial(steered_legs, steering) if steering else out_and_back_by_odometry)
+    try:
+        return [simulated_run.simulate(method, robot, carpet, seed) for seed in range(runs)]
+    finally:
+        simulated_run.out_and_back_by_odometry = out_and_back_by_odometry
+
+
 def main():
     """Simulate and print."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument('--surface', default='low_ply_carpet')
     parser.add_argument('--runs', type=int, default=100, help='runs of each method, seeds from 0; default: 100')
     arguments = parser.parse_args()
-    surface = load_surface(arguments.surface, resources.surfaces())
-    robot = load_robot(resources.path('config', 'turtlebot.yaml'))
     print(HEADER)
-    for title, legs in (('Straight ahead', out_and_back_by_odometry),
-                        ('Steered', partial(steered_legs, load_answer().steering))):
-        simulated_run.out_and_back_by_odometry = legs
+    for title, steering in ('Straight ahead', None), ('Steered', load_answer().steering):
         for method in 'odom', 'ekf':
-            results = [simulated_run.simulate(method, robot, surface, seed) for seed in range(arguments.runs)]
+            results = simulate(method, arguments.runs, steering)
             summary = Summary()
             for result in results:
                 end = result.end

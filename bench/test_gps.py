@@ -1,5 +1,5 @@
 """The evaluation against GPS: projection, alignment and figures, for runs that are known exactly."""
-from math import cos, degrees, hypot, pi, sin
+from math import cos, pi, sin
 
 from geometry_msgs.msg import Quaternion
 from nav_msgs.msg import Odometry
@@ -22,9 +22,9 @@ def on_its_side(yaw):
     return Quaternion(c, s, s, c)
 
 
-def write_bag(path, slip=1.0, bias=0.0, fixes=2.0):
+def write_bag(path, slip=1.0, bias=0.0):
     """A robot that rests for 5 s, then drives one and a half circles with a radius of 5 m. slip: wheels' turn / true
-    turn; bias: of the gyro, rad/s; fixes: Hz."""
+    turn; bias: of the gyro, rad/s."""
     radius, rate = 5.0, 0.2
     with rosbag.Bag(str(path), 'w') as bag:
         for tick in range(int((5 + 3 * pi / rate) * 50)):
@@ -48,7 +48,7 @@ def write_bag(path, slip=1.0, bias=0.0, fixes=2.0):
             imu.angular_velocity_covariance[::4] = [1e-6] * 3
             bag.write('/imu/data', imu, stamp)
 
-            if fixes and tick % int(50 / fixes) == 0:
+            if tick % 25 == 0:
                 # north is the initial direction of the robot's x axis
                 fix = NavSatFix(latitude=BERLIN[0] + radius * sin(turned) / METRE,
                                 longitude=BERLIN[1] - radius * (1 - cos(turned)) / METRE_EAST)
@@ -73,21 +73,9 @@ def test_wheels_that_slip_are_wrong_and_the_gyro_is_right(tmp_path):
     assert figures['reckoned'] < 0.1 and figures['filter'] < 0.3
 
 
-def test_the_projection_agrees_with_the_arc_of_a_great_circle():
-    # 1 km northeast, on a sphere with the earth's mean radius: the ellipsoid differs by less than 0.5 %
-    north = degrees(700 / 6371000)
-    _, places = gps.local([(0, 52.0, 13.0), (1, 52.0 + north, 13.0 + north / cos(52 * pi / 180))])
-    assert hypot(*places[1]) == pytest.approx(700 * 2 ** 0.5, rel=0.005)
-
-
 def test_rotation_and_translation_do_not_count_and_a_mirror_image_does():
     stamps = numpy.arange(20.0)
     path = numpy.stack([stamps, stamps ** 2 / 20], 1)
     turned = path @ numpy.array([[cos(1), sin(1)], [-sin(1), cos(1)]]) + [100, -50]
     assert gps.rms_to_gps(stamps, path, (stamps, turned)) == pytest.approx(0.0, abs=1e-9)
     assert gps.rms_to_gps(stamps, path * [1, -1], (stamps, turned)) > 1.0
-
-
-def test_a_topic_without_messages_is_named(tmp_path):
-    with pytest.raises(ValueError, match='/fix: 0 messages of type sensor_msgs/NavSatFix'):
-        judge(write_bag(tmp_path / 'no_fix.bag', fixes=None))
