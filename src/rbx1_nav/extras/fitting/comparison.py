@@ -69,22 +69,22 @@ def predict(surface: Surface, recording: Recording, base_width: float, start: fl
     return run, Prediction(surface, run.steps(surface), windows)
 
 
-def compare(surface: Surface, recordings: Sequence[Recording], base_width: float, seed: int = 1,
+def compare(surface: Surface, recordings: Sequence[Recording], base_width: float,
             compute: Callable[..., Iterable[Comparison]] = map) -> list[Comparison]:
     """Return Comparisons of Recordings with a Surface that was fitted to them; at most MAX_SHOWN.
 
     compute(function, parts): yields the results for all parts, in their order, wherever they are computed.
     """
-    return list(compute(compare_part, [(number, surface, recording, base_width, start, end, seed)
+    return list(compute(compare_part, [(number, surface, recording, base_width, start, end)
                                        for number, (recording, start, end) in enumerate(choose(recordings))]))
 
 
-def compare_part(part: tuple[int, Surface, Recording, float, float | None, float | None, int]) -> Comparison:
+def compare_part(part: tuple[int, Surface, Recording, float, float | None, float | None]) -> Comparison:
     """Return the Comparison of a run or of a part of it."""
-    number, surface, recording, base_width, start, end, seed = part
+    number, surface, recording, base_width, start, end = part
     run, prediction = predict(surface, recording, base_width, start, end)
     # each run shows a different path, but equal commands have equal regions
-    paths = simulate_paths(surface, prediction, 0, ENDS, numpy.random.default_rng(seed))
+    paths = simulate_paths(surface, prediction, 0, ENDS, numpy.random.default_rng(1))
     track = recording.truth or recording.odometry
     path: Array | None = None
     true: Array | None = None

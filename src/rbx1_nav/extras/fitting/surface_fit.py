@@ -164,7 +164,7 @@ class WholeFit:
         current values."""
         prior = start
         while True:
-            surface, errors, _ = fit_floor(fitter, start, means, noises, prior)
+            surface, errors = fit_floor(fitter, start, means, noises, prior)
             unknown = [key for key in (*means, *noises) if not errors[key] <= LARGEST[key]]
             if not unknown:
                 break
