@@ -2,11 +2,8 @@
 from __future__ import annotations
 
 from http.client import HTTPConnection
-from math import inf
 import socket
-import time
-from typing import Any, Callable
-from urllib.parse import urlsplit
+from typing import Any
 from xmlrpc.client import ServerProxy, Transport
 import xmlrpc.client
 
@@ -14,7 +11,6 @@ import rosgraph
 import rospy
 
 TIMEOUT = 2.0       # s of wall time for the master, or a live node, to answer a call
-PERIOD = 0.05       # s between two calls to a master that is not running yet
 
 
 class _TimeoutTransport(Transport):
@@ -78,28 +74,3 @@ def require_master() -> None:
     except (OSError, xmlrpc.client.Error) as error:
         raise rospy.ROSException(f'The master at {rosgraph.get_master_uri()} does not answer ({error}): '
                                  'expected a running roscore') from error
-
-
-def wait_for_master(name: str, read_limit: Callable[[], float | None], is_ended: Callable[[], bool],
-                    sleep: Callable[[float], None]) -> None:
-    """Wait until the master answers, or is_ended(), and log one line if it does not answer immediately.
-
-    name: name of the node, for the log; sleep(seconds): sleeps briefly; read_limit(): returns how long to wait, s of
-    wall time, None for no limit, and is called only if the node has to wait. Raises ROSException after this time.
-    """
-    uri, end = rosgraph.get_master_uri(), None
-    if urlsplit(uri).scheme != 'http':      # rospy reports it
-        return
-    while not is_ended():
-        try:
-            return require_master()
-        except Exception:       # another server at this port causes other errors
-            if end is None:
-                rospy.core.configure_logging(name)      # as init_node() would, so that the line has the usual format
-                limit = read_limit()
-                end = time.monotonic() + (inf if limit is None else limit)
-                rospy.loginfo('Waiting for the master at %s', uri)
-        if time.monotonic() > end:
-            raise rospy.ROSException(f'The master at {uri} does not answer (timed out after {limit:g} s): '
-                                     'expected a running roscore')
-        sleep(PERIOD)

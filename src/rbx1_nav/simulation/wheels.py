@@ -69,14 +69,6 @@ class Wheels:
     Each of these motions has its own drag and slip.
     """
 
-    _rolling: bool                      # whether anything moved in the last step
-    _velocity: tuple[float, float]      # m/s, rad/s
-    _time: float        # s, m and rad since the last velocity
-    _distance: float
-    _angle: float
-    _path: float        # m and rad, both directions counted positive
-    _turned: float
-
     def __init__(self, base_width: float, surface: Surface, run: RandomErrors, window: float,
                  roughness: Roughness | None = None) -> None:
         """run: the errors drawn from the surface; window: s, the time over which encoder counts are averaged to report
@@ -169,10 +161,10 @@ class Wheels:
         self.straight.speed = self.turning.speed = 0.0
         if self.delay:
             self.delay.clear()
-        self._rolling = False
-        self._velocity = 0.0, 0.0
-        self._time = self._distance = self._angle = 0.0
-        self._path = self._turned = 0.0
+        self._rolling = False       # whether anything moved in the last step
+        self._velocity = 0.0, 0.0   # m/s, rad/s
+        self._time = self._distance = self._angle = 0.0     # s, m and rad since the last velocity
+        self._path = self._turned = 0.0     # m and rad, both directions counted positive
         self.truth.pose = ORIGIN
 
 

@@ -28,14 +28,10 @@ OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.E
 NO_ANSWER = ERROR, 'The robot does not answer'
 
 
-def charge_of(reading: Mapping[str, int]) -> float | None:
-    """Return the charge of the battery as a fraction; None if the robot reports no capacity."""
-    return reading['charge'] / reading['capacity'] if reading['capacity'] else None
-
-
 def battery_status(reading: Mapping[str, int]) -> tuple[int, str]:
     """Return the level and the summary of the battery's status: its worst problem."""
-    charge, state = charge_of(reading), reading['charging_state']
+    charge = reading['charge'] / reading['capacity'] if reading['capacity'] else None    # a fraction
+    state = reading['charging_state']
     percent = '' if charge is None else f'{100 * charge:.0f} %'
     docked = charge is None or reading['charging_sources']
     found = [(OK, CHARGING_STATES[state] if docked else percent)]

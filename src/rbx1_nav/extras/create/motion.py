@@ -212,7 +212,7 @@ class MotionReport:
     """Accumulates Travel. Times are in ns."""
 
     def __init__(self, settings: Settings, model: Model, rounding: tuple[float, float]) -> None:
-        """rounding: see motion.py."""
+        """rounding: see UncertainOdometry."""
         self.width = model.wheel_separation
         self.corrections = settings.odom_linear_scale_correction, settings.odom_angular_scale_correction
         self.rounding = rounding

@@ -76,7 +76,7 @@ class Body:
 
     def __init__(self, model: Model, surface: Surface | None = None, seed: int = 0, errors: BodyErrors = BodyErrors(),
                  gyro_range: float = 150.0, quirks: Quirks = Quirks()) -> None:
-        """model: a protocol.Model; surface, seed: see make_base() in simulated_base.py; gyro_range: degrees/s."""
+        """model: a protocol.Model; surface, seed: see simulated_base.make_base(); gyro_range: degrees/s."""
         self.model = model
         self.errors = errors
         self.gyro_range = gyro_range
