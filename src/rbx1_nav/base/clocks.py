@@ -49,7 +49,6 @@ class Clock:
         target.apply(command)
 
     def publish(self, publisher: rospy.Publisher, message: Any) -> None:
-        """Publish a message."""
         publisher.publish(message)
 
     def now(self) -> int:

@@ -47,7 +47,6 @@ class Diagnostics:
             self.updater.add(sensor, partial(self._diagnose_sensor, sensor))
 
     def publish(self) -> None:
-        """Publish /diagnostics."""
         self.updater.force_update()
 
     def _diagnose_filter(self, status: DiagnosticStatusWrapper) -> DiagnosticStatusWrapper:

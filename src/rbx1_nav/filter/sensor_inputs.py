@@ -93,7 +93,6 @@ class FrameTree:
         return self.frames[child][:2] if child in self.frames else None
 
     def forget(self, child: str) -> None:
-        """Forget the transform to a frame."""
         self.frames.pop(child, None)
 
     def rotation(self, frame: str, other: str) -> Rotation | None:

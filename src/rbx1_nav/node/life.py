@@ -60,7 +60,6 @@ class _Terminal:
         return len(text)
 
     def flush(self) -> None:
-        """Flush, if possible."""
         self._try(self._stream.flush)
 
     def _try(self, function: Callable[..., object], *args: str) -> None:

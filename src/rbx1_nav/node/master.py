@@ -14,8 +14,6 @@ TIMEOUT = 2.0       # s of wall time for the master, or a live node, to answer a
 
 
 class _TimeoutTransport(Transport):
-    """XML-RPC transport with a timeout."""
-
     def __init__(self, timeout: float) -> None:
         super().__init__()
         self.timeout = timeout

@@ -51,6 +51,13 @@ class Gyro:
         self.noise = random.Random(f'gyro {seed}').gauss
         self.reset()
 
+    def reset(self) -> None:
+        """Restart with the robot at the origin. Bias and scale error do not change."""
+        self._true_yaw = self._yaw = 0.0
+        self._turned = self._time = 0.0         # rad, both directions counted positive, and s since the calibration
+        self._rest = self._rest_angle = 0.0     # duration (s) and summed readings (rad) of the calibration
+        self._calibrating = True
+
     def read(self, yaw: float, duration: float, at_rest: bool) -> Reading:
         """See IdealGyro. at_rest: whether the wheels were at rest during this time."""
         surface = self.surface
@@ -72,13 +79,6 @@ class Gyro:
         variance = (MEASURED + density * self._time + bias * self._time ** 2
                     + (surface.gyro_scale_error * self._turned) ** 2)
         return Reading(rate, max(noise ** 2, MIN_VARIANCE), self._yaw, variance)
-
-    def reset(self) -> None:
-        """Restart with the robot at the origin. Bias and scale error do not change."""
-        self._true_yaw = self._yaw = 0.0
-        self._turned = self._time = 0.0         # rad, both directions counted positive, and s since the calibration
-        self._rest = self._rest_angle = 0.0     # duration (s) and summed readings (rad) of the calibration
-        self._calibrating = True
 
 
 AnyGyro = Union[IdealGyro, Gyro]

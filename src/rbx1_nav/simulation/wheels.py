@@ -88,6 +88,17 @@ class Wheels:
         self.truth = Odometry(base_width)
         self.reset()
 
+    def reset(self) -> None:
+        """Put the robot back at the origin, at rest."""
+        self.straight.speed = self.turning.speed = 0.0
+        if self.delay:
+            self.delay.clear()
+        self._rolling = False       # whether anything moved in the last step
+        self._velocity = 0.0, 0.0   # m/s, rad/s
+        self._time = self._distance = self._angle = 0.0     # s, m and rad since the last velocity
+        self._path = self._turned = 0.0     # m and rad, both directions counted positive
+        self.truth.pose = ORIGIN
+
     def travel(self, linear: float, angular: float, duration: float) -> tuple[float, float]:
         """See IdealWheels."""
         if self.delay:
@@ -155,17 +166,6 @@ class Wheels:
         length, heading = self.noise.variances(linear, angular)
         return Uncertainty(position, yaw, MEASURED + wheel / 2 + length / self.window,
                            MEASURED + 2 * wheel / self.base_width ** 2 + heading / self.window)
-
-    def reset(self) -> None:
-        """Put the robot back at the origin, at rest."""
-        self.straight.speed = self.turning.speed = 0.0
-        if self.delay:
-            self.delay.clear()
-        self._rolling = False       # whether anything moved in the last step
-        self._velocity = 0.0, 0.0   # m/s, rad/s
-        self._time = self._distance = self._angle = 0.0     # s, m and rad since the last velocity
-        self._path = self._turned = 0.0     # m and rad, both directions counted positive
-        self.truth.pose = ORIGIN
 
 
 AnyWheels = Union[IdealWheels, Wheels]

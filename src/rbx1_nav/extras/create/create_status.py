@@ -62,14 +62,12 @@ class CreateStatus:
             updater.add(title, function)
 
     def update(self) -> None:
-        """Publish /diagnostics."""
         if self.driver.gyro and self.driver.contact.found and not self.shows_gyro:
             self.shows_gyro = True
             self.updater.add('Gyro', self.gyro)
         self.updater.force_update()
 
     def base(self, status: DiagnosticStatusWrapper) -> DiagnosticStatusWrapper:
-        """Fill in the status of mode and commands."""
         driver, supervisor = self.driver, self.driver.supervisor
         if self.link.problem:
             summary = ERROR, self.link.problem
@@ -94,7 +92,6 @@ class CreateStatus:
         return status
 
     def battery(self, status: DiagnosticStatusWrapper) -> DiagnosticStatusWrapper:
-        """Fill in the status of the battery."""
         reading = self._reading(status)
         if not reading:
             return status
@@ -138,7 +135,6 @@ class CreateStatus:
             'gyro_scale_correction': self.driver.settings.gyro_scale_correction})
 
     def line(self, status: DiagnosticStatusWrapper) -> DiagnosticStatusWrapper:
-        """Fill in the status of the serial line: the errors on it."""
         driver, link = self.driver, self.link
         level = ERROR if link.problem or not driver.contact.answers else OK
         return fill_status(status, level, link.problem or 'Open', {

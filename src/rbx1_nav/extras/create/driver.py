@@ -179,7 +179,6 @@ class Driver:
     # readings
 
     def receive(self, now: int, data: bytes) -> None:
-        """Process bytes from the robot."""
         if self.contact.searching:
             self.contact.search.receive(now, data)
             return

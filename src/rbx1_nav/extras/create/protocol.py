@@ -115,8 +115,6 @@ ALWAYS = (OFF,) + STARTED
 
 
 class Command(NamedTuple):
-    """A command."""
-
     opcode: int
     name: str
     size: int | str         # number of data bytes, COUNTED or NOTES
@@ -173,8 +171,6 @@ _CREATE_2 = (
 
 
 class Model(NamedTuple):
-    """A robot model."""
-
     name: str
     baud: int                           # bits per second, after power-on
     wheel_separation: float             # m

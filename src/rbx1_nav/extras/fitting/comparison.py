@@ -80,7 +80,6 @@ def compare(surface: Surface, recordings: Sequence[Recording], base_width: float
 
 
 def compare_part(part: tuple[int, Surface, Recording, float, float | None, float | None]) -> Comparison:
-    """Return the Comparison of a run or of a part of it."""
     number, surface, recording, base_width, start, end = part
     run, prediction = predict(surface, recording, base_width, start, end)
     # each run shows a different path, but equal commands have equal regions

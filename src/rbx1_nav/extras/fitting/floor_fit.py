@@ -48,7 +48,6 @@ class Fitter:
         return self.wider ** 2 * self.measured
 
     def predictions(self, surface: Surface) -> list[Prediction]:
-        """Return the Prediction for each run."""
         return [Prediction(surface, run.steps(surface), windows) for run, windows in zip(self.runs, self.windows)]
 
     def fit_means(self, surface: Surface, keys: Sequence[str]) -> tuple[Array, Array]:

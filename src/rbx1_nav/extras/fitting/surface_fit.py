@@ -41,8 +41,6 @@ class Value(NamedTuple):
 
 
 class FitResult(NamedTuple):
-    """The result of a fit."""
-
     surface: Surface
     values: list[Value]     # one per key, in the order of a file
     warnings: list[str]

@@ -37,8 +37,6 @@ class Snapshot(NamedTuple):
 
 
 class SimulationResult(NamedTuple):
-    """The result of a run."""
-
     end: Snapshot
     first_leg: float            # m, true distance after the first motion
     covariance: Array | None    # 3x3, covariance of the filter's pose (m and rad); None without a filter
@@ -81,7 +79,6 @@ class Simulation:
         self.rate, self.period = rate, round(SECOND / rate)
 
     def tick(self) -> None:
-        """Advance by one tick."""
         self.now += self.period
         self.base.advance(self.now)
         if self.filter or self.listen:
@@ -107,7 +104,6 @@ class Simulation:
             self.tick()
 
     def snapshot(self) -> Snapshot:
-        """Return the current Snapshot."""
         return Snapshot(self.now / SECOND, self.base.wheels.truth.pose, self.base.odometry.pose,
                         self.filter.pose if self.filter else None)
 

@@ -109,11 +109,9 @@ class Body:
 
     @property
     def moving(self) -> bool:
-        """Whether a wheel is commanded to turn."""
         return bool(self.left or self.right)
 
     def advance(self, now: int) -> None:
-        """Move up to `now`."""
         duration, self.now = now - (now if self.now is None else self.now), now
         if duration <= 0:
             return

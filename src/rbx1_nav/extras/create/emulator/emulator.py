@@ -80,7 +80,6 @@ class EmulatedCreate:
     # time
 
     def receive(self, data: bytes, now: int) -> None:
-        """Receive bytes that the host sends."""
         self._run(now)
         self.line.from_host(data, now)
 
@@ -152,7 +151,6 @@ class EmulatedCreate:
         self._execute()
 
     def _execute(self) -> None:
-        """Execute the complete commands."""
         while self._input:
             command = self.model.commands.get(self._input[0])
             if command is None or (self.mode == OFF and OFF not in command.modes):

@@ -64,7 +64,6 @@ class SerialLine:
         self._rate = baud           # host baud rate for which the waiting bytes were scheduled
 
     def from_host(self, data: bytes, now: int) -> None:
-        """Send bytes from the host."""
         if self.silent:
             return
         data = self._recall(now) + data
@@ -92,7 +91,6 @@ class SerialLine:
         return data
 
     def from_robot(self, data: bytes, now: int) -> None:
-        """Send bytes from the robot."""
         period = BITS * SECOND // self.baud
         time = max(now, self._last_to_host)
         for byte in data[:max(0, BUFFER_SIZE - (time - now) // period)]:
@@ -196,7 +194,6 @@ class PseudoTerminal:
 
     @property
     def has_client(self) -> bool:
-        """Whether a client has opened the device."""
         return self._client(0) is not None
 
     def wait(self, duration: float) -> None:
