@@ -125,7 +125,6 @@ class ImuInput:
     """Rotates the readings of an IMU to the robot's vertical axis, with a transform that is looked up once."""
 
     def __init__(self, topic: str, tree: FrameTree, log: Callable[[str], None]) -> None:
-        """log(text): logs a line."""
         self.topic = rospy.resolve_name(topic)
         self.tree = tree
         self.log = log

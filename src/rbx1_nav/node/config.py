@@ -46,7 +46,7 @@ def suggestion(name: YamlValue, names: Iterable[str]) -> str:
 
 def describe(value: YamlValue) -> str:
     """Return a value as written in the YAML file, with a hint where YAML reads a number as text."""
-    text = value.replace(',', '.') if isinstance(value, str) else ''
+    text = value.replace(',', '.') if isinstance(value, str) and len(value) < 100 else ''
     hint = f' (text to YAML: write {as_yaml_number(text)})' if NUMBER.fullmatch(text) else ''
     return show(value) + hint
 

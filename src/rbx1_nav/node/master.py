@@ -1,7 +1,7 @@
 """Calls to the master and to other nodes with a timeout; rospy's own calls would wait indefinitely."""
 from __future__ import annotations
 
-from http.client import HTTPConnection
+from http.client import HTTPConnection, HTTPException
 import socket
 from typing import Any
 from xmlrpc.client import ServerProxy, Transport
@@ -54,8 +54,8 @@ def call(uri: str, method: str, *args: str, timeout: float = TIMEOUT) -> Any:
 
 
 def is_alive(name: str) -> bool:
-    """Return whether a registered node answers, or may be alive on a host that cannot be reached. Raises OSError,
-    HTTPException or xmlrpc.client.Error if the master does not answer."""
+    """Return whether a node is registered, and answers or may be alive on a host that cannot be reached. Raises like
+    Server.call() if the master does not answer."""
     address = call(rosgraph.get_master_uri(), 'lookupNode', name)
     try:
         return bool(call(address, 'getPid'))
@@ -69,6 +69,6 @@ def require_master() -> None:
     """Raise ROSException if the master does not answer."""
     try:
         call(rosgraph.get_master_uri(), 'getPid')
-    except (OSError, xmlrpc.client.Error) as error:
+    except (OSError, HTTPException, xmlrpc.client.Error) as error:
         raise rospy.ROSException(f'The master at {rosgraph.get_master_uri()} does not answer ({error}): '
                                  'expected a running roscore') from error

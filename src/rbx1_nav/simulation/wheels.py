@@ -16,7 +16,6 @@ class Encoder:
     """Counts whole ticks, rounded to the nearest tick."""
 
     def __init__(self, ticks_meter: float) -> None:
-        """ticks_meter: ticks per meter."""
         self.ticks_meter = ticks_meter
         self.total = 0.0    # m, total travel of the wheel
         self.ticks = 0

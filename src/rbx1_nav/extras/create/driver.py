@@ -32,7 +32,6 @@ class Driver:
 
     def __init__(self, settings: Settings, gate: CommandGate, info: Callable[[str], None],
                  warn: Callable[[str], None], error: Callable[[str], None]) -> None:
-        """info, warn, error: log a line."""
         self.settings = settings
         self.gate = gate
         self.info = info

@@ -53,7 +53,6 @@ def inner_share(ends: Array, end: Array) -> float:
 class Comparison(NamedTuple):
     """One run or a part of it, in the frame of its start."""
 
-    name: str
     recorded: Array | None      # x and y (m) of the recorded path
     is_truth: bool      # whether the recorded path is the truth and not odometry
     simulated: Array    # x and y (m) of one path with the same commands
@@ -95,7 +94,7 @@ def compare_part(part: tuple[int, Surface, Recording, float, float | None, float
         true = path[:, -1]
     elif recording.end:
         true = numpy.array(recording.end)
-    return Comparison(recording.name, None if path is None else path[:2], bool(recording.truth),
+    return Comparison(None if path is None else path[:2], bool(recording.truth),
                       numpy.concatenate([numpy.zeros((2, 1)), paths[number, :2]], axis=1), paths[:, :, -1], true)
 
 

@@ -155,11 +155,6 @@ def motions(parameters: Mapping[str, float]) -> list[Motion]:
     return out_and_back(**{name: parameters[name] for name in EXERCISE})
 
 
-def legs(parameters: Mapping[str, float]) -> list[Leg]:
-    """Return the legs of the exercise with odometry. Raises ValueError if one of them is too short or too long."""
-    return out_and_back_by_odometry(**parameters)
-
-
 def _drives(simulation: Simulation, method: str, parameters: Mapping[str, float]) -> list[Callable[[], None]]:
     """Return four functions, each of which drives one motion of the exercise."""
     pose = METHODS[method].pose
@@ -170,4 +165,4 @@ def _drives(simulation: Simulation, method: str, parameters: Mapping[str, float]
     def get_pose() -> Pose:
         estimate = combined.pose if combined else None
         return estimate or simulation.base.odometry.pose
-    return [partial(simulation.drive_by_pose, leg, get_pose) for leg in legs(parameters)]
+    return [partial(simulation.drive_by_pose, leg, get_pose) for leg in out_and_back_by_odometry(**parameters)]
