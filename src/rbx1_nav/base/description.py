@@ -135,7 +135,10 @@ def read_wheel_joints(section: Section, servos: Container[str] = ()) -> tuple[st
         names.append(name)
     left, right = names
     if left == right:
-        raise ConfigError(f"{section.path('right_wheel')}: {show(right)}: expected a joint other than left_wheel")
+        key, other = 'right_wheel', 'left_wheel'
+        if key not in section.values:   # the right wheel has its default name
+            key, other = other, key
+        raise ConfigError(f'{section.path(key)}: {show(left)}: expected a joint other than {other}')
     return left, right
 
 
