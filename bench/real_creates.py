@@ -86,7 +86,7 @@ def fit(runs, motions, noises):
         runs, windows = zip(*((run, window) for run, each in zip(runs, windows) for window in separate(each)))
     fitter = Fitter(runs, windows, errors)
     start = starting_surface(**dict.fromkeys(noises, 0.05), **({'delay': 0.1} if 'delay' in motions else {}))
-    return fit_floor(fitter, start, motions, noises)[:2]
+    return fit_floor(fitter, start, motions, noises)
 
 
 class Judgement:

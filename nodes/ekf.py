@@ -132,7 +132,7 @@ class Ekf:
         schedule = Schedule(1 / self.parameters.diagnostic_period)
         while not life.end_requested.is_set():
             if schedule.due(time.monotonic_ns()):   # wall time: diagnostics are needed even if /clock has stopped
-                self.diagnostics.publish()
+                self.diagnostics.updater.force_update()
             self.tree.listen(not (self.publisher.settled and self.imu.settled))
             life.sleep(0.05)
 

@@ -56,7 +56,7 @@ class FakeCreate:
             self.terminal.wait(max(0.0, (self.robot.next_time - time.monotonic_ns()) / SECOND))
         # a driver that exits at the same time stops the robot first; without the robot it would report a disconnection
         deadline = time.monotonic() + CLIENT_TIMEOUT
-        while self.terminal.has_client and time.monotonic() < deadline:
+        while self.terminal.has_client() and time.monotonic() < deadline:
             self.step()
             life.sleep(0.005)
         self.terminal.unplug()

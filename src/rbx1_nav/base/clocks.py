@@ -1,4 +1,4 @@
-"""The clock that a base runs on, and the clocks in real time."""
+"""The clocks that a base runs on in real time. A simulated clock replaces their methods."""
 from __future__ import annotations
 
 import time
@@ -12,15 +12,6 @@ from rbx1_nav.node import life
 
 READING_TIME = 100_000      # ns: within this time, readings of two clocks count as simultaneous
 TRIES = 10
-
-
-def wait_for_beat(beat: float, period: float) -> float:
-    """Wait until `period` after `beat` (s of the monotonic clock), or until shutdown is requested; return that time, or
-    the current time if it is later."""
-    beat = max(beat + period, time.monotonic())
-    while (left := beat - time.monotonic()) > 0 and not life.end_requested.is_set():
-        life.sleep(left)
-    return beat
 
 
 def as_ros_time(instant: int, now: Callable[[], int]) -> rospy.Time:
@@ -37,9 +28,13 @@ def as_ros_time(instant: int, now: Callable[[], int]) -> rospy.Time:
 
 
 class Clock:
-    """Interface of all clocks."""
+    """Measures motion on the monotonic clock, which cannot be set; stamps are in ROS time."""
 
     waits = False       # whether it waits for the nodes that drive
+
+    def __init__(self, rate: float) -> None:
+        """rate: of the odometry, Hz."""
+        self.rate = rate
 
     # Any: rospy has no types
     def watch(self, subscriber: Any) -> None:
@@ -54,45 +49,30 @@ class Clock:
         target.apply(command)
 
     def publish(self, publisher: rospy.Publisher, message: Any) -> None:
-        """Publish a message."""
         publisher.publish(message)
 
     def now(self) -> int:
         """Return the time of the clock that measures motion, ns."""
-        raise NotImplementedError
+        return time.monotonic_ns()
 
     def stamp(self, instant: int) -> rospy.Time:
         """Return an instant of this clock (ns) as a rospy.Time, for message headers."""
-        raise NotImplementedError
+        return as_ros_time(instant, self.now)
 
     def run(self, step: Callable[[], None]) -> None:
         """Call step() at the rate of the odometry until shutdown is requested."""
-        raise NotImplementedError
+        beat = time.monotonic()
+        while not life.end_requested.is_set():
+            step()
+            beat = max(beat + 1 / self.rate, time.monotonic())
+            while (left := beat - time.monotonic()) > 0 and not life.end_requested.is_set():
+                life.sleep(left)
 
     def diagnose(self, status: DiagnosticStatus) -> None:
         """Add the state of the clock to a DiagnosticStatus."""
 
 
-class RealTimeClock(Clock):
-    """Measures motion on the monotonic clock, which cannot be set; stamps are in ROS time."""
-
-    def __init__(self, rate: float) -> None:
-        self.rate = rate
-
-    def now(self) -> int:
-        return time.monotonic_ns()
-
-    def stamp(self, instant: int) -> rospy.Time:
-        return as_ros_time(instant, self.now)
-
-    def run(self, step: Callable[[], None]) -> None:
-        beat = time.monotonic()
-        while not life.end_requested.is_set():
-            step()
-            beat = wait_for_beat(beat, 1 / self.rate)
-
-
-class HardwareClock(RealTimeClock):
+class HardwareClock(Clock):
     """Clock for a real robot, which keeps moving while the computer is suspended; this clock keeps running, too."""
 
     def now(self) -> int:

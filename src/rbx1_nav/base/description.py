@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from math import inf, isfinite, radians
 import re
-from typing import Container, NamedTuple, Sequence
+from typing import Container, NamedTuple
 
 from rbx1_nav.base.units import SECOND, clamp
 from rbx1_nav.node.config import ConfigError, Section, YamlValue, load_yaml, show, show_name
@@ -78,21 +78,6 @@ class Joint:
         self.velocity = step / duration if duration > 0 else 0.0
         # stop exactly at the goal, without a rounding error
         self.position = self.goal if step == self.goal - self.position else self.position + step
-
-
-class JointGroup:
-    """Advances several joints on one clock, in ns."""
-
-    def __init__(self, joints: Sequence[Joint]) -> None:
-        self.joints = joints
-        self.now: int | None = None
-
-    def advance(self, now: int) -> None:
-        """Advance the joints to `now`. If the clock jumped back, no joint moves."""
-        elapsed = max(0, now - self.now) if self.now is not None else 0
-        self.now = now
-        for joint in self.joints:
-            joint.advance(elapsed / SECOND)
 
 
 class Limits(NamedTuple):

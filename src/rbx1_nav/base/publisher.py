@@ -43,7 +43,6 @@ class BasePublisher:
             self.publish(self.odom, messages.odometry(stamp, self.frames, pose, velocity, uncertainty, covariance))
 
     def publish_transform(self, stamp: rospy.Time, pose: Pose) -> None:
-        """Publish the pose of the odometry as a transform."""
         if self.robot.publish_tf and self.tf.get_num_connections():
             self.publish(self.tf, self.transform(stamp, pose))
 
@@ -52,7 +51,6 @@ class BasePublisher:
         return TFMessage([messages.transform(stamp, *self.frames, pose)])
 
     def publish_imu(self, stamp: rospy.Time, reading: Reading) -> None:
-        """Publish a gyro's Reading."""
         if self.imu.get_num_connections():
             self.publish(self.imu, messages.imu(stamp, self.robot.base_frame_id, reading))
 

@@ -63,7 +63,8 @@ class UncertainOdometry:
     """
 
     def __init__(self, width: float, errors: OdometryErrors, rounding: tuple[float, float]) -> None:
-        """width: distance between the wheels, m; rounding: error of a count, 1 sigma, m and rad."""
+        """width: distance between the wheels, m; rounding: 1 sigma (m, rad) of a position and a
+        heading that are counted in whole units."""
         self.odometry = Odometry(width)
         self.errors = errors
         self.rounding = rounding[0] ** 2, rounding[1] ** 2      # m^2, rad^2

@@ -114,7 +114,6 @@ class VelocityCommands:
                                       'differential drive cannot follow these, expected 0; ignored')
 
     def log_timeout(self) -> None:
-        """Log that the current command has timed out."""
         text = f'no command for {self.gate.timeout / SECOND:g} s: stopped'
         rospy.logwarn_throttle(10, f'{self.topic}: {text}')
         self.refusals.add(self.sender, text, refused=False)

@@ -17,8 +17,6 @@ from rbx1_nav.filter.turns import Measurement, Readings
 
 
 class Estimate(NamedTuple):
-    """The estimated pose."""
-
     stamp: int          # ns
     pose: Pose
     covariance: Array   # 3x3, of x, y (m) and yaw (rad)
@@ -172,7 +170,6 @@ class CombinedOdometry:
         return self.timed_out[IMU]
 
     def _step(self, odom: Odom) -> None:
-        """Make a step up to an Odom."""
         if self.odom and self._reject_outlier(self.odom, odom):
             return
         ekf, last = self.filter, self.odom

@@ -46,10 +46,6 @@ class Diagnostics:
         for sensor in sensors:
             self.updater.add(sensor, partial(self._diagnose_sensor, sensor))
 
-    def publish(self) -> None:
-        """Publish /diagnostics."""
-        self.updater.force_update()
-
     def _diagnose_filter(self, status: DiagnosticStatusWrapper) -> DiagnosticStatusWrapper:
         with self.lock:
             combined, published = self.get_filter()

@@ -29,7 +29,6 @@ class ImuData(NamedTuple):
 
 
 def multiply(one: Quaternion, other: Quaternion) -> Quaternion:
-    """Return the product of two quaternions."""
     ax, ay, az, aw = one
     bx, by, bz, bw = other
     return (aw * bx + ax * bw + ay * bz - az * by, aw * by - ax * bz + ay * bw + az * bx,
@@ -37,7 +36,6 @@ def multiply(one: Quaternion, other: Quaternion) -> Quaternion:
 
 
 def inverse(rotation: Quaternion) -> Quaternion:
-    """Return the inverse of a quaternion."""
     x, y, z, w = rotation
     return -x, -y, -z, w
 

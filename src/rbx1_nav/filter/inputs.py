@@ -71,7 +71,6 @@ def check_imu(imu: Imu) -> None:
 
 
 def format_pose(odom: Odom) -> str:
-    """Return the pose of an Odom as text."""
     x, y, yaw = odom.pose
     return f'({x:.3f} m, {y:.3f} m, {yaw:.3f} rad)'
 

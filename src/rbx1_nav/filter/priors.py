@@ -2,7 +2,9 @@
 from __future__ import annotations
 
 from math import inf, radians
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
+
+from rbx1_nav.base.surfaces import Surface
 
 # least 1 sigma of the errors on a floor with a surface file, which is never the floor itself: the gyro's scale error,
 # slip in turns and straight on, curvature (rad/m)
@@ -34,12 +36,6 @@ class Priors(NamedTuple):
     curvature_spread: float
 
 
-class Floor(Protocol):
-    """A named tuple that has all fields of Priors but the last: a Surface."""
-
-    def _asdict(self) -> dict[str, float]: ...
-
-
 # any floor. The noise was measured with five real robots, config/surfaces/create_lab_floor.yaml; the spreads are as
 # wide as the differences between the slips of all files
 UNKNOWN_FLOOR = Priors(
@@ -48,7 +44,7 @@ UNKNOWN_FLOOR = Priors(
     heading_noise_turning=0.084, heading_noise_straight=0.066, distance_noise=0.044, curvature_spread=0.05)
 
 
-def priors(surface: Floor | None) -> Priors:
+def priors(surface: Surface | None) -> Priors:
     """Return the Priors of a Surface (None: the ideal surface)."""
     values = surface._asdict() if surface else {**dict.fromkeys(Priors._fields, 0.0), 'gyro_measurement_range': inf}
     given = Priors(*(values.get(field, 0.0) for field in Priors._fields))

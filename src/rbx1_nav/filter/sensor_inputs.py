@@ -93,7 +93,6 @@ class FrameTree:
         return self.frames[child][:2] if child in self.frames else None
 
     def forget(self, child: str) -> None:
-        """Forget the transform to a frame."""
         self.frames.pop(child, None)
 
     def rotation(self, frame: str, other: str) -> Rotation | None:
@@ -126,7 +125,6 @@ class ImuInput:
     """Rotates the readings of an IMU to the robot's vertical axis, with a transform that is looked up once."""
 
     def __init__(self, topic: str, tree: FrameTree, log: Callable[[str], None]) -> None:
-        """log(text): logs a line."""
         self.topic = rospy.resolve_name(topic)
         self.tree = tree
         self.log = log

@@ -106,7 +106,6 @@ class Doubts:
     """Warns when wheels and gyro begin to contradict each other, and when they agree again."""
 
     def __init__(self, warn: Callable[[str], None]) -> None:
-        """warn(text): logs a warning."""
         self.warn = warn
         self.doubted = 'nothing'
         self.contradicted: int | None = None    # ns, when wheels and gyro last contradicted each other

@@ -43,7 +43,6 @@ class Part(NamedTuple):
     variance: float = 0.0
 
     def plus(self, other: Part) -> Part:
-        """Return the sum of two parts."""
         return Part(self.time + other.time, self.angle + other.angle, self.variance + other.variance)
 
 

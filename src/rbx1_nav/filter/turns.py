@@ -112,7 +112,6 @@ class Sums(NamedTuple):
     scatter: float = 0.0    # rad^2: variance of the difference of the turns, from the scatter of its blocks
 
     def plus(self, other: Sums) -> Sums:
-        """Return the sum."""
         return Sums(*map(add, self, other))
 
 
@@ -125,7 +124,6 @@ class Window:
         self.last = 0.0         # rad: the difference of the turns in the block before
 
     def add(self, step: Sums) -> None:
-        """Add a step."""
         self.block = self.block.plus(step)
 
     def close(self) -> Sums | None:

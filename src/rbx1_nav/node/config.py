@@ -3,7 +3,6 @@ from __future__ import annotations
 
 from datetime import date
 import difflib
-from math import isfinite
 import re
 import reprlib
 from typing import Iterable, Mapping, Sequence, TypeVar, Union
@@ -11,6 +10,7 @@ from typing import Iterable, Mapping, Sequence, TypeVar, Union
 import yaml
 
 AUTO = 'auto'       # a value that is determined at run time
+NUMBER = re.compile(r'\s*[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?\s*', re.IGNORECASE)
 
 # content of a YAML file or the parameter server; a key that is not text is a mistake, and is shown like any other key
 YamlValue = Union[None, bool, int, float, str, bytes, date, Sequence['YamlValue'], Mapping[str, 'YamlValue']]
@@ -30,10 +30,7 @@ class ConfigError(ValueError):
 
 def show(value: YamlValue) -> str:
     """Return any value as short text on one line."""
-    try:
-        return _short.repr(value)
-    except ValueError:      # Python does not print an integer of more than 4300 digits
-        return 'a huge number'
+    return _short.repr(value)
 
 
 def show_name(name: YamlValue) -> str:
@@ -49,15 +46,9 @@ def suggestion(name: YamlValue, names: Iterable[str]) -> str:
 
 def describe(value: YamlValue) -> str:
     """Return a value as written in the YAML file, with a hint where YAML reads a number as text."""
-    if isinstance(value, str) and len(value) < 100:
-        text = value.replace(',', '.')
-        try:
-            is_number = isfinite(float(text))
-        except ValueError:
-            is_number = False
-        if is_number:
-            return f'{show(value)} (text to YAML: write {as_yaml_number(text)})'
-    return show(value)
+    text = value.replace(',', '.') if isinstance(value, str) and len(value) < 100 else ''
+    hint = f' (text to YAML: write {as_yaml_number(text)})' if NUMBER.fullmatch(text) else ''
+    return show(value) + hint
 
 
 def as_yaml_number(text: str) -> str:

@@ -7,12 +7,14 @@ instead: see rbx1_nav/driving/script.py. docs/decisions/nodes.md explains why.
 from __future__ import annotations
 
 from contextlib import suppress
+from math import inf
 import os
 import signal
 import sys
 import threading
 import time
 from typing import Any, Callable, NoReturn, Sequence, TextIO, TypeVar, cast
+from urllib.parse import urlsplit
 
 import rosgraph
 import rospy
@@ -20,7 +22,7 @@ import rospy.impl.masterslave
 from rospy.impl.paramserver import get_param_server_cache
 
 from rbx1_nav.node.config import ConfigError, YamlValue
-from rbx1_nav.node.master import require_master, wait_for_master
+from rbx1_nav.node.master import require_master
 from rbx1_nav.node.parameters import Parameter, list_parameters
 from rbx1_nav.node.rospy_topics import repair_connections
 from rbx1_nav.node.private_parameters import (
@@ -30,7 +32,7 @@ from rbx1_nav.node.private_parameters import (
 EXIT_DEADLINE = 1.4         # s of wall time from the request to the exit of the process, whatever hangs
 UNREGISTER_TIMEOUT = 0.25   # s of wall time for the master to unregister the node
 SIGNALS = signal.SIGINT, signal.SIGTERM, signal.SIGHUP
-MAX_SLEEP = 0.05            # s
+MAX_SLEEP = 0.05            # s, also between two calls to a master that is not running yet
 
 # rospy of Debian 11 calls Thread.isAlive() on shutdown, which Python 3.9 has removed
 if not hasattr(threading.Thread, 'isAlive'):
@@ -58,7 +60,6 @@ class _Terminal:
         return len(text)
 
     def flush(self) -> None:
-        """Flush, if possible."""
         self._try(self._stream.flush)
 
     def _try(self, function: Callable[..., object], *args: str) -> None:
@@ -98,7 +99,7 @@ def init_node(name: str, usage: str, parameters: Sequence[Parameter] = (), requi
     if on_signal is None:
         rospy.on_shutdown(request_end)      # rospy itself gives up, such as after a failure of its server
     _take_signals(take, options.pop('disable_signals', False))
-    wait_for_master(future_name(name), lambda: read_wait_timeout(name, parameters), end_requested.is_set, sleep)
+    wait_for_master(name, parameters)
     if not end_requested.is_set():
         check_before_start(name, parameters, check)
     check_end()
@@ -117,6 +118,30 @@ def init_node(name: str, usage: str, parameters: Sequence[Parameter] = (), requi
     if usage:
         report_parameters(stored, names)
     load_params(parameters, stored)
+
+
+def wait_for_master(name: str, parameters: Sequence[Parameter]) -> None:
+    """Wait until the master answers, or shutdown is requested, and log one line if it does not answer immediately.
+
+    name, parameters: of the node; the limit is ~wait_timeout, if it has this parameter. Raises ROSException after it.
+    """
+    uri, end = rosgraph.get_master_uri(), None
+    if urlsplit(uri).scheme != 'http':      # rospy reports it
+        return
+    while not end_requested.is_set():
+        try:
+            return require_master()
+        except Exception:       # another server at this port causes other errors
+            if end is None:
+                # as init_node() would, so that the line has the usual format
+                rospy.core.configure_logging(future_name(name))
+                limit = read_wait_timeout(name, parameters)
+                end = time.monotonic() + (inf if limit is None else limit)
+                rospy.loginfo('Waiting for the master at %s', uri)
+        if time.monotonic() > end:
+            raise rospy.ROSException(f'The master at {uri} does not answer (timed out after {limit:g} s): '
+                                     'expected a running roscore')
+        sleep(MAX_SLEEP)
 
 
 def _take_signals(on_signal: Callable[[int], object], disabled: bool) -> None:

@@ -1,12 +1,9 @@
 """Calls to the master and to other nodes with a timeout; rospy's own calls would wait indefinitely."""
 from __future__ import annotations
 
-from http.client import HTTPConnection
-from math import inf
+from http.client import HTTPConnection, HTTPException
 import socket
-import time
-from typing import Any, Callable
-from urllib.parse import urlsplit
+from typing import Any
 from xmlrpc.client import ServerProxy, Transport
 import xmlrpc.client
 
@@ -14,12 +11,9 @@ import rosgraph
 import rospy
 
 TIMEOUT = 2.0       # s of wall time for the master, or a live node, to answer a call
-PERIOD = 0.05       # s between two calls to a master that is not running yet
 
 
 class _TimeoutTransport(Transport):
-    """XML-RPC transport with a timeout."""
-
     def __init__(self, timeout: float) -> None:
         super().__init__()
         self.timeout = timeout
@@ -60,8 +54,8 @@ def call(uri: str, method: str, *args: str, timeout: float = TIMEOUT) -> Any:
 
 
 def is_alive(name: str) -> bool:
-    """Return whether a registered node answers, or may be alive on a host that cannot be reached. Raises OSError,
-    HTTPException or xmlrpc.client.Error if the master does not answer."""
+    """Return whether a node is registered, and answers or may be alive on a host that cannot be reached. Raises like
+    Server.call() if the master does not answer."""
     address = call(rosgraph.get_master_uri(), 'lookupNode', name)
     try:
         return bool(call(address, 'getPid'))
@@ -75,31 +69,6 @@ def require_master() -> None:
     """Raise ROSException if the master does not answer."""
     try:
         call(rosgraph.get_master_uri(), 'getPid')
-    except (OSError, xmlrpc.client.Error) as error:
+    except (OSError, HTTPException, xmlrpc.client.Error) as error:
         raise rospy.ROSException(f'The master at {rosgraph.get_master_uri()} does not answer ({error}): '
                                  'expected a running roscore') from error
-
-
-def wait_for_master(name: str, read_limit: Callable[[], float | None], is_ended: Callable[[], bool],
-                    sleep: Callable[[float], None]) -> None:
-    """Wait until the master answers, or is_ended(), and log one line if it does not answer immediately.
-
-    name: name of the node, for the log; sleep(seconds): sleeps briefly; read_limit(): returns how long to wait, s of
-    wall time, None for no limit, and is called only if the node has to wait. Raises ROSException after this time.
-    """
-    uri, end = rosgraph.get_master_uri(), None
-    if urlsplit(uri).scheme != 'http':      # rospy reports it
-        return
-    while not is_ended():
-        try:
-            return require_master()
-        except Exception:       # another server at this port causes other errors
-            if end is None:
-                rospy.core.configure_logging(name)      # as init_node() would, so that the line has the usual format
-                limit = read_limit()
-                end = time.monotonic() + (inf if limit is None else limit)
-                rospy.loginfo('Waiting for the master at %s', uri)
-        if time.monotonic() > end:
-            raise rospy.ROSException(f'The master at {uri} does not answer (timed out after {limit:g} s): '
-                                     'expected a running roscore')
-        sleep(PERIOD)

@@ -75,9 +75,9 @@ def custom(name: str, default: YamlValue, text: str, check: Callable[[Any], Any]
                      lambda section: check(section.get(name, default)))
 
 
-def elsewhere(name: str, text: str, shown: str = '', unit: str = '', note: str = '') -> Parameter:
+def elsewhere(name: str, text: str, shown: str = '', note: str = '') -> Parameter:
     """Declare a parameter that is read elsewhere, or ignored."""
-    return Parameter(name, shown, unit, '', text, note)
+    return Parameter(name, shown, '', '', text, note)
 
 
 def read(parameters: Iterable[Parameter], section: Section) -> dict[str, Any]:

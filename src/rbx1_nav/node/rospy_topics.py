@@ -19,7 +19,7 @@ _connecting: dict[tuple[str, str], threading.Lock] = {}     # by topic and URI
 
 
 class NoDelay(rospy.SubscribeListener):
-    """Sets TCP_NODELAY for each subscriber of a publisher.
+    """Sets TCP_NODELAY for each subscriber of a publisher, and may send it messages at once.
 
     rospy does this only if the subscriber asks for it. Without it, messages may arrive in bursts of 30 to 60 ms.
     """

@@ -24,8 +24,8 @@ class IdealGyro:
     def read(self, yaw: float, duration: float, _at_rest: bool) -> Reading:
         """Return a Reading, `duration` (s, above 0) after the previous one.
 
-        yaw: the robot's true heading now, rad; at_rest: whether the wheels were at rest during this time. The rate of
-        the Reading is the mean over this time, as from a gyro that samples faster than it is read.
+        yaw: the robot's true heading now, rad. The rate of the Reading is the mean over this time, as from a gyro that
+        samples faster than it is read.
         """
         rate = (yaw - self.yaw) / duration
         self.yaw = yaw
@@ -44,14 +44,6 @@ class Gyro:
     velocity is uncalibrated.
     """
 
-    _true_yaw: float
-    _yaw: float
-    _turned: float          # rad, both directions counted positive
-    _time: float            # s since the calibration
-    _rest: float            # s, duration of the calibration
-    _rest_angle: float      # rad, sum of the readings in this time
-    _calibrating: bool
-
     def __init__(self, surface: Surface, run: RandomErrors, seed: int) -> None:
         """run: the errors drawn from the surface; seed: seed of the noise."""
         self.surface = surface
@@ -59,8 +51,15 @@ class Gyro:
         self.noise = random.Random(f'gyro {seed}').gauss
         self.reset()
 
+    def reset(self) -> None:
+        """Restart with the robot at the origin. Bias and scale error do not change."""
+        self._true_yaw = self._yaw = 0.0
+        self._turned = self._time = 0.0         # rad, both directions counted positive, and s since the calibration
+        self._rest = self._rest_angle = 0.0     # duration (s) and summed readings (rad) of the calibration
+        self._calibrating = True
+
     def read(self, yaw: float, duration: float, at_rest: bool) -> Reading:
-        """See IdealGyro."""
+        """See IdealGyro. at_rest: whether the wheels were at rest during this time."""
         surface = self.surface
         noise = surface.gyro_noise / (NOISE_RATE * duration) ** 0.5
         rate = (yaw - self._true_yaw) / duration * (1 + self.run.gyro_scale_error) + self.run.gyro_bias
@@ -80,12 +79,6 @@ class Gyro:
         variance = (MEASURED + density * self._time + bias * self._time ** 2
                     + (surface.gyro_scale_error * self._turned) ** 2)
         return Reading(rate, max(noise ** 2, MIN_VARIANCE), self._yaw, variance)
-
-    def reset(self) -> None:
-        """Restart with the robot at the origin. Bias and scale error do not change."""
-        self._true_yaw = self._yaw = self._turned = self._time = 0.0
-        self._rest = self._rest_angle = 0.0     # duration (s) and summed readings (rad) of the calibration
-        self._calibrating = True
 
 
 AnyGyro = Union[IdealGyro, Gyro]

@@ -68,13 +68,11 @@ class Delay:
         self.clear()
 
     def clear(self) -> None:
-        """Discard the delayed commands."""
         # linear (m/s), angular (rad/s), duration (s)
         self.parts: Deque[list[float]] = deque([[0.0, 0.0, self.delay]])
 
     @property
     def is_empty(self) -> bool:
-        """Whether no delayed command is a motion."""
         return not any(linear or angular for linear, angular, _ in self.parts)
 
     def over(self, linear: float, angular: float, duration: float) -> Iterator[tuple[float, float, float]]:

@@ -13,11 +13,12 @@ from std_srvs.srv import Empty as EmptyService, EmptyRequest, EmptyResponse
 
 from rbx1_nav.base import messages
 from rbx1_nav.base.clocks import Clock
-from rbx1_nav.base.description import JointGroup, Robot
+from rbx1_nav.base.description import Robot
 from rbx1_nav.base.publisher import BasePublisher
 from rbx1_nav.base.running_bases import Refusals
 from rbx1_nav.base.schedule import Schedule
 from rbx1_nav.base.surfaces import Surface
+from rbx1_nav.base.units import SECOND
 from rbx1_nav.base.velocity_commands import VelocityCommands, subscribe_joints
 from rbx1_nav.node.frames import with_prefix
 from rbx1_nav.node.rospy_topics import NoDelay
@@ -45,7 +46,7 @@ class SimulatedRobot:
         self.floor = surface.name if surface else 'ideal', seed
         self.lock = threading.Lock()
         self.last_stamp: rospy.Time | None = None
-        self.joints = JointGroup(robot.joints)
+        self.joints_time: int | None = None     # ns, of the last motion of the joints
         self.joint_schedule = Schedule(10)
         self.diagnostics_schedule = Schedule(1)
 
@@ -66,7 +67,6 @@ class SimulatedRobot:
         rospy.loginfo('Ready: %s is at the origin of %s', self.robot.base_frame_id, self.robot.odom_frame_id)
 
     def close(self) -> None:
-        """Remove the topics and services."""
         self.last_stamp = None      # greet no more subscribers of the common topic /tf
         self.commands.close()
         self.reset_service.shutdown()
@@ -75,7 +75,6 @@ class SimulatedRobot:
             each.unregister()
 
     def step(self) -> None:
-        """Publish the current state of the base."""
         with self.lock:
             now, base = self.clock.now(), self.base
             stamp = self.clock.stamp(now)
@@ -88,7 +87,11 @@ class SimulatedRobot:
             reading, travel = base.read_gyro(), (base.left, base.right)
             joints_due = self.joint_schedule.due(now)
             if joints_due:
-                self.joints.advance(now)
+                # if the clock jumped back, no joint moves
+                elapsed = 0 if self.joints_time is None else max(0, now - self.joints_time)
+                self.joints_time = now
+                for joint in self.robot.joints:
+                    joint.advance(elapsed / SECOND)
         # in this order, so that a node that receives odometry finds the other messages of this time
         if joints_due:
             self.publisher.publish_joints(stamp, travel, velocity)

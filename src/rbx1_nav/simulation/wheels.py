@@ -16,7 +16,6 @@ class Encoder:
     """Counts whole ticks, rounded to the nearest tick."""
 
     def __init__(self, ticks_meter: float) -> None:
-        """ticks_meter: ticks per meter."""
         self.ticks_meter = ticks_meter
         self.total = 0.0    # m, total travel of the wheel
         self.ticks = 0
@@ -69,14 +68,6 @@ class Wheels:
     Each of these motions has its own drag and slip.
     """
 
-    _rolling: bool                      # whether anything moved in the last step
-    _velocity: tuple[float, float]      # m/s, rad/s
-    _time: float        # s, m and rad since the last velocity
-    _distance: float
-    _angle: float
-    _path: float        # m and rad, both directions counted positive
-    _turned: float
-
     def __init__(self, base_width: float, surface: Surface, run: RandomErrors, window: float,
                  roughness: Roughness | None = None) -> None:
         """run: the errors drawn from the surface; window: s, the time over which encoder counts are averaged to report
@@ -95,6 +86,17 @@ class Wheels:
         self.right = Encoder(surface.ticks_meter)
         self.truth = Odometry(base_width)
         self.reset()
+
+    def reset(self) -> None:
+        """Put the robot back at the origin, at rest."""
+        self.straight.speed = self.turning.speed = 0.0
+        if self.delay:
+            self.delay.clear()
+        self._rolling = False       # whether anything moved in the last step
+        self._velocity = 0.0, 0.0   # m/s, rad/s
+        self._time = self._distance = self._angle = 0.0     # s, m and rad since the last velocity
+        self._path = self._turned = 0.0     # m and rad, both directions counted positive
+        self.truth.pose = ORIGIN
 
     def travel(self, linear: float, angular: float, duration: float) -> tuple[float, float]:
         """See IdealWheels."""
@@ -163,17 +165,6 @@ class Wheels:
         length, heading = self.noise.variances(linear, angular)
         return Uncertainty(position, yaw, MEASURED + wheel / 2 + length / self.window,
                            MEASURED + 2 * wheel / self.base_width ** 2 + heading / self.window)
-
-    def reset(self) -> None:
-        """Put the robot back at the origin, at rest."""
-        self.straight.speed = self.turning.speed = 0.0
-        if self.delay:
-            self.delay.clear()
-        self._rolling = False
-        self._velocity = 0.0, 0.0
-        self._time = self._distance = self._angle = 0.0
-        self._path = self._turned = 0.0
-        self.truth.pose = ORIGIN
 
 
 AnyWheels = Union[IdealWheels, Wheels]

@@ -29,7 +29,7 @@ def test_all_surfaces_of_the_package_can_be_read():
 
 
 @pytest.mark.parametrize('name', ['sand', '', 'ideal.yaml', '../turtlebot', 7, None, [1],
-                                  pytest.param(16 ** 5000, id='huge')])
+                                  pytest.param(16 ** 1000, id='huge')])
 def test_an_unknown_surface_is_rejected_with_the_list_of_known_ones(name):
     with pytest.raises(ConfigError, match=f'^surface: .*expected one of {KNOWN}, or the') as error:
         load_surface(name, FOLDER)

@@ -34,7 +34,7 @@ class World:
         for name in 'logwarn_throttle', 'logerr_throttle':
             monkeypatch.setattr(rospy, name, lambda _, text: self.lines.append(text))
         self.lock, self.gate, self.refusals = Lock(), CommandGate(Limits(0.5, 3.0), SECOND // 4), Refusals()
-        self.clock = Time()
+        self.clock = Time(50)
         self.commands = VelocityCommands(self, self.gate, self.clock, self.lock, '/r/', self.refusals, wheel_limit)
 
     def command(self, now, linear, angular, others, sender):

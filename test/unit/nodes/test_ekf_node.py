@@ -108,5 +108,5 @@ def test_messages_of_different_threads_reach_the_filter_one_at_a_time(ekf, monke
     ekf.on_reset(None)
     assert calls == [(each, True) for each in ('odom', 'imu_data', 'set_pose', 'reset')]
     monkeypatch.setattr(ekf.diagnostics, 'get_filter', lambda: calls.append(ekf.lock.locked()) or (None, 0))
-    ekf.diagnostics.publish()
+    ekf.diagnostics.updater.force_update()
     assert calls[4:] == [True] * 3

@@ -1,4 +1,6 @@
 """A simulated base publishes its state in order, greets new subscribers, and is never changed while it is read."""
+from math import degrees
+
 import pytest
 import rospy
 from std_srvs.srv import EmptyRequest
@@ -36,7 +38,8 @@ def fixture_robot(monkeypatch):
     monkeypatch.setattr(module, 'Updater', lambda: type('Updater', (), dict.fromkeys(
         ('setHardwareID', 'add', 'force_update'), lambda *_: None)))
     controller = dict(type='diff_controller', base_width=0.4, timeout=0.5)
-    return SimulatedRobot(read_robot(dict(controllers={'base': controller})), None, 0, Time(), Refusals(), 'r')
+    params = dict(controllers={'base': controller}, joints={'pan': {'max_speed': degrees(0.25)}})
+    return SimulatedRobot(read_robot(params), None, 0, Time(), Refusals(), 'r')
 
 
 def test_the_messages_of_a_step(robot):
@@ -52,6 +55,17 @@ def test_the_messages_of_a_step(robot):
     robot.clock.time = SECOND * 2 // 10
     robot.step()
     assert [name for name, _ in robot.clock.sent[5:]] == ['/tf', '/r/imu/data', '/r/ground_truth', '/r/odom']
+
+
+def test_the_joints_move_by_the_elapsed_time_and_not_if_the_clock_jumps_back(robot):
+    joint, = robot.robot.joints
+    joint.command(1.0)
+    positions = []
+    for time in 1000, 1001, 1002, 5, 6:     # the first step has no previous time
+        robot.clock.time = time * SECOND
+        robot.step()
+        positions.append(joint.position)
+    assert positions == pytest.approx([0.0, 0.25, 0.5, 0.5, 0.75])
 
 
 def test_a_new_subscriber_is_greeted_with_the_last_state(robot):

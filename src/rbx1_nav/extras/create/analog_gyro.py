@@ -44,7 +44,6 @@ class AnalogGyro:
     """
 
     def __init__(self, settings: Settings, error: Callable[[str], None], info: Callable[[str], None]) -> None:
-        """error, info: log a line."""
         self.full_scale = radians(settings.gyro_measurement_range) * settings.gyro_scale_correction
         self.error = error
         self.info = info

@@ -134,7 +134,6 @@ class Contact:
 
     def __init__(self, settings: Settings, sender: Sender, queries: Queries, supervisor: Supervisor,
                  warn: Callable[[str], None]) -> None:
-        """warn: logs a line."""
         self.settings = settings
         self.sender = sender
         self.queries = queries

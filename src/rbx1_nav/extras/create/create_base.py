@@ -99,7 +99,6 @@ class CreateBase:
         return timed_out, state
 
     def publish(self, now: int, state: State) -> None:
-        """Publish a State."""
         width = self.driver.model.wheel_separation
         if self.publisher.robot.base_width != width:    # a different robot than expected has answered
             self.publisher.robot = self.publisher.robot._replace(base_width=width)

@@ -28,14 +28,10 @@ OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.E
 NO_ANSWER = ERROR, 'The robot does not answer'
 
 
-def charge_of(reading: Mapping[str, int]) -> float | None:
-    """Return the charge of the battery as a fraction; None if the robot reports no capacity."""
-    return reading['charge'] / reading['capacity'] if reading['capacity'] else None
-
-
 def battery_status(reading: Mapping[str, int]) -> tuple[int, str]:
     """Return the level and the summary of the battery's status: its worst problem."""
-    charge, state = charge_of(reading), reading['charging_state']
+    charge = reading['charge'] / reading['capacity'] if reading['capacity'] else None    # a fraction
+    state = reading['charging_state']
     percent = '' if charge is None else f'{100 * charge:.0f} %'
     docked = charge is None or reading['charging_sources']
     found = [(OK, CHARGING_STATES[state] if docked else percent)]
@@ -66,14 +62,12 @@ class CreateStatus:
             updater.add(title, function)
 
     def update(self) -> None:
-        """Publish /diagnostics."""
         if self.driver.gyro and self.driver.contact.found and not self.shows_gyro:
             self.shows_gyro = True
             self.updater.add('Gyro', self.gyro)
         self.updater.force_update()
 
     def base(self, status: DiagnosticStatusWrapper) -> DiagnosticStatusWrapper:
-        """Fill in the status of mode and commands."""
         driver, supervisor = self.driver, self.driver.supervisor
         if self.link.problem:
             summary = ERROR, self.link.problem
@@ -98,7 +92,6 @@ class CreateStatus:
         return status
 
     def battery(self, status: DiagnosticStatusWrapper) -> DiagnosticStatusWrapper:
-        """Fill in the status of the battery."""
         reading = self._reading(status)
         if not reading:
             return status
@@ -142,7 +135,6 @@ class CreateStatus:
             'gyro_scale_correction': self.driver.settings.gyro_scale_correction})
 
     def line(self, status: DiagnosticStatusWrapper) -> DiagnosticStatusWrapper:
-        """Fill in the status of the serial line: the errors on it."""
         driver, link = self.driver, self.link
         level = ERROR if link.problem or not driver.contact.answers else OK
         return fill_status(status, level, link.problem or 'Open', {

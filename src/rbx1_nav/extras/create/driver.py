@@ -32,7 +32,6 @@ class Driver:
 
     def __init__(self, settings: Settings, gate: CommandGate, info: Callable[[str], None],
                  warn: Callable[[str], None], error: Callable[[str], None]) -> None:
-        """info, warn, error: log a line."""
         self.settings = settings
         self.gate = gate
         self.info = info
@@ -179,7 +178,6 @@ class Driver:
     # readings
 
     def receive(self, now: int, data: bytes) -> None:
-        """Process bytes from the robot."""
         if self.contact.searching:
             self.contact.search.receive(now, data)
             return

@@ -116,7 +116,6 @@ class Link:
     """
 
     def __init__(self, settings: Settings, warn: Callable[[str], None]) -> None:
-        """warn(text): logs a line."""
         self.configured = settings.port
         self.path = find_port(settings.port, '', set())
         self.warn = warn

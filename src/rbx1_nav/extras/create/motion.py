@@ -212,7 +212,7 @@ class MotionReport:
     """Accumulates Travel. Times are in ns."""
 
     def __init__(self, settings: Settings, model: Model, rounding: tuple[float, float]) -> None:
-        """rounding: error of a reported count, 1 sigma, m and rad."""
+        """rounding: see UncertainOdometry."""
         self.width = model.wheel_separation
         self.corrections = settings.odom_linear_scale_correction, settings.odom_angular_scale_correction
         self.rounding = rounding

@@ -115,8 +115,6 @@ ALWAYS = (OFF,) + STARTED
 
 
 class Command(NamedTuple):
-    """A command."""
-
     opcode: int
     name: str
     size: int | str         # number of data bytes, COUNTED or NOTES
@@ -173,8 +171,6 @@ _CREATE_2 = (
 
 
 class Model(NamedTuple):
-    """A robot model."""
-
     name: str
     baud: int                           # bits per second, after power-on
     wheel_separation: float             # m
@@ -184,29 +180,20 @@ class Model(NamedTuple):
     commands: dict[int, Command]        # by opcode
 
 
-def _packets_by_number(packets: Iterable[Packet]) -> dict[int, Packet]:
-    return {packet.number: packet for packet in packets}
-
-
 def _packets_of(groups: Mapping[int, tuple[int, int]]) -> dict[int, tuple[int, ...]]:
     return {number: tuple(range(first, last + 1)) for number, (first, last) in groups.items()}
 
 
-def _commands_by_opcode(commands: Iterable[Command]) -> dict[int, Command]:
-    return {each.opcode: each for each in commands}
-
-
 CREATE = Model(
     name='create', baud=57600, wheel_separation=0.26, counts_per_metre=None,
-    packets=_packets_by_number(Packet(number, name, form, *values, unit)
-                               for number, name, form, values, _, unit in _PACKETS if values),
-    groups=_packets_of(_GROUPS), commands=_commands_by_opcode(_BOTH + _CREATE))
+    packets={number: Packet(number, name, form, *values, unit)
+             for number, name, form, values, _, unit in _PACKETS if values},
+    groups=_packets_of(_GROUPS), commands={each.opcode: each for each in _BOTH + _CREATE})
 # 72 mm wheels, 508.8 counts per revolution (Create 2, packet 43)
 CREATE_2 = Model(
     name='create2', baud=115200, wheel_separation=0.235, counts_per_metre=508.8 / (pi * 0.072),
-    packets=_packets_by_number(Packet(number, name, form, *values, unit)
-                               for number, name, form, _, values, unit in _PACKETS),
-    groups=_packets_of({**_GROUPS, **_GROUPS_2}), commands=_commands_by_opcode(_BOTH + _CREATE_2))
+    packets={number: Packet(number, name, form, *values, unit) for number, name, form, _, values, unit in _PACKETS},
+    groups=_packets_of({**_GROUPS, **_GROUPS_2}), commands={each.opcode: each for each in _BOTH + _CREATE_2})
 MODELS = {model.name: model for model in (CREATE, CREATE_2)}
 OPCODES = {command.name: command.opcode for command in _BOTH + _CREATE + _CREATE_2}
 
@@ -229,12 +216,6 @@ def single_packets(model: Model, numbers: Iterable[int]) -> list[Packet]:
 def packets_format(packets: Iterable[Packet]) -> Struct:
     """Return the Struct of the concatenated values of Packets."""
     return Struct('>' + ''.join(packet.format for packet in packets))
-
-
-def frame_format(model: Model, numbers: Iterable[int]) -> Struct:
-    """Return the Struct of a stream frame: header, length, each number with its values, and the checksum."""
-    formats = (''.join(packet.format for packet in single_packets(model, [number])) for number in numbers)
-    return Struct('>BB' + ''.join(f'B{each}' for each in formats) + 'B')
 
 
 def checksum(data: bytes) -> int:

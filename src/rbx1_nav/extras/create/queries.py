@@ -77,7 +77,6 @@ class Queries:
         return (self.asked.time - self.read.time) / SECOND, self.asked.travel.plus(self.read.travel, -1)
 
     def ask(self, now: int) -> None:
-        """Ask for a reading."""
         self.give_up()
         self.buffer.clear()
         self.asked = Mark(now, self.sender.travel(now))

@@ -89,7 +89,6 @@ class Search:
         return max(0, self._sizes[-1] - len(self._buffer)) if self._sizes else 0
 
     def receive(self, now: int, data: bytes) -> None:
-        """Process bytes from the robot."""
         self._buffer += data
         del self._buffer[:-MAX_BUFFER]
         if self._then == self._judge_battery and has_frames(self._buffer):

@@ -20,8 +20,6 @@ from rbx1_nav.node.config import ConfigError, show_name
 
 
 class TopicNames(NamedTuple):
-    """Names of topics."""
-
     cmd_vel: str
     odom: str
     imu: str
@@ -66,7 +64,6 @@ class TopicMessages:
         self.rows.append((stamp, pose.position.x, pose.position.y, yaw_of(pose.orientation)))
 
     def columns(self, width: int) -> Array:
-        """Return one array for each value."""
         return numpy.array(self.rows, float).reshape(-1, width).T
 
 

@@ -53,7 +53,6 @@ def inner_share(ends: Array, end: Array) -> float:
 class Comparison(NamedTuple):
     """One run or a part of it, in the frame of its start."""
 
-    name: str
     recorded: Array | None      # x and y (m) of the recorded path
     is_truth: bool      # whether the recorded path is the truth and not odometry
     simulated: Array    # x and y (m) of one path with the same commands
@@ -69,22 +68,21 @@ def predict(surface: Surface, recording: Recording, base_width: float, start: fl
     return run, Prediction(surface, run.steps(surface), windows)
 
 
-def compare(surface: Surface, recordings: Sequence[Recording], base_width: float, seed: int = 1,
+def compare(surface: Surface, recordings: Sequence[Recording], base_width: float,
             compute: Callable[..., Iterable[Comparison]] = map) -> list[Comparison]:
     """Return Comparisons of Recordings with a Surface that was fitted to them; at most MAX_SHOWN.
 
     compute(function, parts): yields the results for all parts, in their order, wherever they are computed.
     """
-    return list(compute(compare_part, [(number, surface, recording, base_width, start, end, seed)
+    return list(compute(compare_part, [(number, surface, recording, base_width, start, end)
                                        for number, (recording, start, end) in enumerate(choose(recordings))]))
 
 
-def compare_part(part: tuple[int, Surface, Recording, float, float | None, float | None, int]) -> Comparison:
-    """Return the Comparison of a run or of a part of it."""
-    number, surface, recording, base_width, start, end, seed = part
+def compare_part(part: tuple[int, Surface, Recording, float, float | None, float | None]) -> Comparison:
+    number, surface, recording, base_width, start, end = part
     run, prediction = predict(surface, recording, base_width, start, end)
     # each run shows a different path, but equal commands have equal regions
-    paths = simulate_paths(surface, prediction, 0, ENDS, numpy.random.default_rng(seed))
+    paths = simulate_paths(surface, prediction, 0, ENDS, numpy.random.default_rng(1))
     track = recording.truth or recording.odometry
     path: Array | None = None
     true: Array | None = None
@@ -96,7 +94,7 @@ def compare_part(part: tuple[int, Surface, Recording, float, float | None, float
         true = path[:, -1]
     elif recording.end:
         true = numpy.array(recording.end)
-    return Comparison(recording.name, None if path is None else path[:2], bool(recording.truth),
+    return Comparison(None if path is None else path[:2], bool(recording.truth),
                       numpy.concatenate([numpy.zeros((2, 1)), paths[number, :2]], axis=1), paths[:, :, -1], true)
 
 

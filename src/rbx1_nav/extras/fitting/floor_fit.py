@@ -6,7 +6,7 @@ fits alternate for ROUNDS rounds.
 """
 from __future__ import annotations
 
-from typing import Callable, Protocol, Sequence
+from typing import Callable, Sequence
 
 import numpy
 from scipy.optimize import OptimizeResult, approx_fprime, brentq, least_squares, minimize
@@ -25,13 +25,6 @@ ROUNDS = 3
 VAGUE_MEAN = 100    # prior 1 sigma of a value, in units of its largest standard error
 VAGUE = 0.5     # 1 sigma of the logarithm of a strength above which the strength may be 0
 MIN_STRENGTH, MAX_STRENGTH = 1e-4, 1.0      # of a noise or a spread; the minimum counts as 0
-
-
-class NoiseCost(Protocol):
-    """Negative logarithm of a likelihood, see Fitter.noise_cost()."""
-
-    def __call__(self, noisy: Surface, wider: float | None = None) -> float:
-        """Return the cost with the noises and spreads of a Surface, and optionally another `wider`."""
 
 
 class Fitter:
@@ -55,7 +48,6 @@ class Fitter:
         return self.wider ** 2 * self.measured
 
     def predictions(self, surface: Surface) -> list[Prediction]:
-        """Return the Prediction for each run."""
         return [Prediction(surface, run.steps(surface), windows) for run, windows in zip(self.runs, self.windows)]
 
     def fit_means(self, surface: Surface, keys: Sequence[str]) -> tuple[Array, Array]:
@@ -88,8 +80,9 @@ class Fitter:
             columns.append([(after.means - before.means) / step for before, after in zip(base, moved)])
         return [numpy.stack(each, axis=2) for each in zip(*columns)]
 
-    def noise_cost(self, surface: Surface, means: Sequence[str] = ()) -> NoiseCost:
-        """Return the negative log-likelihood for Surfaces that differ only in their noises and spreads.
+    def noise_cost(self, surface: Surface, means: Sequence[str] = ()) -> Callable[..., float]:
+        """Return the negative log-likelihood for Surfaces that differ only in their noises and spreads, a function of
+        the Surface and optionally of another `wider`.
 
         means: keys of MEANS that were fitted to the same end poses. If there are any, the result is the restricted
         likelihood, which allows for what they explain (Patterson and Thompson, Recovery of inter-block information when
@@ -114,8 +107,8 @@ class Fitter:
         return cost
 
     def fit_noise(self, surface: Surface, keys: Sequence[str], means: Sequence[str] = (),
-                  prior: Surface | None = None) -> tuple[Array, Array, float]:
-        """Fit keys of NOISES and SPREADS by maximum likelihood. Returns (values, standard errors, cost).
+                  prior: Surface | None = None) -> tuple[Array, Array]:
+        """Fit keys of NOISES and SPREADS by maximum likelihood. Returns (values, standard errors).
 
         means: see noise_cost(); prior: a Surface with the prior values, which have a 1 sigma error of a factor of e;
         None: no prior.
@@ -148,7 +141,7 @@ class Fitter:
         unclear = (values < 3 * MIN_STRENGTH) | (variances > VAGUE ** 2) | (variances <= 0)
         for index in numpy.flatnonzero(unclear):
             errors[index] = upper_error(cost, result, index)
-        return values, errors, result.fun
+        return values, errors
 
 
 def vague(keys: Sequence[str]) -> Array:
@@ -173,18 +166,17 @@ def upper_error(cost: Callable[[Array], float], result: OptimizeResult, index: i
 
 
 def fit_floor(fitter: Fitter, surface: Surface, means: Sequence[str], noises: Sequence[str],
-              prior: Surface | None = None) -> tuple[Surface, dict[str, float], float | None]:
-    """Fit the values of all keys together. Returns (Surface, {key: standard error}, cost). prior: see fit_noise(); with
-    a prior, the likelihood is restricted."""
+              prior: Surface | None = None) -> tuple[Surface, dict[str, float]]:
+    """Fit the values of all keys together. Returns (Surface, {key: standard error}). prior: see fit_noise(); with a
+    prior, the likelihood is restricted."""
     errors: dict[str, float] = {}
-    cost = None
     for _ in range(ROUNDS):
         if means:
             values, covariance = fitter.fit_means(surface, means)
             surface = with_values(surface, dict(zip(means, values.tolist())))
             errors.update(zip(means, numpy.sqrt(numpy.diag(covariance))))
         if noises:
-            values, deviations, cost = fitter.fit_noise(surface, noises, means if prior else (), prior)
+            values, deviations = fitter.fit_noise(surface, noises, means if prior else (), prior)
             surface = with_values(surface, dict(zip(noises, values.tolist())))
             errors.update(zip(noises, deviations))
-    return surface, errors, cost
+    return surface, errors

@@ -96,6 +96,5 @@ class Covariance:
         return white + self.axes @ (along * (self.variances ** -0.5 - 1))
 
     def half_log_determinant(self) -> float:
-        """Return half of the logarithm of the determinant."""
         return (numpy.log(numpy.diagonal(self.roots, axis1=1, axis2=2)).sum()
                 + numpy.log(self.variances).sum() / 2)

@@ -21,7 +21,6 @@ MOTORS = ('delay', 'lag', 'accel_limit', 'drag_straight', 'drag_turning')
 class Steps(NamedTuple):
     """The wheel travel in each step, as measured by the encoders."""
 
-    time: Array         # s; one value more than the others, the start of the first step
     straight: Array     # m
     turn: Array         # rad
 
@@ -50,7 +49,7 @@ def commanded_travel(surface: Surface, base_width: float, commands: Commands, ti
     step = numpy.searchsorted(times, borders[:-1], side='right') - 1
     travel = numpy.array(travelled).reshape(-1, 2)[step >= 0].T
     distance, side = numpy.array([numpy.bincount(step[step >= 0], values, len(times) - 1) for values in travel])
-    return Steps(times, distance, 2 * side / base_width)
+    return Steps(distance, 2 * side / base_width)
 
 
 def reported_travel(odometry: Track, times: Array) -> Steps:
@@ -59,7 +58,7 @@ def reported_travel(odometry: Track, times: Array) -> Steps:
     turn = numpy.diff(yaw)
     middle = yaw[:-1] + turn / 2
     chord = numpy.diff(x) * numpy.cos(middle) + numpy.diff(y) * numpy.sin(middle)
-    return Steps(times, chord / numpy.sinc(turn / 2 / numpy.pi), turn)      # the inverse of Odometry.move()
+    return Steps(chord / numpy.sinc(turn / 2 / numpy.pi), turn)      # the inverse of Odometry.move()
 
 
 class Windows(NamedTuple):

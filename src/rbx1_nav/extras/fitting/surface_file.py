@@ -41,8 +41,7 @@ def yaml_number(value: Value) -> str:
     key = KEYS[value.key]
     low, high = map(key.from_si, key.limits)
     if not low <= float(text) <= high:      # due to rounding
-        text = repr(key.from_si(value.value))
-        text = text if low <= float(text) <= high else repr(low if float(text) < low else high)
+        text = repr(min(max(key.from_si(value.value), low), high))
     return as_yaml_number(text) if 'e' in text else text
 
 

@@ -41,8 +41,6 @@ class Value(NamedTuple):
 
 
 class FitResult(NamedTuple):
-    """The result of a fit."""
-
     surface: Surface
     values: list[Value]     # one per key, in the order of a file
     warnings: list[str]
@@ -164,7 +162,7 @@ class WholeFit:
         current values."""
         prior = start
         while True:
-            surface, errors, _ = fit_floor(fitter, start, means, noises, prior)
+            surface, errors = fit_floor(fitter, start, means, noises, prior)
             unknown = [key for key in (*means, *noises) if not errors[key] <= LARGEST[key]]
             if not unknown:
                 break

@@ -50,7 +50,6 @@ class Thread:
             raise
 
     def close(self) -> None:
-        """Close the files of the thread."""
         for file in self.files:
             os.close(file)
         self.files = []
@@ -119,7 +118,6 @@ class Process:
             raise ProcessLookupError(f'no process {pid}')
 
     def close(self) -> None:
-        """Close all files."""
         for thread in self.threads.values():
             thread.close()
         self.threads = {}
@@ -145,7 +143,6 @@ class Process:
         return all(thread.sleeps() for thread in self.threads.values())
 
     def main_sleeps_briefly(self) -> bool:
-        """Return whether the main thread will wake by itself."""
         return bool(self.those(lambda thread: thread.is_main and thread.needs_no_message()))
 
     def polling(self) -> list[PollingThread]:

@@ -11,7 +11,7 @@ import rosgraph
 from rosgraph_msgs.msg import Clock as ClockMessage
 from rospy.impl import simtime
 
-from rbx1_nav.base.clocks import Clock, RealTimeClock
+from rbx1_nav.base.clocks import Clock
 from rbx1_nav.base.schedule import CLOCK_STEP, Schedule
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.extras.lockstep.lockstep import Lockstep
@@ -54,7 +54,7 @@ def read_clock(rate: float) -> Clock:
     if not rospy.rostime.is_wallclock():
         raise ConfigError('real_time_factor: missing: expected one, because /use_sim_time is true. fleet.launch '
                           'simulates several robots on one clock')
-    return RealTimeClock(rate)
+    return Clock(rate)
 
 
 def earlier_clock() -> str | None:

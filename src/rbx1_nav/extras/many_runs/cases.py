@@ -9,8 +9,8 @@ import yaml
 from rbx1_nav.base.description import Robot
 from rbx1_nav.base.kinematics import Pose
 from rbx1_nav.base.surfaces import KEYS, Surface
-from rbx1_nav.exercise.legs import StuckError
-from rbx1_nav.extras.many_runs.simulated_run import PARAMETERS, SimulationResult, legs, motions, simulate
+from rbx1_nav.exercise.legs import StuckError, out_and_back_by_odometry
+from rbx1_nav.extras.many_runs.simulated_run import PARAMETERS, SimulationResult, motions, simulate
 from rbx1_nav.extras.many_runs.summary import Summary
 from rbx1_nav.node.config import ConfigError, Section, show, show_name, suggestion
 from rbx1_nav.node.parameters import Parameter
@@ -141,7 +141,7 @@ def combine(surfaces: Mapping[str, Surface | None], values: Mapping[str, Sequenc
         parameters = {**PARAMETERS, **{key: value for key, value in chosen.items() if key in PARAMETERS}}
         combination = Combination(name, chosen, surface._replace(**of_surface) if surface else None, parameters)
         try:
-            motions(parameters), legs(parameters)
+            motions(parameters), out_and_back_by_odometry(**parameters)
         except ValueError as error:
             raise ConfigError(f'--set: {combination.title()}: {error}') from None
         found.append(combination)

@@ -9,7 +9,6 @@ import os
 import signal
 import threading
 from typing import Any, Callable, Deque, Iterable, Iterator, TypeVar
-from weakref import WeakSet
 
 from rbx1_nav.base.description import Robot
 from rbx1_nav.base.surfaces import Surface
@@ -39,6 +38,9 @@ def in_order(place: Place | None, function: Callable[[Task], Result], tasks: Ite
             yield _result(place, waiting.popleft())
     except CancelledError:
         raise ConnectionError('the scheduler is disconnected') from None
+    finally:
+        for each in waiting:        # do not compute results that are not needed
+            each.cancel()
 
 
 def _result(place: Place, future: Future[Result]) -> Result:
@@ -60,19 +62,8 @@ def open_place(jobs: int, scheduler: str | None, robot: Robot, surface: Surface 
     elif jobs == 1:
         yield None
     else:
-        pool = ProcessPoolExecutor(jobs, initializer=_follow_the_parent)
-        submitted: WeakSet[Future[Any]] = WeakSet()
-
-        def submit(function: Callable[[Any], Any], task: Any) -> Future[Any]:
-            future = pool.submit(function, task)
-            submitted.add(future)
-            return future
-        try:
-            yield Place(submit, lambda: jobs)
-        finally:
-            for each in submitted:      # do not compute runs whose results are not needed
-                each.cancel()
-            pool.shutdown()
+        with ProcessPoolExecutor(jobs, initializer=_follow_the_parent) as pool:
+            yield Place(pool.submit, lambda: jobs)
 
 
 def add_arguments(parser: Any, jobs: int | None = os.cpu_count()) -> None:

@@ -37,8 +37,6 @@ class Snapshot(NamedTuple):
 
 
 class SimulationResult(NamedTuple):
-    """The result of a run."""
-
     end: Snapshot
     first_leg: float            # m, true distance after the first motion
     covariance: Array | None    # 3x3, covariance of the filter's pose (m and rad); None without a filter
@@ -81,7 +79,6 @@ class Simulation:
         self.rate, self.period = rate, round(SECOND / rate)
 
     def tick(self) -> None:
-        """Advance by one tick."""
         self.now += self.period
         self.base.advance(self.now)
         if self.filter or self.listen:
@@ -107,7 +104,6 @@ class Simulation:
             self.tick()
 
     def snapshot(self) -> Snapshot:
-        """Return the current Snapshot."""
         return Snapshot(self.now / SECOND, self.base.wheels.truth.pose, self.base.odometry.pose,
                         self.filter.pose if self.filter else None)
 
@@ -160,11 +156,6 @@ def motions(parameters: Mapping[str, float]) -> list[Motion]:
     return out_and_back(**{name: parameters[name] for name in EXERCISE})
 
 
-def legs(parameters: Mapping[str, float]) -> list[Leg]:
-    """Return the legs of the exercise with odometry. Raises ValueError if one of them is too short or too long."""
-    return out_and_back_by_odometry(**parameters)
-
-
 def _drives(simulation: Simulation, method: str, parameters: Mapping[str, float]) -> list[Callable[[], None]]:
     """Return four functions, each of which drives one motion of the exercise."""
     pose = METHODS[method].pose
@@ -175,4 +166,4 @@ def _drives(simulation: Simulation, method: str, parameters: Mapping[str, float]
     def get_pose() -> Pose:
         estimate = combined.pose if combined else None
         return estimate or simulation.base.odometry.pose
-    return [partial(simulation.drive_by_pose, leg, get_pose) for leg in legs(parameters)]
+    return [partial(simulation.drive_by_pose, leg, get_pose) for leg in out_and_back_by_odometry(**parameters)]

@@ -63,7 +63,6 @@ class Poses(NamedTuple):
         return f'{x}  {y}  {heading}  {distance}'
 
     def errors(self) -> str:
-        """Return the errors as text."""
         distances, (distance, angle) = numpy.array(self.distances, dtype=float), self.error.mean
         return (f'by {distance:.3f} m (median {numpy.median(distances):.3f}, {SHARE} % below '
                 f'{numpy.percentile(distances, SHARE):.3f}) and {angle:.1f} degrees')

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from array import array
 import time
-from typing import Iterable, Iterator, NamedTuple, Sequence, TypeVar
+from typing import Iterator, NamedTuple, Sequence
 
 import numpy
 from tqdm import tqdm
@@ -20,7 +20,6 @@ from rbx1_nav.extras.many_runs.summary import HEADER, Summary
 from rbx1_nav.node.config import ConfigError
 
 MOMENT = 1.0    # s: shorter sweeps show no bar, and use one process
-_T = TypeVar('_T')
 
 
 class Finished(NamedTuple):
@@ -31,11 +30,6 @@ class Finished(NamedTuple):
     summary: Summary
     truths: Array       # (n, 3): the true end poses, if they were kept
     paths: list[SimulationResult]
-
-
-def in_turn(values: Iterable[_T]) -> list[_T]:
-    """Return the different values, in their order."""
-    return list(dict.fromkeys(values))
 
 
 class Sweep:
@@ -61,8 +55,9 @@ class Sweep:
         return RunsFile(path, {
             'rbx1_nav': code_version(), 'config': self.robot, 'method': self.methods, 'seed': self.seeds[0],
             'runs': len(self.seeds),
-            **{key: in_turn(each.values[key] for each in self.combinations) for key in self.combinations[0].values},
-            'surface': in_turn(each.surface_name for each in self.combinations),
+            **{key: list(dict.fromkeys(each.values[key] for each in self.combinations))
+               for key in self.combinations[0].values},
+            'surface': list(dict.fromkeys(each.surface_name for each in self.combinations)),
             'values of the surface': {each.surface_name: each.surface for each in self.combinations}}, keys)
 
     def run(self, jobs: int, scheduler: str | None, file: RunsFile | None = None, keep_truths: bool = False,
@@ -72,7 +67,22 @@ class Sweep:
         jobs, scheduler: see open_place(); keep_truths: whether to return the true end poses; paths: number of runs with
         paths to return. Raises ConfigError, OSError, StuckError and the errors of the executor.
         """
-        kept = Kept(keep_truths)
+        summary, truths = Summary(), array('d')
+        for place, chunk, rows in self._rows(jobs, scheduler, file):
+            for row in rows:
+                add_row(summary, row)
+                if keep_truths:
+                    truths.extend(row[:3])      # type: ignore[arg-type]
+            self.done += len(rows)
+            if chunk.is_last:
+                tasks = [(chunk.case(self.robot), [seed]) for seed in self.seeds[:paths]]
+                yield Finished(chunk.combination, chunk.method, summary, numpy.array(truths).reshape(-1, 3),
+                               [result for results in in_order(place, simulate_paths, tasks) for result in results])
+                summary, truths = Summary(), array('d')
+
+    def _rows(self, jobs: int, scheduler: str | None,
+              file: RunsFile | None) -> Iterator[tuple[Place | None, Chunk, list[Row]]]:
+        """Yield all Chunks with their rows, first those in the file, and where further runs can be computed."""
         start = time.monotonic()
         first = simulate_row(self.chunks[0].case(self.robot), self.seeds[0])
         long = (time.monotonic() - start) * self.total > MOMENT
@@ -81,10 +91,8 @@ class Sweep:
             if number == 0 and rows[0] != first:
                 raise ConfigError(f'{self.methods[0]}, seed {self.seeds[0]}: this computer has another result for the '
                                   'run: expected a file from one with an equal processor and equal libraries')
-            kept.add(rows)
-            number, self.done = number + 1, self.done + len(rows)
-            if chunk.is_last:
-                yield kept.finished(chunk, self._paths(None, chunk, paths))
+            number += 1
+            yield None, chunk, rows
         missing = self.chunks[number:]
         if not missing:
             return
@@ -92,37 +100,8 @@ class Sweep:
                 total=self.total, initial=self.done, unit='run', leave=False, disable=None if long else True) as bar:
             tasks = ((chunk.case(self.robot), chunk.seeds) for chunk in missing)
             for chunk, rows in zip(missing, in_order(place, simulate_rows, tasks)):
-                kept.add(rows)
                 if file:
                     file.append(chunk, rows)
-                self.done += len(rows)
                 bar.set_description(chunk.method, refresh=False)
                 bar.update(len(rows))
-                if chunk.is_last:
-                    yield kept.finished(chunk, self._paths(place, chunk, paths))
-
-    def _paths(self, place: Place | None, chunk: Chunk, count: int) -> list[SimulationResult]:
-        """Return the first results of a method, with their paths."""
-        tasks = [(chunk.case(self.robot), [seed]) for seed in self.seeds[:count]]
-        return [result for results in in_order(place, simulate_paths, tasks) for result in results]
-
-
-class Kept:
-    """What is kept of the runs of a method until all of them are done."""
-
-    def __init__(self, keep_truths: bool) -> None:
-        self.keep_truths = keep_truths
-        self.summary, self.truths = Summary(), array('d')
-
-    def add(self, rows: Sequence[Row]) -> None:
-        """Add runs."""
-        for row in rows:
-            add_row(self.summary, row)
-            if self.keep_truths:
-                self.truths.extend(row[:3])     # type: ignore[arg-type]
-
-    def finished(self, chunk: Chunk, paths: list[SimulationResult]) -> Finished:
-        """Return all runs of a method, and forget them. chunk: the last one."""
-        found = Finished(chunk.combination, chunk.method, self.summary, numpy.array(self.truths).reshape(-1, 3), paths)
-        self.summary, self.truths = Summary(), array('d')
-        return found
+                yield place, chunk, rows

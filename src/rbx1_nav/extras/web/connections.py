@@ -17,8 +17,6 @@ POLICY = 1008           # close code, RFC 6455
 
 
 class Browser:
-    """A connected browser."""
-
     def __init__(self, socket: WebSocketHandler, now: float) -> None:
         """now: s, monotonic clock."""
         self.socket = socket
@@ -34,7 +32,6 @@ class Browser:
         return self.greeted and (self.sending is None or self.sending.done())
 
     def send(self, message: bytes) -> None:
-        """Send a message."""
         try:
             self.sending = self.socket.write_message(message)
             # retrieve the exception: after an error, the connection closes anyway

@@ -49,7 +49,6 @@ class Keys:
         return True
 
     def release(self) -> None:
-        """Release all keys."""
         self.owner, self.speed = None, (0.0, 0.0)
 
     def velocity(self, now: float) -> tuple[float, float]:

@@ -15,7 +15,6 @@ PATH_POINTS, SPEED_POINTS, LOG_LINES = 3000, 3000, 50
 # distances between the points of a path; an arrow is drawn for every 0.1 m or 0.15 rad
 STEP, TURN = 0.02, 0.05     # m, rad
 HOLD = 1.0      # s: period of the samples while a speed is constant
-LOG_TEXT = 300  # characters
 
 
 class Counter:
@@ -25,7 +24,6 @@ class Counter:
         self.last = 0
 
     def next(self) -> int:
-        """Return the next number."""
         self.last += 1
         return self.last
 
@@ -40,7 +38,6 @@ class Series:
         self.items: deque[tuple[int, Any]] = deque(maxlen=size)
 
     def add(self, item: Any) -> None:
-        """Add an item."""
         self.items.append((self.counter.next(), item))
 
     def since(self, number: int) -> list[Any]:
@@ -91,15 +88,3 @@ class Speeds(Series):
                 self.add(self.held)
         self.held = None
         self.add(item)
-
-
-class Log(Series):
-    """Log messages [level, time, node, text]; level: a level of rosgraph_msgs/Log; time: s since 1970."""
-
-    def __init__(self, counter: Counter) -> None:
-        super().__init__(counter, LOG_LINES)
-
-    def line(self, level: int, time: float, node: str, text: str) -> None:
-        """Add a log message."""
-        text = text if len(text) <= LOG_TEXT else text[:LOG_TEXT - 3] + '...'
-        self.add([level, round(time, 3), node[:100], text])

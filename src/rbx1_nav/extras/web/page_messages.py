@@ -102,7 +102,6 @@ def _checked(name: str, value: object, default: Any) -> Any:
 
 
 def kind_of(message: Hello | Request) -> str:
-    """Return the `type` of a message."""
     return next(kind for kind, each in KINDS.items() if isinstance(message, each))
 
 

@@ -36,10 +36,7 @@ for logger in 'tornado.access', 'tornado.general':
 
 
 class FileHandler(StaticFileHandler):
-    """Serves the files of the page."""
-
     def set_default_headers(self) -> None:
-        """Called by tornado."""
         for name, value in HEADERS.items():
             self.set_header(name, value)
 
@@ -48,7 +45,6 @@ class SocketHandler(WebSocketHandler):
     """The WebSocket of a browser. tornado rejects a foreign Origin."""
 
     def initialize(self, connections: Connections) -> None:
-        """Called by tornado."""
         self.connections = connections
 
     def prepare(self) -> None:

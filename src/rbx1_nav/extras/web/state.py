@@ -5,7 +5,7 @@ from math import hypot, isfinite
 from threading import Lock
 from typing import Any, Mapping, NamedTuple, Sequence
 
-from rbx1_nav.extras.web.history import Counter, Log, Path, Series, Speeds
+from rbx1_nav.extras.web.history import LOG_LINES, Counter, Path, Series, Speeds
 from rbx1_nav.extras.web.page_messages import encode
 
 SOURCES = ('truth', 'odometry', 'estimate')     # sources of poses
@@ -19,6 +19,7 @@ SILENCE = 3.0       # s without a message after which a pose is no longer shown
 DRIVING_TIMEOUT = 2.0   # s without a motion after which a node no longer drives; a script rests for 1 s between motions
 COMMAND_TIMEOUT = 1.0   # s without a command after which the commanded speed is 0
 FACTOR_PERIOD = 2.0     # s of wall time
+LOG_TEXT = 300          # characters
 
 PoseRow = Sequence[float]   # x, y, yaw: m, rad
 
@@ -51,28 +52,13 @@ class Run:
         return None if self.origin is None else stamp - self.origin
 
 
-class TimeFactor:
-    """Measures how fast simulated time advances, relative to real time."""
-
-    def __init__(self) -> None:
-        self.value = 1.0
-        self.begin: tuple[float, float] | None = None   # stamp and monotonic clock, s
-
-    def measure(self, stamp: float, now: float) -> None:
-        """Process the stamp of a message. now: s, monotonic clock."""
-        if self.begin and now - self.begin[1] > FACTOR_PERIOD:
-            self.value = max(0.0, (stamp - self.begin[0]) / (now - self.begin[1]))
-            self.begin = None
-        self.begin = self.begin or (stamp, now)
-
-
 class PageState:
     """The state that the page shows. ROS threads write it, and the server thread reads it."""
 
     def __init__(self) -> None:
         self.lock = Lock()
         self.counter = Counter()
-        self.log = Log(self.counter)
+        self.log = Series(self.counter, LOG_LINES)      # [level, time, node, text]
         self.run = Run(self.counter, None)
         self.epoch = 0          # number of the run
         self.before: dict[str, PoseRow] = {}    # end poses of the previous run
@@ -82,7 +68,8 @@ class PageState:
         self.late: dict[str, float] = {}    # s, by source: until then, a pose away from the start precedes the reset
         self.last: tuple[float, float] | None = None    # last odometry message: stamp and monotonic clock, s
         self.speed = 0.0        # in the last odometry message, the larger of m/s and rad/s
-        self.factor = TimeFactor()
+        self.factor = 1.0       # how fast simulated time advances, relative to real time
+        self.measured: tuple[float, float] | None = None    # s: stamp and monotonic clock when its measurement began
         self.last_command = 0.0     # s, monotonic clock
         self.status: dict[str, Any] = {}
         self.status_number = self.counter.next()
@@ -117,9 +104,12 @@ class PageState:
         if self.last is None or motion.time < self.last[0] - BACK or jumped:
             if self.last is not None:
                 self._begin()
-            self.run.origin, self.factor.begin = motion.time, None
+            self.run.origin, self.measured = motion.time, None
         self.last = motion.time, now
-        self.factor.measure(*self.last)
+        if self.measured and now - self.measured[1] > FACTOR_PERIOD:
+            self.factor = max(0.0, (motion.time - self.measured[0]) / (now - self.measured[1]))
+            self.measured = None
+        self.measured = self.measured or self.last
 
     def command(self, linear: float, angular: float, sender: str, now: float) -> None:
         """Process a command. sender: name of the node that published it."""
@@ -138,7 +128,7 @@ class PageState:
         if self.last is None:
             return
         # a Twist has no stamp: derive its time from the last odometry message
-        time = self.run.time(self.last[0] + min(now - self.last[1], 1.0) * self.factor.value)
+        time = self.run.time(self.last[0] + min(now - self.last[1], 1.0) * self.factor)
         if time is not None:
             self.run.speeds['commanded'].sample(time, linear, angular)
 
@@ -206,9 +196,10 @@ class PageState:
                 self.status_number = self.counter.next()
 
     def log_line(self, level: int, time: float, node: str, text: str) -> None:
-        """Add a log message of a node."""
+        """Add a log message of a node. level: of rosgraph_msgs/Log; time: s since 1970."""
+        text = text if len(text) <= LOG_TEXT else text[:LOG_TEXT - 3] + '...'
         with self.lock:
-            self.log.line(level, time, node, text)
+            self.log.add([level, round(time, 3), node[:100], text])
 
     def frame(self, number: int, epoch: int, now: float) -> tuple[int, int, bytes]:
         """Make the frame for a browser that has received everything up to this number, in this epoch.
@@ -235,7 +226,7 @@ class PageState:
                 fields['log'] = log
             if self.status_number > number or epoch != self.epoch:
                 fields['status'] = dict(self.status, before=self.before, before_name=self.before_name,
-                                        factor=round(self.factor.value, 1))
+                                        factor=round(self.factor, 1))
             return self.counter.last, self.epoch, encode('frame', **fields)
 
 

@@ -71,7 +71,6 @@ class System:
         self.thread.start()
 
     def on_odometry(self, message: Odometry, source: str) -> None:
-        """Process a pose and a velocity."""
         pose, twist = message.pose.pose, message.twist.twist
         sender = message._connection_header['callerid']
         if source == 'odometry':
@@ -88,14 +87,12 @@ class System:
         time.sleep(MIN_PERIOD)
 
     def on_command(self, twist: Twist) -> None:
-        """Process a command to the base."""
         sender = twist._connection_header['callerid']
         self.state.command(twist.linear.x, twist.angular.z, BY_HAND if sender == rospy.get_name() else sender,
                            time.monotonic())
         time.sleep(COMMAND_PERIOD)
 
     def on_reset(self, _: Empty) -> None:
-        """Process a reset of the base."""
         self.state.reset(time.monotonic())
 
     def on_diagnostics(self, array: DiagnosticArray) -> None:
@@ -111,7 +108,6 @@ class System:
         time.sleep(MIN_PERIOD)
 
     def on_log(self, line: Log) -> None:
-        """Process a log message."""
         if line.level >= Log.INFO:
             self.state.log_line(line.level, line.header.stamp.to_sec(), line.name, line.msg)
         time.sleep(MIN_PERIOD)

@@ -83,6 +83,6 @@ def test_another_robot_at_another_adapter_gets_no_command_before_it_is_known():
     driven.connect()
     driven.run(2)
     assert {data for _, data in other.commands} <= {sequences.START, b'\x8e\x03', b'\x8e\x2b', b'\x8e\x08', b'\x96\x00'}
-    assert not other.robot.programs.started
+    assert not other.robot.programs_started
     assert driven.log[-1] == ('A create2 answers at 115200 baud: expected a create; to drive it, restart this node '
                               'with robot_type:=create2, or auto')

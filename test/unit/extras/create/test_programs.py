@@ -23,14 +23,14 @@ def check_it_is_over(robot):
     """Check that the robot is stationary and remains so."""
     stopped = robot.pose
     robot.run(5)
-    assert not robot.robot.programs.running and not robot.body.moving and robot.pose == stopped
+    assert not robot.robot.program_runs and not robot.body.moving and robot.pose == stopped
 
 
 @pytest.mark.parametrize('model, name', CLEANING_OF)
 def test_a_cleaning_program_drives_the_robot_in_passive_mode(model, name):
     robot = running(model, command(name))
     robot.run(5)
-    assert robot.mode == PASSIVE and robot.body.moving and robot.robot.programs.started == 1
+    assert robot.mode == PASSIVE and robot.body.moving and robot.robot.programs_started == 1
     assert hypot(robot.pose.x, robot.pose.y) > 0.1
     assert robot.read(39) == {'requested_velocity': 0}      # the motion was not requested
     # 5 s at 0.2 m/s, from the first update on, read within 50 ms of the next
@@ -46,7 +46,7 @@ def test_commands_that_stop_a_program(model, name):
     assert robot.body.moving
     robot.send(command(name))
     check_it_is_over(robot)
-    assert robot.robot.programs.started == 1
+    assert robot.robot.programs_started == 1
 
 
 @pytest.mark.parametrize('fault', ['wheel_dropped', 'cliff', 'docked'])
@@ -67,10 +67,10 @@ def test_a_second_cleaning_command_pauses(model, name):
     robot.run(2)
     robot.send(command(name))
     check_it_is_over(robot)
-    assert robot.robot.programs.started == 1
+    assert robot.robot.programs_started == 1
     robot.send(command(name))
     robot.run(1)
-    assert robot.body.moving and robot.robot.programs.started == 2
+    assert robot.body.moving and robot.robot.programs_started == 2
 
 
 def driving(model, **options):
@@ -90,7 +90,7 @@ def check_it_is_off(robot):
                  command('sensors', 35)):
         assert robot.send(data) == b''
     assert robot.run(5) == b''
-    assert robot.mode == OFF and robot.pose == stopped and robot.commands == [] and robot.robot.programs.started == 0
+    assert robot.mode == OFF and robot.pose == stopped and robot.commands == [] and robot.robot.programs_started == 0
 
 
 @both

@@ -54,7 +54,7 @@ def test_nothing_moves_while_the_robot_is_not_known(robot, baud, robot_type):
     driven = searching(robot, baud, robot_type)
     while not driven.found and driven.now < 20 * SECOND:
         driven.run(0.002)
-        assert not driven.body.moving and not driven.robot.programs.started
+        assert not driven.body.moving and not driven.robot.programs_started
     # all commands that it has received, including those in garbage
     assert set(names(driven)) <= ALLOWED
     assert bool(driven.found) == (robot == robot_type)

@@ -25,11 +25,12 @@ def series(parts, start=0.0):
 def test_the_travel_of_commands_is_that_of_the_simulated_wheels(parts, delay, start):
     surface = SURFACE._replace(delay=delay)
     given_commands, end = series(parts, start)
-    steps = commanded_travel(surface, WIDTH, given_commands, grid(start, end + 2.0))
+    times = grid(start, end + 2.0)
+    steps = commanded_travel(surface, WIDTH, given_commands, times)
     wheels = Wheels(WIDTH, surface, RUN, 0.02)
     pieces = [*parts, (0.0, 0.0, 3.0)]
     straight, turn = [], []
-    for length in numpy.diff(steps.time):
+    for length in numpy.diff(times):
         before = wheels.left.total, wheels.right.total
         while length > 0:
             linear, angular, left = pieces[0]
@@ -50,9 +51,10 @@ def test_the_travel_of_commands_is_that_of_the_simulated_wheels(parts, delay, st
 def test_commands_before_the_first_step_count(parts, delay, missing):
     surface = SURFACE._replace(delay=delay)
     given_commands, end = series(parts)
-    whole = commanded_travel(surface, WIDTH, given_commands, grid(0.0, end + 3.0))
+    times = grid(0.0, end + 3.0)
+    whole = commanded_travel(surface, WIDTH, given_commands, times)
     skipped = int(missing * len(parts))
-    part = commanded_travel(surface, WIDTH, given_commands, whole.time[skipped:])
+    part = commanded_travel(surface, WIDTH, given_commands, times[skipped:])
     assert part.straight == pytest.approx(whole.straight[skipped:], abs=1e-12)
     assert part.turn == pytest.approx(whole.turn[skipped:], abs=1e-12)
 

@@ -111,4 +111,4 @@ def test_what_is_not_finite_is_ignored(state, wrong):
 def test_simulated_time_is_measured(state):
     for tick in range(300):
         state.move('odometry', motion(tick * 0.2), tick * 0.02)
-    assert state.factor.value == pytest.approx(10)
+    assert state.factor == pytest.approx(10)

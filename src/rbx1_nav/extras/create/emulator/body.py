@@ -76,7 +76,7 @@ class Body:
 
     def __init__(self, model: Model, surface: Surface | None = None, seed: int = 0, errors: BodyErrors = BodyErrors(),
                  gyro_range: float = 150.0, quirks: Quirks = Quirks()) -> None:
-        """model: a protocol.Model; surface, seed: see make_base() in simulated_base.py; gyro_range: degrees/s."""
+        """model: a protocol.Model; surface, seed: see simulated_base.make_base(); gyro_range: degrees/s."""
         self.model = model
         self.errors = errors
         self.gyro_range = gyro_range
@@ -109,11 +109,9 @@ class Body:
 
     @property
     def moving(self) -> bool:
-        """Whether a wheel is commanded to turn."""
         return bool(self.left or self.right)
 
     def advance(self, now: int) -> None:
-        """Move up to `now`."""
         duration, self.now = now - (now if self.now is None else self.now), now
         if duration <= 0:
             return

@@ -6,11 +6,10 @@ from struct import Struct
 from typing import Callable, Sequence
 
 from rbx1_nav.extras.create.emulator.body import Body
-from rbx1_nav.extras.create.emulator.programs import CIRCLE, Programs
 from rbx1_nav.extras.create.emulator.serial_line import SerialLine
 from rbx1_nav.extras.create.protocol import (
     BAUD_RATES, COUNTED, CREATE, IN_PLACE_LEFT, IN_PLACE_RIGHT, MAX_SPEED, OFF, PASSIVE, ROBOT_RADIUS, SAFE, STRAIGHT,
-    UPDATE_PERIOD, Command, Model, encode_frame, frame_format, packets_format, single_packets)
+    UPDATE_PERIOD, Command, Model, encode_frame, packets_format, single_packets)
 from rbx1_nav.base.units import SECOND, clamp
 
 TICK = round(UPDATE_PERIOD * SECOND)
@@ -20,6 +19,10 @@ CREATE_RESET_TIME = 3 * SECOND      # this time after a reset of a Create: its b
 BOOT_TEXT = b'bl-start\r\nSTR730\r\nRoomba by iRobot!\r\nr3_robot/tags/release-3.5.4\r\n'
 MAX_FRAME = 255         # data bytes in a frame of the stream
 MAX_PWM = 255
+# cleaning, docking and the demos of the Create. A driver can only see that the robot drives although it was not asked
+# to, so each of these programs drives the same circle: mm/s, mm
+PROGRAMS, CIRCLE = {'spot', 'cover', 'max', 'dock', 'demo'}, (200, 300)
+DEMOS, ABORT = 10, 255      # number of demos (Create p. 8); -1, the number that stops the running demo
 PAIR = Struct('>hh')
 
 
@@ -47,7 +50,8 @@ class EmulatedCreate:
         self.body = body
         self.line = line
         self.on_command = on_command or (lambda time, data: None)
-        self.programs = Programs(body)
+        self.programs_started = 0
+        self.program_runs = False
         self._baud = line.baud
         self._deaf_until: float = now
         self._start(now)
@@ -65,7 +69,7 @@ class EmulatedCreate:
         self.line.baud = self._baud
         self.body.drive(0, 0)
         self.body.reset_counters()
-        self.programs.stop()
+        self._stop_program()
         self._input = bytearray()
         self._next_update = now + TICK
         self._requested = dict.fromkeys(('requested_velocity', 'requested_radius', 'requested_right_velocity',
@@ -76,7 +80,6 @@ class EmulatedCreate:
     # time
 
     def receive(self, data: bytes, now: int) -> None:
-        """Receive bytes that the host sends."""
         self._run(now)
         self.line.from_host(data, now)
 
@@ -120,8 +123,8 @@ class EmulatedCreate:
         if self.mode == SAFE and self._unsafe():
             self._enter(PASSIVE)
         if self.body.wheel_dropped or self.body.cliff or self.body.docked:
-            self.programs.stop()
-        if self.programs.running:
+            self._stop_program()
+        if self.program_runs:
             self._drive_curve(*CIRCLE)
         if self._streaming:
             self.line.from_robot(encode_frame(self.model, self._stream, self._values(self._stream)), self.now)
@@ -148,7 +151,6 @@ class EmulatedCreate:
         self._execute()
 
     def _execute(self) -> None:
-        """Execute the complete commands."""
         while self._input:
             command = self.model.commands.get(self._input[0])
             if command is None or (self.mode == OFF and OFF not in command.modes):
@@ -164,14 +166,13 @@ class EmulatedCreate:
                 self._do(command, data[1:])
 
     def _do(self, command: Command, data: bytes) -> None:
-        of_programs = getattr(self.programs, f'do_{command.name}', None)
-        handler = of_programs or getattr(self, f'_do_{command.name}', None)
+        handler = getattr(self, f'_do_{command.name}', None)
         if handler:     # the other commands have no visible effect
             handler(data)
         if command.mode is not None:
             self._enter(command.mode)
-            if not of_programs:
-                self.programs.stop()
+            if command.name not in PROGRAMS:
+                self._stop_program()
 
     def _do_reset(self, _: bytes) -> None:
         self.switch_on(self.now)
@@ -188,6 +189,31 @@ class EmulatedCreate:
     def _do_baud(self, data: bytes) -> None:
         if data[0] < len(BAUD_RATES):
             self.line.baud = BAUD_RATES[data[0]]
+
+    # programs
+
+    def _start_program(self) -> None:
+        self.programs_started += 1
+        self.program_runs = True
+
+    def _stop_program(self) -> None:
+        if self.program_runs:
+            self.program_runs = False
+            self.body.drive(0, 0)
+
+    def _do_spot(self, _: bytes) -> None:
+        if self.program_runs:       # like each of the robot's buttons, this pauses it (Create 2 p. 11-12)
+            self._stop_program()
+        else:
+            self._start_program()
+
+    _do_cover = _do_max = _do_dock = _do_spot
+
+    def _do_demo(self, data: bytes) -> None:
+        if data[0] == ABORT:
+            self._stop_program()
+        elif data[0] < DEMOS:
+            self._start_program()
 
     # wheels
 
@@ -249,7 +275,8 @@ class EmulatedCreate:
 
     def _do_stream(self, data: bytes) -> None:
         numbers = list(data[1:])
-        if self._known(numbers) and frame_format(self.model, numbers).size - 3 <= MAX_FRAME:
+        if self._known(numbers) and (
+                len(numbers) + packets_format(single_packets(self.model, numbers)).size <= MAX_FRAME):
             self._stream, self._streaming = numbers, bool(numbers)
 
     def _do_pause_resume_stream(self, data: bytes) -> None:

@@ -64,7 +64,6 @@ class SerialLine:
         self._rate = baud           # host baud rate for which the waiting bytes were scheduled
 
     def from_host(self, data: bytes, now: int) -> None:
-        """Send bytes from the host."""
         if self.silent:
             return
         data = self._recall(now) + data
@@ -92,7 +91,6 @@ class SerialLine:
         return data
 
     def from_robot(self, data: bytes, now: int) -> None:
-        """Send bytes from the robot."""
         period = BITS * SECOND // self.baud
         time = max(now, self._last_to_host)
         for byte in data[:max(0, BUFFER_SIZE - (time - now) // period)]:
@@ -188,32 +186,25 @@ class PseudoTerminal:
 
     def write(self, data: bytes) -> None:
         """Send bytes to the client. They are lost if there is no client, or if it does not read them."""
-        if data and self._master is not None and self._client(0) is not None:
+        if data and self._master is not None and self.has_client():
             try:
                 os.write(self._master, data)
             except OSError:     # the client does not read, or has just disconnected
                 pass
 
-    @property
-    def has_client(self) -> bool:
-        """Whether a client has opened the device."""
-        return self._client(0) is not None
-
     def wait(self, duration: float) -> None:
         """Wait until the client sends something, for at most `duration` (s)."""
-        if self._client(duration) is None:
+        if not self.has_client(duration):
             time.sleep(max(duration, MIN_SLEEP))
 
-    def _client(self, duration: float) -> bool | None:
-        """Wait for at most `duration` (s). Returns whether the client has sent something; None without a client."""
+    def has_client(self, duration: float = 0.0) -> bool:
+        """Return whether a client has opened the device. Waits until it sends something, for at most `duration` (s)."""
         if self._master is None:
-            return None
+            return False
         poll = select.poll()
         poll.register(self._master, select.POLLIN)
         events = poll.poll(1000 * duration)
-        if events and not events[0][1] & select.POLLIN:
-            return None
-        return bool(events)
+        return not events or bool(events[0][1] & select.POLLIN)
 
     def _make_link(self, link: str, device: str) -> None:
         if os.path.lexists(link) and not os.path.islink(link):
