@@ -12,8 +12,7 @@ SETS = {
     'set_fast': ['result', 'released_publisher'],
     'set_real_time': ['keyboard_driving', 'contradictory_commands', 'plain_driver'],
     'set_calibration': ['angular_calibration', 'linear_calibration'],
-    'set_fake_create': ['fake_create_baud_rate', 'fake_create_cable', 'fake_create_faults', 'fake_create_line',
-                        'fake_create_parameters', 'fake_create_truth', 'independent_client'],
+    'set_fake_create': ['emulated_robot', 'independent_client'],
     'set_create': ['create_drives', 'create_gyro', 'create_port'],
     'set_create_fails': ['create_killed', 'create_refuses', 'create_safety', 'create_silence']}
 
