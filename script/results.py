@@ -6,8 +6,8 @@ import xml.etree.ElementTree as ElementTree
 # Rostests with the same set-up that leave nothing behind in it. Each set runs on one master, one after another.
 SETS = {
     'set_tools': ['interrupted_start', 'launch_arguments', 'simulate_command', 'usage'],
-    'set_base': ['consistent_outputs', 'base_timeout', 'rejected_commands', 'reset', 'message_counts'],
-    'set_stops': ['closed_terminal', 'stop_on_signal', 'plain_driver_in_simulated_time'],
+    'set_base': ['consistent_outputs', 'rejected_commands', 'message_counts'],
+    'set_stops': ['stop_on_signal', 'plain_driver_in_simulated_time'],
     'set_scripts': ['remembered_parameters', 'two_drivers'],
     'set_fast': ['result', 'released_publisher'],
     'set_real_time': ['keyboard_driving', 'contradictory_commands', 'plain_driver'],

@@ -20,9 +20,8 @@ SECOND = 10 ** 9
 STEP = 20_000_000       # ns of the clock
 # rates (Hz) of each kind; 20 Hz is no whole number of ticks
 RATES = {
-    'rospy': {'latest': (10, 20, 50), 'tf_loop': (20, 50), 'callback': (10, 50), 'tf_callback': (50,),
-              'filters': (50,)},
-    'roscpp': {'latest': (10, 20, 50), 'tf_loop': (20, 50), 'callback': (10, 50), 'tf_callback': (50,)},
+    'rospy': {'latest': (20, 50), 'tf_loop': (20,), 'callback': (10, 50), 'tf_callback': (50,), 'filters': (50,)},
+    'roscpp': {'latest': (20, 50), 'tf_loop': (20,), 'callback': (10, 50), 'tf_callback': (50,)},
     'filter': {'latest_ekf': (10, 20, 50)}}
 # those that are also started on wall time; a loop may then begin a tick earlier than its first command takes effect
 WALL = (('callback', 50),)

@@ -36,12 +36,6 @@ class TestInterruptedCalibration(support.Case):
     def test_linear_in_motion(self):
         self.check('calibrate_linear.py')
 
-    def test_angular_in_motion(self):
-        self.check('calibrate_angular.py')
-
-    def test_linear_at_the_question(self):
-        self.check('calibrate_linear.py', 'The odometry reports')
-
     def test_angular_at_the_question(self):
         self.check('calibrate_angular.py', 'The gyro reports')
 
