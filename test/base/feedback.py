@@ -14,7 +14,7 @@ from std_srvs.srv import Empty
 
 import support
 
-FOLDER = os.path.dirname(os.path.realpath(__file__))
+DRIVER = os.path.join(os.path.dirname(os.path.realpath(__file__)), 'feedback_driver.py')
 RUNS = 2
 SECOND = 10 ** 9
 STEP = 20_000_000       # ns of the clock
@@ -25,13 +25,6 @@ RATES = {
     'filter': {'latest_ekf': (10, 20, 50)}}
 # those that are also started on wall time; a loop may then begin a tick earlier than its first command takes effect
 WALL = (('callback', 50),)
-
-
-def driver_in(language):
-    """Return the path of the driver."""
-    if language == 'roscpp':
-        return os.path.join(os.environ['CMAKE_PREFIX_PATH'].split(':')[0], 'lib/rbx1_nav/feedback_driver')
-    return os.path.join(FOLDER, 'feedback_driver.py')
 
 
 def commands(x, y, yaw):
@@ -93,7 +86,8 @@ class TestFeedback(support.Case):
         """Check all runs of a driver."""
         if kind == 'filters' and not importlib.util.find_spec('message_filters'):
             self.skipTest('no package message_filters')
-        ends = [self.drive(driver_in(language), kind, rate, *start) for _ in range(RUNS)]
+        driver = support.roscpp('feedback_driver') if language == 'roscpp' else DRIVER
+        ends = [self.drive(driver, kind, rate, *start) for _ in range(RUNS)]
         texts = [text for text, _ in ends]
         # the filter's estimate rounds differently after another time at rest
         if kind != 'latest_ekf':

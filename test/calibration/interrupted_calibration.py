@@ -18,8 +18,7 @@ class TestInterruptedCalibration(support.Case):
 
     def check(self, script, line=None):
         """Interrupt a script in motion, or after `line`."""
-        commands = support.Watch('/cmd_vel', Twist)
-        self.addCleanup(commands.subscriber.unregister)
+        commands = self.watch_commands()
         process = support.Process('rosrun', 'rbx1_nav', script)
         if line:
             process.wait_for_line(line)

@@ -9,7 +9,6 @@ import subprocess
 import termios
 
 import rospy
-from geometry_msgs.msg import Twist
 from rosgraph_msgs.msg import Log
 
 import support
@@ -26,8 +25,7 @@ class TestStopOnSignal(support.Case):
 
         number: of the signal, to which the exit status adds 128.
         """
-        commands = support.Watch('/cmd_vel', Twist)
-        self.addCleanup(commands.subscriber.unregister)
+        commands = self.watch_commands()
         # slow, so that the motion lasts until the shutdown
         driver = support.out_and_back('_linear_speed:=0.01')
         self.odom.wait_for_twist(0.01)
