@@ -7,10 +7,9 @@ import xml.etree.ElementTree as ElementTree
 SETS = {
     'set_tools': ['interrupted_start', 'launch_arguments', 'simulate_command', 'usage'],
     'set_base': ['consistent_outputs', 'rejected_commands', 'message_counts'],
-    'set_stops': ['stop_on_signal', 'plain_driver_in_simulated_time'],
     'set_scripts': ['remembered_parameters', 'two_drivers'],
     'set_fast': ['result', 'released_publisher'],
-    'set_real_time': ['keyboard_driving', 'contradictory_commands', 'plain_driver'],
+    'set_real_time': ['keyboard_driving', 'contradictory_commands'],
     'set_calibration': ['angular_calibration', 'linear_calibration'],
     'set_fake_create': ['emulated_robot', 'independent_client'],
     'set_create': ['create_drives', 'create_gyro', 'create_port'],
