@@ -252,8 +252,7 @@ class Case(unittest.TestCase):
         """Return the path of a file with a text, which is deleted after the test."""
         file = tempfile.NamedTemporaryFile('w', suffix=suffix)
         self.addCleanup(file.close)
-        file.write(text)
-        file.flush()
+        print(text, file=file, flush=True)
         return file.name
 
     def watch_commands(self):
