@@ -6,14 +6,12 @@ import xml.etree.ElementTree as ElementTree
 # Rostests with the same set-up that leave nothing behind in it. Each set runs on one master, one after another.
 SETS = {
     'set_tools': ['interrupted_start', 'launch_arguments', 'simulate_command', 'usage'],
-    'set_base': ['consistent_outputs', 'base_timeout', 'rejected_commands', 'reset', 'message_counts'],
-    'set_stops': ['closed_terminal', 'stop_on_signal', 'plain_driver_in_simulated_time'],
+    'set_base': ['consistent_outputs', 'rejected_commands', 'message_counts'],
     'set_scripts': ['remembered_parameters', 'two_drivers'],
     'set_fast': ['result', 'released_publisher'],
-    'set_real_time': ['keyboard_driving', 'contradictory_commands', 'plain_driver'],
+    'set_real_time': ['keyboard_driving', 'contradictory_commands'],
     'set_calibration': ['angular_calibration', 'linear_calibration'],
-    'set_fake_create': ['fake_create_baud_rate', 'fake_create_cable', 'fake_create_faults', 'fake_create_line',
-                        'fake_create_parameters', 'fake_create_truth', 'independent_client'],
+    'set_fake_create': ['emulated_robot', 'independent_client'],
     'set_create': ['create_drives', 'create_gyro', 'create_port'],
     'set_create_fails': ['create_killed', 'create_refuses', 'create_safety', 'create_silence']}
 

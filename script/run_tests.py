@@ -7,7 +7,7 @@ usage: run_tests.py --results DIR [--jobs N] [--repeat] TESTS...
 
 --repeat: rostests that fail are repeated once, one at a time. Those that pass then are flaky; three fail the run.
 
-TESTS: a rostest, such as test/base/reset.test, or unit tests for one process, such as test/unit/base,test/unit/node
+TESTS: a rostest, such as test/base/feedback.test, or unit tests for one process, such as test/unit/base,test/unit/node
 
 Each rostest runs in a copy of this process: in a new process, the imports of rostest would take longer than most tests.
 """
@@ -40,7 +40,7 @@ FLAKY = 3       # flaky rostests that fail the run
 LONGEST = ['documents', 'in_step', 'calibration_without_gyro', *SETS, 'unit-1', 'unit-2', 'unit-3', 'unit-4',
            'browser_page']
 # use more than a core each, and fail if they get less: one at a time, when the others have finished
-ALONE = ['eight_models', 'browser_comparison', 'feedback_roscpp']
+ALONE = ['fleet_models', 'browser_comparison', 'feedback_roscpp']
 
 
 def run_rostest(results, name, path):

@@ -5,6 +5,7 @@ import re
 import signal
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 import unittest
@@ -247,12 +248,30 @@ class Case(unittest.TestCase):
                 process.kill()
             del Process.started[before:]
 
+    def file(self, text, suffix):
+        """Return the path of a file with a text, which is deleted after the test."""
+        file = tempfile.NamedTemporaryFile('w', suffix=suffix)
+        self.addCleanup(file.close)
+        print(text, file=file, flush=True)
+        return file.name
+
+    def watch_commands(self):
+        """Return a Watch of /cmd_vel, which ends with the test."""
+        commands = Watch('/cmd_vel', Twist)
+        self.addCleanup(commands.subscriber.unregister)
+        return commands
+
     def start(self, *command):
         """Start a Process. It is interrupted after the test, so that a roslaunch stops its nodes."""
         process = Process(*command)
         self.addCleanup(process.wait)
         self.addCleanup(process.signal, signal.SIGINT)
         return process
+
+
+def roscpp(name):
+    """Return the path of a C++ driver."""
+    return os.path.join(os.environ['CMAKE_PREFIX_PATH'].split(':')[0], 'lib', 'rbx1_nav', name)
 
 
 def surfaces():

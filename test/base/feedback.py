@@ -14,25 +14,17 @@ from std_srvs.srv import Empty
 
 import support
 
-FOLDER = os.path.dirname(os.path.realpath(__file__))
+DRIVER = os.path.join(os.path.dirname(os.path.realpath(__file__)), 'feedback_driver.py')
 RUNS = 2
 SECOND = 10 ** 9
 STEP = 20_000_000       # ns of the clock
 # rates (Hz) of each kind; 20 Hz is no whole number of ticks
 RATES = {
-    'rospy': {'latest': (10, 20, 50), 'tf_loop': (20, 50), 'callback': (10, 50), 'tf_callback': (50,),
-              'filters': (50,)},
-    'roscpp': {'latest': (10, 20, 50), 'tf_loop': (20, 50), 'callback': (10, 50), 'tf_callback': (50,)},
+    'rospy': {'latest': (20, 50), 'tf_loop': (20,), 'callback': (10, 50), 'tf_callback': (50,), 'filters': (50,)},
+    'roscpp': {'latest': (20, 50), 'tf_loop': (20,), 'callback': (10, 50), 'tf_callback': (50,)},
     'filter': {'latest_ekf': (10, 20, 50)}}
 # those that are also started on wall time; a loop may then begin a tick earlier than its first command takes effect
 WALL = (('callback', 50),)
-
-
-def driver_in(language):
-    """Return the path of the driver."""
-    if language == 'roscpp':
-        return os.path.join(os.environ['CMAKE_PREFIX_PATH'].split(':')[0], 'lib/rbx1_nav/feedback_driver')
-    return os.path.join(FOLDER, 'feedback_driver.py')
 
 
 def commands(x, y, yaw):
@@ -94,7 +86,8 @@ class TestFeedback(support.Case):
         """Check all runs of a driver."""
         if kind == 'filters' and not importlib.util.find_spec('message_filters'):
             self.skipTest('no package message_filters')
-        ends = [self.drive(driver_in(language), kind, rate, *start) for _ in range(RUNS)]
+        driver = support.roscpp('feedback_driver') if language == 'roscpp' else DRIVER
+        ends = [self.drive(driver, kind, rate, *start) for _ in range(RUNS)]
         texts = [text for text, _ in ends]
         # the filter's estimate rounds differently after another time at rest
         if kind != 'latest_ekf':

@@ -100,8 +100,7 @@ class TestInStep(support.Case):
         self.check_kind('timer', DRIVER, 'timer')
 
     def test_roscpp(self):
-        folder = os.path.join(os.environ['CMAKE_PREFIX_PATH'].split(':')[0], 'lib', 'rbx1_nav')
-        self.check_kind('roscpp', os.path.join(folder, 'driver_at_rate'))
+        self.check_kind('roscpp', support.roscpp('driver_at_rate'))
 
     def test_beside_an_idle_driver(self):
         idle = self.start('/usr/bin/python3', '-c', 'import rospy; from geometry_msgs.msg import Twist; '

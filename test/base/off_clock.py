@@ -17,11 +17,6 @@ FEEDBACK = os.path.join(FOLDER, 'feedback_driver.py')
 REST = 40
 
 
-def roscpp(name):
-    """Return the path of a C++ driver."""
-    return os.path.join(os.environ['CMAKE_PREFIX_PATH'].split(':')[0], 'lib/rbx1_nav', name)
-
-
 class TestOffClock(support.Case):
     @classmethod
     def setUpClass(cls):
@@ -50,9 +45,9 @@ class TestOffClock(support.Case):
     def test_on_the_clock(self):
         before = len(self.warnings())
         for command in [(DRIVER, 'two_commands'), (DRIVER, 'last_command'), (AT_RATE, 'rate', 20),
-                        (AT_RATE, 'sleep', 20), (AT_RATE, 'timer', 20), (roscpp('driver_at_rate'), 20),
+                        (AT_RATE, 'sleep', 20), (AT_RATE, 'timer', 20), (support.roscpp('driver_at_rate'), 20),
                         (FEEDBACK, 'latest', 50), (FEEDBACK, 'callback', 50),
-                        (roscpp('feedback_driver'), 'callback', 50)]:
+                        (support.roscpp('feedback_driver'), 'callback', 50)]:
             self.drive(*command)
         self.check(before)
 
@@ -61,7 +56,7 @@ class TestOffClock(support.Case):
         for rate in 10, 20, 50:
             rospy.ServiceProxy('/arbotix/reset', Empty)()
             before = len(self.warnings())
-            self.drive(roscpp('timer_driver'), rate, rate)
+            self.drive(support.roscpp('timer_driver'), rate, rate)
             try:
                 self.check(before)
             except AssertionError:

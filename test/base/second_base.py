@@ -1,8 +1,5 @@
 #!/usr/bin/python3
 """A base that is started while another one is running replaces it, and one complete robot remains."""
-import os
-import tempfile
-
 import rosnode
 import rospy
 import tf2_ros
@@ -42,12 +39,8 @@ class TestSecondBase(support.Case):
         self.assertEqual(len(publishers), 1)
 
     def test_a_base_of_another_name(self):
-        file = tempfile.NamedTemporaryFile('w', suffix='.launch')
-        self.addCleanup(file.close)
-        file.write(OTHER_NAME)
-        file.flush()
         self.launch('rbx1_nav', 'fake_turtlebot.launch')
-        self.launch(os.path.realpath(file.name))
+        self.launch(self.file(OTHER_NAME, '.launch'))
         support.wait_for(lambda: '/robot_state_publisher' in rosnode.get_node_names(), 'the second publisher')
         self.assert_whole('base_l_wheel_link', 'laptop_link')
         # the first publisher continues

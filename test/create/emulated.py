@@ -37,6 +37,7 @@ class EmulatedRobot:
             support.wait_for(watch.subscriber.get_num_connections, watch.subscriber.name)
         self.truth.next()
         self.port = None
+        self.publishers = []
 
     def end(self):
         """Stop the process, so that another one can use its name."""
@@ -48,6 +49,8 @@ class EmulatedRobot:
         assert 'Traceback' not in self.process.output, self.process.output
         for watch in self.truth, self.line:
             watch.subscriber.unregister()
+        for publisher in self.publishers:       # otherwise the next robot receives what they have latched
+            publisher.unregister()
 
     def open(self, baud=None):
         """Open the serial port."""
@@ -100,6 +103,7 @@ class EmulatedRobot:
     def publish(self, topic, value):
         """Publish a number to one of its topics."""
         publisher = rospy.Publisher(f'/fake_create/{topic}', Float64, queue_size=1, latch=True)
+        self.publishers.append(publisher)
         support.wait_for(publisher.get_num_connections, f'the robot to subscribe to {topic}')
         publisher.publish(value)
         self.process.wait_for_line(f'{topic}: ')

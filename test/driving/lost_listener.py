@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""If a base no longer accepts commands during a run, the run fails with an error that names the base."""
+"""If a base clamps a command, or no longer accepts commands, the run fails with an error that names the base."""
 import os
 import signal
 import subprocess
@@ -8,7 +8,8 @@ import rospy
 
 import support
 
-BASE = {'controllers': {'base': {'type': 'diff_controller', 'base_width': 0.26, 'base_frame_id': 'base_footprint'}}}
+BASE = {'controllers': {'base': {'type': 'diff_controller', 'base_width': 0.26, 'base_frame_id': 'base_footprint',
+                                 'max_linear_speed': 0.5}}}
 
 
 class TestLostListener(support.Case):
@@ -42,6 +43,10 @@ class TestLostListener(support.Case):
         self.assertRegex(driver.output, r'\[ERROR\].*: /cmd_vel: ' + text)
         self.assertIn('Stopping the robot...', driver.output)
         self.assertNotIn('Traceback', driver.output)
+
+    def test_the_base_clamps_a_command(self):
+        self.check_error(support.out_and_back('_linear_speed:=1'),
+                         '/arbotix did not follow a command: 1 m/s, 0 rad/s: expected at most 0.5 m/s')
 
     def test_the_base_is_killed(self):
         for script in (support.out_and_back, support.by_odometry):

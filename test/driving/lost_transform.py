@@ -3,8 +3,6 @@
 import os
 import signal
 
-from geometry_msgs.msg import Twist
-
 import support
 
 
@@ -13,8 +11,7 @@ class TestLostTransform(support.Case):
         self.odom = support.OdomWatch()
         self.base = support.pid_of('/arbotix')
         self.addCleanup(os.kill, self.base, signal.SIGCONT)
-        self.commands = support.Watch('/cmd_vel', Twist)
-        self.addCleanup(self.commands.subscriber.unregister)
+        self.commands = self.watch_commands()
 
     def suspend_base(self, *arguments):
         """Suspend the base during an odometry-based run; return the script once it has stopped the robot."""

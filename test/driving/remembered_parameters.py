@@ -2,7 +2,6 @@
 """Parameters that an earlier command left on the master are named, with the command that deletes them."""
 import signal
 import subprocess
-import tempfile
 
 import rospy
 
@@ -31,11 +30,7 @@ class TestRememberedParameters(support.Case):
 
     def roslaunch(self, more):
         """Run the script with roslaunch, with one parameter and `more`."""
-        file = tempfile.NamedTemporaryFile('w', suffix='.launch')
-        self.addCleanup(file.close)
-        file.write(LAUNCH % more)
-        file.flush()
-        return support.Process('roslaunch', file.name)
+        return support.Process('roslaunch', self.file(LAUNCH % more, '.launch'))
 
     def test_what_is_still_in_force(self):
         self.assertEqual(self.warnings(support.out_and_back('_goal_distance:=0.2', '_rate:=40')), [])

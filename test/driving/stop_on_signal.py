@@ -1,11 +1,15 @@
 #!/usr/bin/python3
-"""After a signal or `rosnode kill` during a motion, the last commands are stops, and both lines are logged."""
+"""After a signal, `rosnode kill` or the loss of its terminal during a motion, the last commands of a script are stops,
+and both lines are logged."""
+import fcntl
 import os
+import pty
 import signal
 import subprocess
+import termios
 
 import rospy
-from geometry_msgs.msg import Twist
+from rosgraph_msgs.msg import Log
 
 import support
 
@@ -21,8 +25,7 @@ class TestStopOnSignal(support.Case):
 
         number: of the signal, to which the exit status adds 128.
         """
-        commands = support.Watch('/cmd_vel', Twist)
-        self.addCleanup(commands.subscriber.unregister)
+        commands = self.watch_commands()
         # slow, so that the motion lasts until the shutdown
         driver = support.out_and_back('_linear_speed:=0.01')
         self.odom.wait_for_twist(0.01)
@@ -56,6 +59,25 @@ class TestStopOnSignal(support.Case):
     def test_rosnode_kill(self):
         self.check(lambda _: subprocess.run(['rosnode', 'kill', '/out_and_back'], check=True), signal.SIGTERM)
         self.odom.wait_for_twist(0.0)
+
+    def test_closed_terminal(self):
+        log, (ours, theirs) = support.Watch('/rosout', Log), pty.openpty()
+
+        def become_session_leader():
+            os.setsid()
+            fcntl.ioctl(theirs, termios.TIOCSCTTY, 0)
+        driver = subprocess.Popen(['rosrun', 'rbx1_nav', 'timed_out_and_back.py', '_linear_speed:=0.01'], stdin=theirs,
+                                  stdout=theirs, stderr=theirs, preexec_fn=become_session_leader)
+        self.addCleanup(driver.wait)
+        self.addCleanup(driver.kill)
+        os.close(theirs)
+        self.odom.wait_for_twist(0.01)
+        log.wait_for_publisher('/out_and_back')
+        os.close(ours)
+        self.assertEqual(driver.wait(support.LIMIT), 128 + signal.SIGHUP)
+        self.odom.wait_for_twist(0.0)
+        for line in ('Stopping the robot...', 'Out-and-Back node terminated.'):
+            support.wait_for(lambda: any(m.msg == line for m in log.messages), f'{line} on /rosout')
 
     def test_sigint_while_the_master_is_suspended(self):
         self.check_suspended(rospy.get_master().getPid()[2])

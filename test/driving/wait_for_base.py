@@ -12,11 +12,6 @@ LISTENER = ("import rospy; from geometry_msgs.msg import Twist; rospy.init_node(
 
 
 class TestWaitForBase(support.Case):
-    def subscribe(self):
-        commands = support.Watch('/cmd_vel', Twist)
-        self.addCleanup(commands.subscriber.unregister)
-        return commands
-
     def base(self, name):
         rospy.set_param(name, {'controllers': {'base': {'type': 'diff_controller', 'base_width': 0.26}}})
         process = support.Process('rosrun', 'rbx1_nav', 'fake_base.py', f'__name:={name}')
@@ -26,7 +21,7 @@ class TestWaitForBase(support.Case):
     def test_without_a_base_it_times_out(self):
         self.addCleanup(rospy.delete_param, '/out_and_back')    # the next test must not find it
         # this node listens, but also drives, as the page in the browser does
-        self.subscribe()
+        self.watch_commands()
         self.addCleanup(rospy.Publisher('/cmd_vel', Twist, queue_size=5).unregister)
         driver = support.out_and_back('_wait_timeout:=1')
         self.assertNotEqual(driver.wait(), 0)
@@ -36,7 +31,7 @@ class TestWaitForBase(support.Case):
     def test_it_waits_and_then_drives(self):
         driver = support.out_and_back()
         driver.wait_for_line('Waiting for a base that subscribes to /cmd_vel')
-        commands = self.subscribe()
+        commands = self.watch_commands()
         driver.wait_for_line('Connected to ')
         driver.signal(signal.SIGTERM)
         driver.wait()
@@ -52,7 +47,7 @@ class TestWaitForBase(support.Case):
             self.addCleanup(process.wait)
             self.addCleanup(process.signal, signal.SIGTERM)
             self.addCleanup(process.signal, signal.SIGCONT)
-        commands = self.subscribe()
+        commands = self.watch_commands()
         driver = support.out_and_back()
         driver.wait_for_line(r'/listener is registered as a subscriber of /cmd_vel but does not answer: ignored')
         driver.wait_for_line('Waiting for /base to answer')

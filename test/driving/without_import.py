@@ -3,9 +3,7 @@
 import os
 import re
 import signal
-import tempfile
 
-from geometry_msgs.msg import Twist
 import rospkg
 
 import support
@@ -33,15 +31,10 @@ class TestWithoutImport(support.Case):
         cls.odom = support.OdomWatch()
 
     def start(self, *arguments):
-        file = tempfile.NamedTemporaryFile('w', suffix='.py')
-        self.addCleanup(file.close)
-        file.write(plain_script())
-        file.flush()
-        return support.Process('/usr/bin/python3', file.name, *arguments)
+        return support.Process('/usr/bin/python3', self.file(plain_script(), '.py'), *arguments)
 
     def test_it_is_exact(self):
-        commands = support.Watch('/cmd_vel', Twist)
-        self.addCleanup(commands.subscriber.unregister)
+        commands = self.watch_commands()
         driver = self.start()
         self.assertEqual(driver.wait(), 0, driver.output)
         self.assertEqual(sum(message.linear.x == 0.2 for message in commands.messages), 500)

@@ -1,10 +1,6 @@
 #!/usr/bin/python3
-"""The transform of the filter is from PARENT to CHILD, and with the rest of the tree yields the estimated pose.
-
-usage: ekf_frames.py PARENT CHILD --
-"""
+"""The transform of the filter is from odom_combined to odom, and with the rest of the tree yields the estimate."""
 import math
-import sys
 
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from tf2_msgs.msg import TFMessage
@@ -20,7 +16,7 @@ def pose(transform):
 
 class TestEkfFrames(support.Case):
     def test_each_frame_has_one_parent_and_the_tree_ends_at_the_estimate(self):
-        parent, child, _ = sys.argv[1:4]
+        parent, child = 'odom_combined', 'odom'
         odom = support.OdomWatch()
         transforms = support.Watch('/tf', TFMessage)
         combined = support.Watch('odom_combined', PoseWithCovarianceStamped)
@@ -55,10 +51,9 @@ class TestEkfFrames(support.Case):
                 continue
             compared += 1
             x, y, yaw = pose(transform_by_stamp[stamp].transform)
-            if child == 'odom':
-                base = support.pose(odom_by_stamp[stamp])
-                x, y, yaw = (x + base[0] * math.cos(yaw) - base[1] * math.sin(yaw),
-                             y + base[0] * math.sin(yaw) + base[1] * math.cos(yaw), yaw + base[2])
+            base = support.pose(odom_by_stamp[stamp])
+            x, y, yaw = (x + base[0] * math.cos(yaw) - base[1] * math.sin(yaw),
+                         y + base[0] * math.sin(yaw) + base[1] * math.cos(yaw), yaw + base[2])
             # 1e-9 is far above the rounding errors of two rotations
             self.assertAlmostEqual(x, message.pose.pose.position.x, delta=1e-9)
             self.assertAlmostEqual(y, message.pose.pose.position.y, delta=1e-9)

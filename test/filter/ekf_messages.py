@@ -60,6 +60,14 @@ class TestEkfMessages(support.Case):
         self.wait_for_log('Odometry was reset: restarting', send=reset.publish)
         self.poses.next()
 
+    def check_diagnosed(self, text, make):
+        """Check that /diagnostics has a message while the odometry is made by make()."""
+        standing, self.odom.make = self.odom.make, make
+        support.wait_for(lambda: any(status.message == text for m in self.diagnostics.messages[-3:]
+                                     for status in m.status), f'{text} in /diagnostics')
+        self.odom.make = standing
+        self.wait_for_status('odom', DiagnosticStatus.OK)
+
     def test_wheels_and_gyro_that_contradict_each_other_are_diagnosed(self):
         angles = itertools.count(0.01, 0.01)
 
@@ -67,12 +75,31 @@ class TestEkfMessages(support.Case):
             message, angle = make_odom(), next(angles)
             message.pose.pose.orientation.z, message.pose.pose.orientation.w = math.sin(angle), math.cos(angle)
             return message
-        standing, self.odom.make = self.odom.make, make
-        support.wait_for(lambda: any(status.message == 'Wheels and gyro contradict each other'
-                                     for m in self.diagnostics.messages[-3:] for status in m.status),
-                         'the contradiction in /diagnostics')
-        self.odom.make = standing
-        self.wait_for_status('odom', DiagnosticStatus.OK)
+        self.check_diagnosed('Wheels and gyro contradict each other', make)
+
+    def test_jumps_that_do_not_agree_with_each_other_are_diagnosed(self):
+        places = itertools.cycle([5.0, -5.0])
+
+        def make():
+            message = make_odom()
+            message.pose.pose.position.x = next(places)
+            return message
+        self.check_diagnosed('Odometry ignored: faster than ~max_speed or ~max_turn_rate', make)
+
+    def test_set_pose(self):
+        publisher = rospy.Publisher('/set_pose', PoseWithCovarianceStamped, queue_size=10)
+        support.wait_for(publisher.get_num_connections, 'the filter to subscribe to /set_pose')
+        pose = PoseWithCovarianceStamped()
+        pose.pose.pose.orientation.w = 1.0
+        pose.pose.covariance[0] = pose.pose.covariance[7] = pose.pose.covariance[35] = 0.25
+        for pose.header.frame_id, x in ('odom_combined', 3.0), ('', 0.5):
+            pose.pose.pose.position.x = x
+            publisher.publish(pose)
+            support.wait_for(lambda: abs(self.poses.next().pose.pose.position.x - x) < 1e-6, f'the pose at x = {x} m')
+            self.assertAlmostEqual(self.poses.last.pose.covariance[0], 0.25, delta=0.01)
+        pose.header.frame_id = 'map'
+        self.wait_for_log("/set_pose: header.frame_id: 'map': expected odom_combined, the output_frame; rejected",
+                          send=partial(publisher.publish, pose))
 
     def test_a_sensor_times_out_and_recovers(self):
         for sensor, name in (self.imu, 'imu_data'), (self.odom, 'odom'):

@@ -1,8 +1,12 @@
 #!/usr/bin/python3
-"""/diagnostics contains the current case of the filter, the errors that it has estimated, and counts."""
+"""/diagnostics contains the current case of the filter, the errors that it has estimated, and counts; the readings of
+an IMU that is mounted upside down are rotated."""
 import math
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from geometry_msgs.msg import TransformStamped
+import rospy
+from tf2_msgs.msg import TFMessage
 
 from still_robot import Sender, make_imu, make_odom
 import support
@@ -32,7 +36,7 @@ class TestFilterDiagnostics(support.Case):
 
         def imu():
             message = make_imu()
-            message.angular_velocity.z = rate[0]
+            message.header.frame_id, message.angular_velocity.z = 'imu_link', -rate[0]      # it is upside down
             return message
 
         def odom():
@@ -41,6 +45,11 @@ class TestFilterDiagnostics(support.Case):
             message.pose.pose.orientation.z = math.sin(heading[0] / 2)
             message.pose.pose.orientation.w = math.cos(heading[0] / 2)
             return message
+        mounting = TransformStamped()
+        mounting.header.frame_id, mounting.child_frame_id = 'base_footprint', 'imu_link'
+        mounting.transform.rotation.x = 1.0
+        transforms = rospy.Publisher('/tf_static', TFMessage, queue_size=1, latch=True)
+        transforms.publish([mounting])
         Sender('odom', odom)
         Sender('imu_data', imu)
         wait_for_case('standstill', DiagnosticStatus.OK, 'Standstill')

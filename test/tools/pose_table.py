@@ -8,9 +8,6 @@ from nav_msgs.msg import Odometry
 
 import support
 
-BASE = {'controllers': {'base': {'type': 'diff_controller', 'base_width': 0.26}},
-        'surface': 'low_ply_carpet', 'seed': 3, 'real_time_factor': 10}
-HEADER = r' +x \(m\) +y \(m\) +heading \(degrees\) +from the start \(m\)'
 ROW = r'(?:truth|odometry|estimate) +(/\w+) +(-?\d+\.\d{3}) +(-?\d+\.\d{3}) +(-?\d+\.\d) +(\d+\.\d{3})'
 
 
@@ -49,26 +46,6 @@ class TestPoseTable(support.Case):
             status, lines = self.pose(*command)
             self.assertEqual((status, len(lines)), (1, 1), lines)
             self.assertRegex(lines[0], text)
-
-    def test_base_and_filter(self):
-        rospy.set_param('/arbotix', BASE)
-        for node in ('fake_base.py',), ('ekf.py',), ('odom_ekf.py', 'odom_combined:=robot_pose_ekf/odom_combined'):
-            self.start('rosrun', 'rbx1_nav', *node)
-        topics = ['/ground_truth', '/odom', '/odom_ekf']
-        watches = [support.Watch(topic, Odometry) for topic in topics]
-        support.wait_for(lambda: all(watch.last for watch in watches), 'all three poses')
-        driver = support.out_and_back('_goal_distance:=0.3', '_goal_angle:=2.0')
-        self.assertEqual(driver.wait(), 0, driver.output)
-        # the robot is stationary: these are the poses that the table shows
-        for watch in watches:
-            watch.next()
-        status, lines = self.pose()
-        self.assertEqual(status, 0, lines)
-        self.assertRegex(lines[0], HEADER)
-        self.assertEqual([re.match(ROW, line).group(1) for line in lines[1:]], topics, lines)
-        for line, watch in zip(lines[1:], watches):
-            self.check(line, watch.last)
-            self.assertEqual(len(line), len(lines[0]), 'aligned columns')
 
     def test_a_base_that_starts_later(self):
         process = support.Process('rosrun', 'rbx1_nav', 'pose.py')

@@ -46,8 +46,7 @@ class TestSimulateCommand(support.Case):
             os.mkdir(os.path.join(folder, 'taken.png'))
             for path, expected in [
                     ('/proc/picture.png', 'expected a file that can be written: '),     # not even by a superuser
-                    (os.path.join(folder, 'taken.png'), 'expected a file that can be written: Is a directory'),
-                    ('', 'expected a file name with one of the extensions ')]:
+                    (os.path.join(folder, 'taken.png'), 'expected a file that can be written: Is a directory')]:
                 status, output = simulate('--runs', '1', '--plot', path)
                 self.assertEqual(status, 2, output)
                 self.assertIn(f'simulate.py: error: --plot: {path}: {expected}', output.splitlines()[-1])
@@ -58,13 +57,10 @@ class TestSimulateCommand(support.Case):
         for arguments, status, text in [
                 (['--surface', 'sand'], 1, f"'sand': expected one of {support.surfaces()}"),
                 (['--method', 'luck'], 2, 'luck'), (['--runs', '0'], 2, '--runs: 0: expected'),
-                (['--plot', 'picture.doc'], 2, '--plot: picture.doc: expected'),
                 (['--animate', 'run.mp4'], 2,
                  '--animate: run.mp4: expected a file name with the extension .gif'),       # or .png
-                (['--config', '/dev/null'], 1, '/dev/null: configuration: None: expected'),
                 (['--seed', '-1'], 2, '--seed: -1: expected an integer from 0 to 2147483548'),
-                (['--config', '/nowhere.yaml'], 1, '/nowhere.yaml'),
-                (['--plot', '/nowhere/picture.png'], 2, '--plot: /nowhere/picture.png: expected')]:
+                (['--config', '/dev/null'], 1, '/dev/null: configuration: None: expected')]:
             actual, output = simulate(*arguments)
             self.assertEqual(actual, status, output)
             self.assertIn(text, output.splitlines()[-1])

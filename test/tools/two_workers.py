@@ -68,20 +68,15 @@ class TestTwoWorkers(support.Case):
             file.write('# another version\n')
         return folder
 
-    def check_refused(self, worker, text):
-        """A worker is refused before the first run, by its address."""
+    def test_a_worker_without_the_package_is_refused_before_the_first_run(self):
+        worker = self.cluster.start_worker(PYTHONPATH='')
         self.addCleanup(worker.wait)
         self.addCleanup(worker.kill)
         status, output, _ = self.simulate(f'{worker.pid}.csv', '--scheduler', self.cluster.address)
         self.assertEqual(status, 1, output)
-        self.assertRegex(output.splitlines()[-1], rf'^simulate.py: worker tcp://127.0.0.1:\d+: .*{text}')
+        self.assertRegex(output.splitlines()[-1],
+                         r"^simulate.py: worker tcp://127.0.0.1:\d+: .*No module named 'rbx1_nav'")
         self.assertNotIn('Traceback', output)
-
-    def test_a_worker_with_another_version_is_refused(self):
-        self.check_refused(self.cluster.start_worker(PYTHONPATH=self.copy_package()), 'rbx1_nav [0-9a-f]+: expected')
-
-    def test_a_worker_without_the_package_is_refused(self):
-        self.check_refused(self.cluster.start_worker(PYTHONPATH=''), "No module named 'rbx1_nav'")
 
     def test_a_worker_with_another_version_that_joins_later_ends_the_run(self):
         process, path = self.start('joined.csv', '--scheduler', self.cluster.address)

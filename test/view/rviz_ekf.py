@@ -6,7 +6,6 @@ If the environment variable RBX1_PICTURE_DIR is set, the screenshots are saved i
 """
 import os
 import subprocess
-import tempfile
 
 import numpy
 from nav_msgs.msg import Odometry
@@ -40,11 +39,7 @@ class RvizEkf(RvizTest):
         self.assertEqual([each['Name'] for each in arrows if each['Enabled']], ['Odometry EKF (green)'])
         for each in arrows:
             each['Enabled'] = each['Value'] = True
-        copy = tempfile.NamedTemporaryFile('w', suffix='.rviz')
-        self.addCleanup(copy.close)
-        yaml.safe_dump(config, copy)
-        copy.flush()
-        return copy.name
+        return self.file(yaml.safe_dump(config), '.rviz')
 
     def test_the_miss(self):
         truth, reported = support.Watch('/ground_truth', Odometry), support.Watch('/odom', Odometry)

@@ -1,4 +1,4 @@
-"""The combined odometry: the order of messages, jumps, restarts and set_pose."""
+"""The combined odometry: the order of messages, and set_pose."""
 from math import cos, pi, sin
 
 import numpy
@@ -39,29 +39,6 @@ def test_a_gyro_may_have_another_rate(rate):
     c, s = cos(start.yaw), sin(start.yaw)
     assert exact(robot.combined.estimate, Pose(start.x + c * expected.x - s * expected.y,
                                                start.y + s * expected.x + c * expected.y, start.yaw + expected.yaw))
-
-
-# restarts
-
-@pytest.mark.parametrize('there', [Pose(-1.0, 2.0, pi / 2), Pose(0.4, 0.0, 0.0), Pose(0.2, 0.0, 0.5)])
-def test_odometry_that_jumps_restarts_the_filter_there(there):
-    robot = Robot()
-    robot.send(50, 0.2)
-    robot.pose = there
-    assert exact(robot.send(2), there) and 'jumped' in robot.warnings[-1]
-
-
-def test_a_single_jump_is_an_outlier():
-    robot, undisturbed = Robot(IDEAL), Robot(IDEAL)
-    for each in (robot, undisturbed):
-        each.send(50, 0.2)
-    home, robot.pose = robot.pose, Pose(-1.0, 2.0, pi / 2)
-    robot.send()
-    robot.pose = home
-    robot.send(50, 0.2)
-    undisturbed.send()
-    undisturbed.send(50, 0.2)
-    assert exact(robot.combined.estimate, undisturbed.combined.estimate.pose) and 'ignored' in robot.warnings[0]
 
 
 # set_pose

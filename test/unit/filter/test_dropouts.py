@@ -25,6 +25,13 @@ def test_a_gyro_times_out_and_recovers():
                               'imu_data has recovered']
 
 
+def test_a_steady_turn_needs_no_reading_of_the_gyro():
+    robot = Robot(IDEAL)
+    robot.send(50, 0.1, 0.5)
+    robot.send(40, 0.1, 0.5, imu=False)
+    assert exact(robot.send(10, 0.1, 0.5), robot.pose)
+
+
 def test_without_a_gyro_the_heading_is_as_uncertain_as_the_slip_of_the_floor():
     robot = Robot(PRIORS, gyro_used=False)
     robot.send(2, imu=False)

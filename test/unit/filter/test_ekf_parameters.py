@@ -3,7 +3,9 @@ from math import radians
 
 from nav_msgs.msg import Odometry
 import pytest
+import rospy
 
+from rbx1_nav.filter import ekf_parameters as module
 from rbx1_nav.filter.ekf_parameters import read_parameters
 from rbx1_nav.filter.inputs import RejectedMessage
 from rbx1_nav.filter.priors import Bounds
@@ -47,9 +49,24 @@ def test_the_frame_of_the_robot(params, child, base):
             frames_of(message, read_parameters(dict(params, output_frame='/map')))
 
 
-def test_what_is_not_supported():
-    assert read_parameters(dict(vo_used=True, debug=False)).unsupported == [
-        'vo_used: visual odometry is not supported and not used']
-    for params in dict(odom_used=False), {'output_frame': 'map', BASE: 'map'}, dict(surface='no_such_floor'):
-        with pytest.raises(ConfigError):
-            read_parameters(params)
+def test_what_is_not_supported_is_logged(monkeypatch):
+    names, lines = ('vo_used', 'gps_used', 'debug', 'self_diagnose'), []
+    monkeypatch.setattr(rospy, 'logwarn', lambda form, *values: lines.append(form % values))
+    monkeypatch.setattr(module, 'find_prefix', lambda: None)
+    for value in False, True:
+        monkeypatch.setattr(module, 'stored_params', lambda wanted=value: dict.fromkeys(names, wanted))
+        module.load_parameters()
+        assert len(lines) == 4 * value
+    assert lines == ['vo_used: visual odometry is not supported and not used', 'gps_used: GPS is not supported and not '
+                     'used', 'debug: no files are written; record the topics with rosbag',
+                     'self_diagnose: see /diagnostics']
+
+
+@pytest.mark.parametrize('params, text', [
+    (dict(odom_used=False), 'odom_used: False: expected true'), ({'output_frame': 'map', BASE: 'map'}, 'other than'),
+    (dict(surface='sand'), "surface: 'sand': expected one of "), (dict(tf_prefix=7), 'tf_prefix: 7: expected the name'),
+    (dict(max_speed=0), 'max_speed: 0: expected a speed from 0.01 to 1000 in m/s'),
+    (dict(gyro_bias='small'), "gyro_bias: 'small': expected a bias from 0.01 to 1000 in degrees/s")])
+def test_what_is_rejected(params, text):
+    with pytest.raises(ConfigError, match=text):
+        read_parameters(params)

@@ -1,5 +1,5 @@
 """On the ideal surface, each command counts for exactly as long as it is in force."""
-from math import cos, inf, nan, sin
+from math import inf, nan
 
 import pytest
 from hypothesis import given
@@ -9,29 +9,13 @@ from rbx1_nav.base.description import Limits
 from rbx1_nav.base.gate import CommandGate, RejectedCommand
 from rbx1_nav.base.kinematics import ORIGIN, arc
 from rbx1_nav.base.units import SECOND
-from rbx1_nav.exercise.legs import out_and_back
 from rbx1_nav.simulation.gyro import IdealGyro
 from rbx1_nav.simulation.simulated_base import SimulatedBase
 from rbx1_nav.simulation.wheels import IdealWheels
 
-STEP = SECOND // 50
-
 
 def make_base(timeout=1.0, limits=Limits(inf, inf)):
     return SimulatedBase(IdealWheels(0.26), CommandGate(limits, round(timeout * SECOND)), IdealGyro())
-
-
-def test_the_exercise_ends_where_the_tutorial_says():
-    base, now = make_base(), SECOND
-    for motion in out_and_back(0.2, 1.0, 1.0, 3.141592653589793, 50):
-        for _ in range(motion.ticks):
-            base.command(now, motion.linear, motion.angular)
-            now += STEP
-        base.command(now, 0.0, 0.0)
-        now += SECOND
-    pose = base.odometry.pose
-    assert pose == pytest.approx((1 + cos(3.14), sin(3.14), 6.28), abs=1e-12)
-    assert (round(pose.x, 7), round(pose.y, 7)) == (0.0000013, 0.0015927)
 
 
 @given(st.lists(st.integers(0, 3 * SECOND), min_size=1, max_size=20))

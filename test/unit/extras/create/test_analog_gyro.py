@@ -156,8 +156,7 @@ def test_a_turn_of_a_robot_that_is_held_or_lifted_is_not_judged(event, velocity,
 
 
 @pytest.mark.parametrize('surface, sensitivity, drops', [
-    ('ideal', 1.0, False), ('ideal', 1.5, True), ('hard_floor', 0.74, False), ('low_ply_carpet', 0.5, True),
-    ('low_ply_carpet', 1.4, False), ('create_lab_floor', 1.0, False)])
+    ('ideal', 1.5, True), ('low_ply_carpet', 0.5, False)])
 def test_a_gyro_that_works_is_never_taken_for_broken(surface, sensitivity, drops):
     driven = started('create', 4, surface=load_surface(surface, SURFACES), quirks=Quirks(drops_fractions=drops))
     driven.body.errors = BodyErrors(gyro_sensitivity=sensitivity)

@@ -1,12 +1,14 @@
-"""Parameters of the base node: create_node's names and defaults, one line for each invalid value, and the files."""
+"""Parameters of the base node and of the emulated robot: defaults, one line for each invalid value, and the files."""
 import glob
 import os
 
 import pytest
 import yaml
 
+from rbx1_nav.extras.create.emulator.emulated_create import PARAMETERS
 from rbx1_nav.extras.create.settings import read_settings
-from rbx1_nav.node.config import ConfigError
+from rbx1_nav.node.config import ConfigError, Section
+from rbx1_nav.node.parameters import read
 
 FOLDER = os.path.join(os.path.dirname(__file__), '..', '..', '..', '..', 'config', 'create')
 CALIBRATIONS = sorted(glob.glob(os.path.join(FOLDER, 'calibration', '*.yaml')))
@@ -39,6 +41,19 @@ def test_what_makes_no_sense(params, text):
     with pytest.raises(ConfigError) as caught:
         read_settings(params)
     assert str(caught.value) == text
+
+
+@pytest.mark.parametrize('name, value, expected', [
+    ('robot_type', ['create'], 'one of create, create2'), ('baud', 19201, 'one of 300, 600, 1200, '),
+    ('baud', True, 'one of 300, '), ('mode_plus_one', 'yes', 'true or false'), ('drops_fractions', 1, 'true or false'),
+    ('gyro_stuck', 1024, 'a count from -1 to 1023'), ('link', 7, 'a path'), ('seed', -1, 'random, or an integer'),
+    ('charge', 3, 'a number from 0 to 2'), ('corruption', 'some', 'a number from 0 to 1'),
+    ('wheel_base', 0, 'a factor from 0.1 to 10'), ('gyro_measurement_range', 0, 'a number from 1')])
+def test_what_makes_no_sense_for_the_emulated_robot(name, value, expected):
+    parameter, = (each for each in PARAMETERS if each.name == name)
+    with pytest.raises(ConfigError) as caught:
+        read([parameter], Section({name: value}))
+    assert str(caught.value).startswith(f'{name}: {value!r}: expected {expected}')
 
 
 def load(*path):

@@ -13,15 +13,6 @@ POSITION, ANGLE = {'create': 0.02, 'create2': 0.001}, {'create': 0.02, 'create2'
 
 
 @BOTH
-@pytest.mark.parametrize('mode', [protocol.PASSIVE, protocol.SAFE, protocol.FULL])
-def test_the_mode_is_that_of_the_parameter(robot_type, mode):
-    driven = started(robot_type, operation_mode=mode)
-    assert driven.robot.mode == mode
-    driven.drive(0.2, 0, 0.1)
-    assert driven.body.moving == (mode != protocol.PASSIVE)
-
-
-@BOTH
 def test_odometry_follows_the_robot_out_and_back(robot_type):
     driven = started(robot_type)
     for linear, angular, seconds in 2 * [(0.2, 0, 5), (0, 1, pi)]:

@@ -19,9 +19,9 @@ def turn(driven, rate, angle):
     return degrees(driven.pose.yaw - before[0]), driven.body.angle.total - before[1]
 
 
-@pytest.mark.parametrize('rate', [0.3, 0.5, 1.0, -1.0])
+@pytest.mark.parametrize('rate', [0.3, -1.0])
 @pytest.mark.parametrize('lost', [False, True])
-@pytest.mark.parametrize('surface', ['ideal', 'hard_floor', 'low_ply_carpet'])
+@pytest.mark.parametrize('surface', ['ideal', 'low_ply_carpet'])
 def test_a_turn_is_reported_whatever_the_robot_does_with_fractions(surface, lost, rate):
     driven = started('create', surface=load_surface(surface, SURFACES), quirks=Quirks(drops_fractions=lost))
     reported, true = turn(driven, rate, 2 * pi)

@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""A robot that transforms drive is in step, although the models of eight robots publish transforms as well."""
+"""A robot that transforms drive is in step, although the models of three robots publish transforms as well."""
 import support
 
 
-class TestEightModels(support.Case):
+class TestFleetModels(support.Case):
     def test_a_robot_that_transforms_drive(self):
         driver = support.Process('rosrun', 'rbx1_nav', 'calibrate_linear.py', '_goal_distance:=0.1',
                                  ROS_NAMESPACE='robot1')
@@ -11,4 +11,4 @@ class TestEightModels(support.Case):
 
 
 if __name__ == '__main__':
-    support.main(TestEightModels)
+    support.main(TestFleetModels)
