@@ -12,7 +12,7 @@ from rbx1_nav.base.messages import yaw_of
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.filter.combined_odometry import CombinedOdometry
 from rbx1_nav.filter.conversions import from_imu, from_odometry
-from rbx1_nav.filter.gyro_input import GyroInput
+from rbx1_nav.filter.imu_mounting import GyroInput
 
 
 def odometry(messages):

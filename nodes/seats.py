@@ -20,7 +20,7 @@ from rbx1_nav.base.surfaces import known_surfaces, load_surface
 from rbx1_nav.extras.web.seat import Seat
 from rbx1_nav.node import resources
 from rbx1_nav.node.config import ConfigError
-from rbx1_nav.simulation.floor import RANDOM, read_seed
+from rbx1_nav.simulation.slip import RANDOM, read_seed
 
 STOP_TIMEOUT = 20.0     # s for all seats to stop
 MAX_SEATS = 100

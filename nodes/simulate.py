@@ -30,7 +30,7 @@ from rbx1_nav.node import resources
 from rbx1_nav.node.config import ConfigError, show, show_name
 from rbx1_nav.node.files import check_writable
 from rbx1_nav.node.parameters import split_usage
-from rbx1_nav.simulation.floor import MAX_SEED
+from rbx1_nav.simulation.slip import MAX_SEED
 
 
 def read_arguments() -> argparse.Namespace:

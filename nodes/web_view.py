@@ -19,7 +19,7 @@ from typing import Callable
 import rospy
 from rospy.names import get_resolved_mappings
 
-from rbx1_nav.extras.web.checks import LOCALHOST, TOKEN_VARIABLE, make_token, page_address
+from rbx1_nav.extras.web.access import LOCALHOST, TOKEN_VARIABLE, make_token, page_address
 from rbx1_nav.extras.web.connections import Connections
 from rbx1_nav.extras.web.controls import Controls
 from rbx1_nav.extras.web.hand_drive import HandDrive, command_publisher

@@ -8,7 +8,7 @@ from rbx1_nav.base.description import load_robot
 from rbx1_nav.base.surfaces import load_surface
 from rbx1_nav.extras.many_runs.simulated_run import simulate
 from rbx1_nav.node import resources
-from rbx1_nav.simulation.floor import read_seed
+from rbx1_nav.simulation.slip import read_seed
 import support
 
 

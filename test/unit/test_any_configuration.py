@@ -12,8 +12,8 @@ from rbx1_nav.base.schedule import Schedule
 from rbx1_nav.base.surfaces import KEYS, Surface, read_surface
 from rbx1_nav.filter.ekf_parameters import read_parameters
 from rbx1_nav.node.config import ConfigError
-from rbx1_nav.simulation.floor import draw_run, read_seed
 from rbx1_nav.simulation.simulated_base import make_base, make_wheels_and_gyro
+from rbx1_nav.simulation.slip import draw_run, read_seed
 
 CONFIG = os.path.join(os.path.dirname(__file__), '..', '..', 'config')
 ROBOTS, SURFACES = ([yaml.safe_load(open(path)) for path in sorted(glob.glob(os.path.join(CONFIG, *pattern)))]

@@ -31,14 +31,14 @@ ALLOWED['nodes'] = set(ALLOWED) - {''}
 # the files that need ROS; all others also run where there is none
 WITH_ROS = {f'rbx1_nav.{room}.{name}' for room, names in {
     'node': 'frames life master private_parameters resources rospy_topics',
-    'base': 'clocks messages publisher running_bases velocity_commands',
-    'driving': 'calibrating commands listeners odometry rate script',
+    'base': 'clocks command_subscriber messages publisher running_bases',
+    'driving': 'calibrating listeners odometry rate script stopping',
     'simulation': 'floor_parameters simulated_robot',
     'filter': 'conversions ekf_parameters estimate_publisher filter_status sensor_inputs',
     'extras.create': 'create_base create_status',
     'extras.create.emulator': 'emulated_create',
     'extras.fitting': 'bags',
-    'extras.lockstep': 'lockstep simulated_clock watch',
+    'extras.lockstep': 'lockstep simulated_clock watched_nodes',
     'extras.web': 'connections controls hand_drive server system',
 }.items() for name in names.split()} | {'rbx1_nav.driving'}
 # what the other rooms may import in addition to Python's own modules
@@ -87,7 +87,7 @@ def test_a_module_imports_only_what_its_room_may(path, module, is_package):
 
 def test_every_module_is_found_and_every_room_is_in_the_table():
     names = {module for _, module, _ in modules()}
-    assert {'rbx1_nav', 'rbx1_nav.base.gate', 'nodes.fake_base'} | WITH_ROS <= names
+    assert {'rbx1_nav', 'rbx1_nav.base.command_gate', 'nodes.fake_base'} | WITH_ROS <= names
     assert {room_of(name) for name in names} == set(ALLOWED)
 
 

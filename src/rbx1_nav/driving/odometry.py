@@ -11,8 +11,8 @@ import yaml
 
 from rbx1_nav.base.kinematics import Pose
 from rbx1_nav.base.units import wrap_angle
-from rbx1_nav.driving.commands import halt
 from rbx1_nav.driving.rate import wait_for_tick
+from rbx1_nav.driving.stopping import halt
 from rbx1_nav.exercise.legs import Straight, Turn, is_reachable
 from rbx1_nav.node.frames import resolve_frame
 from rbx1_nav.node.life import wait_for

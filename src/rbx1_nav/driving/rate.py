@@ -10,7 +10,7 @@ import rospy
 import rospy.timer
 
 from rbx1_nav.base.units import SECOND
-from rbx1_nav.driving.commands import Commands, check_shutdown, fail, is_shutdown, is_shutdown_function, now
+from rbx1_nav.driving.stopping import Commands, check_shutdown, fail, is_shutdown, is_shutdown_function, now
 from rbx1_nav.node import life
 
 MAX_DELAY = SECOND      # ns

@@ -24,9 +24,9 @@ import rospy.core
 import rospy.timer
 from geometry_msgs.msg import Twist
 
-from rbx1_nav.driving import commands, rate
-from rbx1_nav.driving.commands import Commands, end, shutdown_wanted
+from rbx1_nav.driving import rate, stopping
 from rbx1_nav.driving.listeners import wait_for_listeners
+from rbx1_nav.driving.stopping import Commands, end, shutdown_wanted
 from rbx1_nav.node import life
 from rbx1_nav.node.life import end_requested
 from rbx1_nav.node.parameters import Parameter, number, split_usage
@@ -65,7 +65,7 @@ def start_node(name: str, usage: str, parameters: Sequence[Parameter], **options
     if not _started:
         _started.append(os.getpid())
         # both are the first ones: from here on, no command to move is published; rospy's own hook waits for the master
-        rospy.core.add_client_shutdown_hook(commands.stop_robots)
+        rospy.core.add_client_shutdown_hook(stopping.stop_robots)
         rospy.core.add_preshutdown_hook(_finish)
         threading.Thread(target=_shut_down, daemon=True).start()
     life.init_node(name, usage, [*parameters, WAIT_TIMEOUT], on_signal=lambda number: end(128 + number), **options)
@@ -80,7 +80,7 @@ def _shut_down() -> None:
     """Wait for a shutdown request or the end of the script. This thread exists from the start, because Python 3.12
     cannot start one while it exits."""
     shutdown_wanted.wait()
-    commands.signal_shutdown('requested')
+    stopping.signal_shutdown('requested')
 
 
 def _finish(_: str) -> None:
@@ -110,7 +110,7 @@ def _exit() -> None:
 
 def _report(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
     """Log an error that rospy or this package has detected in one line; print the traceback of any other."""
-    if issubclass(kind, rospy.ROSInterruptException) and commands.is_shutdown():
+    if issubclass(kind, rospy.ROSInterruptException) and stopping.is_shutdown():
         _interrupted.append(error)
         return
     frames = traceback.extract_tb(trace)
@@ -127,7 +127,7 @@ def _report(kind: type[BaseException], error: BaseException, trace: TracebackTyp
 
 def _report_in_thread(arguments: Any) -> None:
     """Like _report(), for threading.excepthook."""
-    if not (issubclass(arguments.exc_type, rospy.ROSInterruptException) and commands.is_shutdown()):
+    if not (issubclass(arguments.exc_type, rospy.ROSInterruptException) and stopping.is_shutdown()):
         _thread_excepthook(arguments)
 
 
@@ -153,10 +153,10 @@ class Drive:
             raise rospy.ROSException('Drive: expected rospy.init_node() before it, and rbx1_nav.driving to be imported '
                                      'before that')
         try:
-            listeners = wait_for_listeners(self.cmd_vel, param('wait_timeout'), self.timed, commands.fail)
+            listeners = wait_for_listeners(self.cmd_vel, param('wait_timeout'), self.timed, stopping.fail)
             rate.wait_for_tick()
         except rospy.ROSException as problem:
-            if not commands.is_shutdown():
+            if not stopping.is_shutdown():
                 _failed.append(problem)
             raise
         rospy.loginfo('Connected to %s', ', '.join(each.name for each in listeners.called))
@@ -166,11 +166,11 @@ class Drive:
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None,
                  trace: TracebackType | None) -> None:
         if kind is None:
-            commands.halt()
-        commands.stop_robots()
+            stopping.halt()
+        stopping.stop_robots()
         Commands.current = None
         try:
-            if kind is None and not commands.is_shutdown():
+            if kind is None and not stopping.is_shutdown():
                 self.commands.listeners.finish(self.commands.moved)
                 _results.append(self.commands.result())
         except rospy.ROSException as problem:
@@ -182,14 +182,14 @@ class Drive:
             _functions_called.wait(life.EXIT_DEADLINE)
         elif isinstance(error, SystemExit):
             end(error.code if isinstance(error.code, int) else int(error.code is not None))
-        elif error and not commands.is_shutdown():
+        elif error and not stopping.is_shutdown():
             _failed.append(error)
 
 
 rospy.init_node = rospy.client.init_node = init_node
-rospy.is_shutdown = rospy.core.is_shutdown = commands.is_shutdown
-rospy.signal_shutdown = rospy.core.signal_shutdown = commands.signal_shutdown
+rospy.is_shutdown = rospy.core.is_shutdown = stopping.is_shutdown
+rospy.signal_shutdown = rospy.core.signal_shutdown = stopping.signal_shutdown
 rospy.sleep = rospy.timer.sleep = rate.sleep
 rospy.Rate = rospy.timer.Rate = rate.Rate
-rospy.Publisher.publish = commands.publish
+rospy.Publisher.publish = stopping.publish
 sys.excepthook, threading.excepthook = _report, _report_in_thread

@@ -9,11 +9,11 @@ from typing import Callable, Deque, NamedTuple
 from rbx1_nav.base.kinematics import Pose
 from rbx1_nav.base.units import SECOND, Array, wrap_angle
 from rbx1_nav.filter.filter import YAW, Filter
+from rbx1_nav.filter.gyro_readings import Measurement, Readings
 from rbx1_nav.filter.inputs import Imu, Odom, check_imu, check_odom, distance, format_pose, has_jumped
 from rbx1_nav.filter.priors import UNKNOWN_FLOOR, Priors, Bounds
 from rbx1_nav.filter.sensors import IMU, MAX_LEAD, MAX_WAIT, ODOM, Arrivals, Doubts
 from rbx1_nav.filter.standstill import STANDSTILL, Part, Standstill
-from rbx1_nav.filter.turns import Measurement, Readings
 
 
 class Estimate(NamedTuple):

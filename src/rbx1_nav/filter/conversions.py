@@ -11,7 +11,7 @@ from sensor_msgs.msg import Imu
 from rbx1_nav.base.kinematics import Pose
 from rbx1_nav.base.messages import unit_quaternion, yaw_of
 from rbx1_nav.base.units import Array
-from rbx1_nav.filter.gyro_input import ImuData
+from rbx1_nav.filter.imu_mounting import ImuData
 from rbx1_nav.filter.inputs import MAX_VARIANCE, Odom, check, check_number, check_variance
 from rbx1_nav.node.config import show
 

@@ -1,7 +1,7 @@
 """The arithmetic of the combined odometry: a planar extended Kalman filter of wheel odometry and a gyro.
 
 The gyro measures how the robot turns, and the wheels measure how far it moves. The wheels measure the turn only if the
-gyro cannot (turns.py).
+gyro cannot (gyro_readings.py).
 
 - The state is the pose x, y (m), yaw (rad), the bias of the gyro (rad/s), and the curvature that unequal wheels drive
   (rad/m). The bias is learned at rest (standstill.py). Until the first rest it is 0, with the uncertainty of any gyro.
@@ -26,8 +26,8 @@ import numpy
 
 from rbx1_nav.base.kinematics import Pose
 from rbx1_nav.base.units import Array
+from rbx1_nav.filter.gyro_readings import WINDOW_TIME, WINDOW_TURN, Measurement, Sums, Window
 from rbx1_nav.filter.priors import UNKNOWN_FLOOR, Priors, Bounds
-from rbx1_nav.filter.turns import WINDOW_TIME, WINDOW_TURN, Measurement, Sums, Window
 
 # indices of P; the state has the first five. WINDOW: the difference of both turns in the window
 X, Y, YAW, BIAS, CURVATURE, SCALE, SLIP_TURNING, SLIP_STRAIGHT, WINDOW = range(9)

@@ -16,7 +16,7 @@ from tf2_msgs.msg import TFMessage
 
 from rbx1_nav.base.messages import unit_quaternion
 from rbx1_nav.filter.conversions import from_imu
-from rbx1_nav.filter.gyro_input import UPRIGHT, GyroInput, Vector, inverse, multiply, vertical_axis
+from rbx1_nav.filter.imu_mounting import UPRIGHT, GyroInput, Vector, inverse, multiply, vertical_axis
 from rbx1_nav.filter.inputs import Imu, check
 from rbx1_nav.node.config import show
 

@@ -5,7 +5,7 @@ from rbx1_nav.base.surfaces import Surface, known_surfaces, load_surface
 from rbx1_nav.node import resources
 from rbx1_nav.node.config import Section
 from rbx1_nav.node.parameters import Parameter, custom, read
-from rbx1_nav.simulation.floor import MAX_SEED, RANDOM, read_seed
+from rbx1_nav.simulation.slip import MAX_SEED, RANDOM, read_seed
 
 SURFACE = custom(
     'surface', 'ideal', 'name of the floor, or absolute path of a surface file',

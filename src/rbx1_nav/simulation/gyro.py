@@ -10,7 +10,7 @@ from typing import Union
 from rbx1_nav.base.readings import MEASURED, MIN_VARIANCE, Reading
 from rbx1_nav.base.surfaces import Surface
 from rbx1_nav.base.units import clamp
-from rbx1_nav.simulation.floor import RandomErrors
+from rbx1_nav.simulation.slip import RandomErrors
 
 NOISE_RATE = 50.0   # Hz, the rate that gyro_noise refers to: white noise grows with the square root of the rate
 

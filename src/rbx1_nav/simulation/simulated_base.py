@@ -3,15 +3,15 @@ from __future__ import annotations
 
 from typing import Sequence
 
+from rbx1_nav.base.command_gate import CommandGate
 from rbx1_nav.base.description import Robot
-from rbx1_nav.base.gate import CommandGate
 from rbx1_nav.base.kinematics import ORIGIN, Odometry
 from rbx1_nav.base.readings import Reading
 from rbx1_nav.base.surfaces import Surface
 from rbx1_nav.base.units import SECOND
-from rbx1_nav.simulation.floor import draw_run
 from rbx1_nav.simulation.floor_noise import make_roughness
 from rbx1_nav.simulation.gyro import AnyGyro, Gyro, IdealGyro
+from rbx1_nav.simulation.slip import draw_run
 from rbx1_nav.simulation.wheels import AnyWheels, IdealWheels, Wheels
 
 MAX_SPEED_WINDOW = 0.1  # s: the longest time over which encoder counts are averaged to report a speed

@@ -7,9 +7,9 @@ from typing import Union
 from rbx1_nav.base.kinematics import ORIGIN, Odometry
 from rbx1_nav.base.readings import MEASURED, OdometryErrors, Uncertainty
 from rbx1_nav.base.surfaces import Surface
-from rbx1_nav.simulation.floor import RandomErrors, floor_travel
 from rbx1_nav.simulation.floor_noise import Roughness
 from rbx1_nav.simulation.motors import Delay, Motor
+from rbx1_nav.simulation.slip import RandomErrors, floor_travel
 
 
 class Encoder:

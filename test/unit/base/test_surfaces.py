@@ -8,7 +8,7 @@ import yaml
 
 from rbx1_nav.base.surfaces import KEYS, Surface, known_surfaces, load_surface, read_surface
 from rbx1_nav.node.config import ConfigError
-from rbx1_nav.simulation.floor import draw_run, read_seed
+from rbx1_nav.simulation.slip import draw_run, read_seed
 
 FOLDER = os.path.join(os.path.dirname(__file__), '..', '..', '..', 'config', 'surfaces')
 OPTIONAL = list(Surface._field_defaults)

@@ -4,7 +4,7 @@ import sys
 import pytest
 import rospy
 
-from rbx1_nav.driving import commands, script
+from rbx1_nav.driving import script, stopping
 from rbx1_nav.driving.odometry import Straight
 from rbx1_nav.node.master import call
 
@@ -54,5 +54,5 @@ def test_a_mistake_in_the_script_has_a_traceback(monkeypatch):
 
 
 def test_an_interrupt_is_quiet(monkeypatch):
-    monkeypatch.setattr(commands, 'is_shutdown', lambda: True)
+    monkeypatch.setattr(stopping, 'is_shutdown', lambda: True)
     assert report(monkeypatch, lambda: raise_(rospy.ROSInterruptException('shutdown requested'))) == ([], [])

@@ -3,7 +3,7 @@ import pytest
 import rospy
 
 from rbx1_nav.base.units import SECOND
-from rbx1_nav.driving import commands, rate as module
+from rbx1_nav.driving import rate as module, stopping
 from rbx1_nav.driving.rate import Rate, sleep
 
 MS = SECOND // 1000
@@ -14,7 +14,7 @@ class Clock:
 
     def __init__(self, monkeypatch, is_wallclock, jump=0):
         self.time, self.step, self.slept, self.shutdown_at = 7 * SECOND, jump or 30 * MS, [], None
-        for module_of_now in commands, module:
+        for module_of_now in stopping, module:
             monkeypatch.setattr(module_of_now, 'now', lambda: self.time)
         monkeypatch.setattr(module, 'is_shutdown', lambda: self.shutdown_at and self.time > self.shutdown_at)
         monkeypatch.setattr(module, 'check_shutdown', self.check_shutdown)
@@ -22,7 +22,7 @@ class Clock:
         monkeypatch.setattr(rospy.rostime, 'is_wallclock', lambda: is_wallclock)
         monkeypatch.setattr(rospy.rostime, 'get_rostime', lambda: rospy.Time(0, self.time))
         monkeypatch.setattr(rospy.rostime, 'get_rostime_cond', lambda: self)
-        monkeypatch.setattr(commands.Commands, 'current', None)
+        monkeypatch.setattr(stopping.Commands, 'current', None)
 
     def check_shutdown(self):
         if module.is_shutdown():

@@ -15,7 +15,8 @@ def read(*path):
 def test_each_method_has_a_script_and_a_button_with_its_title():
     for each in METHODS.values():
         assert os.path.exists(os.path.join(ROOT, 'nodes', each.script)) and each.pose in ('', 'odometry', 'estimate')
-    buttons = re.findall(r'class="run" data-method="(\w+)" data-pose="(\w*)" disabled>([^<]+)<', read('web', 'index.html'))
+    button = re.compile(r'class="run" data-method="(\w+)" data-pose="(\w*)" disabled>([^<]+)<')
+    buttons = button.findall(read('web', 'index.html'))
     assert buttons == [(name, each.pose, each.title.capitalize()) for name, each in OF_PAGE.items()]
 
 

@@ -8,7 +8,7 @@ import rospy
 from sensor_msgs.msg import Imu
 
 from rbx1_nav.filter.conversions import from_imu, from_odometry, from_set_pose
-from rbx1_nav.filter.gyro_input import ImuData
+from rbx1_nav.filter.imu_mounting import ImuData
 from rbx1_nav.filter.inputs import Odom, RejectedMessage
 
 STAMP = rospy.Time(7, 250)

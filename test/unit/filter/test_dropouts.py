@@ -5,8 +5,8 @@ import pytest
 
 from rbx1_nav.base.kinematics import arc
 from rbx1_nav.base.units import SECOND
+from rbx1_nav.filter.gyro_readings import MOST
 from rbx1_nav.filter.inputs import Imu, Odom
-from rbx1_nav.filter.turns import MOST
 from sample_priors import IDEAL, PRIORS
 from sample_robot import STEP, Robot, exact
 

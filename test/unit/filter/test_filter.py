@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 from rbx1_nav.base.kinematics import ORIGIN, Pose
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.filter.filter import BIAS, CURVATURE, FIRST_BIAS, SCALE, SLIP_TURNING, WINDOW, X, Y, YAW, Filter
+from rbx1_nav.filter.gyro_readings import Sums
 from rbx1_nav.filter.priors import UNKNOWN_FLOOR, Bounds
 from rbx1_nav.filter.sensors import CONTRADICTION, Doubts
-from rbx1_nav.filter.turns import Sums
 from sample_priors import IDEAL
 
 angles = st.floats(-3, 3)

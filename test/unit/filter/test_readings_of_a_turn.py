@@ -4,9 +4,9 @@ from math import inf
 import pytest
 
 from rbx1_nav.base.units import SECOND
+from rbx1_nav.filter.gyro_readings import Readings
 from rbx1_nav.filter.inputs import Imu
 from rbx1_nav.filter.priors import Bounds
-from rbx1_nav.filter.turns import Readings
 
 START = 100 * SECOND
 NOISE = 1e-4        # rad^2/s^2, of each reading

@@ -45,4 +45,4 @@ def test_a_file_that_a_module_names_exists():
 
 
 def test_a_file_that_does_not_exist_is_found():
-    assert unknown('see `arrays.py`, node/units.py and gate.py') == ['arrays.py', 'node/units.py']
+    assert unknown('see `arrays.py`, node/units.py and command_gate.py') == ['arrays.py', 'node/units.py']

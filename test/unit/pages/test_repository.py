@@ -6,7 +6,7 @@ import pytest
 from pages import blocks, links, markdown
 
 ROOT = os.path.realpath(os.path.join(os.path.dirname(__file__), '..', '..', '..'))
-EXAMPLES = {'extras/create/test_search.py', 'rows/sigkill.py'}     # relative to other folders
+EXAMPLES = {'extras/create/test_identification.py', 'rows/sigkill.py'}     # relative to other folders
 
 
 def test_links():

@@ -5,8 +5,8 @@ from statistics import mean, pstdev
 import pytest
 
 from rbx1_nav.base.readings import MEASURED
-from rbx1_nav.simulation.floor import RandomErrors
 from rbx1_nav.simulation.gyro import Gyro, IdealGyro
+from rbx1_nav.simulation.slip import RandomErrors
 from sample_surface import SURFACE
 
 RUN = RandomErrors(0.0, 0.0, radians(0.5), 0.01)

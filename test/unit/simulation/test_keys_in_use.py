@@ -5,8 +5,8 @@ import pytest
 from rbx1_nav.base.description import read_robot
 from rbx1_nav.base.surfaces import KEYS
 from rbx1_nav.base.units import SECOND
-from rbx1_nav.simulation.floor import floor_travel
 from rbx1_nav.simulation.simulated_base import make_base
+from rbx1_nav.simulation.slip import floor_travel
 from sample_surface import SURFACE
 
 ROBOT = read_robot({'controllers': {'base': {'type': 'diff_controller', 'base_width': 0.26}}})

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rbx1_nav.simulation.floor import RandomErrors
 from rbx1_nav.simulation.floor_noise import make_roughness
+from rbx1_nav.simulation.slip import RandomErrors
 from rbx1_nav.simulation.wheels import Wheels
 from sample_surface import SURFACE
 

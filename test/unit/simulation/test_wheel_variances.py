@@ -5,7 +5,7 @@ import pytest
 
 from rbx1_nav.base.kinematics import ORIGIN
 from rbx1_nav.base.readings import MEASURED
-from rbx1_nav.simulation.floor import RandomErrors
+from rbx1_nav.simulation.slip import RandomErrors
 from rbx1_nav.simulation.wheels import IdealWheels, Wheels
 from sample_surface import RUN, SURFACE
 

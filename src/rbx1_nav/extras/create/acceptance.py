@@ -4,11 +4,11 @@ from __future__ import annotations
 from math import copysign
 from typing import Mapping
 
-from rbx1_nav.base.gate import CommandGate, RefusedCommand
+from rbx1_nav.base.command_gate import CommandGate, RefusedCommand
 from rbx1_nav.base.readings import Travel
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.extras.create import protocol
-from rbx1_nav.extras.create.contact import BUMPS, CLIFFS, WHEEL_DROPS, Contact, Supervisor
+from rbx1_nav.extras.create.connection import BUMPS, CLIFFS, WHEEL_DROPS, Contact, Supervisor
 from rbx1_nav.extras.create.motion import Expected
 from rbx1_nav.extras.create.sender import wheel_speeds
 from rbx1_nav.extras.create.settings import Settings

@@ -9,12 +9,12 @@ from diagnostic_updater import Updater
 import rospy
 
 from rbx1_nav.base.clocks import HardwareClock
+from rbx1_nav.base.command_gate import CommandGate
+from rbx1_nav.base.command_subscriber import VelocityCommands
 from rbx1_nav.base.description import Robot
-from rbx1_nav.base.gate import CommandGate
 from rbx1_nav.base.publisher import BasePublisher
 from rbx1_nav.base.readings import Uncertainty
 from rbx1_nav.base.schedule import Schedule
-from rbx1_nav.base.velocity_commands import VelocityCommands
 from rbx1_nav.extras.create.create_status import CreateStatus
 from rbx1_nav.extras.create.driver import Driver
 from rbx1_nav.extras.create.link import Link

@@ -7,10 +7,10 @@ import rospy
 from diagnostic_msgs.msg import DiagnosticStatus
 from diagnostic_updater import DiagnosticStatusWrapper, Updater
 
+from rbx1_nav.base.command_subscriber import VelocityCommands
 from rbx1_nav.base.messages import fill_status
-from rbx1_nav.base.velocity_commands import VelocityCommands
 from rbx1_nav.extras.create import protocol
-from rbx1_nav.extras.create.contact import BUMPS, CLIFFS, WHEEL_DROPS
+from rbx1_nav.extras.create.connection import BUMPS, CLIFFS, WHEEL_DROPS
 from rbx1_nav.extras.create.driver import Driver
 from rbx1_nav.extras.create.link import Link
 from rbx1_nav.extras.create.motion import CounterTravel

@@ -6,12 +6,12 @@ from __future__ import annotations
 
 from typing import Callable, Mapping, Sequence
 
-from rbx1_nav.base.gate import CommandGate
+from rbx1_nav.base.command_gate import CommandGate
 from rbx1_nav.extras.create import protocol
 from rbx1_nav.extras.create import sequences
 from rbx1_nav.extras.create.acceptance import OUTAGE, Acceptance
 from rbx1_nav.extras.create.analog_gyro import AnalogGyro, Step
-from rbx1_nav.extras.create.contact import WHEEL_DROPS, Contact, Supervisor, causes
+from rbx1_nav.extras.create.connection import WHEEL_DROPS, Contact, Supervisor, causes
 from rbx1_nav.extras.create.fractions import Fractions
 from rbx1_nav.extras.create.link import Link
 from rbx1_nav.extras.create.motion import (

@@ -17,7 +17,7 @@ QUERIED_WITHOUT_ANGLE = _NUMBERS + (19, 33)
 START = command('start')
 MODES = {protocol.PASSIVE: START, protocol.SAFE: command('safe'), protocol.FULL: command('full')}
 
-# the search for a robot: see search.py
+# the search for a robot: see identification.py
 PAUSE_STREAM = command('pause_resume_stream', 0)
 BATTERY = 3                         # a group of 10 bytes
 ASK_BATTERY = START + command('sensors', BATTERY)

@@ -19,8 +19,8 @@ from rbx1_nav.extras.fitting.floor_fit import MEANS, Fitter
 from rbx1_nav.extras.fitting.prediction import SPREADS, with_values
 from rbx1_nav.extras.fitting.run import PreparedRun, Windows
 from rbx1_nav.node.config import ConfigError, Section, load_yaml, show, show_name
-from rbx1_nav.simulation.floor import floor_travel
 from rbx1_nav.simulation.floor_noise import NOISES
+from rbx1_nav.simulation.slip import floor_travel
 
 FARTHEST, MOST = 1000.0, 36000.0    # m, degrees
 ERRORS = dict(position_error=(1e-4, 10.0, 0.01, 'm'), heading_error=(0.01, 90.0, 2.0, 'degrees'))

@@ -25,7 +25,7 @@ from rospy.exceptions import TransportException
 from rospy.msg import serialize_message
 
 from rbx1_nav.base.schedule import NODE_TIMEOUT
-from rbx1_nav.extras.lockstep.watch import Watch
+from rbx1_nav.extras.lockstep.watched_nodes import Watch
 
 ANSWER_TIME = 3e-4      # s of wall time in which a driver usually answers
 LOOK = 2e-5, 5e-3   # s of wall time between two checks of the processes: at least, at most

@@ -15,7 +15,7 @@ from rbx1_nav.base.clocks import Clock
 from rbx1_nav.base.schedule import CLOCK_STEP, Schedule
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.extras.lockstep.lockstep import Lockstep
-from rbx1_nav.extras.lockstep.watch import Watch
+from rbx1_nav.extras.lockstep.watched_nodes import Watch
 from rbx1_nav.node import life
 from rbx1_nav.node.config import ConfigError
 from rbx1_nav.node.master import call, is_alive

@@ -6,7 +6,7 @@ from typing import Callable
 
 from tornado.websocket import WebSocketHandler
 
-from rbx1_nav.extras.web.checks import same_token
+from rbx1_nav.extras.web.access import same_token
 from rbx1_nav.extras.web.controls import Controls
 from rbx1_nav.extras.web.page_messages import Hello, InvalidMessage, StopRequest, encode, kind_of, parse
 from rbx1_nav.extras.web.state import PageState

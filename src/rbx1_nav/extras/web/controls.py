@@ -4,16 +4,15 @@ from __future__ import annotations
 import time
 from typing import Any, Callable, NamedTuple
 
+from rbx1_nav.extras.web.access import without_token
 from rbx1_nav.extras.web.hand_drive import HandDrive
 from rbx1_nav.extras.web.page_messages import DriveRequest, HandRequest, Request, ResetRequest, RunRequest, StopRequest
 from rbx1_nav.extras.web.page_runs import Runs
 from rbx1_nav.extras.web.state import PageState
 from rbx1_nav.extras.web.system import System
 
-NO_TOKEN = 'this page can only watch: open the complete address that the web view printed, with its token'
 BUSY = 'a run is in progress: stop it first'
 OLD = 'the request was more than 2 s old, so nothing was started: try again'
-STOP_NEEDS_TOKEN = 'Stop needs the token here: open the complete address that the web view printed'
 ROUNDING = 0.001    # s: resolution of the clock in a frame
 MAX_AGE = 2.0       # s: age of the last frame that the browser had received when it sent a request
 NOT_CONFIRMED = 'a real robot moves only after you have confirmed that its path is free'
@@ -105,13 +104,12 @@ class Controls:
 
     def handle(self, browser: object, trusted: bool, message: Request) -> str:
         """Execute a request. trusted: whether the browser sent the token. Returns why it was rejected, or ''."""
+        refused = '' if trusted else without_token(message, self.stop_needs_token)
+        if refused:
+            return refused
         if isinstance(message, StopRequest):
-            if self.stop_needs_token and not trusted:
-                return STOP_NEEDS_TOKEN
             self.stopper.request(browser, message.number, self.clock())
             return ''
-        if not trusted:
-            return NO_TOKEN
         ends = (not message.on if isinstance(message, HandRequest) else
                 isinstance(message, DriveRequest) and not any(message[:2]))
         if not ends and not 0 <= self.clock() - message.clock + ROUNDING <= MAX_AGE:

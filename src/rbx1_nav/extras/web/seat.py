@@ -8,7 +8,7 @@ import subprocess
 from threading import Event, Thread
 from typing import Callable, Sequence
 
-from rbx1_nav.extras.web.checks import TOKEN_VARIABLE, make_token, page_address
+from rbx1_nav.extras.web.access import TOKEN_VARIABLE, make_token, page_address
 
 START_TIMEOUT = 60.0    # s for a seat to start
 LINES = 20      # of the output that are kept

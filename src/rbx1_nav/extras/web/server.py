@@ -12,7 +12,7 @@ from tornado.netutil import bind_sockets
 from tornado.web import Application, HTTPError, StaticFileHandler
 from tornado.websocket import WebSocketHandler
 
-from rbx1_nav.extras.web.checks import accepted_hosts
+from rbx1_nav.extras.web.access import accepted_hosts
 from rbx1_nav.extras.web.connections import Connections
 from rbx1_nav.extras.web.page_messages import MAX_MESSAGE
 

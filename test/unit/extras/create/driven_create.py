@@ -3,7 +3,7 @@ import os
 
 import pytest
 
-from rbx1_nav.base.gate import CommandGate, RefusedCommand
+from rbx1_nav.base.command_gate import CommandGate, RefusedCommand
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.extras.create.driver import Driver
 from rbx1_nav.extras.create.emulator.body import Body, Quirks

@@ -8,8 +8,8 @@ import pytest
 
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.extras.create import protocol
+from rbx1_nav.extras.create.identification import Search
 from rbx1_nav.extras.create.link import BEAT, LineLost, Link
-from rbx1_nav.extras.create.search import Search
 
 LIMIT = 30      # s after which a wait fails
 

@@ -3,7 +3,7 @@ import pytest
 
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.extras.create import protocol
-from rbx1_nav.extras.create.contact import Supervisor, causes
+from rbx1_nav.extras.create.connection import Supervisor, causes
 from rbx1_nav.extras.create.emulator.body import Quirks
 from rbx1_nav.extras.create.protocol import FULL, OFF, PASSIVE, SAFE
 

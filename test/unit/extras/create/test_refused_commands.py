@@ -3,10 +3,10 @@ from types import SimpleNamespace
 
 import pytest
 
-from rbx1_nav.base.gate import CommandGate, RefusedCommand
+from rbx1_nav.base.command_gate import CommandGate, RefusedCommand
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.extras.create.acceptance import Acceptance
-from rbx1_nav.extras.create.contact import CLIFFS
+from rbx1_nav.extras.create.connection import CLIFFS
 from rbx1_nav.extras.create.motion import NOWHERE, Expected
 from rbx1_nav.extras.create.protocol import CREATE
 from rbx1_nav.extras.create.settings import read_settings

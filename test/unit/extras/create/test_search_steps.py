@@ -4,7 +4,7 @@ import pytest
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.extras.create import protocol
 from rbx1_nav.extras.create import sequences
-from rbx1_nav.extras.create.search import Search, has_frames
+from rbx1_nav.extras.create.identification import Search, has_frames
 
 RATES = (57600, 115200, 19200)
 MODEL_QUERY = bytes((142, 43, 142, 8))

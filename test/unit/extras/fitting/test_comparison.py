@@ -9,8 +9,8 @@ from rbx1_nav.extras.fitting.comparison import inner_share, mahalanobis, simulat
 from rbx1_nav.extras.fitting.prediction import SPREADS, Covariance, Prediction
 from rbx1_nav.extras.fitting.recording import Commands
 from rbx1_nav.extras.fitting.run import STEP, Windows, commanded_travel, grid
-from rbx1_nav.simulation.floor import draw_run
 from rbx1_nav.simulation.floor_noise import NOISES, make_roughness
+from rbx1_nav.simulation.slip import draw_run
 from rbx1_nav.simulation.wheels import Wheels
 from sample_surface import SURFACE
 

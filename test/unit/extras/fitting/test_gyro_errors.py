@@ -5,7 +5,7 @@ import pytest
 
 from rbx1_nav.base.kinematics import Pose
 from rbx1_nav.extras.fitting.gyro_fit import fit_gyro, rests_at
-from rbx1_nav.simulation.floor import draw_run
+from rbx1_nav.simulation.slip import draw_run
 from sample_runs import DRIVE, EXERCISE, FLOOR, FORWARD, record, wrapped
 
 

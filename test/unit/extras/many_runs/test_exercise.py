@@ -87,7 +87,7 @@ def test_the_estimate_has_a_smaller_error_than_the_odometry_and_an_honest_covari
         ends.append(error @ numpy.linalg.solve(run.covariance, error))
     heading_odom, heading, position_odom, position = squares ** 0.5
     assert heading < heading_odom / 3 and position < position_odom
-    # chi-square with 3 degrees of freedom; 1 sigma of the mean of 40 is 0.39. bench/surfaces.py tests 200 seeds
+    # chi-square with 3 degrees of freedom; 1 sigma of the mean of 40 is 0.39. bench/filter.py tests 200 seeds
     assert 1.5 < numpy.mean(ends) < 5
 
 

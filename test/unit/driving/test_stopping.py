@@ -6,10 +6,10 @@ import pytest
 import rospy
 
 from rbx1_nav.base.units import SECOND
-from rbx1_nav.driving import commands as module
+from rbx1_nav.driving import stopping as module
 from rbx1_nav.driving import rate as rates
-from rbx1_nav.driving.commands import Commands
 from rbx1_nav.driving.rate import Rate
+from rbx1_nav.driving.stopping import Commands
 
 MS = SECOND // 1000
 

@@ -8,7 +8,7 @@ from rbx1_nav.extras.create import protocol
 from rbx1_nav.extras.create import sequences
 from rbx1_nav.extras.create.emulator.emulator import EmulatedCreate
 from rbx1_nav.extras.create.emulator.serial_line import misread
-from rbx1_nav.extras.create.search import RATES, WAKE_TIME, Search, is_battery
+from rbx1_nav.extras.create.identification import RATES, WAKE_TIME, Search, is_battery
 
 from driven_create import DrivenCreate
 

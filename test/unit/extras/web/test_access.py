@@ -3,13 +3,13 @@ import re
 
 import pytest
 
-from rbx1_nav.extras.web import checks
-from rbx1_nav.extras.web.checks import accepted_hosts, make_token, same_token
+from rbx1_nav.extras.web import access
+from rbx1_nav.extras.web.access import accepted_hosts, make_token, same_token
 
 
 @pytest.fixture(autouse=True)
 def name_this_machine(monkeypatch):
-    monkeypatch.setattr(checks.socket, 'gethostname', lambda: 'Desk')
+    monkeypatch.setattr(access.socket, 'gethostname', lambda: 'Desk')
 
 
 @pytest.mark.parametrize('address, accepted, rejected', [

@@ -9,9 +9,9 @@ from typing import Callable, Mapping
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.extras.create import protocol
 from rbx1_nav.extras.create import sequences
+from rbx1_nav.extras.create.identification import RATES, Found, Search
 from rbx1_nav.extras.create.link import Link
 from rbx1_nav.extras.create.queries import Queries
-from rbx1_nav.extras.create.search import RATES, Found, Search
 from rbx1_nav.extras.create.sender import Sender
 from rbx1_nav.extras.create.settings import Settings
 from rbx1_nav.node.config import AUTO

@@ -6,8 +6,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from rbx1_nav.extras.lockstep import watch
-from rbx1_nav.extras.lockstep.watch import Watch, sources_of
+from rbx1_nav.extras.lockstep import watched_nodes
+from rbx1_nav.extras.lockstep.watched_nodes import Watch, sources_of
 from waiting import wait_for
 
 PUBLISHERS = [['/cmd_vel', ['/mux']], ['/cmd_vel_raw', ['/driver', '/teleop']], ['/odom', ['/base']],
@@ -61,10 +61,10 @@ class World:
 def make_world(monkeypatch):
     monkeypatch.setenv('ROS_MASTER_URI', 'http://127.0.0.1:1')      # nothing listens there
     # the process of pytest itself may have no other thread
-    monkeypatch.setattr(watch, 'own_process', lambda: SimpleNamespace(
+    monkeypatch.setattr(watched_nodes, 'own_process', lambda: SimpleNamespace(
         activity=lambda _: 0, sleeps=lambda: True, has_pollers=lambda: False))
     # other tests on this machine use the network
-    monkeypatch.setattr(watch, 'Network', lambda: SimpleNamespace(busy=lambda: False))
+    monkeypatch.setattr(watched_nodes, 'Network', lambda: SimpleNamespace(busy=lambda: False))
     world = World()
     yield world
     for process in world.watch.processes.values():
@@ -91,14 +91,14 @@ def test_what_keeps_a_node_from_being_in_step(world, monkeypatch):
     assert world.watch.obstacle('/driver') is None and world.watch.drivers == {'/driver'}
     world.listen()
     assert world.watch.obstacle('/driver') == 'does not subscribe to /clock' and not world.watch.drivers
-    monkeypatch.setattr(watch, 'peer_process', lambda _: None)
+    monkeypatch.setattr(watched_nodes, 'peer_process', lambda _: None)
     world.drive(world.connect('/other'))
     assert not world.watch.drivers and 'is not visible' in world.watch.obstacle('/other')
 
 
 def test_the_order_of_subscribers(world, monkeypatch):
     """Nodes that are not watched; sources, the farthest first; drivers."""
-    monkeypatch.setattr(watch, 'call', lambda *_: (PUBLISHERS, SUBSCRIBERS, []))
+    monkeypatch.setattr(watched_nodes, 'call', lambda *_: (PUBLISHERS, SUBSCRIBERS, []))
     connections = [world.connect(name) for name in ('/recorder', '/mux', '/driver', '/teleop')]
     recorder, mux, driver, teleop = connections
     world.listen(*connections)

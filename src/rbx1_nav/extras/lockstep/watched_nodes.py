@@ -10,7 +10,7 @@ from urllib.parse import urlparse
 import rosgraph
 import rospy
 
-from rbx1_nav.extras.lockstep.peers import listening_process, own_process, peer_process
+from rbx1_nav.extras.lockstep.sockets import listening_process, own_process, peer_process
 from rbx1_nav.extras.lockstep.processes import (
     Network, PollingThread, Process, Runs, awake, runs_since, still_polling)
 from rbx1_nav.node.master import call

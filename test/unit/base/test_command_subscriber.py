@@ -8,13 +8,13 @@ import pytest
 import rospy
 from std_msgs.msg import Float64
 
-from rbx1_nav.base import velocity_commands as module
+from rbx1_nav.base import command_subscriber as module
 from rbx1_nav.base.clocks import Clock
+from rbx1_nav.base.command_gate import CommandGate, RefusedCommand
+from rbx1_nav.base.command_subscriber import VelocityCommands
 from rbx1_nav.base.description import Joint, Limits
-from rbx1_nav.base.gate import CommandGate, RefusedCommand
 from rbx1_nav.base.running_bases import Refusals
 from rbx1_nav.base.units import SECOND
-from rbx1_nav.base.velocity_commands import VelocityCommands
 
 
 class Time(Clock):

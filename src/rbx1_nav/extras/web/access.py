@@ -12,9 +12,18 @@ import re
 import secrets
 import socket
 
+from rbx1_nav.extras.web.page_messages import Request, StopRequest
+
 LOCALHOST = 'localhost'
 TOKEN_BYTES = 16
 TOKEN_VARIABLE = 'RBX1_NAV_TOKEN'   # environment variable with the token, if several processes must agree on it
+
+
+def without_token(message: Request, stop_needs_token: bool) -> str:
+    """Return why a request of a browser without the token is rejected, or ''. Without it, a browser may only stop."""
+    if not isinstance(message, StopRequest):
+        return 'this page can only watch: open the complete address that the web view printed, with its token'
+    return 'Stop needs the token here: open the complete address that the web view printed' if stop_needs_token else ''
 
 
 def make_token() -> str:

@@ -4,7 +4,7 @@ from math import cos, inf, nan, pi, sin
 from hypothesis import assume, given, strategies
 import pytest
 
-from rbx1_nav.filter.gyro_input import (
+from rbx1_nav.filter.imu_mounting import (
     DEFAULT_VARIANCE, GyroInput, ImuData, inverse, multiply, turn_about, vertical_axis)
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.filter.inputs import Imu, RejectedMessage
