@@ -42,7 +42,3 @@ def test_a_file_that_a_module_names_exists():
             if missing:
                 found[path] = missing
     assert found == {}
-
-
-def test_a_file_that_does_not_exist_is_found():
-    assert unknown('see `arrays.py`, node/units.py and gate.py') == ['arrays.py', 'node/units.py']
