@@ -42,6 +42,11 @@ class TestBadParameters(support.Case):
         self.check(support.Process('rosrun', 'rbx1_nav', 'ekf.py'),
                    ["/robot_pose_ekf/surface: 'sand'", f'expected one of {support.surfaces()}'])
 
+    def test_emulated_robot(self):
+        self.check(support.Process('rosrun', 'rbx1_nav', 'fake_create.py', '_link:=/etc/hostname'),
+                   ['link: /etc/hostname: exists, and is not a link: expected'])
+        forget('/fake_create')
+
     def test_base(self):
         for params, expected in [
                 ({}, ['/arbotix/controllers', 'missing']),

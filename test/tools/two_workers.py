@@ -61,9 +61,9 @@ class TestTwoWorkers(support.Case):
 
     def copy_package(self):
         """Return a folder with another version of the package."""
-        import rbx1_nav
+        from rbx1_nav.base import units
         folder = tempfile.mkdtemp(dir=self.folder)
-        shutil.copytree(os.path.dirname(rbx1_nav.__file__), os.path.join(folder, 'rbx1_nav'))
+        shutil.copytree(os.path.dirname(os.path.dirname(units.__file__)), os.path.join(folder, 'rbx1_nav'))
         with open(os.path.join(folder, 'rbx1_nav', 'base', 'units.py'), 'a', encoding='utf-8') as file:
             file.write('# another version\n')
         return folder

@@ -1,16 +1,19 @@
 """The parameters of the filter reach it in its units, and its frames have the prefix."""
 from math import radians
+from unittest.mock import MagicMock
 
 from nav_msgs.msg import Odometry
 import pytest
 import rospy
 
+from rbx1_nav.base.surfaces import load_surface
 from rbx1_nav.filter import ekf_parameters as module
 from rbx1_nav.filter.ekf_parameters import read_parameters
 from rbx1_nav.filter.inputs import RejectedMessage
-from rbx1_nav.filter.priors import Bounds
+from rbx1_nav.filter.priors import UNKNOWN_FLOOR, Bounds, priors
 from rbx1_nav.filter.sensor_inputs import frames_of
 from rbx1_nav.node.config import ConfigError
+from sample_priors import SURFACES
 
 BASE = 'base_footprint_frame'
 
@@ -64,9 +67,23 @@ def test_what_is_not_supported_is_logged(monkeypatch):
 
 @pytest.mark.parametrize('params, text', [
     (dict(odom_used=False), 'odom_used: False: expected true'), ({'output_frame': 'map', BASE: 'map'}, 'other than'),
-    (dict(surface='sand'), "surface: 'sand': expected one of "), (dict(tf_prefix=7), 'tf_prefix: 7: expected the name'),
+    (dict(tf_prefix=7), 'tf_prefix: 7: expected the name'),
     (dict(max_speed=0), 'max_speed: 0: expected a speed from 0.01 to 1000 in m/s'),
     (dict(gyro_bias='small'), "gyro_bias: 'small': expected a bias from 0.01 to 1000 in degrees/s")])
 def test_what_is_rejected(params, text):
     with pytest.raises(ConfigError, match=text):
         read_parameters(params)
+
+
+@pytest.mark.parametrize('name, params, floor', [
+    ('low_ply_carpet', {}, 'low_ply_carpet'), ('auto', {'/base/surface': 'hard_floor'}, 'hard_floor'),
+    ('auto', {}, 'unknown')])
+def test_the_assumed_floor_is_that_of_the_parameter_or_of_a_simulated_base(monkeypatch, name, params, floor):
+    lines, server = [], MagicMock()
+    server.return_value.__enter__.return_value.param = params.get
+    monkeypatch.setattr(module, 'Server', server)
+    monkeypatch.setattr(module, 'private_namespace', lambda base, *_: base)
+    monkeypatch.setattr(module.resources, 'surfaces', lambda: SURFACES)
+    prior = module.find_prior(name, '/base', lambda _, text: lines.append(text))
+    assert lines == [f'Initially assumed floor: {floor}']
+    assert prior == (UNKNOWN_FLOOR if floor == 'unknown' else priors(load_surface(floor, SURFACES)))
