@@ -1,4 +1,4 @@
-"""Looks up the robot's pose with tf2, and calculates speeds toward a goal, for odometry-based driving scripts."""
+"""Looks up the robot's pose with tf2, for odometry-based driving scripts, which also import their legs from here."""
 from __future__ import annotations
 
 from math import atan2
