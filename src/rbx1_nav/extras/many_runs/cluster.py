@@ -53,7 +53,7 @@ def versions() -> dict[str, str]:
 def code_version() -> str:
     """Return a digest of the code of this package."""
     digest = hashlib.sha256()
-    folder = os.path.realpath(os.path.join(os.path.dirname(__file__), '..'))
+    folder = os.path.realpath(os.path.join(os.path.dirname(__file__), '..', '..'))
     for path, folders, names in os.walk(folder):
         folders.sort()
         for name in sorted(names):
