@@ -40,7 +40,7 @@ FLAKY = 3       # flaky rostests that fail the run
 LONGEST = ['documents', 'in_step', 'calibration_without_gyro', *SETS, 'unit-1', 'unit-2', 'unit-3', 'unit-4',
            'browser_page']
 # use more than a core each, and fail if they get less: one at a time, when the others have finished
-ALONE = ['fleet_models', 'browser_comparison', 'feedback_roscpp']
+ALONE = ['fleet_models', 'five_robots', 'browser_comparison', 'feedback_roscpp']
 
 
 def run_rostest(results, name, path):
