@@ -27,6 +27,11 @@ RATES = {
 WALL = (('callback', 50),)
 
 
+def driver_in(language):
+    """Return the path of the driver."""
+    return support.roscpp('feedback_driver') if language == 'roscpp' else DRIVER
+
+
 def commands(x, y, yaw):
     """Return the velocities that feedback_driver.py sends at a pose."""
     return min(max(1.0 * (1.0 - x), 0.05), 0.3), 0.5 * (0.05 - y) - 0.5 * yaw
@@ -86,8 +91,7 @@ class TestFeedback(support.Case):
         """Check all runs of a driver."""
         if kind == 'filters' and not importlib.util.find_spec('message_filters'):
             self.skipTest('no package message_filters')
-        driver = support.roscpp('feedback_driver') if language == 'roscpp' else DRIVER
-        ends = [self.drive(driver, kind, rate, *start) for _ in range(RUNS)]
+        ends = [self.drive(driver_in(language), kind, rate, *start) for _ in range(RUNS)]
         texts = [text for text, _ in ends]
         # the filter's estimate rounds differently after another time at rest
         if kind != 'latest_ekf':
