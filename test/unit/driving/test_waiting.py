@@ -54,6 +54,15 @@ def test_a_sleep_is_as_long_as_requested(monkeypatch, duration, is_wallclock, sl
     assert clock.slept == slept
 
 
+def test_a_sleep_of_a_shutdown_function_is_wall_time(monkeypatch):
+    slept = []
+    monkeypatch.setattr(module, 'is_shutdown_function', lambda: True)
+    monkeypatch.setattr(module.time, 'sleep', slept.append)
+    for duration in 0.25, rospy.Duration(2), -1:
+        sleep(duration)
+    assert slept == [0.25, 2.0, 0.0]
+
+
 @pytest.mark.parametrize('is_wallclock', [True, False])
 def test_a_request_interrupts_a_sleep(monkeypatch, is_wallclock):
     clock = Clock(monkeypatch, is_wallclock)
