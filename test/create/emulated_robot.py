@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""fake_create.py: its parameters, services and topics reach the robot, its line is that of a client's serial port, and
+"""fake_create.py: its parameters, services and topics reach the robot, a client uses its line as a serial port, and
 /line and /ground_truth show what the robot receives and how it moves."""
 from math import pi
 import os

@@ -77,7 +77,7 @@ def init_node(name: str, usage: str, parameters: Sequence[Parameter] = (), requi
     usage: printed with the list of parameters for --help and for an invalid command line; in both cases, the process
     exits. '' for a program that reads its command line itself.
     parameters: the parameters of the node. They are checked before the node can shut down an older one with the same
-    name, and are then read with params.param().
+    name, and are then read with param() of private_parameters.py.
     requires_master: whether a master that does not answer is an error. Otherwise the node waits for it, for at most
     ~wait_timeout if it has this parameter.
     check(params): raises ConfigError for private parameters that are inconsistent.
