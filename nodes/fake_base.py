@@ -8,6 +8,7 @@ from __future__ import annotations
 import rbx1_nav.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
 
 from rbx1_nav.base.description import DRIVER_KEYS, PARAMETERS as ROBOT, read_robot
+from rbx1_nav.base.model_check import ModelCheck
 from rbx1_nav.base.publisher import with_frames
 from rbx1_nav.base.running_bases import Refusals
 from rbx1_nav.extras.lockstep.simulated_clock import PARAMETERS as CLOCK, read_clock
@@ -32,6 +33,8 @@ def main() -> int:
     robot = read_robot(stored_params())
     clock = read_clock(robot.rate)
     simulated = SimulatedRobot(with_frames(robot, resolve_frame), param('surface'), param('seed'), clock, Refusals())
+    key = f'controllers/{robot.name}'
+    ModelCheck(simulated.publisher, (f'{key}/base_frame_id', key), simulated.diagnostics).start()
     simulated.start()
     clock.run(simulated.step)
     return 0

@@ -11,6 +11,7 @@ import rbx1_nav.node.early_interrupt     # first, so that Ctrl-C during the othe
 
 import rospy
 
+from rbx1_nav.base.model_check import ModelCheck
 from rbx1_nav.base.publisher import with_frames
 from rbx1_nav.extras.create.create_base import CreateBase
 from rbx1_nav.extras.create.settings import PARAMETERS, read_settings
@@ -26,7 +27,9 @@ def main() -> int:
         rospy.logfatal('/use_sim_time: true: expected false, because a robot on a serial line runs in real time')
         return 1
     settings, robot = read_settings(stored_params())
-    return 0 if CreateBase(settings, with_frames(robot, resolve_frame)).run() else 1
+    base = CreateBase(settings, with_frames(robot, resolve_frame))
+    ModelCheck(base.publisher, ('base_frame', ''), base.diagnostics.updater).start()
+    return 0 if base.run() else 1
 
 
 if __name__ == '__main__':

@@ -1,13 +1,13 @@
 """Reads the description of a robot from parameters in the format of the ArbotiX driver, with its joints."""
 from __future__ import annotations
 
-from math import inf, isfinite, radians
+from math import degrees, inf, isfinite, radians
 import re
 from typing import Container, NamedTuple
 
 from rbx1_nav.base.units import SECOND, clamp
 from rbx1_nav.node.config import ConfigError, Section, YamlValue, load_yaml, show, show_name
-from rbx1_nav.node.parameters import elsewhere, flag, frame, number, read
+from rbx1_nav.node.parameters import custom, elsewhere, flag, frame, number, read
 
 # keys that only the hardware needs: accepted and ignored
 DRIVER_KEYS = {'port', 'baud', 'rate', 'sync_write', 'sync_read', 'read_rate', 'write_rate'}
@@ -20,11 +20,13 @@ MIN_TIMEOUT = 0.01  # s
 # the keys of diff_drive_controller, and the joint names in this package's URDF files
 WHEEL_JOINTS = {'left_wheel': 'base_l_wheel_joint', 'right_wheel': 'base_r_wheel_joint'}
 
+MODEL = custom('model', '', 'URDF file that the launch file shows, for messages; empty: it shows none', str, shown='empty')
 PARAMETERS = (
     elsewhere('controllers', 'mapping with one diff_controller', note='see below'),
     elsewhere('joints', 'servos', 'none', note='see below'),
     flag('publish_tf', True, 'whether to publish the transform to the base frame',
          note='false if another node publishes it'),
+    MODEL,
     flag('sim', True, 'whether the base is a simulation; must be true'))
 
 CONTROLLER = (
@@ -104,8 +106,9 @@ class Robot(NamedTuple):
     publish_tf: bool
     joints: list[Joint]
     wheel_joints: tuple[str, str]   # names of the joints of the left and the right wheel
+    model: str              # URDF file that the launch file shows, or ''
     hardware: list[str]     # keys that only hardware needs
-    unknown: list[str]      # keys of a controller or joint that are unknown
+    unknown: list[str]      # other controllers, and keys of a controller or joint that are unknown
 
 
 def read_joint(name: str, section: Section) -> Joint:
@@ -115,6 +118,22 @@ def read_joint(name: str, section: Section) -> Joint:
     if lower >= upper:
         raise ConfigError(f"{section.path('min_angle')}: {lower!r}: expected an angle below max_angle, {upper!r}")
     return Joint(name, radians(lower), radians(upper), radians(values['max_speed']))
+
+
+def find_smaller_range(section: Section, joint: Joint) -> list[str]:
+    """Return a text if arbotix_driver would limit a Joint to a smaller range, because its servo ends there; [] if not.
+
+    The range follows from ticks, neutral, range and invert as in DynamixelServo of arbotix_python 0.11.0. Raises
+    ConfigError.
+    """
+    ticks = section.number('ticks', 1, 1e6, 1024, 'a number of ticks')
+    neutral = section.number('neutral', 0, 1e6, ticks / 2, 'a number of ticks')
+    tick = section.number('range', 0.001, MAX_ANGLE, 360 if ticks == 4096 else 300, 'an angle', 'degrees') / ticks
+    ends = [-neutral * tick, (ticks - neutral) * tick]
+    lower, upper = sorted(-each for each in ends) if section.flag('invert', False) else ends
+    if lower <= degrees(joint.lower) + tick and degrees(joint.upper) - tick <= upper:
+        return []
+    return [f"{section.path('neutral')} (with arbotix_driver, the joint moves from {lower:.1f} to {upper:.1f} degrees)"]
 
 
 def read_wheel_joints(section: Section, servos: Container[str] = ()) -> tuple[str, str]:
@@ -158,15 +177,15 @@ def read_robot(params: YamlValue) -> Robot:
         raise ConfigError('sim: False: expected true, because this base is a simulation')
 
     controllers = top.section('controllers', expected='a mapping with one diff_controller')
-    if len(controllers.values) != 1:
-        raise ConfigError(f'controllers: {show(list(controllers.values))}: '
-                          'expected exactly one, of type diff_controller')
-    name, = controllers.values
+    kinds = {each: value.get('type') if isinstance(value, dict) else None for each, value in controllers.values.items()}
+    bases = [each for each, kind in kinds.items() if kind == 'diff_controller' or len(kinds) == 1]
+    if len(bases) != 1:
+        raise ConfigError(f'controllers: {show(kinds)}: expected exactly one of type diff_controller')
+    name, = bases
     base = controllers.section(name, CONTROLLER_KEYS)
-    kind = base.get('type', expected='diff_controller')
-    if kind != 'diff_controller':
-        raise ConfigError(f"{base.path('type')}: {show(kind)}: "
-                          'unknown controller type, expected one of: diff_controller')
+    base.choice('type', ('diff_controller',), None)
+    # such as of an arm
+    others = [f'{controllers.path(each)} ({show_name(kind)})' for each, kind in kinds.items() if each != name]
     sections = [base]
 
     joints = []
@@ -178,6 +197,7 @@ def read_robot(params: YamlValue) -> Robot:
                               f"other than {' and '.join(wheel_joints)}")
         section = all_joints.section(joint, JOINT_KEYS)
         joints.append(read_joint(joint, section))
+        others += find_smaller_range(section, joints[-1])
         sections.append(section)
 
     keys = read(CONTROLLER, base)
@@ -196,8 +216,9 @@ def read_robot(params: YamlValue) -> Robot:
         publish_tf=values['publish_tf'],
         joints=joints,
         wheel_joints=wheel_joints,
+        model=values['model'],
         hardware=sorted(key for section in [top, *sections] for key in section.ignored()),
-        unknown=sorted(key for section in sections for key in section.unknown()))
+        unknown=sorted([*others, *(key for section in sections for key in section.unknown())]))
     if robot.odom_frame_id == robot.base_frame_id:
         raise ConfigError(f"{base.path('base_frame_id')}: {show(robot.base_frame_id)}: "
                           'expected a frame other than odom_frame_id')

@@ -1,4 +1,4 @@
-"""Reads the visuals of a URDF file, which define the appearance of a robot."""
+"""Reads a URDF file: its visuals, which define the appearance of a robot, and its tree of links."""
 from __future__ import annotations
 
 from typing import Mapping, NamedTuple, Tuple
@@ -63,3 +63,46 @@ def _size(shape: ElementTree.Element) -> Numbers:
         return _numbers(shape.get('scale', '1 1 1'))
     diameter = 2 * float(shape.attrib['radius'])
     return diameter, diameter, float(shape.get('length', diameter))
+
+
+class Tree(NamedTuple):
+    """The links and joints of a URDF file."""
+
+    root: str               # link that is not the child of a joint
+    links: set[str]
+    movable: dict[str, str]     # child link by joint, of the joints that robot_state_publisher reads from joint_states
+    turning: set[str]       # movable joints without limits, such as wheels
+
+
+def is_xacro(text: str) -> bool:
+    """Return whether a text has to be expanded by xacro before it is a URDF file."""
+    return 'xacro:' in text
+
+
+def read_tree(text: str) -> Tree:
+    """Return the Tree in the text of a URDF file. Raises ValueError if it is not a URDF file."""
+    if is_xacro(text):
+        raise ValueError('a xacro file, not a URDF file: expand it with xacro (package ros-noetic-xacro, '
+                         'or `pip install xacro`)')
+    try:
+        robot = ElementTree.fromstring(text)
+    except ElementTree.ParseError as error:
+        raise ValueError(f'not a URDF file: {error}') from error
+    if robot.tag != 'robot':
+        raise ValueError(f'not a URDF file: <{robot.tag}>: expected <robot>')
+    links = [link.get('name', '') for link in robot.findall('link')]
+    children: dict[str, str] = {}
+    movable: dict[str, str] = {}
+    turning = set()
+    for joint in robot.findall('joint'):
+        child = joint.find('child')
+        name = children[joint.get('name', '')] = '' if child is None else child.get('link', '')
+        # the publisher computes a joint that mimics another one
+        if joint.get('type') in ('continuous', 'revolute', 'prismatic') and joint.find('mimic') is None:
+            movable[joint.get('name', '')] = name
+            if joint.get('type') == 'continuous':
+                turning.add(joint.get('name', ''))
+    roots = [link for link in links if link not in children.values()]
+    if len(roots) != 1:
+        raise ValueError(f'not a URDF file: links that are no child of a joint: {roots}: expected exactly one')
+    return Tree(roots[0], set(links), movable, turning)

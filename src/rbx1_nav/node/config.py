@@ -111,7 +111,7 @@ class Section:
             return float(value)
         raise ConfigError(f'{self.path(key)}: {describe(value)}: expected {expected}')
 
-    def choice(self, key: str, choices: Sequence[Choice], default: Choice) -> Choice:
+    def choice(self, key: str, choices: Sequence[Choice], default: Choice | None) -> Choice:
         """Return one of several values: texts, numbers, or true and false. Raises ConfigError."""
         value = self.get(key, default)
         for each in choices:

@@ -51,6 +51,20 @@ def test_unknown_keys_are_reported():
     assert read_robot(params).unknown == ['controllers/base_controller/time_out (did you mean timeout?)']
 
 
+def test_other_controllers_and_servos_that_end_earlier_are_named():
+    params = load('turtlebot.yaml')
+    params['controllers'].update(head={'type': 'follow_controller', 'joints': ['pan', 'tilt']}, arm=7)
+    params['joints'] = {
+        'pan': {'id': 1}, 'tilt': {'neutral': 300}, 'lift': {'neutral': 300, 'invert': True, 'min_angle': -200},
+        'turn': {'ticks': 4096, 'min_angle': -180, 'max_angle': 180}, 'grip': {'range': 180, 'max_angle': 90},
+        'low': {'neutral': 205, 'min_angle': -60}}
+    # 300 degrees in 1024 ticks: 300 of them are 87.9 degrees
+    text = 'joints/%s/neutral (with arbotix_driver, the joint moves from %s degrees)'
+    assert read_robot(params).unknown == [
+        'controllers/arm (None)', 'controllers/head (follow_controller)', text % ('grip', '-90.0 to 90.0'),
+        text % ('lift', '-212.1 to 87.9'), text % ('tilt', '-87.9 to 212.1')]
+
+
 @pytest.mark.parametrize('key, value, expected', [
     ('base_width', 0, 'from 0.001 to 100 in m'), ('base_width', '0.26', 'width'), ('base_width', nan, 'a width from'),
     ('base_width', True, 'width'), ('rate', -5, 'from 0.1 to 1000 in Hz'), ('rate', 0, 'from 0.1'),
@@ -66,7 +80,7 @@ def test_unknown_keys_are_reported():
     ('left_wheel', 'r\u00e4d', 'letters, digits'), ('right_wheel', 'two\nlines', 'the name of a joint'),
     ('right_wheel', 'base_l_wheel_joint', 'other than left_wheel'),
     ('left_wheel', 'base_r_wheel_joint', 'other than right_wheel'),
-    ('type', 'follow_controller', 'one of: diff_controller')])
+    ('type', 'follow_controller', 'one of diff_controller')])
 def test_an_invalid_value_is_named_with_its_key_and_what_is_expected(key, value, expected):
     params = load('turtlebot.yaml')
     params['controllers']['base_controller'][key] = value
@@ -91,8 +105,9 @@ def test_a_missing_key_is_named(path):
 
 @pytest.mark.parametrize('params', [
     7, [], 'text', {'controllers': 'base'}, {'controllers': {}}, {'controllers': {'base': None}},
-    {'controllers': {'a': {'type': 'diff_controller'}, 'b': {'type': 'diff_controller'}}}])
-def test_a_configuration_without_one_controller_is_rejected(params):
+    {'controllers': {'a': {'type': 'diff_controller'}, 'b': {'type': 'diff_controller'}}},
+    {'controllers': {'arm': {'type': 'follow_controller'}, 'head': {}}}])
+def test_a_configuration_without_one_base_is_rejected(params):
     with pytest.raises(ConfigError, match='expected'):
         read_robot(params)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 from math import inf
 from typing import NamedTuple
 
-from rbx1_nav.base.description import WHEEL_JOINTS, Limits, Robot, read_wheel_joints
+from rbx1_nav.base.description import MODEL, WHEEL_JOINTS, Limits, Robot, read_wheel_joints
 from rbx1_nav.base.readings import OdometryErrors
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.extras.create import protocol
@@ -62,6 +62,7 @@ PARAMETERS = (
     elsewhere('right_wheel', 'joint of the right wheel', WHEEL_JOINTS['right_wheel']),
     flag('publish_tf', True, 'whether to publish the transform from odom_frame to base_frame',
          note='set to false if another node publishes it'),
+    MODEL,
     choice('drive_mode', ('twist',), 'twist', 'drive mode; twist is the only one supported'),
     elsewhere('diagnostic_period', 'accepted for compatibility and ignored; /diagnostics is published at 1 Hz'))
 
@@ -110,7 +111,7 @@ def read_settings(params: YamlValue) -> tuple[Settings, Robot]:
         base_width=model.wheel_separation, wheel_radius=WHEEL_RADIUS, rate=settings.update_rate,
         timeout=round(SECOND * values['cmd_vel_timeout']), limits=Limits(linear=inf, angular=max_yaw_speed),
         publish_tf=values['publish_tf'], joints=[],
-        wheel_joints=read_wheel_joints(section), hardware=[], unknown=[])
+        wheel_joints=read_wheel_joints(section), model=values['model'], hardware=[], unknown=[])
     if robot.odom_frame_id == robot.base_frame_id:
         raise ConfigError(f'base_frame: {show(robot.base_frame_id)}: expected a frame other than odom_frame')
     return settings, robot

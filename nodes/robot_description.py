@@ -1,0 +1,52 @@
+#!/usr/bin/env python3
+"""Prints a robot's URDF file for a launch file, and expands it first if it is a xacro file.
+
+usage: robot_description.py [--prefix PREFIX] [--alpha ALPHA] FILE
+
+PREFIX: put before the name of each link; ALPHA: opacity of all colors, 0 to 1. Exits with 1, and one line, if the file
+is not a URDF file.
+"""
+from __future__ import annotations
+
+import argparse
+import re
+import shutil
+import subprocess
+import sys
+
+from rbx1_nav.base.urdf import is_xacro, read_tree
+
+LINK = re.compile(r'(<(?:link|parent|child)\s+(?:name|link)=.)')
+ALPHA = re.compile(r'(rgba=.[^ ]+ +[^ ]+ +[^ ]+) +[0-9.]+')
+
+
+def read(path: str) -> str:
+    """Return the text of a URDF file. Raises OSError, ValueError or subprocess.CalledProcessError."""
+    with open(path, encoding='utf-8') as file:
+        text = file.read()
+    if is_xacro(text) and shutil.which('xacro'):
+        text = subprocess.run(['xacro', path], stdout=subprocess.PIPE, check=True, encoding='utf-8').stdout
+    read_tree(text)
+    return text
+
+
+def main() -> int:
+    """Print the text; return the exit status."""
+    usage, details = __doc__.split('\n\n', 1)
+    parser = argparse.ArgumentParser(description=usage, epilog=details.partition('\n\n')[2])
+    parser.add_argument('--prefix', default='')
+    parser.add_argument('--alpha')
+    parser.add_argument('file', metavar='FILE')
+    arguments = parser.parse_args()
+    try:
+        text = read(arguments.file)
+    except (OSError, ValueError, subprocess.CalledProcessError) as error:
+        print(f'model: {arguments.file}: {error}', file=sys.stderr)
+        return 1
+    text = LINK.sub(r'\g<1>' + arguments.prefix, text)
+    print(ALPHA.sub(r'\1 ' + arguments.alpha, text) if arguments.alpha else text)
+    return 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())

@@ -1,0 +1,147 @@
+"""Compares a running base with the model of its robot, and logs what does not belong together."""
+from __future__ import annotations
+
+from functools import partial
+from http.client import HTTPException
+import threading
+from typing import Any
+import xmlrpc.client
+
+import rosgraph
+import rospy
+from diagnostic_msgs.msg import DiagnosticStatus
+from diagnostic_updater import DiagnosticStatusWrapper, Updater
+from sensor_msgs.msg import JointState
+from tf2_msgs.msg import TFMessage
+
+from rbx1_nav.base.publisher import BasePublisher
+from rbx1_nav.base.robot_model import Published, find_prefix_problem, find_problems
+from rbx1_nav.base.urdf import Tree, read_tree
+from rbx1_nav.node.frames import check_prefix, find_prefix
+from rbx1_nav.node.life import end_requested
+from rbx1_nav.node.master import Server
+
+WAIT = 3.0      # s of wall time in which the other nodes start
+PERIOD = 30.0   # s of wall time between two checks while there are problems
+LISTEN = 2.0    # s: at least one message of a publisher with 1 Hz
+
+
+class ModelCheck:
+    """A thread that checks until it finds nothing; each problem is logged once, and is in /diagnostics."""
+
+    def __init__(self, publisher: BasePublisher, keys: tuple[str, str], diagnostics: Updater) -> None:
+        """keys: see find_problems()."""
+        self.publisher = publisher
+        self.model = publisher.robot.model
+        self.keys = keys
+        self.prefix = check_prefix(find_prefix())
+        self.problems: list[str] = []
+        diagnostics.add('Robot model', self.diagnose)
+
+    def start(self) -> None:
+        """Check what is known before other nodes run, and start the thread."""
+        self.report(self.find_at_start())
+        threading.Thread(target=self.run, daemon=True).start()
+
+    def report(self, found: list[str]) -> None:
+        for each in found:
+            if each not in self.problems:
+                rospy.logwarn('%s', each)
+        self.problems = found
+
+    def run(self) -> None:
+        first = True
+        while first or self.problems:
+            if end_requested.wait(WAIT if first else PERIOD):
+                return
+            try:
+                found = self.find()
+                if set(found) - set(self.problems):     # on a busy machine, nodes start late
+                    end_requested.wait(WAIT)
+                    found = [each for each in self.find() if each in found]
+            except (OSError, HTTPException, xmlrpc.client.Error, rospy.ROSException):
+                continue        # the master, or this node, is going
+            self.report(found)
+            first = False
+
+    def find_at_start(self) -> list[str]:
+        """Return what is wrong whatever the other nodes do."""
+        try:
+            with Server(rosgraph.get_master_uri()) as master:
+                tree = self.read_tree(master)
+        except ValueError as error:
+            return [str(error)]
+        problem = find_prefix_problem(self.publisher.robot, self.prefix, tree) if tree and self.model else ''
+        return [problem] if problem else []
+
+    def read_tree(self, master: Server) -> Tree | None:
+        """Return the Tree of the model, or None if there is no model. Raises ValueError if it is no URDF file."""
+        name = master.call('searchParam', 'robot_description')
+        if not name:
+            return None
+        try:
+            return read_tree(str(master.call('getParam', name)))
+        except ValueError as error:
+            raise ValueError(f'{name}: {error}') from None
+
+    def find(self) -> list[str]:
+        """Return the problems. Raises ROSException if they cannot be determined now."""
+        found = self.find_at_start()
+        if found:
+            return found
+        with Server(rosgraph.get_master_uri()) as master:
+            tree = self.read_tree(master)
+            publishers, subscribers, _ = map(dict, master.call('getSystemState'))
+            types = master.call('getTopicTypes')
+        own = self.publisher.joint_states.resolved_name
+        transformers = {*publishers.get('/tf', ()), *publishers.get('/tf_static', ())} - {rospy.get_name()}
+        # robot_state_publisher turns joint states of this namespace into transforms
+        topics = sorted((topic for topic, kind in types if kind == 'sensor_msgs/JointState'
+                         and topic.rpartition('/')[0] == own.rpartition('/')[0]
+                         and transformers.intersection(subscribers.get(topic, ()))), key=lambda topic: topic != own)
+        if not tree:
+            return []
+        if not topics:
+            return [f'robot_description: expected a robot_state_publisher that shows {self.model}, but none is running: '
+                    'its last lines give the reason'] if self.model else []
+        if topics[0] != own and not subscribers.get(own):
+            return [f'{own}: nobody reads it, so that the wheels do not turn: expected it in the source_list of the '
+                    f'joint_state_publisher that publishes {topics[0]}']
+        keys = f'{rospy.get_name()}/{self.keys[0]}', f'{rospy.get_name()}/{self.keys[1]}'.rstrip('/')
+        check = partial(find_problems, self.publisher.robot, self.prefix, keys, tree, reads_base=topics[0] == own)
+        others = set(publishers.get(topics[0], ())) - {rospy.get_name()}
+        if others or check(published=Published({}, set())):
+            return check(published=listen(topics[0], others))
+        return []
+
+    def diagnose(self, status: DiagnosticStatusWrapper) -> DiagnosticStatusWrapper:
+        """Fill in the DiagnosticStatus of the model."""
+        if not self.problems:
+            status.summary(DiagnosticStatus.OK, 'Consistent')
+        else:
+            status.summary(DiagnosticStatus.WARN, self.problems[0])
+        for number, each in enumerate(self.problems, 1):
+            status.add(f'Problem {number}', each)
+        return status
+
+
+def listen(topic: str, nodes: set[str]) -> Published:
+    """Return what is Published in LISTEN s of wall time. topic: of the joint states; nodes: that publish them, without
+    this node. Raises ROSException if the clock does not advance."""
+    published = Published({}, set())
+
+    def on_joints(message: Any) -> None:
+        if message._connection_header['callerid'] in nodes:
+            published.joints.setdefault(message._connection_header['callerid'], set()).update(message.name)
+
+    def on_transforms(message: Any) -> None:
+        published.frames.update(each.child_frame_id for each in message.transforms)
+    begin = rospy.get_rostime()
+    subscribers = [rospy.Subscriber(topic, JointState, on_joints),
+                   *(rospy.Subscriber(name, TFMessage, on_transforms) for name in ('/tf', '/tf_static'))]
+    end_requested.wait(LISTEN)
+    for each in subscribers:
+        each.unregister()
+    if rospy.get_rostime() == begin:
+        raise rospy.ROSException('no time has passed')
+    return published
