@@ -12,7 +12,8 @@ import support
 URDF = '''<robot name="two_wheels">
   <link name="base_link"/>
   <link name="left"/><joint name="left_joint" type="continuous"><parent link="base_link"/><child link="left"/></joint>
-  <link name="right"/><joint name="right_joint" type="continuous"><parent link="base_link"/><child link="right"/></joint>
+  <link name="right"/><joint name="right_joint" type="continuous"><parent link="base_link"/><child link="right"/>
+  </joint>
   <link name="caster"/><joint name="caster_joint" type="continuous"><parent link="base_link"/><child link="caster"/>
   </joint>
 </robot>'''

@@ -20,7 +20,8 @@ MIN_TIMEOUT = 0.01  # s
 # the keys of diff_drive_controller, and the joint names in this package's URDF files
 WHEEL_JOINTS = {'left_wheel': 'base_l_wheel_joint', 'right_wheel': 'base_r_wheel_joint'}
 
-MODEL = custom('model', '', 'URDF file that the launch file shows, for messages; empty: it shows none', str, shown='empty')
+MODEL = custom('model', '', 'URDF file that the launch file shows; for messages', str, shown='none')
+
 PARAMETERS = (
     elsewhere('controllers', 'mapping with one diff_controller', note='see below'),
     elsewhere('joints', 'servos', 'none', note='see below'),

@@ -91,27 +91,29 @@ class ModelCheck:
             return found
         with Server(rosgraph.get_master_uri()) as master:
             tree = self.read_tree(master)
-            publishers, subscribers, _ = map(dict, master.call('getSystemState'))
+            publishers: dict[str, list[str]]
+            publishers, subscribers, _ = [dict(each) for each in master.call('getSystemState')]
             types = master.call('getTopicTypes')
         own = self.publisher.joint_states.resolved_name
         transformers = {*publishers.get('/tf', ()), *publishers.get('/tf_static', ())} - {rospy.get_name()}
         # robot_state_publisher turns joint states of this namespace into transforms
-        topics = sorted((topic for topic, kind in types if kind == 'sensor_msgs/JointState'
-                         and topic.rpartition('/')[0] == own.rpartition('/')[0]
-                         and transformers.intersection(subscribers.get(topic, ()))), key=lambda topic: topic != own)
+        topics = [topic for topic, kind in types if kind == 'sensor_msgs/JointState'
+                  and topic.rpartition('/')[0] == own.rpartition('/')[0]
+                  and transformers.intersection(subscribers.get(topic, ()))]
         if not tree:
             return []
         if not topics:
-            return [f'robot_description: expected a robot_state_publisher that shows {self.model}, but none is running: '
-                    'its last lines give the reason'] if self.model else []
-        if topics[0] != own and not subscribers.get(own):
+            return [f'robot_description: expected a robot_state_publisher that shows {self.model}, but none is '
+                    'running: its last lines give the reason'] if self.model else []
+        topic = own if own in topics else topics[0]
+        if topic != own and not subscribers.get(own):
             return [f'{own}: nobody reads it, so that the wheels do not turn: expected it in the source_list of the '
-                    f'joint_state_publisher that publishes {topics[0]}']
+                    f'joint_state_publisher that publishes {topic}']
         keys = f'{rospy.get_name()}/{self.keys[0]}', f'{rospy.get_name()}/{self.keys[1]}'.rstrip('/')
-        check = partial(find_problems, self.publisher.robot, self.prefix, keys, tree, reads_base=topics[0] == own)
-        others = set(publishers.get(topics[0], ())) - {rospy.get_name()}
+        check = partial(find_problems, self.publisher.robot, self.prefix, keys, tree, reads_base=topic == own)
+        others = set(publishers.get(topic, ())) - {rospy.get_name()}
         if others or check(published=Published({}, set())):
-            return check(published=listen(topics[0], others))
+            return check(published=listen(topic, others))
         return []
 
     def diagnose(self, status: DiagnosticStatusWrapper) -> DiagnosticStatusWrapper:

@@ -22,7 +22,7 @@ def without_prefix(prefix: str, frame: str) -> str:
 
 
 def find_prefix_problem(robot: Robot, prefix: str, tree: Tree) -> str:
-    """Return why the links of a model, to which nobody adds the prefix, do not belong to the frames of a base, or ''."""
+    """Return why the links of a model, to which nobody adds the prefix, do not belong to the base, or ''."""
     frame = without_prefix(prefix, robot.base_frame_id)
     if not prefix or robot.base_frame_id in tree.links or frame not in tree.links:
         return ''
@@ -68,16 +68,16 @@ def _joint_problems(robot: Robot, prefix: str, key: str, tree: Tree, published: 
     absent = [joint for joint in robot.wheel_joints if joint not in tree.movable]
     wheels = sorted(tree.turning - own)
     renamed = len(wheels) >= len(absent) > 0
-    names = f'left_wheel and right_wheel of {key} (now {" and ".join(robot.wheel_joints)})'
+    keys = f'left_wheel and right_wheel of {key} (now {" and ".join(robot.wheel_joints)})'
     if missing:
         cures = []
         if renamed:
-            cures.append(f'the wheels as {names}')
+            cures.append(f'the wheels as {keys}')
         if not renamed or len(wheels) > len(absent) or set(missing) - set(wheels):
             cures.append(f'joint_state_publisher{" for the other joints" * renamed}, see {PAGE}')
         problems.append(f'joint_states: nobody publishes {", ".join(missing)}, so that there is no transform to '
                         f'{", ".join(tree.movable[joint] for joint in missing)}: expected {", and ".join(cures)}')
     elif renamed:
-        problems.append(f'{names}: not in robot_description, so that its wheels do not turn: expected two of '
+        problems.append(f'{keys}: not in robot_description, so that its wheels do not turn: expected two of '
                         f'{", ".join(wheels)}')
     return problems

@@ -14,8 +14,8 @@ KEYS = '/arbotix/controllers/base/base_frame_id', '/arbotix/controllers/base'
 
 
 def joint(name, kind, child, parent='base_link'):
-    return f'<link name="{child}"/><joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{child}"/>' \
-           '</joint>'
+    return (f'<link name="{child}"/><joint name="{name}" type="{kind}"><parent link="{parent}"/>'
+            f'<child link="{child}"/></joint>')
 
 
 def urdf(*joints, root='base_link'):
