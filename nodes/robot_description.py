@@ -1,10 +1,7 @@
 #!/usr/bin/env python3
 """Prints a robot's URDF file for a launch file, and expands it first if it is a xacro file.
 
-usage: robot_description.py [--prefix PREFIX] [--alpha ALPHA] FILE
-
-PREFIX: put before the name of each link; ALPHA: opacity of all colors, 0 to 1. Exits with 1, and one line, if the file
-is not a URDF file.
+Used by launch files. Exits with 1, and one line, if the file is not a URDF file.
 """
 from __future__ import annotations
 
@@ -32,10 +29,9 @@ def read(path: str) -> str:
 
 def main() -> int:
     """Print the text; return the exit status."""
-    usage, details = __doc__.split('\n\n', 1)
-    parser = argparse.ArgumentParser(description=usage, epilog=details.partition('\n\n')[2])
-    parser.add_argument('--prefix', default='')
-    parser.add_argument('--alpha')
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument('--prefix', default='', help='text that is put before the name of each link')
+    parser.add_argument('--alpha', help='opacity of all colors, 0 to 1')
     parser.add_argument('file', metavar='FILE')
     arguments = parser.parse_args()
     try:
@@ -44,7 +40,7 @@ def main() -> int:
         print(f'model: {arguments.file}: {error}', file=sys.stderr)
         return 1
     text = LINK.sub(r'\g<1>' + arguments.prefix, text)
-    print(ALPHA.sub(r'\1 ' + arguments.alpha, text) if arguments.alpha else text)
+    print(ALPHA.sub(r'\1 ' + arguments.alpha, text) if arguments.alpha else text, end='')
     return 0
 
 
