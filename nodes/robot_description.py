@@ -19,7 +19,7 @@ ALPHA = re.compile(r'(rgba=.[^ ]+ +[^ ]+ +[^ ]+) +[0-9.]+')
 
 def read(path: str) -> str:
     """Return the text of a URDF file. Raises OSError, ValueError or subprocess.CalledProcessError."""
-    with open(path, encoding='utf-8') as file:
+    with open(path, encoding='utf-8', errors='replace') as file:
         text = file.read()
     if is_xacro(text) and shutil.which('xacro'):
         text = subprocess.run(['xacro', path], stdout=subprocess.PIPE, check=True, encoding='utf-8').stdout
