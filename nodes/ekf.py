@@ -45,8 +45,9 @@ class Ekf:
         self.tree = FrameTree()
         self.publisher = EstimatePublisher(parameters, self.tree, partial(self.log.add, rospy.loginfo))
         self.imu = ImuInput('imu_data', self.tree, partial(self.log.add, rospy.loginfo))
-        self.diagnostics = Diagnostics(('odom', 'imu_data')[:1 + parameters.imu_used], parameters.sensor_timeout,
-                                       self.lock, lambda: (self.combined, self.publisher.published))
+        self.diagnostics = Diagnostics((self.sender, self.imu_sender)[:1 + parameters.imu_used],
+                                       parameters.sensor_timeout, self.lock,
+                                       lambda: (self.combined, self.publisher.published))
         # a message may arrive before these are assigned
         self.odom_sub: rospy.Subscriber | None = None
         self.imu_sub: rospy.Subscriber | None = None
@@ -129,10 +130,11 @@ class Ekf:
 
     def run(self) -> None:
         """Run until shutdown is requested."""
+        self.subscribe()
         schedule = Schedule(1 / self.parameters.diagnostic_period)
         while not life.end_requested.is_set():
             if schedule.due(time.monotonic_ns()):   # wall time: diagnostics are needed even if /clock has stopped
-                self.diagnostics.updater.force_update()
+                self.diagnostics.update()
             self.tree.listen(not (self.publisher.settled and self.imu.settled))
             life.sleep(0.05)
 
@@ -140,9 +142,7 @@ class Ekf:
 def main() -> int:
     """Read the parameters and run; return the exit status."""
     life.init_node('robot_pose_ekf', __doc__, PARAMETERS, check=read_parameters)
-    ekf = Ekf(load_parameters())
-    ekf.subscribe()
-    ekf.run()
+    Ekf(load_parameters()).run()
     return 0
 
 

@@ -29,8 +29,11 @@ class TestWaitForBase(support.Case):
         self.assertNotIn('Traceback', driver.output)
 
     def test_it_waits_and_then_drives(self):
+        other = rospy.Subscriber('/mobile_base/commands/velocity', Twist)
         driver = support.out_and_back()
-        driver.wait_for_line('Waiting for a base that subscribes to /cmd_vel')
+        driver.wait_for_line('Waiting for a base that subscribes to /cmd_vel. Other Twist topics have subscribers: '
+                             '/mobile_base/commands/velocity. To use one, add cmd_vel:=/mobile_base/commands/velocity')
+        other.unregister()
         commands = self.watch_commands()
         driver.wait_for_line('Connected to ')
         driver.signal(signal.SIGTERM)

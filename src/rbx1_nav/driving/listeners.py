@@ -155,6 +155,7 @@ class _Search:
         self.dead: set[str | None] = set()      # addresses
         self.silent: list[str] = []     # bases that may be suspended: they have not answered, but exist
         self.others: list[str] = []     # namespaces of other bases
+        self.topics: list[str] = []     # other topics on which a node may receive commands
         self.next = 0.0     # s of the monotonic clock
 
     def update(self) -> None:
@@ -164,10 +165,15 @@ class _Search:
         master = rosgraph.get_master_uri()
         try:
             publishers, subscribers, _ = [dict(each) for each in call(master, 'getSystemState')]
-            odometry = [topic for topic, kind in call(master, 'getTopicTypes') if kind == 'nav_msgs/Odometry']
+            kinds = dict(call(master, 'getTopicTypes'))
+            odometry = [topic for topic, kind in kinds.items() if kind == 'nav_msgs/Odometry']
             namespace, commands = self.topic.rpartition('/')[::2]
             self.others = sorted(namespaces_of_bases(publishers, subscribers, odometry, commands).keys()
                                  - {namespace or '/'})
+            named = {self.topic, *(f"{each.rstrip('/')}/{commands}" for each in self.others)}
+            self.topics = sorted(topic for topic, names in subscribers.items()
+                                 if kinds.get(topic) == 'geometry_msgs/Twist' and topic not in named
+                                 and set(names) - {rospy.get_name(), *publishers.get(topic, ())})
             drivers = publishers.get(self.topic, ())     # such as the page in the browser, which also listens
             self.silent = []
             found = [self.find(master, name, any(name in publishers.get(topic, ()) for topic in odometry),
@@ -204,9 +210,24 @@ class _Search:
             return f"{', '.join(sorted(self.found.keys() - connected))} to connect to {self.topic}"
         if self.silent:
             return f"{', '.join(self.silent)} to answer"
-        others = (f". Bases exist in other namespaces: {', '.join(self.others)}. To drive one, set "
-                  f'ROS_NAMESPACE={self.others[0]}' if self.others else '')
-        return 'the time on /clock' if self.found else f'a base that subscribes to {self.topic}{others}'
+        if self.found:
+            return 'the time on /clock'
+        return f'a base that subscribes to {self.topic}{self.hint()}'
+
+    def hint(self) -> str:
+        """Return where else a base may be, or ''."""
+        hint = ''
+        if self.others:
+            hint += (f". Bases exist in other namespaces: {', '.join(self.others)}. To drive one, set "
+                     f'ROS_NAMESPACE={self.others[0]}')
+        if self.topics:
+            # the name in the script, which a remapping may have replaced already
+            name = {new: old for old, new in rospy.names.get_resolved_mappings().items()}.get(self.topic, self.topic)
+            if rospy.get_namespace() == '/':
+                name = name.lstrip('/')
+            hint += (f". Other Twist topics have subscribers: {', '.join(self.topics)}. To use one, add "
+                     f'{name}:={self.topics[0]}')
+        return hint
 
 
 def wait_for_listeners(publisher: rospy.Publisher, timeout: float, exact: bool,

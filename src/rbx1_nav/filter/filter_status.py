@@ -15,6 +15,7 @@ from diagnostic_updater import DiagnosticStatusWrapper, Updater
 from rbx1_nav.base.messages import fill_status
 from rbx1_nav.filter.combined_odometry import CombinedOdometry
 from rbx1_nav.filter.filter import BIAS
+from rbx1_nav.filter.sensor_inputs import OneSender
 
 INTERVAL = 1.0      # s between two log lines of one kind
 MAX_KINDS = 10      # lines in this time
@@ -30,13 +31,15 @@ SUMMARIES = {'standstill': (OK, 'Standstill'), 'agreement': (OK, 'Wheels and gyr
 class Diagnostics:
     """Publishes a DiagnosticStatus of the filter and of each sensor."""
 
-    def __init__(self, sensors: Sequence[str], timeout: float, lock: Lock,
+    def __init__(self, senders: Sequence[OneSender], timeout: float, lock: Lock,
                  get_filter: Callable[[], tuple[CombinedOdometry | None, int]]) -> None:
-        """sensors: names; timeout: age of the last message above which a sensor has timed out, s; lock: held while the
-        filter is read; get_filter(): returns the filter and the number of published poses."""
+        """senders: of the sensors; timeout: age of the last message above which a sensor has timed out, s; lock: held
+        while the filter is read; get_filter(): returns the filter and the number of published poses."""
+        self.senders = senders
         self.timeout = timeout
         self.lock = lock
         self.get_filter = get_filter
+        sensors = [each.name for each in senders]
         # arrival time of the last message of each sensor that the filter has accepted
         self.received: dict[str, rospy.Time | None] = dict.fromkeys(sensors)
         self.rejected = dict.fromkeys([*sensors, 'set_pose'], 0)    # number of messages
@@ -45,6 +48,12 @@ class Diagnostics:
         self.updater.add('filter', self._diagnose_filter)
         for sensor in sensors:
             self.updater.add(sensor, partial(self._diagnose_sensor, sensor))
+
+    def update(self) -> None:
+        """Publish the states, and log which sensor has no messages."""
+        self.updater.force_update()
+        for each in self.senders:
+            each.report()
 
     def _diagnose_filter(self, status: DiagnosticStatusWrapper) -> DiagnosticStatusWrapper:
         with self.lock:

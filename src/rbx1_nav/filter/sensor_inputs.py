@@ -4,12 +4,13 @@ The mounting of an IMU, and the parent of the robot's frame, are read from the t
 """
 from __future__ import annotations
 
-from math import acos, degrees
+from math import acos, degrees, inf
 import time
 from types import SimpleNamespace
 from typing import Callable, Tuple
 
 from nav_msgs.msg import Odometry
+import rosgraph
 import rospy
 from sensor_msgs.msg import Imu as ImuMessage
 from tf2_msgs.msg import TFMessage
@@ -19,8 +20,12 @@ from rbx1_nav.filter.conversions import from_imu
 from rbx1_nav.filter.imu_mounting import UPRIGHT, GyroInput, Vector, inverse, multiply, vertical_axis
 from rbx1_nav.filter.inputs import Imu, check
 from rbx1_nav.node.config import show
+from rbx1_nav.node.master import call
 
+MESSAGE_WARN_TIME = 5.0        # s of wall time to wait for the first message before a line is logged
 TRANSFORM_WARN_TIME = 1.0      # s of wall time to wait for a transform before a line is logged
+
+SENSORS = {'odom': 'odometry', 'imu_data': 'IMU messages'}      # by topic
 
 Rotation = Tuple[float, float, float, float]    # quaternion (x, y, z, w)
 
@@ -32,12 +37,14 @@ class OneSender:
                  restart: Callable[[str], None] = lambda name: None) -> None:
         """topic: name; silence: time after which another node is accepted, s; warn(text): logs a warning;
         restart(name): called before the first message of a node is accepted."""
+        self.name = topic
         self.topic = rospy.resolve_name(topic)
         self.silence = silence
         self.warn = warn
         self.restart = restart
         self.header: dict[str, str] | None = None   # the header of the connection of the accepted node
         self.heard: rospy.Time | None = None        # arrival time of its last message
+        self.report_time = time.monotonic() + MESSAGE_WARN_TIME     # s of the monotonic clock; infinite after report()
 
     def accepts(self, header: dict[str, str], subscriber: rospy.Subscriber | None) -> bool:
         """Return whether to accept a message that just arrived on the connection with this header. subscriber: of the
@@ -53,6 +60,19 @@ class OneSender:
             self.restart(header['callerid'])
         self.header, self.heard = header, now
         return True
+
+    def report(self) -> None:
+        """Log once who publishes the topic, if no message has arrived for a while."""
+        if self.heard is not None or time.monotonic() < self.report_time:
+            return
+        try:
+            publishers = dict(call(rosgraph.get_master_uri(), 'getSystemState')[0]).get(self.topic)
+        except Exception:       # the master does not answer: asked again later
+            return
+        self.report_time = inf
+        reason = (f"{self.topic} is published by {', '.join(publishers)}, but no message has arrived" if publishers else
+                  f'nobody publishes {self.topic}')
+        self.warn(f'Waiting for {SENSORS[self.name]}: {reason}')
 
 
 def frames_of(message: Odometry, parameters: SimpleNamespace) -> tuple[str, str]:

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 from datetime import date
 import difflib
+from os.path import commonprefix
 import re
 import reprlib
 from typing import Iterable, Mapping, Sequence, TypeVar, Union
@@ -10,6 +11,7 @@ from typing import Iterable, Mapping, Sequence, TypeVar, Union
 import yaml
 
 AUTO = 'auto'       # a value that is determined at run time
+SHORT = 4           # letters of the longest name that counts as short
 NUMBER = re.compile(r'\s*[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?\s*', re.IGNORECASE)
 
 # content of a YAML file or the parameter server; a key that is not text is a mistake, and is shown like any other key
@@ -40,8 +42,27 @@ def show_name(name: YamlValue) -> str:
 
 def suggestion(name: YamlValue, names: Iterable[str]) -> str:
     """Return ' (did you mean NAME?)' with the known name that is most similar to an unknown one, or '' if none is."""
-    close = difflib.get_close_matches(name, names, 1) if isinstance(name, str) else []
-    return f' (did you mean {close[0]}?)' if close else ''
+    close = close_match(name, names) if isinstance(name, str) else ''
+    return close and f' (did you mean {close}?)'
+
+
+def close_match(name: str, names: Iterable[str], cutoff: float = 0.6) -> str:
+    """Return the known name that is most similar to an unknown one, or '' if none is.
+
+    cutoff: least ratio of difflib. Two short names must also differ by a single slip, because their ratio is high by
+    chance: that of `imu` and `sim` is 0.67.
+    """
+    names = [each for each in names if max(len(name), len(each)) > SHORT or _is_slip(name, each)]
+    return ''.join(difflib.get_close_matches(name, names, 1, cutoff))
+
+
+def _is_slip(name: str, known: str) -> bool:
+    """Return whether one letter is missing, added or replaced, or two neighbors are swapped."""
+    start = len(commonprefix([name, known]))
+    name, known = name[start:][::-1], known[start:][::-1]
+    end = len(commonprefix([name, known]))
+    name, known = name[end:], known[end:]
+    return max(len(name), len(known)) <= 1 or (len(name) == 2 and name == known[::-1])
 
 
 def describe(value: YamlValue) -> str:

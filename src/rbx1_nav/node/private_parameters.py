@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 from contextlib import contextmanager
-import difflib
 import os
 import sys
 from typing import Any, Callable, Iterator, Mapping, Sequence
@@ -13,7 +12,7 @@ from rosgraph.names import is_legal_name
 import rospy
 import yaml
 
-from rbx1_nav.node.config import ConfigError, Section, YamlValue, show, show_name, suggestion
+from rbx1_nav.node.config import ConfigError, Section, YamlValue, close_match, show, show_name, suggestion
 from rbx1_nav.node.master import call
 from rbx1_nav.node.parameters import Parameter, read
 
@@ -59,8 +58,8 @@ def find_problem(argument: str, names: Sequence[str]) -> str | None:
 
 
 def _suggestion(left: str, value: str, names: Sequence[str], cutoff: float) -> str:
-    close = difflib.get_close_matches(left.lstrip('-_~/').replace('-', '_'), names, 1, cutoff)
-    return f": did you mean _{close[0]}:={show_name(value or 'VALUE')}?" if close else ''
+    close = close_match(left.lstrip('-_~/').replace('-', '_'), names, cutoff)
+    return close and f": did you mean _{close}:={show_name(value or 'VALUE')}?"
 
 
 def _is_value(text: str) -> bool:

@@ -9,6 +9,7 @@ import yaml
 
 from rbx1_nav.base.description import load_robot, read_robot
 from rbx1_nav.base.units import SECOND
+from rbx1_nav.extras.create.protocol import MAX_SPEED
 from rbx1_nav.node.config import ConfigError
 
 CONFIG = os.path.join(os.path.dirname(__file__), '..', '..', '..', 'config')
@@ -31,7 +32,7 @@ def test_turtlebot():
     assert (robot.name, robot.odom_frame_id, robot.base_frame_id) == ('base_controller', 'odom', 'base_footprint')
     # the driver's rate is for its hardware; the controller's rate is the rate of the odometry
     assert (robot.base_width, robot.rate, robot.timeout) == (0.26, 50, SECOND)
-    assert (robot.limits.linear, robot.limits.angular) == (inf, inf) and robot.publish_tf is True
+    assert robot.publish_tf is True
     assert robot.joints == [] and robot.unknown == []
     assert {'port', 'rate', 'controllers/base_controller/Kp'} <= set(robot.hardware)
 
@@ -43,6 +44,14 @@ def test_pi_robot():
         'arm_shoulder_pan_joint', 'arm_shoulder_lift_joint', 'arm_elbow_flex_joint', 'arm_wrist_flex_joint',
         'gripper_joint', 'head_pan_joint', 'head_tilt_joint']
     assert robot.joints[-1].upper == radians(60) and robot.joints[-1].max_speed == radians(90)
+
+
+@pytest.mark.parametrize('name', ['turtlebot.yaml', 'pi_robot.yaml'])
+def test_the_speeds_are_those_of_a_create(name):
+    limits = read_robot(load(name)).limits
+    assert limits == (MAX_SPEED / 1000, 3.8)
+    # 0.05: the limit is rounded down
+    assert limits.angular == pytest.approx(MAX_SPEED / 1000 / (0.26 / 2), abs=0.05)
 
 
 def test_unknown_keys_are_reported():

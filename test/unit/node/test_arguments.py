@@ -3,7 +3,7 @@ import pytest
 
 from rbx1_nav.node.private_parameters import find_problem
 
-NAMES = ['rate', 'goal_distance', 'odom_frame', 'odom_used', 'imu_used', 'surface']
+NAMES = ['rate', 'goal_distance', 'odom_frame', 'odom_used', 'imu_used', 'surface', 'sim']
 EXPECTED = 'expected _parameter:=value or topic:=new_topic'
 
 
@@ -23,7 +23,8 @@ def test_what_rospy_understands_passes(argument):
     ('odom_fram:=odom', 'this remaps a topic: did you mean _odom_frame:=odom?'),
     ('_goal_distanc:=0.1', 'unknown parameter: did you mean _goal_distance:=0.1?'),
     ('_distance:=0.1', 'unknown parameter: did you mean _goal_distance:=0.1?'),
-    ('_colour:=red', 'unknown parameter'),
+    ('_colour:=red', 'unknown parameter'), ('_imu:=1', 'unknown parameter'),
+    ('_rtae:=1', 'unknown parameter: did you mean _rate:=1?'),
     ('_goal_distance=0.1', 'unknown argument: did you mean _goal_distance:=0.1?'),
     ('--goal-distance=0.1', 'unknown argument: did you mean _goal_distance:=0.1?'),
     ('--goal-distance', 'unknown argument: did you mean _goal_distance:=VALUE?'),

@@ -3,7 +3,7 @@ from math import inf, nan
 
 import pytest
 
-from rbx1_nav.node.config import ConfigError, Section, load_yaml, show_name
+from rbx1_nav.node.config import ConfigError, Section, load_yaml, show_name, suggestion
 
 
 def rejection(function, *arguments, **options):
@@ -105,3 +105,19 @@ def test_an_unknown_key_gets_a_suggestion():
     section = Section({'time_out': 1, 'colour': 'red', 7: 8}, 'base')
     section.number('timeout', 0, 10, 1.0)
     assert section.unknown() == ['base/time_out (did you mean timeout?)', 'base/colour', 'base/7']
+
+
+@pytest.mark.parametrize('name, known', [
+    ('sm', 'sim'), ('im', 'sim'), ('simm', 'sim'), ('smi', 'sim'), ('ism', 'sim'), ('sin', 'sim'), ('rtae', 'rate'),
+    ('raet', 'rate'), ('rat', 'rate'), ('ate', 'rate'), ('rates', 'rate'), ('rats', 'rate'), ('pott', 'port'),
+    ('time', 'timeout'), ('tiemout', 'timeout'), ('timeouts', 'timeout'), ('jiont', 'joints'),
+    ('base_frame', 'base_frame_id'), ('speed', 'seed')])
+def test_a_typo_gets_a_suggestion(name, known):
+    assert suggestion(name, ['controllers', known]) == f' (did you mean {known}?)'
+
+
+@pytest.mark.parametrize('name, other', [
+    ('imu', 'sim'), ('ties', 'time'), ('usb', 'sim'), ('', 'sim'),
+    ('colour', 'controllers')])
+def test_another_word_gets_none(name, other):
+    assert suggestion(name, [other]) == ''

@@ -2,6 +2,7 @@
 import importlib.util
 import os
 from math import pi
+from types import SimpleNamespace
 
 from diagnostic_updater import DiagnosticStatusWrapper
 from geometry_msgs.msg import PoseWithCovarianceStamped, Vector3
@@ -10,7 +11,7 @@ import pytest
 import rospy
 from sensor_msgs.msg import Imu
 
-from rbx1_nav.filter import filter_status
+from rbx1_nav.filter import filter_status, sensor_inputs
 from rbx1_nav.filter.ekf_parameters import read_parameters
 from fake_topics import replace_topics
 
@@ -58,6 +59,7 @@ def fixture_ekf(monkeypatch):
         callback(message)
         return ekf.combined and ekf.combined.estimate
     ekf.send = send
+    ekf.make = lambda **parameters: module.Ekf(read_parameters(dict(surface='unknown', publish_tf=False, **parameters)))
     return ekf
 
 
@@ -110,3 +112,65 @@ def test_messages_of_different_threads_reach_the_filter_one_at_a_time(ekf, monke
     monkeypatch.setattr(ekf.diagnostics, 'get_filter', lambda: calls.append(ekf.lock.locked()) or (None, 0))
     ekf.diagnostics.updater.force_update()
     assert calls[4:] == [True] * 3
+
+
+@pytest.fixture(name='clock')
+def fixture_clock(monkeypatch):
+    """The monotonic clock; clock.publishers: what the master answers; clock.calls: number of calls to it."""
+    clock = SimpleNamespace(now=100.0, publishers=[], calls=0)
+
+    def call(_, method):
+        assert method == 'getSystemState'
+        clock.calls += 1
+        if clock.publishers is None:
+            raise ConnectionRefusedError
+        return clock.publishers, [], []
+    monkeypatch.setattr(sensor_inputs, 'time', SimpleNamespace(monotonic=lambda: clock.now))
+    monkeypatch.setattr(sensor_inputs, 'call', call)
+    return clock
+
+
+def report(ekf, clock):
+    """Update the diagnostics at 1 Hz for 20 s; return the lines, each with its time since the start."""
+    found = []
+    for second in range(20):
+        ekf.lines.clear()
+        ekf.diagnostics.update()
+        found += [(second, line) for line in ekf.lines]
+        clock.now += 1
+    return found
+
+
+def test_missing_messages_are_named_once(ekf, clock):
+    lines, make = ekf.lines, ekf.make
+    for parameters, expected in (
+            ({}, ['Waiting for odometry: nobody publishes /odom',
+                  'Waiting for IMU messages: /imu_data is published by /imu, /x, but no message has arrived']),
+            (dict(imu_used=False), ['Waiting for odometry: nobody publishes /odom'])):
+        clock.publishers = [['/imu_data', ['/imu', '/x']], ['/other', ['/x']]]
+        ekf, clock.calls = make(**parameters), 0
+        ekf.lines = lines
+        assert report(ekf, clock) == [(5, line) for line in expected]
+        assert clock.calls == len(expected)
+
+
+def test_messages_that_arrive_are_not_missing(ekf, clock):
+    lines, make, send = ekf.lines, ekf.make, ekf.send
+    ekf = make()
+    ekf.lines = lines
+    send(ekf.on_imu, imu(0.0), 10.0)        # not used without odometry
+    assert report(ekf, clock) == [(5, 'Waiting for odometry: nobody publishes /odom')]
+    ekf = make()
+    ekf.lines = lines
+    send(ekf.on_imu, imu(0.0), 10.0)
+    send(ekf.on_odom, odometry(float('nan')), 10.0)
+    assert report(ekf, clock) == []
+
+
+def test_without_a_master_it_asks_again(ekf, clock):
+    lines, ekf = ekf.lines, ekf.make()
+    ekf.lines, clock.publishers = lines, None
+    assert report(ekf, clock) == []
+    clock.publishers = []
+    assert [line for _, line in report(ekf, clock)] == [
+        'Waiting for odometry: nobody publishes /odom', 'Waiting for IMU messages: nobody publishes /imu_data']

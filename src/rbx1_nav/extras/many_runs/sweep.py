@@ -36,7 +36,12 @@ class Sweep:
     """The runs of a command."""
 
     def __init__(self, combinations: Sequence[Combination], methods: Sequence[str], robot: Robot, seeds: range) -> None:
-        """seeds: of each method in each Combination."""
+        """seeds: of each method in each Combination. Raises ConfigError if a Combination is too fast for the robot."""
+        for each in combinations:
+            for key, limit in zip(('linear_speed', 'angular_speed'), robot.limits):
+                if each.parameters[key] > limit:    # the base would clamp each command, and a timed run end elsewhere
+                    raise ConfigError(f'{each.title()}: {key}: {each.parameters[key]:g}: expected at most {limit:g}, '
+                                      f'max_{key} of --config')
         self.combinations, self.methods, self.robot, self.seeds = combinations, methods, robot, seeds
         self.chunks = list(chunks(combinations, methods, seeds))
         self.total = len(combinations) * len(methods) * len(seeds)

@@ -3,10 +3,11 @@ import os
 
 import pytest
 
-from rbx1_nav.base.description import load_robot
+from rbx1_nav.base.description import Limits, load_robot
 from rbx1_nav.extras.many_runs.cases import RESULTS, Case, add_row, chunks, combine, read_sweep, simulate_row, units
 from rbx1_nav.extras.many_runs.simulated_run import PARAMETERS, simulate
 from rbx1_nav.extras.many_runs.summary import Summary
+from rbx1_nav.extras.many_runs.sweep import Sweep
 from rbx1_nav.node.config import ConfigError
 from rbx1_nav.node.parameters import number
 from sample_surface import SURFACE
@@ -47,6 +48,16 @@ def test_a_combination_that_cannot_be_driven_is_named_before_the_first_run():
         combine({'ideal': None}, {'lag': [0.1]})
     with pytest.raises(ConfigError, match='--set: ideal, linear_speed 1000: goal_distance / .* 0.05 ticks'):
         combine({'ideal': None}, {'linear_speed': [0.2, 1000.0]})
+
+
+def test_a_combination_that_is_too_fast_for_the_robot_is_named_before_the_first_run():
+    combinations = combine({'ideal': None}, {'linear_speed': [0.5, 0.6], 'angular_speed': [3.8]})
+    with pytest.raises(ConfigError, match='ideal, linear_speed 0.6, angular_speed 3.8: linear_speed: 0.6: '
+                       'expected at most 0.5, max_linear_speed of --config'):
+        Sweep(combinations, ['timed'], TURTLEBOT, range(1))
+    assert Sweep(combinations[:1], ['timed'], TURTLEBOT, range(1)).total == 1
+    with pytest.raises(ConfigError, match='angular_speed: 3.8: expected at most 3, max_angular_speed of --config'):
+        Sweep(combinations[:1], ['timed'], TURTLEBOT._replace(limits=Limits(0.5, 3.0)), range(1))
 
 
 def test_the_chunks_cover_each_run_once_in_the_order_of_the_file():
