@@ -1,5 +1,5 @@
 """The filter calculates derivatives, covariances and corrections correctly, and doubts the right sensor."""
-from math import degrees, pi, radians, sqrt
+from math import cos, degrees, exp, pi, radians, sin, sqrt
 
 import numpy
 import pytest
@@ -8,7 +8,8 @@ from hypothesis import strategies as st
 
 from rbx1_nav.base.kinematics import ORIGIN, Pose
 from rbx1_nav.base.units import SECOND
-from rbx1_nav.filter.filter import BIAS, CURVATURE, FIRST_BIAS, SCALE, SLIP_TURNING, WINDOW, X, Y, YAW, Filter
+from rbx1_nav.filter.filter import (
+    BIAS, BIAS_WALK, CURVATURE, FIRST_BIAS, SCALE, SLIP_STRAIGHT, SLIP_TURNING, WINDOW, X, Y, YAW, Filter)
 from rbx1_nav.filter.gyro_readings import Sums
 from rbx1_nav.filter.priors import UNKNOWN_FLOOR, Bounds
 from rbx1_nav.filter.sensors import CONTRADICTION, Doubts
@@ -92,13 +93,193 @@ def test_the_noise_of_a_floor_does_not_depend_on_the_step(turned, travelled, cou
     assert ekf.P[X, X] == pytest.approx(0.044 ** 2 * travelled, abs=1e-8)
 
 
-@pytest.mark.parametrize('reported, used', [(0.0, 0.01), (0.02, 0.02), (1e3, 0.084 ** 2 * 4)])
-def test_a_reported_variance_counts_between_the_noise_of_the_assumed_floor_and_of_any_floor(reported, used):
-    ekf = Filter(UNKNOWN_FLOOR._replace(heading_noise_turning=0.05, distance_noise=0.05 / 2), ORIGIN)
-    assert ekf.turn(1.0, (4.0, reported), None).variance == pytest.approx(used)
-    ekf.P[3:, 3:] = 0.0
-    ekf.step(1.0, ekf.turn(1.0, None, None), 0.0, 16.0, 0.0, reported)
-    assert ekf.P[X, X] == pytest.approx(max(0.01, min(reported, 0.044 ** 2 * 16)), abs=1e-8)
+@pytest.mark.parametrize('reported, turn, path', [
+    (0.0, 0.01 + 0.002, 0.01), (0.02, 0.02, 0.02), (1e3, 0.084 ** 2 * 4 + 0.066 ** 2 * 2, 0.044 ** 2 * 16)])
+def test_a_reported_variance_counts_between_the_noise_of_the_assumed_floor_and_of_any_floor(reported, turn, path):
+    ekf = Filter(UNKNOWN_FLOOR._replace(heading_noise_turning=0.05, heading_noise_straight=sqrt(0.001),
+                                        distance_noise=0.05 / 2, slip_straight=0.1), ORIGIN)
+    assert ekf.turn(1.0, (-4.0, reported), None, -2.0).variance == pytest.approx(turn)
+    ekf.P[:] = 0.0
+    ekf.step(1.0, ekf.turn(1.0, None, None), 0.6, -10.0, 6.0, reported)
+    # along the heading, and reduced by the slip like the path
+    c, s = cos(0.6), sin(0.6)
+    assert ekf.P[:2, :2] == pytest.approx(0.9 ** 2 * path * numpy.array([[c * c, c * s], [c * s, s * s]]))
+
+
+def test_a_turn_is_measured_by_the_wheels_if_they_are_more_certain():
+    ekf = Filter(FLAT, ORIGIN)
+    ekf.state[BIAS] = 0.01
+    for wheels, limit in (0.0, 0.005 ** 2), (-2.0, (0.05 * 2) ** 2):    # rounding of odometry, 5 % of slip
+        by_wheels = ekf.turn(2.0, (wheels, 0.0), None, 0.5)
+        assert by_wheels.angle == pytest.approx(0.9 * wheels + 0.2 * 0.5)   # slip and curvature
+        assert ekf.turn(2.0, (wheels, 0.0), (0.3, 1.01 * limit), 0.5) == by_wheels
+        turn = ekf.turn(2.0, (wheels, 0.0), (0.3, 0.99 * limit), 0.5)
+        assert turn[:3] == (pytest.approx(0.28), 0.99 * limit, (-2.0, 0.0, pytest.approx(-0.28), 0.0))
+        assert turn.compared == Sums(2.0, wheels, by_wheels.angle, turn.angle, 0.5, 0.0)
+    # a step of more than 10 s is not compared; without sensors, there is no turn
+    assert ekf.turn(11.0, (0.0, 0.0), (0.3, 1e-9)).compared is None
+    assert ekf.turn(2.0, None, None)[:3] == (0.0, 0.0, (0.0, 0.0, 0.0, 0.0))
+
+
+def arbitrary():
+    """Return a Filter with an arbitrary state, and its covariance before."""
+    ekf = Filter(UNKNOWN_FLOOR, ORIGIN)
+    ekf.state = [0.1, 0.2, 0.3, 0.4, 0.5]
+    root = numpy.random.RandomState(1).rand(9, 9)
+    ekf.P = root @ root.T
+    return ekf, ekf.P.copy()
+
+
+def test_a_known_pose_has_its_covariance_and_what_is_known_of_the_sensors_remains():
+    ekf, before = arbitrary()
+    ekf.drift, ekf.doubt, ekf.reach = numpy.ones(9), [1.0, 2.0, 3.0], 4.0
+    covariance = numpy.array([[0.04, 0.01, 0.02], [0.01, 0.09, 0.0], [0.02, 0.0, 0.16]])
+    ekf.place(Pose(1.0, 2.0, 3.0), covariance)
+    assert ekf.state == [1.0, 2.0, 3.0, 0.4, 0.5] and ekf.drift.tolist() == [0.0] * 3 + [1.0] * 6
+    numpy.testing.assert_allclose(ekf.covariance, covariance, atol=1e-12)       # rounding
+    assert not ekf.P[:3, 3:].any() and not ekf.P[3:, :3].any() and (ekf.P[3:, 3:] == before[3:, 3:]).all()
+    # a doubt of 0.1 m, 0.2 m and 0.3 rad; and the path of 2 m may have turned about its start
+    ekf.doubt, ekf.reach = [0.1, 0.2, 0.3], 2.0
+    turned = ((1 - exp(-0.25)) * 2) ** 2
+    expected = [[0.05 + turned, 0.03, 0.05], [0.03, 0.13 + turned, 0.06], [0.05, 0.06, 0.25]]
+    numpy.testing.assert_allclose(ekf.covariance, expected, rtol=1e-9)          # rounding
+    ekf.doubt[YAW] = 10.0       # the heading is unknown: the same correlation, but half a turn
+    factor = pi / sqrt(100.16)
+    assert ekf.covariance[YAW].tolist() == pytest.approx([factor * (0.02 + 1.0), factor * 2.0, pi ** 2])
+    # no variance is less than that of the first pose
+    ekf.place(ORIGIN, numpy.full((3, 3), 0.01))
+    assert numpy.linalg.eigvalsh(ekf.covariance) == pytest.approx([1e-9, 1e-9, 0.03], rel=1e-6)   # eigh: 1e-16
+
+
+def test_a_carried_robot_may_have_moved_at_half_a_metre_per_second():
+    ekf = Filter(UNKNOWN_FLOOR, ORIGIN)
+    ekf.carry(0.3, 2.0)
+    ekf.carry(-0.1, 1.0)
+    assert ekf.state[:3] == pytest.approx([0.0, 0.0, 0.2])
+    # in one go: 1.5 m; the pose was known to 1e-9
+    assert ekf.P.diagonal()[:3].tolist() == pytest.approx([1.5 ** 2, 1.5 ** 2, 0.0], abs=2e-9)
+
+
+def test_a_rest_updates_what_is_estimated_and_not_what_is_considered():
+    ekf, before = arbitrary()
+    ekf.rested, ekf.drift = True, numpy.ones(9)
+    ekf.learn_bias(0.7, 0.6)
+    # the gain of a Kalman filter
+    gain = before[BIAS] / (before[BIAS, BIAS] + 0.6)
+    assert ekf.state == pytest.approx([old + each * 0.3 for old, each in zip((0.1, 0.2, 0.3, 0.4, 0.5), gain)])
+    expected = before - numpy.outer(gain, before[BIAS])
+    expected[SCALE:, SCALE:] = before[SCALE:, SCALE:]
+    numpy.testing.assert_allclose(ekf.P, expected, rtol=1e-9)       # rounding
+    assert not ekf.drift.any()
+    ekf.doubt_bias(ekf.bias - 0.5)
+    assert ekf.P[BIAS, BIAS] == pytest.approx(expected[BIAS, BIAS] + 0.25)
+    ekf.rested = False      # the first rest: the window began with another bias
+    ekf.learn_bias(0.7, 0.6)
+    assert ekf.rested and not ekf.P[WINDOW].any() and not ekf.P[:, WINDOW].any()
+
+
+def judge(ekf, window, *sums):
+    """Return the doubt of a window of 10 s. window: P of the difference; sums: the turns of the wheels, expected and of
+    the gyro (rad), forward (m), and the variance of the wheels."""
+    ekf.P[WINDOW, WINDOW] = window
+    ekf.window.add(Sums(10.0, *sums))
+    (found, doubt), zero = ekf.close_window(), numpy.zeros(9)
+    assert found[:6] == (10.0, *sums)
+    assert (ekf.P[WINDOW] == zero).all() and (ekf.P[:, WINDOW] == zero).all() and ekf.window.sums == Sums()
+    return doubt
+
+
+def turning(sigma):
+    """Return a Filter with a slip in turns that has this sigma, and a doubt of the pose."""
+    ekf = Filter(UNKNOWN_FLOOR._replace(slip_turning_spread=0.2, slip_straight_spread=0.02), ORIGIN)
+    ekf.P[SLIP_TURNING, SLIP_TURNING], ekf.doubt = sigma ** 2, [0.1, 0.2, 0.3]
+    return ekf
+
+
+@pytest.mark.parametrize('sign', [1, -1])
+@pytest.mark.parametrize('sigma, wheels, gyro, after', [
+    (0.2, 2.0, 1.0, 0.5), (0.6, 2.0, 1.0, 0.6),
+    (0.1, 0.9, 0.3, 0.2)])      # a turn of less than 1 rad does not measure the slip: that of the floor
+def test_a_difference_that_only_slip_explains_is_its_new_sigma(sign, sigma, wheels, gyro, after):
+    ekf = turning(sigma)
+    # 0.6 rad is more than 5 sigma of the difference
+    assert judge(ekf, 0.01, sign * wheels, sign * wheels, sign * gyro, 0.0, 0.002) == 'wheels'
+    assert ekf.sigma(SLIP_TURNING) == pytest.approx(after) and ekf.sigma(SLIP_STRAIGHT) == pytest.approx(0.05)
+    # one of the wheels has slipped, half of the track from the middle
+    moved = (0.2 * (wheels - gyro)) ** 2
+    assert ekf.P.diagonal()[:3].tolist() == pytest.approx([moved, moved, 0.0], abs=2e-9)    # first pose: 1e-9
+    assert ekf.doubt == [0.1, 0.2, 0.3] and ekf.state == [0.0] * 5
+
+
+@pytest.mark.parametrize('sign', [1, -1])
+@pytest.mark.parametrize('sigma, wheels, gyro, after', [
+    (0.3, 2.0, 1.8, 0.85 * 0.3), (0.3, 2.0, 1.44, 0.28), (0.055, 2.0, 1.99, 0.05), (0.3, 0.9, 0.8, 0.3),
+    (0.1, 2.0, 1.5, 0.1)])
+def test_an_agreement_reduces_the_doubt_and_a_slip_that_was_larger(sign, sigma, wheels, gyro, after):
+    ekf = turning(sigma)
+    assert judge(ekf, 0.03, sign * wheels, sign * wheels, sign * gyro, 0.0, 0.002) == ''
+    assert ekf.sigma(SLIP_TURNING) == pytest.approx(after) and ekf.sigma(SLIP_STRAIGHT) == pytest.approx(0.02)
+    assert ekf.doubt == pytest.approx([0.085, 0.17, 0.255])
+
+
+@pytest.mark.parametrize('sign', [1, -1])
+@pytest.mark.parametrize('gyro, doubt', [(0.0, 2.0), (3.2, 1.2), (0.1, None), (3.1, None)])
+def test_a_difference_that_no_slip_explains_is_a_doubt_of_the_heading(sign, gyro, doubt):
+    ekf = turning(0.4)
+    # wheels that report 2 rad turn by 0.6 to 2.6 rad; the sigma without slip is sqrt(0.02 + 0.01)
+    verdict = judge(ekf, (0.4 * 2) ** 2 + 0.02, sign * 2.0, sign * 2.0, sign * gyro, 0.0, 0.01)
+    assert verdict == ('both' if doubt else '')
+    assert ekf.doubt == pytest.approx([0.1, 0.2, 0.3 + doubt] if doubt else [0.085, 0.17, 0.255])
+
+
+def correlate(ekf, *pairs):
+    """Set covariances of a Filter: (index, index, value)."""
+    for one, other, value in pairs:
+        ekf.P[one, other] = ekf.P[other, one] = value
+
+
+@pytest.mark.parametrize('rested, forward, drifting, learned', [
+    (True, 5.0, False, True), (True, -5.0, True, True), (True, 2.9, True, False), (False, 5.0, True, False)])
+def test_straight_motion_after_a_rest_shows_the_curvature_and_the_bias_if_it_drifts(rested, forward, drifting, learned):
+    ekf = Filter(UNKNOWN_FLOOR, ORIGIN)
+    ekf.rested, ekf.walk = rested, 1e-6 if drifting else ekf.walk
+    correlate(ekf, (WINDOW, CURVATURE, 0.01), (WINDOW, BIAS, 0.02), (WINDOW, YAW, 0.05), (YAW, YAW, 0.5),
+              (YAW, CURVATURE, 0.003), (YAW, SLIP_TURNING, 0.02), (YAW, SCALE, 0.01))
+    bias = ekf.P[BIAS, BIAS]
+    # a difference of 0.2 rad, in one block: its scatter is less than the variance of the wheels
+    assert judge(ekf, 0.04, 0.1, 0.3, 0.5, forward, 0.03) == ''
+    S = 0.04 + 0.2 ** 2 / 2
+    # the heading, without what slip, scale and curvature have to do with it
+    gain = (0.05 + 0.1 * 0.02 - 0.5 * 0.01 - forward * 0.003) / S if learned and drifting else 0.0
+    assert ekf.state == pytest.approx([0.0, 0.0, gain * 0.2, 0.02 / S * 0.2 if learned and drifting else 0.0,
+                                       0.01 / S * 0.2 if learned else 0.0])
+    assert ekf.P.diagonal()[[YAW, BIAS, CURVATURE]].tolist() == pytest.approx([
+        0.5 - 2 * gain * 0.05 + gain ** 2 * S, bias - (0.02 ** 2 / S if learned and drifting else 0.0),
+        0.05 ** 2 - (0.01 ** 2 / S if learned else 0.0)])
+
+
+@pytest.mark.parametrize('gyro, since, doubt', [(0.1, 200.0, 'imu_data'), (-0.1, 200.0, 'imu_data'),
+                                                (0.1, 20.0, 'both'), (0.2, 200.0, 'both')])
+def test_a_difference_in_straight_motion_is_a_drift_since_the_rest(gyro, since, doubt):
+    """since: the turn (rad) that a drift of 1 rad/s^2 would have caused in the window."""
+    ekf = Filter(UNKNOWN_FLOOR, ORIGIN)
+    ekf.rested, ekf.moving = True, 40.0
+    ekf.drift[[YAW, BIAS, WINDOW]] = 800.0, 40.0, since
+    correlate(ekf, (WINDOW, CURVATURE, 0.001))
+    assert judge(ekf, 1e-4, 0.0, 0.0, gyro, 5.0, 1e-4) == doubt
+    if doubt == 'both':     # a drift that is improbable, or that the window hardly shows
+        assert ekf.doubt[YAW] == abs(gyro) and not any(ekf.state)
+        return
+    rate = gyro / 200
+    S = 1e-4 + gyro ** 2 + 1e-4
+    curvature = 0.001 / S * gyro
+    assert ekf.state == pytest.approx([0, 0, rate ** 2 * 200 * 800 / S * gyro, rate ** 2 * 200 * 40 / S * gyro,
+                                       curvature])
+    assert ekf.walk == pytest.approx(rate ** 2 * 40)
+    # half of the curvature may be a drift that turns as much at this speed, 0.5 m/s
+    assert ekf.P[CURVATURE, [CURVATURE, BIAS]].tolist() == pytest.approx([
+        0.05 ** 2 - 0.001 ** 2 / S + curvature ** 2 / 4,
+        -0.001 * rate ** 2 * 200 * 40 / S - curvature ** 2 / 4 * 0.5])
 
 
 def turn_by_gyro(ekf, rate, time, step=0.1):
@@ -128,6 +309,13 @@ def test_a_bias_that_has_drifted_has_turned_the_heading_by_half_of_its_change(fi
     assert ekf.state[YAW] == pytest.approx(5 * final, rel=0.05)
     ekf.learn_bias(final, 1e-9)
     assert ekf.bias == pytest.approx(final, abs=1e-4) and ekf.state[YAW] == pytest.approx(0.0, abs=0.002)
+    # it may drift on, by 0.01 rad/s in 10 s at first, and as always in the end
+    for walk in (0.01 ** 2 / 10, 0.01 ** 2 / 20, *[None] * 20, BIAS_WALK ** 2):
+        assert walk is None or ekf.walk == pytest.approx(walk)
+        before = ekf.P[BIAS, BIAS]
+        ekf.step(2.0, ekf.turn(2.0, None, None))
+        assert ekf.P[BIAS, BIAS] == pytest.approx(before + ekf.walk * 2.0)
+        ekf.learn_bias(ekf.bias, 1e-9)
 
 
 def test_wheels_and_gyro_do_not_change_the_errors_that_are_considered():
@@ -234,10 +422,10 @@ def test_with_noisy_wheels_no_drift_can_be_found():
     assert not any(doubts)
 
 
-def report(verdicts, rested=True):
-    """Return the warnings for doubts, one per second."""
+def report(verdicts, rested=True, doubt=0.0):
+    """Return the warnings for doubts, one per second. doubt: of the heading, rad."""
     warnings, doubts, ekf = [], Doubts(warn=lambda text: warnings.append(text)), Filter(UNKNOWN_FLOOR, ORIGIN)
-    ekf.rested = rested
+    ekf.rested, ekf.doubt[YAW] = rested, doubt
     for second, doubted in enumerate(verdicts):
         doubts.report((Sums(time=20.0, wheels=2.0, gyro=1.0), doubted), ekf, second * SECOND)
     return warnings, doubts
@@ -251,6 +439,8 @@ def test_a_doubt_and_its_end_are_reported_once():
     warnings, doubts = report(['', 'both'])
     assert warnings[0].endswith(': one of them is wrong; the heading is uncertain')
     assert doubts.doubted == 'both since 1.0 s' and doubts.contradicts(SECOND + CONTRADICTION - 1)
+    assert not doubts.contradicts(SECOND + CONTRADICTION)
+    assert len(report(['both', ''], doubt=0.2)[0]) == 1     # the heading is still in doubt
 
 
 def test_a_robot_that_was_never_at_rest_is_reported_once():
