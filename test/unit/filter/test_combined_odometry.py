@@ -6,7 +6,7 @@ import pytest
 
 from rbx1_nav.base.kinematics import ORIGIN, Pose, arc
 from rbx1_nav.base.units import SECOND
-from rbx1_nav.filter.inputs import Imu
+from rbx1_nav.filter.inputs import Imu, Odom
 from sample_priors import IDEAL
 from sample_robot import STEP, Robot, exact
 
@@ -16,7 +16,17 @@ def test_the_estimate_follows_sensors_without_errors_exactly():
     robot.send(50)
     robot.send(100, 0.2, 0.5)
     robot.send(100, -0.1, -1.0)
-    assert exact(robot.combined.estimate, robot.pose)
+    assert exact(robot.combined.estimate, robot.pose) and robot.combined.pose == robot.combined.estimate.pose
+
+
+def test_the_variances_of_the_speeds_count_for_the_time_of_a_step():
+    robot = Robot(IDEAL, gyro_used=False)
+    robot.send(1, imu=False)
+    robot.now, robot.pose = robot.now + SECOND // 2, Pose(1.0, 0.0, 0.0)
+    robot.combined.add_odom(robot.now, Odom(robot.now, robot.pose, 0.004, 0.01))
+    # in half a second; and 0.02 of slip in straight motion, 0.02 rad/m of curvature
+    assert robot.combined.filter.P.diagonal()[[0, 2]].tolist() == pytest.approx([
+        0.004 / 4 + 0.02 ** 2, 0.01 / 4 + 0.02 ** 2], abs=3e-9)     # the first pose
 
 
 # the order of messages

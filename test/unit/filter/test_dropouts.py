@@ -25,6 +25,12 @@ def test_a_gyro_times_out_and_recovers():
                               'imu_data has recovered']
 
 
+def test_a_gyro_that_has_never_reported_times_out_too():
+    robot = Robot(IDEAL)
+    assert robot.send(51, 0.2, 0.5, imu=False) is None and not robot.warnings
+    assert robot.send(2, imu=False) and len(robot.warnings) == 1
+
+
 def test_a_steady_turn_needs_no_reading_of_the_gyro():
     robot = Robot(IDEAL)
     robot.send(50, 0.1, 0.5)
