@@ -71,13 +71,6 @@ def test_standstill_a_claimed_variance_that_is_far_too_large_is_not_believed():
     assert sigma < 1.5
 
 
-def test_standstill_the_noise_of_the_gyro_is_measured():
-    robot = Robot()
-    robot.go(30.0)
-    # rad^2/s: variance of a reading times its time; the variance of 90 or more differences, 4 sigma
-    assert robot.combined.standstill.density == pytest.approx(NOISE ** 2 * IMU_STEP / SECOND, rel=4 * sqrt(3 / 90))
-
-
 def test_standstill_wheels_that_report_later_than_the_gyro_are_not_carried():
     robot = Robot()
     robot.go(3.0)
@@ -114,45 +107,6 @@ def test_carried_the_heading_turns_with_the_gyro():
     # the wheels have reported none of the 86 degrees
     assert abs(error) < 2.0 and abs(error) < 4 * sigma and robot.case == 'standstill'
     assert degrees(robot.combined.filter.bias) == pytest.approx(1.0, abs=0.1)
-
-
-@pytest.mark.parametrize('rate', [2.0, 5.0, 9.0])
-def test_carried_slowly_and_steadily_is_no_bias(rate):
-    robot = Robot()
-    robot.go(3.0)
-    robot.go(8.0, carried=radians(rate))
-    assert robot.case == 'carried'
-    error, _ = robot.go(2.0)
-    assert abs(error) < 1.0
-    assert abs(degrees(robot.combined.filter.bias)) < 0.1
-
-
-def test_a_bias_that_has_changed_is_uncertain_after_a_rest_and_learned_in_the_next():
-    robot = Robot()
-    robot.go(3.0)
-    robot.bias = radians(2.5)
-    robot.go(5.0)
-    error, sigma = robot.go(30.0, 0.2)
-    assert abs(error) > 70.0 and abs(error) < 3 * sigma
-    robot.go(3.0)
-    assert robot.case == 'standstill' and degrees(robot.combined.filter.bias) == pytest.approx(2.5, abs=0.1)
-
-
-def test_carried_a_rate_above_the_limit_is_never_a_bias():
-    robot = Robot()
-    robot.go(3.0)
-    robot.go(20.0, carried=radians(15))     # for longer than a bias that has changed must be steady
-    assert robot.case == 'carried' and abs(degrees(robot.combined.filter.bias)) < 0.1
-    assert degrees(robot.combined.estimate.pose.yaw) == pytest.approx(300, abs=2.0)
-
-
-def test_a_rate_that_is_steady_for_longer_than_a_hand_can_be_is_a_bias():
-    robot = Robot()
-    robot.go(3.0)
-    robot.bias = radians(4.0)
-    robot.go(15.0)
-    assert robot.case == 'standstill' and degrees(robot.combined.filter.bias) == pytest.approx(4.0, abs=0.1)
-    assert abs(degrees(robot.combined.estimate.pose.yaw)) < 2.0     # it has not turned
 
 
 def test_agreement_does_not_change_a_bias_that_was_learned_at_rest():
