@@ -31,13 +31,6 @@ def test_a_gyro_that_has_never_reported_times_out_too():
     assert robot.send(2, imu=False) and len(robot.warnings) == 1
 
 
-def test_a_steady_turn_needs_no_reading_of_the_gyro():
-    robot = Robot(IDEAL)
-    robot.send(50, 0.1, 0.5)
-    robot.send(40, 0.1, 0.5, imu=False)
-    assert exact(robot.send(10, 0.1, 0.5), robot.pose)
-
-
 @pytest.mark.parametrize('late', [False, True])
 def test_what_both_sensors_measure_in_a_dropout_of_the_odometry_counts_when_it_recovers(late):
     robot = Robot(IDEAL)

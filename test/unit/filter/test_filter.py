@@ -176,47 +176,27 @@ def judge(ekf, window, *sums):
     return doubt
 
 
-def turning(sigma):
-    """Return a Filter with a slip in turns that has this sigma, and a doubt of the pose."""
+@pytest.mark.parametrize('sign', [1, -1])
+@pytest.mark.parametrize('sigma, window, wheels, gyro, verdict, after', [
+    # 1 and 0.6 rad are more than 5 sigma of the difference; a turn of less than 1 rad does not measure the slip
+    (0.2, 0.01, 2.0, 1.0, 'wheels', 0.5), (0.6, 0.01, 2.0, 1.0, 'wheels', 0.6), (0.1, 0.01, 0.9, 0.3, 'wheels', 0.2),
+    (0.3, 0.03, 2.0, 1.8, '', 0.85 * 0.3), (0.3, 0.03, 2.0, 1.44, '', 0.28), (0.055, 0.03, 2.0, 1.99, '', 0.05),
+    (0.3, 0.03, 0.9, 0.8, '', 0.3), (0.1, 0.03, 2.0, 1.5, '', 0.1),
+    # with any slip, wheels that report 2 rad turn by 0.6 to 2.6 rad; 3 sigma without slip are 0.45 rad
+    (0.4, 0.8 ** 2 + 0.02, 2.0, 0.1, 'both', 0.4), (0.4, 0.8 ** 2 + 0.02, 2.0, 3.1, 'both', 0.4),
+    (0.4, 0.8 ** 2 + 0.02, 2.0, 0.2, '', 0.4), (0.4, 0.8 ** 2 + 0.02, 2.0, 3.0, '', 0.4)])
+def test_a_difference_in_a_turn_is_slip_or_a_doubt_of_the_heading(sign, sigma, window, wheels, gyro, verdict, after):
     ekf = Filter(UNKNOWN_FLOOR._replace(slip_turning_spread=0.2, slip_straight_spread=0.02), ORIGIN)
     ekf.P[SLIP_TURNING, SLIP_TURNING], ekf.doubt = sigma ** 2, [0.1, 0.2, 0.3]
-    return ekf
-
-
-@pytest.mark.parametrize('sign', [1, -1])
-@pytest.mark.parametrize('sigma, wheels, gyro, after', [
-    (0.2, 2.0, 1.0, 0.5), (0.6, 2.0, 1.0, 0.6),
-    (0.1, 0.9, 0.3, 0.2)])      # a turn of less than 1 rad does not measure the slip: that of the floor
-def test_a_difference_that_only_slip_explains_is_its_new_sigma(sign, sigma, wheels, gyro, after):
-    ekf = turning(sigma)
-    # 0.6 rad is more than 5 sigma of the difference
-    assert judge(ekf, 0.01, sign * wheels, sign * wheels, sign * gyro, 0.0, 0.002) == 'wheels'
-    assert ekf.sigma(SLIP_TURNING) == pytest.approx(after) and ekf.sigma(SLIP_STRAIGHT) == pytest.approx(0.05)
+    assert judge(ekf, window, sign * wheels, sign * wheels, sign * gyro, 0.0, 0.002) == verdict
+    assert ekf.sigma(SLIP_TURNING) == pytest.approx(after)
+    assert ekf.sigma(SLIP_STRAIGHT) == pytest.approx(0.05 if verdict == 'wheels' else 0.02)
     # one of the wheels has slipped, half of the track from the middle
-    moved = (0.2 * (wheels - gyro)) ** 2
+    moved = (0.2 * (wheels - gyro)) ** 2 if verdict == 'wheels' else 0.0
     assert ekf.P.diagonal()[:3].tolist() == pytest.approx([moved, moved, 0.0], abs=2e-9)    # first pose: 1e-9
-    assert ekf.doubt == [0.1, 0.2, 0.3] and ekf.state == [0.0] * 5
-
-
-@pytest.mark.parametrize('sign', [1, -1])
-@pytest.mark.parametrize('sigma, wheels, gyro, after', [
-    (0.3, 2.0, 1.8, 0.85 * 0.3), (0.3, 2.0, 1.44, 0.28), (0.055, 2.0, 1.99, 0.05), (0.3, 0.9, 0.8, 0.3),
-    (0.1, 2.0, 1.5, 0.1)])
-def test_an_agreement_reduces_the_doubt_and_a_slip_that_was_larger(sign, sigma, wheels, gyro, after):
-    ekf = turning(sigma)
-    assert judge(ekf, 0.03, sign * wheels, sign * wheels, sign * gyro, 0.0, 0.002) == ''
-    assert ekf.sigma(SLIP_TURNING) == pytest.approx(after) and ekf.sigma(SLIP_STRAIGHT) == pytest.approx(0.02)
-    assert ekf.doubt == pytest.approx([0.085, 0.17, 0.255])
-
-
-@pytest.mark.parametrize('sign', [1, -1])
-@pytest.mark.parametrize('gyro, doubt', [(0.0, 2.0), (3.2, 1.2), (0.1, None), (3.1, None)])
-def test_a_difference_that_no_slip_explains_is_a_doubt_of_the_heading(sign, gyro, doubt):
-    ekf = turning(0.4)
-    # wheels that report 2 rad turn by 0.6 to 2.6 rad; the sigma without slip is sqrt(0.02 + 0.01)
-    verdict = judge(ekf, (0.4 * 2) ** 2 + 0.02, sign * 2.0, sign * 2.0, sign * gyro, 0.0, 0.01)
-    assert verdict == ('both' if doubt else '')
-    assert ekf.doubt == pytest.approx([0.1, 0.2, 0.3 + doubt] if doubt else [0.085, 0.17, 0.255])
+    assert ekf.doubt == pytest.approx([0.085, 0.17, 0.255] if verdict == '' else [
+        0.1, 0.2, 0.3 + (abs(wheels - gyro) if verdict == 'both' else 0.0)])
+    assert ekf.state == [0.0] * 5
 
 
 def correlate(ekf, *pairs):
@@ -287,38 +267,16 @@ def test_a_bias_that_has_drifted_has_turned_the_heading_by_half_of_its_change(fi
         ekf.learn_bias(ekf.bias, 1e-9)
 
 
-def move(ekf, turns, forward=0.0):
-    """Make steps of 0.02 s with the turns of wheels and gyro; return the doubts."""
-    doubts = []
-    for wheels, gyro in turns:
-        ekf.step(0.02, ekf.turn(0.02, wheels, gyro, forward), 0.0, forward)
+def test_a_drift_while_the_robot_drives_straight_is_found_and_corrected():
+    ekf, doubts = Filter(UNKNOWN_FLOOR, ORIGIN), []
+    ekf.learn_bias(0.0, 1e-10)
+    for number in range(3000):      # 0.34 degrees/s in a minute, at 0.2 m/s
+        ekf.step(0.02, ekf.turn(0.02, (0.0, 0.0), (1e-4 * number * 0.02 ** 2, 1e-10), 0.004), 0.0, 0.004)
         verdict = ekf.close_window()
         doubts += [verdict[1]] if verdict else []
-    return doubts
-
-
-def straight_on(rates, noise=0.0):
-    """Return a Filter that knows the bias, after straight motion at 0.2 m/s, and its doubts.
-
-    rates: of the gyro, rad/s; noise: rad, of the wheels, a turn that changes its direction every second.
-    """
-    ekf = Filter(UNKNOWN_FLOOR, ORIGIN)
-    ekf.learn_bias(0.0, 1e-10)
-    return ekf, move(ekf, [((noise * (-1) ** (number // 50) / 50, 0.0), (rate * 0.02, 1e-10))
-                           for number, rate in enumerate(rates)], 0.004)
-
-
-def test_a_drift_while_the_robot_drives_straight_is_found_and_corrected():
-    ekf, doubts = straight_on([1e-4 * number * 0.02 for number in range(3000)])     # 0.34 degrees/s in a minute
     assert 'imu_data' in doubts and doubts[-1] == ''
     assert ekf.bias == pytest.approx(0.006, abs=0.001) and abs(ekf.state[YAW]) < 0.01   # uncorrected: 0.18
     assert abs(ekf.state[Y]) < 0.05
-
-
-def test_a_constant_curve_is_no_drift():
-    ekf, doubts = straight_on([0.002] * 3000)
-    assert not any(doubts) and ekf.state[CURVATURE] == pytest.approx(0.01, rel=0.02)
-    assert abs(ekf.bias) < 1e-5 and ekf.state[YAW] == pytest.approx(0.12, rel=0.01)
 
 
 def report(verdicts, rested=True, doubt=0.0):

@@ -4,14 +4,12 @@ from math import cos, inf, nan, pi, sin
 from hypothesis import assume, given, strategies
 import pytest
 
-from rbx1_nav.filter.imu_mounting import (
-    GyroInput, ImuData, multiply, turn_about, vertical_axis)
 from rbx1_nav.base.units import SECOND
+from rbx1_nav.filter.imu_mounting import GyroInput, ImuData, multiply, turn_about, vertical_axis
 from rbx1_nav.filter.inputs import Imu, RejectedMessage
 
 UPSIDE_DOWN = vertical_axis((1.0, 0.0, 0.0, 0.0))       # rolled by 180 degrees
 VARIANCES = (1e-6, 1e-6, 1e-6)
-UNKNOWN = 1e6
 MARGIN = 1e-9       # far above rounding
 
 
