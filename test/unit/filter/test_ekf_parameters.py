@@ -67,7 +67,7 @@ def test_what_is_not_supported_is_logged(monkeypatch):
 
 @pytest.mark.parametrize('params, text', [
     (dict(odom_used=False), 'odom_used: False: expected true'), ({'output_frame': 'map', BASE: 'map'}, 'other than'),
-    (dict(tf_prefix=7), 'tf_prefix: 7: expected the name'),
+    (dict(tf_prefix=7), 'tf_prefix: 7: expected the name'), (dict(surface='sand'), 'sand.*; or auto, or unknown'),
     (dict(max_speed=0), 'max_speed: 0: expected a speed from 0.01 to 1000 in m/s'),
     (dict(gyro_bias='small'), "gyro_bias: 'small': expected a bias from 0.01 to 1000 in degrees/s")])
 def test_what_is_rejected(params, text):

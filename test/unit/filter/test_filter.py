@@ -62,6 +62,7 @@ def test_the_covariance_follows_from_the_derivatives_of_a_step(pose, bias, turne
     indices = [X, Y, YAW, WINDOW][:count]
     numpy.testing.assert_allclose(      # central differences: 1e-10
         ekf.P[numpy.ix_(indices, indices)], expected[:count, :count], atol=1e-12, rtol=1e-4)
+    numpy.testing.assert_allclose(ekf.P[BIAS:WINDOW, BIAS:WINDOW], 1e-6 * numpy.eye(5), atol=1e-9)  # the bias walks
 
 
 @given(st.lists(st.tuples(angles, st.floats(-1e6, 1e6), st.floats(-3, 7), st.floats(-12, 12), st.integers(0, 3)),
