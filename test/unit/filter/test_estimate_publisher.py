@@ -59,13 +59,6 @@ def test_the_transform_is_to_the_robot_if_nobody_else_publishes_one(world):
                          'Publishing the transform combined -> odom (/base_node already publishes odom -> base)']
 
 
-def test_a_clock_that_jumps_back_begins_the_wait_again(world):
-    publisher = world()
-    for seconds, sent in (10.0, None), (5.0, None), (6.9, None), (7.1, ('combined', 'base', 1.0, 2.0)):
-        assert update(publisher, seconds) == sent
-        world.seconds += 0.9
-
-
 def test_the_transform_to_the_odometry_frame_places_the_robot_at_the_estimate(world):
     publisher = world()
     publisher.tree.frames['base'] = 'odom', '/base_node', (0.0, 0.0, 0.0, 1.0)
