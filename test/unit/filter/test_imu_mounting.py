@@ -144,3 +144,8 @@ def test_a_turn_is_the_shorter_way(before, after):
     turn = (after - before + pi) % (2 * pi) - pi
     assume(abs(turn) < pi - 1e-6)
     assert turn_about((0.0, 0.0, 1.0), about('z', before), about('z', after)) == pytest.approx(turn, abs=MARGIN)
+
+
+def test_rotations_are_multiplied_by_hamiltons_rules():
+    # 24 i + 48 j + 48 k - 6
+    assert multiply((1, 2, 3, 4), (5, 6, 7, 8)) == (24, 48, 48, -6)
