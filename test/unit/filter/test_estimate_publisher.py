@@ -98,7 +98,5 @@ def test_a_velocity_is_the_change_since_the_last_estimate_without_a_jump_in_betw
             publisher.update(combined, 'odom', 'base')
     assert used == [None, 1, 2, None, 4, None, 6]
     publisher.odometry_pub.connections = 0
-    publisher.update(SimpleNamespace(**{**vars(combined), 'estimate': combined.estimate._replace(stamp=9 * SECOND)}),
-                     'odom', 'base')
+    update(publisher, 9.0)
     assert len(publisher.odometry_pub.sent) == 7 and publisher.published == 8
-    publisher.update(SimpleNamespace(estimate=None), 'odom', 'base')
