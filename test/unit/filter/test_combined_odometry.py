@@ -1,5 +1,5 @@
 """The combined odometry: the order of messages, and set_pose."""
-from math import pi
+from math import cos, pi, sin
 
 import numpy
 import pytest
@@ -27,6 +27,18 @@ def test_the_variances_of_the_speeds_count_for_the_time_of_a_step():
     # in half a second; and 0.02 of slip in straight motion, 0.02 rad/m of curvature
     assert robot.combined.filter.P.diagonal()[[0, 2]].tolist() == pytest.approx([
         0.004 / 4 + 0.02 ** 2, 0.01 / 4 + 0.02 ** 2], abs=3e-9)     # the first pose
+
+
+@pytest.mark.parametrize('ticks, rates, direction', [
+    (2, (0.0, 3.0), 0.03), (50, (3.0, 0.0), 0.06)])     # after a rest, the gyro may report the turn first
+def test_the_path_turns_as_the_gyro_measures_and_not_as_the_wheels(ticks, rates, direction):
+    robot = Robot(IDEAL)
+    robot.send(ticks)
+    for rate, pose in zip(rates, (ORIGIN, Pose(0.1 * cos(0.06), 0.1 * sin(0.06), 0.12))):
+        robot.now += STEP
+        robot.combined.add_imu(robot.now, Imu(robot.now, rate, 3e-6))
+        robot.combined.add_odom(robot.now, Odom(robot.now, pose))
+    assert exact(robot.combined.estimate, Pose(0.1 * cos(direction), 0.1 * sin(direction), 0.06))
 
 
 # the order of messages

@@ -62,7 +62,7 @@ def test_the_transform_is_to_the_robot_if_nobody_else_publishes_one(world):
 def test_the_transform_to_the_odometry_frame_places_the_robot_at_the_estimate(world):
     publisher = world()
     publisher.tree.frames['base'] = 'odom', '/base_node', (0.0, 0.0, 0.0, 1.0)
-    update(publisher, 9.9)      # the frames are new: other nodes' transforms are read again
+    assert update(publisher, 9.9) is None       # the frames are new: other nodes' transforms are read again
     publisher.tree.frames['base'] = 'odom', '/base_node', (0.0, 0.0, 0.0, 1.0)
     # in its odometry frame, the robot is 3 m ahead, which is to the left in the output frame
     assert update(publisher, 10.0) == ('combined', 'odom', pytest.approx(1.0), pytest.approx(-1.0))
