@@ -91,6 +91,7 @@ def test_what_is_missing_is_named(world, change, text):
     change(world)
     with pytest.raises(rospy.ROSException, match=f'{text}$'):
         world.wait()
+    assert len(world.logged) == ('master' in text)
 
 
 def test_a_dead_node_is_called_once_and_a_silent_base_again(world):
@@ -117,6 +118,8 @@ def test_a_base_is_called_until_it_has_a_problem(world, failure, text):
     assert world.failed == [found.problem()] == [f'/r/cmd_vel: /base {text}: expected it to follow the commands until '
                                                  'the end of the run']
     assert base.answered == pytest.approx(100 + ASK_PERIOD * (3 if text == 'did not follow a command: docked' else 2))
+    # the fifth call ends 1.6 s after the last answer, the fourth one 0.8 s
+    assert world.slept == (5 if text == 'has stopped responding' else 4)
     base.finished = True
     base.ask(True, world.failed.append)
     assert len(world.failed) == 1

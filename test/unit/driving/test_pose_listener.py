@@ -14,10 +14,10 @@ class Buffer:
     """Transforms from the odometry frame, by child: (stamp in s, x, y, yaw)."""
 
     def __init__(self):
-        self.poses = {}
+        self.poses, self.heard = {}, False
 
     def lookup_transform(self, parent, child, time):
-        if parent != 'robot1/odom' or child not in self.poses or time:     # 0: the last one
+        if parent != 'robot1/odom' or not self.heard or child not in self.poses or time:  # 0: last
             raise tf2_ros.LookupException('no such frame')
         stamp, x, y, yaw = self.poses[child]
         transform = TransformStamped(child_frame_id=child)
@@ -42,7 +42,7 @@ class World:
     def __init__(self, monkeypatch):
         self.time, self.halts = 0.0, []
         monkeypatch.setattr(tf2_ros, 'Buffer', Buffer)
-        monkeypatch.setattr(tf2_ros, 'TransformListener', lambda _: None)
+        monkeypatch.setattr(tf2_ros, 'TransformListener', lambda buffer: setattr(buffer, 'heard', True))
         monkeypatch.setattr(rospy, 'Subscriber', lambda topic, _, function: setattr(self, topic, function))
         monkeypatch.setattr(rospy, 'get_namespace', lambda: '/robot1/')
         monkeypatch.setattr(rospy, 'get_time', lambda: self.time)
@@ -61,15 +61,15 @@ class World:
 
 
 def test_the_pose_is_extrapolated_forward_from_the_last_two_transforms(world):
-    assert world.at(10.04, 10.0, 0.0, 0.0, 3.1) == pytest.approx((0.0, 0.0, 3.1))
+    assert world.at(10.04, 10.0, 0.5, -0.3, 3.1) == pytest.approx((0.5, -0.3, 3.1))
     # 0.2 m/s, -0.1 m/s and 0.8 rad/s, through the angle of pi
-    last = 10.1, -0.02, -0.01, 3.18 - 2 * pi
+    last = 10.1, 0.48, -0.31, 3.18 - 2 * pi
     assert world.at(10.1, *last) == pytest.approx(last[1:])
-    assert world.at(10.14, *last) == pytest.approx((-0.028, -0.014, 3.212 - 2 * pi))
+    assert world.at(10.14, *last) == pytest.approx((0.472, -0.314, 3.212 - 2 * pi))
     # a transform from the future is not extrapolated
-    assert world.at(10.15, 10.2, -0.04, -0.02, 3.2 - 2 * pi) == pytest.approx((-0.04, -0.02, 3.2 - 2 * pi))
+    assert world.at(10.15, 10.2, 0.46, -0.32, 3.2 - 2 * pi) == pytest.approx((0.46, -0.32, 3.2 - 2 * pi))
     # the robot coasted in a gap, and was stopped
-    assert world.at(10.74, 10.7, -0.08, -0.02, 3.2 - 2 * pi) == pytest.approx((-0.08, -0.02, 3.2 - 2 * pi))
+    assert world.at(10.74, 10.7, 0.42, -0.32, 3.2 - 2 * pi) == pytest.approx((0.42, -0.32, 3.2 - 2 * pi))
 
 
 def test_the_first_base_frame_that_exists_is_kept(world):
