@@ -129,9 +129,10 @@ def test_a_node_starts_with_a_check_of_its_angles_and_prepares_its_end(world, mo
                       anonymous=True)
     assert world.log == [stopping.stop_robots, script._finish, 'requested', 130, '/unnamed/goal_angle: 13: 2.1 turns, '
                          'because the unit is radians. For 13 degrees: _goal_angle:=0.226893']
-    script.init_node('node', ['argument'], True, log_level=1)       # this module has no list of parameters
+    monkeypatch.setitem(globals(), '__doc__', 'Usage.\nParameters:\n    ~linear_speed  speed (m/s; default: 0.2)')
+    script.init_node('node', ['argument'], True, log_level=1)
     assert started == [('node', 'usage', 3, {'anonymous': True}),
-                       ('node', '', 1, {'argv': ['argument'], 'anonymous': True, 'log_level': 1})]
+                       ('node', 'Usage.', 2, {'argv': ['argument'], 'anonymous': True, 'log_level': 1})]
     assert len(world.log) == 6 and script._started == [os.getpid()]
 
 
