@@ -15,7 +15,7 @@ from rbx1_nav.base.command_subscriber import VelocityCommands
 from rbx1_nav.base.description import Joint, Limits
 from rbx1_nav.base.running_bases import Refusals
 from rbx1_nav.base.units import SECOND
-from fake_topics import replace_topics
+from fake_topics import Topic, replace_topics
 
 
 class Time(Clock):
@@ -130,7 +130,7 @@ def test_a_goal_of_a_joint(monkeypatch):
 def test_it_subscribes_once_and_its_clock_watches_the_senders(monkeypatch):
     world, watched = World(monkeypatch), []
     replace_topics(monkeypatch)
-    monkeypatch.setattr(rospy.Subscriber, 'unregister', lambda topic: watched.append(topic.name), raising=False)
+    monkeypatch.setattr(Topic, 'unregister', lambda topic: watched.append(topic.name), raising=False)
     world.clock.watch = world.clock.unwatch = watched.append
     world.commands.close()
     for _ in range(2):
