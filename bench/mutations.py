@@ -4,6 +4,7 @@ import argparse
 import ast
 from collections import namedtuple
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 import glob
 import os
 import random
@@ -152,14 +153,7 @@ def is_noticed(mutation, limits):
     """Whether the unit tests of the room, or of those that use it, fail with a Mutation. limits: {folder of tests:
     seconds after which they hang}."""
     room = room_of(mutation.path)
-    with tempfile.TemporaryDirectory() as folder:
-        for name in os.listdir(ROOT):
-            if name not in ('src', 'nodes') and not name.startswith('.'):
-                os.symlink(os.path.join(ROOT, name), os.path.join(folder, name))
-        # the tests find the package next to their own folder
-        os.remove(os.path.join(folder, 'test'))
-        for name in 'src', 'test', 'nodes':
-            shutil.copytree(os.path.join(ROOT, name), os.path.join(folder, name))
+    with copied_package() as folder:
         with open(os.path.join(folder, mutation.path), 'w', encoding='utf-8') as file:
             file.write(mutation.source)
         # the tests that are named after the module first: most mutations make one of them fail
@@ -170,11 +164,25 @@ def is_noticed(mutation, limits):
             *((each, [f'test/unit/{each}']) for each in tests_of(room))) if tests)
 
 
+@contextmanager
+def copied_package():
+    """A folder with the package; its src, test and nodes are copies."""
+    with tempfile.TemporaryDirectory() as folder:
+        for name in os.listdir(ROOT):
+            if name in ('src', 'test', 'nodes'):    # the tests find the package next to their own folder
+                shutil.copytree(os.path.join(ROOT, name), os.path.join(folder, name))
+            elif not name.startswith('.'):
+                os.symlink(os.path.join(ROOT, name), os.path.join(folder, name))
+        yield folder
+
+
 def tests_of(room):
     """The folders of the unit tests that may notice a change of a room: of the room, of those that import it, and the
-    tests that compare it with the documents."""
+    tests that compare it with the documents. These also compare the comments of the nodes, which a changed file does
+    not have."""
     users = {user.strip('/') for user, used in arrows() if used.strip('/') == room}
-    return (room, *sorted(user for user in users if user in rooms_with_tests()), 'pages')
+    pages = () if room == 'nodes' else ('pages',)
+    return (room, *sorted(user for user in users if user in rooms_with_tests()), *pages)
 
 
 def fails(folder, tests, limit=None):
@@ -217,7 +225,9 @@ def room_of(path):
 def duration(name):
     """The time in seconds that the unit tests in a folder take without a mutation. Exits if they fail."""
     begin = time.monotonic()
-    if fails(ROOT, [f'test/unit/{name}']):
+    with copied_package() as folder:
+        failed = fails(folder, [f'test/unit/{name}'])
+    if failed:
         sys.exit(f'test/unit/{name} fails without a mutation')
     took = time.monotonic() - begin
     print(f'test/unit/{name}: {took:.0f} s without a mutation', flush=True)

@@ -3,12 +3,12 @@ import rospy
 
 
 class Topic:
-    """A publisher with a subscriber, a subscriber or a service; `sent` has its messages."""
+    """A publisher with a subscriber, a subscriber or a service; `sent` has its messages, `callback` receives them."""
 
     connections = 1
 
-    def __init__(self, name, *_, **__):
-        self.name, self.sent = name, []
+    def __init__(self, name, _=None, callback=None, *__, **___):
+        self.name, self.sent, self.callback = name, [], callback
         self.resolved_name = rospy.names.resolve_name(name)
 
     def get_num_connections(self):
@@ -19,6 +19,12 @@ class Topic:
 
 
 def replace_topics(monkeypatch):
-    """Let rospy create Topics."""
-    for name in 'Publisher', 'Subscriber', 'Service':
-        monkeypatch.setattr(rospy, name, Topic)
+    """Let rospy create Topics; returns the latest one of each name."""
+    topics = {}
+
+    def create(name, *rest, **_):
+        topics[name] = Topic(name, *rest)
+        return topics[name]
+    for kind in 'Publisher', 'Subscriber', 'Service':
+        monkeypatch.setattr(rospy, kind, create)
+    return topics

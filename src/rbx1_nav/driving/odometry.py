@@ -138,7 +138,7 @@ class PoseListener:
     def _known_frames(self) -> str:
         """Return the last part of a message: the list of existing frames, if one of ours does not exist."""
         tree = yaml.safe_load(self.buffer.all_frames_as_yaml()) or {}
-        frames = set(tree) | {frame['parent'] for frame in tree.values()} if tree else set()
+        frames = set(tree) | {frame['parent'] for frame in tree.values()}
         if not frames or self.odom_frame in frames and frames.intersection(self.base_frames):
             return ''
         existing = f"; frames that exist: {', '.join(sorted(frames))}"

@@ -109,12 +109,12 @@ class Commands:
         self.time = now()       # ns, of the last command
         self.moved = 0.0        # s of the monotonic clock, of the last command to move
         self.motions = 0        # number of motions, each of which begins after a stop
-        self.begin = 0          # ns, of the last motion
+        self.begin: int         # ns, of the last motion
         self.period = 0         # ns, of its Rate
         self.due: int | None = None     # ns: when the next command is due; None without a Rate
         self.ticks = 0          # commands of the last motion
         self.distance = self.angle = 0.0    # m and rad, so far
-        self.before = 0.0, 0.0  # distance and angle at the begin of the last motion
+        self.before: tuple[float, float]    # distance and angle at the begin of the last motion
         self.longest = 0        # ns, longest delay of a command
 
     def add(self, message: Twist, moving: bool) -> int:

@@ -72,7 +72,6 @@ class CombinedOdometry:
         self.pending: Deque[tuple[int, Odom]] = deque()     # with arrival times (ns), until the gyro has caught up
         self.readings.waiting.clear()
         self.odom: Odom | None = None       # the last odometry that was used in a step
-        self.odom_yaw = 0.0         # rad, the filter's yaw after that step
         self.doubts.contradicted = None
         self.standstill.restart()
         self.placed: tuple[int, Pose, Array] | None = None      # arguments of set_pose(), until the first step after it
@@ -193,7 +192,7 @@ class CombinedOdometry:
         """Begin at the pose of the first Odom."""
         ekf = self.filter = copy(self.learned) or Filter(self.prior, odom.pose, self.limits.gyro_bias)
         ekf.place(odom.pose)
-        self.odom_yaw = odom.pose.yaw
+        self.odom_yaw = odom.pose.yaw       # rad, the filter's yaw after the last step
         if self.placed:
             self._place(ekf)
         self.odom, self._estimate = odom, None

@@ -72,8 +72,6 @@ class Filter:
             prior.slip_turning_spread ** 2, prior.slip_straight_spread ** 2, 0.0])
         # the errors that a bias would have caused if it had drifted by 1 rad/s^2 since the last rest
         self.drift = numpy.zeros(9)
-        self.carried = 0.0      # m: how far the robot may have been carried
-        self.doubt = [0.0, 0.0, 0.0]    # error of x, y (m) and yaw (rad) if the gyro was wrong
         self.rested = False     # whether the bias was learned at rest
         self.moving = 0.0       # s since the last rest
         self.walk = BIAS_WALK ** 2      # rad^2/s^3: variance of the bias per s of motion
@@ -106,7 +104,8 @@ class Filter:
         """Set the robot's Pose, with its covariance (3x3; m and rad). What is known of the sensors remains."""
         self.state[:3] = pose
         self.start, self.reach = pose, 0.0      # the last known pose, and the largest distance from it, m
-        self.carried, self.doubt = 0.0, [0.0, 0.0, 0.0]
+        self.carried = 0.0      # m: how far the robot may have been carried
+        self.doubt = [0.0, 0.0, 0.0]    # error of x, y (m) and yaw (rad) if the gyro was wrong
         self.P[:3] = self.P[:, :3] = 0.0
         values, vectors = numpy.linalg.eigh(covariance)
         self.P[:3, :3] = vectors * numpy.maximum(values, START_VARIANCE) @ vectors.T

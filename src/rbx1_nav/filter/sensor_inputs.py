@@ -151,7 +151,6 @@ class ImuInput:
         self.gyro = GyroInput(lambda text: log(f'{self.topic}: {text}'))
         self.frames: tuple[str, str] | None = None      # frames of the robot and of the IMU
         self.vertical: Vector | None = None             # vertical_axis() for these frames
-        self.deadline = 0.0                             # s of the monotonic clock
 
     @property
     def settled(self) -> bool:
@@ -162,7 +161,8 @@ class ImuInput:
         """Call accept(imu) with an Imu. base_frame: the robot's frame. Raises RejectedMessage, as accept() may."""
         frames = base_frame, message.header.frame_id.lstrip('/') or base_frame
         if frames != self.frames:
-            self.frames, self.vertical, self.deadline = frames, None, time.monotonic() + TRANSFORM_WARN_TIME
+            self.frames, self.vertical = frames, None
+            self.deadline = time.monotonic() + TRANSFORM_WARN_TIME      # s
         if self.vertical is None:
             self.vertical = self._find_vertical(*frames)
             if self.vertical is None:

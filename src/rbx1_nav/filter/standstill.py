@@ -52,7 +52,6 @@ class Standstill:
     def __init__(self, max_bias: float) -> None:
         """max_bias: rad/s, the largest bias of a gyro."""
         self.max_bias = max_bias
-        self.case: str | None = None        # STANDSTILL or CARRIED while the wheels are at rest
         self.density = 0.0          # rad^2/s, measured noise of the gyro
         self.samples = 0            # number of samples of this noise
         self.max_density = inf      # rad^2/s: the noise of a reading is limited to this value
@@ -61,11 +60,10 @@ class Standstill:
     def restart(self) -> None:
         """Wait for the next standstill."""
         self.pose: Pose | None = None       # the pose that does not change
-        self.since = 0              # ns, stamp of the first message with it
         self._clear()
 
     def _clear(self) -> None:
-        self.case = None
+        self.case: str | None = None        # STANDSTILL or CARRIED while the wheels are at rest
         self.part = Part()          # the current part
         self.complete: Part | None = None   # the previous part, used if the wheels are still at rest after it
         self.undecided = Part()     # parts with a steady rate that is not known to be the bias
@@ -76,7 +74,7 @@ class Standstill:
         last = self.pose
         if (last is None or abs(pose.x - last.x) > SAME or abs(pose.y - last.y) > SAME
                 or abs(wrap_angle(pose.yaw - last.yaw)) > SAME):
-            self.pose, self.since = pose, stamp
+            self.pose, self.since = pose, stamp     # since: of the first message with this pose
         return stamp - self.since >= REST
 
     def leave(self, ekf: Filter) -> Part:

@@ -15,6 +15,7 @@ from rbx1_nav.base.command_subscriber import VelocityCommands
 from rbx1_nav.base.description import Joint, Limits
 from rbx1_nav.base.running_bases import Refusals
 from rbx1_nav.base.units import SECOND
+from fake_topics import Topic, replace_topics
 
 
 class Time(Clock):
@@ -122,3 +123,18 @@ def test_a_goal_of_a_joint(monkeypatch):
     assert joint.goal == 1.5
     module._on_goal(Float64(inf), (joint, lock))
     assert joint.goal == 1.5 and world.lines == ['/arm/command: inf: expected a finite angle in rad; rejected']
+    replace_topics(monkeypatch)
+    assert [each.name for each in module.subscribe_joints([joint], lock, '/r/')] == ['/r/arm/command']
+
+
+def test_it_subscribes_once_and_its_clock_watches_the_senders(monkeypatch):
+    world, watched = World(monkeypatch), []
+    replace_topics(monkeypatch)
+    monkeypatch.setattr(Topic, 'unregister', lambda topic: watched.append(topic.name), raising=False)
+    world.clock.watch = world.clock.unwatch = watched.append
+    world.commands.close()
+    for _ in range(2):
+        world.commands.subscribe()
+    topic = world.commands.subscriber
+    world.commands.close()
+    assert watched == [topic, topic, '/r/cmd_vel']

@@ -122,7 +122,7 @@ def test_a_configuration_without_one_base_is_rejected(params):
 
 
 @pytest.mark.parametrize('joint, expected', [
-    ({'min_angle': 10, 'max_angle': -10}, 'below max_angle'), ({'max_speed': 0}, 'from 0.01'),
+    ({'min_angle': 10, 'max_angle': 10}, 'below max_angle'), ({'max_speed': 0}, 'from 0.01'),
     ({'min_angle': nan}, 'an angle from -36000 to 36000 in degrees'), (None, 'mapping')])
 def test_an_invalid_joint_is_rejected(joint, expected):
     params = load('turtlebot.yaml')
@@ -166,6 +166,7 @@ def test_keys_that_are_given_replace_the_defaults():
                       'wheel_radius': 0.05, 'left_wheel': 'a', 'right_wheel': 'b'},
                      {'min_angle': 10, 'max_angle': 20, 'max_speed': 5}, publish_tf=False)
     assert (robot.rate, robot.timeout, robot.wheel_radius) == (25, SECOND // 4, 0.05)
+    assert describe({'timeout': 0}).timeout == 0 and describe({'timeout': 0.01}).timeout == SECOND // 100
     assert (robot.limits.linear, robot.limits.angular) == (0.5, 2.0) and robot.publish_tf is False
     assert robot.wheel_joints == ('a', 'b')
     joint, = robot.joints

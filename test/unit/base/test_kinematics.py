@@ -23,12 +23,6 @@ def test_an_arc_in_two_parts_ends_where_the_whole_arc_ends(linear, angular, dura
     assert split == approx(whole, **CLOSE)
 
 
-@given(speeds, speeds, durations)
-def test_driving_backwards_returns_to_the_start(linear, angular, duration):
-    there = arc(ORIGIN, linear * duration, angular * duration)
-    assert arc(there, -linear * duration, -angular * duration) == approx(ORIGIN, **CLOSE)
-
-
 @given(st.floats(-10, 10), st.floats(0.01, 6))
 def test_an_arc_lies_on_its_circle(distance, angle):
     radius = distance / angle

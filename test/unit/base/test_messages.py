@@ -86,7 +86,8 @@ def test_the_yaw_of_a_robot_on_a_slope():
     for name in 'xyzw':
         setattr(rotation, name, scale * getattr(rotation, name))
     assert messages.yaw_of(rotation) == pytest.approx(yaw)
-    for wrong in messages.Quaternion(), messages.Quaternion(0.0, 0.0, 1e308, 1.0):     # of another length
+    # of another length
+    for wrong in messages.Quaternion(0, 0, 0.8, 0.5), messages.Quaternion(0, 0, 0.8, 0.7), messages.Quaternion(w=1e308):
         assert isnan(messages.yaw_of(wrong)) and messages.unit_quaternion(wrong) is None
     x, y, z, w = messages.unit_quaternion(rotation)
     assert x * x + y * y + z * z + w * w == pytest.approx(1)

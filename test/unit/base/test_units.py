@@ -30,8 +30,3 @@ def test_a_wrapped_angle_has_the_same_direction(angle):
                                          (-1.2345, '-1.234'), (2.0, '2.000')])
 def test_a_rounded_number_has_no_minus_before_a_zero(value, text):
     assert f'{rounded(value, 3):.3f}' == text
-
-
-@given(st.floats(-1e6, 1e6))
-def test_rounding_changes_nothing_else(value):
-    assert f'{rounded(value, 3):.3f}' in (f'{value:.3f}', (f'{value:.3f}').lstrip('-'))

@@ -3,6 +3,7 @@ import os
 import threading
 
 import pytest
+import rospy
 
 from rbx1_nav.driving import calibrating as question
 from rbx1_nav.node.config import ConfigError
@@ -33,3 +34,13 @@ def test_it_asks_until_the_answer_makes_sense(terminal, capsys):
     os.write(terminal, b'wrong\n\n  right \nmore\n')
     assert question.ask('What?', check) == 'right'
     assert capsys.readouterr().out == 'What? wrong: expected right\nWhat? : expected right\nWhat? '
+
+
+def test_without_an_answer_it_ends(terminal, capsys):
+    os.write(terminal, b'no line')
+    os.close(terminal)
+    assert question.ask('What?', check) is None and capsys.readouterr().out == 'What? \n'
+    question.end_requested.set()
+    with pytest.raises(rospy.ROSInterruptException):
+        question.ask('What?', check)
+    assert capsys.readouterr().out == 'What? \n'

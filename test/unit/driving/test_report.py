@@ -1,5 +1,6 @@
 """An error that rospy or this package detects is one line; a mistake in a script has Python's traceback."""
 import sys
+from types import SimpleNamespace
 
 import pytest
 import rospy
@@ -17,7 +18,7 @@ def report(monkeypatch, function):
     monkeypatch.setattr(script, 'end', lambda status: lines.append(f'status {status}'))
     try:
         function()
-    except Exception:
+    except BaseException:
         script._report(*sys.exc_info())
     return lines, traced
 
@@ -49,10 +50,18 @@ def test_an_error_of_this_package_is_one_line(monkeypatch):
 
 def test_a_mistake_in_the_script_has_a_traceback(monkeypatch):
     assert report(monkeypatch, lambda: float('a')) == (['status 1'], [ValueError])
-    assert report(monkeypatch, lambda: raise_(ConnectionRefusedError('a camera'))) == (
-        ['status 1'], [ConnectionRefusedError])
+    for error, status in (ConnectionRefusedError('a camera'), 1), (KeyboardInterrupt(), 130):
+        assert report(monkeypatch, lambda: raise_(error)) == ([f'status {status}'], [type(error)])
 
 
 def test_an_interrupt_is_quiet(monkeypatch):
     monkeypatch.setattr(stopping, 'is_shutdown', lambda: True)
+    monkeypatch.setattr(script, '_interrupted', [])
     assert report(monkeypatch, lambda: raise_(rospy.ROSInterruptException('shutdown requested'))) == ([], [])
+    assert len(script._interrupted) == 1        # for the exit status
+    reported = []
+    monkeypatch.setattr(script, '_thread_excepthook', reported.append)
+    errors = [SimpleNamespace(exc_type=kind) for kind in (rospy.ROSInterruptException, ValueError)]
+    for error in errors:
+        script._report_in_thread(error)
+    assert reported == errors[1:]

@@ -6,7 +6,7 @@ import pytest
 
 from rbx1_nav.base.kinematics import ORIGIN, Pose, arc
 from rbx1_nav.base.units import SECOND
-from rbx1_nav.filter.inputs import Imu
+from rbx1_nav.filter.inputs import Imu, Odom
 from sample_priors import IDEAL
 from sample_robot import STEP, Robot, exact
 
@@ -16,29 +16,47 @@ def test_the_estimate_follows_sensors_without_errors_exactly():
     robot.send(50)
     robot.send(100, 0.2, 0.5)
     robot.send(100, -0.1, -1.0)
-    assert exact(robot.combined.estimate, robot.pose)
+    assert exact(robot.combined.estimate, robot.pose) and robot.combined.pose == robot.combined.estimate.pose
+
+
+def test_the_variances_of_the_speeds_count_for_the_time_of_a_step():
+    robot = Robot(IDEAL, gyro_used=False)
+    robot.send(1, imu=False)
+    robot.now, robot.pose = robot.now + SECOND // 2, Pose(1.0, 0.0, 0.0)
+    robot.combined.add_odom(robot.now, Odom(robot.now, robot.pose, 0.004, 0.01))
+    # in half a second; and 0.02 of slip in straight motion, 0.02 rad/m of curvature
+    assert robot.combined.filter.P.diagonal()[[0, 2]].tolist() == pytest.approx([
+        0.004 / 4 + 0.02 ** 2, 0.01 / 4 + 0.02 ** 2], abs=3e-9)     # the first pose
+
+
+@pytest.mark.parametrize('ticks, rates, direction', [
+    (2, (0.0, 3.0), 0.03), (50, (3.0, 0.0), 0.06)])     # after a rest, the gyro may report the turn first
+def test_the_path_turns_as_the_gyro_measures_and_not_as_the_wheels(ticks, rates, direction):
+    robot = Robot(IDEAL)
+    robot.send(ticks)
+    for rate, pose in zip(rates, (ORIGIN, Pose(0.1 * cos(0.06), 0.1 * sin(0.06), 0.12))):
+        robot.now += STEP
+        robot.combined.add_imu(robot.now, Imu(robot.now, rate, 3e-6))
+        robot.combined.add_odom(robot.now, Odom(robot.now, pose))
+    assert exact(robot.combined.estimate, Pose(0.1 * cos(direction), 0.1 * sin(direction), 0.06))
 
 
 # the order of messages
 
 @pytest.mark.parametrize('rate', [20, 73, 100])
 def test_a_gyro_may_have_another_rate(rate):
-    robot = Robot(IDEAL)
+    robot, poses = Robot(IDEAL), {}
     next_reading = robot.now
     for _ in range(200):
         robot.now += STEP
-        robot.pose = arc(robot.pose, 0.004, 0.01)
+        robot.pose = poses[robot.now] = arc(robot.pose, 0.004, 0.01)
         robot.combined.add_odom(robot.now, robot.odom())
         while next_reading <= robot.now:
             robot.combined.add_imu(robot.now, Imu(next_reading, 0.5, 3e-6))
             next_reading += SECOND // rate
-    behind = (robot.now - robot.combined.estimate.stamp) / SECOND
-    assert 0 <= behind <= 1.1 / rate + 0.02
-    expected = arc(ORIGIN, 0.2 * (4 - 0.02 - behind), 0.5 * (4 - 0.02 - behind))
-    start = arc(ORIGIN, 0.004, 0.01)
-    c, s = cos(start.yaw), sin(start.yaw)
-    assert exact(robot.combined.estimate, Pose(start.x + c * expected.x - s * expected.y,
-                                               start.y + s * expected.x + c * expected.y, start.yaw + expected.yaw))
+    stamp = robot.combined.estimate.stamp
+    # at most one reading and one message late
+    assert 0 <= (robot.now - stamp) / SECOND <= 1.1 / rate + 0.02 and exact(robot.combined.estimate, poses[stamp])
 
 
 # set_pose

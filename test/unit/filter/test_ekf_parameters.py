@@ -67,7 +67,7 @@ def test_what_is_not_supported_is_logged(monkeypatch):
 
 @pytest.mark.parametrize('params, text', [
     (dict(odom_used=False), 'odom_used: False: expected true'), ({'output_frame': 'map', BASE: 'map'}, 'other than'),
-    (dict(tf_prefix=7), 'tf_prefix: 7: expected the name'),
+    (dict(tf_prefix=7), 'tf_prefix: 7: expected the name'), (dict(surface='sand'), 'sand.*; or auto, or unknown'),
     (dict(max_speed=0), 'max_speed: 0: expected a speed from 0.01 to 1000 in m/s'),
     (dict(gyro_bias='small'), "gyro_bias: 'small': expected a bias from 0.01 to 1000 in degrees/s")])
 def test_what_is_rejected(params, text):
@@ -77,7 +77,7 @@ def test_what_is_rejected(params, text):
 
 @pytest.mark.parametrize('name, params, floor', [
     ('low_ply_carpet', {}, 'low_ply_carpet'), ('auto', {'/base/surface': 'hard_floor'}, 'hard_floor'),
-    ('auto', {}, 'unknown')])
+    ('auto', {}, 'unknown'), ('auto', {'/base/surface': 'sand'}, 'unknown')])
 def test_the_assumed_floor_is_that_of_the_parameter_or_of_a_simulated_base(monkeypatch, name, params, floor):
     lines, server = [], MagicMock()
     server.return_value.__enter__.return_value.param = params.get
@@ -85,5 +85,14 @@ def test_the_assumed_floor_is_that_of_the_parameter_or_of_a_simulated_base(monke
     monkeypatch.setattr(module, 'private_namespace', lambda base, *_: base)
     monkeypatch.setattr(module.resources, 'surfaces', lambda: SURFACES)
     prior = module.find_prior(name, '/base', lambda _, text: lines.append(text))
-    assert lines == [f'Initially assumed floor: {floor}']
+    assert lines[-1] == f'Initially assumed floor: {floor}' and len(lines) == 1 + ('sand' in params.values())
     assert prior == (UNKNOWN_FLOOR if floor == 'unknown' else priors(load_surface(floor, SURFACES)))
+
+
+@pytest.mark.parametrize('wallclock, ahead', [(True, 0.5), (False, 60)])
+def test_the_filter_has_the_parameters_of_the_node(monkeypatch, wallclock, ahead):
+    monkeypatch.setattr(rospy.rostime, 'is_wallclock', lambda: wallclock)
+    parameters = read_parameters(dict(surface='unknown', sensor_timeout=0.25, imu_used=False, max_speed=2))
+    found = module.make_filter(parameters, '/base', lambda *_: None, None)
+    assert found.timeout == found.arrivals.timeout == 250000000 and not found.gyro_used
+    assert found.limits.max_speed == 2.0 and found.arrivals.max_lead == ahead * 10 ** 9 and found.arrivals.clock

@@ -55,20 +55,22 @@ def test_the_transform_is_to_the_robot_if_nobody_else_publishes_one(world):
     # later, another node does
     publisher.tree.frames['base'] = 'odom', '/base_node', (0.0, 0.0, 0.0, 1.0)
     assert update(publisher, 12.3)[:2] == ('combined', 'odom') and publisher.settled
-    assert world.log[1:] == ['Publishing the transform combined -> odom (/base_node already publishes odom -> base)']
+    assert world.log == ['Publishing the transform combined -> base (no other node publishes a transform to base)',
+                         'Publishing the transform combined -> odom (/base_node already publishes odom -> base)']
 
 
 def test_the_transform_to_the_odometry_frame_places_the_robot_at_the_estimate(world):
     publisher = world()
     publisher.tree.frames['base'] = 'odom', '/base_node', (0.0, 0.0, 0.0, 1.0)
-    update(publisher, 9.9)      # the frames are new: other nodes' transforms are read again
+    assert update(publisher, 9.9) is None       # the frames are new: other nodes' transforms are read again
     publisher.tree.frames['base'] = 'odom', '/base_node', (0.0, 0.0, 0.0, 1.0)
     # in its odometry frame, the robot is 3 m ahead, which is to the left in the output frame
     assert update(publisher, 10.0) == ('combined', 'odom', pytest.approx(1.0), pytest.approx(-1.0))
 
 
 def test_an_output_in_the_frame_of_the_odometry_is_to_the_robot_at_once(world):
-    assert update(world(output_frame='odom'), 10.0) == ('odom', 'base', 1.0, 2.0)
+    publisher = world(output_frame='odom')
+    assert update(publisher, 10.0) == ('odom', 'base', 1.0, 2.0) and publisher.settled
 
 
 def test_poses_have_their_rate_and_their_covariance(world):
@@ -76,7 +78,25 @@ def test_poses_have_their_rate_and_their_covariance(world):
     for tick in range(50):
         update(publisher, 10 + tick / 50)
     poses = publisher.pose_pub.sent
-    assert len(poses) == publisher.published == 10 and not publisher.tf_pub.sent
+    assert len(poses) == publisher.published == 10 and not publisher.tf_pub.sent and publisher.settled
+    assert poses[-1].header.stamp.to_sec() == 10.9
     assert poses[-1].header.frame_id == 'combined' and poses[-1].pose.covariance[::7][:2] == [0.01, 0.04]
     assert poses[-1].pose.pose.position.y == 2.0 and poses[-1].pose.covariance[35] == 0.09
     assert publisher.odometry_pub.sent[-1].child_frame_id == 'base'
+
+
+def test_a_velocity_is_the_change_since_the_last_estimate_without_a_jump_in_between(world, monkeypatch):
+    used = []
+    monkeypatch.setattr(module, 'estimate_twist', lambda _, before: used.append(before and before.stamp // SECOND))
+    publisher = world(publish_tf=False)
+    # the filter is another one after a restart; set_pose may move the estimate after it
+    for second, ekf, placed in (1, 'one', None), (2, 'one', None), (3, 'one', 'there'), (4, 'one', None), (
+            5, 'one', None), (6, 'other', None), (7, 'other', None):
+        combined = SimpleNamespace(estimate=Estimate(second * SECOND, Pose(1.0, 2.0, 0.3), COVARIANCE, None),
+                                   filter=ekf, placed=placed)
+        for _ in range(2):      # the second time, there is no new estimate
+            publisher.update(combined, 'odom', 'base')
+    assert used == [None, 1, 2, None, 4, None, 6]
+    publisher.odometry_pub.connections = 0
+    update(publisher, 9.0)
+    assert len(publisher.odometry_pub.sent) == 7 and publisher.published == 8

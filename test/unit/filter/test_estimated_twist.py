@@ -1,95 +1,67 @@
 """The velocity that is published with the estimate comes from odometry and gyro, with a matching uncertainty."""
-from collections import namedtuple
-from math import pi
+from math import cos, pi, sin
+from types import SimpleNamespace
 
+from geometry_msgs.msg import TwistWithCovariance
 import pytest
 
-from rbx1_nav.base.kinematics import ORIGIN, arc
+from rbx1_nav.base.kinematics import ORIGIN, Pose
+from rbx1_nav.base.messages import diagonal
 from rbx1_nav.base.units import SECOND
-from rbx1_nav.filter.combined_odometry import CombinedOdometry
+from rbx1_nav.filter.combined_odometry import Estimate
 from rbx1_nav.filter.estimate_publisher import estimate_twist
+from rbx1_nav.filter.filter import BIAS, SCALE, SLIP_STRAIGHT, SLIP_TURNING, Filter
 from rbx1_nav.filter.inputs import Imu, Odom
-from rbx1_nav.filter.priors import UNKNOWN_FLOOR, priors
+from rbx1_nav.filter.priors import UNKNOWN_FLOOR
 
-STEP = SECOND // 50
-# m/s, m/s, rad/s, and the variances of these
-Twist = namedtuple('Twist', 'forward left turn forward_variance left_variance turn_variance')
-IDEAL = priors(None)
-
-
-class Robot:
-    """Sends the messages of both sensors every 0.02 s, and keeps the last two estimates."""
-
-    def __init__(self, prior, **options):
-        self.combined = CombinedOdometry(prior, SECOND, **options)
-        self.now = 1000 * SECOND
-        self.pose = ORIGIN
-        self.before = None
-
-    def drive(self, ticks, linear, wheels, gyro, odom=True, imu=True):
-        """Move the odometry at linear (m/s) and wheels (rad/s), and the gyro at `gyro` (rad/s); return the Twist."""
-        for _ in range(ticks):
-            last = self.combined.estimate
-            self.now += STEP
-            self.pose = arc(self.pose, linear * 0.02, wheels * 0.02)
-            if imu:
-                self.combined.add_imu(self.now, Imu(self.now, gyro, 3e-6))
-            if odom:
-                self.combined.add_odom(self.now, Odom(self.now, self.pose))
-            if self.combined.estimate is not last:
-                self.before = last
-        message = estimate_twist(self.combined, self.before)
-        twist, variances = message.twist, message.covariance[::7]
-        return Twist(twist.linear.x, twist.linear.y, twist.angular.z, variances[0], variances[1], variances[5])
+FLOOR = UNKNOWN_FLOOR._replace(slip_straight=0.1, slip_turning=0.2, distance_noise=0.3, heading_noise_turning=0.4,
+                               heading_noise_straight=0.5)
+GOOD = 1e-6     # (m/s)^2 or (rad/s)^2: what a good sensor measures
+# variances of the slip forward, of the bias and scale error of the gyro, and of the slip of the wheels in a turn
+SLIP, GYRO, WHEELS = (0.07 * 0.225) ** 2, 0.02 ** 2 + (0.03 * 0.5) ** 2, (0.6 * 0.5) ** 2
 
 
-def test_sensors_without_errors():
-    robot = Robot(IDEAL)
-    robot.drive(150, 0.0, 0.0, 0.0)
-    twist = robot.drive(150, 0.3, 0.5, 0.5)
-    # the chord of an arc of 0.01 rad is shorter than the arc by a factor of 4e-6
-    assert twist[:3] == pytest.approx((0.3, 0.0, 0.5), abs=1e-4)
-    # backward, and through the angle of pi
-    for _ in range(10):
-        twist = robot.drive(50, -0.1, 1.0, 1.0)
-        assert twist[:3] == pytest.approx((-0.1, 0.0, 1.0), abs=1e-4)
-    assert robot.combined.estimate.pose.yaw > 2 * pi
+def measure(time=2.0, case='agreement', reported=(0.0, 0.0), period=0.1, **options):
+    """Return the message for a robot whose odometry moves at 0.25 m/s forward, -0.1 m/s to the left (halfway through
+    its turn) and 0.4 rad/s for a time (s), while the filter turns at 0.5 rad/s, both through pi."""
+    ekf = Filter(FLOOR, ORIGIN)
+    for index, sigma in (SLIP_STRAIGHT, 0.07), (BIAS, 0.02), (SCALE, 0.03), (SLIP_TURNING, 0.6):
+        ekf.P[index, index] = sigma ** 2
+    c, s = cos(3.1 + 0.2 * time), sin(3.1 + 0.2 * time)
+    end = Pose(1.0 + time * (0.25 * c + 0.1 * s), 2.0 + time * (0.25 * s - 0.1 * c), 3.1 + 0.4 * time - 2 * pi)
+    before, last = (Estimate(stamp, Pose(0.0, 0.0, yaw), None, Odom(stamp, odom, *reported)) for stamp, yaw, odom in (
+        (7 * SECOND, 3.0, Pose(1.0, 2.0, 3.1)), (round((7 + time) * SECOND), 3.0 + 0.5 * time - 2 * pi, end)))
+    combined = SimpleNamespace(**{**dict(
+        filter=ekf, estimate=last, case=case, gyro_used=True, timed_out={'odom': False, 'imu_data': False},
+        readings=SimpleNamespace(last=Imu(last.stamp, 9.0, 0.01), period=round(period * SECOND))), **options})
+    return estimate_twist(combined, before)
 
 
-def test_the_displacement_is_reduced_by_the_slip_and_the_turn_is_the_gyros():
-    robot = Robot(UNKNOWN_FLOOR._replace(slip_straight=0.1, slip_turning=0.2))
-    robot.drive(150, 0.0, 0.0, 0.0)
-    twist = robot.drive(150, 0.3, 0.5, 0.4)
-    assert twist.forward == pytest.approx(0.27, abs=0.001)
-    assert twist.turn == pytest.approx(0.4, abs=0.01)
+# the noise of the gyro averages out over its readings, unless the step has only one, or their period is not known
+@pytest.mark.parametrize('options, forward, turn', [
+    (dict(time=2.0), 0.3 ** 2 * 0.225 / 2 + SLIP, 0.01 * 0.1 / 2 + GYRO),
+    # within a cell of 0.1 m, the noise of the floor is constant
+    (dict(time=0.1, period=0.5), 0.3 ** 2 * 0.225 ** 2 / 0.1 + SLIP, 0.01 + GYRO),
+    (dict(period=0.0, reported=(0.6, 9.0)), 0.6 + SLIP, 0.01 + GYRO),
+    (dict(case='carried'), 0.25 - GOOD, 0.01 * 0.1 / 2 + GYRO),
+    # the wheels turn at 0.4 rad/s less 20 % of slip
+    (dict(case='contradiction', period=2.0), 0.3 ** 2 * 0.225 / 2 + SLIP, 0.01 + GYRO + (0.32 - 0.5) ** 2),
+    # without the gyro: noise of the floor and slip, and within cells of 0.25 rad and 0.1 m
+    (dict(timed_out={'odom': False, 'imu_data': True}), 0.3 ** 2 * 0.225 / 2 + SLIP,
+     0.4 ** 2 * 0.4 / 2 + 0.5 ** 2 * 0.225 / 2 + WHEELS),
+    (dict(time=0.1, gyro_used=False), 0.3 ** 2 * 0.225 ** 2 / 0.1 + SLIP,
+     0.4 ** 2 * 0.4 ** 2 / 0.25 + 0.5 ** 2 * 0.225 ** 2 / 0.1 + WHEELS),
+    (dict(gyro_used=False, reported=(0.6, 0.7)), 0.6 + SLIP, 0.7 + WHEELS)])
+def test_the_displacement_is_reduced_by_the_slip_and_the_variances_cover_all_errors(options, forward, turn):
+    message = measure(**options)
+    twist, covariance = message.twist, list(message.covariance)
+    assert (twist.linear.x, twist.linear.y, twist.angular.z) == pytest.approx((0.9 * 0.25, -0.9 * 0.1, 0.5))
+    left = forward if options.get('case') == 'carried' else (0.07 * 0.09) ** 2
+    assert covariance[::7] == pytest.approx([GOOD + forward, GOOD + left, 1e6, 1e6, 1e6, GOOD + turn])
+    assert covariance == diagonal(*covariance[::7])
 
 
-def test_the_variances_cover_noise_slip_bias_and_scale():
-    robot = Robot(UNKNOWN_FLOOR)
-    twist = robot.drive(150, 0.5, 0.0, 0.0)
-    # on an unknown floor 5 % of slip, and the noise of a cell of 0.1 m: 0.044 ** 2 / 0.1
-    assert twist.forward_variance == pytest.approx(0.25 * (0.05 ** 2 + 0.0194), rel=0.05)
-    assert twist.left_variance < 1e-5
-    # the gyro bias is unknown before the first standstill
-    assert twist.turn_variance > 0.01 ** 2
-    robot = Robot(UNKNOWN_FLOOR)
-    robot.drive(500, 0.0, 0.0, 0.0)
-    assert robot.drive(10, 0.5, 0.0, 0.0).turn_variance < 0.003 ** 2
-    # a scale error of 0.7 %
-    assert robot.drive(10, 0.0, 2.0, 2.0).turn_variance == pytest.approx(0.014 ** 2, rel=0.1)
-
-
-def test_without_a_gyro_the_turn_is_as_uncertain_as_the_slip():
-    robot = Robot(UNKNOWN_FLOOR, gyro_used=False)
-    twist = robot.drive(50, 0.0, 1.0, None, imu=False)
-    assert twist.turn == pytest.approx(1.0)
-    # 30 % of slip, and the noise of a cell of 0.25 rad: 0.084 ** 2 / 0.25
-    assert twist.turn_variance == pytest.approx(0.3 ** 2 + 0.0282, rel=0.05)
-
-
-def test_after_a_dropout_of_the_odometry_the_velocity_is_the_mean_since_the_last_one():
-    robot = Robot(UNKNOWN_FLOOR)
-    robot.drive(200, 0.3, 0.0, 0.0)
-    robot.drive(100, 0.3, 0.5, 0.5, odom=False)
-    twist = robot.drive(1, 0.3, 0.5, 0.5)
-    assert (twist.forward, twist.turn) == pytest.approx((0.3, 0.5), abs=0.02)
+def test_without_an_estimate_before_the_velocity_is_unknown():
+    message = measure(time=0.0)
+    assert (message.twist, list(message.covariance)) == (TwistWithCovariance().twist, diagonal(*[1e6] * 6))
+    assert estimate_twist(SimpleNamespace(estimate=None, filter=None), None) == message

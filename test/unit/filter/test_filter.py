@@ -1,5 +1,5 @@
-"""The filter calculates derivatives, covariances and corrections correctly, and doubts the right sensor."""
-from math import degrees, pi, radians, sqrt
+"""The filter calculates derivatives, covariances and corrections correctly."""
+from math import cos, exp, pi, sin, sqrt
 
 import numpy
 import pytest
@@ -7,11 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rbx1_nav.base.kinematics import ORIGIN, Pose
-from rbx1_nav.base.units import SECOND
-from rbx1_nav.filter.filter import BIAS, CURVATURE, FIRST_BIAS, SCALE, SLIP_TURNING, WINDOW, X, Y, YAW, Filter
+from rbx1_nav.filter.filter import BIAS, BIAS_WALK, SCALE, WINDOW, X, Y, YAW, Filter
 from rbx1_nav.filter.gyro_readings import Sums
-from rbx1_nav.filter.priors import UNKNOWN_FLOOR, Bounds
-from rbx1_nav.filter.sensors import CONTRADICTION, Doubts
+from rbx1_nav.filter.priors import UNKNOWN_FLOOR
 from sample_priors import IDEAL
 
 angles = st.floats(-3, 3)
@@ -41,6 +39,7 @@ def test_the_covariance_follows_from_the_derivatives_of_a_step(pose, bias, turne
     errors = numpy.array([bias, 0.2, 0.0, 0.1, -0.05])
     reached = true_step(pose, errors, by_gyro, turned, forward, left, direction)
     assert ekf.state == pytest.approx([*reached[:3], bias, 0.2], abs=1e-12)
+    assert ekf.reach == pytest.approx(numpy.hypot(*reached[:2] - pose[:2]))
     h, columns = 1e-6, []
     for index in range(8):
         change = h * numpy.eye(8)[index]
@@ -60,6 +59,7 @@ def test_the_covariance_follows_from_the_derivatives_of_a_step(pose, bias, turne
     indices = [X, Y, YAW, WINDOW][:count]
     numpy.testing.assert_allclose(      # central differences: 1e-10
         ekf.P[numpy.ix_(indices, indices)], expected[:count, :count], atol=1e-12, rtol=1e-4)
+    numpy.testing.assert_allclose(ekf.P[BIAS:WINDOW, BIAS:WINDOW], 1e-6 * numpy.eye(5), atol=1e-9)  # the bias walks
 
 
 @given(st.lists(st.tuples(angles, st.floats(-1e6, 1e6), st.floats(-3, 7), st.floats(-12, 12), st.integers(0, 3)),
@@ -78,45 +78,89 @@ def test_the_covariance_stays_symmetric_and_positive(steps):
         assert values[0] >= -1e-9 * values[-1] and numpy.isfinite(ekf.state).all()
 
 
-@given(st.floats(0.01, 3), st.floats(0.01, 3), st.integers(1, 50))
-def test_the_noise_of_a_floor_does_not_depend_on_the_step(turned, travelled, count):
+@pytest.mark.parametrize('reported, turn, path', [
+    (0.0, 0.01 + 0.002, 0.01), (0.02, 0.02, 0.02), (1e3, 0.084 ** 2 * 4 + 0.066 ** 2 * 2, 0.044 ** 2 * 16)])
+def test_a_reported_variance_counts_between_the_noise_of_the_assumed_floor_and_of_any_floor(reported, turn, path):
+    ekf = Filter(UNKNOWN_FLOOR._replace(heading_noise_turning=0.05, heading_noise_straight=sqrt(0.001),
+                                        distance_noise=0.05 / 2, slip_straight=0.1), ORIGIN)
+    assert ekf.turn(1.0, (-4.0, reported), None, -2.0).variance == pytest.approx(turn)
+    ekf.P[:] = 0.0
+    ekf.step(1.0, ekf.turn(1.0, None, None), 0.6, -10.0, 6.0, reported)
+    # along the heading, and reduced by the slip like the path
+    c, s = cos(0.6), sin(0.6)
+    assert ekf.P[:2, :2] == pytest.approx(0.9 ** 2 * path * numpy.array([[c * c, c * s], [c * s, s * s]]))
+
+
+def test_a_turn_is_measured_by_the_wheels_if_they_are_more_certain():
+    ekf = Filter(FLAT, ORIGIN)
+    ekf.state[BIAS] = 0.01
+    for wheels, limit in (0.0, 0.005 ** 2), (-2.0, (0.05 * 2) ** 2):    # rounding of odometry, 5 % of slip
+        by_wheels = ekf.turn(2.0, (wheels, 0.0), None, 0.5)
+        assert by_wheels.angle == pytest.approx(0.9 * wheels + 0.2 * 0.5)   # slip and curvature
+        assert ekf.turn(2.0, (wheels, 0.0), (0.3, 1.01 * limit), 0.5) == by_wheels
+        turn = ekf.turn(2.0, (wheels, 0.0), (0.3, 0.99 * limit), 0.5)
+        assert turn[:3] == (pytest.approx(0.28), 0.99 * limit, (-2.0, 0.0, pytest.approx(-0.28), 0.0))
+        assert turn.compared == Sums(2.0, wheels, by_wheels.angle, turn.angle, 0.5, 0.0)
+    # a step of more than 10 s is not compared; without sensors, there is no turn
+    assert ekf.turn(11.0, (0.0, 0.0), (0.3, 1e-9)).compared is None
+    assert ekf.turn(2.0, None, None)[:3] == (0.0, 0.0, (0.0, 0.0, 0.0, 0.0))
+
+
+def arbitrary():
+    """Return a Filter with an arbitrary state, and its covariance before."""
     ekf = Filter(UNKNOWN_FLOOR, ORIGIN)
-    ekf.P[3:, 3:] = 0.0
-    for _ in range(count):
-        ekf.step(0.0, ekf.turn(0.0, (turned / count, 0.0), None, travelled / count))
-    assert ekf.covariance[YAW, YAW] == pytest.approx(0.084 ** 2 * turned + 0.066 ** 2 * travelled, abs=1e-8)
+    ekf.state = [0.1, 0.2, 0.3, 0.4, 0.5]
+    root = numpy.random.RandomState(1).rand(9, 9)
+    ekf.P = root @ root.T
+    return ekf, ekf.P.copy()
+
+
+def test_a_known_pose_has_its_covariance_and_what_is_known_of_the_sensors_remains():
+    ekf, before = arbitrary()
+    ekf.drift, ekf.doubt, ekf.reach = numpy.ones(9), [1.0, 2.0, 3.0], 4.0
+    covariance = numpy.array([[0.04, 0.01, 0.02], [0.01, 0.09, 0.0], [0.02, 0.0, 0.16]])
+    ekf.place(Pose(1.0, 2.0, 3.0), covariance)
+    assert ekf.state == [1.0, 2.0, 3.0, 0.4, 0.5] and ekf.drift.tolist() == [0.0] * 3 + [1.0] * 6
+    numpy.testing.assert_allclose(ekf.covariance, covariance, atol=1e-12)       # rounding
+    assert not ekf.P[:3, 3:].any() and not ekf.P[3:, :3].any() and (ekf.P[3:, 3:] == before[3:, 3:]).all()
+    # a doubt of 0.1 m, 0.2 m and 0.3 rad; and the path of 2 m may have turned about its start
+    ekf.doubt, ekf.reach = [0.1, 0.2, 0.3], 2.0
+    turned = ((1 - exp(-0.25)) * 2) ** 2
+    expected = [[0.05 + turned, 0.03, 0.05], [0.03, 0.13 + turned, 0.06], [0.05, 0.06, 0.25]]
+    numpy.testing.assert_allclose(ekf.covariance, expected, rtol=1e-9)          # rounding
+    ekf.doubt[YAW] = 10.0       # the heading is unknown: the same correlation, but half a turn
+    factor = pi / sqrt(100.16)
+    assert ekf.covariance[YAW].tolist() == pytest.approx([factor * (0.02 + 1.0), factor * 2.0, pi ** 2])
+    # no variance is less than that of the first pose
+    ekf.place(ORIGIN, numpy.full((3, 3), 0.01))
+    assert numpy.linalg.eigvalsh(ekf.covariance) == pytest.approx([1e-9, 1e-9, 0.03], rel=1e-6)   # eigh: 1e-16
+
+
+def test_a_carried_robot_may_have_moved_at_half_a_metre_per_second():
     ekf = Filter(UNKNOWN_FLOOR, ORIGIN)
-    ekf.P[3:, 3:] = 0.0
-    for _ in range(count):
-        ekf.step(0.0, ekf.turn(0.0, None, None), 0.0, travelled / count)
-    assert ekf.P[X, X] == pytest.approx(0.044 ** 2 * travelled, abs=1e-8)
+    ekf.carry(0.3, 3.0)
+    ekf.carry(-0.1, 1.0)
+    assert ekf.state[:3] == pytest.approx([0.0, 0.0, 0.2])
+    # in one go: 2 m; the pose was known to 1e-9
+    assert ekf.P.diagonal()[:3].tolist() == pytest.approx([4.0, 4.0, 0.0], abs=2e-9)
 
 
-@pytest.mark.parametrize('reported, used', [(0.0, 0.01), (0.02, 0.02), (1e3, 0.084 ** 2 * 4)])
-def test_a_reported_variance_counts_between_the_noise_of_the_assumed_floor_and_of_any_floor(reported, used):
-    ekf = Filter(UNKNOWN_FLOOR._replace(heading_noise_turning=0.05, distance_noise=0.05 / 2), ORIGIN)
-    assert ekf.turn(1.0, (4.0, reported), None).variance == pytest.approx(used)
-    ekf.P[3:, 3:] = 0.0
-    ekf.step(1.0, ekf.turn(1.0, None, None), 0.0, 16.0, 0.0, reported)
-    assert ekf.P[X, X] == pytest.approx(max(0.01, min(reported, 0.044 ** 2 * 16)), abs=1e-8)
-
-
-def turn_by_gyro(ekf, rate, time, step=0.1):
-    """Turn for a time (s) at the rate that the gyro measures."""
-    for _ in range(round(time / step)):
-        ekf.step(step, ekf.turn(step, None, (rate * step, 1e-10)))
-
-
-def test_a_rest_also_corrects_the_heading_since_the_start():
-    ekf = Filter(UNKNOWN_FLOOR, ORIGIN)
-    turn_by_gyro(ekf, 0.02, 30)
-    assert ekf.state[YAW] == pytest.approx(0.6)
-    first = FIRST_BIAS * Bounds().gyro_bias
-    # the bias for 30 s, and the scale error in a turn of 0.6 rad
-    assert ekf.covariance[YAW, YAW] == pytest.approx((first * 30) ** 2 + (0.007 * 0.6 / 2) ** 2, rel=0.05)
-    ekf.learn_bias(0.02, 1e-9)
-    assert ekf.state[YAW] == pytest.approx(0.0, abs=0.01) and ekf.bias == pytest.approx(0.02, abs=1e-4)
-    assert sqrt(ekf.covariance[YAW, YAW]) < 0.02
+def test_a_rest_updates_what_is_estimated_and_not_what_is_considered():
+    ekf, before = arbitrary()
+    ekf.rested, ekf.drift = True, numpy.ones(9)
+    ekf.learn_bias(0.7, 0.6)
+    # the gain of a Kalman filter
+    gain = before[BIAS] / (before[BIAS, BIAS] + 0.6)
+    assert ekf.state == pytest.approx([old + each * 0.3 for old, each in zip((0.1, 0.2, 0.3, 0.4, 0.5), gain)])
+    expected = before - numpy.outer(gain, before[BIAS])
+    expected[SCALE:, SCALE:] = before[SCALE:, SCALE:]
+    numpy.testing.assert_allclose(ekf.P, expected, rtol=1e-9)       # rounding
+    assert not ekf.drift.any()
+    ekf.doubt_bias(ekf.bias - 0.5)
+    assert ekf.P[BIAS, BIAS] == pytest.approx(expected[BIAS, BIAS] + 0.25)
+    ekf.rested = False      # the first rest: the window began with another bias
+    ekf.learn_bias(0.7, 0.6)
+    assert ekf.rested and not ekf.P[WINDOW].any() and not ekf.P[:, WINDOW].any()
 
 
 @pytest.mark.parametrize('final', [0.01, -0.01])     # rad/s, after 10 s
@@ -128,132 +172,10 @@ def test_a_bias_that_has_drifted_has_turned_the_heading_by_half_of_its_change(fi
     assert ekf.state[YAW] == pytest.approx(5 * final, rel=0.05)
     ekf.learn_bias(final, 1e-9)
     assert ekf.bias == pytest.approx(final, abs=1e-4) and ekf.state[YAW] == pytest.approx(0.0, abs=0.002)
-
-
-def test_wheels_and_gyro_do_not_change_the_errors_that_are_considered():
-    ekf = Filter(UNKNOWN_FLOOR, ORIGIN)
-    turn_by_gyro(ekf, 1.0, 10)
-    before = ekf.P[SCALE:, SCALE:].copy()
-    ekf.learn_bias(0.01, 1e-9)
-    numpy.testing.assert_allclose(ekf.P[SCALE:, SCALE:], before, rtol=1e-12)
-
-
-def test_an_unknown_heading_is_half_a_turn_and_the_position_anywhere_around_the_start():
-    ekf = Filter(UNKNOWN_FLOOR, ORIGIN)
-    for _ in range(600):
-        ekf.step(1.0, ekf.turn(1.0, None, (0.0, 1e-6)), 0.0, 0.01)
-    assert sqrt(ekf.covariance[YAW, YAW]) == pytest.approx(pi)
-    assert min(numpy.linalg.eigvalsh(ekf.covariance[:2, :2])) > 5.9 ** 2     # 6 m from the start
-
-
-def drive(ekf, turned, slip=0.0, factor=1.0):
-    """Turn with slipping wheels, and a gyro that measures a multiple of the turn; return the doubts."""
-    return move(ekf, [((0.02 / (1 - slip), 0.0), (0.02 * factor, 1e-9))] * round(turned / 0.02))
-
-
-def move(ekf, turns, forward=0.0):
-    """Make steps of 0.02 s with the turns of wheels and gyro; return the doubts."""
-    doubts = []
-    for wheels, gyro in turns:
-        ekf.step(0.02, ekf.turn(0.02, wheels, gyro, forward), 0.0, forward)
-        verdict = ekf.close_window()
-        doubts += [verdict[1]] if verdict else []
-    return doubts
-
-
-@given(st.floats(-0.25, 0.6), st.floats(1.5, 60))
-def test_a_slip_that_is_possible_changes_nothing_but_its_own_spread(slip, turned):
-    ekf = Filter(UNKNOWN_FLOOR, ORIGIN)
-    ekf.learn_bias(0.0, 1e-10)
-    drive(ekf, turned, slip)
-    assert ekf.state[YAW] == pytest.approx(round(turned / 0.02) * 0.02) and abs(ekf.bias) < 1e-9
-    # what is left is the scale error of the gyro
-    assert degrees(sqrt(ekf.covariance[YAW, YAW])) < degrees(0.007 * turned) + 3
-
-
-def test_a_larger_slip_than_that_of_the_floor_is_reported_once_and_widens_the_position():
-    floor = UNKNOWN_FLOOR._replace(slip_turning_spread=0.05)
-    ekf = Filter(floor, ORIGIN)
-    ekf.learn_bias(0.0, 1e-10)
-    doubts = drive(ekf, 20.0, 0.5)
-    assert doubts[0] == 'wheels' and not any(doubts[1:])
-    assert 0.4 < ekf.sigma(SLIP_TURNING) < 0.6 and ekf.covariance[X, X] > 0.1 ** 2
-    drive(ekf, 40.0)
-    assert ekf.sigma(SLIP_TURNING) == pytest.approx(0.05)        # and shrinks again
-
-
-@pytest.mark.parametrize('factor', [-1.0, 0.0, 3.0])
-def test_a_difference_that_is_no_slip_is_a_doubt_of_the_heading_until_both_agree(factor):
-    ekf = Filter(UNKNOWN_FLOOR, ORIGIN)
-    ekf.learn_bias(0.0, 1e-10)
-    doubts = drive(ekf, 6.0, factor=factor)
-    assert set(doubts) == {'both'}
-    differ = abs(1 - factor) * 6.0      # rad; the last 2 rad are not yet compared
-    assert 0.6 * min(differ, pi) < sqrt(ekf.covariance[YAW, YAW]) < differ + 0.1
-    assert not any(drive(ekf, 60.0)[1:])    # the first window may have begun before
-    assert sqrt(ekf.covariance[YAW, YAW]) < 0.007 * (6.0 * abs(factor) + 60.0) + 0.05    # the scale error of the gyro
-
-
-def straight_on(rates, noise=0.0):
-    """Return a Filter that knows the bias, after straight motion at 0.2 m/s, and its doubts.
-
-    rates: of the gyro, rad/s; noise: rad, of the wheels, a turn that changes its direction every second.
-    """
-    ekf = Filter(UNKNOWN_FLOOR, ORIGIN)
-    ekf.learn_bias(0.0, 1e-10)
-    return ekf, move(ekf, [((noise * (-1) ** (number // 50) / 50, 0.0), (rate * 0.02, 1e-10))
-                           for number, rate in enumerate(rates)], 0.004)
-
-
-def test_a_drift_while_the_robot_drives_straight_is_found_and_corrected():
-    ekf, doubts = straight_on([1e-4 * number * 0.02 for number in range(3000)])     # 0.34 degrees/s in a minute
-    assert 'imu_data' in doubts and doubts[-1] == ''
-    assert ekf.bias == pytest.approx(0.006, abs=0.001) and abs(ekf.state[YAW]) < 0.01   # uncorrected: 0.18
-    assert abs(ekf.state[Y]) < 0.05
-
-
-def test_a_constant_curve_is_no_drift():
-    ekf, doubts = straight_on([0.002] * 3000)
-    assert not any(doubts) and ekf.state[CURVATURE] == pytest.approx(0.01, rel=0.02)
-    assert abs(ekf.bias) < 1e-5 and ekf.state[YAW] == pytest.approx(0.12, rel=0.01)
-
-
-def test_straight_motion_does_not_correct_what_the_wheels_have_turned():
-    """The wheels measured 60 rad, which any slip makes uncertain; then the gyro misses a part of a slow turn."""
-    ekf, _ = straight_on([0.0] * 1000)
-    for _ in range(600):
-        ekf.step(0.02, ekf.turn(0.02, (0.1, 0.0), None))
-    before = ekf.state[YAW]
-    assert before == pytest.approx(60.0) and ekf.sigma(YAW) > 10.0
-    move(ekf, [((0.2 / 500, 0.0), (0.1 / 500, 1e-10))] * 500, 0.006)
-    assert ekf.state[YAW] == pytest.approx(before + 0.1, abs=0.01)
-
-
-def test_with_noisy_wheels_no_drift_can_be_found():
-    _, doubts = straight_on([1e-4 * number * 0.02 for number in range(3000)], 0.03)
-    assert not any(doubts)
-
-
-def report(verdicts, rested=True):
-    """Return the warnings for doubts, one per second."""
-    warnings, doubts, ekf = [], Doubts(warn=lambda text: warnings.append(text)), Filter(UNKNOWN_FLOOR, ORIGIN)
-    ekf.rested = rested
-    for second, doubted in enumerate(verdicts):
-        doubts.report((Sums(time=20.0, wheels=2.0, gyro=1.0), doubted), ekf, second * SECOND)
-    return warnings, doubts
-
-
-def test_a_doubt_and_its_end_are_reported_once():
-    warnings, doubts = report(['', 'wheels', 'wheels', '', '', '', '', '', ''])
-    assert warnings == ['odom turned by 2.00 rad, imu_data by 1.00 rad in 20.0 s: the wheels slip; the heading follows '
-                        'the gyro', 'odom and imu_data agree again']
-    assert doubts.doubted == 'nothing' and not doubts.contradicts(8 * SECOND)
-    warnings, doubts = report(['', 'both'])
-    assert warnings[0].endswith(': one of them is wrong; the heading is uncertain')
-    assert doubts.doubted == 'both since 1.0 s' and doubts.contradicts(SECOND + CONTRADICTION - 1)
-
-
-def test_a_robot_that_was_never_at_rest_is_reported_once():
-    warnings, _ = report(['', '', ''], rested=False)
-    assert warnings == ['the robot has not been at rest yet, so the bias of the gyro is unknown: the heading may drift '
-                        f'by {degrees(FIRST_BIAS * radians(10)):.1f} degrees/s or more']
+    # it may drift on, by 0.01 rad/s in 10 s at first, and as always in the end
+    for walk in (0.01 ** 2 / 10, 0.01 ** 2 / 20, *[None] * 20, BIAS_WALK ** 2):
+        assert walk is None or ekf.walk == pytest.approx(walk)
+        before = ekf.P[BIAS, BIAS]
+        ekf.step(2.0, ekf.turn(2.0, None, None))
+        assert ekf.P[BIAS, BIAS] == pytest.approx(before + ekf.walk * 2.0)
+        ekf.learn_bias(ekf.bias + 0.01, 1e-4)       # 1 sigma is no drift

@@ -4,7 +4,7 @@ from math import inf
 import pytest
 
 from rbx1_nav.base.units import SECOND
-from rbx1_nav.filter.gyro_readings import Readings
+from rbx1_nav.filter.gyro_readings import Readings, Sums, Window
 from rbx1_nav.filter.inputs import Imu
 from rbx1_nav.filter.priors import Bounds
 
@@ -142,14 +142,40 @@ def test_readings_that_are_equal_while_the_robot_moves_are_not_measured(equal, m
     assert gyro.turn(start + 0.02 * equal, start + 0.02 * (equal + 1)) == pytest.approx((0.038, NOISE * 0.02 ** 2))
 
 
-@pytest.mark.parametrize('at_rest', [[0.0] * 50, NOISY[:19], []])
+PAIRS = [rate for rate in NOISY for _ in range(2)]      # of a gyro with coarse steps
+
+
+@pytest.mark.parametrize('at_rest', [[0.0] * 50, NOISY[:19], PAIRS[:36], []])
 def test_readings_of_a_gyro_without_visible_noise_may_be_equal(at_rest):
     gyro, start = moving([2.0] * 30, at_rest)
     assert gyro.turn(start, start + 0.6) is not None
 
 
-def test_readings_may_be_equal_as_often_as_at_rest():
-    """A gyro with coarse steps: pairs of equal readings at rest, and twice as many, plus two, in motion."""
-    at_rest = [rate for rate in NOISY for _ in range(2)]
+@pytest.mark.parametrize('at_rest', [PAIRS[:44], PAIRS])
+def test_readings_may_be_equal_as_often_as_at_rest(at_rest):
+    """Pairs of equal readings at rest, and twice as many, plus two, in motion."""
     gyro, start = moving([2.0] * 6, at_rest)
     assert gyro.turn(start, start + 0.1) is not None and gyro.turn(start + 0.1, start + 0.12) is None
+
+
+def test_another_interval_becomes_the_usual_one():
+    gyro, start = steady(0.02)
+    gyro.report(*((start + 0.1 * (number + 1), 0.0) for number in range(100)))
+    lost = (10 * 0.1 ** 2 / 4) ** 2 / 3
+    for number, more in (0, lost), (4, lost), (80, 0.0):    # first, readings seem to be lost
+        begin = start + 0.1 * number
+        assert gyro.turn(begin, begin + 0.1) == pytest.approx((0.0, NOISE * 0.1 ** 2 + more))
+
+
+@pytest.mark.parametrize('sign', [1, -1])
+def test_a_window_sums_up_blocks_until_it_has_turned_by_2_rad_and_measures_their_scatter(sign):
+    window, closed = Window(), []
+    for wheels, gyro in (0.3, 0.5), (-0.8, -0.7), (1.1, 0.4):
+        for part in 0.25, 0.75:     # of a block of 1 s
+            assert window.close() is None
+            window.add(Sums(part, sign * part * wheels, sign * part * (wheels - 0.1), sign * part * gyro, part * 2.0,
+                            part * 0.01))
+        closed.append(window.close())
+    # each block has turned by the larger of its turns; the differences of gyro and expected turn are 0.3, 0.2, -0.6
+    assert closed == [None, None, pytest.approx((
+        3.0, sign * 0.6, sign * 0.3, sign * 0.2, 6.0, 0.03, 0.5 + 0.8 + 1.1, (0.3 ** 2 + 0.1 ** 2 + 0.8 ** 2) / 2))]

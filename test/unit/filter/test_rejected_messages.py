@@ -15,7 +15,7 @@ POSE = {'pose.pose.position.x': 'x', 'pose.pose.position.y': 'y', 'pose.pose.ori
 BAD_ODOMETRY = [(field, value) for field in POSE for value in (nan, inf, -inf, 1.001 * MAX_NUMBER)]
 BAD_READINGS = [('angular_velocity.z', nan, 1e-6), ('angular_velocity.z', inf, 1e-6),
                 ('angular_velocity_covariance[8]', 0.1, 0.0), ('angular_velocity_covariance[8]', 0.1, -1.0),
-                ('angular_velocity_covariance[8]', 0.1, nan)]
+                ('angular_velocity_covariance[8]', 0.1, nan), ('angular_velocity_covariance[8]', 0.1, 1.1e12)]
 
 
 def with_field(odom, field, value):

@@ -49,7 +49,7 @@ def fixture_ekf(monkeypatch):
         monkeypatch.setattr(rospy, name, lambda form, *values: lines.append(form % values))
     monkeypatch.setattr(filter_status, 'Updater', Updater)
     ekf = module.Ekf(read_parameters(dict(surface='unknown', publish_tf=False)))
-    ekf.lines = lines
+    ekf.lines, ekf.module = lines, module
 
     def send(callback, message, now):
         monkeypatch.setattr(rospy.rostime, '_rostime_current', rospy.Time.from_sec(now))
@@ -174,3 +174,34 @@ def test_without_a_master_it_asks_again(ekf, clock):
     clock.publishers = []
     assert [line for _, line in report(ekf, clock)] == [
         'Waiting for odometry: nobody publishes /odom', 'Waiting for IMU messages: nobody publishes /imu_data']
+
+
+def test_the_node_subscribes_publishes_and_reports_until_the_end(ekf, monkeypatch):
+    topics, published, looks, listening, module = replace_topics(monkeypatch), [], [], [], ekf.module
+    monkeypatch.setattr(ekf.tree, 'listen', listening.append)
+    monkeypatch.setattr(ekf.publisher, 'update', lambda combined, *frames: published.append(frames))
+    monkeypatch.setattr(module.life, 'init_node', lambda *_, **__: None)
+    monkeypatch.setattr(module, 'load_parameters', lambda: ekf.parameters)
+    monkeypatch.setattr(module, 'Ekf', lambda parameters: ekf)
+    monkeypatch.setattr(module.life, 'end_requested', SimpleNamespace(is_set=lambda: len(looks) > 100))
+    monkeypatch.setattr(module.life, 'sleep', looks.append)
+    monkeypatch.setattr(module.time, 'monotonic_ns', lambda: 10 ** 12 + len(looks) * 50_000_000)
+    monkeypatch.setattr(ekf.diagnostics.updater, 'force_update', lambda: published.append('diagnostics'))
+    ekf.publisher.settled = False
+    assert module.main() == 0
+    # 5 s, once per second and at the beginning; it looks for frames until both inputs have theirs
+    assert published == ['diagnostics'] * round(5 / ekf.parameters.diagnostic_period + 1) and listening[-1] is True
+    ekf.odom_sub = ekf.imu_sub = None       # topics here have no connections
+    del looks[:]
+    for tick in range(4):
+        ekf.send(topics['imu_data'].callback, imu(0.0), 10 + tick / 50)
+        ekf.send(topics['odom'].callback, odometry(0.0), 10 + tick / 50)
+    assert published[-1] == ('odom', 'base') and ekf.diagnostics.received['odom'] == rospy.Time(10, 60_000_000)
+    topics['reset_odometry'].callback(None)
+    assert ekf.lines[-1] == 'Odometry was reset: restarting the filter at the odometry pose'
+    ekf.send(topics['set_pose'].callback, PoseWithCovarianceStamped(), 10.1)
+    assert ekf.diagnostics.rejected['set_pose'] == 1
+    before, looks[:] = len(published), [0] * 101        # topics are closed during shutdown
+    ekf.send(ekf.on_odom, odometry(0.0), 10.12)
+    ekf.restart('/other')
+    assert len(published) == before and ekf.lines[-1] == 'odom comes from another node: restarting'

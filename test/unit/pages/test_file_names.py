@@ -14,7 +14,7 @@ PAGES = ['CONTRIBUTING.md', 'docs/design.md', *sorted(f'docs/decisions/{name}' f
 def existing():
     """The paths of all files, and each end of such a path."""
     found = set()
-    for folder, folders, names in os.walk(ROOT):
+    for folder, folders, names in os.walk(ROOT, followlinks=True):     # bench/mutations.py copies links
         folders[:] = [name for name in folders if not name.startswith('.')]
         for name in names:
             parts = os.path.relpath(os.path.join(folder, name), ROOT).split(os.sep)
