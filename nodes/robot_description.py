@@ -10,6 +10,7 @@ import re
 import shutil
 import subprocess
 import sys
+from typing import Sequence
 
 from rbx1_nav.base.urdf import is_xacro, read_tree
 
@@ -17,12 +18,13 @@ LINK = re.compile(r'(<(?:link|parent|child)\s+(?:name|link)=.)')
 ALPHA = re.compile(r'(rgba=.[^ ]+ +[^ ]+ +[^ ]+) +[0-9.]+')
 
 
-def read(path: str) -> str:
-    """Return the text of a URDF file. Raises OSError, ValueError or subprocess.CalledProcessError."""
+def read(path: str, values: Sequence[str]) -> str:
+    """Return the text of a URDF file, or of a xacro file with values of its arguments, NAME:=VALUE. Raises OSError,
+    ValueError or subprocess.CalledProcessError."""
     with open(path, encoding='utf-8', errors='replace') as file:
         text = file.read()
-    if is_xacro(text) and shutil.which('xacro'):
-        text = subprocess.run(['xacro', path], stdout=subprocess.PIPE, check=True, encoding='utf-8').stdout
+    if (is_xacro(text) or path.endswith('.xacro')) and shutil.which('xacro'):
+        text = subprocess.run(['xacro', path, *values], stdout=subprocess.PIPE, check=True, encoding='utf-8').stdout
     read_tree(text)
     return text
 
@@ -33,10 +35,14 @@ def main() -> int:
     parser.add_argument('--prefix', default='', help='text that is put before the name of each link')
     parser.add_argument('--alpha', help='opacity of all colors, 0 to 1')
     parser.add_argument('file', metavar='FILE')
+    parser.add_argument('values', nargs='*', metavar='NAME:=VALUE', help='argument of a xacro file')
     arguments = parser.parse_args()
     try:
-        text = read(arguments.file)
-    except (OSError, ValueError, subprocess.CalledProcessError) as error:
+        text = read(arguments.file, arguments.values)
+    except subprocess.CalledProcessError as error:     # xacro has printed the reason
+        print(f'model: {arguments.file}: xacro exited with status {error.returncode}', file=sys.stderr)
+        return 1
+    except (OSError, ValueError) as error:
         print(f'model: {arguments.file}: {error}', file=sys.stderr)
         return 1
     text = LINK.sub(r'\g<1>' + arguments.prefix, text)

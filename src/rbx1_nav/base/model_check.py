@@ -22,12 +22,12 @@ from rbx1_nav.node.life import end_requested
 from rbx1_nav.node.master import Server
 
 WAIT = 3.0      # s of wall time in which the other nodes start
-PERIOD = 30.0   # s of wall time between two checks while there are problems
+PERIOD = 30.0   # s of wall time between two checks
 LISTEN = 2.0    # s: at least one message of a publisher with 1 Hz
 
 
 class ModelCheck:
-    """A thread that checks until it finds nothing; each problem is logged once, and is in /diagnostics."""
+    """A thread that checks now and then; each problem is logged when it appears, and is in /diagnostics."""
 
     def __init__(self, publisher: BasePublisher, keys: tuple[str, str], diagnostics: Updater) -> None:
         """keys: see find_problems()."""
@@ -36,6 +36,7 @@ class ModelCheck:
         self.keys = keys
         self.prefix = check_prefix(find_prefix())
         self.problems: list[str] = []
+        self.state = 'Not checked yet'
         diagnostics.add('Robot model', self.diagnose)
 
     def start(self) -> None:
@@ -47,13 +48,14 @@ class ModelCheck:
         for each in found:
             if each not in self.problems:
                 rospy.logwarn('%s', each)
+        for each in self.problems:
+            if each not in found:
+                rospy.loginfo('Resolved: %s', each)
         self.problems = found
 
     def run(self) -> None:
-        first = True
-        while first or self.problems:
-            if end_requested.wait(WAIT if first else PERIOD):
-                return
+        wait = WAIT
+        while not end_requested.wait(wait):
             try:
                 found = self.find()
                 if set(found) - set(self.problems):     # on a busy machine, nodes start late
@@ -62,7 +64,7 @@ class ModelCheck:
             except (OSError, HTTPException, xmlrpc.client.Error, rospy.ROSException):
                 continue        # the master, or this node, is going
             self.report(found)
-            first = False
+            wait = PERIOD
 
     def find_at_start(self) -> list[str]:
         """Return what is wrong whatever the other nodes do."""
@@ -94,32 +96,39 @@ class ModelCheck:
             publishers: dict[str, list[str]]
             publishers, subscribers, _ = [dict(each) for each in master.call('getSystemState')]
             types = master.call('getTopicTypes')
+        if not tree:
+            self.state = 'No robot_description'
+            return []
         own = self.publisher.joint_states.resolved_name
+        topics = {topic for topic, kind in types if kind == 'sensor_msgs/JointState'
+                  and topic.rpartition('/')[0] == own.rpartition('/')[0]}
         transformers = {*publishers.get('/tf', ()), *publishers.get('/tf_static', ())} - {rospy.get_name()}
         # robot_state_publisher turns joint states of this namespace into transforms
-        topics = [topic for topic, kind in types if kind == 'sensor_msgs/JointState'
-                  and topic.rpartition('/')[0] == own.rpartition('/')[0]
-                  and transformers.intersection(subscribers.get(topic, ()))]
-        if not tree:
-            return []
-        if not topics:
-            return [f'robot_description: expected a robot_state_publisher that shows {self.model}, but none is '
-                    'running: its last lines give the reason'] if self.model else []
-        topic = own if own in topics else topics[0]
+        found_by = {topic: sorted(transformers.intersection(subscribers.get(topic, ()))) for topic in topics}
+        read = sorted(topic for topic in topics if found_by[topic])
+        others = {topic: set(publishers.get(topic, ())) - {rospy.get_name()} for topic in topics}
+        if not read:
+            self.state = 'No robot_state_publisher'
+            return [f"robot_description: expected a robot_state_publisher that shows {self.model or 'it'}, but none is "
+                    'running: its last lines give the reason'] if self.model or any(others.values()) else []
+        self.state = 'Consistent'
+        topic = own if own in read else read[0]
+        if len(found_by[topic]) > 1:
+            return [f"robot_description: {' and '.join(found_by[topic])} publish the links: expected one of them, such "
+                    'as with model:=none for the launch file of the base']
         if topic != own and not subscribers.get(own):
-            return [f'{own}: nobody reads it, so that the wheels do not turn: expected it in the source_list of the '
-                    f'joint_state_publisher that publishes {topic}']
+            return [f'{own}: nobody reads it, so that the wheels do not turn: expected a joint_state_publisher that '
+                    f'publishes {topic}, with this topic in its source_list']
         keys = f'{rospy.get_name()}/{self.keys[0]}', f'{rospy.get_name()}/{self.keys[1]}'.rstrip('/')
         check = partial(find_problems, self.publisher.robot, self.prefix, keys, tree, reads_base=topic == own)
-        others = set(publishers.get(topic, ())) - {rospy.get_name()}
-        if others or check(published=Published({}, set())):
-            return check(published=listen(topic, others))
+        if others[topic] or check(published=Published({}, set())):
+            return check(published=listen(topic, others[topic]))
         return []
 
     def diagnose(self, status: DiagnosticStatusWrapper) -> DiagnosticStatusWrapper:
         """Fill in the DiagnosticStatus of the model."""
         if not self.problems:
-            status.summary(DiagnosticStatus.OK, 'Consistent')
+            status.summary(DiagnosticStatus.OK, self.state)
         else:
             status.summary(DiagnosticStatus.WARN, self.problems[0])
         for number, each in enumerate(self.problems, 1):

@@ -1,6 +1,7 @@
 """Compares a robot's configuration with its URDF, and with the joints and frames that are published."""
 from __future__ import annotations
 
+from collections import Counter
 from typing import NamedTuple
 
 from rbx1_nav.base.description import Robot
@@ -55,29 +56,31 @@ def _frame_problems(robot: Robot, prefix: str, key: str, tree: Tree, published: 
 def _joint_problems(robot: Robot, prefix: str, key: str, tree: Tree, published: Published,
                     reads_base: bool) -> list[str]:
     own = {*robot.wheel_joints, *(joint.name for joint in robot.joints)}
+    by_node = {**published.joints, **({'the base': own} if reads_base else {})}
+    counts = Counter(joint for names in by_node.values() for joint in names)
+    twice = sorted(joint for joint, count in counts.items() if count > 1)
     problems = []
-    for node, names in sorted(published.joints.items()):
-        twice = sorted(names & own) if reads_base else []
-        if twice:
-            problems.append(f'joint_states: {node} also publishes {", ".join(twice)}, so that the angles alternate: '
-                            f'expected the topic of the base in its source_list, see {PAGE}')
-    others = set().union(*published.joints.values())
-    joints = others | (own if reads_base else set())
+    if twice:
+        nodes = sorted(node for node, names in by_node.items() if names & set(twice))
+        problems.append(f'joint_states: {" and ".join(nodes)} publish {", ".join(twice)}, so that the angles '
+                        f'alternate: expected the topic of one in the source_list of the other, see {PAGE}')
     frames = {without_prefix(prefix, frame) for frame in published.frames} | published.frames
-    missing = [joint for joint, link in tree.movable.items() if joint not in joints and link not in frames]
+    missing = [joint for joint, link in tree.movable.items() if joint not in counts and link not in frames]
     absent = [joint for joint in robot.wheel_joints if joint not in tree.movable]
-    wheels = sorted(tree.turning - own)
-    renamed = len(wheels) >= len(absent) > 0
+    # wheels of another name, which another node may publish, but which do not turn
+    others = sorted(tree.turning - own)
+    renamed = len(others) >= len(absent) > 0
     keys = f'left_wheel and right_wheel of {key} (now {" and ".join(robot.wheel_joints)})'
     if missing:
         cures = []
         if renamed:
             cures.append(f'the wheels as {keys}')
-        if not renamed or len(wheels) > len(absent) or set(missing) - set(wheels):
+        if not renamed or len(others) > len(absent) or set(missing) - set(others):
             cures.append(f'joint_state_publisher{" for the other joints" * renamed}, see {PAGE}')
         problems.append(f'joint_states: nobody publishes {", ".join(missing)}, so that there is no transform to '
                         f'{", ".join(tree.movable[joint] for joint in missing)}: expected {", and ".join(cures)}')
     elif renamed:
-        problems.append(f'{keys}: not in robot_description, so that its wheels do not turn: expected two of '
-                        f'{", ".join(wheels)}')
+        wheels = [joint for joint in others if 'wheel' in joint] or others
+        problems.append(f'{keys}: {" and ".join(absent)} is no movable joint of robot_description, so that the wheel '
+                        f'does not turn: expected {" or ".join(wheels)}')
     return problems

@@ -1,6 +1,7 @@
 """Reads a URDF file: its visuals, which define the appearance of a robot, and its tree of links."""
 from __future__ import annotations
 
+import re
 from typing import Mapping, NamedTuple, Tuple
 import xml.etree.ElementTree as ElementTree
 
@@ -76,14 +77,14 @@ class Tree(NamedTuple):
 
 def is_xacro(text: str) -> bool:
     """Return whether a text has to be expanded by xacro before it is a URDF file."""
-    return 'xacro:' in text
+    return bool(re.search(r'<xacro:(arg|if|include|macro|property|unless)\b|\$\{', text))
 
 
 def read_tree(text: str) -> Tree:
     """Return the Tree in the text of a URDF file. Raises ValueError if it is not a URDF file."""
     if is_xacro(text):
-        raise ValueError('a xacro file, not a URDF file: expand it with xacro (package ros-noetic-xacro, '
-                         'or `pip install xacro`)')
+        raise ValueError('a xacro file, not a URDF file: expected one that xacro has expanded, see '
+                         'docs/your_robot.md')
     try:
         robot = ElementTree.fromstring(text)
     except ElementTree.ParseError as error:
@@ -102,6 +103,8 @@ def read_tree(text: str) -> Tree:
             movable[joint.get('name', '')] = name
             if joint.get('type') == 'continuous':
                 turning.add(joint.get('name', ''))
+    if not links:
+        raise ValueError('not a URDF file: no <link>: expected at least one')
     roots = [link for link in links if link not in children.values()]
     if len(roots) != 1:
         raise ValueError(f'not a URDF file: links that are no child of a joint: {roots}: expected exactly one')

@@ -82,9 +82,13 @@ def test_what_belongs_together_is_not_named(text, options):
     (urdf(*WHEELS), dict(NAMES, left_wheel='left'), ['nobody publishes left_joint,', '(now left and right_joint)']),
     # joint_state_publisher beside the base
     (urdf(*WHEELS), dict(NAMES, published=Published({'/publisher': {'left_joint', 'right_joint'}}, set())),
-     ['/publisher also publishes left_joint, right_joint', 'source_list']),
+     ['/publisher and the base publish left_joint, right_joint', 'source_list']),
+    # two of them, beside a base of another topic
+    (urdf(*WHEELS), dict(NAMES, reads_base=False,
+                         published=Published({'/a': {'left_joint', 'right_joint'}, '/b': {'left_joint'}}, set())),
+     ['/a and /b publish left_joint, so that the angles alternate']),
     (urdf(*WHEELS), dict(published=Published({'/publisher': {'left_joint', 'right_joint'}}, set())),
-     ['not in robot_description, so that its wheels do not turn: expected two of left_joint, right_joint'])])
+     ['base_l_wheel_joint and base_r_wheel_joint is no movable joint of robot_description', 'or right_joint'])])
 def test_what_does_not_belong_together_is_named_in_one_line_with_the_cure(text, options, parts):
     line, = problems(text, **options)
     assert '\n' not in line and all(part in line for part in parts)
@@ -122,9 +126,9 @@ def test_a_prefix_that_the_links_do_not_have_leads_to_the_argument_of_the_launch
 
 
 @pytest.mark.parametrize('text, expected', [
-    ('', 'not a URDF file'), ('<html/>', '<html>: expected <robot>'), ('<robot name="a"/>', 'expected exactly one'),
+    ('', 'not a URDF file'), ('<html/>', '<html>: expected <robot>'), ('<robot name="a"/>', 'no <link>'),
     ('<robot name="a"><link name="b"/><link name="c"/></robot>', r"\['b', 'c'\]: expected exactly one"),
-    ('<robot name="a"><xacro:include filename="b"/></robot>', 'a xacro file, not a URDF file: expand it')])
+    ('<robot name="a"><xacro:include filename="b"/></robot>', 'a xacro file, not a URDF file: expected one')])
 def test_a_text_that_is_no_model_is_rejected(text, expected):
     with pytest.raises(ValueError, match=expected):
         read_tree(text)

@@ -6,7 +6,7 @@ import sys
 import pytest
 
 ROOT = os.path.realpath(os.path.join(os.path.dirname(__file__), '..', '..', '..'))
-XACRO = '<robot name="a" xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:link/></robot>'
+XACRO = '<robot name="a" xmlns:xacro="a"><xacro:property name="b" value="1"/></robot>'
 
 
 def run(*arguments, path='/usr/bin:/bin'):
@@ -29,15 +29,15 @@ def test_only_links_and_colors_are_changed():
 
 def test_a_xacro_file_is_expanded_by_xacro(tmp_path):
     # Debian has no xacro
-    (tmp_path / 'xacro').write_text('#!/bin/sh\nsed "s,<xacro:link/>,<link name=\'b\'/>," "$1"\n')
+    (tmp_path / 'xacro').write_text('#!/bin/sh\nsed "s,<xacro.*/>,<link name=\'$2\'/>," "$1"\n')
     (tmp_path / 'xacro').chmod(0o755)
     (tmp_path / 'a.xacro').write_text(XACRO)
-    result = run('--prefix', 'r1/', tmp_path / 'a.xacro', path=f'/usr/bin:/bin:{tmp_path}')
+    result = run('--prefix', 'r1/', tmp_path / 'a.xacro', 'b', path=f'/usr/bin:/bin:{tmp_path}')
     assert result.returncode == 0 and "<link name='r1/b'/>" in result.stdout
 
 
 @pytest.mark.parametrize('text, expected', [
-    (XACRO, 'a xacro file, not a URDF file: expand it with xacro'), ('<robot', 'not a URDF file: unclosed token'),
+    (XACRO, 'a xacro file, not a URDF file: expected one'), ('<robot', 'not a URDF file: unclosed token'),
     (b'\xff\xfe', 'not a URDF file'), (None, 'No such file')])
 def test_a_bad_file_is_one_line(tmp_path, text, expected):
     if text is not None:
