@@ -64,13 +64,13 @@ def earlier_clock() -> str | None:
     """
     publishers, _, _ = call(rosgraph.get_master_uri(), 'getSystemState')
     names = dict(publishers).get('/clock', [])
+    if rospy.get_name() not in names:
+        raise rospy.ROSException('another node with this name has just started: expected only one')
     return next((name for name in names[:names.index(rospy.get_name())] if is_alive(name)), None)
 
 
 class OwnClock(Clock):
     """Simulated time that this node advances: at most `factor` times as fast as real time, in step with the drivers."""
-
-    waits = True
 
     def __init__(self, factor: float, rate: float, period: int, strict: bool) -> None:
         """factor, rate: see read_clock(); period: clock period, ns; strict: whether a driver that is not in step is an
@@ -84,14 +84,24 @@ class OwnClock(Clock):
         simtime._clock_sub.unregister()
         # the usual limit of 1,024 open files is enough for the threads of about 17 drivers; see lockstep/processes.py
         setrlimit(RLIMIT_NOFILE, 2 * getrlimit(RLIMIT_NOFILE)[1:])
-        self.publisher = rospy.Publisher('/clock', ClockMessage, NoDelay(self.greet), queue_size=10)
-        self.lockstep = Lockstep(Watch(self.publisher), self.report, life.end_requested.is_set)
+        self.new: list[tuple[bool, Callable[[], None]]] = []    # new subscribers: whether not of the time; greets it
+        self.publisher = rospy.Publisher('/clock', ClockMessage, NoDelay(self.greet_with_time), queue_size=10)
+        self.lockstep = Lockstep(Watch(self.publisher, self.greet_all), self.report, life.end_requested.is_set)
         self.not_in_step: dict[str, str] = {}   # reasons, by the name of the node
 
-    def greet(self, _: str, publish: Callable[[ClockMessage], None]) -> None:
-        """Send the time to a new subscriber: otherwise, other messages may arrive before the time."""
+    def greet_with_time(self, _: str, publish: Callable[[ClockMessage], None]) -> None:
         if self.time:
-            publish(ClockMessage(self.stamp(self.time)))
+            self.new.append((False, lambda: publish(ClockMessage(self.stamp(self.time)))))
+
+    def greet(self, send: Callable[[], None]) -> None:
+        self.new.append((True, send))
+
+    def greet_all(self) -> bool:
+        """Greet the new subscribers, those of the time first; return whether there were any."""
+        new, self.new = self.new, []
+        for _, send in sorted(new, key=lambda each: each[0]):
+            send()
+        return bool(new)
 
     def now(self) -> int:
         return self.time
