@@ -34,7 +34,7 @@ def peer_process(sock: socket.socket) -> Process | None:
         addresses = [_address(sock.family, each) for each in (peer, own)]
     except (OSError, AttributeError):   # closed
         return None
-    # the peer may have a socket for both families, as node.js, Java and Go do
+    # the peer may have a socket for both families, as rosnodejs, Java and Go do
     mapped = [_words(MAPPED) + each for each in addresses]
     return _process_with(lambda fields: fields[1:3] in (addresses, mapped))
 

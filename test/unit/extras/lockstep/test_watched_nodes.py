@@ -156,7 +156,7 @@ def test_a_new_subscriber_is_greeted_when_all_nodes_are_asleep(world):
 
 @pytest.mark.skipif(not socket.has_dualstack_ipv6(), reason='no IPv6')
 def test_a_peer_that_listens_for_both_families_is_found():
-    """node.js, Java and Go do; the kernel lists its connection with an IPv6 address."""
+    """rosnodejs, Java and Go do; the kernel lists its connection with an IPv6 address."""
     code = ('import socket, sys; s = socket.create_server(("", 0), family=socket.AF_INET6, dualstack_ipv6=True); '
             'print(s.getsockname()[1], flush=True); c, _ = s.accept(); sys.stdin.read()')
     child = subprocess.Popen(['/usr/bin/python3', '-c', code], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
