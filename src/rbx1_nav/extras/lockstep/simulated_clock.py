@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 from resource import RLIMIT_NOFILE, getrlimit, setrlimit
+import threading
 import time
 from typing import Any, Callable
 
@@ -24,6 +25,7 @@ from rbx1_nav.node.private_parameters import param
 from rbx1_nav.node.rospy_topics import NoDelay
 
 CATCH_UP = 0.1      # s of wall time: a delay up to this is made up for
+CLOCK_PERIOD = 0.7  # s of wall time between two searches for another clock
 
 PARAMETERS = (
     number('real_time_factor', None, '', 'highest speed of simulated time, relative to real time', 0.01, 1000,
@@ -57,13 +59,18 @@ def read_clock(rate: float) -> Clock:
     return Clock(rate)
 
 
+def clock_publishers() -> list[str]:
+    """Return the names of the registered publishers of /clock, in the order in which they have registered."""
+    publishers, _, _ = call(rosgraph.get_master_uri(), 'getSystemState')
+    return [name for topic, names in publishers if topic == '/clock' for name in names]
+
+
 def earlier_clock() -> str | None:
     """Return the name of a live node that registered as a publisher of /clock before this node, or None.
 
     The master keeps the order, so of two nodes that start at the same time, only the second one finds the other.
     """
-    publishers, _, _ = call(rosgraph.get_master_uri(), 'getSystemState')
-    names = dict(publishers).get('/clock', [])
+    names = clock_publishers()
     if rospy.get_name() not in names:
         raise rospy.ROSException('another node with this name has just started: expected only one')
     return next((name for name in names[:names.index(rospy.get_name())] if is_alive(name)), None)
@@ -136,7 +143,23 @@ class OwnClock(Clock):
         status.add('Nodes not in step with /clock',
                    '; '.join(f'{name} {reason}' for name, reason in self.not_in_step.items()) or 'none')
 
+    def watch_clocks(self) -> None:
+        """Name each node that also publishes /clock."""
+        named: set[str] = {rospy.get_name()}
+        before: set[str] = set()
+        while not life.end_requested.wait(CLOCK_PERIOD):
+            try:
+                found = set(clock_publishers()) - named
+            except Exception:       # the master does not answer
+                continue
+            new, before = found & before, found     # not a base that is about to exit
+            for name in new:
+                rospy.logerr('%s publishes /clock, too, so that time moves back and forth: expected only this base to '
+                             'publish it (rosbag play: without --clock)', name)
+            named |= new
+
     def run(self, step: Callable[[], None]) -> None:
+        threading.Thread(target=self.watch_clocks, daemon=True).start()
         beat = time.monotonic()
         while not life.end_requested.is_set():
             self.lockstep.begin()
