@@ -58,6 +58,12 @@ class TestSecondClock(support.Case):
         loser, winner, name = (first, second, 'robot2') if outputs[0] is first else (second, first, 'robot1')
         loser.wait()
         self.assertIn(f'expected no other clock, but /{name}/arbotix publishes /clock', loser.output)
+        self.assertNotIn('publishes /clock', winner.output)
+        # as rosbag play --clock does
+        other = self.start('rostopic', 'pub', '/clock', 'rosgraph_msgs/Clock', '{}')
+        winner.wait_for_line('/rostopic_.* publishes /clock, too')
+        other.signal(signal.SIGINT)
+        other.wait()
         winner.wait_for_line('Ready: ')
         # the registration of a killed base refuses nobody
         self.assertEqual(support.wait_for(lambda: rospy.get_param('/use_sim_time'), 'simulated time'), True)

@@ -30,7 +30,7 @@ ALLOWED = {
 ALLOWED['nodes'] = set(ALLOWED) - {''}
 # the files that need ROS; all others also run where there is none
 WITH_ROS = {f'rbx1_nav.{room}.{name}' for room, names in {
-    'node': 'frames life master private_parameters resources rospy_topics',
+    'node': 'addresses frames life master private_parameters resources rospy_topics',
     'base': 'clocks command_subscriber messages model_check publisher running_bases',
     'driving': 'calibrating listeners odometry rate script stopping',
     'simulation': 'floor_parameters simulated_robot',

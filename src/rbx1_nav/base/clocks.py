@@ -30,8 +30,6 @@ def as_ros_time(instant: int, now: Callable[[], int]) -> rospy.Time:
 class Clock:
     """Measures motion on the monotonic clock, which cannot be set; stamps are in ROS time."""
 
-    waits = False       # whether it waits for the nodes that drive
-
     def __init__(self, rate: float) -> None:
         """rate: of the odometry, Hz."""
         self.rate = rate
@@ -50,6 +48,10 @@ class Clock:
 
     def publish(self, publisher: rospy.Publisher, message: Any) -> None:
         publisher.publish(message)
+
+    def greet(self, send: Callable[[], None]) -> None:
+        """Call send(), which sends the current state to a new subscriber, if this clock waits for nodes; otherwise, the
+        next message follows soon."""
 
     def now(self) -> int:
         """Return the time of the clock that measures motion, ns."""

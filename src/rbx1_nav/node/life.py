@@ -14,13 +14,13 @@ import sys
 import threading
 import time
 from typing import Any, Callable, NoReturn, Sequence, TextIO, TypeVar, cast
-from urllib.parse import urlsplit
 
 import rosgraph
 import rospy
 import rospy.impl.masterslave
 from rospy.impl.paramserver import get_param_server_cache
 
+from rbx1_nav.node.addresses import check_master_uri, check_own_address
 from rbx1_nav.node.config import ConfigError, YamlValue
 from rbx1_nav.node.master import require_master
 from rbx1_nav.node.parameters import Parameter, list_parameters
@@ -92,6 +92,8 @@ def init_node(name: str, usage: str, parameters: Sequence[Parameter] = (), requi
     sys.stdout, sys.stderr = cast(TextIO, _Terminal(sys.stdout)), cast(TextIO, _Terminal(sys.stderr))
     if usage:
         check_command_line(f'{usage.strip()}\n\n{list_parameters(parameters)}'.strip(), names)
+    check_master_uri()
+    check_own_address(future_name(name))
     if requires_master:
         require_master()
     take = on_signal or request_end
@@ -126,8 +128,6 @@ def wait_for_master(name: str, parameters: Sequence[Parameter]) -> None:
     name, parameters: of the node; the limit is ~wait_timeout, if it has this parameter. Raises ROSException after it.
     """
     uri, end = rosgraph.get_master_uri(), None
-    if urlsplit(uri).scheme != 'http':      # rospy reports it
-        return
     while not end_requested.is_set():
         try:
             return require_master()

@@ -8,7 +8,7 @@ from typing import Any, Callable, Iterator, Mapping, Sequence
 import xmlrpc.client
 
 import rosgraph
-from rosgraph.names import is_legal_name
+from rosgraph.names import is_legal_base_name, is_legal_name
 import rospy
 import yaml
 
@@ -44,7 +44,9 @@ def find_problem(argument: str, names: Sequence[str]) -> str | None:
     if not assigned:
         left, _, right = argument.partition('=')
         return f"unknown argument{_suggestion(left, right, names, 0.6) or f': {EXPECTED}'}"
-    if left.startswith('__'):       # __name and the like, for rospy
+    if left == '__name' and not is_legal_base_name(right):
+        return 'expected a name of letters, digits and _ that begins with a letter'
+    if left.startswith('__'):       # __ns and the like, for rospy
         return None
     if left.startswith('_'):
         if left[1:].split('/')[0] not in names:

@@ -110,7 +110,10 @@ class SimulatedRobot:
     def greet(self, topic: str, publish: Callable[[Any], None]) -> None:
         """Send the current state to a new subscriber of odom or tf: while a simulated clock waits for a node that is
         starting, no other message follows."""
-        if not self.clock.waits or not self.last_stamp or topic == '/tf' and not self.robot.publish_tf:
+        self.clock.greet(lambda: self.send_state(topic, publish))
+
+    def send_state(self, topic: str, publish: Callable[[Any], None]) -> None:
+        if not self.last_stamp or topic == '/tf' and not self.robot.publish_tf:
             return
         with self.lock:
             base, stamp = self.base, self.last_stamp

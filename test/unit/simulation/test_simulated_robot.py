@@ -17,7 +17,7 @@ from fake_topics import replace_topics
 class Time(Clock):
     """A simulated clock, and what is published on it."""
 
-    waits, time = True, 0
+    time = 0
 
     def __init__(self):
         self.sent = []
@@ -27,6 +27,9 @@ class Time(Clock):
 
     def stamp(self, instant):
         return rospy.Time(0, instant)
+
+    def greet(self, send):
+        send()
 
     def publish(self, publisher, message):
         self.sent.append((publisher.name, message))

@@ -67,6 +67,7 @@ class DriverConnection:
         self.motions = 0        # motions that have begun
         self.moving = False     # whether the last command was not a stop
         self.tick = 0           # of the last command
+        self.first_tick = 0     # of the first command to move
         self.time = 0.0         # s of the monotonic clock: of the last command
         self.intervals: list[float] = []    # s of wall time between the first commands of the motion
         self.holds = 0          # ticks with commands at which the clock will be held
@@ -96,6 +97,7 @@ class Lockstep:
         """Accept a command that just arrived, in any thread. header: see Received."""
         with self.lock:
             self.arrived.append(Received(target, header, command, monotonic(), self.idle))
+        self.processes.has_started(header['callerid'])
         self.heard.set()
 
     def begin(self) -> None:
@@ -199,6 +201,8 @@ class Lockstep:
             awake[name] = awake.get(name, 0.0) + min(now - last, LONGEST_LOOK)
             last = now
             if awake[name] > NODE_TIMEOUT:
+                if name == self.processes.own_name:     # messages keep this node busy: no reason to blame anybody
+                    return
                 del awake[name]
                 if self.processes.forget(name):
                     self._report(name, f'did not become idle within {NODE_TIMEOUT:g} s')
@@ -223,11 +227,13 @@ class Lockstep:
             return
         if first:
             driver.motions += 1
+            driver.first_tick = driver.first_tick or self.tick
             driver.intervals, driver.holds = [], HOLDS
         elif len(driver.intervals) < INTERVALS:
             driver.intervals.append(received.time - driver.time)
         driver.tick, driver.time = self.tick, received.time
-        if not driver.in_step or first and driver.motions == 1:
+        driver.in_step = driver.in_step and driver.name not in self.processes.forgotten     # reported already
+        if not driver.in_step or driver.first_tick == self.tick:
             return      # a node may wait by the wall clock before its first motion
         # a node that has exited since it sent the command is no longer visible
         reason = self.processes.obstacle(driver.name) if self.processes.is_connected(driver.header) else None

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 from resource import RLIMIT_NOFILE, getrlimit, setrlimit
+import threading
 import time
 from typing import Any, Callable
 
@@ -24,6 +25,7 @@ from rbx1_nav.node.private_parameters import param
 from rbx1_nav.node.rospy_topics import NoDelay
 
 CATCH_UP = 0.1      # s of wall time: a delay up to this is made up for
+CLOCK_PERIOD = 0.7  # s of wall time between two searches for another clock
 
 PARAMETERS = (
     number('real_time_factor', None, '', 'highest speed of simulated time, relative to real time', 0.01, 1000,
@@ -57,20 +59,25 @@ def read_clock(rate: float) -> Clock:
     return Clock(rate)
 
 
+def clock_publishers() -> list[str]:
+    """Return the names of the registered publishers of /clock, in the order in which they have registered."""
+    publishers, _, _ = call(rosgraph.get_master_uri(), 'getSystemState')
+    return [name for topic, names in publishers if topic == '/clock' for name in names]
+
+
 def earlier_clock() -> str | None:
     """Return the name of a live node that registered as a publisher of /clock before this node, or None.
 
     The master keeps the order, so of two nodes that start at the same time, only the second one finds the other.
     """
-    publishers, _, _ = call(rosgraph.get_master_uri(), 'getSystemState')
-    names = dict(publishers).get('/clock', [])
+    names = clock_publishers()
+    if rospy.get_name() not in names:
+        raise rospy.ROSException('another node with this name has just started: expected only one')
     return next((name for name in names[:names.index(rospy.get_name())] if is_alive(name)), None)
 
 
 class OwnClock(Clock):
     """Simulated time that this node advances: at most `factor` times as fast as real time, in step with the drivers."""
-
-    waits = True
 
     def __init__(self, factor: float, rate: float, period: int, strict: bool) -> None:
         """factor, rate: see read_clock(); period: clock period, ns; strict: whether a driver that is not in step is an
@@ -84,14 +91,24 @@ class OwnClock(Clock):
         simtime._clock_sub.unregister()
         # the usual limit of 1,024 open files is enough for the threads of about 17 drivers; see lockstep/processes.py
         setrlimit(RLIMIT_NOFILE, 2 * getrlimit(RLIMIT_NOFILE)[1:])
-        self.publisher = rospy.Publisher('/clock', ClockMessage, NoDelay(self.greet), queue_size=10)
-        self.lockstep = Lockstep(Watch(self.publisher), self.report, life.end_requested.is_set)
+        self.new: list[tuple[bool, Callable[[], None]]] = []    # new subscribers: whether not of the time; greets it
+        self.publisher = rospy.Publisher('/clock', ClockMessage, NoDelay(self.greet_with_time), queue_size=10)
+        self.lockstep = Lockstep(Watch(self.publisher, self.greet_all), self.report, life.end_requested.is_set)
         self.not_in_step: dict[str, str] = {}   # reasons, by the name of the node
 
-    def greet(self, _: str, publish: Callable[[ClockMessage], None]) -> None:
-        """Send the time to a new subscriber: otherwise, other messages may arrive before the time."""
+    def greet_with_time(self, _: str, publish: Callable[[ClockMessage], None]) -> None:
         if self.time:
-            publish(ClockMessage(self.stamp(self.time)))
+            self.new.append((False, lambda: publish(ClockMessage(self.stamp(self.time)))))
+
+    def greet(self, send: Callable[[], None]) -> None:
+        self.new.append((True, send))
+
+    def greet_all(self) -> bool:
+        """Greet the new subscribers, those of the time first; return whether there were any."""
+        new, self.new = self.new, []
+        for _, send in sorted(new, key=lambda each: each[0]):
+            send()
+        return bool(new)
 
     def now(self) -> int:
         return self.time
@@ -126,7 +143,23 @@ class OwnClock(Clock):
         status.add('Nodes not in step with /clock',
                    '; '.join(f'{name} {reason}' for name, reason in self.not_in_step.items()) or 'none')
 
+    def watch_clocks(self) -> None:
+        """Name each node that also publishes /clock."""
+        named: set[str] = {rospy.get_name()}
+        before: set[str] = set()
+        while not life.end_requested.wait(CLOCK_PERIOD):
+            try:
+                found = set(clock_publishers()) - named
+            except Exception:       # the master does not answer
+                continue
+            new, before = found & before, found     # not a base that is about to exit
+            for name in new:
+                rospy.logerr('%s publishes /clock, too, so that time moves back and forth: expected only this base to '
+                             'publish it (rosbag play: without --clock)', name)
+            named |= new
+
     def run(self, step: Callable[[], None]) -> None:
+        threading.Thread(target=self.watch_clocks, daemon=True).start()
         beat = time.monotonic()
         while not life.end_requested.is_set():
             self.lockstep.begin()

@@ -13,6 +13,7 @@ from typing import Callable
 from rbx1_nav.extras.lockstep.processes import Process
 
 LISTEN = '0A'           # state of a socket in /proc/net/tcp
+MAPPED = socket.inet_pton(socket.AF_INET6, '::ffff:0:0')[:12]   # first bytes of an IPv4 address as an IPv6 address
 
 
 def own_process() -> Process | None:
@@ -33,7 +34,9 @@ def peer_process(sock: socket.socket) -> Process | None:
         addresses = [_address(sock.family, each) for each in (peer, own)]
     except (OSError, AttributeError):   # closed
         return None
-    return _process_with(lambda fields: fields[1:3] == addresses)
+    # the peer may have a socket for both families, as rosnodejs, Java and Go do
+    mapped = [_words(MAPPED) + each for each in addresses]
+    return _process_with(lambda fields: fields[1:3] in (addresses, mapped))
 
 
 def listening_process(port: int) -> Process | None:
@@ -69,9 +72,11 @@ def _inode(matches: Callable[[list[str]], bool]) -> str | None:
 
 def _address(family: int, address: tuple[str, int]) -> str:
     """Return an address as in /proc/net/tcp: words of 32 bits in the machine's byte order, and the port."""
-    host = socket.inet_pton(family, address[0])
-    words = (int.from_bytes(host[i:i + 4], sys.byteorder) for i in range(0, len(host), 4))
-    return '%s:%04X' % (''.join('%08X' % word for word in words), address[1])
+    return '%s:%04X' % (_words(socket.inet_pton(family, address[0])), address[1])
+
+
+def _words(host: bytes) -> str:
+    return ''.join('%08X' % int.from_bytes(host[i:i + 4], sys.byteorder) for i in range(0, len(host), 4))
 
 
 def _read_link(path: str) -> str | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 from operator import is_
 import socket
 from time import monotonic
-from typing import Any, Iterable, Sequence
+from typing import Any, Callable, Iterable, Sequence
 from urllib.parse import urlparse
 
 import rosgraph
@@ -19,6 +19,7 @@ from rbx1_nav.node.master import call
 CONNECT_TIME = 4.0
 RECONNECT_TIME = 0.6    # s of wall time: rospy 1.15.9 connects again at once, but reads only 0.5 s later
 START_SLEEP = 0.5       # s of wall time for which a node that is starting may sleep by the wall clock
+DRIVER_SLEEP = 3.0      # s for which it may do so if it publishes commands
 
 
 class Watch:
@@ -31,9 +32,12 @@ class Watch:
     """
 
     # Any: rospy has no types
-    def __init__(self, clock: rospy.Publisher) -> None:
-        """clock: the publisher of /clock."""
+    def __init__(self, clock: rospy.Publisher, greet: Callable[[], bool]) -> None:
+        """clock: the publisher of /clock; greet(): sends messages to new subscribers; returns whether there were any.
+        """
         self.clock = clock.impl
+        self.greet = greet
+        self.own_name = rospy.get_name()
         self.commands: list[Any] = []       # the implementations of the subscribers to commands
         # the lists of connections at the last update; rospy replaces a list when it changes
         self.known: list[Any] = []
@@ -41,12 +45,12 @@ class Watch:
         self.reads_again = 0.0      # s of the monotonic clock: when a listener that has connected again surely reads
         self.drivers: set[str] = set()      # names of the watched publishers of commands
         self.sources: list[str] = []        # names of all nodes whose messages may cause a command, nearest last
-        # nodes that are starting, by name; s of the monotonic clock until when they may sleep by the wall clock
+        # nodes that are starting, by name; s of the monotonic clock since when they sleep by the wall clock
         self.starting: dict[str, float | None] = {}
         self.registered: set[str] = set()   # publishers of commands that the master knew when it was last asked
         self.connect_by: float | None = None    # s of the monotonic clock: limit for connecting while they start
         self.processes: dict[str, Process] = {}     # by name, drivers first
-        # sockets by name; None: of the master and this node, for good
+        # sockets by name; None: of the master, for good
         self.forgotten: dict[str, socket.socket | None] = {}
         self.own = own_process()        # the process of this node, without the thread that runs the clock
         self.master = listening_process(urlparse(rosgraph.get_master_uri()).port) if self.own else None
@@ -123,7 +127,7 @@ class Watch:
         self.registered = {name for topic, names in publishers if topic in topics for name in names}
         before = set(self.sources)
         self.sources = [each for each in reversed(sources_of(topics, publishers, subscribers))
-                        if each != rospy.get_name()]
+                        if each != self.own_name]
         self._select()
         return not before >= set(self.sources)
 
@@ -164,15 +168,16 @@ class Watch:
         if monotonic() < self.reads_again:
             return '/clock'
         names, processes = list(self.processes), list(self.processes.values())
-        for name, process in ((MASTER, self.master), (rospy.get_name(), self.own)):
+        for name, process in ((MASTER, self.master), (self.own_name, self.own)):
             if process and name not in self.forgotten:
                 names.append(name)
                 processes.append(process)
         found = awake(processes, self.network)
         if found:
             # the name of this node stands for the network
-            return names[processes.index(found)] if isinstance(found, Process) else rospy.get_name()
-        return self._still_starting()
+            return names[processes.index(found)] if isinstance(found, Process) else self.own_name
+        # now, so that the first time that a node sees does not depend on how fast it starts
+        return self.own_name if self.greet() else self._still_starting()
 
     def _still_starting(self) -> str | None:
         """Return the name of a node that is starting: it sleeps by the wall clock, or it has registered as a publisher
@@ -180,12 +185,19 @@ class Watch:
         if not self.starting:
             return None
         now = monotonic()
-        for name, until in list(self.starting.items()):
+        sleeping = []
+        for name, since in list(self.starting.items()):
             process = self.processes.get(name)
             if process and process.main_sleeps_briefly():
-                self.starting[name] = until = until or now + START_SLEEP
-                if now < until:
+                self.starting[name] = since = since or now
+                if now < since + START_SLEEP:
                     return name
+                if now < since + DRIVER_SLEEP:
+                    sleeping.append(name)
+        if not self.registered.intersection(sleeping):
+            self.find_sources()
+        if self.registered.intersection(sleeping):
+            return sleeping[0]
         self.find_sources()
         connected = {each.header['callerid'] for each in self._connections() if is_complete(each)}
         for name in self.starting.keys() & self.registered - connected:
@@ -231,11 +243,15 @@ class Watch:
         if process:
             self.forgotten[name] = process.socket
             process.close()
-        elif name in (MASTER, rospy.get_name()):
+        elif name == MASTER:
             self.forgotten[name] = None
         self.drivers = self.drivers - {name}
         self.known = []
         return watched
+
+    def has_started(self, name: str) -> None:
+        """Note that a node has sent its first command."""
+        self.starting.pop(name, None)
 
     def is_connected(self, header: object) -> bool:
         """Return whether a connection to a publisher of commands still exists. header: the header object of the

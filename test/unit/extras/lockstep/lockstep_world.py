@@ -26,12 +26,13 @@ class Processes:
     """The drivers a, b and the source s; they sleep as soon as `work` is empty."""
 
     def __init__(self):
-        self.drivers = {'a', 'b'}
+        self.drivers, self.own_name = {'a', 'b'}, 'base'
         self.add = self.remove = None
         self.work = []          # functions, one called at each look; while there are any, a node is awake
         self.never_sleeps = None
         self.looks = 0
         self.obstacles = {}
+        self.forgotten = {}
         self.new_source = False
         self.new_threads = False
         self.poll = []          # functions, one called at each call of still_polling()
@@ -70,6 +71,9 @@ class Processes:
         if self.never_sleeps == name:
             self.never_sleeps = None
         return name != 'starting'
+
+    def has_started(self, _):
+        pass
 
     def is_connected(self, _):
         return True

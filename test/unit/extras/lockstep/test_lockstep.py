@@ -70,7 +70,17 @@ def test_a_node_that_never_sleeps_is_given_up(world):
     assert world.reports == [('a', 'did not become idle within 5 s')]
     assert world.processes.tests > 2    # for threads that poll; again and again in a long wait
     assert world.applied == [(1, MOVE), (2, FASTER)]
-    # no word about a node that only takes long to start
+    # it is not judged again
+    world.processes.forgotten = {'b': None}
+    world.processes.obstacles = {'b': 'is not visible'}
+    world.tick(*[('b', MOVE)] * 9)
+    world.tick(*[('b', FASTER)] * 9)
+    assert len(world.reports) == 1
+    # no word about this node, which messages keep busy, nor about a node that only takes long to start
+    world.processes.never_sleeps = 'base'
+    world.tick()
+    world.processes.never_sleeps = None
+    world.tick()
     world.processes.never_sleeps = 'starting'
     world.tick()
     assert len(world.reports) == 1
@@ -99,7 +109,8 @@ def test_the_first_motion_and_every_stop_need_no_tick(world):
     world.tick()
     world.send('a', STOP)
     world.tick()
-    world.send('a', MOVE)
+    for _ in range(3):      # a Rate that was made before the node slept
+        world.send('a', MOVE)
     world.drive(1)
     world.send('a', STOP)
     world.tick()

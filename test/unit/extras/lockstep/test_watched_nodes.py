@@ -7,6 +7,7 @@ from types import SimpleNamespace
 import pytest
 
 from rbx1_nav.extras.lockstep import watched_nodes
+from rbx1_nav.extras.lockstep.sockets import peer_process
 from rbx1_nav.extras.lockstep.watched_nodes import Watch, sources_of
 from waiting import wait_for
 
@@ -32,7 +33,7 @@ class World:
         self.children = []
         self.clock = SimpleNamespace(connections=[])
         self.commands = SimpleNamespace(connections=[], resolved_name='/cmd_vel')
-        self.watch = Watch(SimpleNamespace(impl=self.clock))
+        self.watch = Watch(SimpleNamespace(impl=self.clock), lambda: False)
         self.watch.add(SimpleNamespace(impl=self.commands))
 
     def connect(self, name, code='sys.stdin.read()'):
@@ -123,6 +124,47 @@ def test_a_node_that_starts_is_watched_until_it_waits(world):
     world.children[-1].stdin.flush()
     time.sleep(0.05)
     assert world.watch.awake() is None
+
+
+@pytest.mark.parametrize('publishers, waits', [([['/cmd_vel', ['/node']]], True), ([['/cmd_vel', ['/other']]], False)])
+def test_a_driver_that_sleeps_by_the_wall_clock_before_its_first_command_is_waited_for(
+        world, monkeypatch, publishers, waits):
+    monkeypatch.setattr(watched_nodes, 'call', lambda *_: (publishers, [], []))
+    monkeypatch.setattr(watched_nodes, 'CONNECT_TIME', 0.0)
+    monkeypatch.setattr(watched_nodes, 'START_SLEEP', 0.0)
+    monkeypatch.setattr(watched_nodes, 'DRIVER_SLEEP', 1000.0)
+    world.listen(world.connect('/node', 'time.sleep(1000)'))
+    if waits:
+        wait_for(lambda: world.watch.processes['/node'].main_sleeps_briefly())
+        assert {world.watch.awake() for _ in range(20)} == {'/node'}
+        world.watch.has_started('/node')
+    world.settle()
+    assert not world.watch.starting
+
+
+def test_a_new_subscriber_is_greeted_when_all_nodes_are_asleep(world):
+    greeted = []
+    world.watch.greet = lambda: greeted.append('node') or len(greeted) == 1
+    world.drive(world.connect('/computing', 'while True: pass'))
+    wait_for(lambda: world.watch.awake() == '/computing')
+    assert not greeted
+    world.drive(world.connect('/driver'))
+    assert wait_for(world.watch.awake) is not None     # it may have been woken
+    world.settle()
+    assert len(greeted) == 2
+
+
+@pytest.mark.skipif(not socket.has_dualstack_ipv6(), reason='no IPv6')
+def test_a_peer_that_listens_for_both_families_is_found():
+    """rosnodejs, Java and Go do; the kernel lists its connection with an IPv6 address."""
+    code = ('import socket, sys; s = socket.create_server(("", 0), family=socket.AF_INET6, dualstack_ipv6=True); '
+            'print(s.getsockname()[1], flush=True); c, _ = s.accept(); sys.stdin.read()')
+    child = subprocess.Popen(['/usr/bin/python3', '-c', code], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+    with child, socket.create_connection(('127.0.0.1', int(child.stdout.readline()))) as connection:
+        process = wait_for(lambda: peer_process(connection))
+        assert process.folder == f'/proc/{child.pid}/task/'
+        process.close()
+        child.stdin.close()
 
 
 def test_a_driver_that_is_forgotten_holds_the_clock_no_more(world):
