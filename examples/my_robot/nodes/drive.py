@@ -10,7 +10,7 @@ def main():
     # commands that are sent before the base is connected are lost
     while not publisher.get_num_connections():
         rospy.sleep(0.1)
-    # from now on, simulated time waits for this node: a Rate that was created earlier may be a few ticks late at first
+    # now there is a time: a Rate that was created before would not sleep after its first command
     rospy.sleep(1)
 
     rate = rospy.Rate(20)
