@@ -55,7 +55,7 @@ def test_pictures_and_a_file_of_the_robot(simulate, tmp_path):
     (['--surface', 'sand'], 1, "simulate.py: surface: 'sand': expected one of"), (['--set', 'luck=1'], 1, 'luck'),
     (['--surface', 'sand.yaml'], 1, f'{os.sep}sand.yaml'),
     (['--set', 'goal_distance=1,2', '--plot', 'run.png'], 1, '--plot: expected one combination, not 2'),
-    (['--set', 'goal_distance=1,2', '--animate', 'run.png'], 1, '--animate: expected one combination, not 2')])
+    (['--set', 'goal_distance=1,2', '--animate', 'run.gif'], 1, '--animate: expected one combination, not 2')])
 def test_what_is_rejected(simulate, arguments, status, text):
     found, out, err = simulate(*arguments)
     assert (found, out) == (status, '') and text in err.splitlines()[-1] and 'Traceback' not in err
