@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Prints a robot's URDF file for a launch file, and expands it first if it is a xacro file.
 
-Used by launch files. Exits with 1, and one line, if the file is not a URDF file.
+Exits with 1, and one line, if the file is not a URDF file.
 """
 from __future__ import annotations
 

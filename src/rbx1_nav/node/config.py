@@ -50,7 +50,7 @@ def close_match(name: str, names: Iterable[str], cutoff: float = 0.6) -> str:
     """Return the known name that is most similar to an unknown one, or '' if none is.
 
     cutoff: least ratio of difflib. Two short names must also differ by a single slip, because their ratio is high by
-    chance: that of `imu` and `sim` is 0.67.
+    chance: `imu` and `sim` have a ratio of 0.67.
     """
     names = [each for each in names if max(len(name), len(each)) > SHORT or _is_slip(name, each)]
     return ''.join(difflib.get_close_matches(name, names, 1, cutoff))

@@ -71,7 +71,7 @@ def test_a_completed_block_is_logged_at_the_end_of_the_script(world):
     assert world.log == ['halt', 'stop', 7.5, 'released'] and Commands.current is None
     script._finish('')
     assert world.log[4].startswith('Done: commanded 0.00 m') and script._functions_called.is_set()
-    script._exit()      # the exit status is that of Python
+    script._exit()      # Python itself sets the exit status
     assert world.log[5:] == ['unregistered'] and script.shutdown_wanted.is_set() and script._script_ended.is_set()
     script._interrupted.append(None)
     script._exit()

@@ -131,7 +131,7 @@ def test_a_known_pose_has_its_covariance_and_what_is_known_of_the_sensors_remain
     ekf.doubt[YAW] = 10.0       # the heading is unknown: the same correlation, but half a turn
     factor = pi / sqrt(100.16)
     assert ekf.covariance[YAW].tolist() == pytest.approx([factor * (0.02 + 1.0), factor * 2.0, pi ** 2])
-    # no variance is less than that of the first pose
+    # no variance is less than at the first pose
     ekf.place(ORIGIN, numpy.full((3, 3), 0.01))
     assert numpy.linalg.eigvalsh(ekf.covariance) == pytest.approx([1e-9, 1e-9, 0.03], rel=1e-6)   # eigh: 1e-16
 

@@ -91,7 +91,8 @@ class OwnClock(Clock):
         simtime._clock_sub.unregister()
         # the usual limit of 1,024 open files is enough for the threads of about 17 drivers; see lockstep/processes.py
         setrlimit(RLIMIT_NOFILE, 2 * getrlimit(RLIMIT_NOFILE)[1:])
-        self.new: list[tuple[bool, Callable[[], None]]] = []    # new subscribers: whether not of the time; greets it
+        # new subscribers: False for those of /clock, which come first; a function that greets each of them
+        self.new: list[tuple[bool, Callable[[], None]]] = []
         self.publisher = rospy.Publisher('/clock', ClockMessage, NoDelay(self.greet_with_time), queue_size=10)
         self.lockstep = Lockstep(Watch(self.publisher, self.greet_all), self.report, life.end_requested.is_set)
         self.not_in_step: dict[str, str] = {}   # reasons, by the name of the node
@@ -104,7 +105,7 @@ class OwnClock(Clock):
         self.new.append((True, send))
 
     def greet_all(self) -> bool:
-        """Greet the new subscribers, those of the time first; return whether there were any."""
+        """Greet the new subscribers, and those of /clock first; return whether there were any."""
         new, self.new = self.new, []
         for _, send in sorted(new, key=lambda each: each[0]):
             send()

@@ -198,7 +198,6 @@ class Watch:
             self.find_sources()
         if self.registered.intersection(sleeping):
             return sleeping[0]
-        self.find_sources()
         connected = {each.header['callerid'] for each in self._connections() if is_complete(each)}
         for name in self.starting.keys() & self.registered - connected:
             self.connect_by = self.connect_by or now + CONNECT_TIME
