@@ -55,8 +55,10 @@ class Listener:
     def ask(self, exact: bool, fail: Callable[[str], object]) -> None:
         """Call the node repeatedly, until it has a problem. For the arguments, see wait_for_listeners()."""
         server = Server(self.uri, ANSWER_TIMEOUT)      # kept: a new connection costs both nodes more than the call
-        while not (self.finished or self.problem()):
+        while not self.finished:
             self.call(server, exact)
+            if self.problem():
+                break
             time.sleep(ASK_PERIOD)
         if not self.finished:
             fail(self.problem())
