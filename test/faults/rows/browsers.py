@@ -3,22 +3,27 @@ import os
 import re
 import signal
 import socket
+import struct
+import threading
 import time
 
 import support
 from web_client import WebClient, request
 
 FAULT = ('requests and WebSockets from a foreign page; another user without the token; 100 connections; slow readers; '
-         'random bytes; the browser or the node is killed while keys drive it')
+         'ten clients without the token that send as fast as they can, and connect again; random bytes; the browser or '
+         'the node is killed while keys drive it')
 PROMISE = ('foreign requests are rejected; the robot does not move without the token; others receive their '
            'frames; the memory of the node does not grow, and it logs no errors; the robot stops within 0.5 s if the '
            'browser is killed, and within the timeout of the base (1 s) if the node is killed')
-FULL, SHORT = 28, 7
+FULL, SHORT = 32, 8
 ROOT, ALONE = False, True
 
 SPEED = 0.2             # m/s
 TIMEOUT, PERIOD = 1.0, 0.02     # s, timeout of the base and period of its odometry
 GONE = 0.5              # s
+GAP = 0.3               # s, longest time without a frame beside floods
+FLOOD_TIME = 5.0        # s
 MEMORY_LIMIT = 20000    # KB
 ATTEMPTS = [dict(type='run', method='timed'), dict(type='hand', on=True), dict(type='drive', forward=1.0),
             dict(type='reset')]
@@ -134,6 +139,43 @@ def slow_readers(row, view):
         each.close()
 
 
+def floods(row, view):
+    """Ten clients without the token send as fast as they can, and connect again when they are disconnected."""
+    end = time.monotonic() + FLOOD_TIME
+    data = [struct.pack('!BB', 0x80 | opcode, 0x80 | len(body)) + bytes(4) + body for opcode, body in (
+        (9, b''), (1, b'{"type":"drive"}'), (1, b'{"type":"stop","number":1.5}'))]
+
+    def flood(data):
+        while time.monotonic() < end:
+            try:
+                client = WebClient(view.port, '')
+                while time.monotonic() < end:
+                    client.socket.sendall(100 * data)
+            except OSError:
+                pass
+            client.close()
+    threads = [threading.Thread(target=flood, args=(row.random.choice(data),)) for _ in range(10)]
+    owner = WebClient(view.port, view.token)
+    owner.wait_for('frame')
+    owner.send(type='hand', on=True)
+    for each in threads:
+        each.start()
+    gaps, last, driving = [], time.monotonic(), False
+    while last < end:
+        owner.send(type='drive', forward=1.0)       # so that each frame has something new
+        message = owner.next()
+        if message['type'] == 'frame':
+            now = time.monotonic()
+            gaps.append(now - last)
+            last = now
+            driving = driving or view.odom.last.twist.twist.linear.x == SPEED
+    for each in threads:
+        each.join()
+    owner.close()
+    row.figure('longest time without a frame beside ten floods, s', max(gaps))
+    assert driving and max(gaps) < GAP, f'{max(gaps):.2f} s'
+
+
 def random_bytes(row, view):
     """A client sends random bytes instead of requests and frames."""
     for _ in range(20):
@@ -183,7 +225,7 @@ def view_killed(row, view):
     client.close()
 
 
-KINDS = [foreign_page, no_token, many_connections, slow_readers, random_bytes, browser_gone, view_killed]
+KINDS = [foreign_page, no_token, many_connections, slow_readers, floods, random_bytes, browser_gone, view_killed]
 
 
 def run(row):

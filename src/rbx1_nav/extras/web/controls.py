@@ -99,6 +99,7 @@ class Controls:
         self.speeds = speeds
         self.in_background = in_background
         self.clock = clock
+        self.log = log
         self.stop_needs_token = stop_needs_token
         self.stopper = Stopper(self._stop, system, state.speed_since, log)
 
