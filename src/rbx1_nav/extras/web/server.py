@@ -23,7 +23,7 @@ PING_PERIOD = 10.0      # s: a browser that does not answer three pings is disco
 MAX_HEADER = 8192       # bytes
 # Reads from a WebSocket; a message takes three or four. The page sends 10 messages/s while a key is held.
 READ_RATE = 300.0       # 1/s
-READ_BURST = 600.0
+READ_BURST = 200.0
 HEADERS = {
     # load nothing from other hosts; no other page may embed this one, which prevents clickjacking
     'Content-Security-Policy': "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; "
