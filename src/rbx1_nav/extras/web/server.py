@@ -57,8 +57,8 @@ class SocketHandler(WebSocketHandler):
         self.connections.opened(self)
 
     def _limit_reads(self) -> None:
-        """Disconnect a client that sends too fast. tornado reads on as long as there is data, and meanwhile serves nobody
-        else. It calls no function of a handler for the parts of a message, so the reads are counted."""
+        """Disconnect a client that sends too fast. tornado reads on as long as there is data, and serves nobody else
+        meanwhile. It calls no function of a handler for the parts of a message, so the reads are counted."""
         stream: Any = self.ws_connection.stream
         read, left, last = stream.read_bytes, READ_BURST, time.monotonic()
 
