@@ -48,6 +48,9 @@ def read_arguments() -> argparse.Namespace:
         if not 1024 <= getattr(arguments, name) <= 65535 - MAX_SEATS:
             parser.error(f"--{name.replace('_', '-')}: {getattr(arguments, name)}: expected 1024 to "
                          f'{65535 - MAX_SEATS}')
+    if abs(arguments.master_port - arguments.web_port) < arguments.seats:
+        parser.error(f'--web-port: {arguments.web_port}: expected a port that is {arguments.seats} or more away from '
+                     f'--master-port, {arguments.master_port}')
     try:
         load_surface(arguments.surface, resources.surfaces())
         read_seed(arguments.seed if arguments.seed == RANDOM else int(arguments.seed))

@@ -1,6 +1,8 @@
 // The WebSocket to the node: sends hello with the token, and reconnects when the connection is lost.
 
 const SILENCE = 1000;                       // ms: the node sends a frame at least every 400 ms
+const DEAD = 2000;                          // ms of silence after which the connection is replaced: it may be dead, as after
+                                            // a restart of a router, and the browser would notice this only after minutes
 const RETRY = [500, 1000, 2000, 4000];      // ms
 
 // The token is the part of the printed address after #, which a browser does not send to the server. It is stored for
@@ -22,22 +24,25 @@ export class Connection extends EventTarget {
     this.path = robot ? `/socket/${robot}` : '/socket';
     this.token = readToken();
     this.failures = 0;
+    this.heard = 0;         // ms: when the last message arrived
     this.clock = 0;         // s, clock of the node in the last frame: a request carries it, and so its age
     this.silent = false;
     setInterval(() => this.checkSilence(), 100);
     // pasting another printed address into an open page changes only the part after #, and does not reload the page
     window.addEventListener('hashchange', () => {
       this.token = readToken();
-      this.socket.close();
+      this.replace();
     });
     this.connect();
   }
 
   connect() {
     const protocol = location.protocol === 'https:' ? 'wss' : 'ws';
-    this.socket = new WebSocket(`${protocol}://${location.host}${this.path}`);
-    this.socket.onopen = () => this.send({type: 'hello', token: this.token});
-    this.socket.onmessage = event => {
+    const socket = new WebSocket(`${protocol}://${location.host}${this.path}`);
+    this.socket = socket;
+    this.begun = performance.now();
+    socket.onopen = () => this.send({type: 'hello', token: this.token});
+    socket.onmessage = event => {
       const message = JSON.parse(event.data);
       if (message.type === 'welcome') {
         this.failures = 0;
@@ -49,14 +54,26 @@ export class Connection extends EventTarget {
       }
       this.dispatchEvent(new CustomEvent(message.type, {detail: message}));
     };
-    this.socket.onclose = event => {
+    socket.onclose = event => {
       this.dispatchEvent(new CustomEvent('lost', {detail: event.reason}));
-      setTimeout(() => this.connect(), RETRY[Math.min(this.failures++, RETRY.length - 1)]);
+      this.retry = setTimeout(() => this.connect(), RETRY[Math.min(this.failures++, RETRY.length - 1)]);
     };
   }
 
+  // Abandons the connection without waiting for its end, which may never come, and opens another one.
+  replace() {
+    clearTimeout(this.retry);
+    this.socket.onopen = this.socket.onmessage = this.socket.onclose = null;
+    this.socket.close();
+    this.dispatchEvent(new CustomEvent('lost', {detail: ''}));
+    this.connect();
+  }
+
   checkSilence() {
-    const silent = performance.now() - this.heard > SILENCE;
+    const now = performance.now(), silent = now - this.heard > SILENCE;
+    if (now - Math.max(this.heard, this.begun) > DEAD && this.socket.readyState !== WebSocket.CLOSED) {
+      this.replace();
+    }
     if (silent !== this.silent) {
       this.silent = silent;
       this.dispatchEvent(new CustomEvent(silent ? 'silent' : 'heard'));

@@ -157,11 +157,11 @@ export class Drive {
     }
   }
 
-  stopAnswered({number, stationary, text}) {
+  stopAnswered({number, stationary, silent, text}) {
     if (this.stopTimer && number === this.stops) {
       this.begin();
       this.answer = text;
-      this.alarm(stationary ? '' : text);
+      this.alarm(stationary && !silent.length ? '' : text);
       this.draw();
     }
   }

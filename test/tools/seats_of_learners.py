@@ -58,6 +58,16 @@ class TestSeats(support.Case):
     def test_ctrl_c_stops_all_seats(self):
         self.check(2, signal.SIGINT, 0)
 
+    def test_a_neighbor_cannot_stop_a_seat(self):
+        page = free_port()
+        process = self.start(1, '--master-port', free_port() - 1, '--web-port', page - 1)
+        token = process.wait_for_line(r' 1 .*/#(\S+)').group(1)
+        for given, answer in ('', 'refused'), (token, 'stopping'):
+            client = WebClient(page, given)
+            client.send(type='stop', number=1)
+            self.assertEqual(client.wait_for(answer)['type'], answer)
+            client.close()
+
     def test_seats_end_with_a_process_that_is_killed(self):
         self.check(1, signal.SIGKILL, -signal.SIGKILL)
 
@@ -80,6 +90,7 @@ class TestSeats(support.Case):
                 (('--help',), 0, 'usage: seats.py'),
                 ((0,), 2, 'seats: 0: expected an integer from 1 to 100'),
                 ((1, '--web-port', 80), 2, '--web-port: 80: expected 1024 to'),
+                ((3, '--master-port', 8082), 2, '--web-port: 8080: expected a port that is 3 or more away from'),
                 ((1, '--surface', 'sand'), 2, "surface: 'sand'"),
                 ((1, '--seed', 'x'), 2, "'x'"),
                 ((1, '--address', '192.0.2.1'), 1, 'address 192.0.2.1, port'),

@@ -3,7 +3,10 @@
 and the browser logs no errors."""
 import math
 import os
+import re
 import signal
+import socket
+import threading
 import xml.etree.ElementTree as ElementTree
 
 from nav_msgs.msg import Odometry
@@ -13,6 +16,46 @@ import support
 from browser import Page, PageTest
 
 SPEED = 0.2     # m/s, of the timed script
+
+
+class Relay:
+    """Passes connections on to a port. Its connections can go dead without an end, as when a router restarts."""
+
+    def __init__(self, port):
+        self.target = port
+        self.server = socket.create_server(('127.0.0.1', 0))
+        self.port = self.server.getsockname()[1]
+        self.pairs = []
+        threading.Thread(target=self._accept, daemon=True).start()
+
+    def _accept(self):
+        while True:
+            try:
+                near = self.server.accept()[0]
+            except OSError:     # close()
+                return
+            pair = [near, socket.create_connection(('127.0.0.1', self.target))]
+            self.pairs.append(pair)
+            for source, sink in pair, pair[::-1]:
+                threading.Thread(target=self._pass_on, args=(pair, source, sink), daemon=True).start()
+
+    def _pass_on(self, pair, source, sink):
+        try:
+            for data in iter(lambda: source.recv(65536), b''):
+                if pair not in self.pairs:
+                    return
+                sink.sendall(data)
+            if pair in self.pairs:
+                sink.shutdown(socket.SHUT_WR)
+        except OSError:
+            pass
+
+    def break_connections(self):
+        """From now on, the existing connections pass on neither data nor their end."""
+        self.dead, self.pairs = self.pairs, []      # kept, since a socket that is deleted is closed
+
+    def close(self):
+        self.server.close()
 
 
 class TestBrowserPage(PageTest):
@@ -133,11 +176,23 @@ class TestBrowserPage(PageTest):
         self.assertEqual(self.page.find('#connection').get_attribute('class'), 'lost')
         self.assertFalse(self.page.find('.run[data-method=timed]').is_enabled())
         self.page.click('#stop')
-        self.page.wait_for_text('notice', 'No answer: the robot may still be moving')
+        self.page.wait_for_text('notice', 'No answer: the robot may still be moving|Not connected: Stop did not reach')
         os.kill(pid, signal.SIGCONT)
         self.page.wait_for_text('run-state', r'Stopped\. The robot is stationary\.')
         support.wait_for(lambda: not self.page.find('#notice').is_displayed(), 'the alarm to disappear')
         self.page.wait_for_text('connection', 'Connected')
+
+    def test_a_connection_that_is_dead_is_replaced(self):
+        relay = Relay(int(re.search(r':(\d+)/', self.url).group(1)))
+        self.addCleanup(relay.close)
+        self.page = Page(self.driver, re.sub(r':\d+/', f':{relay.port}/', self.url))
+        self.drive_ahead(0.05)
+        relay.break_connections()
+        self.page.click('#stop')
+        self.page.wait_for_text('run-state', r'The robot is stationary\.')
+        self.page.wait_for_text('connection', 'Connected')
+        self.assertEqual(self.page.find('#notice').text, '')
+        self.page.key('keyUp', 'ArrowUp')
 
     def test_a_key_that_was_held_while_the_page_was_frozen_must_be_pressed_again(self):
         self.drive_ahead(0.05)

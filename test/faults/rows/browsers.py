@@ -1,24 +1,29 @@
 """Browsers that are slow, malicious or killed, and pages from other sites."""
+import multiprocessing
 import os
 import re
 import signal
 import socket
+import struct
 import time
 
 import support
 from web_client import WebClient, request
 
 FAULT = ('requests and WebSockets from a foreign page; another user without the token; 100 connections; slow readers; '
-         'random bytes; the browser or the node is killed while keys drive it')
+         'ten clients without the token that send as fast as they can, and connect again; random bytes; the browser or '
+         'the node is killed while keys drive it')
 PROMISE = ('foreign requests are rejected; the robot does not move without the token; others receive their '
            'frames; the memory of the node does not grow, and it logs no errors; the robot stops within 0.5 s if the '
            'browser is killed, and within the timeout of the base (1 s) if the node is killed')
-FULL, SHORT = 28, 7
+FULL, SHORT = 32, 8
 ROOT, ALONE = False, True
 
 SPEED = 0.2             # m/s
 TIMEOUT, PERIOD = 1.0, 0.02     # s, timeout of the base and period of its odometry
 GONE = 0.5              # s
+GAP = 0.3               # s, by which the longest time without a frame may grow beside floods
+FLOOD_TIME = 5.0        # s
 MEMORY_LIMIT = 20000    # KB
 ATTEMPTS = [dict(type='run', method='timed'), dict(type='hand', on=True), dict(type='drive', forward=1.0),
             dict(type='reset')]
@@ -134,6 +139,53 @@ def slow_readers(row, view):
         each.close()
 
 
+def flood(port, data):
+    """Send data to a view until this process is killed."""
+    os.nice(19)     # like another machine, it takes no CPU time from the view
+    while True:
+        try:
+            client = WebClient(port, '')
+            while True:
+                client.socket.sendall(100 * data)
+        except OSError:
+            pass
+
+
+def floods(row, view):
+    """Ten clients without the token send as fast as they can, and connect again when they are disconnected."""
+    data = [struct.pack('!BB', 0x80 | opcode, 0x80 | len(body)) + bytes(4) + body for opcode, body in (
+        (9, b''), (1, b'{"type":"drive"}'), (1, b'{"type":"stop","number":1.5}'))]
+
+    processes = [multiprocessing.Process(target=flood, args=(view.port, row.random.choice(data)), daemon=True)
+                 for _ in range(10)]
+    owner = view.drive()
+    control = longest_gap(view, owner)
+    for each in processes:
+        each.start()
+    try:
+        gap = longest_gap(view, owner)
+    finally:
+        for each in processes:
+            each.kill()
+            each.join()
+    owner.close()
+    row.figure('longest time without a frame, s', control)
+    row.figure('longest time without a frame beside ten floods, s', gap)
+    assert gap < control + GAP, f'{gap:.2f} s'
+
+
+def longest_gap(view, owner):
+    """Drive on for FLOOD_TIME; return the longest time without a frame, s."""
+    gaps, last = [], time.monotonic()
+    end = last + FLOOD_TIME
+    while last < end:
+        owner.send(type='drive', forward=1.0)
+        owner.wait_for('frame')
+        gaps.append(time.monotonic() - last)
+        last += gaps[-1]
+    return max(gaps)
+
+
 def random_bytes(row, view):
     """A client sends random bytes instead of requests and frames."""
     for _ in range(20):
@@ -183,7 +235,7 @@ def view_killed(row, view):
     client.close()
 
 
-KINDS = [foreign_page, no_token, many_connections, slow_readers, random_bytes, browser_gone, view_killed]
+KINDS = [foreign_page, no_token, many_connections, slow_readers, floods, random_bytes, browser_gone, view_killed]
 
 
 def run(row):

@@ -11,9 +11,11 @@ from rbx1_nav.extras.web.controls import Controls
 from rbx1_nav.extras.web.page_messages import Hello, InvalidMessage, StopRequest, encode, kind_of, parse
 from rbx1_nav.extras.web.state import PageState
 
-MAX_SOCKETS = 100       # maximum number of browsers
+# Maximum numbers of browsers without the token, in all and from one address, and of those that have not sent hello. A
+# browser with the token always has a place.
+MAX_WATCHERS, MAX_OF_ADDRESS, MAX_SILENT = 100, 50, 20
 FRAME_TIMEOUT = 0.4     # s after which a frame is sent although nothing has changed; see web/connection.js
-POLICY = 1008           # close code, RFC 6455
+POLICY, TRY_AGAIN = 1008, 1013      # close codes, RFC 6455 and its registry
 
 
 class Browser:
@@ -51,14 +53,17 @@ class Connections:
         self.clock = clock
         self.browsers: dict[WebSocketHandler, Browser] = {}
 
-    @property
-    def full(self) -> bool:
-        """Whether no further browser may connect."""
-        return len(self.browsers) >= MAX_SOCKETS
-
     def opened(self, socket: WebSocketHandler) -> None:
         """Add a browser that has connected."""
         self.browsers[socket] = Browser(socket, self.clock())
+        silent = [each for each in self.browsers.values() if not each.greeted]
+        if len(silent) > MAX_SILENT:
+            self._disconnect(silent[0].socket, POLICY, 'expected hello')
+
+    def flooded(self, socket: WebSocketHandler) -> None:
+        """Log that a browser is disconnected because it sends too fast."""
+        if socket in self.browsers:
+            self.controls.log(f'{self.browsers[socket].address} sends too many messages: disconnected')
 
     def closed(self, socket: WebSocketHandler) -> None:
         """Remove a browser that has disconnected. If its keys were driving the robot, stop the robot."""
@@ -76,8 +81,7 @@ class Connections:
             if browser.greeted == isinstance(message, Hello):
                 raise InvalidMessage('expected hello as the first message, and only once')
         except InvalidMessage as error:
-            self.closed(socket)
-            socket.close(POLICY, str(error))
+            self._disconnect(socket, POLICY, str(error))
             return
         if isinstance(message, Hello):
             self._greet(browser, message)
@@ -90,9 +94,17 @@ class Connections:
 
     def _greet(self, browser: Browser, hello: Hello) -> None:
         browser.greeted, browser.trusted = True, same_token(self.token, hello.token)
+        watchers = [each.address for each in self.browsers.values() if each.greeted and not each.trusted]
+        if not browser.trusted and (len(watchers) > MAX_WATCHERS or watchers.count(browser.address) > MAX_OF_ADDRESS):
+            self._disconnect(browser.socket, TRY_AGAIN, 'too many pages without the token')
+            return
         linear, angular = self.controls.speeds
         browser.send(encode('welcome', trusted=browser.trusted, known_token=browser.trusted or not hello.token,
                             speeds=[linear, angular]))
+
+    def _disconnect(self, socket: WebSocketHandler, code: int, reason: str) -> None:
+        self.closed(socket)
+        socket.close(code, reason)
 
     def send_frames(self) -> None:
         """Send a frame to each browser that is ready. To be called periodically."""

@@ -17,6 +17,7 @@ ROUNDING = 0.001    # s: resolution of the clock in a frame
 MAX_AGE = 2.0       # s: age of the last frame that the browser had received when it sent a request
 NOT_CONFIRMED = 'a real robot moves only after you have confirmed that its path is free'
 LIMIT = 3.0         # s: time for the robot to come to rest; then the answer is that it has not
+FRESH = 1.0         # s: older odometry does not tell whether the robot moves; a base that hangs sends none
 REST = 0.005        # m/s, rad/s: encoder noise of a robot at rest
 
 
@@ -24,7 +25,8 @@ class Answer(NamedTuple):
     """The answer to a Stop."""
 
     number: int         # of the request
-    stationary: bool    # whether the odometry has reported that the robot is stationary
+    stationary: bool    # whether the odometry reports that the robot is stationary
+    silent: list[str]   # nodes that have not answered, and may drive the robot again
     text: str
 
 
@@ -66,7 +68,7 @@ class Stopper:
         if not self.waiting:
             return {}
         self._search()
-        speed = self.speed(self.begun)
+        speed = self.speed(max(self.begun, now - FRESH))
         stationary = speed is not None and speed < REST
         stopping = self.again or busy or self.system.pending or not stationary
         if stopping and now - self.begun < LIMIT:
@@ -75,12 +77,12 @@ class Stopper:
         texts = [f'Stopped {" and ".join(stopped)}.' if stopped else 'Stopped.' if stationary else
                  'Zero commands were sent.']
         if silent:
-            texts.append(f'No answer from {" and ".join(silent)}.')
+            texts.append(f'No answer from {" and ".join(silent)}: the robot may move again.')
         texts.append('The robot is stationary.' if stationary else
                      'There is no odometry: the robot may still be moving.' if speed is None else
                      'The robot is still moving.')
         waiting, self.waiting = self.waiting, {}
-        return {browser: Answer(number, stationary, ' '.join(texts)) for browser, number in waiting.items()}
+        return {browser: Answer(number, stationary, silent, ' '.join(texts)) for browser, number in waiting.items()}
 
 
 class Controls:
@@ -99,6 +101,7 @@ class Controls:
         self.speeds = speeds
         self.in_background = in_background
         self.clock = clock
+        self.log = log
         self.stop_needs_token = stop_needs_token
         self.stopper = Stopper(self._stop, system, state.speed_since, log)
 

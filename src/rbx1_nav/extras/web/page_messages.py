@@ -97,6 +97,8 @@ def _checked(name: str, value: object, default: Any) -> Any:
         # bool is a subclass of int; a very large integer can be compared, but not converted; NaN is in no range
         if isinstance(value, bool) or not isinstance(value, (int, float)) or not low <= value <= high:
             raise InvalidMessage(f'{name}: expected a number from {low} to {high}')
+        if isinstance(default, int) and value != int(value):
+            raise InvalidMessage(f'{name}: expected an integer')
         return type(default)(value)
     return value
 

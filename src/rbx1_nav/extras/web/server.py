@@ -4,12 +4,13 @@ from __future__ import annotations
 import asyncio
 import logging
 from threading import Event, Thread
-from typing import Mapping
+import time
+from typing import Any, Mapping
 
 from tornado.httpserver import HTTPServer
 from tornado.ioloop import PeriodicCallback
 from tornado.netutil import bind_sockets
-from tornado.web import Application, HTTPError, StaticFileHandler
+from tornado.web import Application, StaticFileHandler
 from tornado.websocket import WebSocketHandler
 
 from rbx1_nav.extras.web.access import accepted_hosts
@@ -20,6 +21,9 @@ FRAME_PERIOD = 50       # ms
 IDLE_TIMEOUT = 5.0      # s in which a request must arrive; s after which an unused connection is closed
 PING_PERIOD = 10.0      # s: a browser that does not answer three pings is disconnected
 MAX_HEADER = 8192       # bytes
+# Reads from a WebSocket; a message takes three or four. The page sends 10 messages/s while a key is held.
+READ_RATE = 300.0       # 1/s
+READ_BURST = 200.0
 HEADERS = {
     # load nothing from other hosts; no other page may embed this one, which prevents clickjacking
     'Content-Security-Policy': "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; "
@@ -47,13 +51,26 @@ class SocketHandler(WebSocketHandler):
     def initialize(self, connections: Connections) -> None:
         self.connections = connections
 
-    def prepare(self) -> None:
-        if self.connections.full:
-            raise HTTPError(503)
-
     def open(self, *_: str, **__: str) -> None:
         self.set_nodelay(True)
+        self._limit_reads()
         self.connections.opened(self)
+
+    def _limit_reads(self) -> None:
+        """Disconnect a client that sends too fast. tornado reads on as long as there is data, and serves nobody else
+        meanwhile. It calls no function of a handler for the parts of a message, so the reads are counted."""
+        stream: Any = self.ws_connection.stream
+        read, left, last = stream.read_bytes, READ_BURST, time.monotonic()
+
+        def read_bytes(*args: Any, **options: Any) -> Any:
+            nonlocal left, last
+            now = time.monotonic()
+            left, last = min(READ_BURST, left + READ_RATE * (now - last)) - 1, now
+            if left < 0 and not stream.closed():
+                self.connections.flooded(self)
+                stream.close()
+            return read(*args, **options)
+        stream.read_bytes = read_bytes
 
     def on_message(self, message: str | bytes) -> None:
         self.connections.received(self, message)

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from rbx1_nav.extras.web.connections import MAX_SOCKETS, Connections
+from rbx1_nav.extras.web.connections import MAX_OF_ADDRESS, MAX_SILENT, MAX_WATCHERS, Connections
 from rbx1_nav.extras.web.controls import Controls
 from rbx1_nav.extras.web.state import PoseAndSpeed, PageState
 
@@ -76,10 +76,10 @@ class System:
 
 class Socket:
     """Takes the place of a WebSocket."""
-    request = SimpleNamespace(remote_ip='10.0.0.1')
 
-    def __init__(self, slow=False):
+    def __init__(self, slow=False, address='10.0.0.1'):
         self.slow = slow
+        self.request = SimpleNamespace(remote_ip=address)
         self.messages, self.closed = [], None
 
     def write_message(self, message, binary=False):
@@ -121,8 +121,8 @@ class View:
                                  lambda: self.now, self.log.append)
         self.connections = Connections(self.state, self.controls, TOKEN, lambda: self.now)
 
-    def connect(self, token=None, slow=False):
-        socket = Socket(slow)
+    def connect(self, token=None, slow=False, address='10.0.0.1'):
+        socket = Socket(slow, address)
         self.connections.opened(socket)
         if token is not None:
             self.send(socket, type='hello', token=token)
@@ -224,11 +224,28 @@ def test_hello_comes_first(view):
     assert not (silent.messages or silent.closed)
 
 
-def test_the_number_of_browsers_is_limited(view):
-    for number in range(MAX_SOCKETS):
-        assert not view.connections.full
-        view.connect('')
-    assert view.connections.full
+def test_the_number_of_browsers_without_the_token_is_limited(view):
+    watchers = [view.connect('wrong', address=f'10.0.0.{number // MAX_OF_ADDRESS}') for number in range(MAX_WATCHERS)]
+    refused = view.connect('', address='10.0.0.9')
+    assert refused.closed == (1013, 'too many pages without the token') and not refused.messages
+    assert not any(each.closed for each in watchers)
+    assert view.connect(TOKEN).kinds == ['welcome']
+    view.connections.closed(watchers[0])
+    assert view.connect('', address='10.0.0.9').kinds == ['welcome']
+
+
+def test_one_address_does_not_take_all_places(view):
+    owner = view.connect(TOKEN)
+    for _ in range(MAX_OF_ADDRESS):
+        assert not view.connect('').closed
+    assert view.connect('').closed[0] == 1013
+    assert view.connect('', address='10.0.0.2').kinds == view.connect(TOKEN).kinds == owner.kinds == ['welcome']
+
+
+def test_connections_without_hello_make_room_for_further_ones(view):
+    silent = [view.connect() for _ in range(MAX_SILENT + 1)]
+    assert [bool(each.closed) for each in silent] == [True] + MAX_SILENT * [False]
+    assert len(view.connections.browsers) == MAX_SILENT
 
 
 def test_a_slow_browser_loses_frames_and_no_path(view):

@@ -17,10 +17,8 @@ LIMIT = 60      # s, after which a wait fails
 
 class Connections:
     """Takes the place of Connections: keeps what arrives."""
-    full = False
-
     def __init__(self):
-        self.browsers, self.messages = {}, []
+        self.browsers, self.messages, self.flooding = {}, [], []
 
     def opened(self, browser):
         self.browsers[browser] = True
@@ -31,6 +29,9 @@ class Connections:
     def received(self, browser, text):
         self.messages.append(text)
         browser.write_message('echo')
+
+    def flooded(self, browser):
+        self.flooding.append(browser)
 
     def send_frames(self):
         pass
@@ -119,10 +120,28 @@ def test_a_socket(server):
     wait_for(lambda: not list(server.connections)[0].browsers)
 
 
-def test_no_socket_when_there_are_too_many(server):
-    list(server.connections)[0].full = True
+@pytest.mark.parametrize('frame', ['text', 'ping', 'pong', 'continuation'])
+def test_a_client_that_floods_is_disconnected(server, frame):
+    header = {'text': b'\x81\x80', 'ping': b'\x89\x80', 'pong': b'\x8a\x80', 'continuation': b'\0\x80'}[frame]
+    first = b'\x01\x80' + 4 * b'\0' if frame == 'continuation' else b''      # a message of many parts
+    connections = list(server.connections)[0]
+    request = (f'GET /socket HTTP/1.1\r\nHost: localhost:{server.port}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n'
+               'Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\nSec-WebSocket-Version: 13\r\n\r\n').encode()
+    with socket.create_connection(('127.0.0.1', server.port), timeout=LIMIT) as flood:
+        flood.sendall(request + first)
+        with pytest.raises(OSError):
+            for _ in range(20000):
+                flood.sendall(100 * (header + 4 * b'\0'))
+    wait_for(lambda: not connections.browsers)
+    assert len(connections.flooding) == 1 and len(connections.messages) < 1000
 
+
+def test_a_page_that_sends_as_fast_as_a_user_can_is_not_a_flood(server):
     async def talk():
-        with pytest.raises(HTTPClientError, match='503'):
-            await connect(server)
+        connection = await connect(server)
+        for _ in range(50):
+            await connection.write_message('text')
+            assert await connection.read_message() == 'echo'
+        connection.close()
     asyncio.run(talk())
+    assert not list(server.connections)[0].flooding

@@ -1,7 +1,7 @@
 """A Stop is answered when the odometry reports that the robot is stationary, or with what is missing."""
 import pytest
 
-from rbx1_nav.extras.web.controls import LIMIT
+from rbx1_nav.extras.web.controls import FRESH, LIMIT
 from test_connections import TOKEN, View
 
 
@@ -31,7 +31,7 @@ def test_the_answer_waits_until_the_robot_is_stationary(view):
         view.move(0.2, 0.0)
         assert not answer(view, socket), name
     view.runs.busy = False
-    assert answer(view, socket) == [{'type': 'stopped', 'number': 7, 'stationary': True,
+    assert answer(view, socket) == [{'type': 'stopped', 'number': 7, 'stationary': True, 'silent': [],
                                      'text': 'Stopped /out_and_back. The robot is stationary.'}]
     assert len(answer(view, socket)) == 1
 
@@ -50,7 +50,7 @@ def test_after_the_answer_no_other_node_drives(view):
 @pytest.mark.parametrize('silent, speed, text', [
     ([], None, 'Zero commands were sent. There is no odometry: the robot may still be moving.'),
     ([], 0.2, 'Zero commands were sent. The robot is still moving.'),
-    (['/b'], 0.0, 'Stopped. No answer from /b. The robot is stationary.')])
+    (['/b'], 0.0, 'Stopped. No answer from /b: the robot may move again. The robot is stationary.')])
 def test_what_is_missing_is_in_the_answer(view, silent, speed, text):
     socket = view.connect('')
     view.system.silent = silent
@@ -60,6 +60,18 @@ def test_what_is_missing_is_in_the_answer(view, silent, speed, text):
         view.move(0.1, speed)
     found = answer(view, socket)
     assert [each['text'] for each in found] == [text] and found[0]['stationary'] == (speed == 0)
+    assert found[0]['silent'] == silent
+
+
+def test_odometry_of_a_base_that_hangs_is_not_the_present_speed(view):
+    socket = view.connect('')
+    view.send(socket, type='stop')
+    view.now += 0.1
+    view.move(0.0, 0.2)
+    view.now += FRESH + 0.1
+    assert not answer(view, socket)
+    view.now += LIMIT
+    assert answer(view, socket)[0]['text'].endswith('There is no odometry: the robot may still be moving.')
 
 
 def test_stops_are_one_while_one_is_pending(view):
