@@ -5,7 +5,7 @@ import asyncio
 import logging
 from threading import Event, Thread
 import time
-from typing import Any, Mapping
+from typing import Any, Mapping, cast
 
 from tornado.httpserver import HTTPServer
 from tornado.ioloop import PeriodicCallback
@@ -59,7 +59,7 @@ class SocketHandler(WebSocketHandler):
     def _limit_reads(self) -> None:
         """Disconnect a client that sends too fast. tornado reads on as long as there is data, and serves nobody else
         meanwhile. It calls no function of a handler for the parts of a message, so the reads are counted."""
-        stream: Any = self.ws_connection.stream
+        stream = cast(Any, self.ws_connection).stream
         read, left, last = stream.read_bytes, READ_BURST, time.monotonic()
 
         def read_bytes(*args: Any, **options: Any) -> Any:
