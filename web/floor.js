@@ -168,14 +168,19 @@ export class Floor {
     return {robot, path};
   }
 
-  // The paths of earlier runs, each with its number at the end.
+  // The paths of earlier runs, each with its number at the end; numbers at the same place stand beside each other.
   drawEarlier(runs) {
-    this.earlier.classList.toggle('many', runs.length > MANY);
+    const many = runs.length > MANY, size = many ? 0.05 : 0.08, places = [];
+    this.earlier.classList.toggle('many', many);
     this.earlier.replaceChildren(...runs.filter(run => run.shown && run.points.some(near)).map(({number, name, points}) => {
-      const group = element('g', {class: 'truth', 'data-run': name}), drawn = points.filter(near);
+      const group = element('g', {'data-run': name}), drawn = points.filter(near);
       element('path', {class: 'path', 'vector-effect': 'non-scaling-stroke',
         d: lineOf(drawn)}, group);
-      const [x, y] = drawn[drawn.length - 1];
+      let [x, y] = drawn[drawn.length - 1];
+      while (places.some(place => Math.abs(place[0] - x) < size && Math.abs(place[1] - y) < size)) {
+        x += size;
+      }
+      places.push([x, y]);
       const label = element('text', {transform: `translate(${x} ${y}) scale(1 -1)`}, group);
       label.textContent = number;
       return group;

@@ -5,10 +5,10 @@ import {Drive} from './drive.js';
 import {Fleet} from './fleet.js';
 import {Floor} from './floor.js';
 import {LogView} from './log.js';
-import {Model, SOURCES} from './model.js';
+import {Model, SOURCES, endOf} from './model.js';
 import {savePng, saveSvg} from './picture.js';
 import {Plot} from './plot.js';
-import {Tables, rowOf} from './tables.js';
+import {EarlierRuns, Poses, fixed, rowOf} from './tables.js';
 import {connectView} from './view_controls.js';
 
 const byId = id => document.getElementById(id);
@@ -26,11 +26,11 @@ const robot = new URLSearchParams(location.search).get('robot') || '';
 const connection = new Connection(robot);
 const floor = new Floor(byId('floor'));
 const fleet = new Fleet(floor, robot);
-const tables = new Tables(byId('tables'));
+const poses = new Poses(byId('tables'));
+const earlierRuns = new EarlierRuns(byId('earlier'), () => floor.drawEarlier(model.earlier));
 const log = new LogView(byId('lines'));
 const drive = new Drive(connection, model, notify);
 const plots = [new Plot(byId('linear'), 'forward (m/s)', 1, 0.25), new Plot(byId('angular'), 'turning (rad/s), left is up', 2, 1.2)];
-let listed = null;      // the earlier runs that are listed below the floor
 let waiting = false;    // whether a redraw has been requested
 
 function facts() {
@@ -71,11 +71,12 @@ function drawFacts() {
 function draw() {
   waiting = false;
   floor.draw(model);
-  tables.draw(model);
+  poses.draw(model);
   log.draw(model.log);
   drive.draw();
   drawFacts();
-  drawEarlier();
+  earlierRuns.draw(model.earlier);
+  drawHeadline();
   fleet.update(model.status);
   const end = byId('end'), live = Number(end.value) >= Number(end.max);
   end.max = Math.max(0.1, model.time || 0);
@@ -91,24 +92,15 @@ function kindOf({name, stopped}) {
   return `${name}${stopped ? ', stopped' : ''}`;
 }
 
-// Lists the earlier runs, each with a check box.
-function drawEarlier() {
-  if (model.earlier === listed) {
-    return;
+// What the exercise is about: how far the robot has missed its start.
+function drawHeadline() {
+  const {status, run} = model, end = endOf(model.poses);
+  const text = end && run && status.started === run && status.outcome === 'finished' ?
+    `${model.poses.truth ? 'Missed' : 'By its odometry, missed'} the start by ${fixed(Math.hypot(end[0], end[1]), 2)} m and ${
+      fixed(Math.abs(Number(rowOf(end)[2])), 0)}°` : '';
+  if (byId('headline').textContent !== text) {
+    byId('headline').textContent = text;
   }
-  listed = model.earlier;
-  byId('earlier').hidden = !listed.length;
-  byId('earlier').replaceChildren('Earlier runs: ', ...listed.map(run => {
-    const label = document.createElement('label'), box = document.createElement('input');
-    box.type = 'checkbox';
-    box.checked = run.shown;
-    box.onchange = () => {
-      run.shown = box.checked;
-      floor.drawEarlier(model.earlier);
-    };
-    label.append(box, `${run.number} ${kindOf(run)}`);
-    return label;
-  }));
 }
 
 // The lines of a saved picture: what was run, and the numbers, which are also the legend of the colors.

@@ -9,9 +9,14 @@ function lists(names) {
   return Object.fromEntries(names.map(name => [name, []]));
 }
 
+// Where the robot is, as far as it is known: the true pose, or the odometry.
+export function endOf(poses) {
+  return poses.truth || poses.odometry;
+}
+
 export class Model {
   constructor() {
-    this.earlier = [];      // runs of this page that are over: {number, name, stopped, points, shown}
+    this.earlier = [];      // runs of this page that are over, see keep()
     this.forget();
   }
 
@@ -32,19 +37,21 @@ export class Model {
     this.cleared = (this.cleared || 0) + 1;     // a counter, so that the floor detects the change
   }
 
-  // Keeps the path of the run that is over: the true one, if it is known.
-  keep() {
+  // Keeps the run that is over: its path, the true one if it is known; floor and seed; and its end pose. before: the end
+  // poses that the node has sent, because this page may have been asleep at the end of the run.
+  keep(before) {
     const points = this.paths.truth.length ? this.paths.truth : this.paths.odometry;
     if (points.some(([x, y]) => Math.hypot(x, y) > MOVED)) {
       const number = (this.earlier[this.earlier.length - 1]?.number || 0) + 1;
-      this.earlier = [...this.earlier, {number, name: this.run, stopped: this.stopped, points, shown: true}]
+      const {surface, seed} = this.status, end = endOf(before);
+      this.earlier = [...this.earlier, {number, name: this.run, stopped: this.stopped, points, surface, seed, end, shown: true}]
         .slice(-MAX_EARLIER);
     }
   }
 
   add(frame) {
     if (frame.epoch !== this.epoch) {   // a new run
-      this.keep();
+      this.keep(frame.status.before);
       this.epoch = frame.epoch;
       this.stopped = false;
       this.clear();

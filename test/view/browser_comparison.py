@@ -2,6 +2,7 @@
 """Tests what the page offers for comparing runs: earlier paths, speeds that can be scrolled, a saved picture with its
 numbers, reasons for disabled buttons; and a session by keyboard alone."""
 import os
+import re
 
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.keys import Keys
@@ -55,10 +56,25 @@ class TestBrowserComparison(PageTest):
             self.page.wait_for_text('run-state', 'finished')
             self.page.click('#reset')
             support.wait_for(lambda: self.count('.earlier path') == number, 'the path of the run')
-        self.assertEqual(self.page.text('earlier').split('\n'), ['Earlier runs:', '1 timed', '2 with odometry'])
+        rows = self.driver.find_elements('css selector', '#runs tbody tr')
+        for row, name in zip(rows, ('1 timed', '2 with odometry')):
+            self.assertRegex(row.text, rf'^{name} low_ply_carpet, seed 7 \d\.\d{{3}} -?\d+\.\d$')
+        self.assertEqual(len(rows), 2)
         self.page.click('#earlier input')
         self.assertEqual(self.count('.earlier path'), 1)
         self.assertEqual(self.page.find('.earlier g').get_attribute('data-run'), 'with odometry')
+
+    def test_how_far_the_robot_has_missed_its_start(self):
+        self.page.run('timed')
+        self.page.wait_for_text('headline', r'^Missed the start by \d\.\d\d m and \d+°$')
+        _, _, heading, distance = self.page.row('table-now', 'truth')
+        meters, degrees = re.findall(r'[\d.]+', self.page.text('headline'))
+        self.assertAlmostEqual(float(meters), distance, delta=0.0056)
+        self.assertAlmostEqual(float(degrees), abs(heading), delta=0.56)
+        self.page.click('#reset')
+        self.page.wait_for_text('headline', '^$')
+        row = self.page.find('#runs tbody tr').text.split()
+        self.assertEqual([float(each) for each in row[-2:]], [distance, heading])
 
     def test_the_speeds_can_be_scrolled_back(self):
         self.page.run('timed')

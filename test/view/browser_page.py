@@ -127,10 +127,8 @@ class TestBrowserPage(PageTest):
         end = self.page.row('table-now', 'odometry')
         self.page.wait_for_text('lines', 'Done: commanded 1.00 m forward')
         self.page.click('#reset')
-        # the table may show the run of an earlier test
-        support.wait_for(lambda: self.page.find('#table-before').is_displayed()
-                         and self.page.row('table-before', 'odometry') == end, 'the table of the run before')
-        self.page.wait_for_text('tables', 'Previous run: timed')
+        support.wait_for(lambda: self.page.find('#earlier').is_displayed(), 'the list of earlier runs')
+        self.page.wait_for_text('earlier', rf'1 timed ideal {end[3]:.3f} {end[2]:.1f}$')
 
     def test_stop_ends_a_run(self):
         self.page.run('odometry')

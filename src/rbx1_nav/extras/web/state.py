@@ -62,7 +62,6 @@ class PageState:
         self.run = Run(self.counter, None)
         self.epoch = 0          # number of the run
         self.before: dict[str, PoseRow] = {}    # end poses of the previous run
-        self.before_name = ''
         self.other: tuple[str, float] = '', -DRIVING_TIMEOUT    # node that has moved the robot, and when
         self.heard: dict[str, float] = {}       # s, monotonic clock: last message, by source
         self.late: dict[str, float] = {}    # s, by source: until then, a pose away from the start precedes the reset
@@ -183,7 +182,7 @@ class PageState:
     def _begin(self) -> None:
         """Begin a new run, and store the end poses of the last one."""
         if self.run.travelled:
-            self.before, self.before_name = {**self.run.silent, **self.run.poses}, self.run.name
+            self.before = {**self.run.silent, **self.run.poses}
         self.run = Run(self.counter, self.last[0] if self.last else self.run.origin)
         self.epoch += 1
         self.status_number = self.counter.next()
@@ -225,8 +224,7 @@ class PageState:
             if log:
                 fields['log'] = log
             if self.status_number > number or epoch != self.epoch:
-                fields['status'] = dict(self.status, before=self.before, before_name=self.before_name,
-                                        factor=round(self.factor, 1))
+                fields['status'] = dict(self.status, before=self.before, factor=round(self.factor, 1))
             return self.counter.last, self.epoch, encode('frame', **fields)
 
 
