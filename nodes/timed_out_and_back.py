@@ -48,7 +48,7 @@ class OutAndBack:
         angular_duration = goal_angle / angular_speed
 
         # Each motion needs at least one tick, which is one period of the rate: otherwise it would send no command.
-        if min(linear_duration, angular_duration) * rate < 1:
+        if min(linear_duration, angular_duration) * rate + 1e-9 < 1:
             raise rospy.ROSException(f'goal_distance {goal_distance}, goal_angle {goal_angle}: expected a tick or more')
 
         # Wait for the base, and monitor it from here on. However this block is left, the robot is stopped.

@@ -3,6 +3,7 @@
 import itertools
 
 from geometry_msgs.msg import Twist
+import rospy
 
 import support
 
@@ -25,6 +26,14 @@ class TestMessageCounts(support.Case):
         end = odom.last.header.stamp.to_sec() + 2
         support.wait_for(lambda: odom.last.header.stamp.to_sec() > end, 'two seconds of simulated time')
         self.assertEqual(len(commands.messages), len(received))
+
+    def test_a_motion_of_one_tick(self):
+        commands = support.Watch('/cmd_vel', Twist)
+        self.addCleanup(rospy.delete_param, '/out_and_back')
+        # in floating point, 0.02 / 0.2 * 10 is below 1
+        driver = support.out_and_back('_rate:=10', '_goal_distance:=0.02', '_goal_angle:=0.1')
+        self.assertEqual(driver.wait(), 0, driver.output)
+        self.assertEqual([m.linear.x for m in commands.messages if m.linear.x], [0.2, 0.2])
 
 
 if __name__ == '__main__':
