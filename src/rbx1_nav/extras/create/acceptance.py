@@ -8,10 +8,12 @@ from rbx1_nav.base.command_gate import CommandGate, RefusedCommand
 from rbx1_nav.base.readings import Travel
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.extras.create import protocol
-from rbx1_nav.extras.create.connection import BUMPS, CLIFFS, WHEEL_DROPS, Contact, Supervisor
+from rbx1_nav.extras.create.connection import BUMPS, CLIFFS, WHEEL_DROPS, Supervisor
 from rbx1_nav.extras.create.motion import Expected
-from rbx1_nav.extras.create.sender import wheel_speeds
+from rbx1_nav.extras.create.queries import Queries
+from rbx1_nav.extras.create.sender import Sender, wheel_speeds
 from rbx1_nav.extras.create.settings import Settings
+from rbx1_nav.extras.create.phases import ANSWERING, Phase
 
 MAX_SENDERS = 20    # senders that are stored before the silent ones are removed
 OUTAGE = 3 * SECOND // 10   # longest harmless time in which the robot does not answer or obey
@@ -63,10 +65,12 @@ class Lockout:
 class Acceptance:
     """The checks between a command and the wheels: the gate, senders unaware of a stop, the state of the robot."""
 
-    def __init__(self, settings: Settings, gate: CommandGate, contact: Contact, supervisor: Supervisor) -> None:
+    def __init__(self, settings: Settings, gate: CommandGate, sender: Sender, queries: Queries,
+                 supervisor: Supervisor) -> None:
         self.settings = settings
         self.gate = gate
-        self.contact = contact
+        self.sender = sender
+        self.queries = queries
         self.supervisor = supervisor
         self.lockout = Lockout(gate.timeout)
         self._ran: int | None = None    # time at which the driver last ran
@@ -103,7 +107,7 @@ class Acceptance:
 
     def notice_losses(self) -> None:
         """Lock if the robot is driven on a line that loses too large a share of the last replies."""
-        share = self.contact.queries.lost_share
+        share = self.queries.lost_share
         if self.gate.moving and share > TOO_BAD:
             self.lock(f'{100 * share:.0f} % of the replies of the robot are lost or corrupted')
 
@@ -136,7 +140,7 @@ class Acceptance:
 
     @property
     def _is_obeyed(self) -> bool:
-        return self.contact.answers and self.supervisor.in_control and self.settings.operation_mode != protocol.PASSIVE
+        return self.sender.phase is Phase.DRIVEN
 
     @property
     def backs(self) -> bool:
@@ -158,9 +162,9 @@ class Acceptance:
             if self.gate.moving and self._blocked > BLOCKED:
                 return 'its wheels do not turn: expected wheels that can turn freely'
             return ''
-        if not self.contact.answers:
-            read = self.contact.queries.read
-            return 'the robot does not answer' if read is None or now - read.time > OUTAGE else ''
+        if self.sender.phase not in ANSWERING:
+            heard = self.queries.heard
+            return 'the robot does not answer' if heard is None or now - heard > OUTAGE else ''
         self._ignored_since = self._ignored_since or now
         if now - self._ignored_since < OUTAGE:
             return ''

@@ -14,6 +14,7 @@ from rbx1_nav.extras.create.link import Link
 from rbx1_nav.extras.create.queries import Queries
 from rbx1_nav.extras.create.sender import Sender
 from rbx1_nav.extras.create.settings import Settings
+from rbx1_nav.extras.create.phases import ANSWERING, Kind, Phase
 from rbx1_nav.node.config import AUTO
 
 HOLD = SECOND           # ns without the cause before the driver takes control again
@@ -27,7 +28,7 @@ CHARGER, DOCK = 1, 2    # bits of packet 34
 SILENCE = SECOND // 2           # time without a reading after which the robot counts as not answering
 FLUSH_WAIT = SECOND // 10       # time without an answer after which garbage may have swallowed the stop
 FIRST_WAIT = 3 * SECOND // 10   # time that a robot that is on may need to answer; after it, the robot is started
-START_WAIT = SECOND             # time that a robot may need to start; after it, the search begins
+START_WAIT = 2 * SECOND         # time that a robot may need to start, or to answer after a hang; then the search begins
 ROUNDS_BEFORE_WARNING = 2       # rounds of the search before the first warning
 
 
@@ -75,9 +76,13 @@ class Supervisor:
         self.forget()
         self.asked = self.had_control = False       # whether the mode was requested and reached since then
 
+    def mode_in(self, reading: Mapping[str, int]) -> int:
+        """Return the mode of a robot with this reading."""
+        return min(reading['mode'] - self.plus_one, protocol.FULL)
+
     def is_passive(self, reading: Mapping[str, int]) -> bool:
         """Return whether a robot is in passive mode."""
-        return reading['mode'] - self.plus_one == protocol.PASSIVE
+        return self.mode_in(reading) == protocol.PASSIVE
 
     def update(self, now: int, reading: Mapping[str, int], wants_motion: bool, backs: bool = False) -> int | None:
         """Return the mode to request at `now` (ns), or None. wants_motion: whether a motion command is in force; backs:
@@ -87,8 +92,9 @@ class Supervisor:
         self.latest = reported
         if reported != before:      # one reading may be corrupted, so the second one counts
             return None
+        self.plus_one = self.plus_one or reported > protocol.FULL   # there is no such mode
         if self.asked:
-            self._note(min(reported - self.plus_one, protocol.FULL))
+            self._note(self.mode_in(reading))
         if self.in_control:
             self.clear_since, self.failures = None, 0
             return None
@@ -141,11 +147,8 @@ class Contact:
         self.warn = warn
         self.line: Link | None = None
         self.found: Found | None = None         # the robot on this line, kept while it does not answer
-        self.answers = False        # whether readings arrive
-        self.started = False        # whether the robot was started since it last answered
         self.dropouts = 0           # number of times that the robot stopped answering
-        self.search = Search((settings.baud,) if settings.baud else RATES, settings.wake_robot)
-        self.searching = False
+        self.search = Search(sender, (settings.baud,) if settings.baud else RATES, settings.wake_robot)
         self._flushed = False
         self._attempt = 0           # time of the last attempt to get an answer
         self._refused: Found | None = None      # robot of the wrong type
@@ -154,39 +157,37 @@ class Contact:
     def attach(self, now: int, line: Link) -> None:
         """Start using a line that was opened. Sends a stop if the robot is known; otherwise begins the search."""
         self.line = line
-        self.answers = False
         if not (self.found and line.is_same):
             self._begin_search(now, line)
             return
-        self.searching = False
         line.confirm(self.found.model)
         self._begin_asking(now, line)
 
     def detach(self) -> None:
         """Handle the loss of the line."""
         self.line = None
-        self._lose()
+        self._lose(Phase.NO_LINE)
         self.queries.give_up()
 
     def tick(self, now: int) -> Found | None:
         """Do what is due. Returns a robot that was just found: use its model, then call start()."""
-        line, read = self.line, self.queries.read
+        line, phase, heard = self.line, self.sender.phase, self.queries.heard
         if line is None:
             return None
-        if self.searching:
+        if phase is Phase.SEARCHING:
             found = self.search.tick(now)
             self._warn_of_silence()
             if found and self._accepts(now, line, found):
-                self.searching, self._refused, self.found = False, None, found
+                self._refused, self.found = None, found
                 line.confirm(found.model)
                 return found
-        elif self.answers:
-            if read and now - read.time > SILENCE:
-                self._lose()
+        elif phase in ANSWERING:
+            if heard is not None and now - heard > SILENCE:
+                self._lose(Phase.SILENT)
                 self.warn('The robot has stopped responding. If it is still moving, stop it by hand: it keeps '
                           'executing its last command')
                 self._begin_asking(now, line)
-        elif self.started:
+        elif phase is Phase.STARTED:
             if now - self._attempt > START_WAIT:
                 self._begin_search(now, line)
         elif now - self._attempt > FIRST_WAIT:
@@ -202,39 +203,44 @@ class Contact:
         return (self.found or self.settings.model).baud
 
     @property
-    def may_ask(self) -> bool:
-        """Whether there is a line to a robot whose rate is known, so that any command may be sent."""
-        return self.line is not None and self.found is not None and not self.searching
+    def answers(self) -> bool:
+        """Whether readings arrive."""
+        return self.sender.phase in ANSWERING
 
     def hear(self) -> bool:
         """Record that a reading has arrived. Returns whether the robot did not answer before."""
-        before, self.answers, self.started = self.answers, True, False
-        return not before
+        if self.sender.phase not in (Phase.SILENT, Phase.STARTED):
+            return False
+        self.sender.phase = Phase.WAITING
+        return True
 
-    def _lose(self) -> None:
+    def _lose(self, phase: Phase) -> None:
         self.dropouts += self.answers
-        self.answers = False
+        self.sender.phase = phase
         self.supervisor.forget()
 
     def _begin_asking(self, now: int, line: Link) -> None:
-        self._attempt, self.started, self._flushed = now, False, False
+        self.sender.phase = Phase.SILENT
+        self._attempt, self._flushed = now, False
         line.set_rate(self.baud)        # another process may have changed it
         self._stop_and_ask(now)
 
-    def _stop_and_ask(self, now: int, stop: bytes = sequences.STOP) -> None:
-        self.sender.stop(now, stop)
+    def _stop_and_ask(self, now: int, stop: bytes = sequences.STOP, kind: Kind = Kind.STOP) -> None:
+        self.sender.stop(now, stop, kind)
         self.queries.ask(now)
 
     def start(self, now: int) -> None:
         """Start the robot that was found."""
-        self._attempt, self.started = now, True
+        self._attempt, self.sender.phase = now, Phase.SILENT
         self.supervisor.restart()
-        self._stop_and_ask(now, sequences.STOP + sequences.START)
+        self._stop_and_ask(now, sequences.STOP + sequences.START, Kind.START)
+        self.sender.phase = Phase.STARTED
 
     # the search
 
     def _begin_search(self, now: int, line: Link) -> None:
-        self.searching = True
+        self.sender.phase = Phase.SEARCHING
+        self.queries.give_up()
         self.search.begin(now, line, self.baud)
 
     def _accepts(self, now: int, line: Link, found: Found) -> bool:

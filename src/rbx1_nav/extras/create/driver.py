@@ -22,6 +22,7 @@ from rbx1_nav.base.units import SECOND
 from rbx1_nav.extras.create.queries import Queries
 from rbx1_nav.extras.create.sender import Sender, is_too_fast
 from rbx1_nav.extras.create.settings import Settings
+from rbx1_nav.extras.create.phases import Kind, Phase
 
 INSIST_WAIT = SECOND // 10      # ns without confirmation after which the last stop is repeated
 GAP = 3                         # periods without a reading after which one gyro rate no longer represents all of them
@@ -41,7 +42,7 @@ class Driver:
         self.queries = Queries(self.sender)
         self.supervisor = Supervisor(settings.operation_mode, settings.oi_mode_workaround, info, warn)
         self.contact = Contact(settings, self.sender, self.queries, self.supervisor, warn)
-        self.acceptance = Acceptance(settings, gate, self.contact, self.supervisor)
+        self.acceptance = Acceptance(settings, gate, self.sender, self.queries, self.supervisor)
         self.schedule = Schedule(settings.update_rate)
         self.due = False            # whether to report the State of the next reading
         # the robot
@@ -49,7 +50,8 @@ class Driver:
         self.is_new = False         # whether it has arrived since the State was due
         self.gyro_reading: Reading | None = None        # not reported yet
         self.leaving: int | None = None     # ns, when the final stop was requested
-        self.left = False           # whether the robot has confirmed the final stop
+        self.has_driven = False     # whether speeds were ever sent
+        self.stopped = 0            # ns, when the bytes of the last final stop have left the line
         self.implausible = 0        # readings, for /diagnostics
         self.use(settings.model)
 
@@ -81,24 +83,28 @@ class Driver:
     def stop(self, now: int, reason: str) -> None:
         """Stop the robot, and lock out senders that have not noticed the stop."""
         self.acceptance.lock(reason)
-        if self.contact.may_ask:
-            self.sender.stop(now)
+        self.sender.stop(now)
 
     def leave(self, now: int) -> None:
         """Stop the robot and leave it in passive mode. `left` becomes true once the robot has confirmed this, if it
         can. Raises OSError."""
         self.gate.halt()
-        if not self.contact.found:      # nothing that moves the robot was sent
-            self.left = True
-            return
         self.leaving = now
-        self.left = not self.contact.answers and self.motion.stands
-        if self.contact.may_ask:
+        at_rest = self.contact.found is None or (not self.contact.answers and self.motion.stands)
+        if self.sender.may_send(Kind.STOP):
             self._leave(now)
+        if at_rest:
+            self.sender.phase = Phase.LEFT
 
     def _leave(self, now: int, before: bytes = b'') -> None:
+        self.sender.phase = Phase.LEAVING
         self.sender.stop(now, before + sequences.leave(self.model))
-        self.queries.ask(now)
+        self.stopped = self.sender.line_free
+
+    @property
+    def left(self) -> bool:
+        """Whether the robot has confirmed the final stop, or cannot move."""
+        return self.sender.phase is Phase.LEFT
 
     # commands
 
@@ -107,6 +113,8 @@ class Driver:
 
         sender: the name of the node that sent it. Raises RefusedCommand if the robot does not follow the command now.
         """
+        if self.leaving is not None:
+            return False
         self.acceptance.notice_stall(now)
         self.acceptance.check_sender(now, sender, bool(linear or angular))
         try:
@@ -122,10 +130,11 @@ class Driver:
         return any(self.sender.speeds) and not any(self.acceptance.speeds(self.model))
 
     def _send_speeds(self, now: int) -> None:
-        if self.contact.may_ask and (not self.sender.is_busy(now) or self._must_stop()):
+        if not self.sender.is_busy(now) or self._must_stop():
             self.sender.drive(now, self.acceptance.speeds(self.model))
             if any(self.sender.speeds):
                 self.motion.command(now)
+                self.has_driven = True
 
     @property
     def is_ready(self) -> bool:
@@ -141,9 +150,11 @@ class Driver:
         self.acceptance.notice_stall(now)
         if timed_out:
             self.gate.halt()
-        if self.leaving is not None and not self.contact.searching:     # the Start bytes of the search stop any motion
-            if not self.left and now - self.sender.line_free > INSIST_WAIT:
+        if self.sender.phase in (Phase.LEAVING, Phase.LEFT):
+            if not self.left and now - self.stopped > INSIST_WAIT:
                 self._leave(now, sequences.FLUSH)       # completes whatever may have swallowed the previous stop
+            if not self.queries.awaits_reply(now):
+                self.queries.ask(now)
             return False
         answered, found = self.contact.answers, self.contact.tick(now)
         if answered and not self.contact.answers:
@@ -151,6 +162,8 @@ class Driver:
         if found:
             self.use(found.model)
             self.contact.start(now)
+            if self.leaving is not None:    # the Start bytes of the search have stopped any motion
+                self._leave(now)
         if self.leaving is not None:
             return False
         self.acceptance.notice_losses()
@@ -159,7 +172,7 @@ class Driver:
             self.due, self.is_new = True, False
         if due or self._must_stop():
             self._send_speeds(now)
-        if self.contact.may_ask and (due or self.counter.hurries) and not self.queries.awaits_reply(now):
+        if (due or self.counter.hurries or self.queries.waiting) and not self.queries.awaits_reply(now):
             self.queries.ask(now)
         return timed_out
 
@@ -170,7 +183,7 @@ class Driver:
     @property
     def missing(self) -> int | None:
         """The number of bytes that complete the data that is due now; None before the next tick."""
-        if self.contact.searching:
+        if self.sender.phase is Phase.SEARCHING:
             return self.contact.search.missing
         waits = self.due or self.leaving is not None or self.counter.hurries
         return self.queries.missing if waits else None
@@ -178,18 +191,21 @@ class Driver:
     # readings
 
     def receive(self, now: int, data: bytes) -> None:
-        if self.contact.searching:
+        if self.sender.phase is Phase.SEARCHING:
             self.contact.search.receive(now, data)
             return
         reading = self.queries.receive(now, data)
         if reading:
-            self._accept(reading)
+            self._accept(now, reading)
 
-    def _accept(self, reading: Mapping[str, int]) -> None:
-        queries, time = self.queries, self.queries.asked.time
+    def _accept(self, now: int, reading: Mapping[str, int]) -> None:
+        queries = self.queries
+        if queries.probes and not self.counter.fits(reading, queries.since_reading()[0]):
+            queries.sensed_at(now)
+        time = queries.asked.time
         elapsed, expected = queries.since_reading()
         # a robot that was just switched on and started is in passive mode, and counts from 0
-        reset = (self.contact.started and self.reading is not None
+        reset = (self.sender.phase is Phase.STARTED and self.reading is not None
                  and self.supervisor.is_passive(reading) and self.counter.is_reset(reading))
         if reset:
             self.counter.restart()
@@ -202,8 +218,8 @@ class Driver:
         if reset:
             travel = unknown(expected, self.model.wheel_separation)
         if self.contact.hear():
-            self._recover(elapsed, reset)
-        queries.accept()
+            self._recover(0 if queries.heard is None else now - queries.heard, reset)
+        queries.accept(now)
         self.reading, self.is_new = reading, True
         self.acceptance.follow(elapsed, expected, travel, self.model.wheel_separation)
         travel = self.motion.add(time, travel)
@@ -212,8 +228,8 @@ class Driver:
             self.gyro_reading = self.gyro.update(reading['analog_input'], step)
         if self.leaving is None:
             self._supervise(time, reading)
-        elif time >= self.leaving and self.supervisor.is_passive(reading):
-            self.left = True
+        elif time >= self.leaving and (self.supervisor.is_passive(reading) or not self.has_driven):
+            self.sender.phase = Phase.LEFT
 
     def _step(self, elapsed: float, travel: Travel, expected: Expected, reading: Mapping[str, int]) -> Step:
         """Return the Step for the gyro. expected: travel according to the commands."""
@@ -222,23 +238,27 @@ class Driver:
         variance = travel.angle_variance + variance + self.counter.rounding[1] ** 2
         return Step(elapsed, travel.angle, variance, (expected.right - expected.left) / self.model.wheel_separation,
                     self.motion.stands and not bits & WHEEL_DROPS,      # a lifted robot may be turned by hand
-                    self.supervisor.in_control and self.settings.operation_mode != protocol.PASSIVE, bool(bits),
+                    self.sender.phase is Phase.DRIVEN, bool(bits),
                     elapsed * self.settings.update_rate > GAP)
 
     def _supervise(self, time: int, reading: Mapping[str, int]) -> None:
         before = self.supervisor.in_control
         if (mode := self.supervisor.update(time, reading, self.gate.moving, self.acceptance.backs)) is not None:
-            self.sender.send(time, sequences.take_control(self.model, mode))
+            self.sender.send(time, Kind.MODE, sequences.take_control(self.model, mode))
+        is_driven = self.supervisor.in_control and self.settings.operation_mode != protocol.PASSIVE
+        self.sender.phase = Phase.DRIVEN if is_driven else Phase.WAITING
         if self.acceptance.feel(reading) or (before and not self.supervisor.in_control):
             self.acceptance.lock(', '.join(causes(reading)) or 'the robot left the mode in which it is driven')
 
-    def _recover(self, elapsed: float, reset: bool) -> None:
+    def _recover(self, silence: int, reset: bool) -> None:
+        """Log that the robot answers, and lock if it did not for too long (ns)."""
         if self.reading is None:
             self.info(f'Connected to a {self.model.name} at {self.contact.baud} baud')
             return
-        what = 'was switched off, reset, or silent at rest' if reset else f'did not answer for {elapsed:.1f} s'
+        what = ('was switched off, reset, or silent at rest' if reset else
+                f'did not answer for {silence / SECOND:.1f} s')
         self.warn(f'The robot answers again: it {what}')
-        if reset or elapsed > OUTAGE / SECOND:
+        if reset or silence > OUTAGE:
             self.acceptance.lock(f'the robot {what}')
 
     def state(self) -> State | None:

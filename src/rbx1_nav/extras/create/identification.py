@@ -12,7 +12,9 @@ from rbx1_nav.base.units import SECOND
 from rbx1_nav.extras.create import protocol
 from rbx1_nav.extras.create import sequences
 from rbx1_nav.extras.create.link import Link
+from rbx1_nav.extras.create.phases import Kind
 from rbx1_nav.extras.create.queries import Layout
+from rbx1_nav.extras.create.sender import Sender
 
 RATES = (57600, 115200, 19200)      # of a Create, of a Create 2, and of either after its buttons were held
 REPLY_TIME = SECOND * 12 // 100     # ns after the last byte of a query within which the reply arrives
@@ -59,8 +61,9 @@ Step = Callable[[int], Optional[Found]]
 class Search:
     """Queries one rate after another. All times are in ns."""
 
-    def __init__(self, rates: Sequence[int], wake: bool = False) -> None:
+    def __init__(self, sender: Sender, rates: Sequence[int], wake: bool = False) -> None:
         """rates: rates to try in bits per second, most likely first; wake: whether to wake a sleeping robot."""
+        self.sender = sender
         self.rates = rates
         self.wake = wake
         self.rounds = 0         # completed rounds without an answer
@@ -124,11 +127,11 @@ class Search:
     def _send(self, now: int, data: bytes, then: Step, *sizes: int) -> None:
         """Send a query whose reply has one of these sizes."""
         self._plan(now + (len(data) + max(sizes, default=0)) * 10 * SECOND // self.baud + REPLY_TIME, then, sizes)
-        self._line.write(data)
+        self.sender.send(now, Kind.SEARCH, data)
 
     def _ask_battery(self, now: int) -> None:
         count = STARTS if self.rounds < FEW_ROUNDS else MANY_STARTS
-        self._line.write_apart(sequences.START * count)
+        self.sender.send(now, Kind.SEARCH, sequences.START * count, self._line.write_apart)
         self._send(now + count * sequences.PAUSE, sequences.ASK_BATTERY, self._judge_battery, _BATTERY.format.size)
 
     def _judge_battery(self, now: int) -> None:

@@ -82,7 +82,7 @@ class EncoderTravel:
             self.counts = counts
             return NOWHERE
         left, right = map(self.difference, counts, self.counts)
-        if max(abs(left), abs(right)) > reach(elapsed):
+        if not self.fits(reading, elapsed):
             self.rejected += 1
             before = self.counts
             if self.rejected >= AGREED:
@@ -93,6 +93,11 @@ class EncoderTravel:
         wrap = self.WRAP * self.scale
         sigma = wrap if max(abs(each) for each in expected) > wrap / 2 else 0.0
         return Travel((left + right) / 2, (right - left) / self.width, sigma ** 2, (2 / self.width * sigma) ** 2)
+
+    def fits(self, reading: Mapping[str, int], elapsed: float) -> bool:
+        """Return whether a robot may have traveled so far since the last good reading, `elapsed` s ago."""
+        new, old = (reading['left_encoder'], reading['right_encoder']), self.counts
+        return old is None or max(abs(self.difference(*each)) for each in zip(new, old)) <= reach(elapsed)
 
     def is_reset(self, reading: Mapping[str, int]) -> bool:
         """Return whether this may be the reading of a robot that counts from 0 again."""
@@ -158,9 +163,7 @@ class CounterTravel:
             self.first = False
             return NOWHERE
         distance, angle = reading['distance'] / 1000, reading['angle'] if self.asks_angle else None
-        time = self.fractions.time + elapsed        # in which the angle was counted
-        turn = radians(angle or 0) * (elapsed / time if time else 1.0)
-        if abs(distance) + abs(turn) * self.width / 2 > reach(elapsed):
+        if not self.fits(reading, elapsed):
             raise Implausible(f"distance: {reading['distance']} mm, angle: {reading.get('angle')} degrees in "
                               f'{elapsed:.3f} s')
         lost, sigma = self._lost_distance(distance, elapsed, expected)
@@ -171,6 +174,11 @@ class CounterTravel:
         self.lost, self.lost_time = STILL, 0.0
         return Travel(distance + lost, radians(turned.angle), sigma ** 2,
                       (2 / self.width * sigma) ** 2 + radians(1) ** 2 * turned.variance)
+
+    def fits(self, reading: Mapping[str, int], elapsed: float) -> bool:
+        time = self.fractions.time + elapsed        # in which the angle was counted
+        turn = radians(reading['angle'] if self.asks_angle else 0) * (elapsed / time if time else 1.0)
+        return self.first or abs(reading['distance']) / 1000 + abs(turn) * self.width / 2 <= reach(elapsed)
 
     def _lost_distance(self, distance: float, elapsed: float, expected: Expected) -> tuple[float, float]:
         """Return (distance, 1 sigma): the travel before a lost reply that the reading does not include."""

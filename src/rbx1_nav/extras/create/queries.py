@@ -1,4 +1,8 @@
-"""Sends queries to the robot, and decodes the replies, which may be lost or corrupted. All times are in ns.
+"""Sends queries to the robot, and decodes the replies, which may be late, lost or corrupted. All times are in ns.
+
+There is one query at a time. If its reply is overdue, the robot is asked something else: a probe, whose answer contains
+the number of the probe. Whatever has arrived before this answer is the reply to the query, and if nothing has, the
+reply is lost. So a late reply is not taken for the reply to another query.
 
 Both kinds of robot could send a stream instead. But the counts of a Create start at 0 with each frame, and with queries
 at most one reply is in transit when the line fails.
@@ -13,9 +17,13 @@ from rbx1_nav.extras.create import protocol
 from rbx1_nav.extras.create import sequences
 from rbx1_nav.extras.create.motion import STILL, Counter, Expected
 from rbx1_nav.extras.create.sender import Sender
+from rbx1_nav.extras.create.phases import Kind
 
 REPLY_TIMEOUT = SECOND // 5     # time from a query to the first byte of its reply
 BYTE_TIMEOUT = SECOND // 20     # time between two bytes of a reply
+MODE, ZERO = 35, 16             # packets of a probe: one is never 0, the other always
+PROBE_SIZE, NUMBERS = 8, 64     # bytes of an answer; probes with different numbers
+MAX_BUFFER = 4096               # bytes
 MEMORY = 0.02                   # weight of the last reply in the share of lost replies, which covers about 50 replies
 
 Values = Dict[str, int]        # values by the name of the packet
@@ -50,6 +58,17 @@ class Mark(NamedTuple):
     travel: Expected
 
 
+def probe(number: int) -> tuple[int, ...]:
+    """Return the packets of the probe with this number."""
+    return MODE, MODE, *(MODE if number % NUMBERS >> bit & 1 else ZERO for bit in range(PROBE_SIZE - 2))
+
+
+def is_answer(data: bytes, number: int) -> bool:
+    """Return whether bytes are the answer to the probe with this number."""
+    return (len(data) == PROBE_SIZE and protocol.PASSIVE <= data[0] <= protocol.FULL + 1
+            and data == bytes(data[0] if packet == MODE else 0 for packet in probe(number)))
+
+
 class Queries:
     """Sends the queries, and decodes the replies, which have neither header nor checksum. Call use() before any other
     method."""
@@ -58,9 +77,12 @@ class Queries:
         self.sender = sender
         self.asked = Mark(0, STILL)         # of the last query, when the robot senses what it replies
         self.read: Mark | None = None       # of the query with the last good reading
+        self.heard: int | None = None   # time at which it arrived
         self.waiting = False        # whether a reply is expected
-        self.buffer = bytearray()   # the bytes of the reply that have arrived
-        self.byte_time = 0          # time at which the last bytes arrived
+        self.probes = 0             # number of probes that were sent because the reply is overdue
+        self.buffer = bytearray()   # the bytes that have arrived since the query
+        self.began = False          # whether bytes have arrived since the last query or probe
+        self.byte_time = 0          # time of the last query, probe or byte
         self.missed = self.rejected = 0     # number of lost replies, and of corrupted replies among them
         self.lost_share = 0.0       # share of the last replies that were lost
 
@@ -77,43 +99,69 @@ class Queries:
         return (self.asked.time - self.read.time) / SECOND, self.asked.travel.plus(self.read.travel, -1)
 
     def ask(self, now: int) -> None:
-        self.give_up()
+        """Send a query; or a probe, if the reply to the last query may still arrive."""
+        if not self.sender.may_send(Kind.QUERY):
+            return
+        self.byte_time, self.began = now, False
+        if self.waiting:
+            self.probes += 1
+            self.sender.send(now, Kind.QUERY, sequences.query(probe(self.probes)))
+            return
         self.buffer.clear()
         self.asked = Mark(now, self.sender.travel(now))
         # not every query asks a Create for its angle
         self.layout = self.layouts[0 if self.counter.wants_angle(*self.since_reading()) else 1]
-        self.waiting = True
-        self.sender.send(now, self.layout.query)
+        self.waiting, self.probes = True, 0
+        self.sender.send(now, Kind.QUERY, self.layout.query)
 
     @property
     def missing(self) -> int:
         """The number of bytes that complete the reply."""
-        return self.layout.format.size - len(self.buffer) if self.waiting else 0
+        size = self.layout.format.size + self.probes * PROBE_SIZE if self.waiting else 0
+        return max(0, size - len(self.buffer))
 
     def receive(self, now: int, data: bytes) -> Values | None:
         """Return the reading that these bytes complete, if any. Call accept() or lose_reply() then."""
-        if not (data and self.waiting):
+        if not self.waiting:
             return None
-        self.byte_time = now
-        self.buffer += data
-        if self.missing > 0:
+        if data:
+            self.byte_time, self.began = now, True
+            self.buffer += data
+            del self.buffer[:-MAX_BUFFER]
+        reply = self._reply()
+        if reply is None:
             return None
         self.waiting = False
-        reading = self.layout.decode(bytes(self.buffer))
+        reading = self.layout.decode(reply)
         if reading is None:
-            self.rejected += 1
+            self.rejected += bool(reply)
             self.lose_reply()
         return reading
 
-    def accept(self) -> None:
+    def _reply(self) -> bytes | None:
+        """Return the reply to the query; None while it may be incomplete."""
+        if not self.probes:
+            return None if self.missing else bytes(self.buffer)
+        reply = bytes(self.buffer)
+        if not is_answer(reply[-PROBE_SIZE:], self.probes):
+            return None
+        for number in range(self.probes, 0, -1):
+            if is_answer(reply[-PROBE_SIZE:], number):      # not all of them have been answered
+                reply = reply[:-PROBE_SIZE]
+        return reply
+
+    def sensed_at(self, now: int) -> None:
+        """Correct the time of the last query: the robot has answered it later, when it executed a late query."""
+        self.asked = Mark(now, self.sender.travel(now))
+
+    def accept(self, now: int) -> None:
         """Record that the reading is good."""
-        self.read = self.asked
+        self.read, self.heard = self.asked, now
         self.lost_share *= 1 - MEMORY
 
     def awaits_reply(self, now: int) -> bool:
-        """Return whether the reply to the last query may still arrive."""
-        return self.waiting and (now - self.byte_time < BYTE_TIMEOUT if self.buffer
-                                 else now - self.asked.time < REPLY_TIMEOUT)
+        """Return whether the reply to the last query or probe may still arrive without another probe."""
+        return self.waiting and now - self.byte_time < (BYTE_TIMEOUT if self.began else REPLY_TIMEOUT)
 
     def give_up(self) -> None:
         """Stop waiting for a reply. If the query did reach the robot, the travel before it is lost."""

@@ -7,6 +7,7 @@ from rbx1_nav.base.units import SECOND
 from rbx1_nav.extras.create import protocol
 from rbx1_nav.extras.create import sequences
 from rbx1_nav.extras.create.motion import STILL, Expected
+from rbx1_nav.extras.create.phases import MAY_SEND, Kind, Phase
 
 BACKLOG = SECOND // 100     # backlog of bytes on the line beyond which only a stop is sent at once
 
@@ -29,6 +30,7 @@ class Sender:
     """The sending side of the line on the host. The robot always keeps executing the last command."""
 
     def __init__(self) -> None:
+        self.phase = Phase.NO_LINE  # decides what may be sent
         self.write: Callable[[bytes], None] | None = None   # sends bytes; None without a line
         self.error: OSError | None = None           # error that disconnected the line
         self.byte = 0               # transmission time of a byte
@@ -51,24 +53,32 @@ class Sender:
         self._time = now
         return self._travel
 
-    def send(self, now: int, data: bytes) -> None:
-        """Send bytes, if there is a line. After an error the line is no longer used."""
-        if self.write is None:
+    def may_send(self, kind: Kind) -> bool:
+        return kind in MAY_SEND[self.phase]
+
+    def send(self, now: int, kind: Kind, data: bytes, write: Callable[[bytes], None] | None = None) -> None:
+        """Send bytes, if the phase allows their kind. After an error the line is no longer used. write: how to send
+        them, by default at once."""
+        if self.write is None or not self.may_send(kind):
             return
         self.line_free = max(now, self.line_free) + len(data) * self.byte
         try:
-            self.write(data)
+            (write or self.write)(data)
         except OSError as error:
             self.write, self.error = None, error
 
-    def stop(self, now: int, stop: bytes = sequences.STOP) -> None:
+    def stop(self, now: int, stop: bytes = sequences.STOP, kind: Kind = Kind.STOP) -> None:
         """Send a stop: bytes that stop the robot."""
-        self.travel(now)
-        self.speeds = 0, 0
-        self.send(now, stop)
+        if self.may_send(kind):
+            self.travel(now)
+            self.speeds = 0, 0
+            self.send(now, kind, stop)
 
     def drive(self, now: int, speeds: tuple[float, float]) -> None:
-        """Send wheel speeds (left, right; mm/s), rounded to whole numbers."""
-        self.travel(now)
-        left, right = self.speeds = round(speeds[0]), round(speeds[1])
-        self.send(now, protocol.drive_direct(right, left))
+        """Send wheel speeds (left, right; mm/s), rounded to whole numbers, if the phase allows them."""
+        left, right = round(speeds[0]), round(speeds[1])
+        kind = Kind.SPEEDS if left or right else Kind.STOP
+        if self.may_send(kind):
+            self.travel(now)
+            self.speeds = left, right
+            self.send(now, kind, protocol.drive_direct(right, left))

@@ -42,6 +42,10 @@ class DrivenCreate:
         self.found = None       # the Model of the robot that the guardian may stop
         self.refusals = []      # texts
         self.velocity = None    # m/s and rad/s: command to repeat, or None
+        self.rate = 50          # Hz, of the sender
+        self.losing = 0         # number of bytes to the robot that the line loses next
+        self.hangs_until = 0    # time until which the robot neither executes nor sends anything
+        self.held = [], bytearray()     # writes and replies that wait until then
 
     def log_error(self, text):
         """Log an error."""
@@ -57,7 +61,11 @@ class DrivenCreate:
 
     def write(self, data):
         """Send bytes."""
-        self.robot.receive(data, self.now)
+        lost, self.losing = data[:self.losing], max(0, self.losing - len(data))
+        if self.now < self.hangs_until:
+            self.held[0].append(data[len(lost):])
+        else:
+            self.robot.receive(data[len(lost):], self.now)
 
     def write_apart(self, data):
         """Send bytes one by one."""
@@ -82,8 +90,8 @@ class DrivenCreate:
         end = self.now + round(seconds * SECOND)
         while self.now < end:
             self.now += STEP
-            data = self.robot.advance(self.now)
-            if self.velocity and self.now % (SECOND // 50) < STEP:
+            data = self.receive()
+            if self.velocity and self.now % (SECOND // self.rate) < STEP:
                 self.command(*self.velocity)
             if not self.connected:
                 continue
@@ -92,6 +100,22 @@ class DrivenCreate:
             state = self.driver.state()
             if state:
                 self.states.append(state)
+
+    def hang(self, seconds):
+        """Let the robot hang: its wheels turn, and bytes in both directions wait."""
+        self.hangs_until = self.now + round(seconds * SECOND)
+
+    def receive(self):
+        """Return the bytes that arrive now."""
+        writes, replies = self.held
+        replies += self.robot.advance(self.now)
+        if self.now < self.hangs_until:
+            return b''
+        for data in writes:
+            self.robot.receive(data, self.now)
+        data = bytes(replies)
+        self.held = [], bytearray()
+        return data
 
     def command(self, linear, angular, sender='driver'):
         """Send a command, and store the text if it is refused."""

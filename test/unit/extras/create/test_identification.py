@@ -9,6 +9,7 @@ from rbx1_nav.extras.create import sequences
 from rbx1_nav.extras.create.emulator.emulator import EmulatedCreate
 from rbx1_nav.extras.create.emulator.serial_line import misread
 from rbx1_nav.extras.create.identification import RATES, WAKE_TIME, Search, is_battery
+from rbx1_nav.extras.create.sender import Sender
 
 from driven_create import DrivenCreate
 
@@ -147,7 +148,7 @@ class Line:
 
 @pytest.mark.parametrize('wake', [False, True])
 def test_a_robot_that_sleeps_is_woken_only_if_that_is_wanted(wake):
-    line, search = Line(), Search(RATES, wake)
+    line, search = Line(), Search(Sender(), RATES, wake)
     search.begin(0, line)
     for line.now in range(0, 10 * SECOND, SECOND // 500):
         search.tick(line.now)

@@ -9,6 +9,8 @@ import pytest
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.extras.create import protocol
 from rbx1_nav.extras.create.identification import Search
+from rbx1_nav.extras.create.phases import Phase
+from rbx1_nav.extras.create.sender import Sender
 from rbx1_nav.extras.create.link import BEAT, LineLost, Link
 
 LIMIT = 30      # s after which a wait fails
@@ -75,7 +77,10 @@ def test_the_death_of_the_guardian_ends_the_wait_for_bytes(line):
 
 def test_a_line_without_rts_and_dtr_is_searched_without_waking(line):
     robot, link, log = line
-    search = Search((57600,), wake=True)
+    sender = Sender()
+    sender.use_line(link.write)
+    sender.phase = Phase.SEARCHING
+    search = Search(sender, (57600,), wake=True)
     search.begin(0, link)
     count = 0
     for now in range(0, 4 * SECOND, SECOND // 10):

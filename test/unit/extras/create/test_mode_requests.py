@@ -104,6 +104,33 @@ def test_with_the_right_workaround_the_robot_is_driven(robot_type, mode, plus_on
 
 
 @BOTH
+def test_in_full_mode_a_robot_that_reports_its_mode_plus_one_needs_no_workaround(robot_type):
+    """It reports a mode that does not exist."""
+    driven = started(robot_type, quirks=Quirks(mode_plus_one=True), operation_mode=FULL)
+    driven.drive(0.3, 0.5, 2)
+    assert driven.body.moving
+    driven.run(1)
+    before = driven.pose
+    driven.robot.switch_on(driven.now)      # its battery is taken out and put in
+    driven.run(4)
+    assert driven.pose == before and driven.robot.mode == FULL
+    driven.driver.leave(driven.now)
+    driven.run(0.1)
+    assert driven.driver.left and driven.robot.mode == PASSIVE
+
+
+@BOTH
+@pytest.mark.parametrize('plus_one', [False, True])
+@pytest.mark.parametrize('mode', [SAFE, FULL])
+def test_a_robot_that_was_not_driven_confirms_the_last_stop_in_any_mode(robot_type, mode, plus_one):
+    driven = started(robot_type, quirks=Quirks(mode_plus_one=plus_one), operation_mode=mode,
+                     oi_mode_workaround=not plus_one)
+    driven.driver.leave(driven.now)
+    driven.run(0.1)
+    assert driven.driver.left and driven.robot.mode == PASSIVE
+
+
+@BOTH
 @pytest.mark.parametrize('mode', [protocol.PASSIVE, protocol.SAFE])
 @pytest.mark.parametrize('plus_one', [False, True])
 def test_a_wrong_workaround_is_named_and_the_robot_is_not_driven(robot_type, mode, plus_one):

@@ -8,6 +8,7 @@ from rbx1_nav.base.units import SECOND
 from rbx1_nav.extras.create.acceptance import Acceptance
 from rbx1_nav.extras.create.connection import CLIFFS
 from rbx1_nav.extras.create.motion import NOWHERE, Expected
+from rbx1_nav.extras.create.phases import Phase
 from rbx1_nav.extras.create.protocol import CREATE
 from rbx1_nav.extras.create.settings import read_settings
 
@@ -20,9 +21,9 @@ class Base:
     def __init__(self, **params):
         settings, robot = read_settings(params)
         self.gate = CommandGate(robot.limits, robot.timeout)
-        self.contact = SimpleNamespace(answers=True, queries=SimpleNamespace(read=SimpleNamespace(time=NOW)))
+        self.sender, self.queries = SimpleNamespace(phase=Phase.DRIVEN), SimpleNamespace(heard=NOW)
         self.supervisor = SimpleNamespace(in_control=True, reason='')
-        self.acceptance = Acceptance(settings, self.gate, self.contact, self.supervisor)
+        self.acceptance = Acceptance(settings, self.gate, self.sender, self.queries, self.supervisor)
         self.feel(0, 0)
 
     def feel(self, *bits):
@@ -38,6 +39,11 @@ class Base:
         except RefusedCommand as error:
             return str(error)
         return ''
+
+    def control(self, has_control):
+        """Set whether the robot is in the requested mode."""
+        self.supervisor.in_control = has_control
+        self.sender.phase = Phase.DRIVEN if has_control else Phase.WAITING
 
     def follow(self, metres, travel=NOWHERE, elapsed=0.1):
         self.acceptance.follow(elapsed, Expected(metres, metres), travel, 0.26)
@@ -84,10 +90,10 @@ def test_wheels_that_do_not_turn_in_a_tenth_of_a_metre(metres, refused):
 
 def test_a_robot_that_does_not_answer_for_0_3_s():
     base = Base()
-    base.contact.answers = False
+    base.sender.phase = Phase.SILENT
     assert base.command(0.2, 0, NOW + SECOND * 3 // 10) == '' and base.speeds == (0, 0)
     assert base.command(0.2, 0, NOW + SECOND * 3 // 10 + 1) == 'the robot does not answer'
-    base.contact.queries.read = None
+    base.queries.heard = None
     assert base.command(0.2, 0) == 'the robot does not answer'
 
 
@@ -96,18 +102,19 @@ def test_a_robot_that_does_not_answer_for_0_3_s():
     ('', 'the robot cannot be driven: it does not change to the requested mode')])
 def test_a_robot_that_is_not_in_the_requested_mode_for_0_3_s(reason, text):
     base = Base()
-    base.supervisor.in_control, base.supervisor.reason = False, reason
+    base.control(False)
+    base.supervisor.reason = reason
     assert base.command(0.2, 0) == base.command(0.2, 0, NOW + SECOND * 3 // 10 - 1) == '' and base.speeds == (0, 0)
     assert base.command(0.2, 0, NOW + SECOND * 3 // 10) == text
     # the time starts again when the robot follows
-    base.supervisor.in_control = True
+    base.control(True)
     assert base.command(0.2, 0, NOW + SECOND) == ''
-    base.supervisor.in_control = False
+    base.control(False)
     assert base.command(0.2, 0, NOW + 2 * SECOND) == ''
 
 
 def test_a_command_to_stop_is_never_refused():
     base = Base()
-    base.supervisor.in_control = False
+    base.control(False)
     base.command(0.2, 0)
     assert base.command(0, 0, NOW + SECOND) == '' and base.command(0.2, 0, NOW + SECOND) == ''

@@ -5,6 +5,8 @@ from rbx1_nav.base.units import SECOND
 from rbx1_nav.extras.create import protocol
 from rbx1_nav.extras.create import sequences
 from rbx1_nav.extras.create.identification import Search, has_frames
+from rbx1_nav.extras.create.phases import Phase
+from rbx1_nav.extras.create.sender import Sender
 
 RATES = (57600, 115200, 19200)
 MODEL_QUERY = bytes((142, 43, 142, 8))
@@ -36,7 +38,10 @@ class Searching:
     """A Search whose next step can be awaited."""
 
     def __init__(self, rates=RATES, baud=None):
-        self.line, self.search, self.now = Line(), Search(rates), SECOND
+        self.line, sender, self.now = Line(), Sender(), SECOND
+        sender.use_line(self.line.write)
+        sender.phase = Phase.SEARCHING
+        self.search = Search(sender, rates)
         self.search.begin(self.now, self.line, baud)
 
     def answer(self, data):

@@ -7,6 +7,7 @@ from rbx1_nav.extras.create import protocol
 from rbx1_nav.extras.create import sequences
 from rbx1_nav.extras.create.fractions import KEPT, Fractions
 from rbx1_nav.extras.create.motion import STILL, CounterTravel, EncoderTravel
+from rbx1_nav.extras.create.phases import Phase
 from rbx1_nav.extras.create.queries import Queries
 from rbx1_nav.extras.create.sender import Sender, is_too_fast, wheel_speeds
 
@@ -19,6 +20,7 @@ def make_sender():
     """Return (a Sender on a line, the bytes that it sends)."""
     sender, sent = Sender(), []
     sender.use_line(sent.append)
+    sender.phase = Phase.DRIVEN
     return sender, sent
 
 
@@ -47,11 +49,14 @@ def test_speeds_count_from_their_command_to_the_next():
 def test_a_reading_has_a_time_and_a_commanded_travel():
     queries = asked(protocol.CREATE_2)
     queries.sender.drive(0, (100, 200))
+    queries.give_up()
     queries.ask(tenths(1))
     assert queries.since_reading() == (0.0, STILL)
-    queries.accept()
+    queries.accept(tenths(1))
+    queries.give_up()
     queries.ask(tenths(2))
-    queries.ask(tenths(4))      # the reply to the query before was lost
+    queries.give_up()
+    queries.ask(tenths(4))
     assert queries.since_reading() == (pytest.approx(0.3), pytest.approx((0.03, 0.06)))
 
 
