@@ -15,7 +15,6 @@ from rbx1_nav.extras.create.queries import Queries
 from rbx1_nav.extras.create.sender import Sender
 from rbx1_nav.extras.create.settings import Settings
 from rbx1_nav.extras.create.phases import ANSWERING, Kind, Phase
-from rbx1_nav.node.config import AUTO
 
 HOLD = SECOND           # ns without the cause before the driver takes control again
 RETRY = SECOND // 2     # ns between two attempts
@@ -48,15 +47,21 @@ class Supervisor:
     """Decides which mode to request, and when. A robot that reports its mode plus one may seem to be in the wanted mode
     before it was requested, so the mode counts only afterwards."""
 
-    def __init__(self, mode: int, plus_one: bool, info: Callable[[str], None], warn: Callable[[str], None]) -> None:
+    def __init__(self, mode: int, plus_one: bool | None, info: Callable[[str], None], warn: Callable[[str], None]
+                 ) -> None:
         """mode: wanted value of packet 35; plus_one: whether the robot reports its mode plus one (create_robot, issue
-        64); info(text), warn(text): log a line."""
+        64), None: see use(); info(text), warn(text): log a line."""
         self.wanted = mode
-        self.plus_one = plus_one
+        self.is_set = plus_one is not None
+        self.plus_one = bool(plus_one)
         self.info = info
         self.warn = warn
         self.reason = ''            # why the robot is not in the wanted mode
         self.restart()
+
+    def use(self, model: protocol.Model) -> None:
+        """Supervise a robot of this Model."""
+        self.plus_one = self.plus_one or (model.mode_plus_one and not self.is_set)
 
     @property
     def in_control(self) -> bool:
@@ -148,7 +153,8 @@ class Contact:
         self.line: Link | None = None
         self.found: Found | None = None         # the robot on this line, kept while it does not answer
         self.dropouts = 0           # number of times that the robot stopped answering
-        self.search = Search(sender, (settings.baud,) if settings.baud else RATES, settings.wake_robot)
+        rates = (settings.baud,) if settings.baud else tuple(dict.fromkeys((*RATES, settings.model.baud)))
+        self.search = Search(sender, rates, settings.wake_robot)
         self._flushed = False
         self._attempt = 0           # time of the last attempt to get an answer
         self._refused: Found | None = None      # robot of the wrong type
@@ -203,6 +209,11 @@ class Contact:
         return (self.found or self.settings.model).baud
 
     @property
+    def expected(self) -> protocol.Model | None:
+        """The only robot that may be driven; None for any."""
+        return self.found.model if self.found else protocol.MODELS.get(self.settings.robot_type)
+
+    @property
     def answers(self) -> bool:
         """Whether readings arrive."""
         return self.sender.phase in ANSWERING
@@ -241,18 +252,18 @@ class Contact:
     def _begin_search(self, now: int, line: Link) -> None:
         self.sender.phase = Phase.SEARCHING
         self.queries.give_up()
-        self.search.begin(now, line, self.baud)
+        self.search.begin(now, line, self.baud, self.expected)
 
     def _accepts(self, now: int, line: Link, found: Found) -> bool:
         """Return whether this robot may be driven; otherwise, the search continues."""
-        before = self.found.model.name if self.found else self.settings.robot_type
-        if before in (AUTO, found.model.name):
+        if self.expected in (None, found.model):
             return True
-        self.search.begin(now, line, found.baud)
+        assert self.expected
+        self.search.begin(now, line, found.baud, self.expected)
         if found != self._refused:
             self._refused = found
-            self.warn(f'A {found.model.name} answers at {found.baud} baud: expected a {before}; to drive it, restart '
-                      f'this node with robot_type:={found.model.name}, or auto')
+            self.warn(f'A {found.model.name} answers at {found.baud} baud: expected a {self.expected.name}; to drive '
+                      f'it, restart this node with robot_type:={found.model.name}, or auto')
         return False
 
     def _warn_of_silence(self) -> None:

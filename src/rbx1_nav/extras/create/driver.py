@@ -58,12 +58,13 @@ class Driver:
     def use(self, model: protocol.Model) -> None:
         """Drive a robot of this Model. The Model can no longer change after the first reading."""
         self.model = model
+        self.supervisor.use(model)
         self.sender.byte = 10 * SECOND // self.contact.baud
         if self.reading is None:
             fractions = Fractions(self.settings.angle_fractions, self.warn)
             self.counter: Counter = EncoderTravel(model) if model.counts_per_metre else CounterTravel(model, fractions)
             self.motion = MotionReport(self.settings, model, self.counter.rounding)
-            has_gyro = model is protocol.CREATE and self.settings.has_gyro
+            has_gyro = model.has_gyro_board and self.settings.has_gyro
             self.gyro = AnalogGyro(self.settings, self.error, self.info) if has_gyro else None
         self.queries.use(model, self.counter)
 

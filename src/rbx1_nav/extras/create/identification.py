@@ -24,10 +24,11 @@ AGREEING = 2                        # consecutive plausible replies that are req
 TRIES = 4                           # number of queries for the model
 STARTS, MANY_STARTS = 8, 64         # Start bytes before a query; many soon complete a command begun by garbage
 FEW_ROUNDS = 2                      # number of rounds with few Start bytes
+SIZES = 1, 3                        # bytes: replies to the query for the model without and with encoders
 MAX_BUFFER = 4096                   # bytes
 WAKE_TIME = SECOND * 3 // 4         # ns at each level: 0.5 s wakes a robot, three shorter pulses change its rate
 
-_BATTERY = Layout(protocol.CREATE, (sequences.BATTERY,))
+_BATTERY = Layout(protocol.CREATE, (sequences.BATTERY,))    # the same for all models
 
 
 class Found(NamedTuple):
@@ -76,12 +77,13 @@ class Search:
         self._then: Step        # action at the deadline
         self._deadline = 0
         self._agreed = 0        # consecutive plausible replies
-        # the model according to each reply so far; None for an inconclusive reply
-        self._models: list[protocol.Model | None] = []
+        self._replies: list[int] = []       # sizes of the replies to the query for the model
+        self._expected: protocol.Model | None = None
 
-    def begin(self, now: int, line: Link, baud: int | None = None) -> None:
-        """Begin to search on a line. baud: the rate to try first, one of `rates`."""
-        self._line = line
+    def begin(self, now: int, line: Link, baud: int | None = None, expected: protocol.Model | None = None) -> None:
+        """Begin to search on a line. baud: the rate to try first, one of `rates`; expected: the model that is meant if
+        several have the same answer."""
+        self._line, self._expected = line, expected
         self.rates = tuple(sorted(self.rates, key=lambda rate: rate != baud))
         self.rounds, self.battery_rates, self._order = 0, [], list(self.rates)
         self._next_rate(now)
@@ -147,26 +149,32 @@ class Search:
     # from here on the rate is right, so the robot reads each command correctly
 
     def _pause_stream(self, now: int) -> None:
-        self._models = []
+        self._replies = []
         self._send(now, sequences.PAUSE_STREAM, self._ask_model)
         self._deadline = now + QUIET_TIME
 
     def _ask_model(self, now: int) -> None:
-        # a Create has no encoders, and answers only the second query
-        self._send(now, sequences.ASK_ENCODER + sequences.ASK_WALL, self._identify, 1, 3)
+        # a robot without encoders answers only the second query
+        self._send(now, sequences.ASK_ENCODER + sequences.ASK_WALL, self._identify, *SIZES)
 
     def _identify(self, now: int) -> Found | None:
-        model = {1: protocol.CREATE, 3: protocol.CREATE_2}.get(len(self._buffer))
-        if model and model in self._models:
-            return Found(model, self.baud)
-        self._models.append(model)
-        if len(self._models) < TRIES:
+        size = len(self._buffer)
+        if size in SIZES and size in self._replies:
+            has_encoders = size == max(SIZES)
+            models = [each for each in protocol.MODELS.values() if bool(each.counts_per_metre) == has_encoders]
+            return Found(self._expected if self._expected in models else self._at_rate(models), self.baud)
+        self._replies.append(size)
+        if len(self._replies) < TRIES:
             self._ask_model(now)
-        elif any(self._models):
-            return Found(protocol.CREATE_2 if self.baud == protocol.CREATE_2.baud else protocol.CREATE, self.baud)
+        elif set(SIZES) & set(self._replies):
+            return Found(self._at_rate(list(protocol.MODELS.values())), self.baud)
         else:
             self._send(now, sequences.ASK_BATTERY, self._judge_silence, _BATTERY.format.size)
         return None
+
+    def _at_rate(self, models: Sequence[protocol.Model]) -> protocol.Model:
+        """Return the first of these models that has this rate, or else the first."""
+        return next((each for each in models if each.baud == self.baud), models[0])
 
     def _judge_silence(self, now: int) -> None:
         """Judge a robot that has answered the battery query, and no query of its model: it may have fallen silent."""

@@ -171,6 +171,8 @@ _CREATE_2 = (
 
 
 class Model(NamedTuple):
+    """What a robot has and does. A new one is an entry in MODELS."""
+
     name: str
     baud: int                           # bits per second, after power-on
     wheel_separation: float             # m
@@ -178,6 +180,14 @@ class Model(NamedTuple):
     packets: dict[int, Packet]          # by number
     groups: dict[int, tuple[int, ...]]  # packet numbers by group number
     commands: dict[int, Command]        # by opcode
+    has_gyro_board: bool = False        # whether a TurtleBot's gyro fits: analog input, and its power at an output
+    mode_plus_one: bool = False         # whether packet 35 is the mode plus one
+    reset_time: float = 1.0             # s after a reset in which it receives nothing
+    boot_text: bytes = b''              # what it sends when it is switched on
+
+    def has(self, name: str) -> bool:
+        """Return whether there is a command with this name."""
+        return any(each.name == name for each in self.commands.values())
 
 
 def _packets_of(groups: Mapping[int, tuple[int, int]]) -> dict[int, tuple[int, ...]]:
@@ -188,13 +198,17 @@ CREATE = Model(
     name='create', baud=57600, wheel_separation=0.26, counts_per_metre=None,
     packets={number: Packet(number, name, form, *values, unit)
              for number, name, form, values, _, unit in _PACKETS if values},
-    groups=_packets_of(_GROUPS), commands={each.opcode: each for each in _BOTH + _CREATE})
+    groups=_packets_of(_GROUPS), commands={each.opcode: each for each in _BOTH + _CREATE},
+    has_gyro_board=True, reset_time=3.0)    # its boot loader takes 3 s (Create p. 10)
 # 72 mm wheels, 508.8 counts per revolution (Create 2, packet 43)
 CREATE_2 = Model(
     name='create2', baud=115200, wheel_separation=0.235, counts_per_metre=508.8 / (pi * 0.072),
     packets={number: Packet(number, name, form, *values, unit) for number, name, form, _, values, unit in _PACKETS},
-    groups=_packets_of({**_GROUPS, **_GROUPS_2}), commands={each.opcode: each for each in _BOTH + _CREATE_2})
-MODELS = {model.name: model for model in (CREATE, CREATE_2)}
+    groups=_packets_of({**_GROUPS, **_GROUPS_2}), commands={each.opcode: each for each in _BOTH + _CREATE_2},
+    boot_text=b'bl-start\r\nSTR730\r\nRoomba by iRobot!\r\nr3_robot/tags/release-3.5.4\r\n')
+# a 600 with Wi-Fi (create_robot, issue 64)
+ROOMBA_600_WIFI = CREATE_2._replace(name='roomba600_wifi', mode_plus_one=True)
+MODELS = {model.name: model for model in (CREATE, CREATE_2, ROOMBA_600_WIFI)}
 OPCODES = {command.name: command.opcode for command in _BOTH + _CREATE + _CREATE_2}
 
 

@@ -39,21 +39,21 @@ FLUSH = bytes(512)
 
 
 def queried(model: protocol.Model) -> tuple[tuple[int, ...], ...]:
-    """Return the numbers for the queries to a robot: all packets, and for a Create also without the angle."""
-    return (QUERIED, QUERIED_WITHOUT_ANGLE) if model is protocol.CREATE else (QUERIED_ENCODERS,)
+    """Return the numbers for the queries to a robot: all packets, and without encoders also without the angle."""
+    return (QUERIED_ENCODERS,) if model.counts_per_metre else (QUERIED, QUERIED_WITHOUT_ANGLE)
 
 
 def take_control(model: protocol.Model, mode: int) -> bytes:
     """Return the bytes that change to a mode. On a TurtleBot with a Create, digital output 0 switches the power of the
     sensors."""
-    outputs = model is protocol.CREATE and mode != protocol.PASSIVE
+    outputs = model.has_gyro_board and mode != protocol.PASSIVE
     return MODES[mode] + (command('digital_outputs', 1) if outputs else b'')
 
 
 def leave(model: protocol.Model) -> bytes:
     """Return the bytes that stop the robot, even after an incomplete command, and leave it in passive mode, where it
     can be charged."""
-    return STOP + (command('digital_outputs', 0) if model is protocol.CREATE else b'') + START
+    return STOP + (command('digital_outputs', 0) if model.has_gyro_board else b'') + START
 
 
 def guardian_stop(model: protocol.Model) -> bytes:

@@ -33,14 +33,15 @@ PARAMETERS = (
     choice('operation_mode', (protocol.PASSIVE, protocol.SAFE, protocol.FULL), protocol.SAFE,
            'mode in which the robot is driven; 1: passive, the robot is not driven; 2: safe; 3: full, where neither a '
            'cliff nor a wheel drop stops the robot'),
-    flag('oi_mode_workaround', False, 'whether the robot reports its mode plus one, as some Roombas do'),
+    flag('oi_mode_workaround', None, 'whether the robot reports its mode plus one, as some Roombas do',
+         shown='false; roomba600_wifi: true'),
     flag('wake_robot', False, 'whether to wake a robot that does not answer, using RTS and DTR',
          note='if the port has no RTS and DTR, the node warns once and searches without waking the robot'),
     number('cmd_vel_timeout', 0.6, 's', 'age at which a command expires and the robot stops', 0.05, 10, 'a time'),
     flag('stop_motors_on_bump', True, 'whether the bumper stops forward motion'),
     number('min_abs_yaw_vel', 0.0, 'rad/s', 'minimum turning speed; slower turns are raised to it', 0, 10, 'a speed'),
     number('max_abs_yaw_vel', 0.0, 'rad/s', 'maximum turning speed; 0: no limit', 0, 10, 'a speed'),
-    flag('has_gyro', None, 'whether a gyro is connected to the analog input', shown='true; create2: false'),
+    flag('has_gyro', None, 'whether a gyro is connected to the analog input', shown='create: true; others: false'),
     number('gyro_measurement_range', 150.0, 'degrees/s', 'measurement range of the gyro chip', 1, 1000, 'a rate',
            note=_CALIBRATED),
     number('gyro_scale_correction', 1.35, '', 'factor for the angular velocity of the gyro', 0.01, 100,
@@ -77,7 +78,7 @@ class Settings(NamedTuple):
     wake_robot: bool
     update_rate: float          # Hz
     operation_mode: int
-    oi_mode_workaround: bool
+    oi_mode_workaround: bool | None     # None: as the model does
     has_gyro: bool
     gyro_measurement_range: float   # degrees/s
     gyro_scale_correction: float
@@ -96,9 +97,13 @@ def read_settings(params: YamlValue) -> tuple[Settings, Robot]:
     values = read(PARAMETERS, section)
     name = values['robot_type']
     model = protocol.MODELS.get(name, protocol.CREATE)
-    has_gyro = model is protocol.CREATE if values['has_gyro'] is None else values['has_gyro']
-    if has_gyro and model is not protocol.CREATE:
+    has_gyro = model.has_gyro_board if values['has_gyro'] is None else values['has_gyro']
+    if has_gyro and not model.has_gyro_board:
         raise ConfigError(f'has_gyro: True: expected false, because a {name} has no analog input for a gyro')
+    mode = values['operation_mode']
+    if mode != protocol.PASSIVE and not model.has(protocol.MODE_NAMES[mode]):
+        raise ConfigError(f'operation_mode: {mode}: expected another mode, because a {name} has no '
+                          f'{protocol.MODE_NAMES[mode]} mode')
     values.update(model=model, has_gyro=has_gyro, baud=None if values['baud'] == AUTO else values['baud'],
                   errors=OdometryErrors(*(values[f'odom_{each}_error'] for each in OdometryErrors._fields)))
     settings = Settings(**{name: values[name] for name in Settings._fields})

@@ -5,12 +5,14 @@ from rbx1_nav.base.units import SECOND
 from rbx1_nav.extras.create.emulator.body import Body, BodyErrors
 from rbx1_nav.extras.create.emulator.emulator import EmulatedCreate
 from rbx1_nav.extras.create.emulator.serial_line import SerialLine
-from rbx1_nav.extras.create.protocol import FULL, MODELS, OFF, PASSIVE, SAFE, command, packets_format, single_packets
+from rbx1_nav.extras.create.protocol import (
+    CREATE, CREATE_2, FULL, OFF, PASSIVE, SAFE, command, packets_format, single_packets)
 
 # commands from off to each mode
 ENTER = {OFF: b'', PASSIVE: command('start'), SAFE: command('start') + command('safe'),
          FULL: command('start') + command('full')}
-both = pytest.mark.parametrize('model', MODELS.values(), ids=list(MODELS))
+BOTH_MODELS = CREATE, CREATE_2      # those that have a document
+both = pytest.mark.parametrize('model', BOTH_MODELS, ids=lambda model: model.name)
 
 
 class Robot:

@@ -20,8 +20,8 @@ def test_a_create_2_has_no_gyro():
 
 
 @pytest.mark.parametrize('params, text', [
-    ({'robot_type': 'roomba'}, "robot_type: 'roomba': expected one of auto, create, create2"),
-    ({'robot_type': ['create']}, "robot_type: ['create']: expected one of auto, create, create2"),
+    ({'robot_type': 'roomba'}, "robot_type: 'roomba': expected one of auto, create, create2, roomba600_wifi"),
+    ({'robot_type': ['create']}, "robot_type: ['create']: expected one of auto, create, create2, roomba600_wifi"),
     ({'port': 3}, 'port: 3: expected the absolute path of a device, or auto'),
     ({'port': 'COM1'}, "port: 'COM1': expected the absolute path of a device, or auto"),
     ({'operation_mode': 0}, 'operation_mode: 0: expected one of 1, 2, 3'),

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from rbx1_nav.base.surfaces import Surface
 from rbx1_nav.base.units import SECOND
-from rbx1_nav.extras.create.protocol import BUMP_LEFT, BUMP_RIGHT, CREATE, UPDATE_PERIOD, WHEEL_DROP_LEFT, Model
+from rbx1_nav.extras.create.protocol import BUMP_LEFT, BUMP_RIGHT, UPDATE_PERIOD, WHEEL_DROP_LEFT, Model
 from rbx1_nav.simulation.simulated_base import make_wheels_and_gyro
 
 
@@ -145,11 +145,10 @@ class Body:
             temperature=self.temperature, current=current, charge=charge)
         if self.cliff:
             self.values.update(cliff_front_left_signal=NO_FLOOR, cliff_front_right_signal=NO_FLOOR)
-        if self.model is CREATE:
-            # only this robot has the TurtleBot's board with the gyro
+        if self.model.has_gyro_board:
             signal = max(0, min(1023, round(ADC_ZERO * (1 - rate / self.gyro_range))))
             self.values.update(CONSTANT_1, analog_input=signal if self.gyro_stuck < 0 else self.gyro_stuck)
-        else:
+        if self.model.counts_per_metre:
             self.values.update(
                 left_encoder=self._encoder(left), right_encoder=self._encoder(right),
                 left_motor_current=150 if self.left else 0, right_motor_current=150 if self.right else 0,

@@ -15,7 +15,7 @@ from std_srvs.srv import SetBool, SetBoolResponse, Trigger, TriggerResponse
 from rbx1_nav.extras.create.emulator.body import CAPACITY, Body, BodyErrors, Quirks
 from rbx1_nav.extras.create.emulator.emulator import EmulatedCreate
 from rbx1_nav.extras.create.emulator.serial_line import PseudoTerminal, SerialLine
-from rbx1_nav.extras.create.protocol import BAUD_RATES, CREATE, CREATE_2, MODELS
+from rbx1_nav.extras.create.protocol import BAUD_RATES, CREATE, MODELS
 from rbx1_nav.node import life
 from rbx1_nav.node.config import ConfigError, Section, YamlValue, show
 from rbx1_nav.node.parameters import Parameter, choice, custom, flag, number, read
@@ -40,7 +40,7 @@ _QUIRKS = {
 PARAMETERS = (
     choice('robot_type', tuple(MODELS), CREATE.name, 'model of the robot'),
     choice('baud', BAUD_RATES, None, 'rate after the robot is switched on; 19200: its power button was held',
-           'bits per second', shown=f'{CREATE.baud}; {CREATE_2.name}: {CREATE_2.baud}'),
+           'bits per second', shown='; '.join(f'{model.name}: {model.baud}' for model in MODELS.values())),
     custom('link', '', 'path of a symbolic link to the device', _check_link, shown='none',
            note="the log shows the device's name"),
     SURFACE,

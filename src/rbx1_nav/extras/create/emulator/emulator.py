@@ -8,15 +8,12 @@ from typing import Callable, Sequence
 from rbx1_nav.extras.create.emulator.body import Body
 from rbx1_nav.extras.create.emulator.serial_line import SerialLine
 from rbx1_nav.extras.create.protocol import (
-    BAUD_RATES, COUNTED, CREATE, IN_PLACE_LEFT, IN_PLACE_RIGHT, MAX_SPEED, OFF, PASSIVE, ROBOT_RADIUS, SAFE, STRAIGHT,
+    BAUD_RATES, COUNTED, IN_PLACE_LEFT, IN_PLACE_RIGHT, MAX_SPEED, OFF, PASSIVE, ROBOT_RADIUS, SAFE, STRAIGHT,
     UPDATE_PERIOD, Command, Model, encode_frame, packets_format, single_packets)
 from rbx1_nav.base.units import SECOND, clamp
 
 TICK = round(UPDATE_PERIOD * SECOND)
 BOOT_TIME = SECOND      # time after power-on during which the robot receives nothing
-CREATE_RESET_TIME = 3 * SECOND      # this time after a reset of a Create: its boot loader takes 3 s (Create p. 10)
-# text with the firmware version, which the Create 2 sends at power-on
-BOOT_TEXT = b'bl-start\r\nSTR730\r\nRoomba by iRobot!\r\nr3_robot/tags/release-3.5.4\r\n'
 MAX_FRAME = 255         # data bytes in a frame of the stream
 MAX_PWM = 255
 # cleaning, docking and the demos of the Create. A driver can only see that the robot drives although it was not asked
@@ -60,8 +57,7 @@ class EmulatedCreate:
         """Restart, as after inserting the battery."""
         self._start(now)
         self._deaf_until = now + BOOT_TIME
-        if self.model is not CREATE:
-            self.line.from_robot(BOOT_TEXT, now)
+        self.line.from_robot(self.model.boot_text, now)
 
     def _start(self, now: int) -> None:
         self.mode = OFF
@@ -176,8 +172,7 @@ class EmulatedCreate:
 
     def _do_reset(self, _: bytes) -> None:
         self.switch_on(self.now)
-        if self.model is CREATE:
-            self._deaf_until = self.now + CREATE_RESET_TIME
+        self._deaf_until = self.now + round(self.model.reset_time * SECOND)
 
     def _do_power(self, _: bytes) -> None:
         self._start(self.now)
@@ -256,7 +251,8 @@ class EmulatedCreate:
         body = self.body
         names = {packet.name for packet in single_packets(self.model, numbers)}
         return dict(
-            body.values, **self._requested, mode=self.mode + int(self.body.quirks.mode_plus_one),
+            body.values, **self._requested,
+            mode=self.mode + int(self.model.mode_plus_one or body.quirks.mode_plus_one),
             stream_packets=len(self._stream),
             distance=body.distance.take() if 'distance' in names else 0,
             angle=body.angle.take() if 'angle' in names else 0)
