@@ -1,5 +1,5 @@
-"""Checks and limits each velocity command before it reaches a base, simulated or real, and detects nodes that send
-conflicting commands to one base at the same time.
+"""Checks and limits each velocity command before it reaches a base, simulated or real, and detects commands that arrive
+long after they were sent, and nodes that send conflicting commands to one base at the same time.
 """
 from __future__ import annotations
 
@@ -12,6 +12,17 @@ from rbx1_nav.base.units import SECOND, clamp
 
 MAX_COMMAND = 1e6   # m/s or rad/s: far above any robot, and far below where sums overflow
 WINDOW = SECOND // 2    # ns: a sender that was silent for longer has given up control of the base
+
+
+CLOSE, CLOSEST = 0.1, SECOND // 100     # too close: this part of the usual spacing, and at most this time (ns)
+# so many more commands than the sender can have sent since the first one are a burst. Up to two commands are behind a
+# first one that rospy.Rate sends too late
+EXCESS = 2.5
+RIGHT, RIGHTS = 0.5, 2      # part of the usual spacing that is right again, and how often it must be right
+LONGEST = SECOND // 2       # ns: a burst that lasts longer is a new spacing
+LEARN = 0.05        # weight of a new spacing in the mean
+OFTEN = 0.3         # share of close commands from which a sender always sends several at once
+MAX_SENDERS = 20    # senders that are stored
 
 
 class RejectedCommand(ValueError):
@@ -75,6 +86,67 @@ class CommandGate:
         """Halt, and discard the arrival time of the last command: for a clock that jumped back."""
         self.halt()
         self.command_time, self.expiry = None, inf
+
+
+class Spacing:
+    """The spacing of the commands of a sender. Times are in ns."""
+
+    def __init__(self, now: int) -> None:
+        self.last = now
+        self.usual = 0.0        # mean without close commands
+        self.close_share = 0.0  # mean share of close commands
+        self.checked_since: int | None = None   # first command after a silence, until the spacing is right
+        self.count = self.close = self.right = 0    # numbers of commands since then; `right`: consecutive ones
+
+    def is_late(self, now: int, silence: int, was_observed: bool) -> bool:
+        """Return whether a command that arrives at `now` belongs to a burst. For the other arguments see Bursts."""
+        gap, self.last = now - self.last, now
+        if gap > silence or gap < 0:
+            self.checked_since = now if was_observed and self.close_share < OFTEN else None
+            self.count = self.close = self.right = 0
+            return False
+        is_close = gap < min(CLOSE * self.usual, CLOSEST)
+        if self.checked_since is None:
+            self.close_share += LEARN * (is_close - self.close_share)
+            if not is_close:
+                self.usual += (LEARN if self.usual else 1.0) * (gap - self.usual)
+            return False
+        self.count, self.close = self.count + 1, self.close + is_close
+        self.right = self.right + 1 if gap >= RIGHT * self.usual else 0
+        if self.right >= RIGHTS or now - self.checked_since > LONGEST:
+            self.checked_since = None
+            return False
+        excess = self.count - (now - self.checked_since) / self.usual if self.usual else 0.0
+        return self.close > EXCESS and excess > EXCESS
+
+
+class Bursts:
+    """Recognizes commands that arrive long after they were sent: when the network works again after an outage, the
+    kernel delivers at once whatever was sent meanwhile, even if the sender has died. A Twist has no time stamp.
+
+    The first command after a silence counts at once. If several follow much faster than this sender usually sends, they
+    are a burst, and the commands of this sender are dropped until they arrive at the usual spacing again.
+    """
+
+    def __init__(self, silence: int) -> None:
+        """silence: ns after which the base has stopped; 0 if it does not stop, so that no command makes it start."""
+        self.silence = silence
+        self.spacings: dict[str, Spacing] = {}
+        self.ran: int | None = None     # ns, when the base last ran: a silence while it did not run says nothing
+        self.dropped = 0                # number of commands
+
+    def drops(self, now: int, sender: str) -> bool:
+        """Return whether to drop a command that moves the base and arrives at `now` (ns)."""
+        spacing = self.spacings.get(sender)
+        if spacing is None:
+            if len(self.spacings) >= MAX_SENDERS:
+                del self.spacings[min(self.spacings, key=lambda name: self.spacings[name].last)]
+            self.spacings[sender] = Spacing(now)
+            return False
+        was_observed = self.ran is None or now - self.ran < self.silence
+        drops = bool(self.silence) and spacing.is_late(now, self.silence, was_observed)
+        self.dropped += drops
+        return drops
 
 
 class SentCommand(NamedTuple):

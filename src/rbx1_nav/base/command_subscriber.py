@@ -13,7 +13,7 @@ from std_msgs.msg import Float64
 
 from rbx1_nav.base import messages
 from rbx1_nav.base.clocks import Clock
-from rbx1_nav.base.command_gate import CommandGate, RefusedCommand, RejectedCommand, Senders
+from rbx1_nav.base.command_gate import Bursts, CommandGate, RefusedCommand, RejectedCommand, Senders
 from rbx1_nav.base.description import Joint
 from rbx1_nav.base.running_bases import Refusals
 from rbx1_nav.base.units import SECOND
@@ -53,6 +53,7 @@ class VelocityCommands:
         self.topic = rospy.resolve_name(f'{namespace}cmd_vel')
         self.wheel_limit = wheel_limit
         self.senders = Senders()
+        self.bursts = Bursts(gate.timeout)
         self.subscriber: rospy.Subscriber | None = None
         self.refusals = refusals or Refusals()
         self.sender = ''        # of the command in force
@@ -89,11 +90,17 @@ class VelocityCommands:
         self.clock.receive(self, header, command)
 
     def apply(self, command: VelocityCommand) -> None:
-        """Put a command in force."""
+        """Put a command in force, or stop the base if the command belongs to a burst."""
+        now = self.clock.now()
+        if (command.linear or command.angular) and self.bursts.drops(now, command.sender):
+            if self.sender != command.sender:
+                return
+            command = command._replace(linear=0.0, angular=0.0)
+            rospy.logwarn_throttle(5, f'{self.topic}: the commands of {command.sender} arrive all at once after a '
+                                      'silence: dropped until they arrive as usual')
         try:
             with self.lock:
-                clamped = self.base.command(self.clock.now(), command.linear, command.angular, command.others,
-                                            command.sender)
+                clamped = self.base.command(now, command.linear, command.angular, command.others, command.sender)
         except (RejectedCommand, RefusedCommand) as error:
             if isinstance(error, RejectedCommand):
                 rospy.logerr_throttle(1, f'{self.topic}: {error}; rejected, base stopped')
@@ -130,6 +137,7 @@ class VelocityCommands:
             'Rejected commands': gate.rejected,
             'Refused commands': self.refusals.count,
             'Clamped commands': gate.clamped,
+            'Dropped commands': self.bursts.dropped,
             'Contradictory commands': self.senders.contradictions})
 
 

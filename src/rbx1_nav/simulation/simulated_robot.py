@@ -82,6 +82,7 @@ class SimulatedRobot:
                 return
             self.last_stamp = stamp
             timed_out = base.advance(now)
+            self.commands.bursts.ran = now
             pose, velocity, uncertainty = base.odometry.pose, base.velocity, base.wheels.uncertainty
             true_pose, true_velocity = base.wheels.truth.pose, base.true_velocity
             reading, travel = base.read_gyro(), (base.left, base.right)

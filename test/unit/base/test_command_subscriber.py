@@ -63,7 +63,7 @@ def test_a_command_reaches_the_base(monkeypatch):
     world.clock.time += SECOND // 5
     assert world.statuses() == {
         'dX': '0.1', 'dR': '-0.2', 'Age of the last command (s)': '0.200', 'Rejected commands': '0',
-        'Refused commands': '0', 'Clamped commands': '0', 'Contradictory commands': '0'}
+        'Refused commands': '0', 'Clamped commands': '0', 'Dropped commands': '0', 'Contradictory commands': '0'}
     world.commands.log_timeout()
     assert world.lines == ['/r/cmd_vel: no command for 0.25 s: stopped'] and world.refusals._all['/driver'][0] == 1
 
