@@ -22,7 +22,7 @@ from rbx1_nav.driving.calibrating import COMMON, Diagnosis, ask, drive, factor_s
 from rbx1_nav.driving.odometry import PoseListener
 from rbx1_nav.driving.script import start_node
 from rbx1_nav.exercise.legs import Turn
-from rbx1_nav.extras.create.fractions import LOST
+from rbx1_nav.extras.create.fractions import MEASURED
 from rbx1_nav.node.config import ConfigError
 from rbx1_nav.node.parameters import number
 from rbx1_nav.node.private_parameters import param
@@ -37,8 +37,9 @@ PARAMETERS = [
     *COMMON]
 
 
-def measure() -> dict[str, float]:
-    """Turn once; return the angles that odometry and gyro reported (degrees) and the factors in force."""
+def measure() -> tuple[dict[str, float], str]:
+    """Turn once; return the angles that odometry and gyro reported (degrees) with the factors in force, and whether the
+    robot loses fractions of a degree, according to the base."""
     rate, angular_speed = param('rate'), param('angular_speed')
     leg = Turn('turn left', 2 * pi * param('turns'), angular_speed, param('min_angular_speed'), rate)
     base_node = param('base_node')
@@ -72,8 +73,7 @@ def measure() -> dict[str, float]:
         run['gyro'] = degrees(turn_by_gyro(list(readings), start, end, leg.done()))
     except ConfigError as error:
         warn_of_gyro(error)
-    run['loses_fractions'] = int(base.value('Fractions of a degree') == LOST)
-    return run
+    return run, base.value('Fractions of a degree') or ''
 
 
 def warn_of_gyro(error: ConfigError) -> None:
@@ -84,11 +84,8 @@ def warn_of_gyro(error: ConfigError) -> None:
 def calibrate() -> None:
     """Turn, ask, and print the factors."""
     start_node('calibrate_angular', __doc__, PARAMETERS)
-    run = measure()
+    run, fractions = measure()
     print(f"The odometry reports {run['reported']:.1f} degrees.")
-    if run['loses_fractions']:
-        print('The robot loses fractions of a degree. The base detected this during a turn and now corrects its '
-              'odometry. With the angle_fractions line in your configuration file, it does so from the start.')
     if 'gyro' in run:
         print(f"The gyro reports {run['gyro']:.1f} degrees.")
     true_value = ask('How far has the robot turned, in degrees?',
@@ -110,8 +107,9 @@ def calibrate() -> None:
           f'The factor was {before}. Now it should be:')
     for key, factor in factors.items():
         print(f'{key}: {factor:.4f}')
-    if run['loses_fractions']:
-        print(f'angle_fractions: {LOST}')
+    if fractions.startswith(MEASURED):
+        print(f'angle_fractions: {fractions[len(MEASURED):]}')
+        print('Set angle_fractions first, restart the base, and calibrate again: these factors are less exact.')
 
 
 if __name__ == '__main__':

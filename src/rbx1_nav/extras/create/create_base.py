@@ -93,6 +93,7 @@ class CreateBase:
             now = self.clock.now()
             self.driver.receive(now, data)
             timed_out = self.driver.tick(now)
+            self.commands.bursts.ran = now
             state = self.driver.state()
         if self.driver.sender.error:
             raise self.driver.sender.error

@@ -80,7 +80,7 @@ class CreateStatus:
         found, mode = driver.contact.found, supervisor.mode
         fill_status(status, *summary, {
             'Robot type': found.model.name if found else 'unknown',
-            **({'Fractions of a degree': driver.counter.fractions.kind} if isinstance(driver.counter, CounterTravel)
+            **({'Fractions of a degree': driver.counter.fractions.known} if isinstance(driver.counter, CounterTravel)
                else {}),
             'Mode': 'unknown' if mode is None else protocol.MODE_NAMES[mode],
             'Speed of the left wheel (mm/s)': driver.sender.speeds[0],

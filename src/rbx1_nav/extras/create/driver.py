@@ -61,7 +61,7 @@ class Driver:
         self.supervisor.use(model)
         self.sender.byte = 10 * SECOND // self.contact.baud
         if self.reading is None:
-            fractions = Fractions(self.settings.angle_fractions, self.warn)
+            fractions = Fractions(self.settings.angle_fractions)
             self.counter: Counter = EncoderTravel(model) if model.counts_per_metre else CounterTravel(model, fractions)
             self.motion = MotionReport(self.settings, model, self.counter.rounding)
             has_gyro = model.has_gyro_board and self.settings.has_gyro
@@ -173,7 +173,7 @@ class Driver:
             self.due, self.is_new = True, False
         if due or self._must_stop():
             self._send_speeds(now)
-        if (due or self.counter.hurries or self.queries.waiting) and not self.queries.awaits_reply(now):
+        if (due or self.queries.waiting) and not self.queries.awaits_reply(now):
             self.queries.ask(now)
         return timed_out
 
@@ -186,7 +186,7 @@ class Driver:
         """The number of bytes that complete the data that is due now; None before the next tick."""
         if self.sender.phase is Phase.SEARCHING:
             return self.contact.search.missing
-        waits = self.due or self.leaving is not None or self.counter.hurries
+        waits = self.due or self.leaving is not None
         return self.queries.missing if waits else None
 
     # readings

@@ -58,7 +58,6 @@ class EncoderTravel:
 
     WRAP = 1 << 16
     unread_variance = 0.0   # each reading shows the whole turn: see CounterTravel
-    hurries = False
 
     def __init__(self, model: Model) -> None:
         """model: one with encoders."""
@@ -140,11 +139,6 @@ class CounterTravel:
     def _turn(self, expected: Expected) -> float:
         """Return a turn in degrees."""
         return degrees((expected.right - expected.left) / self.width)
-
-    @property
-    def hurries(self) -> bool:
-        """Whether to query the robot again as soon as it has replied."""
-        return self.fractions.hurries
 
     @property
     def unread_variance(self) -> float:
