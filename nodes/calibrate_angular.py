@@ -22,7 +22,7 @@ from rbx1_nav.driving.calibrating import COMMON, Diagnosis, ask, drive, factor_s
 from rbx1_nav.driving.odometry import PoseListener
 from rbx1_nav.driving.script import start_node
 from rbx1_nav.exercise.legs import Turn
-from rbx1_nav.extras.create.fractions import MEASURED
+from rbx1_nav.extras.create.fractions import MEASURED, TEST
 from rbx1_nav.node.config import ConfigError
 from rbx1_nav.node.parameters import number
 from rbx1_nav.node.private_parameters import param
@@ -110,6 +110,8 @@ def calibrate() -> None:
     if fractions.startswith(MEASURED):
         print(f'angle_fractions: {fractions[len(MEASURED):]}')
         print('Set angle_fractions first, restart the base, and calibrate again: these factors are less exact.')
+    elif fractions == TEST:
+        print('angle_fractions: not known yet: expected a slower turn, with _angular_speed:=0.3')
 
 
 if __name__ == '__main__':

@@ -6,7 +6,8 @@ a third of the turn. The angle is therefore read rarely, and the heading follows
 robot is known to keep fractions.
 
 A calibration shows which kind of robot this is: for some degrees the angle is read rarely, then as many degrees at each
-update. A robot that keeps fractions reports the same both times.
+update. A robot that keeps fractions reports the same both times. One that drops them reports nothing at each update, if
+it turns slowly.
 """
 from __future__ import annotations
 
@@ -31,7 +32,8 @@ GAP = 0.3               # s without a reading after which the angle is read
 UNSURE = 0.1            # 1 sigma of a commanded turn that was not read, as a part of it
 UNCERTAIN = 1.0         # degrees: a lost turn of this size does not show in the next reading
 ENOUGH = 80.0           # degrees of each kind of reading that the test needs
-SAME = 0.8      # ratio of the two turns of the test below which the robot drops fractions: by up to 1 rad/s, below 0.65
+SLOW = 0.6              # degrees between two frequent readings of the test: a robot that drops fractions reports 0
+SAME = 0.5              # ratio of the two turns of the test below which the robot drops fractions
 
 
 class CountedTurn(NamedTuple):
@@ -61,8 +63,9 @@ class Comparison:
 
     def add(self, commanded: float, angle: int) -> None:
         """Add a reading. commanded: turn since the last one."""
-        self._commanded[self.dense] += abs(commanded)
-        self._read[self.dense] += abs(angle)
+        if not self.dense or abs(commanded) <= SLOW:
+            self._commanded[self.dense] += abs(commanded)
+            self._read[self.dense] += abs(angle)
         self._block += abs(commanded)
         if self._block >= COARSE_ANGLE:
             self._block, self.dense = 0.0, not self.dense
