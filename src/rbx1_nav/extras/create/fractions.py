@@ -85,7 +85,7 @@ class Fractions:
     def __init__(self, kind: str = AUTO) -> None:
         """kind: one of KINDS."""
         self.kind = kind
-        self.test = Comparison() if kind == TEST else None
+        self.comparison = Comparison() if kind == TEST else None
         self._mean_loss = {KEPT: 0.0, LOST: 0.5}.get(kind, 0.25)    # a fraction is uniformly distributed
         self._angle = COARSE_ANGLE_LOST if kind == LOST else COARSE_ANGLE   # the fewer readings, the less is dropped
         self._count = 0                         # number of readings
@@ -96,7 +96,7 @@ class Fractions:
     @property
     def known(self) -> str:
         """What is known of the robot: its kind, or the result of the test."""
-        return self.test.result if self.test else self.kind
+        return self.comparison.result if self.comparison else self.kind
 
     @property
     def unread(self) -> float:
@@ -105,7 +105,7 @@ class Fractions:
 
     def is_due(self, turn: float, time: float) -> bool:
         """Return whether to read the angle now. turn, time: commanded turn and time (s) since the last update."""
-        if self.kind == KEPT or time > GAP or (self.test and self.test.dense):
+        if self.kind == KEPT or time > GAP or (self.comparison and self.comparison.dense):
             return True
         factor = 1 + VARIATION * (self._count * GOLDEN % 1)
         return abs(self.turn + turn) >= factor * self._angle or (not turn and self.time + time >= factor * COARSE_TIME)
@@ -135,9 +135,9 @@ class Fractions:
     def _read(self, angle: int) -> CountedTurn:
         """Return the CountedTurn since the last reading."""
         self._count += 1
-        if self.test:
-            dense = self.test.dense
-            self.test.add(self.turn, angle)
+        if self.comparison:
+            dense = self.comparison.dense
+            self.comparison.add(self.turn, angle)
             if dense:       # these readings may have lost most of the turn
                 return CountedTurn(self.turn, (UNSURE * self.turn) ** 2)
         lost, sigma = lost_part(self._lost, self.turn - self._lost, angle, UNCERTAIN)
