@@ -201,7 +201,7 @@ class Driver:
 
     def _accept(self, now: int, reading: Mapping[str, int]) -> None:
         queries = self.queries
-        if queries.probes and not self.counter.fits(reading, queries.since_reading()[0]):
+        if queries.probes and not self.counter.fits(reading, *queries.since_reading(), 0.0):
             queries.sensed_at(now)
         time = queries.asked.time
         elapsed, expected = queries.since_reading()

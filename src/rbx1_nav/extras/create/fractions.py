@@ -90,7 +90,7 @@ class Fractions:
         self._angle = COARSE_ANGLE_LOST if kind == LOST else COARSE_ANGLE   # the fewer readings, the less is dropped
         self._count = 0                         # number of readings
         self.turn = self.time = 0.0             # commanded turn and time (s) since the last reading of the angle
-        self._lost = 0.0                        # the part of `turn` before a lost reply
+        self.lost = 0.0                         # the part of `turn` before a lost reply
         self._owed = 0.0                        # correction of the commanded turn that was not returned yet
 
     @property
@@ -112,11 +112,11 @@ class Fractions:
 
     def lose(self, turn: float) -> None:
         """Handle a lost reply with an angle. turn: commanded turn from the last update to the query."""
-        self._lost = self.turn + turn
+        self.lost = self.turn + turn
 
     def finish_reading(self) -> None:
         """Note that the robot starts to count the angle from 0."""
-        self.turn = self.time = self._lost = 0.0
+        self.turn = self.time = self.lost = 0.0
 
     def update(self, commanded: float, elapsed: float, angle: int | None) -> CountedTurn:
         """Return the turn since the last update. commanded: commanded turn; elapsed: s; angle: the reading, or None."""
@@ -140,6 +140,6 @@ class Fractions:
             self.comparison.add(self.turn, angle)
             if dense:       # these readings may have lost most of the turn
                 return CountedTurn(self.turn, (UNSURE * self.turn) ** 2)
-        lost, sigma = lost_part(self._lost, self.turn - self._lost, angle, UNCERTAIN)
+        lost, sigma = lost_part(self.lost, self.turn - self.lost, angle, UNCERTAIN)
         turn = angle + lost + (copysign(self._mean_loss, angle) if angle else 0.0)
         return CountedTurn(turn, sigma ** 2 + (LOSS_VARIANCE if self.kind != KEPT and (angle or self.turn) else 0.0))

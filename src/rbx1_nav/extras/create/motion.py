@@ -18,6 +18,8 @@ WHEEL_LIMIT = 1.3 * MAX_SPEED / 1000    # m/s: faster than any wheel
 MARGIN = 0.015          # m of wheel travel that one reading may miss and the next one include
 AGREED = 3              # consecutive implausible readings, which show that the robot was reset
 DOUBT = 0.5             # 1 sigma of a reading if all replies around it are lost, as a fraction of reach(); measured
+DIRTY = 0.01            # share of lost replies from which a turn that was not commanded counts as corrupted,
+DOUBTFUL = 16.0         # degrees, if it is larger: what a robot can turn between two readings
 ANYWHERE = 10.0         # m, 1 sigma of the travel of a robot that has stopped counting
 ROUND = 1 / 12 ** 0.5   # 1 sigma of rounding to a whole number
 STANDSTILL = SECOND // 2    # ns without travel or a command to move, after which the robot is stationary
@@ -58,6 +60,7 @@ class EncoderTravel:
 
     WRAP = 1 << 16
     unread_variance = 0.0   # each reading shows the whole turn: see CounterTravel
+    resets = False          # whether the robot counts from 0 again after each reading
 
     def __init__(self, model: Model) -> None:
         """model: one with encoders."""
@@ -81,7 +84,7 @@ class EncoderTravel:
             self.counts = counts
             return NOWHERE
         left, right = map(self.difference, counts, self.counts)
-        if not self.fits(reading, elapsed):
+        if not self.fits(reading, elapsed, expected, lost_share):
             self.rejected += 1
             before = self.counts
             if self.rejected >= AGREED:
@@ -93,8 +96,9 @@ class EncoderTravel:
         sigma = wrap if max(abs(each) for each in expected) > wrap / 2 else 0.0
         return Travel((left + right) / 2, (right - left) / self.width, sigma ** 2, (2 / self.width * sigma) ** 2)
 
-    def fits(self, reading: Mapping[str, int], elapsed: float) -> bool:
-        """Return whether a robot may have traveled so far since the last good reading, `elapsed` s ago."""
+    def fits(self, reading: Mapping[str, int], elapsed: float, expected: Expected, lost_share: float) -> bool:
+        """Return whether a robot may have traveled so far since the last good reading. For the arguments see update().
+        """
         new, old = (reading['left_encoder'], reading['right_encoder']), self.counts
         return old is None or max(abs(self.difference(*each)) for each in zip(new, old)) <= reach(elapsed)
 
@@ -122,6 +126,7 @@ class CounterTravel:
     """Like EncoderTravel, for the Create: distance and angle since the last reply. A lost reply loses this travel."""
 
     CAP = 32767     # mm or degrees at which the robot stops counting
+    resets = True
 
     def __init__(self, model: Model, fractions: Fractions) -> None:
         """model: one without encoders."""
@@ -157,7 +162,7 @@ class CounterTravel:
             self.first = False
             return NOWHERE
         distance, angle = reading['distance'] / 1000, reading['angle'] if self.asks_angle else None
-        if not self.fits(reading, elapsed):
+        if not self.fits(reading, elapsed, expected, lost_share):
             raise Implausible(f"distance: {reading['distance']} mm, angle: {reading.get('angle')} degrees in "
                               f'{elapsed:.3f} s')
         lost, sigma = self._lost_distance(distance, elapsed, expected)
@@ -169,10 +174,19 @@ class CounterTravel:
         return Travel(distance + lost, radians(turned.angle), sigma ** 2,
                       (2 / self.width * sigma) ** 2 + radians(1) ** 2 * turned.variance)
 
-    def fits(self, reading: Mapping[str, int], elapsed: float) -> bool:
+    def fits(self, reading: Mapping[str, int], elapsed: float, expected: Expected, lost_share: float) -> bool:
+        if self.first:
+            return True
+        if not self.asks_angle:
+            return abs(reading['distance']) / 1000 <= reach(elapsed)
         time = self.fractions.time + elapsed        # in which the angle was counted
-        turn = radians(reading['angle'] if self.asks_angle else 0) * (elapsed / time if time else 1.0)
-        return self.first or abs(reading['distance']) / 1000 + abs(turn) * self.width / 2 <= reach(elapsed)
+        turn, commanded = reading['angle'], self.fractions.turn + self._turn(expected)
+        # a corrupted angle after a long time may look possible; on a line that loses nothing, somebody turns the robot
+        error = min(abs(turn - commanded), abs(turn - commanded + self.fractions.lost))
+        if lost_share > DIRTY and error > DOUBTFUL + DOUBT * abs(commanded):
+            return False
+        turn = radians(turn) * (elapsed / time if time else 1.0)
+        return abs(reading['distance']) / 1000 + abs(turn) * self.width / 2 <= reach(elapsed)
 
     def _lost_distance(self, distance: float, elapsed: float, expected: Expected) -> tuple[float, float]:
         """Return (distance, 1 sigma): the travel before a lost reply that the reading does not include."""

@@ -102,6 +102,8 @@ class Queries:
         """Send a query; or a probe, if the reply to the last query may still arrive."""
         if not self.sender.may_send(Kind.QUERY):
             return
+        if self.began and not self.probes and not self.counter.resets:
+            self.give_up()      # the rest of the reply contains nothing that the next one does not
         self.byte_time, self.began = now, False
         if self.waiting:
             self.probes += 1

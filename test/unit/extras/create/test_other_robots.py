@@ -1,61 +1,10 @@
-"""Senders that have not noticed a stop, and robots that are exchanged, disturbed or blocked."""
+"""Robots that are exchanged, disturbed or blocked."""
 import pytest
 
 from rbx1_nav.extras.create import protocol
 from rbx1_nav.extras.create import sequences
 
 from driven_create import BOTH, DrivenCreate, started
-
-
-def drop_a_wheel(driven):
-    driven.body.wheel_dropped = True
-    driven.drive(0.2, 0, 1)
-    driven.body.wheel_dropped = False
-
-
-def reset(driven):
-    driven.robot.switch_on(driven.now)
-
-
-def pull_the_cable(driven):
-    driven.pull()
-    driven.drive(0.2, 0, 0.5)
-    driven.connect()
-
-
-def silence(driven):
-    driven.line.silent = True
-    driven.drive(0.2, 0, 1)
-    driven.line.silent = False
-
-
-@BOTH
-@pytest.mark.parametrize('mode', [protocol.SAFE, protocol.FULL])
-@pytest.mark.parametrize('event', [drop_a_wheel, reset, pull_the_cable, silence])
-def test_a_sender_that_has_not_noticed_does_not_drive_the_robot_on(robot_type, mode, event):
-    driven = started(robot_type, operation_mode=mode)
-    driven.drive(0.2, 0, 1)
-    assert driven.speeds == (200, 200) and not driven.refusals
-    event(driven)
-    driven.drive(0.2, 0, 0.1)       # until a byte reaches the robot, it continues
-    for _ in range(50):
-        driven.drive(0.2, 0, 0.1)
-        assert driven.speeds == (0, 0)
-    assert driven.driver.supervisor.in_control and driven.refusals
-    driven.command_zero()
-    driven.drive(0.2, 0, 0.2)
-    assert driven.speeds == (200, 200)
-
-
-@BOTH
-def test_a_short_outage_does_no_harm(robot_type):
-    driven = started(robot_type)
-    driven.drive(0.2, 0, 1)
-    driven.pull()
-    driven.drive(0.2, 0, 0.2)
-    driven.connect()
-    driven.drive(0.2, 0, 0.3)
-    assert driven.speeds == (200, 200) and not driven.refusals
 
 
 @BOTH

@@ -4,6 +4,8 @@ import pytest
 from rbx1_nav.extras.create import protocol
 from rbx1_nav.extras.create import sequences
 
+from rbx1_nav.extras.create.queries import probe
+
 from driven_create import BOTH, started
 
 COMMANDS = [protocol.drive_direct(500, -500), protocol.drive_direct(-1, -1), sequences.query(sequences.QUERIED),
@@ -33,7 +35,8 @@ def test_nothing_that_is_sent_to_a_robot_that_is_off_resets_it(model):
     reset = protocol.OPCODES['reset']
     for data in (sequences.STOP, sequences.FLUSH, sequences.START, sequences.leave(model),
                  sequences.guardian_stop(model), sequences.ASK_BATTERY, sequences.ASK_ENCODER, sequences.ASK_WALL,
-                 *map(sequences.query, sequences.queried(model))):
+                 *map(sequences.query, sequences.queried(model)),
+                 *(sequences.query(probe(number)) for number in range(64))):
         assert reset not in data
 
 
