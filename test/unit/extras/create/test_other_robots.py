@@ -1,7 +1,4 @@
 """Robots that are exchanged, disturbed or blocked."""
-import pytest
-
-from rbx1_nav.extras.create import protocol
 from rbx1_nav.extras.create import sequences
 
 from driven_create import BOTH, DrivenCreate, started

@@ -3,7 +3,7 @@ import pytest
 
 from rbx1_nav.extras.create import protocol
 
-from driven_create import BOTH, DrivenCreate, started
+from driven_create import BOTH, started
 
 DRIVING = 0.2, 0.3
 REFUSAL = 'expected a zero command, or none for 0.6 s, before it is driven again'
