@@ -10,8 +10,8 @@ import support
 from driven import STOP, faults_of_both
 from rbx1_nav.extras.create.protocol import command
 
-FAULT = ("Ctrl-C, SIGTERM or `rosnode kill` to a Create's base node, or Ctrl-C to its roslaunch, at a random moment of a "
-         'motion; its driver goes on at 10, 20 or 50 Hz, is `timed_out_and_back.py`, or is silent')
+FAULT = ("Ctrl-C, SIGTERM or `rosnode kill` to a Create's base node, or Ctrl-C to its roslaunch, at a random moment of "
+         'a motion; its driver goes on at 10, 20 or 50 Hz, is `timed_out_and_back.py`, or is silent')
 PROMISE = ('the robot confirms that it has stopped, and the node exits with status 0; the robot stands within 0.3 s; '
            'after the first stop, no command moves it')
 FULL, SHORT = 40, 5
