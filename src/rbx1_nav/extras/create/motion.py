@@ -185,8 +185,8 @@ class CounterTravel:
         error = min(abs(turn - commanded), abs(turn - commanded + self.fractions.lost))
         if lost_share > DIRTY and error > DOUBTFUL + DOUBT * abs(commanded):
             return False
-        turn = radians(turn) * (elapsed / time if time else 1.0)
-        return abs(reading['distance']) / 1000 + abs(turn) * self.width / 2 <= reach(elapsed)
+        share = elapsed / time if time else 1.0
+        return abs(reading['distance']) / 1000 + radians(abs(turn)) * share * self.width / 2 <= reach(elapsed)
 
     def _lost_distance(self, distance: float, elapsed: float, expected: Expected) -> tuple[float, float]:
         """Return (distance, 1 sigma): the travel before a lost reply that the reading does not include."""
