@@ -35,7 +35,7 @@ WITH_ROS = {f'rbx1_nav.{room}.{name}' for room, names in {
     'driving': 'calibrating listeners odometry rate script stopping',
     'simulation': 'floor_parameters simulated_robot',
     'filter': 'conversions ekf_parameters estimate_publisher filter_status sensor_inputs',
-    'extras.create': 'create_base create_status',
+    'extras.create': 'create_base create_status create_topics',
     'extras.create.emulator': 'emulated_create',
     'extras.fitting': 'bags',
     'extras.lockstep': 'lockstep simulated_clock watched_nodes',

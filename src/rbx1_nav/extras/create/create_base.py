@@ -16,6 +16,7 @@ from rbx1_nav.base.publisher import BasePublisher
 from rbx1_nav.base.readings import Uncertainty
 from rbx1_nav.base.schedule import Schedule
 from rbx1_nav.extras.create.create_status import CreateStatus
+from rbx1_nav.extras.create.create_topics import CreateTopics
 from rbx1_nav.extras.create.driver import Driver
 from rbx1_nav.extras.create.link import Link
 from rbx1_nav.extras.create.motion import State
@@ -41,6 +42,7 @@ class CreateBase:
         self.diagnostics_schedule = Schedule(1)
         self.publisher = BasePublisher(robot)
         self.commands = VelocityCommands(self.driver, gate, self.clock, self.lock, wheel_limit=MAX_SPEED / 1000)
+        self.topics = CreateTopics(self.driver, robot, self.clock, self.lock)
         self.diagnostics = CreateStatus(Updater(), self.driver, self.link, self.commands)
 
     def run(self) -> bool:
@@ -84,6 +86,7 @@ class CreateBase:
             self.publish(self.clock.now(), state)
         if self.driver.is_ready:
             self.commands.subscribe()
+            self.topics.subscribe()
 
     def exchange(self) -> tuple[bool, State | None]:
         """Receive data and advance the driver; return whether the command has timed out, and the State to publish.
@@ -112,6 +115,8 @@ class CreateBase:
             self.publisher.publish_imu(stamp, state.gyro)
         if self.joint_schedule.due(now):
             self.publisher.publish_joints(stamp, state.travel, state.velocity)
+        if self.driver.reading:
+            self.topics.publish(now, stamp, self.driver.reading)
 
     def disconnect(self) -> None:
         """Close the line; the next step opens it again."""

@@ -19,6 +19,7 @@ from rbx1_nav.extras.create.motion import (
 from rbx1_nav.base.readings import Reading, Travel
 from rbx1_nav.base.schedule import Schedule
 from rbx1_nav.base.units import SECOND
+from rbx1_nav.extras.create.orders import Orders
 from rbx1_nav.extras.create.queries import Queries
 from rbx1_nav.extras.create.sender import Sender, is_too_fast
 from rbx1_nav.extras.create.settings import Settings
@@ -43,6 +44,7 @@ class Driver:
         self.supervisor = Supervisor(settings.operation_mode, settings.oi_mode_workaround, info, warn)
         self.contact = Contact(settings, self.sender, self.queries, self.supervisor, warn)
         self.acceptance = Acceptance(settings, gate, self.sender, self.queries, self.supervisor)
+        self.orders = Orders(settings, gate, self.sender, self.contact, self.supervisor, info, warn)
         self.schedule = Schedule(settings.update_rate)
         self.due = False            # whether to report the State of the next reading
         # the robot
@@ -83,13 +85,20 @@ class Driver:
 
     def stop(self, now: int, reason: str) -> None:
         """Stop the robot, and lock out senders that have not noticed the stop."""
+        self.orders.end(now, reason)
         self.acceptance.lock(reason)
         self.sender.stop(now)
+
+    def reset(self) -> None:
+        """Stop the robot, and put the odometry back at the origin."""
+        self.gate.halt()
+        self.motion.reset()
 
     def leave(self, now: int) -> None:
         """Stop the robot and leave it in passive mode. `left` becomes true once the robot has confirmed this, if it
         can. Raises OSError."""
         self.gate.halt()
+        self.orders.closed = True
         self.leaving = now
         at_rest = self.contact.found is None or (not self.contact.answers and self.motion.stands)
         if self.sender.may_send(Kind.STOP):
@@ -118,6 +127,7 @@ class Driver:
             return False
         self.acceptance.notice_stall(now)
         self.acceptance.check_sender(now, sender, bool(linear or angular))
+        self.orders.end(now, f'a command from {sender}')
         try:
             clamped = self.gate.command(now, linear, angular, others)
         finally:
@@ -230,7 +240,10 @@ class Driver:
         if self.leaving is None:
             self._supervise(time, reading)
         elif time >= self.leaving and (self.supervisor.is_passive(reading) or not self.has_driven):
-            self.sender.phase = Phase.LEFT
+            if self.orders.confirms_end():
+                self.sender.phase = Phase.LEFT
+            else:
+                self._leave(now)
 
     def _step(self, elapsed: float, travel: Travel, expected: Expected, reading: Mapping[str, int]) -> Step:
         """Return the Step for the gyro. expected: travel according to the commands."""
@@ -243,6 +256,9 @@ class Driver:
                     elapsed * self.settings.update_rate > GAP)
 
     def _supervise(self, time: int, reading: Mapping[str, int]) -> None:
+        if self.orders.update(time, reading, (self.motion.left + self.motion.right) / 2):
+            self.has_driven = True
+            return
         before = self.supervisor.in_control
         if (mode := self.supervisor.update(time, reading, self.gate.moving, self.acceptance.backs)) is not None:
             self.sender.send(time, Kind.MODE, sequences.take_control(self.model, mode))

@@ -259,6 +259,11 @@ class MotionReport:
             self.moved_time = time
         return corrected
 
+    def reset(self) -> None:
+        """Put the odometry back at the origin."""
+        self.odometry = UncertainOdometry(self.width, self.odometry.errors, self.rounding)
+        self.since = NOWHERE
+
     @property
     def stands(self) -> bool:
         """Whether the robot has neither moved nor been commanded to move for STANDSTILL."""

@@ -15,6 +15,8 @@ class Kind(Enum):
     START = 'a stop and the start of the interface'                         # Contact
     QUERY = 'a query'                                                       # Queries
     MODE = 'the request for the mode in which the robot is driven'          # Supervisor
+    PANEL = 'lights and songs'                                              # Orders
+    DOCK = 'a stop and the start of docking'                                # Orders
     SPEEDS = 'wheel speeds other than 0'                                    # Driver, from the CommandGate
 
 
@@ -27,6 +29,7 @@ class Phase(Enum):
     STARTED = 'known, was started, and has not answered since'
     WAITING = 'answers, is not in the mode in which it is driven'
     DRIVEN = 'answers, is in the mode in which it is driven'
+    DOCKING = 'answers, drives itself onto its dock, in passive mode'
     LEAVING = 'the node exits'
     LEFT = 'the node exits, and the robot has confirmed that it stopped'
 
@@ -36,8 +39,9 @@ MAY_SEND: dict[Phase, set[Kind]] = {
     Phase.SEARCHING: {Kind.SEARCH},
     Phase.SILENT: {Kind.STOP, Kind.QUERY, Kind.START},
     Phase.STARTED: {Kind.STOP, Kind.QUERY},
-    Phase.WAITING: {Kind.STOP, Kind.QUERY, Kind.MODE},
-    Phase.DRIVEN: {Kind.STOP, Kind.QUERY, Kind.MODE, Kind.SPEEDS},
+    Phase.WAITING: {Kind.STOP, Kind.QUERY, Kind.MODE, Kind.DOCK},
+    Phase.DRIVEN: {Kind.STOP, Kind.QUERY, Kind.MODE, Kind.DOCK, Kind.PANEL, Kind.SPEEDS},
+    Phase.DOCKING: {Kind.STOP, Kind.QUERY, Kind.MODE, Kind.DOCK},
     Phase.LEAVING: {Kind.STOP, Kind.QUERY},
     Phase.LEFT: set()}
-ANSWERING = {Phase.WAITING, Phase.DRIVEN}
+ANSWERING = {Phase.WAITING, Phase.DRIVEN, Phase.DOCKING}

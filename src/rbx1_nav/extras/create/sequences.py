@@ -9,11 +9,12 @@ from rbx1_nav.extras.create.protocol import command
 
 # bumps, wheel drops and cliffs; charging state to capacity; then single packets
 _NUMBERS = (1, 3, 34, 35)
-QUERIED_ENCODERS = _NUMBERS + (43, 44)      # of the Create 2
-# of the Create, which resets distance and angle to 0 when it sends them. Group 2 contains both, which keeps the count
-# of numbers below seven: a robot that is off would take the byte 7 for a reset
+# infrared, buttons and encoders of the Create 2. No query has seven numbers: a robot that is off would take the byte 7
+# for a reset
+QUERIED_ENCODERS = _NUMBERS + (17, 18, 43, 44)
+# of the Create, which resets distance and angle to 0 when it sends them. Group 2: infrared, buttons, distance and angle
 QUERIED = _NUMBERS + (2, 33)
-QUERIED_WITHOUT_ANGLE = _NUMBERS + (19, 33)
+QUERIED_WITHOUT_ANGLE = _NUMBERS + (17, 18, 19, 33)
 START = command('start')
 MODES = {protocol.PASSIVE: START, protocol.SAFE: command('safe'), protocol.FULL: command('full')}
 
@@ -30,9 +31,9 @@ def query(numbers: Sequence[int]) -> bytes:
     return command('query_list', len(numbers), *numbers)
 
 
-# The last bytes sent may be the beginning of any of the driver's commands. Zeros complete it: with zeros as data no
-# command causes a lasting motion, and 0 is not a command.
-_PADDING = bytes(len(query(QUERIED)) - 1)
+# The last bytes sent may be the beginning of any of the driver's commands, except a song, which FLUSH completes. Zeros
+# complete it: with zeros as data no command causes a lasting motion, and 0 is not a command.
+_PADDING = bytes(len(query(QUERIED_WITHOUT_ANGLE)) - 1)
 STOP = _PADDING + protocol.drive_direct(0, 0)
 # The longest command has 513 bytes: a song of 255 notes. This many zeros complete any command that garbage has begun.
 FLUSH = bytes(512)

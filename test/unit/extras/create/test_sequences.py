@@ -11,7 +11,8 @@ from driven_create import BOTH, started
 COMMANDS = [protocol.drive_direct(500, -500), protocol.drive_direct(-1, -1), sequences.query(sequences.QUERIED),
             sequences.query(sequences.QUERIED_WITHOUT_ANGLE), sequences.query(sequences.QUERIED_ENCODERS),
             protocol.command('start'), protocol.command('safe'), protocol.command('full'),
-            protocol.command('digital_outputs', 1)]
+            protocol.command('digital_outputs', 1), protocol.command('leds', 15, 255, 255),
+            protocol.command('play_song', 1), protocol.command('digit_leds_ascii', *b'Stop')]
 BEGINNINGS = sorted({command[:size] for command in COMMANDS for size in range(len(command) + 1)})
 
 
@@ -41,11 +42,11 @@ def test_nothing_that_is_sent_to_a_robot_that_is_off_resets_it(model):
 
 
 def test_the_queries_of_the_document():
-    """Groups 1 and 3, charging sources, mode, and group 2 with distance and angle, or the distance alone; analog input:
-    query list (149) with 6 packets. A Create 2 has encoders (43, 44)."""
+    """Query list (149): groups 1 and 3, charging sources, mode; group 2, or infrared, buttons (17, 18) and the distance
+    without the angle; analog input. A Create 2 has encoders (43, 44)."""
     assert sequences.query(sequences.QUERIED) == bytes((149, 6, 1, 3, 34, 35, 2, 33))
-    assert sequences.query(sequences.QUERIED_WITHOUT_ANGLE) == bytes((149, 6, 1, 3, 34, 35, 19, 33))
-    assert sequences.query(sequences.queried(protocol.CREATE_2)[0]) == bytes((149, 6, 1, 3, 34, 35, 43, 44))
+    assert sequences.query(sequences.QUERIED_WITHOUT_ANGLE) == bytes((149, 8, 1, 3, 34, 35, 17, 18, 19, 33))
+    assert sequences.query(sequences.queried(protocol.CREATE_2)[0]) == bytes((149, 8, 1, 3, 34, 35, 17, 18, 43, 44))
 
 
 def test_how_a_robot_is_left():

@@ -33,12 +33,11 @@ CAPACITY = 3000         # mAh
 EMPTY, FULL = 13.0, 16.5    # V
 CHARGING, RESTING, MOVING = 1500, -300, -1000     # mA: current of the battery
 FLOOR, NO_FLOOR = 1500, 20  # signals of a cliff sensor
+CLIFFS = ('cliff_left', 'cliff_front_left', 'cliff_front_right', 'cliff_right')     # the bits of Body.cliffs
+CONTACT = 0.02          # m that a robot on its dock can move before it loses contact
 
-# packet values that are not 0 and never change
-CONSTANT = {'capacity': CAPACITY, **dict.fromkeys(
-    ('cliff_left_signal', 'cliff_front_left_signal', 'cliff_front_right_signal', 'cliff_right_signal'), FLOOR)}
-# nothing received; weak pull-ups on the digital inputs
-CONSTANT_1 = {'infrared': 255, 'digital_inputs': 15}
+PULL_UPS = 15           # weak pull-ups on the digital inputs of a Create
+NOTHING_RECEIVED = 255  # infrared character of a Create; 0 on a Create 2
 
 
 class Tally:
@@ -86,7 +85,12 @@ class Body:
             model.wheel_separation * errors.wheel_base, surface._replace(ticks_meter=FINE) if surface else None, seed,
             UPDATE_PERIOD)
         self.drive(0, 0)
-        self.bumped = self.wheel_dropped = self.cliff = self.docked = self.charging_fault = False
+        self.bumped = self.wheel_dropped = self.cliff = self.charging_fault = False
+        self.charger = False                # whether the cable of the charger is plugged in
+        self.switches = self.cliffs = self.buttons = 0      # further bits: packet 7, CLIFFS, packet 18
+        self.infrared = 0 if 52 in model.packets else NOTHING_RECEIVED  # character that is received
+        self._dock: float | None = None     # m, where the robot touches its dock, on its odometer
+        self._odometer = 0.0
         self.charge: float = CAPACITY       # mAh; more than CAPACITY if the robot misjudges its battery
         self.temperature = 25               # degrees C, of the battery
         self.voltage = 0                    # mV; 0: it follows the charge
@@ -108,6 +112,31 @@ class Body:
         self.velocity = (true_left + true_right) / 2, (true_right - true_left) / self.wheels.base_width
 
     @property
+    def docked(self) -> bool:
+        """Whether the robot touches its dock. It loses contact when it drives away."""
+        return self._dock is not None and abs(self._odometer - self._dock) < CONTACT
+
+    @docked.setter
+    def docked(self, on: bool) -> None:
+        self._dock = self._odometer if on else None
+
+    @property
+    def switch_bits(self) -> int:
+        """The bits of packet 7."""
+        return (self.switches | (BUMP_LEFT | BUMP_RIGHT if self.bumped else 0)
+                | (WHEEL_DROP_LEFT if self.wheel_dropped else 0))
+
+    @property
+    def dropped(self) -> bool:
+        """Whether a wheel has dropped."""
+        return self.switch_bits > BUMP_LEFT | BUMP_RIGHT
+
+    @property
+    def cliff_bits(self) -> int:
+        """The bits of CLIFFS."""
+        return self.cliffs | (0b0110 if self.cliff else 0)
+
+    @property
     def moving(self) -> bool:
         return bool(self.left or self.right)
 
@@ -116,6 +145,7 @@ class Body:
         if duration <= 0:
             return
         left, right = self.wheels.travel(*self.velocity, duration / SECOND)
+        self._odometer += (left + right) / 2
         self._counted_left += left * self.errors.wheel_travel
         self._counted_right += right * self.errors.wheel_travel
 
@@ -128,26 +158,25 @@ class Body:
         left, right = self._counted_left, self._counted_right
         self.distance.total = 1000 * (left + right) / 2
         self.angle.total = degrees((right - left) / self.model.wheel_separation)
-        charging = charging and self.docked and not self.charging_fault
+        charging = charging and (self.docked or self.charger) and not self.charging_fault
         current = self._use_battery(duration, charging)
         charge = round(self.charge)
         linear, angular = self.velocity
         rate = degrees(self.gyro.read(self.wheels.truth.yaw, duration, False).rate) * self.errors.gyro_sensitivity
+        cliffs = [self.cliff_bits >> bit & 1 for bit in range(len(CLIFFS))]
         self.values.update(
-            CONSTANT,
-            bumps_and_wheel_drops=(BUMP_LEFT | BUMP_RIGHT if self.bumped else 0) | (
-                WHEEL_DROP_LEFT if self.wheel_dropped else 0),
-            cliff_front_left=int(self.cliff), cliff_front_right=int(self.cliff),
+            zip(CLIFFS, cliffs), capacity=CAPACITY, bumps_and_wheel_drops=self.switch_bits,
+            buttons=self.buttons & self.model.packets[18].high, infrared=self.infrared,
             # fault, trickle charging, full charging, none
             charging_state=5 if self.charging_fault else (3 if charge >= CAPACITY else 2) if charging else 0,
-            charging_sources=2 if self.docked else 0,
+            charging_sources=2 * self.docked + self.charger,
             voltage=self.voltage or round(1000 * (EMPTY + (FULL - EMPTY) * min(1, charge / CAPACITY))),
             temperature=self.temperature, current=current, charge=charge)
-        if self.cliff:
-            self.values.update(cliff_front_left_signal=NO_FLOOR, cliff_front_right_signal=NO_FLOOR)
+        self.values.update((f'{name}_signal', NO_FLOOR if cliff else FLOOR) for name, cliff in zip(CLIFFS, cliffs))
         if self.model.has_gyro_board:
             signal = max(0, min(1023, round(ADC_ZERO * (1 - rate / self.gyro_range))))
-            self.values.update(CONSTANT_1, analog_input=signal if self.gyro_stuck < 0 else self.gyro_stuck)
+            self.values.update(digital_inputs=PULL_UPS,
+                               analog_input=signal if self.gyro_stuck < 0 else self.gyro_stuck)
         if self.model.counts_per_metre:
             self.values.update(
                 left_encoder=self._encoder(left), right_encoder=self._encoder(right),

@@ -37,6 +37,11 @@ _QUIRKS = {
     'mode_plus_one': 'whether the robot reports its mode plus one, like a Roomba 642 and other models with Wi-Fi',
     'drops_fractions': 'whether each reading of the angle starts at 0 and loses the fraction of a degree'}
 
+_BITS = {
+    'switches': ('bits of packet 7: bumper right 1, left 2, wheel drop right 4, left 8, caster 16', 31),
+    'cliffs': ('bits of the cliff sensors: left 1, front left 2, front right 4, right 8', 15),
+    'buttons': ('bits of packet 18: clean (play) 1, spot 2, dock (advance) 4, minute 8, hour 16, day 32', 255)}
+
 PARAMETERS = (
     choice('robot_type', tuple(MODELS), CREATE.name, 'model of the robot'),
     choice('baud', BAUD_RATES, None, 'rate after the robot is switched on; 19200: its power button was held',
@@ -48,6 +53,7 @@ PARAMETERS = (
     number('charge', 1.0, '', 'charge that the robot reports, as a fraction of the capacity of its battery', 0, 2),
     number('battery_temperature', 25.0, 'degrees C', 'temperature of the battery', -40, 100, 'a temperature'),
     number('battery_voltage', 0.0, 'V', 'voltage of the battery; 0: it follows the charge', 0, 25, 'a voltage'),
+    *(number(name, 0.0, '', text, 0, high, 'a number') for name, (text, high) in _BITS.items()),
     number('corruption', 0.0, '', 'fraction of the bytes to the host that are flipped, lost or doubled', 0, 1),
     number('gyro_measurement_range', 150.0, 'degrees/s', 'full-scale turn rate of the gyro', 1, 1e5),
     *(number(name, 1.0, '', _BODY[name], 0.1, 10, 'a factor') for name in BodyErrors._fields),
@@ -60,12 +66,14 @@ CHANGEABLE: dict[str, tuple[str, str, Callable[[float], float]]] = {
     'charge': ('body', 'charge', lambda value: value * CAPACITY),
     'battery_temperature': ('body', 'temperature', round),
     'battery_voltage': ('body', 'voltage', lambda value: round(1000 * value)),
+    **{name: ('body', name, int) for name in _BITS},
     'corruption': ('line', 'corruption', float),
     'gyro_stuck': ('body', 'gyro_stuck', floor)}
 # services that switch an attribute of a part of the robot
 SWITCHES = {
     'silence': ('line', 'silent'), 'drop_wheel': ('body', 'wheel_dropped'), 'cliff': ('body', 'cliff'),
-    'bump': ('body', 'bumped'), 'dock': ('body', 'docked'), 'charging_fault': ('body', 'charging_fault')}
+    'bump': ('body', 'bumped'), 'dock': ('body', 'docked'), 'charger': ('body', 'charger'),
+    'charging_fault': ('body', 'charging_fault')}
 
 
 def _set(robot: EmulatedCreate, name: str, value: float) -> None:

@@ -6,6 +6,7 @@ from struct import Struct
 from typing import Callable, Sequence
 
 from rbx1_nav.extras.create.emulator.body import Body
+from rbx1_nav.extras.create.emulator.panel import Panel
 from rbx1_nav.extras.create.emulator.serial_line import SerialLine
 from rbx1_nav.extras.create.protocol import (
     BAUD_RATES, COUNTED, IN_PLACE_LEFT, IN_PLACE_RIGHT, MAX_SPEED, OFF, PASSIVE, ROBOT_RADIUS, SAFE, STRAIGHT,
@@ -72,6 +73,7 @@ class EmulatedCreate:
                                          'requested_left_velocity'), 0)
         self._stream: list[int] = []
         self._streaming = False
+        self.panel = Panel(now)
 
     # time
 
@@ -105,7 +107,7 @@ class EmulatedCreate:
         self._go_to(now)
 
     def _go_to(self, time: int) -> None:
-        self.now = max(time, self.now)
+        self.now = self.panel.now = max(time, self.now)
         self.body.advance(self.now)
 
     # the update every 15 ms
@@ -118,7 +120,7 @@ class EmulatedCreate:
             return
         if self.mode == SAFE and self._unsafe():
             self._enter(PASSIVE)
-        if self.body.wheel_dropped or self.body.cliff or self.body.docked:
+        if self.body.dropped or self.body.cliff_bits or self.body.docked:
             self._stop_program()
         if self.program_runs:
             self._drive_curve(*CIRCLE)
@@ -130,7 +132,7 @@ class EmulatedCreate:
         body = self.body
         linear, angular = body.velocity
         small_radius = abs(linear) < abs(angular) * ROBOT_RADIUS
-        return body.wheel_dropped or body.docked or (body.cliff and (linear > 0 or small_radius))
+        return body.dropped or body.docked or body.charger or bool(body.cliff_bits and (linear > 0 or small_radius))
 
     def _enter(self, mode: int) -> None:
         if mode in (OFF, PASSIVE):
@@ -162,7 +164,7 @@ class EmulatedCreate:
                 self._do(command, data[1:])
 
     def _do(self, command: Command, data: bytes) -> None:
-        handler = getattr(self, f'_do_{command.name}', None)
+        handler = getattr(self, f'_do_{command.name}', None) or getattr(self.panel, command.name, None)
         if handler:     # the other commands have no visible effect
             handler(data)
         if command.mode is not None:
@@ -253,7 +255,7 @@ class EmulatedCreate:
         return dict(
             body.values, **self._requested,
             mode=self.mode + int(self.model.mode_plus_one or body.quirks.mode_plus_one),
-            stream_packets=len(self._stream),
+            stream_packets=len(self._stream), song_number=self.panel.number, song_playing=int(self.panel.is_playing),
             distance=body.distance.take() if 'distance' in names else 0,
             angle=body.angle.take() if 'angle' in names else 0)
 

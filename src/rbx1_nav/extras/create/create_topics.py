@@ -1,0 +1,149 @@
+"""The topics of a Create besides those of any base: battery, sensors and buttons, docking, lights and songs; and the
+service that resets the odometry.
+
+The names are those of create_robot. Its own message types are replaced by std_msgs.
+"""
+from __future__ import annotations
+
+from functools import partial
+from math import nan
+from threading import Lock
+from typing import Any, Callable, Mapping
+
+import rospy
+from sensor_msgs.msg import BatteryState
+from std_msgs.msg import Bool, Empty, Float32, Float32MultiArray, Int16, UInt8, UInt8MultiArray, UInt16
+from std_srvs.srv import Empty as EmptyService, EmptyRequest, EmptyResponse
+
+from rbx1_nav.base.clocks import HardwareClock
+from rbx1_nav.base.command_gate import RefusedCommand, RejectedCommand
+from rbx1_nav.base.description import Robot
+from rbx1_nav.base.schedule import Schedule
+from rbx1_nav.extras.create import panel, protocol
+from rbx1_nav.extras.create.connection import CLIFFS, WHEEL_DROPS
+from rbx1_nav.extras.create.create_status import FAULT, HOT
+from rbx1_nav.extras.create.driver import Driver
+from rbx1_nav.node.rospy_topics import NoDelay
+
+NOTHING_RECEIVED = 255      # infrared character of a Create; 0 on a Create 2 and in create_robot
+SWITCHES = 'bumps_and_wheel_drops'
+# topic, type, packet, bits: a Bool shows whether one of the bits is set, an Empty is published while it is
+SENSORS = (
+    ('bumper/left', Bool, SWITCHES, protocol.BUMP_LEFT), ('bumper/right', Bool, SWITCHES, protocol.BUMP_RIGHT),
+    ('wheeldrop/left', Bool, SWITCHES, protocol.WHEEL_DROP_LEFT),
+    ('wheeldrop/right', Bool, SWITCHES, protocol.WHEEL_DROP_RIGHT), ('wheeldrop', Empty, SWITCHES, WHEEL_DROPS),
+    *((name.replace('_', '/', 1), Bool, name, 1) for name in CLIFFS),
+    *((name, Empty, 'buttons', bit) for name, bit in panel.BUTTONS.items()))
+Reading = Mapping[str, int]
+BATTERY: tuple[tuple[str, Any, Callable[[Reading], float]], ...] = (
+    ('battery/voltage', Float32, lambda reading: reading['voltage'] / 1000),
+    ('battery/current', Float32, lambda reading: reading['current'] / 1000),
+    ('battery/charge', Float32, lambda reading: reading['charge'] / 1000),
+    ('battery/capacity', Float32, lambda reading: reading['capacity'] / 1000),
+    ('battery/charge_ratio', Float32, lambda reading: charge_ratio(reading)),
+    ('battery/temperature', Int16, lambda reading: reading['temperature']))
+# by charging state, see create_status; trickle charging keeps a full battery full
+POWER_STATUS = (BatteryState.POWER_SUPPLY_STATUS_DISCHARGING, BatteryState.POWER_SUPPLY_STATUS_CHARGING,
+                BatteryState.POWER_SUPPLY_STATUS_CHARGING, BatteryState.POWER_SUPPLY_STATUS_FULL,
+                BatteryState.POWER_SUPPLY_STATUS_NOT_CHARGING, BatteryState.POWER_SUPPLY_STATUS_NOT_CHARGING)
+
+
+def charge_ratio(reading: Reading) -> float:
+    """Return the charge as a part of the capacity, which the robot estimates; nan if it is unknown."""
+    return reading['charge'] / reading['capacity'] if reading['capacity'] else nan
+
+
+def battery_state(stamp: rospy.Time, frame: str, reading: Reading) -> BatteryState:
+    state = BatteryState(
+        voltage=reading['voltage'] / 1000, temperature=reading['temperature'], current=reading['current'] / 1000,
+        charge=reading['charge'] / 1000, capacity=reading['capacity'] / 1000, design_capacity=nan,
+        percentage=min(charge_ratio(reading), 1.0), power_supply_status=POWER_STATUS[reading['charging_state']],
+        present=True)
+    state.header.stamp, state.header.frame_id = stamp, frame
+    if reading['charging_sources'] and not reading['charging_state']:
+        state.power_supply_status = BatteryState.POWER_SUPPLY_STATUS_NOT_CHARGING
+    if reading['temperature'] > HOT:
+        state.power_supply_health = BatteryState.POWER_SUPPLY_HEALTH_OVERHEAT
+    elif reading['charging_state'] == FAULT:
+        state.power_supply_health = BatteryState.POWER_SUPPLY_HEALTH_UNSPEC_FAILURE
+    return state
+
+
+class CreateTopics:
+    """Publishes what the robot senses, and passes on orders."""
+
+    def __init__(self, driver: Driver, robot: Robot, clock: HardwareClock, lock: Lock) -> None:
+        """lock: held while the driver is used."""
+        self.driver, self.clock, self.lock = driver, clock, lock
+        self.frames = robot.base_frame_id, robot.odom_frame_id
+        self.lights = panel.Lights()
+        self.battery_schedule = Schedule(1)
+        self.power: tuple[int, int] | None = None       # charging state and sources in the last message
+        self.sensors = [(rospy.Publisher(name, kind, NoDelay(), queue_size=10), kind, packet, bits)
+                        for name, kind, packet, bits in SENSORS]
+        self.infrared = rospy.Publisher('ir_omni', UInt16, NoDelay(), queue_size=10)
+        self.battery = rospy.Publisher('battery_state', BatteryState, queue_size=10)
+        self.battery_values = [(rospy.Publisher(name, kind, queue_size=10), value) for name, kind, value in BATTERY]
+        self.reset_pub = rospy.Publisher('reset_odometry', Empty, queue_size=1)
+        rospy.Service('~reset', EmptyService, self.on_reset)
+        self.subscribers: list[rospy.Subscriber] = []
+
+    def subscribe(self) -> None:
+        """Accept orders from now on."""
+        if self.subscribers:
+            return
+        driver, orders, lights = self.driver, self.driver.orders, self.lights
+        for name, kind, order in (
+                ('dock', Empty, lambda now, _: orders.dock(now, driver.reading)),
+                ('undock', Empty, lambda now, _: orders.undock(now, driver.reading)),
+                ('define_song', Float32MultiArray,
+                 lambda now, message: orders.send(now, panel.define_song(message.data), driver.reading)),
+                ('play_song', UInt8,
+                 lambda now, message: orders.send(now, panel.play_song(message.data), driver.reading)),
+                *((name, Bool, self.light(partial(lights.set_led, name))) for name in panel.LEDS),
+                ('power_led', UInt8MultiArray, self.light(lights.set_power)),
+                ('set_ascii', UInt8MultiArray, self.light(lambda data: lights.set_digits(data, driver.model)))):
+            self.subscribers.append(rospy.Subscriber(name, kind, partial(self.on_order, name, order), queue_size=10))
+
+    # Any: rospy has no types
+    def light(self, change: Callable[[Any], None]) -> Callable[[int, Any], None]:
+        """Return the order that changes the lights. change(data): changes self.lights."""
+        def order(_: int, message: Any) -> None:
+            self.driver.orders.check(self.driver.reading)
+            change(message.data)
+            self.driver.orders.lights = self.lights.commands
+        return order
+
+    def on_order(self, name: str, order: Callable[[int, Any], None], message: Any) -> None:
+        """Execute an order, or log why not."""
+        try:
+            with self.lock:
+                order(self.clock.now(), message)
+        except (RefusedCommand, RejectedCommand) as error:
+            rospy.logwarn('%s: %s; rejected', rospy.resolve_name(name), error)
+
+    def on_reset(self, _: EmptyRequest) -> EmptyResponse:
+        """Stop the robot, and put its odometry back at the origin."""
+        with self.lock:
+            self.driver.reset()
+        self.reset_pub.publish()
+        rospy.loginfo('Reset: %s is back at the origin of %s', *self.frames)
+        return EmptyResponse()
+
+    def publish(self, now: int, stamp: rospy.Time, reading: Reading) -> None:
+        """Publish a reading. No message is created without a subscriber."""
+        for publisher, kind, packet, bits in self.sensors:
+            if publisher.get_num_connections():
+                is_set = bool(reading[packet] & bits)
+                if kind is Bool or is_set:
+                    publisher.publish(*([is_set] if kind is Bool else []))
+        if self.infrared.get_num_connections():
+            self.infrared.publish(reading['infrared'] % NOTHING_RECEIVED)
+        power = reading['charging_state'], reading['charging_sources']
+        if self.battery_schedule.due(now) or power != self.power:
+            self.power = power
+            if self.battery.get_num_connections():
+                self.battery.publish(battery_state(stamp, self.frames[0], reading))
+            for publisher, value in self.battery_values:
+                if publisher.get_num_connections():
+                    publisher.publish(value(reading))

@@ -1,0 +1,267 @@
+"""The robot docks by itself until something ends it, and is driven off its dock in full mode, with a look at cliffs and
+wheel drops."""
+import pytest
+
+from rbx1_nav.base.command_gate import RefusedCommand
+from rbx1_nav.extras.create.protocol import FULL, OFF, PASSIVE, SAFE, WHEEL_DROP_RIGHT, command
+
+from driven_create import BOTH, started
+
+
+def docking(robot_type, **params):
+    """Return a robot that is looking for its dock."""
+    driven = started(robot_type, **params)
+    driven.driver.orders.dock(driven.now, driven.driver.reading)
+    driven.run(1)
+    assert driven.robot.program_runs and driven.robot.mode == PASSIVE and driven.body.moving
+    return driven
+
+
+def on_dock(robot_type, **params):
+    """Return a robot that stands on its dock."""
+    driven = started(robot_type)
+    driven.body.docked = True
+    driven.run(2)
+    assert driven.robot.mode == PASSIVE
+    return driven
+
+
+def undock(driven):
+    driven.driver.orders.undock(driven.now, driven.driver.reading)
+
+
+def drive_off(driven):
+    """Undock until the robot moves."""
+    undock(driven)
+    while not driven.body.moving:
+        driven.run(0.01)
+    assert driven.robot.mode == FULL and driven.body.docked
+
+
+def modes(driven, seconds):
+    """Run; return the modes of the robot in this time, in order, without repetitions."""
+    found = [driven.robot.mode]
+    for _ in range(round(100 * seconds)):
+        driven.run(0.01)
+        if driven.robot.mode != found[-1]:
+            found.append(driven.robot.mode)
+    return found
+
+
+@BOTH
+def test_the_robot_docks_and_charges(robot_type):
+    driven = docking(robot_type)
+    driven.run(5)
+    # the driver leaves it alone
+    supervisor = driven.driver.supervisor
+    assert driven.robot.program_runs and supervisor.reason == 'docking' and not supervisor.in_control
+    # one corrupted reading is no dock
+    driven.driver.orders.update(driven.now, dict(driven.driver.reading, charging_sources=2), 0.0)
+    driven.run(1)
+    assert driven.robot.program_runs and driven.driver.orders.state
+    driven.body.docked = True
+    assert modes(driven, 5) == [PASSIVE]
+    assert not driven.body.moving and 'The robot is on its dock' in driven.log and not driven.driver.orders.state
+    assert driven.driver.reading['charging_state']
+
+
+@BOTH
+@pytest.mark.parametrize('velocity', [(0.0, 0.0), (0.1, 0.0)])
+def test_a_command_ends_docking(robot_type, velocity):
+    driven = docking(robot_type)
+    driven.command(*velocity, sender='/teleop')
+    driven.run(0.05)
+    assert not driven.robot.program_runs
+    assert any('no longer docking: a command from /teleop' in line for line in driven.log)
+    driven.drive(*velocity, 0.5)
+    assert driven.robot.mode == SAFE and not driven.refusals
+    assert driven.speeds == (1000 * velocity[0], 1000 * velocity[0])
+
+
+@BOTH
+def test_a_stop_ends_docking(robot_type):
+    driven = docking(robot_type)
+    driven.driver.stop(driven.now, 'the guardian process died')
+    driven.run(0.05)
+    assert not driven.body.moving and driven.robot.mode == SAFE
+
+
+@BOTH
+@pytest.mark.parametrize('lost', [0, 1], ids=['', 'the first stop is lost'])
+def test_the_exit_ends_docking(robot_type, lost):
+    driven = docking(robot_type)
+    write = driven.write
+
+    def lose_first(data):
+        nonlocal lost
+        if lost and command('start') in data:
+            lost -= 1
+            return
+        write(data)
+    driven.write = driven.driver.sender.write = lose_first
+    driven.driver.leave(driven.now)
+    for _ in range(200):
+        if not driven.driver.left:
+            driven.run(0.002)
+    assert driven.driver.left and not driven.body.moving and driven.robot.mode == PASSIVE
+    with pytest.raises(RefusedCommand, match='shutting down'):
+        driven.driver.orders.dock(driven.now, driven.driver.reading)
+
+
+@BOTH
+def test_a_lost_connection_ends_docking(robot_type):
+    driven = docking(robot_type)
+    driven.pull()
+    driven.run(2)
+    driven.connect()
+    driven.run(2)
+    assert not driven.robot.program_runs and driven.robot.mode == SAFE and not driven.driver.orders.state
+
+
+@BOTH
+def test_an_order_to_dock_that_was_lost_is_repeated(robot_type):
+    driven = started(robot_type)
+    write, driven.driver.sender.write = driven.driver.sender.write, lambda data: None
+    driven.driver.orders.dock(driven.now, driven.driver.reading)
+    driven.driver.sender.write = write
+    driven.run(1)
+    assert driven.robot.program_runs and driven.robot.programs_started == 1
+    driven.run(3)
+    assert driven.robot.program_runs and driven.robot.programs_started == 1
+    # a new order starts it again
+    driven.driver.orders.dock(driven.now, driven.driver.reading)
+    driven.run(3)
+    assert driven.robot.program_runs
+
+
+@BOTH
+@pytest.mark.parametrize('mode', [SAFE, FULL])
+def test_the_robot_leaves_its_dock_in_full_mode(robot_type, mode):
+    driven = started(robot_type, operation_mode=mode)
+    driven.body.docked = True
+    driven.run(2)
+    driven.driver.orders.undock(driven.now, driven.driver.reading)
+    x = driven.truth.x
+    found = modes(driven, 6)
+    if mode == SAFE:
+        assert found == [PASSIVE, FULL, SAFE]
+    assert driven.robot.mode == mode and not driven.body.moving
+    # it stops after the reading that shows 0.2 m: two periods at 0.1 m/s
+    assert driven.truth.x - x == pytest.approx(-0.2, abs=0.01)
+    assert driven.log[-1] == 'The robot has left its dock'
+    driven.drive(0.1, 0.0, 0.5)
+    assert driven.speeds == (100, 100) and not driven.refusals
+
+
+@BOTH
+def test_full_mode_lasts_only_as_long_as_the_contact(robot_type):
+    driven = on_dock(robot_type)
+    undock(driven)
+    driven.run(0.3)     # no wait, as after a wheel drop
+    assert driven.robot.mode == FULL
+    driven = on_dock(robot_type)
+    undock(driven)
+    start = None
+    for _ in range(300):
+        driven.run(0.01)
+        if driven.robot.mode == FULL and start is None:
+            start = driven.now
+        if start and driven.robot.mode == SAFE:
+            break
+    # 2 cm at 0.1 m/s, three readings until it moves and three until it is seen to have left
+    assert driven.robot.mode == SAFE and (driven.now - start) / 1e9 < 0.2 + 6 / 30
+
+
+@BOTH
+def test_one_reading_without_contact_does_not_end_full_mode(robot_type):
+    driven = on_dock(robot_type)
+    drive_off(driven)
+    state = driven.driver.orders.state
+    driven.driver.orders.update(driven.now, dict(driven.driver.reading, charging_sources=0), 0.0)
+    assert driven.driver.orders.state == state
+    driven.run(0.05)
+    assert driven.robot.mode == FULL and driven.body.docked and driven.body.moving
+
+
+@BOTH
+def test_a_program_that_was_started_by_a_button_is_replaced(robot_type):
+    driven = started(robot_type)
+    driven.robot.receive(command('cover'), driven.now)
+    driven.run(0.1)
+    driven.driver.orders.dock(driven.now, driven.driver.reading)
+    driven.run(2)
+    assert driven.robot.program_runs and driven.robot.programs_started == 2
+
+
+@BOTH
+@pytest.mark.parametrize('name, bits', [('switches', WHEEL_DROP_RIGHT), ('cliffs', 1), ('cliffs', 8)])
+def test_a_cliff_and_a_wheel_drop_stop_it_in_full_mode(robot_type, name, bits):
+    driven = on_dock(robot_type)
+    drive_off(driven)
+    setattr(driven.body, name, bits)
+    driven.run(0.1)
+    assert not driven.body.moving and driven.robot.mode == PASSIVE
+    setattr(driven.body, name, 0)
+    driven.run(3)
+    assert not driven.body.moving and driven.robot.mode == PASSIVE and driven.driver.reading['charging_state']
+
+
+@BOTH
+def test_a_command_and_a_stop_end_undocking(robot_type):
+    # the last one: as a stall of the node does
+    for end in (lambda: driven.command(0, 0), lambda: driven.driver.stop(driven.now, 'test'),
+                lambda: driven.gate.halt()):
+        driven = on_dock(robot_type)
+        drive_off(driven)
+        end()
+        driven.run(0.1)
+        assert not driven.body.moving and driven.robot.mode == PASSIVE
+        driven.run(3)
+        assert not driven.body.moving and not driven.driver.orders.state
+
+
+@BOTH
+def test_the_exit_while_undocking(robot_type):
+    driven = on_dock(robot_type)
+    drive_off(driven)
+    driven.driver.leave(driven.now)
+    driven.run(0.1)
+    assert driven.driver.left and not driven.body.moving and driven.robot.mode == PASSIVE
+
+
+def test_wheels_that_are_blocked_on_the_dock():
+    driven = on_dock('create2')
+    undock(driven)
+    driven.body.wheels.travel = lambda *_: (0.0, 0.0)
+    assert modes(driven, 7) == [PASSIVE, FULL, PASSIVE]
+    assert any('has not driven 0.2 m in 5 s' in line for line in driven.log)
+
+
+@BOTH
+@pytest.mark.parametrize('order, attribute, value, text', [
+    ('dock', 'docked', True, 'the robot is on its dock'), ('dock', 'cliffs', 1, 'a cliff'),
+    ('undock', 'docked', False, 'not on its dock'), ('undock', 'charger', True, 'the charger is plugged in'),
+    ('undock', 'switches', 16, 'a wheel dropped')])
+def test_an_order_that_cannot_be_followed(robot_type, order, attribute, value, text):
+    if robot_type == 'create2' and value == 16:     # it has no caster bit
+        value = 8
+    driven = started(robot_type)
+    setattr(driven.body, attribute, value)
+    driven.run(1)
+    with pytest.raises(RefusedCommand, match=text):
+        getattr(driven.driver.orders, order)(driven.now, driven.driver.reading)
+    driven.run(1)
+    assert not driven.robot.program_runs and not driven.body.moving
+
+
+def test_no_robot_and_passive_mode():
+    driven = started('create2', operation_mode=1)
+    with pytest.raises(RefusedCommand, match='operation_mode: 1'):
+        driven.driver.orders.dock(driven.now, driven.driver.reading)
+    driven = started('create2')
+    driven.line.silent = True
+    driven.run(1)
+    for order in driven.driver.orders.dock, driven.driver.orders.undock:
+        with pytest.raises(RefusedCommand, match='does not answer'):
+            order(driven.now, driven.driver.reading)
+    assert driven.robot.mode != OFF
