@@ -77,6 +77,7 @@ class Acceptance:
         # bumps, wheel drops and AT_CLIFF: in the last reading, and in both of the last two readings
         self._bits = self._felt = 0
         self._blocked = 0.0         # m, see BLOCKED
+        self._bumped_since: int | None = None   # time of the first forward command while a bumper is pressed
         self._ignored_since: int | None = None  # time of the first motion command that the robot does not follow
 
     def feel(self, reading: Mapping[str, int]) -> bool:
@@ -119,7 +120,8 @@ class Acceptance:
 
     def check_obedience(self, now: int) -> None:
         """Raise RefusedCommand if the robot does not follow the command in force, and will not do so shortly."""
-        if self._is_obeyed and self._is_bumped(self._felt):
+        self._bumped_since = (self._bumped_since or now) if self._is_obeyed and self._is_bumped(self._felt) else None
+        if self._bumped_since is not None and now - self._bumped_since >= OUTAGE:   # a script may turn at a bump
             raise RefusedCommand('a bumper is pressed')
         if self._is_obeyed and self._is_at_edge(self._felt):
             raise RefusedCommand(BACK_UP)

@@ -5,11 +5,13 @@ from driven_create import BOTH, DrivenCreate, started
 
 
 @BOTH
-def test_a_bump_refuses_forward_motion_at_once_and_no_longer_than_it_lasts(robot_type):
+def test_a_bump_stops_the_robot_at_once_is_refused_later_and_no_longer_than_it_lasts(robot_type):
     driven = started(robot_type)
     driven.drive(0.2, 0, 0.5)
     driven.body.bumped = True
     driven.drive(0.2, 0, 0.1)
+    assert driven.speeds == (0, 0) and not driven.refusals
+    driven.drive(0.2, 0, 0.4)
     assert set(driven.refusals) == {'a bumper is pressed'}
     count = len(driven.refusals)
     driven.drive(-0.2, 0, 0.5)

@@ -54,17 +54,21 @@ class Base:
 
 
 @pytest.mark.parametrize('bits', [1, 2, 3])
-def test_a_bump_stops_forward_motion_at_once_and_is_refused_after_two_readings(bits):
+def test_a_bump_stops_forward_motion_at_once_and_is_refused_after_300_ms(bits):
     base = Base()
     base.command(0.2, 0)
     assert base.speeds == (200, 200)
     base.feel(bits)
-    assert base.speeds == (0, 0) and base.command(0.2, 0) == ''
+    # one reading may be corrupted
+    assert base.speeds == (0, 0) and base.command(0.2, 0) == base.command(0.2, 0, NOW + SECOND) == ''
     base.feel(bits)
-    assert base.command(0.2, 0) == 'a bumper is pressed'
-    assert base.command(-0.2, 0) == base.command(0, 1) == ''
+    assert base.command(0.2, 0) == base.command(0.2, 0, NOW + 299 * SECOND // 1000) == '' and base.speeds == (0, 0)
+    assert base.command(0.2, 0, NOW + 3 * SECOND // 10) == 'a bumper is pressed'
+    # a script that reacts has this time again
+    assert base.command(-0.2, 0, NOW + SECOND) == base.command(0, 1, NOW + SECOND) == ''
+    assert base.command(0.2, 0, NOW + 2 * SECOND) == ''
     base.feel(0)
-    assert base.command(0.2, 0) == ''
+    assert base.command(0.2, 0, NOW + 3 * SECOND) == ''
 
 
 @pytest.mark.parametrize('bits', [4, 8, 16])
