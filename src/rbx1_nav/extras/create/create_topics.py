@@ -27,13 +27,13 @@ from rbx1_nav.node.rospy_topics import NoDelay
 
 NOTHING_RECEIVED = 255      # infrared character of a Create; 0 on a Create 2 and in create_robot
 SWITCHES = 'bumps_and_wheel_drops'
-# topic, type, packet, bits: a Bool shows whether one of the bits is set, an Empty is published while it is
+# topic, type, packet, bits: a Bool shows whether one of the bits is set, an Empty is published while one is
 SENSORS = (
     ('bumper/left', Bool, SWITCHES, protocol.BUMP_LEFT), ('bumper/right', Bool, SWITCHES, protocol.BUMP_RIGHT),
     ('wheeldrop/left', Bool, SWITCHES, protocol.WHEEL_DROP_LEFT),
     ('wheeldrop/right', Bool, SWITCHES, protocol.WHEEL_DROP_RIGHT), ('wheeldrop', Empty, SWITCHES, WHEEL_DROPS),
     *((name.replace('_', '/', 1), Bool, name, 1) for name in CLIFFS),
-    *((name, Empty, 'buttons', bit) for name, bit in panel.BUTTONS.items()))
+    *((name, Empty, 'buttons', bit) for name, bit in panel.BUTTONS.items()), ('ir_omni', UInt16, 'infrared', 0xff))
 Reading = Mapping[str, int]
 BATTERY: tuple[tuple[str, Any, Callable[[Reading], float]], ...] = (
     ('battery/voltage', Float32, lambda reading: reading['voltage'] / 1000),
@@ -78,10 +78,11 @@ class CreateTopics:
         self.frames = robot.base_frame_id, robot.odom_frame_id
         self.lights = panel.Lights()
         self.battery_schedule = Schedule(1)
+        self.subscriber_schedule = Schedule(10)     # to ask 16 publishers at each reading would cost more than the rest
+        self.subscribed: list[tuple[rospy.Publisher, Any, str, int]] = []       # those of `sensors` with a subscriber
         self.power: tuple[int, int] | None = None       # charging state and sources in the last message
         self.sensors = [(rospy.Publisher(name, kind, NoDelay(), queue_size=10), kind, packet, bits)
                         for name, kind, packet, bits in SENSORS]
-        self.infrared = rospy.Publisher('ir_omni', UInt16, NoDelay(), queue_size=10)
         self.battery = rospy.Publisher('battery_state', BatteryState, queue_size=10)
         self.battery_values = [(rospy.Publisher(name, kind, queue_size=10), value) for name, kind, value in BATTERY]
         self.reset_pub = rospy.Publisher('reset_odometry', Empty, queue_size=1)
@@ -132,13 +133,16 @@ class CreateTopics:
 
     def publish(self, now: int, stamp: rospy.Time, reading: Reading) -> None:
         """Publish a reading. No message is created without a subscriber."""
-        for publisher, kind, packet, bits in self.sensors:
-            if publisher.get_num_connections():
-                is_set = bool(reading[packet] & bits)
-                if kind is Bool or is_set:
-                    publisher.publish(*([is_set] if kind is Bool else []))
-        if self.infrared.get_num_connections():
-            self.infrared.publish(reading['infrared'] % NOTHING_RECEIVED)
+        if self.subscriber_schedule.due(now):
+            self.subscribed = [each for each in self.sensors if each[0].get_num_connections()]
+        for publisher, kind, packet, bits in self.subscribed:
+            value = reading[packet] & bits
+            if kind is Bool:
+                publisher.publish(bool(value))
+            elif kind is UInt16:
+                publisher.publish(value % NOTHING_RECEIVED)
+            elif value:
+                publisher.publish()
         power = reading['charging_state'], reading['charging_sources']
         if self.battery_schedule.due(now) or power != self.power:
             self.power = power
