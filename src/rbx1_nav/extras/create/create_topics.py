@@ -148,6 +148,6 @@ class CreateTopics:
             self.power = power
             if self.battery.get_num_connections():
                 self.battery.publish(battery_state(stamp, self.frames[0], reading))
-            for publisher, value in self.battery_values:
+            for publisher, of in self.battery_values:
                 if publisher.get_num_connections():
-                    publisher.publish(value(reading))
+                    publisher.publish(of(reading))

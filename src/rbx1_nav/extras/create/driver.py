@@ -257,7 +257,6 @@ class Driver:
 
     def _supervise(self, time: int, reading: Mapping[str, int]) -> None:
         if self.orders.update(time, reading, (self.motion.left + self.motion.right) / 2):
-            self.has_driven = True
             return
         before = self.supervisor.in_control
         if (mode := self.supervisor.update(time, reading, self.gate.moving, self.acceptance.backs)) is not None:

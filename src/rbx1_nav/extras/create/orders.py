@@ -113,8 +113,6 @@ class Orders:
     def _finish(self) -> None:
         self.gate.halt()
         self.supervisor.forget()
-        if self.sender.phase is Phase.DOCKING:
-            self.sender.phase = Phase.WAITING
         self.state, self.supervisor.wanted, self.supervisor.reason = '', self.wanted, ''
 
     def confirms_end(self) -> bool:
