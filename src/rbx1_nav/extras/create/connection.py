@@ -106,7 +106,7 @@ class Supervisor:
         found, docked = causes(reading), bool(reading['charging_sources'] & DOCK)
         reasons = list(found)
         if docked:
-            reasons.append('on the dock: lift it off if it does not follow a command')
+            reasons.append('on the dock: publish on undock, or lift it off')
         if reasons:
             self.failures = 0
         elif self.failures > ATTEMPTS_BEFORE_LOG:

@@ -71,6 +71,7 @@ class Orders:
         self._mode = reading['mode'] if self.supervisor.in_control else None
         self._begin(now, DOCKING)
         self.supervisor.forget()
+        self.supervisor.reason = DOCKING
         self._ask_to_dock(now)
 
     def _ask_to_dock(self, now: int) -> None:
@@ -87,13 +88,13 @@ class Orders:
         if not reading['charging_sources'] & DOCK:
             raise RefusedCommand('the robot is not on its dock')
         self._begin(now, UNDOCKING)
+        self.gate.command(now, -UNDOCK_SPEED, 0.0)
         self._start, self._docked = None, True
         self.supervisor.wanted, self.supervisor.attempt, self.supervisor.had_control = protocol.FULL, None, False
 
     def _begin(self, now: int, state: str) -> None:
         self.gate.halt()
         self.state, self._since = state, now
-        self.supervisor.reason = state
         self.info(f'The robot is {state}; a command on cmd_vel ends this')
 
     def end(self, now: int, reason: str) -> None:
@@ -149,7 +150,7 @@ class Orders:
     def _drive_off(self, now: int, reading: Mapping[str, int], is_sure: bool, position: float) -> None:
         if causes(reading):
             self.end(now, ', '.join(causes(reading)))
-        elif self._start is not None and not self.gate.moving:
+        elif not self.gate.moving:
             self.end(now, 'it was stopped')
         elif now - self._since > UNDOCK_TIME:
             self.end(now, f'it has not driven {UNDOCK_DISTANCE} m in {UNDOCK_TIME // SECOND} s')

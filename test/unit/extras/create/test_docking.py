@@ -213,6 +213,19 @@ def test_a_command_and_a_stop_end_undocking(robot_type):
 
 
 @BOTH
+def test_an_old_order_does_not_move_the_robot_after_an_outage(robot_type):
+    driven = on_dock(robot_type)
+    undock(driven)
+    driven.line.silent = True
+    driven.run(1.5)
+    driven.line.silent = False
+    driven.commands.clear()
+    driven.run(4)
+    assert driven.driver.contact.answers and not driven.driver.orders.state
+    assert not driven.body.moving and command('full') not in [data for _, data in driven.commands]
+
+
+@BOTH
 def test_the_exit_while_undocking(robot_type):
     driven = on_dock(robot_type)
     drive_off(driven)

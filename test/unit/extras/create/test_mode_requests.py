@@ -65,8 +65,8 @@ def test_the_mode_is_requested_until_the_robot_reports_it():
 def test_on_the_dock_the_mode_is_requested_only_for_a_command(wants_motion):
     robot = Supervised()
     assert bool(robot.feed(PASSIVE, 12, wants_motion, **DOCK)) == wants_motion
-    assert robot.supervisor.reason == 'on the dock: lift it off if it does not follow a command'
-    assert robot.log == ['The robot cannot be driven: on the dock: lift it off if it does not follow a command']
+    assert robot.supervisor.reason == 'on the dock: publish on undock, or lift it off'
+    assert robot.log == ['The robot cannot be driven: on the dock: publish on undock, or lift it off']
 
 
 def test_what_is_logged_when_control_is_gained_and_lost():

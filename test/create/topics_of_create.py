@@ -79,7 +79,7 @@ class TestCreateTopics(support.Case):
         self.publish('dock', Empty)
         self.robot.node.wait_for_line('The robot is docking(.|\n)*The robot is docking')
         self.robot.commander.send()
-        self.robot.node.wait_for_line('no longer docking: a command from /create_topics')
+        self.robot.node.wait_for_line('no longer docking: a command from /topics_of_create')
         self.robot.wait_for_standstill()
         self.publish('undock', Empty)
         self.robot.node.wait_for_line('/undock: the robot is not on its dock; rejected')
