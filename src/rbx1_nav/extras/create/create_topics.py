@@ -78,10 +78,11 @@ class CreateTopics:
         self.frames = robot.base_frame_id, robot.odom_frame_id
         self.lights = panel.Lights()
         self.battery_schedule = Schedule(1)
-        self.subscriber_schedule = Schedule(10)     # to ask 16 publishers at each reading would cost more than the rest
-        self.subscribed: list[tuple[rospy.Publisher, Any, str, int]] = []       # those of `sensors` with a subscriber
+        # those of `sensors` with a subscriber: to ask all of them at each reading would cost more than the rest
+        self.subscribed: list[tuple[rospy.Publisher, Any, str, int]] = []
+        self.is_new = True          # whether a subscriber has connected since `subscribed` was made
         self.power: tuple[int, int] | None = None       # charging state and sources in the last message
-        self.sensors = [(rospy.Publisher(name, kind, NoDelay(), queue_size=10), kind, packet, bits)
+        self.sensors = [(rospy.Publisher(name, kind, NoDelay(self.greet), queue_size=10), kind, packet, bits)
                         for name, kind, packet, bits in SENSORS]
         self.battery = rospy.Publisher('battery_state', BatteryState, queue_size=10)
         self.battery_values = [(rospy.Publisher(name, kind, queue_size=10), value) for name, kind, value in BATTERY]
@@ -105,6 +106,10 @@ class CreateTopics:
                 ('power_led', UInt8MultiArray, self.light(lights.set_power)),
                 ('set_ascii', UInt8MultiArray, self.light(lambda data: lights.set_digits(data, driver.model)))):
             self.subscribers.append(rospy.Subscriber(name, kind, partial(self.on_order, name, order), queue_size=10))
+
+    def greet(self, *_: object) -> None:
+        """Note a new subscriber."""
+        self.is_new = True
 
     # Any: rospy has no types
     def light(self, change: Callable[[Any], None]) -> Callable[[int, Any], None]:
@@ -133,7 +138,9 @@ class CreateTopics:
 
     def publish(self, now: int, stamp: rospy.Time, reading: Reading) -> None:
         """Publish a reading. No message is created without a subscriber."""
-        if self.subscriber_schedule.due(now):
+        due = self.battery_schedule.due(now)
+        if due or self.is_new:
+            self.is_new = False
             self.subscribed = [each for each in self.sensors if each[0].get_num_connections()]
         for publisher, kind, packet, bits in self.subscribed:
             value = reading[packet] & bits
@@ -144,7 +151,7 @@ class CreateTopics:
             elif value:
                 publisher.publish()
         power = reading['charging_state'], reading['charging_sources']
-        if self.battery_schedule.due(now) or power != self.power:
+        if due or power != self.power:
             self.power = power
             if self.battery.get_num_connections():
                 self.battery.publish(battery_state(stamp, self.frames[0], reading))

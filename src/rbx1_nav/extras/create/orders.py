@@ -131,7 +131,7 @@ class Orders:
             self._follow_docking(now, reading, is_sure)
         elif self.state:
             self._drive_off(now, reading, is_sure, position)
-        if not self.sender.may_send(Kind.PANEL):
+        if self.sender.phase is not Phase.DRIVEN:
             self._shown = b''
         elif self._shown != self.lights:
             self._shown = self.lights

@@ -136,6 +136,15 @@ def test_no_message_without_a_subscriber(node, monkeypatch):
     assert [name for name, topic in topics.items() if topic.sent] == []
 
 
+def test_a_new_subscriber_gets_the_next_reading(node, monkeypatch):
+    driven, found, topics = node('create2')
+    monkeypatch.setattr(Topic, 'connections', 0)
+    assert published(driven, found, topics, BITS) == {name: [] for name in BITS}
+    monkeypatch.setattr(Topic, 'connections', 1)
+    found.greet('/bumper/left', None)
+    assert published(driven, found, topics, BITS) == {name: [False] for name in BITS}
+
+
 def order(topics, name, data=None):
     topics[name].callback(SimpleNamespace(data=data))
 
