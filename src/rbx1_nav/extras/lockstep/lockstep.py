@@ -112,12 +112,13 @@ class Lockstep:
     def deliver(self, publisher: rospy.Publisher, message: Message) -> None:
         """Publish a message, and wait until everything that it has woken is asleep again."""
         topic = publisher.impl
-        if not topic.connections:
+        receivers = self.processes.receivers(topic)
+        if not receivers:
             return
         topic.seq += 1
         buffer = BytesIO()
         serialize_message(buffer, topic.seq, message)
-        for connections, wait in self.processes.groups(topic.connections):
+        for connections, wait in self.processes.groups(receivers):
             self.heard.clear()
             for connection in connections:
                 write(connection, buffer.getvalue())

@@ -84,6 +84,9 @@ class Processes:
     def find_sources(self):
         return self.new_source
 
+    def receivers(self, topic):
+        return topic.connections
+
     def groups(self, connections):
         watched = [[each] for each in connections if each.endpoint_id != 'recorder']
         return [([each for each in connections if each.endpoint_id == 'recorder'], False)] + [
