@@ -95,8 +95,9 @@ class Lockstep:
 
     def receive(self, target: Any, header: dict[str, str], command: Any) -> None:
         """Accept a command that just arrived, in any thread. header: see Received."""
-        with self.lock:
-            self.arrived.append(Received(target, header, command, monotonic(), self.idle))
+        with self.lock:     # a node that is starting may wait by the wall clock, and send through a relay
+            self.arrived.append(Received(target, header, command, monotonic(),
+                                         self.idle and not self.processes.starting))
         self.processes.has_started(header['callerid'])
         self.heard.set()
 

@@ -32,6 +32,7 @@ class Processes:
         self.never_sleeps = None
         self.looks = 0
         self.obstacles = {}
+        self.starting = {}
         self.forgotten = {}
         self.new_source = False
         self.new_threads = False
