@@ -16,8 +16,8 @@ ROOT, ALONE = False, True
 
 DRIVER = os.path.join(os.path.dirname(support.__file__), 'base', 'any_driver.py')
 BUSY = 6        # loops
-KINDS = tuple(os.environ['KINDS'].split(',')) if 'KINDS' in os.environ else (
-    'early', 'connection', 'no_wait', 'first_odom', 'first_transform', 'GoToPoint', 'Square', 'exercise', 'late',
+KINDS = (
+    'early', 'early 2.9', 'connection', 'no_wait', 'first_odom', 'first_transform', 'GoToPoint', 'Square', 'exercise', 'late',
     'through relay', 'through throttle', 'roscpp sleep', 'roscpp connection', 'roscpp none')
 # nodes between the driver and the base
 TOOLS = {'relay': ('relay', '/relay', '/cmd_vel', '__name:=relay'),
@@ -74,5 +74,5 @@ def check(base, words, ends, first=False):
         process.kill()
     end = repr(support.pose(rospy.wait_for_message('/ground_truth', Odometry, support.LIMIT)))
     expected = ends.setdefault(bool(first), end)
-    assert end == expected, f'{end}, in an earlier run {expected}'
+    assert end == expected, f"{end}, in an earlier {'first run' if first else 'run'} {expected}"
     assert not [line for line in base.launch.lines if 'not in step' in line], base.launch.lines
