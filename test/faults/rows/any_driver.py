@@ -17,7 +17,8 @@ ROOT, ALONE = False, True
 DRIVER = os.path.join(os.path.dirname(support.__file__), 'base', 'any_driver.py')
 BUSY = 6        # loops
 KINDS = (
-    'early', 'early 2.9', 'connection', 'no_wait', 'first_odom', 'first_transform', 'GoToPoint', 'Square', 'exercise', 'late',
+    'early', 'early 2.9', 'connection', 'no_wait', 'first_odom', 'first_transform', 'GoToPoint', 'Square', 'exercise',
+    'late',
     'through relay', 'through throttle', 'roscpp sleep', 'roscpp connection', 'roscpp none')
 # nodes between the driver and the base
 TOOLS = {'relay': ('relay', '/relay', '/cmd_vel', '__name:=relay'),
