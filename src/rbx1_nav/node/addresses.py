@@ -12,6 +12,7 @@ from rosgraph import network
 import rospy
 
 TIMEOUT = 2.0       # s to connect to this computer
+UNSPECIFIED = '0.0.0.0', '::'       # a server listens at these; a connection to them reaches the own computer
 
 
 def check_master_uri() -> None:
@@ -37,6 +38,8 @@ def check_own_address(name: str) -> None:
         server.bind(('', 0))
         server.listen()
         try:
+            if host in UNSPECIFIED:
+                raise OSError('only this computer can use it')
             socket.create_connection((host, server.getsockname()[1]), TIMEOUT).close()
         except OSError as error:
             rospy.core.configure_logging(name)      # as init_node() would, so that the line has the usual format

@@ -46,7 +46,9 @@ def find_problem(argument: str, names: Sequence[str]) -> str | None:
         return f"unknown argument{_suggestion(left, right, names, 0.6) or f': {EXPECTED}'}"
     if left == '__name' and not is_legal_base_name(right):
         return 'expected a name of letters, digits and _ that begins with a letter'
-    if left.startswith('__'):       # __ns and the like, for rospy
+    if left == '__ns' and (right.startswith('~') or not is_legal_name(right)):
+        return 'expected a namespace such as /robot1'
+    if left.startswith('__'):       # __log and the like, for rospy
         return None
     if left.startswith('_'):
         if left[1:].split('/')[0] not in names:

@@ -1,9 +1,10 @@
 """The connections of rospy: messages are sent at once, and no connection is missed or held up."""
 from __future__ import annotations
 
+from contextlib import nullcontext
 import socket
 import threading
-from typing import Any, Callable, Sequence
+from typing import Any, Callable, ContextManager, Sequence
 
 import rospy
 from rospy.impl.registration import RegManager
@@ -16,6 +17,8 @@ _create = rospy.Publisher.__init__
 _creating = threading.Lock()    # held while a publisher is created
 _connect = RegManager._connect_topic_thread
 _connecting: dict[tuple[str, str], threading.Lock] = {}     # by topic and URI
+# surrounds each connection of a subscriber to a topic; a simulated clock replaces the function
+gates: list[Callable[[str], ContextManager[Any]]] = [nullcontext]
 
 
 class NoDelay(rospy.SubscribeListener):
@@ -93,5 +96,5 @@ def _update_publishers(manager: RegManager, topic: str, publishers: Sequence[str
 
 def _connect_one_at_a_time(manager: RegManager, topic: str, uri: str) -> None:
     """Connect to a publisher. A second thread waits, and finds the connection."""
-    with _connecting.setdefault((topic, uri), threading.Lock()):
+    with _connecting.setdefault((topic, uri), threading.Lock()), gates[-1](topic):
         _connect(manager, topic, uri)

@@ -32,7 +32,8 @@ def test_an_address_of_a_master(monkeypatch, uri):
 
 
 # 203.0.113.0/24 is for documents (RFC 5737), and no name ends in .invalid (RFC 2606)
-@pytest.mark.parametrize('name, value', [('ROS_IP', '203.0.113.7'), ('ROS_HOSTNAME', 'robot.invalid')])
+@pytest.mark.parametrize('name, value', [('ROS_IP', '203.0.113.7'), ('ROS_HOSTNAME', 'robot.invalid'),
+                                         ('ROS_IP', '0.0.0.0')])
 def test_an_own_address_at_which_this_computer_cannot_be_reached(monkeypatch, name, value):
     monkeypatch.setenv(name, value)
     monkeypatch.setattr('rbx1_nav.node.addresses.TIMEOUT', 0.05)
@@ -50,3 +51,5 @@ def test_a_name_of_a_node():
     assert find_problem('__name:=foo bar', []).startswith('expected a name')
     assert find_problem('__name:=/foo', []) and find_problem('__name:=', [])
     assert find_problem('__name:=foo_2', []) is None and find_problem('__ns:=/a/b', []) is None
+    for name in 'foo bar', '/a//b', '~a', '9':
+        assert find_problem(f'__ns:={name}', []).startswith('expected a namespace')

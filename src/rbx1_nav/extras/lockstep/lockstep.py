@@ -95,8 +95,9 @@ class Lockstep:
 
     def receive(self, target: Any, header: dict[str, str], command: Any) -> None:
         """Accept a command that just arrived, in any thread. header: see Received."""
-        with self.lock:
-            self.arrived.append(Received(target, header, command, monotonic(), self.idle))
+        with self.lock:     # a node that is starting may wait by the wall clock, and send through a relay
+            self.arrived.append(Received(target, header, command, monotonic(),
+                                         self.idle and not self.processes.starting))
         self.processes.has_started(header['callerid'])
         self.heard.set()
 
@@ -112,12 +113,13 @@ class Lockstep:
     def deliver(self, publisher: rospy.Publisher, message: Message) -> None:
         """Publish a message, and wait until everything that it has woken is asleep again."""
         topic = publisher.impl
-        if not topic.connections:
+        receivers = self.processes.receivers(topic)
+        if not receivers:
             return
         topic.seq += 1
         buffer = BytesIO()
         serialize_message(buffer, topic.seq, message)
-        for connections, wait in self.processes.groups(topic.connections):
+        for connections, wait in self.processes.groups(receivers):
             self.heard.clear()
             for connection in connections:
                 write(connection, buffer.getvalue())

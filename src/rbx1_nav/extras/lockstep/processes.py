@@ -135,6 +135,13 @@ class Process:
         except OSError:
             return None
 
+    def cpu_time(self) -> int:
+        """Return the CPU time that it has used, ns; 0 if it has exited."""
+        try:
+            return time.clock_gettime_ns(self.clock)
+        except OSError:
+            return 0
+
     def sleeps(self) -> bool:
         """Return whether all threads are asleep."""
         if os.stat(self.folder).st_nlink != len(self.threads) + 2 + (self.without is not None):

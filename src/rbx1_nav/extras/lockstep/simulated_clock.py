@@ -17,7 +17,7 @@ from rbx1_nav.base.schedule import CLOCK_STEP, Schedule
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.extras.lockstep.lockstep import Lockstep
 from rbx1_nav.extras.lockstep.watched_nodes import Watch
-from rbx1_nav.node import life
+from rbx1_nav.node import life, rospy_topics
 from rbx1_nav.node.config import ConfigError
 from rbx1_nav.node.master import call, is_alive
 from rbx1_nav.node.parameters import flag, number
@@ -94,7 +94,9 @@ class OwnClock(Clock):
         # new subscribers: False for those of /clock, which come first; a function that greets each of them
         self.new: list[tuple[bool, Callable[[], None]]] = []
         self.publisher = rospy.Publisher('/clock', ClockMessage, NoDelay(self.greet_with_time), queue_size=10)
-        self.lockstep = Lockstep(Watch(self.publisher, self.greet_all), self.report, life.end_requested.is_set)
+        watch = Watch(self.publisher, self.greetings)
+        self.lockstep = Lockstep(watch, self.report, life.end_requested.is_set)
+        rospy_topics.gates.append(watch.connecting)
         self.not_in_step: dict[str, str] = {}   # reasons, by the name of the node
 
     def greet_with_time(self, _: str, publish: Callable[[ClockMessage], None]) -> None:
@@ -104,12 +106,10 @@ class OwnClock(Clock):
     def greet(self, send: Callable[[], None]) -> None:
         self.new.append((True, send))
 
-    def greet_all(self) -> bool:
-        """Greet the new subscribers, and those of /clock first; return whether there were any."""
-        new, self.new = self.new, []
-        for _, send in sorted(new, key=lambda each: each[0]):
-            send()
-        return bool(new)
+    def greetings(self) -> list[Callable[[], None]]:
+        """Return the functions that greet the new subscribers, and those of /clock first; each only once."""
+        new = [self.new.pop(0) for _ in range(len(self.new))]
+        return [send for _, send in sorted(new, key=lambda each: each[0])]
 
     def now(self) -> int:
         return self.time

@@ -1,10 +1,12 @@
 """Observes the processes of the nodes that drive bases on a simulated clock: whether they have finished their work."""
 from __future__ import annotations
 
+from contextlib import contextmanager
 from operator import is_
 import socket
+from threading import Event
 from time import monotonic
-from typing import Any, Callable, Iterable, Sequence
+from typing import Any, Callable, Container, Iterable, Iterator, Sequence
 from urllib.parse import urlparse
 
 import rosgraph
@@ -20,6 +22,9 @@ CONNECT_TIME = 4.0
 RECONNECT_TIME = 0.6    # s of wall time: rospy 1.15.9 connects again at once, but reads only 0.5 s later
 START_SLEEP = 0.5       # s of wall time for which a node that is starting may sleep by the wall clock
 DRIVER_SLEEP = 3.0      # s for which it may do so if it publishes commands
+AWAKE_TIME = 2.0        # s of wall time: a publisher of commands is connected, even if a node is still awake
+# ns of CPU time: the master has answered a call (0.2 to 1 ms; 0.07 ms to look for work); what it needs after its answer
+MASTER_WORK, MASTER_REST = 100_000, 200_000
 
 
 class Watch:
@@ -32,11 +37,11 @@ class Watch:
     """
 
     # Any: rospy has no types
-    def __init__(self, clock: rospy.Publisher, greet: Callable[[], bool]) -> None:
-        """clock: the publisher of /clock; greet(): sends messages to new subscribers; returns whether there were any.
-        """
+    def __init__(self, clock: rospy.Publisher, new_greetings: Callable[[], list[Callable[[], None]]]) -> None:
+        """clock: the publisher of /clock; new_greetings(): returns functions that send messages to new subscribers."""
         self.clock = clock.impl
-        self.greet = greet
+        self.new_greetings = new_greetings
+        self.greetings: list[Callable[[], None]] = []
         self.own_name = rospy.get_name()
         self.commands: list[Any] = []       # the implementations of the subscribers to commands
         # the lists of connections at the last update; rospy replaces a list when it changes
@@ -47,8 +52,18 @@ class Watch:
         self.sources: list[str] = []        # names of all nodes whose messages may cause a command, nearest last
         # nodes that are starting, by name; s of the monotonic clock since when they sleep by the wall clock
         self.starting: dict[str, float | None] = {}
-        self.registered: set[str] = set()   # publishers of commands that the master knew when it was last asked
-        self.connect_by: float | None = None    # s of the monotonic clock: limit for connecting while they start
+        # nodes that the master knew when it was last asked: publishers of commands, those that also subscribe to the
+        # clock, publishers of any message of the type of commands, and nodes that may become sources
+        self.registered: set[str] = set()
+        self.on_clock: set[str] = set()
+        self.similar: set[str] = set()
+        self.relays: set[str] = set()
+        self.needed: set[str] = set()       # nodes whose messages cause commands
+        self.master_time = 0    # ns of CPU time that the master had used when all nodes were asleep
+        # registered nodes that are not connected, by topic and name; s of the monotonic clock when first missed
+        self.missed: dict[tuple[str, str], float] = {}
+        # connections to publishers of commands that are being made; s of the monotonic clock when they were allowed
+        self.joining: dict[Event, float] = {}
         self.processes: dict[str, Process] = {}     # by name, drivers first
         # sockets by name; None: of the master, for good
         self.forgotten: dict[str, socket.socket | None] = {}
@@ -70,7 +85,7 @@ class Watch:
         """Update the set of watched processes; return whether it may have changed. Call this often."""
         now = [self.clock.connections] + [each.connections for each in self.commands]
         if len(now) == len(self.known) and all(map(is_, now, self.known)) and not self.new:
-            return False
+            return bool(self.joining)
         self.known = now
         listeners = {each.endpoint_id: each for each in self.clock.connections}
         for name, each in listeners.items():
@@ -78,6 +93,9 @@ class Watch:
                 self.starting[name] = None
                 if name in self.listeners:
                     self.reads_again = monotonic() + RECONNECT_TIME
+        for name in self.listeners.keys() - listeners.keys():
+            self.missed.pop(('commands', name), None)
+            self.missed['/clock', name] = 0.0       # it may have been killed: not waited for until it unregisters
         self.listeners = listeners
         self.starting = {name: until for name, until in self.starting.items() if name in listeners}
         drivers = self.drivers
@@ -119,17 +137,34 @@ class Watch:
 
     def find_sources(self) -> bool:
         """Ask the master who may cause a command; return whether there are new sources of commands."""
-        topics = [each.resolved_name for each in self.commands]
+        topics = {each.resolved_name for each in self.commands}
+        kinds = {each.type for each in self.commands}
         try:
+            # a relay publishes, and so becomes a source, only after its first message
+            others = {topic for topic, kind in call(rosgraph.get_master_uri(), 'getTopicTypes') if kind in kinds}
             publishers, subscribers, _ = call(rosgraph.get_master_uri(), 'getSystemState')
         except Exception:       # the clock must continue after any error of the master
             return False
-        self.registered = {name for topic, names in publishers if topic in topics for name in names}
+        self.master_time = self.master.cpu_time() + MASTER_REST if self.master else 0
+        self.registered = names_of(topics, publishers)
+        self.similar = names_of(topics | others, publishers)
+        self.missed = {key: since for key, since in self.missed.items() if key[1] in self.registered}
+        self.on_clock = self.registered & names_of({self.clock.resolved_name}, subscribers)
         before = set(self.sources)
-        self.sources = [each for each in reversed(sources_of(topics, publishers, subscribers))
-                        if each != self.own_name]
+        for name in sorted((self.relays & self.registered).difference(self.starting)):
+            rospy.logwarn('%s has advertised %s only now: the command for which it did so is lost. Before the first '
+                          'run, send a zero command, and wait for a second', name, ', '.join(sorted(topics)))
+        self.needed = set(sources_of(topics, publishers, subscribers))
+        sources = sources_of(topics | others, publishers, subscribers)
+        self.relays = names_of(others - topics, subscribers) - set(sources)
+        self.sources = [each for each in (*reversed(sources), *sorted(self.relays)) if each != self.own_name]
         self._select()
         return not before >= set(self.sources)
+
+    def receivers(self, topic: Any) -> Sequence[Any]:
+        """Return the connections to the subscribers of a topic that may receive a message. topic: the implementation of
+        a publisher. A new subscriber of the clock is first greeted, when it is asleep."""
+        return list(self.listeners.values()) if topic is self.clock else topic.connections
 
     def groups(self, connections: Sequence[Any]) -> list[tuple[Sequence[Any], bool]]:
         """Return connections to the subscribers of a topic in groups, in the order in which they receive a message, and
@@ -159,14 +194,16 @@ class Watch:
         return any(not is_complete(each) and now - begin < CONNECT_TIME for each, begin in self.new.items())
 
     def awake(self) -> str | None:
-        """Return the name of a node that is awake, connecting or starting; None if all are asleep."""
+        """Return the name of a node that is awake, or STARTING if one is connecting or starting; None if all are
+        asleep."""
+        self.greetings += self.new_greetings()      # before the update, which finds the nodes that receive them
         self.update()
         if not self.own:
-            return None
+            return self._greet()
         if self._is_connecting():
-            return self.commands[0].resolved_name
+            return STARTING
         if monotonic() < self.reads_again:
-            return '/clock'
+            return STARTING
         names, processes = list(self.processes), list(self.processes.values())
         for name, process in ((MASTER, self.master), (self.own_name, self.own)):
             if process and name not in self.forgotten:
@@ -177,35 +214,69 @@ class Watch:
             # the name of this node stands for the network
             return names[processes.index(found)] if isinstance(found, Process) else self.own_name
         # now, so that the first time that a node sees does not depend on how fast it starts
-        return self.own_name if self.greet() else self._still_starting()
+        return self._greet() or self._still_starting()
+
+    def _greet(self) -> str | None:
+        greetings, self.greetings = self.greetings, []
+        for send in greetings:
+            send()
+        return self.own_name if greetings else None
 
     def _still_starting(self) -> str | None:
-        """Return the name of a node that is starting: it sleeps by the wall clock, or it has registered as a publisher
-        of commands and is not connected yet. None if there is none."""
-        if not self.starting:
-            return None
+        """Return whether a node is starting, as awake() does: it is being connected, it sleeps by the wall clock, or it
+        has registered as a publisher of commands and is not connected yet. All nodes are asleep."""
         now = monotonic()
-        sleeping = []
+        used = self.master.cpu_time() if self.master else 0
+        last, self.master_time = self.master_time, max(used, self.master_time)
+        if used > last + MASTER_WORK:
+            before = set(self.processes)
+            self.find_sources()
+            if not self.processes.keys() <= before:
+                return self.own_name    # whether the new ones are asleep is not known
+        if self.joining:
+            name = self._missed('/clock', self.on_clock - self.listeners.keys(), now)
+            return name or self._join(now) or self._sleeps_by_the_wall_clock(now)
+        connected = {each.header['callerid'] for each in self._connections() if is_complete(each)}
+        unconnected = (self.registered & self.listeners.keys()) - connected - self.forgotten.keys()
+        return self._sleeps_by_the_wall_clock(now) or self._missed('commands', unconnected, now)
+
+    def _missed(self, topic: str, names: set[str], now: float) -> str | None:
+        """Return whether to wait for one of these nodes, which are not connected, as awake() does."""
+        since = [self.missed.setdefault((topic, name), now) for name in names]
+        return STARTING if any(now < each + CONNECT_TIME for each in since) else None
+
+    def _join(self, now: float) -> str | None:
+        """Let publishers of commands connect; return whether they do so, as awake() does."""
+        for event, since in list(self.joining.items()):
+            self.joining[event] = since or now
+            event.set()
+        return STARTING if any(now < since + CONNECT_TIME for since in list(self.joining.values())) else None
+
+    def _sleeps_by_the_wall_clock(self, now: float) -> str | None:
+        """Return whether a node that is starting sleeps by the wall clock, as awake() does."""
         for name, since in list(self.starting.items()):
             process = self.processes.get(name)
             if process and process.main_sleeps_briefly():
                 self.starting[name] = since = since or now
-                if now < since + START_SLEEP:
-                    return name
-                if now < since + DRIVER_SLEEP:
-                    sleeping.append(name)
-        if not self.registered.intersection(sleeping):
-            self.find_sources()
-        if self.registered.intersection(sleeping):
-            return sleeping[0]
-        connected = {each.header['callerid'] for each in self._connections() if is_complete(each)}
-        for name in self.starting.keys() & self.registered - connected:
-            self.connect_by = self.connect_by or now + CONNECT_TIME
-            if now < self.connect_by:
-                return name
-        self.starting, self.connect_by = {}, None
-        self._select()
+                if now < since + (DRIVER_SLEEP if name in self.similar else START_SLEEP):
+                    return STARTING
+        if self.starting:
+            self.starting = {}
+            self._select()
         return None
+
+    @contextmanager
+    def connecting(self, topic: str) -> Iterator[None]:
+        """Connect to a publisher of a topic inside; may be called by any thread. If these are commands, wait until all
+        nodes are asleep and have received the time: whether a command arrives must not depend on chance."""
+        allowed = Event()
+        if self.own and any(topic == each.resolved_name for each in self.commands):
+            self.joining[allowed] = 0.0
+            allowed.wait(AWAKE_TIME)
+        try:
+            yield
+        finally:
+            self.joining.pop(allowed, None)
 
     def polling(self) -> list[PollingThread]:
         """Return the threads that poll the time instead of waiting for a message, as an argument for
@@ -235,8 +306,8 @@ class Watch:
         return still_polling(threads)
 
     def forget(self, name: str) -> bool:
-        """Stop watching a node for as long as its connection lasts; return whether it was more than starting."""
-        watched = name not in self.starting or name in self.drivers or name in self.sources
+        """Stop watching a node for as long as its connection lasts; return whether commands depend on it."""
+        watched = name in self.drivers or name in self.needed or name == MASTER
         self.starting.pop(name, None)
         process = self.processes.pop(name, None)
         if process:
@@ -258,7 +329,12 @@ class Watch:
         return any(connection.header is header for connection in self._connections())
 
 
-MASTER = 'the master'
+MASTER, STARTING = 'the master', 'a node that is starting'
+
+
+def names_of(topics: Container[str], nodes: Iterable[tuple[str, Sequence[str]]]) -> set[str]:
+    """Return the names of the nodes of some topics. nodes: each topic with the names of its nodes."""
+    return {name for topic, names in nodes if topic in topics for name in names}
 
 
 def is_complete(connection: Any) -> bool:
@@ -266,17 +342,15 @@ def is_complete(connection: Any) -> bool:
     return bool(connection.header) and 'callerid' in connection.header
 
 
-def sources_of(topics: Iterable[str], publishers: Iterable[tuple[str, Sequence[str]]],
+def sources_of(topics: Container[str], publishers: Iterable[tuple[str, Sequence[str]]],
                subscribers: Iterable[tuple[str, Sequence[str]]]) -> list[str]:
     """Return the names of all nodes whose messages may cause a message on one of the topics, nearest first.
 
     publishers, subscribers: each topic with the names of its nodes, as returned by the master's getSystemState.
     """
-    names_of = dict(publishers)
     found: list[str] = []
-    new = {name for topic in topics for name in names_of.get(topic, ())}
+    new = names_of(topics, publishers)
     while new:
         found += sorted(new)
-        heard = {each for each, names in subscribers if new & set(names)}
-        new = {name for each in heard for name in names_of.get(each, ())} - set(found)
+        new = names_of({each for each, names in subscribers if new & set(names)}, publishers) - set(found)
     return found

@@ -32,6 +32,7 @@ class Processes:
         self.never_sleeps = None
         self.looks = 0
         self.obstacles = {}
+        self.starting = {}
         self.forgotten = {}
         self.new_source = False
         self.new_threads = False
@@ -83,6 +84,9 @@ class Processes:
 
     def find_sources(self):
         return self.new_source
+
+    def receivers(self, topic):
+        return topic.connections
 
     def groups(self, connections):
         watched = [[each] for each in connections if each.endpoint_id != 'recorder']

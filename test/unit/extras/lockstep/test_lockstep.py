@@ -115,6 +115,13 @@ def test_the_first_motion_and_every_stop_need_no_tick(world):
     world.send('a', STOP)
     world.tick()
     assert not world.reports
+    # the driver behind a relay, which is starting, and waits by the wall clock
+    world.processes.starting = {'c': None}
+    world.send('a', MOVE)
+    world.tick()
+    world.tick(('a', STOP))
+    assert not world.reports
+    world.processes.starting = {}
     world.send('a', MOVE)       # a key, perhaps
     world.tick()
     assert world.reports == [('a', UNPROMPTED)]

@@ -1,0 +1,50 @@
+#!/usr/bin/env python3
+"""The driver, which never exits, turns at 1 m and at the start."""
+import subprocess
+import unittest
+
+import roslib.packages
+import rospy
+import rostest
+from nav_msgs.msg import Odometry
+
+TURNS = 4
+
+
+def find_turns():
+    """Run the driver until it has turned so many times; return the x of these places, m."""
+    rospy.init_node('turns')
+    rospy.wait_for_message('/odom', Odometry)
+    turns, last = [], []
+
+    def on_pose(message):
+        x, speed = message.pose.pose.position.x, message.twist.twist.linear.x
+        if last and last[1] * speed < 0:    # the step before was the last one in the other direction
+            turns.append(last[0])
+        last[:] = x, speed
+    # no queue size: no message is left out
+    rospy.Subscriber('/ground_truth', Odometry, on_pose)
+    # not rosrun, which would not pass on the signal
+    driver = subprocess.Popen(roslib.packages.find_node('my_robot', 'patrol.py')[0])
+    try:
+        while len(turns) < TURNS and driver.poll() is None:
+            rospy.sleep(0.1)
+    finally:
+        driver.terminate()
+        driver.wait()
+    return turns[:TURNS]
+
+
+class TestTurns(unittest.TestCase):
+    def test_turns(self):
+        try:
+            turns = find_turns()
+        except KeyboardInterrupt:
+            self.fail('the base has exited: see its output for the reason')
+        self.assertEqual(len(turns), TURNS)
+        for found, expected in zip(turns, [1, 0] * TURNS):
+            self.assertAlmostEqual(found, expected, delta=1e-6)
+
+
+if __name__ == '__main__':
+    rostest.rosrun('my_robot', 'turns', TestTurns)
