@@ -14,7 +14,7 @@ PROMISE = 'the end pose of a driver is the same in every run to the last bit, an
 FULL, SHORT = 20, 2     # runs of each kind of driver
 ROOT, ALONE = False, True
 
-DRIVER = os.path.join(os.path.dirname(support.__file__), 'base', 'any_driver.py')
+FOLDER = os.path.join(os.path.dirname(support.__file__), 'base')
 BUSY = 6        # loops
 KINDS = (
     'early', 'early 2.9', 'connection', 'no_wait', 'first_odom', 'first_transform', 'GoToPoint', 'Square', 'exercise',
@@ -27,11 +27,11 @@ TOOLS = {'relay': ('relay', '/relay', '/cmd_vel', '__name:=relay'),
 
 def run(row):
     """See FAULT."""
-    check_all(row, KINDS)
+    check_all(row, KINDS, 'any_driver.py')
 
 
-def check_all(row, kinds):
-    """Run each kind of driver so many times."""
+def check_all(row, kinds, driver):
+    """Run each kind of driver so many times. driver: file of the rospy drivers."""
     row.roscore()
     support.init_node('faults')
     base = Base(row, False)
@@ -47,7 +47,7 @@ def check_all(row, kinds):
                     if between:
                         row.end(between)
                     between = start_tool(row, tool, base)
-                check(base, words, ends, tool and number % 2 == 0)
+                check(base, driver, words, ends, tool and number % 2 == 0)
         if between:
             row.end(between)
     base.end()
@@ -62,11 +62,11 @@ def start_tool(row, name, base):
     return tool
 
 
-def check(base, words, ends, first=False):
+def check(base, driver, words, ends, first=False):
     """Run a driver, and compare its end pose with the ends of earlier runs."""
     base.start()
     process = (base.row.start(support.roscpp('early_driver'), *words[1:]) if words[0] == 'roscpp' else
-               base.row.start(DRIVER, *words))
+               base.row.start(os.path.join(FOLDER, driver), *words))
     try:
         support.wait_for(lambda: process.process.poll() is not None or not base.runs(), 'the end of the driver')
         assert base.runs(), [line for line in base.launch.lines if 'FATAL' in line]

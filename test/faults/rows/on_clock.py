@@ -18,4 +18,4 @@ KINDS = (
 
 def run(row):
     """See FAULT."""
-    check_all(row, KINDS)
+    check_all(row, KINDS, 'on_clock_driver.py')

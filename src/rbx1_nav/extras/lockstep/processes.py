@@ -259,3 +259,33 @@ def runs_since(before: Iterable[tuple[Thread, int]]) -> Runs:
         except (OSError, IndexError):       # IndexError: its files are closed
             pass
     return runs
+
+
+class Pollers:
+    """The threads that poll in some processes."""
+
+    processes: dict[str, Process]       # by the name of the node
+
+    def polling(self) -> list[PollingThread]:
+        """Return the threads that poll the time instead of waiting for a message, as an argument for
+        still_polling()."""
+        return [each for process in self.processes.values() for each in process.polling()]
+
+    def have_new_threads(self) -> bool:
+        """Return whether there are new threads in the watched nodes since the last call."""
+        return any([process.has_new_threads() for process in self.processes.values()])
+
+    def runs(self) -> Runs:
+        """Return how often each thread of the watched nodes has run."""
+        return [each for process in self.processes.values() for each in process.runs()]
+
+    @staticmethod
+    def find_pollers(before: Runs) -> bool:
+        """Look for threads that have run although nothing was delivered since runs(); return whether it is still
+        uncertain for one of them."""
+        runs = runs_since(before)
+        for thread, count in runs:
+            thread.is_poller = thread.is_poller or count > 1
+        return any(count == 1 for _, count in runs)
+
+    still_polling = staticmethod(still_polling)

@@ -6,15 +6,15 @@ from operator import is_
 import socket
 from threading import Event
 from time import monotonic
-from typing import Any, Callable, Container, Iterable, Iterator, Sequence
+from typing import Any, Callable, Iterator, Sequence
 from urllib.parse import urlparse
 
 import rosgraph
 import rospy
 
+from rbx1_nav.extras.lockstep.graph import Graph
 from rbx1_nav.extras.lockstep.sockets import listening_process, own_process, peer_process
-from rbx1_nav.extras.lockstep.processes import (
-    Network, PollingThread, Process, Runs, awake, runs_since, still_polling)
+from rbx1_nav.extras.lockstep.processes import Network, Pollers, Process, awake
 from rbx1_nav.node.master import call
 
 # s of wall time to wait for a new connection of cmd_vel; less than NODE_TIMEOUT. A busy machine takes more than 1 s
@@ -27,7 +27,7 @@ AWAKE_TIME = 2.0        # s of wall time: a publisher of commands is connected, 
 MASTER_WORK, MASTER_REST = 100_000, 200_000
 
 
-class Watch:
+class Watch(Pollers):
     """Watches the processes of the nodes that publish commands, and the processes that they may wait for.
 
     These are the publishers of the topics that the nodes subscribe to (a multiplexer passes on commands from others),
@@ -49,22 +49,15 @@ class Watch:
         self.listeners: dict[str, Any] = {}     # connections to the subscribers of /clock, by name
         self.reads_again = 0.0      # s of the monotonic clock: when a listener that has connected again surely reads
         self.drivers: set[str] = set()      # names of the watched publishers of commands
-        self.sources: list[str] = []        # names of all nodes whose messages may cause a command, nearest last
         # nodes that are starting, by name; s of the monotonic clock since when they sleep by the wall clock
         self.starting: dict[str, float | None] = {}
-        # nodes that the master knew when it was last asked: publishers of commands, those that also subscribe to the
-        # clock, publishers of any message of the type of commands, and nodes that may become sources
-        self.registered: set[str] = set()
-        self.on_clock: set[str] = set()
-        self.similar: set[str] = set()
-        self.relays: set[str] = set()
-        self.needed: set[str] = set()       # nodes whose messages cause commands
+        self.graph = Graph()
         self.master_time = 0    # ns of CPU time that the master had used when all nodes were asleep
         # registered nodes that are not connected, by topic and name; s of the monotonic clock when first missed
         self.missed: dict[tuple[str, str], float] = {}
         # connections to publishers of commands that are being made; s of the monotonic clock when they were allowed
         self.joining: dict[Event, float] = {}
-        self.processes: dict[str, Process] = {}     # by name, drivers first
+        self.processes = {}     # drivers first
         # sockets by name; None: of the master, for good
         self.forgotten: dict[str, socket.socket | None] = {}
         self.own = own_process()        # the process of this node, without the thread that runs the clock
@@ -117,7 +110,8 @@ class Watch:
         # a node that does not subscribe to the clock cannot be in step, so there is no use in waiting for it
         drivers = {each.header['callerid']: each.socket for each in connections
                    if is_complete(each) and each.header['callerid'] in self.listeners}
-        others = [name for name in (*self.sources, *self.starting) if name in self.listeners and name not in drivers]
+        others = [name for name in (*self.graph.sources, *self.starting)
+                  if name in self.listeners and name not in drivers]
         sockets = {**drivers, **{name: self.listeners[name].socket for name in others}}
         self.forgotten = {name: sock for name, sock in self.forgotten.items() if sock in (None, sockets.get(name))}
         processes = {}
@@ -137,29 +131,22 @@ class Watch:
 
     def find_sources(self) -> bool:
         """Ask the master who may cause a command; return whether there are new sources of commands."""
+        before = set(self.graph.sources)
         topics = {each.resolved_name for each in self.commands}
-        kinds = {each.type for each in self.commands}
         try:
-            # a relay publishes, and so becomes a source, only after its first message
-            others = {topic for topic, kind in call(rosgraph.get_master_uri(), 'getTopicTypes') if kind in kinds}
+            types = call(rosgraph.get_master_uri(), 'getTopicTypes')
             publishers, subscribers, _ = call(rosgraph.get_master_uri(), 'getSystemState')
         except Exception:       # the clock must continue after any error of the master
             return False
         self.master_time = self.master.cpu_time() + MASTER_REST if self.master else 0
-        self.registered = names_of(topics, publishers)
-        self.similar = names_of(topics | others, publishers)
-        self.missed = {key: since for key, since in self.missed.items() if key[1] in self.registered}
-        self.on_clock = self.registered & names_of({self.clock.resolved_name}, subscribers)
-        before = set(self.sources)
-        for name in sorted((self.relays & self.registered).difference(self.starting)):
+        others = {topic for topic, kind in types if any(kind == each.type for each in self.commands)}
+        relays = self.graph.update(publishers, subscribers, topics, others, self.clock.resolved_name, self.own_name)
+        for name in sorted(relays.difference(self.starting)):
             rospy.logwarn('%s has advertised %s only now: the command for which it did so is lost. Before the first '
                           'run, send a zero command, and wait for a second', name, ', '.join(sorted(topics)))
-        self.needed = set(sources_of(topics, publishers, subscribers))
-        sources = sources_of(topics | others, publishers, subscribers)
-        self.relays = names_of(others - topics, subscribers) - set(sources)
-        self.sources = [each for each in (*reversed(sources), *sorted(self.relays)) if each != self.own_name]
+        self.missed = {key: since for key, since in self.missed.items() if key[1] in self.graph.registered}
         self._select()
-        return not before >= set(self.sources)
+        return not before >= set(self.graph.sources)
 
     def receivers(self, topic: Any) -> Sequence[Any]:
         """Return the connections to the subscribers of a topic that may receive a message. topic: the implementation of
@@ -171,7 +158,7 @@ class Watch:
         whether to wait after each group: nodes that are not watched, sources of commands one by one, and drivers."""
         by_name = {each.endpoint_id: each for each in connections}
         watched = by_name.keys() & self.processes.keys()
-        sources = [name for name in self.sources if name in watched and name not in self.drivers]
+        sources = [name for name in self.graph.sources if name in watched and name not in self.drivers]
         last = sorted(watched - set(sources))
         groups: list[tuple[Sequence[Any], bool]] = [([each for each in connections if each.endpoint_id not in watched],
                                                      False)]
@@ -234,10 +221,10 @@ class Watch:
             if not self.processes.keys() <= before:
                 return self.own_name    # whether the new ones are asleep is not known
         if self.joining:
-            name = self._missed('/clock', self.on_clock - self.listeners.keys(), now)
+            name = self._missed('/clock', self.graph.on_clock - self.listeners.keys(), now)
             return name or self._join(now) or self._sleeps_by_the_wall_clock(now)
         connected = {each.header['callerid'] for each in self._connections() if is_complete(each)}
-        unconnected = (self.registered & self.listeners.keys()) - connected - self.forgotten.keys()
+        unconnected = (self.graph.registered & self.listeners.keys()) - connected - self.forgotten.keys()
         return self._sleeps_by_the_wall_clock(now) or self._missed('commands', unconnected, now)
 
     def _missed(self, topic: str, names: set[str], now: float) -> str | None:
@@ -258,7 +245,7 @@ class Watch:
             process = self.processes.get(name)
             if process and process.main_sleeps_briefly():
                 self.starting[name] = since = since or now
-                if now < since + (DRIVER_SLEEP if name in self.similar else START_SLEEP):
+                if now < since + (DRIVER_SLEEP if name in self.graph.similar else START_SLEEP):
                     return STARTING
         if self.starting:
             self.starting = {}
@@ -278,36 +265,9 @@ class Watch:
         finally:
             self.joining.pop(allowed, None)
 
-    def polling(self) -> list[PollingThread]:
-        """Return the threads that poll the time instead of waiting for a message, as an argument for
-        still_polling()."""
-        return [each for process in self.processes.values() for each in process.polling()]
-
-    def have_new_threads(self) -> bool:
-        """Return whether there are new threads in the watched nodes since the last call."""
-        return any([process.has_new_threads() for process in self.processes.values()])
-
-    def runs(self) -> Runs:
-        """Return how often each thread of the watched nodes has run."""
-        return [each for process in self.processes.values() for each in process.runs()]
-
-    @staticmethod
-    def find_pollers(before: Runs) -> bool:
-        """Look for threads that have run although nothing was delivered since runs(); return whether it is still
-        uncertain for one of them."""
-        runs = runs_since(before)
-        for thread, count in runs:
-            thread.is_poller = thread.is_poller or count > 1
-        return any(count == 1 for _, count in runs)
-
-    @staticmethod
-    def still_polling(threads: list[PollingThread]) -> bool:
-        """Return whether one of these threads has not polled since."""
-        return still_polling(threads)
-
     def forget(self, name: str) -> bool:
         """Stop watching a node for as long as its connection lasts; return whether commands depend on it."""
-        watched = name in self.drivers or name in self.needed or name == MASTER
+        watched = name in self.drivers or name in self.graph.needed or name == MASTER
         self.starting.pop(name, None)
         process = self.processes.pop(name, None)
         if process:
@@ -332,25 +292,6 @@ class Watch:
 MASTER, STARTING = 'the master', 'a node that is starting'
 
 
-def names_of(topics: Container[str], nodes: Iterable[tuple[str, Sequence[str]]]) -> set[str]:
-    """Return the names of the nodes of some topics. nodes: each topic with the names of its nodes."""
-    return {name for topic, names in nodes if topic in topics for name in names}
-
-
 def is_complete(connection: Any) -> bool:
     """Return whether a publisher has accepted a connection. The header of a refused connection has only an error."""
     return bool(connection.header) and 'callerid' in connection.header
-
-
-def sources_of(topics: Container[str], publishers: Iterable[tuple[str, Sequence[str]]],
-               subscribers: Iterable[tuple[str, Sequence[str]]]) -> list[str]:
-    """Return the names of all nodes whose messages may cause a message on one of the topics, nearest first.
-
-    publishers, subscribers: each topic with the names of its nodes, as returned by the master's getSystemState.
-    """
-    found: list[str] = []
-    new = names_of(topics, publishers)
-    while new:
-        found += sorted(new)
-        new = names_of({each for each, names in subscribers if new & set(names)}, publishers) - set(found)
-    return found

@@ -1,0 +1,150 @@
+"""The clock waits for nodes that are starting, in an order that does not depend on chance."""
+import threading
+from types import SimpleNamespace
+
+import pytest
+
+from rbx1_nav.extras.lockstep import watched_nodes
+from rbx1_nav.extras.lockstep.watched_nodes import STARTING
+from waiting import wait_for
+from watch_world import Master, worlds
+
+
+@pytest.fixture(name='world')
+def make_world(monkeypatch):
+    yield from worlds(monkeypatch)
+
+
+@pytest.mark.parametrize('publishers, waits', [([['/cmd_vel', ['/node']]], True), ([['/cmd_vel', ['/other']]], False)])
+def test_a_driver_that_sleeps_by_the_wall_clock_before_its_first_command_is_waited_for(
+        world, monkeypatch, publishers, waits):
+    world.watch.master = Master(monkeypatch, publishers).process()
+    world.watch.master_time = -1_000_000
+    monkeypatch.setattr(watched_nodes, 'CONNECT_TIME', 0.0)
+    monkeypatch.setattr(watched_nodes, 'START_SLEEP', 0.0)
+    monkeypatch.setattr(watched_nodes, 'DRIVER_SLEEP', 1000.0)
+    world.listen(world.connect('/node', 'time.sleep(1000)'))
+    if waits:
+        wait_for(lambda: world.watch.awake() == STARTING)
+        assert {world.watch.awake() for _ in range(20)} == {STARTING}
+        world.watch.has_started('/node')
+    world.settle()
+    assert not world.watch.starting
+
+
+def test_a_publisher_that_registers_while_the_clock_runs_is_waited_for(world, monkeypatch):
+    """The master has worked, so it is asked."""
+    master = Master(monkeypatch, [])
+    world.watch.master = master.process()
+    world.listen(world.connect('/node'), world.connect('/other'))
+    world.settle()
+    master.publishers = [['/cmd_vel', ['/node', '/gone']]]
+    assert world.watch.awake() is None and master.asked == 0
+    master.work()
+    wait_for(lambda: world.watch.awake() == STARTING)
+    assert {world.watch.awake() for _ in range(20)} == {STARTING} and master.asked == 1
+    world.commands.connections = [world.clock.connections[0]]
+    world.settle()
+    assert world.watch.drivers == {'/node'}
+    # one that was killed, and is still registered
+    world.listen(world.clock.connections[1])
+    world.commands.connections = []
+    world.settle()
+
+
+def test_a_publisher_that_never_connects_is_waited_for_only_once(world, monkeypatch):
+    master = Master(monkeypatch, [['/cmd_vel', ['/node']]])
+    world.watch.master = master.process()
+    monkeypatch.setattr(watched_nodes, 'CONNECT_TIME', 0.5)
+    world.listen(world.connect('/node'))
+    master.work()
+    wait_for(lambda: world.watch.awake() == STARTING)
+    world.settle()
+    master.work()
+    world.settle()
+    assert master.asked > 1
+
+
+def test_a_relay_is_watched_before_it_publishes(world, monkeypatch):
+    """So are the nodes that publish to it. When it advertises, its first command is lost, and it is named."""
+    monkeypatch.setattr(watched_nodes, 'CONNECT_TIME', 0.0)
+    warnings = []
+    monkeypatch.setattr(watched_nodes.rospy, 'logwarn', lambda text, *values: warnings.append(text % values))
+    publishers, subscribers = [['/relayed', ['/driver']]], [['/relayed', ['/relay']]]
+    master = Master(monkeypatch, publishers, subscribers, [['/relayed', 'geometry_msgs/Twist']])
+    world.watch.master = master.process()
+    world.listen(*[world.connect(name) for name in ('/relay', '/driver', '/recorder')])
+    master.work()
+    world.settle()
+    assert world.watch.graph.sources == ['/driver', '/relay'] and set(world.watch.processes) == {'/relay', '/driver'}
+    publishers.append(['/cmd_vel', ['/relay']])
+    master.work()
+    world.settle()
+    assert [text[:35] for text in warnings] == ['/relay has advertised /cmd_vel only']
+    # no command has depended on this one
+    assert not world.watch.forget('/recorder') and world.watch.forget('/driver')
+
+
+def test_a_publisher_of_commands_is_connected_when_all_nodes_are_asleep(world, monkeypatch):
+    def connect(topic):
+        with world.watch.connecting(topic):
+            connected.append(topic)
+    connected = []
+    world.drive(world.connect('/computing', 'while True: pass'))
+    wait_for(lambda: world.watch.awake() == '/computing')
+    connect('/joint_command')
+    monkeypatch.setattr(watched_nodes, 'AWAKE_TIME', 1000.0)
+    thread = threading.Thread(target=connect, args=['/cmd_vel'], daemon=True)
+    thread.start()
+    wait_for(lambda: world.watch.joining)
+    assert {world.watch.awake() for _ in range(20)} == {'/computing'} and connected == ['/joint_command']
+    world.drive()
+    world.settle()
+    thread.join()
+    assert connected == ['/joint_command', '/cmd_vel'] and not world.watch.joining
+    # a node that never sleeps
+    monkeypatch.setattr(watched_nodes, 'AWAKE_TIME', 0.0)
+    connect('/cmd_vel')
+
+
+def test_a_publisher_whose_subscription_to_the_clock_is_not_connected_yet_is_not_connected(world, monkeypatch):
+    master = Master(monkeypatch, [['/cmd_vel', ['/node']]], [['/clock', ['/node', '/recorder']]])
+    world.watch.master = master.process()
+    world.watch.joining[threading.Event()] = 0.0
+    master.work()
+    assert {world.watch.awake() for _ in range(20)} == {STARTING} and not any(map(threading.Event.is_set,
+                                                                                 world.watch.joining))
+    world.listen(world.connect('/node'))
+    wait_for(lambda: world.watch.awake() == STARTING and all(map(threading.Event.is_set, world.watch.joining)))
+
+
+def test_a_new_subscriber_is_greeted_when_all_nodes_are_asleep(world):
+    greeted = []
+    world.watch.new_greetings = lambda: [world.greetings.pop()] if world.greetings else []
+    world.greetings = [lambda: greeted.append(world.watch.listeners.keys())]
+    world.drive(world.connect('/computing', 'while True: pass'))
+    wait_for(lambda: world.watch.awake() == '/computing')
+    assert not greeted
+    world.drive(world.connect('/driver'))
+    wait_for(lambda: not world.watch.awake() and greeted)
+    assert len(greeted) == 1
+
+
+def test_a_subscriber_that_comes_during_a_check_is_greeted_after_the_next_one(world, monkeypatch):
+    """Whether it is asleep is not known."""
+    greeted = []
+
+    def check(*_):
+        world.greetings = [lambda: greeted.append('/new')]
+    monkeypatch.setattr(watched_nodes, 'awake', check)
+    world.watch.new_greetings = lambda: world.greetings
+    assert world.watch.awake() is None and not greeted
+    # it has connected after the update
+    old, new = world.connect('/old'), world.connect('/new')
+    world.listen(old)
+    world.clock.connections = [old, new]
+    assert world.watch.receivers(world.clock) == [old]
+    assert world.watch.awake() is not None and greeted == ['/new']
+    assert world.watch.receivers(world.clock) == [old, new]
+    other = SimpleNamespace(connections=[new])
+    assert world.watch.receivers(other) == [new]
