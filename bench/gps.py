@@ -84,8 +84,8 @@ def judge(record):
         filter=rms_to_gps(sorted(estimates), [estimates[stamp].pose[:2] for stamp in sorted(estimates)], gps),
         wheels=rms_to_gps(stamps, [odom.pose[:2] for odom, _ in record.odom], gps),
         reckoned=rms_to_gps(stamps, reckon(record, longest_rest(record))[:, :2], gps),
-        position_sigma=math.sqrt(numpy.linalg.eigvalsh(last.covariance[:2, :2])[-1]),
-        yaw_sigma=math.sqrt(last.covariance[2, 2]))
+        position_sigma=math.sqrt(numpy.linalg.eigvalsh([row[:2] for row in last.covariance[:2]])[-1]),
+        yaw_sigma=math.sqrt(last.covariance[2][2]))
 
 
 def main():

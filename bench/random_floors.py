@@ -42,7 +42,7 @@ def run(task):
     def errors(poses):
         return [squared_errors(*pair)[0] for pair in zip(poses[start::step], record.truth[start::step])]
     squares = errors([estimate.pose for estimate in estimates])
-    sigmas = [math.degrees(math.sqrt(estimate.covariance[2, 2])) for estimate in estimates[start::step]]
+    sigmas = [math.degrees(math.sqrt(estimate.covariance[2][2])) for estimate in estimates[start::step]]
     worst = max(math.sqrt(square) / sigma for square, sigma in zip(squares, sigmas))
     means = [numpy.mean(each) for each in (squares, errors(reckon(record, bases.rest_of(rest))),
                                            errors([odom.pose for odom, _ in record.odom]))]

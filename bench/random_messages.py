@@ -117,6 +117,7 @@ def make_messages(rng, count):
 
 def judge(pose, covariance):
     """(smallest / largest eigenvalue of a covariance, what is bad about an estimate, '' if nothing is)."""
+    covariance = numpy.array(covariance)
     if not numpy.isfinite(pose).all() or not numpy.isfinite(covariance).all():
         return math.inf, 'not finite'
     values = numpy.linalg.eigvalsh(covariance)

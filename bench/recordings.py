@@ -38,6 +38,7 @@ REPORTS = 'has timed out', 'has recovered', '; rejected'    # log lines about dr
 REST = 2        # s of simulated time before and after the exercise, and of wall time after it
 STOP = 60       # s of wall time for the recorder to write the rest of its bag
 LIMIT = 180     # s of wall time for the exercise
+EARLY = 30      # estimates from which the start of the live filter is determined
 STILL = 1e-3    # m and rad: odometry has moved if it differs by more than this from a pose at rest
 COLUMNS = (('lines', 1, 0), ('diff mm', 1e3, 4), ('diff deg', 1, 5), ('end mm', 1e3, 2), ('end deg', 1, 3),
            ('port mm', 1e3, 2), ('port deg', 1, 3), ('NEES', 1, 2))  # title, factor, decimals
@@ -120,14 +121,16 @@ def read(path):
 def find_start(recording, prior):
     """The stamp of the first odometry that the live filter received.
 
-    How small the variance of the yaw is at the first published estimate depends on the number of steps until then.
+    What the filter learns in the first rest, and so its first estimates, depends on it.
     """
-    first, _, variance = recording.combined[0]
+    published = recording.combined[:EARLY]
+    first, last = published[0][0], published[-1][0]
     starts = [odom.stamp for odom, _ in recording.odom if first - SECOND < odom.stamp <= first]
 
     def deviation(start):
-        estimate = replay(recording, prior, start, first).get(first)
-        return abs(estimate.covariance[2, 2] - variance) if estimate else math.inf
+        estimates = replay(recording, prior, start, last)
+        return sum(abs(estimates[stamp].pose.yaw - pose[2]) + abs(estimates[stamp].covariance[2][2] - variance)
+                   if stamp in estimates else math.inf for stamp, pose, variance in published)
     return min(starts, key=deviation)
 
 

@@ -54,11 +54,12 @@ def test_an_estimate_that_stays_behind_is_compared_with_the_truth_of_now():
 
 
 def test_errors_are_root_mean_squares_over_the_seeds():
-    row = bases.figures('a', 2, numpy.array([8.0, 2.0, 18.0, 0.5, 50.0, 0.02, 32.0, 8.0, 5.0, 18.0]))
+    row = bases.figures('a', 2, numpy.array([8.0, 2.0, 18.0, 0.5, 50.0, 0.02, 32.0, 8.0, 72.0, 0.0, 5.0, 18.0]))
     assert row.pop('case') == 'a'
     assert row == pytest.approx(dict(heading=2.0, position=1.0, port_heading=3.0, port_position=0.5,
                                      reckoned_heading=5.0, reckoned_position=0.1, wheels_heading=4.0,
-                                     wheels_position=2.0, nees=2.5, claimed=3.0))
+                                     wheels_position=2.0, textbook_heading=6.0, textbook_position=0.0, nees=2.5,
+                                     claimed=3.0))
 
 
 @pytest.mark.parametrize('values, missed', [
@@ -66,10 +67,11 @@ def test_errors_are_root_mean_squares_over_the_seeds():
     ({'heading': 1.71}, ['heading']),       # 1.2 times the error of dead reckoning, plus 0.5
     ({'heading': 1.11, 'port_heading': 0.5}, ['heading']),
     ({'position': 0.141}, ['position']),    # 1.2 times, plus 0.02
-    ({'case': 'lab_circle_no_rest', 'heading': 3.19, 'port_heading': 0.5}, []),     # 1.2 times, plus 2
-    ({'case': 'lab_circle_no_rest', 'heading': 3.21}, ['heading']),
+    # without a rest: 1.5 times the textbook filter, plus 3
+    ({'case': 'lab_circle_no_rest', 'heading': 5.99, 'port_heading': 0.5, 'textbook_heading': 2.0}, []),
+    ({'case': 'lab_circle_no_rest', 'heading': 6.01, 'textbook_heading': 2.0}, ['heading']),
     ({'case': 'frozen', 'heading': 2.76, 'wheels_heading': 0.5}, ['heading']),      # 1.5 times the best of all, plus 2
-    ({'nees': 0.049}, ['nees']),
+    ({'nees': 0.099}, ['nees']),
     ({'nees': math.inf}, ['nees'])])
 def test_limits(values, missed):
     assert bases.judged({**GOOD, **values})['misses'] == missed

@@ -32,7 +32,7 @@ def fixture_recording():
         feed(combined, messages)
         if odom.stamp % (SECOND // 10) == 0:
             estimate = combined.estimate
-            found.combined.append((estimate.stamp, tuple(estimate.pose), estimate.covariance[2, 2]))
+            found.combined.append((estimate.stamp, tuple(estimate.pose), estimate.covariance[2][2]))
 
     simulation = Simulation(simulated.robot(), CARPET, 3, False, False, listen=listen)
     simulation.rest(4.0)

@@ -12,7 +12,7 @@ from sensor_msgs.msg import Imu, JointState
 from rbx1_nav.base.description import Joint
 from rbx1_nav.base.kinematics import Pose
 from rbx1_nav.base.readings import MEASURED, Reading, Uncertainty
-from rbx1_nav.base.units import Array
+from rbx1_nav.base.units import Covariance
 
 UNKNOWN = 1e6       # variance of a quantity that is not measured, as in diff_drive_controller and robot_pose_ekf
 
@@ -53,10 +53,10 @@ def quaternion(yaw: float) -> Quaternion:
     return Quaternion(0.0, 0.0, sin(yaw / 2), cos(yaw / 2))
 
 
-def planar(covariance: Array) -> list[float]:
+def planar(covariance: Covariance) -> list[float]:
     """Return a 6x6 covariance, row by row, from the 3x3 covariance of x, y (m) and yaw (rad)."""
     matrix = diagonal(0.0, 0.0, UNKNOWN, UNKNOWN, UNKNOWN, 0.0)
-    for row, values in zip((0, 1, 5), covariance.tolist()):
+    for row, values in zip((0, 1, 5), covariance):
         for column, value in zip((0, 1, 5), values):
             matrix[6 * row + column] = value
     return matrix
@@ -77,7 +77,7 @@ def _set_pose(message: PoseMessage, pose: Pose) -> None:
 
 
 def odometry(stamp: rospy.Time, frames: tuple[str, str], pose: Pose, velocity: tuple[float, float],
-             uncertainty: Uncertainty, covariance: Array | None = None) -> Odometry:
+             uncertainty: Uncertainty, covariance: Covariance | None = None) -> Odometry:
     """Return an Odometry message: Pose in the first of the frames, velocity (m/s, rad/s) in the second,
     Uncertainty.
 
@@ -124,7 +124,7 @@ def joint_states(stamp: rospy.Time, joints: Sequence[Joint], wheels: Sequence[tu
     return message
 
 
-def planar_pose(stamp: rospy.Time, frame_id: str, pose: Pose, covariance: Array) -> PoseWithCovarianceStamped:
+def planar_pose(stamp: rospy.Time, frame_id: str, pose: Pose, covariance: Covariance) -> PoseWithCovarianceStamped:
     """Return a PoseWithCovarianceStamped with a Pose and the 3x3 covariance of x, y (m) and yaw (rad)."""
     message = _stamped(PoseWithCovarianceStamped(), stamp, frame_id)
     _set_pose(message.pose.pose, pose)

@@ -12,7 +12,7 @@ from rbx1_nav.base import messages
 from rbx1_nav.base.description import Robot
 from rbx1_nav.base.kinematics import Pose
 from rbx1_nav.base.readings import Reading, Uncertainty
-from rbx1_nav.base.units import Array
+from rbx1_nav.base.units import Covariance
 from rbx1_nav.node.rospy_topics import NoDelay
 
 
@@ -37,7 +37,7 @@ class BasePublisher:
         self.publishers = self.odom, self.imu, self.tf, self.joint_states
 
     def publish_odometry(self, stamp: rospy.Time, pose: Pose, velocity: tuple[float, float], uncertainty: Uncertainty,
-                         covariance: Array | None = None) -> None:
+                         covariance: Covariance | None = None) -> None:
         """Publish odometry; for the arguments, see messages.odometry()."""
         if self.odom.get_num_connections():
             self.publish(self.odom, messages.odometry(stamp, self.frames, pose, velocity, uncertainty, covariance))

@@ -4,10 +4,8 @@ from __future__ import annotations
 from math import cos, sin
 from typing import NamedTuple
 
-import numpy
-
 from rbx1_nav.base.kinematics import Odometry, Pose
-from rbx1_nav.base.units import Array
+from rbx1_nav.base.units import Covariance
 
 MEASURED = 1e-6         # variance of a good measurement, m^2 or rad^2 (or per s^2): 1 mm, 1 mrad
 MIN_VARIANCE = 1e-12    # smallest variance that a sensor may report, same units: 1 um, 1 urad
@@ -76,12 +74,12 @@ class UncertainOdometry:
         return self.odometry.pose
 
     @property
-    def covariance(self) -> Array:
+    def covariance(self) -> Covariance:
         """The covariance of x, y (m^2) and yaw (rad^2)."""
         position, yaw = self.rounding
-        return numpy.array([[self.xx + position, self.xy, self.x_yaw],
-                            [self.xy, self.yy + position, self.y_yaw],
-                            [self.x_yaw, self.y_yaw, self.yaw_yaw + yaw]])
+        return ((self.xx + position, self.xy, self.x_yaw),
+                (self.xy, self.yy + position, self.y_yaw),
+                (self.x_yaw, self.y_yaw, self.yaw_yaw + yaw))
 
     def _variances(self, travel: Travel) -> tuple[float, float, float]:
         """Return the variances of the length, the sideways displacement (m^2) and the angle (rad^2).

@@ -6,7 +6,7 @@ whole nanoseconds, so that fifty steps of 20 ms are exactly one second.
 from __future__ import annotations
 
 from math import copysign, pi, remainder
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Tuple
 
 if TYPE_CHECKING:
     import numpy
@@ -16,6 +16,9 @@ else:
     Array = NDArray = 'an array of numbers'     # only for type hints, which need no numpy
 
 SECOND = 10 ** 9    # ns
+
+Row = Tuple[float, float, float]
+Covariance = Tuple[Row, Row, Row]   # 3x3: of x, y (m) and yaw (rad)
 
 
 def clamp(value: float, limit: float) -> float:

@@ -2,24 +2,29 @@
 from __future__ import annotations
 
 from collections import deque
-from copy import copy
+from copy import deepcopy
 from math import cos, sin
 from typing import Callable, Deque, NamedTuple
 
 from rbx1_nav.base.kinematics import Pose
-from rbx1_nav.base.units import SECOND, Array, wrap_angle
-from rbx1_nav.filter.filter import YAW, Filter
+from rbx1_nav.base.units import SECOND, Covariance, wrap_angle
+from rbx1_nav.filter.filter import Filter
 from rbx1_nav.filter.gyro_readings import Measurement, Readings
 from rbx1_nav.filter.inputs import Imu, Odom, check_imu, check_odom, distance, format_pose, has_jumped
+from rbx1_nav.filter.pose_errors import Yaw
 from rbx1_nav.filter.priors import UNKNOWN_FLOOR, Priors, Bounds
-from rbx1_nav.filter.sensors import IMU, MAX_LEAD, MAX_WAIT, ODOM, Arrivals, Doubts
-from rbx1_nav.filter.standstill import STANDSTILL, Part, Standstill
+from rbx1_nav.filter.sensors import IMU, MAX_LEAD, MAX_WAIT, ODOM, REPORTED, Arrivals, Doubts
+from rbx1_nav.filter.standstill import CARRIED, STANDSTILL, Standstill
+from rbx1_nav.filter.velocity import Motion, Velocity, velocity
+
+
+AT_REST = Yaw(0.0, 0.0, False)
 
 
 class Estimate(NamedTuple):
     stamp: int          # ns
     pose: Pose
-    covariance: Array   # 3x3, of x, y (m) and yaw (rad)
+    covariance: Covariance      # 3x3, of x, y (m) and yaw (rad)
     odom: Odom          # the last odometry that the estimate is based on
 
 
@@ -72,24 +77,30 @@ class CombinedOdometry:
         self.pending: Deque[tuple[int, Odom]] = deque()     # with arrival times (ns), until the gyro has caught up
         self.readings.waiting.clear()
         self.odom: Odom | None = None       # the last odometry that was used in a step
-        self.doubts.contradicted = None
+        self.motion: Motion | None = None   # in that step; None if it was not the next one
         self.standstill.restart()
-        self.placed: tuple[int, Pose, Array] | None = None      # arguments of set_pose(), until the first step after it
+        self.placed: tuple[int, Pose, Covariance] | None = None     # arguments of set_pose(), until a step after it
         self.suspect: Odom | None = None    # odometry that has jumped, until the next message confirms it
         self.arrivals.restart()
 
     @property
     def pose(self) -> Pose | None:
         """The pose of the filter; None before the first odometry."""
-        return Pose(*self.filter.state[:3]) if self.filter else None
+        return self.filter.state if self.filter else None
 
     @property
     def estimate(self) -> Estimate | None:
         """The latest Estimate, the same object until the next step; None before the first odometry."""
         ekf, odom = self.filter, self.odom
         if not self._estimate and ekf and odom:
-            self._estimate = Estimate(odom.stamp, Pose(*ekf.state[:3]), ekf.covariance, odom)
+            self._estimate = Estimate(odom.stamp, ekf.state, ekf.covariance, odom)
         return self._estimate
+
+    @property
+    def velocity(self) -> Velocity | None:
+        """The Velocity in the last step; None after a start, a restart or set_pose()."""
+        ekf, odom, motion = self.filter, self.odom, self.motion
+        return velocity(motion, odom, ekf, self.contradicts) if ekf and odom and motion else None
 
     @property
     def timed_out(self) -> dict[str, bool]:
@@ -98,8 +109,9 @@ class CombinedOdometry:
 
     @property
     def contradicts(self) -> bool:
-        """Whether wheels and gyro contradict each other, or did so recently."""
-        return self.odom is not None and self.doubts.contradicts(self.odom.stamp)
+        """Whether wheels and gyro contradict each other."""
+        ekf = self.filter
+        return ekf is not None and (ekf.gyro_left or abs(ekf.disagreement) > REPORTED)
 
     @property
     def case(self) -> str | None:
@@ -107,11 +119,12 @@ class CombinedOdometry:
         sensor is missing."""
         if not self.filter or not self.gyro_used or self.suspect or any(self.timed_out.values()):
             return None
-        return self.standstill.case or ('contradiction' if self.contradicts else 'agreement')
+        case = self.standstill.case
+        return case if case in (STANDSTILL, CARRIED) else 'contradiction' if self.contradicts else 'agreement'
 
     # input
 
-    def set_pose(self, now: int, pose: Pose, covariance: Array) -> None:
+    def set_pose(self, now: int, pose: Pose, covariance: Covariance) -> None:
         """Set the robot's Pose at `now` (ns), with its covariance (3x3) of x, y (m) and yaw (rad). It takes effect at
         once, or before the first step beyond `now`. The filter keeps what it has learned about the sensors."""
         self.placed = now, pose, covariance
@@ -178,21 +191,23 @@ class CombinedOdometry:
         if self.placed and odom.stamp > self.placed[0]:
             self._place(ekf)
         duration = (odom.stamp - last.stamp) / SECOND
-        gyro = self.readings.turn(last.stamp, odom.stamp, self.prior.gyro_measurement_range,
-                                  self.standstill.max_density)
-        if self.standstill.follow(odom.stamp, odom.pose) and gyro:
-            self.standstill.add(Part(duration, *gyro), ekf)
-            self.odom_yaw = ekf.state[YAW]
-        else:
-            self._leave_standstill(ekf)
-            self._drive(ekf, last, odom, duration, gyro)
+        gyro = self.readings.turn(last.stamp, odom.stamp, self.prior.gyro_measurement_range)
+        dx, dy = odom.pose.x - last.pose.x, odom.pose.y - last.pose.y
+        turned = wrap_angle(odom.pose.yaw - last.pose.yaw)
+        if (gyro and self.readings.dead and abs(turned - gyro[0]) > abs(turned) / 2
+                and self.doubts.is_dead(turned, self.limits.gyro_bias * duration)):
+            ekf.leave_gyro()
+            gyro = None
+        # in the frame of the robot halfway through the turn
+        heading = last.pose.yaw + turned / 2
+        c, s = cos(heading), sin(heading)
+        self._move(ekf, odom, duration, dx * c + dy * s, dy * c - dx * s, turned, gyro)
         self.odom, self._estimate = odom, None
 
     def _begin(self, odom: Odom) -> None:
         """Begin at the pose of the first Odom."""
-        ekf = self.filter = copy(self.learned) or Filter(self.prior, odom.pose, self.limits.gyro_bias)
+        ekf = self.filter = deepcopy(self.learned) or Filter(self.prior, odom.pose, self.limits.gyro_bias)
         ekf.place(odom.pose)
-        self.odom_yaw = odom.pose.yaw       # rad, the filter's yaw after the last step
         if self.placed:
             self._place(ekf)
         self.odom, self._estimate = odom, None
@@ -208,37 +223,31 @@ class CombinedOdometry:
             self.suspect = odom
         return self.suspect is not None
 
-    def _drive(self, ekf: Filter, last: Odom, odom: Odom, duration: float, gyro: Measurement | None) -> None:
-        """Move the robot from one Odom to the next. duration: between them, s; gyro: its turn in that time."""
-        dx, dy = odom.pose.x - last.pose.x, odom.pose.y - last.pose.y
-        turned = wrap_angle(odom.pose.yaw - last.pose.yaw)
-        # in the frame of the wheels' heading halfway through the turn
-        heading = last.pose.yaw + turned / 2
-        c, s = cos(heading), sin(heading)
-        forward, left = dx * c + dy * s, dy * c - dx * s
+    def _move(self, ekf: Filter, odom: Odom, duration: float, forward: float, left: float, turned: float,
+              gyro: Measurement | None) -> None:
+        """Move the robot to an Odom, as wheels and gyro have measured in a duration (s)."""
+        reported = odom.linear_variance * duration ** 2
+        case, stands = None, gyro is not None and self.standstill.stands(odom.pose, turned)
+        if gyro and stands:
+            self._warn_of(self.standstill.add(duration, gyro, odom.pose, ekf))
+            case = self.standstill.case
+        else:
+            self.standstill.leave(odom.pose, ekf)
+        self.motion = Motion(duration, forward, left, turned, gyro, case == CARRIED)
+        if case == STANDSTILL:
+            ekf.step(duration, AT_REST, 0.0, forward, left, reported)
+            return
         turn = ekf.turn(duration, (turned, odom.angular_variance * duration ** 2), gyro, forward)
-        # this heading in the filter's frame: halfway between the yaws at the last odometry and at this one
-        yaw = ekf.state[YAW]
-        end = yaw + turn.angle
-        ahead = turned + wrap_angle(end - self.odom_yaw - turned)
-        ekf.step(duration, turn, self.odom_yaw + ahead / 2 - yaw - turn.angle / 2, forward, left,
-                 odom.linear_variance * duration ** 2)
-        self.odom_yaw = end
-        verdict = ekf.close_window()
-        if verdict:
-            self.doubts.report(verdict, ekf, odom.stamp)
+        ekf.step(duration, turn, turned, forward, left, reported)
+        if gyro and not stands:
+            self.doubts.report(ekf.compare(duration, turned, gyro[0], forward, gyro[1]), ekf, odom.stamp)
 
-    def _leave_standstill(self, ekf: Filter) -> None:
-        """After a rest, use the gyro's turn in its last part, in which the robot may have begun to turn."""
-        last = self.standstill.leave(ekf) if self.standstill.case else None
-        if last and last.time:
-            before = ekf.state[YAW]
-            ekf.step(last.time, ekf.turn(last.time, None, (last.angle, last.variance)))
-            self.odom_yaw += ekf.state[YAW] - before
+    def _warn_of(self, text: str) -> None:
+        if text:
+            self.warn(text)
 
     def _place(self, ekf: Filter) -> None:
         """Move the filter to the pose of set_pose()."""
         assert self.placed
         (_, pose, covariance), self.placed = self.placed, None
-        self.odom_yaw += pose.yaw - ekf.state[YAW]
         ekf.place(pose, covariance)

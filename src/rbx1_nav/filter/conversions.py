@@ -1,16 +1,15 @@
 """Conversions of the messages that the filter receives."""
 from __future__ import annotations
 
-from math import isnan
+from math import isfinite, isnan, sqrt
 
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from nav_msgs.msg import Odometry
-import numpy
 from sensor_msgs.msg import Imu
 
 from rbx1_nav.base.kinematics import Pose
 from rbx1_nav.base.messages import unit_quaternion, yaw_of
-from rbx1_nav.base.units import Array
+from rbx1_nav.base.units import Covariance
 from rbx1_nav.filter.imu_mounting import ImuData
 from rbx1_nav.filter.inputs import MAX_VARIANCE, Odom, check, check_number, check_variance
 from rbx1_nav.node.config import show
@@ -39,7 +38,7 @@ def from_imu(message: Imu) -> ImuData:
                    message.orientation_covariance[8])
 
 
-def from_set_pose(message: PoseWithCovarianceStamped, output_frame: str) -> tuple[Pose, Array]:
+def from_set_pose(message: PoseWithCovarianceStamped, output_frame: str) -> tuple[Pose, Covariance]:
     """Return (Pose, 3x3 covariance of x, y and yaw) of a message on set_pose. Raises RejectedMessage.
 
     output_frame: the required frame of the pose; an empty frame_id stands for this frame.
@@ -53,12 +52,18 @@ def from_set_pose(message: PoseWithCovarianceStamped, output_frame: str) -> tupl
           not isnan(pose.yaw), 'a normalized quaternion (x, y, z, w)')
     for field, value in zip(('position.x', 'position.y'), pose):
         check_number(f'pose.pose.{field}', value)
-    covariance = numpy.reshape(message.pose.covariance, (6, 6))[numpy.ix_((0, 1, 5), (0, 1, 5))]
-    for index, value in zip((0, 7, 35), covariance.diagonal().tolist()):
+    rows = [[message.pose.covariance[6 * row + column] for column in (0, 1, 5)] for row in (0, 1, 5)]
+    for index, value in zip((0, 7, 35), (rows[0][0], rows[1][1], rows[2][2])):
         check_variance(f'pose.covariance[{index}]', value)
-    deviations = numpy.sqrt(covariance.diagonal())
-    correlations = covariance / numpy.outer(deviations, deviations)
-    good = (numpy.isfinite(correlations).all() and abs(correlations - correlations.T).max() < ROUNDING
-            and numpy.linalg.eigvalsh(correlations).min() > -ROUNDING)
-    check('pose.covariance', show(covariance.tolist()), good, 'a covariance: symmetric, no correlation above 1')
-    return pose, (covariance + covariance.T) / 2
+    # correlations
+    a, b, c = (rows[i][j] / sqrt(rows[i][i] * rows[j][j]) for i, j in ((0, 1), (0, 2), (1, 2)))
+    differences = (rows[i][j] / sqrt(rows[i][i] * rows[j][j]) - value
+                   for (i, j), value in zip(((1, 0), (2, 0), (2, 1)), (a, b, c)))
+    # positive semidefinite: no negative principal minor
+    good = (all(isfinite(value) for row in rows for value in row)
+            and all(abs(each) < ROUNDING for each in differences)
+            and min(1 - a * a, 1 - b * b, 1 - c * c, 1 + 2 * a * b * c - a * a - b * b - c * c) > -ROUNDING)
+    check('pose.covariance', show(rows), good, 'a covariance: symmetric, no correlation above 1')
+    xx, xy, x_yaw, yy, y_yaw, yaw = ((rows[i][j] + rows[j][i]) / 2
+                                     for i, j in ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)))
+    return pose, ((xx, xy, x_yaw), (xy, yy, y_yaw), (x_yaw, y_yaw, yaw))

@@ -69,7 +69,7 @@ PARAMETERS = (
            'highest angular acceleration while gyro readings are missing', 0.01, 1e4, 'an angular acceleration',
            note='see [Unexpected messages](#unexpected-messages)'),
     number('gyro_bias', degrees(DEFAULT.gyro_bias), 'degrees/s', 'largest gyro bias in either direction', 0.01, 1000,
-           'a bias', note='a higher rate at rest is not learned as bias. A tenth of it is the standard deviation of '
+           'a bias', note='a higher rate at rest is not learned as bias. 5 % of it is the standard deviation of '
            'the bias before the first standstill'),
     number('gyro_scale_error', DEFAULT.gyro_scale_error, '',
            "standard deviation of the gyro's scale error on an unknown floor", 0, 0.5, 'a fraction',

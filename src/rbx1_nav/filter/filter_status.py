@@ -14,7 +14,7 @@ from diagnostic_updater import DiagnosticStatusWrapper, Updater
 
 from rbx1_nav.base.messages import fill_status
 from rbx1_nav.filter.combined_odometry import CombinedOdometry
-from rbx1_nav.filter.filter import BIAS
+from rbx1_nav.filter.pose_errors import BIAS
 from rbx1_nav.filter.sensor_inputs import OneSender
 
 INTERVAL = 1.0      # s between two log lines of one kind
@@ -71,7 +71,7 @@ class Diagnostics:
                     f'{degrees(ekf.bias):.4f} +- {degrees(ekf.sigma(BIAS)):.4f}' if ekf else 'unknown',
                 'Doubted': combined.doubts.doubted if combined else 'nothing',
                 'Standard deviation of the heading (degrees)':
-                    f'{degrees(sqrt(estimate.covariance[2, 2])):.2f}' if estimate else 'unknown',
+                    f'{degrees(sqrt(estimate.covariance[2][2])):.2f}' if estimate else 'unknown',
                 'Poses published': published,
                 'Rejected messages on set_pose': self.rejected['set_pose']})
 

@@ -1,11 +1,8 @@
-"""Turns of the robot from gyro readings, and the window in which the turns of wheels and gyro are compared.
-
-Readings wait here until the odometry arrives.
-"""
+"""Turns of the robot from gyro readings, which wait here until the odometry arrives."""
 from __future__ import annotations
 
 from collections import deque
-from operator import add
+from math import inf
 from typing import Deque, NamedTuple, Tuple
 
 from rbx1_nav.base.units import SECOND
@@ -16,9 +13,8 @@ SHORT = SECOND // 20    # ns between two readings in which the rate hardly chang
 ENOUGH = 20             # readings at rest, as a multiple of those that were equal, that show the noise of the gyro
 MORE = 2                # readings that must be equal, in addition to twice those at rest, if they are not measured
 LOST = 1.5              # times the usual time between two readings: in a longer gap, readings were lost
-WINDOW_TURN, WINDOW_TIME = 2.0, 9.9     # rad, s: turn or time after which a window is complete
-BLOCK = 0.99    # s: part of a window; both times are a little less than 10 and 1 s, because stamps are rounded
-
+NOISE_FACTOR = 2.0      # reported / measured noise variance, above which the reported variance is too large
+MIN_DENSITY = 7.6e-9    # rad^2/s: 0.005 degrees/s per square root Hz, the noise of a quiet gyro (MPU-6050 data sheet)
 MOST = 30000    # readings that wait at most, if there is no odometry: older ones are discarded
 
 Measurement = Tuple[float, float]   # a turn (rad) and its variance (rad^2)
@@ -44,6 +40,8 @@ class Readings:
         self.equal = 0                      # number of latest readings that are equal to the one before
         self.usually_equal = 0              # the largest such number at rest, where noise makes readings differ
         self.at_rest = 0                    # number of readings at rest
+        self.density = 0.0                  # rad^2/s: their noise
+        self.dead = True                    # whether all readings were equal
 
     def add(self, imu: Imu, at_rest: bool = False) -> None:
         """Store a reading that follows the last one. Its rate applies to the time between them, if that is short.
@@ -59,12 +57,15 @@ class Readings:
         assert last is not None
         changed = 0.0
         self.equal = self.equal + 1 if imu.rate == last.rate else 0
+        self.dead = self.dead and imu.rate == last.rate
+        duration = imu.stamp - last.stamp
         if at_rest:
             self.at_rest += 1
             self.usually_equal = max(self.usually_equal, self.equal)
+            sample = (imu.rate - last.rate) ** 2 / 2 * duration / SECOND
+            self.density += (sample - self.density) / min(self.at_rest, 1000)
         seen = self.at_rest >= ENOUGH * (1 + self.usually_equal)
         stuck = seen and not at_rest and self.equal > 2 * self.usually_equal + MORE
-        duration = imu.stamp - last.stamp
         usual = self.period or duration
         self.period = usual + (duration - usual) // 16      # a running mean
         if duration > SHORT and not imu.is_mean:
@@ -76,12 +77,13 @@ class Readings:
             imu = imu._replace(rate=rate)
         self.waiting.append(WaitingReading(last.stamp, imu, stuck, changed))
 
-    def turn(self, start: int, end: int, max_rate: float, max_density: float) -> Measurement | None:
+    def turn(self, start: int, end: int, max_rate: float) -> Measurement | None:
         """Return the turn from `start` to `end` (ns), or None if the readings do not cover the whole time.
 
-        The readings are removed. max_rate: largest rate that the gyro can measure, rad/s; max_density: largest noise
-        density of the gyro, rad^2/s.
+        The readings are removed. max_rate: largest rate that the gyro can measure, rad/s.
         """
+        # a reported noise that is far larger than at rest is not believed
+        max_density = NOISE_FACTOR * max(self.density, MIN_DENSITY) if self.at_rest >= ENOUGH else inf
         angle = variance = 0.0
         time, good = start, True
         while self.waiting and time < end:
@@ -97,42 +99,3 @@ class Readings:
             if imu.stamp <= end:
                 self.waiting.popleft()
         return (angle, variance) if good and time == end and variance else None
-
-
-class Sums(NamedTuple):
-    """Sums of what wheels and gyro measured in a number of steps."""
-
-    time: float = 0.0       # s
-    wheels: float = 0.0     # rad: the turn that the wheels report
-    expected: float = 0.0   # rad: this turn on the assumed floor
-    gyro: float = 0.0       # rad: the turn, corrected by the bias
-    forward: float = 0.0    # m
-    variance: float = 0.0   # rad^2: of the turn that the wheels report
-    turned: float = 0.0     # rad: the larger one of the turns, both directions counted positive
-    scatter: float = 0.0    # rad^2: variance of the difference of the turns, from the scatter of its blocks
-
-    def plus(self, other: Sums) -> Sums:
-        return Sums(*map(add, self, other))
-
-
-class Window:
-    """Sums up the steps. Their noise is measured by the scatter of blocks of 1 s."""
-
-    def __init__(self) -> None:
-        self.sums = Sums()
-        self.block = Sums()     # the latest block
-        self.last = 0.0         # rad: the difference of the turns in the block before
-
-    def add(self, step: Sums) -> None:
-        self.block = self.block.plus(step)
-
-    def close(self) -> Sums | None:
-        """Finish a complete block, and return the Sums if the window is complete."""
-        block = self.block
-        if block.time < BLOCK:
-            return None
-        last, self.last = self.last, block.gyro - block.expected
-        self.sums = self.sums.plus(block._replace(
-            turned=max(abs(block.wheels), abs(block.gyro)), scatter=(self.last - last) ** 2 / 2))
-        self.block = Sums()
-        return self.sums if self.sums.time > WINDOW_TIME or self.sums.turned > WINDOW_TURN else None

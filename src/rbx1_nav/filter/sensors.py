@@ -5,24 +5,30 @@ from math import degrees
 from typing import Callable
 
 from rbx1_nav.base.units import SECOND
-from rbx1_nav.filter.filter import BIAS, SLIP_TURNING, YAW, Filter, Verdict
+from rbx1_nav.filter.filter import Filter, Verdict
 from rbx1_nav.filter.inputs import RejectedMessage
+from rbx1_nav.filter.pose_errors import BIAS, YAW
 
 ODOM, IMU = 'odom', 'imu_data'  # the sensors, by their topics
 
 MAX_LEAD = SECOND // 2  # ns that a stamp may be ahead of the clock: clocks of computers differ
 MAX_AGE = 60 * SECOND   # ns that a stamp may be behind; simulated time may be ahead or behind by the same amount
 MAX_WAIT = 5 * SECOND   # ns that odometry waits for a gyro that is late but not silent
-CONTRADICTION = 5 * SECOND  # ns for which a contradiction is reported
-FADED = 0.1                 # rad: a smaller doubt of the heading is none
-REASONS = {'imu_data': 'the bias of the gyro has drifted',
-           'wheels': 'the wheels slip; the heading follows the gyro',
-           'both': 'one of them is wrong; the heading is uncertain'}
+REPORTED, FADED = 0.1, 0.01     # rad: a disagreement of wheels and gyro that is reported, and one that is over
+REASONS = {'wheels': 'the wheels slip; the heading follows the gyro',
+           'both': 'one of them is wrong; the heading is uncertain',
+           'gyro': 'the gyro fails, and is not used until it turns with the wheels'}
 
 
 def rejection(stamp: int, expected: str, time: int) -> RejectedMessage:
     """Return the error for a stamp (ns) that is not as expected, compared with a time (ns)."""
     return RejectedMessage(f'header.stamp: {stamp / SECOND:.9f}: expected {expected}, {time / SECOND:.9f}')
+
+
+def clock_rejection(stamp: int, expected: str, time: int) -> RejectedMessage:
+    """Return the error for a stamp (ns) of another clock than this node's, whose time is given (ns)."""
+    return RejectedMessage(f'{rejection(stamp, expected, time)}; synchronize the clocks of both computers, or for a '
+                           'bag, set use_sim_time before the nodes start, and play it with --clock')
 
 
 class Arrivals:
@@ -62,9 +68,9 @@ class Arrivals:
         self.now = now
         before = self.last_stamp[sensor]
         if stamp > now + self.max_lead:
-            raise rejection(stamp, 'a stamp not later than now', now)
+            raise clock_rejection(stamp, 'a stamp not later than now', now)
         if stamp < now - MAX_AGE:
-            raise rejection(stamp, 'a stamp not much older than now', now)
+            raise clock_rejection(stamp, 'a stamp not much older than now', now)
         if before is not None and stamp <= before:
             raise rejection(stamp, 'a stamp later than the last', before)
         self.last_stamp[sensor] = stamp
@@ -103,32 +109,47 @@ class Arrivals:
 
 
 class Doubts:
-    """Warns when wheels and gyro begin to contradict each other, and when they agree again."""
+    """Warns when wheels and gyro begin to contradict each other, when they agree again, and of what they show."""
 
     def __init__(self, warn: Callable[[str], None]) -> None:
         self.warn = warn
         self.doubted = 'nothing'
-        self.contradicted: int | None = None    # ns, when wheels and gyro last contradicted each other
-        self.warned = False     # whether there was a warning that the bias is unknown
+        self.warned: set[str] = set()   # of what there was a warning that does not become invalid
+        self.dead = 0.0         # rad: turn of the wheels while the gyro has never changed
 
-    def contradicts(self, time: int) -> bool:
-        """Return whether wheels and gyro contradict each other at a time (ns), or did so recently."""
-        return self.contradicted is not None and time - self.contradicted < CONTRADICTION
-
-    def report(self, verdict: Verdict, ekf: Filter, time: int) -> None:
+    def report(self, verdict: Verdict | None, ekf: Filter, time: int) -> None:
         """Report a Verdict of a Filter at a time (ns)."""
-        if not (ekf.rested or self.warned):
-            self.warned = True
-            self.warn('the robot has not been at rest yet, so the bias of the gyro is unknown: the heading may drift '
-                      f'by {degrees(ekf.sigma(BIAS)):.1f} degrees/s or more')
+        if not verdict:
+            return
+        if not ekf.rested:
+            self._once('rest', 'the robot has not been at rest yet, so the bias of the gyro is unknown: the heading '
+                       f'may drift by {degrees(ekf.sigma(BIAS)):.1f} degrees/s or more')
         sums, doubted = verdict
-        if doubted:
-            self.contradicted = time
-            if self.doubted == 'nothing':
-                self.warn(f'odom turned by {sums.wheels:.2f} rad, imu_data by {sums.gyro:.2f} rad in '
-                          f'{sums.time:.1f} s: {REASONS[doubted]}')
-                self.doubted = f'{doubted} since {time / SECOND:.1f} s'
-        elif (self.doubted != 'nothing' and ekf.doubt[YAW] < FADED
-              and ekf.sigma(SLIP_TURNING) < 1.001 * ekf.prior.slip_turning_spread):
+        turns = f'odom turned by {sums.wheels:.2f} rad, imu_data by {sums.gyro:.2f} rad in {sums.time:.1f} s: '
+        if doubted == 'scale':
+            self._once(doubted, f'imu_data and odom differ by {100 * ekf.scale_error:.0f} % in all turns: the scale of '
+                       'the gyro or the track width is wrong; the heading is uncertain')
+        elif doubted == 'bias' and (ekf.drifting or abs(ekf.error[YAW]) > REPORTED):
+            self._once(doubted, 'the bias of imu_data seems to have drifted since the last rest, by '
+                       f'{degrees(ekf.error[BIAS] - ekf.bias):.2f} degrees/s: the heading is uncertain; let it rest')
+        elif self.doubted == 'nothing' and (doubted == 'gyro' or abs(ekf.disagreement) > REPORTED):
+            self.warn(turns + REASONS.get(doubted, REASONS['both']))
+            self.doubted = f'{doubted or "both"} since {time / SECOND:.1f} s'
+        elif self.doubted != 'nothing' and not ekf.gyro_left and abs(ekf.disagreement) < FADED:
             self.warn('odom and imu_data agree again')
             self.doubted = 'nothing'
+
+    def is_dead(self, turned: float, least: float) -> bool:
+        """Return whether a gyro whose readings have never changed does not measure, because the wheels have turned
+        (rad): by more than `least` in this step, or before."""
+        if abs(turned) > least:
+            self.dead += abs(turned)
+        if self.dead > REPORTED:
+            self._once('dead', f'imu_data has never changed, while odom has turned by {self.dead:.2f} rad: the gyro '
+                       'does not measure, and is not used')
+        return self.dead > REPORTED or abs(turned) > least
+
+    def _once(self, kind: str, text: str) -> None:
+        if kind not in self.warned:
+            self.warned.add(kind)
+            self.warn(text)

@@ -1,49 +1,49 @@
-"""Standstill: learns the gyro's bias while the wheels are at rest, and detects a robot that is carried.
+"""Standstill: decides from odometry and gyro together whether the robot is at rest, and learns the gyro's bias there.
 
-The wheels are at rest if the odometry pose has not changed for REST. The variances of the odometry are not used,
-because many drivers publish constants. The gyro's turns are then summed in parts of PART. There are two cases:
+The wheels may be at rest if the odometry stays where it is, except for a creep, and for ticks that come and go. Then
+the turn of the gyro is summed up over WINDOW or longer:
 
-- standstill: the rate of a part is the known bias, or the robot has just been switched on and the rate is steady and
-  within the limit. This rate is the bias.
-- carried: any other rate. Someone turns the robot by hand: it turns as the gyro measures, and its pose is uncertain.
-  A rate that is steady for longer than a hand can hold it is a bias that has changed. If it was steady for a shorter
-  time when the robot drives off, the bias is uncertain.
+- standstill: the turn is what the known bias and the noise explain. Its rate is the bias, and the heading is kept.
+- undecided: it is not, but the rate is within STEADY of the bias. Either the bias has changed, or the robot turns so
+  slowly that its wheels hardly show it. The robot turns as the gyro measures until the turn is TELLING: if the wheels
+  have moved, the robot is not at rest; otherwise, the bias has changed.
+- carried: any other rate. Somebody turns the robot, which turns as the gyro measures, at an uncertain position. If the
+  rate is steady, the bias may have changed instead: the heading is uncertain by the whole turn until the old rate is
+  back. A rate that is steady for LONG is the bias.
+
+A turn that the wheels do not show, slower than STEADY, cannot be told from a bias that has changed. Before the first
+rest, no bias is known, so any rate that is steady may be the bias.
 """
 from __future__ import annotations
 
-from math import inf, radians, sqrt
-from typing import NamedTuple
+from math import degrees, hypot, sqrt
 
 from rbx1_nav.base.kinematics import Pose
-from rbx1_nav.base.units import SECOND, wrap_angle
-from rbx1_nav.filter.filter import BIAS, Filter
+from rbx1_nav.base.units import wrap_angle
+from rbx1_nav.filter.filter import CLEAR, RARE, STEADY, Filter
+from rbx1_nav.filter.gyro_readings import Measurement
+from rbx1_nav.filter.pose_errors import BIAS, Yaw
 
-STANDSTILL, CARRIED = 'standstill', 'carried'
+STANDSTILL, UNDECIDED, CARRIED = 'standstill', 'undecided', 'carried'
 
-REST = SECOND // 2          # ns for which the pose has not changed
-ROUNDING = 1e-6             # s
-SAME = 1e-4                 # m and rad: a smaller change is rounding
-PART = 0.1                  # s over which the gyro's rate is averaged
-STEADY = radians(1)         # rad/s: a bias changes by less than this from one standstill to the next
-FIRST_STEADY = 0.2          # s for which a rate must be steady to be the first bias
-BIAS_DEVIATIONS = 2.0       # standard deviations by which the bias may have changed
-STEADY_DOUBT = 1.0          # s for which another rate must be steady to make the bias uncertain
-STEADY_AGAIN = 10.0         # s for which another rate must be steady to be a bias that has changed
-DEVIATIONS = 5.0            # standard deviations of the gyro's noise beyond which a difference is not due to chance
-MIN_SAMPLES = 10            # differences of rates from which the noise is measured
-NOISE_FACTOR = 2.0          # reported / measured noise variance, above which the reported variance is too large
-MIN_DENSITY = radians(0.005) ** 2   # rad^2/s: square of the noise density of a quiet MEMS gyro
-
-
-class Part(NamedTuple):
-    """A measurement of the gyro over a period: s, rad, rad^2."""
-
-    time: float = 0.0
-    angle: float = 0.0
-    variance: float = 0.0
-
-    def plus(self, other: Part) -> Part:
-        return Part(self.time + other.time, self.angle + other.angle, self.variance + other.variance)
+WINDOW = 0.25           # s over which the turn is summed up at least
+ROUNDING = 1e-6         # s
+SAME = 1e-4             # m and rad: a smaller change is rounding
+MOVE, CREEP = 0.002, 0.0005     # m, m/s: a tick of a coarse encoder; a TurtleBot3 in its simulator creeps by 0.2 mm/s,
+CREEP_TURN = 0.001      # rad/s: and turns by 0.05 degrees/s (fuse, turtlebot3.bag)
+STILL, FIRST = 250.0, 1400.0    # s/rad * tick: length of a first window if the wheels are still, and if they creep or
+#                                 tick: a turn of 0.3 degrees/s would show in it
+ROUNDING = 1e-6         # s
+SAME = 1e-4             # m and rad: a smaller change is rounding
+MOVE, CREEP = 0.002, 0.0005     # m, m/s: a tick of a coarse encoder; a TurtleBot3 in its simulator creeps by 0.2 mm/s,
+CREEP_TURN = 0.001      # rad/s: and turns by 0.05 degrees/s (fuse, turtlebot3.bag)
+FIRST = 1400.0          # s/rad * tick: length of a window of the first rest if the wheels are not still; a turn of 0.3
+#                         degrees/s exceeds TURN and CREEP_TURN in it
+TICK = 0.004            # rad, until a smaller one is seen: a tick of 1 mm, with a track of 0.25 m
+TURN, TELLING = 2.1, 8.0        # ticks: both wheels may be off by one; they report more than that in such a turn, even
+#                                 if the robot turns twice as far as they report
+STILL_TELLING = 4.0     # ticks: both wheels report one in half of such a turn
+DOUBTFUL, LONG = 1.0, 60.0      # s for which another rate must be steady to be possibly the bias, and to be the bias
 
 
 class Standstill:
@@ -52,92 +52,107 @@ class Standstill:
     def __init__(self, max_bias: float) -> None:
         """max_bias: rad/s, the largest bias of a gyro."""
         self.max_bias = max_bias
-        self.density = 0.0          # rad^2/s, measured noise of the gyro
-        self.samples = 0            # number of samples of this noise
-        self.max_density = inf      # rad^2/s: the noise of a reading is limited to this value
+        self.tick = TICK        # rad: the smallest turn that the odometry has reported
         self.restart()
 
     def restart(self) -> None:
         """Wait for the next standstill."""
-        self.pose: Pose | None = None       # the pose that does not change
-        self._clear()
+        self.case: str | None = None
+        self.anchor: Pose | None = None     # the pose of the wheels at the start of the window
+        self._begin(None)
+        self._rest()
+        self.turning = 0.0      # s for which the robot has been turned
+        self.steady = self.doubted = 0.0    # s, rad: turn at a steady rate that is not the bias
 
-    def _clear(self) -> None:
-        self.case: str | None = None        # STANDSTILL or CARRIED while the wheels are at rest
-        self.part = Part()          # the current part
-        self.complete: Part | None = None   # the previous part, used if the wheels are still at rest after it
-        self.undecided = Part()     # parts with a steady rate that is not known to be the bias
-        self.last: Part | None = None       # the last Part that was used
+    def _begin(self, pose: Pose | None) -> None:
+        self.anchor = pose
+        self.time = self.angle = self.variance = 0.0    # s, rad, rad^2: what the gyro has measured in the window
+        self.exact = True       # whether the wheels have not moved at all
 
-    def follow(self, stamp: int, pose: Pose) -> bool:
-        """Store the Pose with this stamp (ns), and return whether the wheels are at rest there."""
-        last = self.pose
-        if (last is None or abs(pose.x - last.x) > SAME or abs(pose.y - last.y) > SAME
-                or abs(wrap_angle(pose.yaw - last.yaw)) > SAME):
-            self.pose, self.since = pose, stamp     # since: of the first message with this pose
-        return stamp - self.since >= REST
+    def _rest(self) -> None:
+        self.waiting = 0.0, 0.0, 0.0    # the same of the window before, which counts if the robot is at rest after it
 
-    def leave(self, ekf: Filter) -> Part:
-        """Return the Part in which the robot may have begun to move, because the wheels are no longer at rest.
+    def stands(self, pose: Pose, turned: float) -> bool:
+        """Store a pose of the wheels and the turn (rad) to it, and return whether they may be at rest there."""
+        if abs(turned) > SAME:
+            self.tick = min(self.tick, abs(turned))
+        last = self.anchor
+        if last:
+            moved, turned = hypot(pose.x - last.x, pose.y - last.y), abs(wrap_angle(pose.yaw - last.yaw))
+            self.exact = self.exact and moved <= SAME and turned <= SAME
+            if moved <= MOVE + CREEP * self.time and turned <= TURN * self.tick + CREEP_TURN * self.time:
+                return True
+        return False
 
-        The Filter has not used this Part.
-        """
-        unused = self.part.plus(self.complete or Part())
-        if ekf.rested and self.undecided.time > STEADY_DOUBT - ROUNDING:
-            ekf.doubt_bias(self.undecided.angle / self.undecided.time)
-        self._clear()
-        return unused
+    def leave(self, pose: Pose, ekf: Filter) -> None:
+        """Wait for the next standstill, because the wheels have moved to a pose, or the gyro is missing."""
+        if self.case or self.time or self.waiting[0]:
+            self._release(ekf)
+            if self.steady > DOUBTFUL:
+                ekf.doubt_bias(ekf.bias + self.doubted / self.steady)
+            self.restart()
+        self.anchor, self.exact = pose, True
 
-    def add(self, step: Part, ekf: Filter) -> None:
-        """Add a step (Part) at rest, and update the Filter with the parts before it."""
-        self.case = self.case or STANDSTILL
-        if self.complete:
-            self._use(self.complete, ekf)
-            self.complete = None
-        self.part = self.part.plus(step)
-        if self.part.time > PART - ROUNDING:
-            self.complete, self.part = self.part, Part()
+    def _release(self, ekf: Filter) -> None:
+        """Turn the robot by what the gyro has measured in the last two windows, in which it may have begun to turn."""
+        if self.case == STANDSTILL:
+            time, angle, _ = self.waiting
+            ekf.step(0.0, Yaw(angle + self.angle - ekf.bias * (time + self.time), 0.0, True))
 
-    def _use(self, part: Part, ekf: Filter) -> None:
-        """Update the Filter with a Part."""
-        rate = part.angle / part.time
-        margin = STEADY + DEVIATIONS * sqrt(part.variance) / part.time
-        possible = abs(rate) <= self.max_bias
-        if ekf.rested and possible and abs(rate - ekf.bias) <= margin + BIAS_DEVIATIONS * ekf.sigma(BIAS):
-            self._measure_noise(part, rate)
-            self._learn(part, ekf)
-            return
-        self.last = None
-        before, self.undecided = self.undecided, part
-        if before.time and abs(rate - before.angle / before.time) <= margin:
-            self.undecided = before.plus(part)
-        elif before.time and not ekf.rested:
-            self._carry(before, ekf)
-        if ekf.rested or not possible:
-            self._carry(part, ekf)
-        if not possible:
-            self.undecided = Part()
-        elif self.undecided.time >= (STEADY_AGAIN if ekf.rested else FIRST_STEADY) - ROUNDING:
-            if ekf.rested:      # no hand has turned the robot
-                ekf.carry(ekf.bias * self.undecided.time - self.undecided.angle, 0.0)
-                ekf.doubt_bias(self.undecided.angle / self.undecided.time)
-            self._learn(self.undecided, ekf)
+    def add(self, duration: float, gyro: Measurement, pose: Pose, ekf: Filter) -> str:
+        """Add a step (s) at rest, which ends at a pose of the wheels. Return a text if the user should know."""
+        rate, margin = gyro[0] / duration, STEADY + CLEAR * sqrt(gyro[1]) / duration
+        usual = ekf.bias if ekf.rested else self.angle / self.time if self.time else rate
+        if abs(rate) > self.max_bias or abs(rate - usual) > margin + (2 * ekf.sigma(BIAS) if ekf.rested else 0.0):
+            return self._carry(duration, rate, margin, ekf)
+        if self.steady:     # the rate is that of the bias again, so the robot was turned
+            ekf.doubt_turn(-self.doubted)
+            self.steady = self.doubted = 0.0
+        if not ekf.rested:      # nothing is known of the bias, and the wheels do not turn
+            self.case = STANDSTILL
+        elif self.case == CARRIED:
+            self.case = None
+        self.turning = 0.0
+        self.time, self.angle, self.variance = self.time + duration, self.angle + gyro[0], self.variance + gyro[1]
+        least = 0.0 if ekf.rested or self.waiting[0] else self.tick * (STILL if self.exact else FIRST)
+        if self.time < max(WINDOW, least) - ROUNDING:
+            return ''
+        turn = abs(self.angle - ekf.bias * self.time)
+        drifted = ekf.rested and turn ** 2 > RARE ** 2 * (self.variance + (ekf.sigma(BIAS) * self.time) ** 2)
+        if drifted and turn < self.tick * (STILL_TELLING if self.exact else TELLING):
+            self._release(ekf)
+            self._rest()
+            self.case = UNDECIDED
+            return ''
+        change, (time, angle, variance) = 0.0, self.waiting
+        self.waiting = self.time, self.angle, self.variance
+        self._begin(pose)
+        if drifted or time:
+            time, angle, variance = self.waiting if drifted else (time, angle, variance)
+            change = ekf.learn_bias(angle / time, variance / time ** 2)
+            self.case = STANDSTILL
+        return (f'the bias of imu_data has changed by {degrees(change):.2f} degrees/s since the last rest: the heading '
+                f'is uncertain' if change else '')
 
-    def _measure_noise(self, part: Part, rate: float) -> None:
-        """Measure the noise from the differences of successive rates, whose variances are angle variance / time^2."""
-        if self.last:
-            sample = (rate - self.last.angle / self.last.time) ** 2 / (1 / part.time + 1 / self.last.time)
-            self.samples += 1
-            self.density += (sample - self.density) / min(self.samples, 100)
-            if self.samples >= MIN_SAMPLES:
-                self.max_density = NOISE_FACTOR * max(self.density, MIN_DENSITY)
-        self.last = part
-
-    def _learn(self, part: Part, ekf: Filter) -> None:
-        ekf.learn_bias(part.angle / part.time, part.variance / part.time ** 2)
-        self.undecided = Part()
-        self.case = STANDSTILL
-
-    def _carry(self, part: Part, ekf: Filter) -> None:
-        ekf.carry(part.angle - ekf.bias * part.time, part.time)
+    def _carry(self, duration: float, rate: float, margin: float, ekf: Filter) -> str:
+        """Add a step (s) in which the robot is turned at a rate (rad/s), or the bias has changed to that rate."""
+        self._release(ekf)
+        self._begin(self.anchor)    # the wheels must not move at all
+        self._rest()
         self.case = CARRIED
+        self.turning += duration
+        if self.turning > WINDOW:       # wheels may report a turn later than the gyro
+            ekf.carry(duration)
+        offset = rate - ekf.bias
+        if self.steady and abs(offset - self.doubted / self.steady) > margin:    # no bias changes like this
+            ekf.doubt_turn(-self.doubted)
+            self.steady = self.doubted = 0.0
+        before, self.steady, self.doubted = self.steady, self.steady + duration, self.doubted + offset * duration
+        ekf.doubt_turn(offset * duration)
+        if self.steady > LONG and abs(rate) <= self.max_bias:
+            ekf.doubt_bias(rate)
+            ekf.learn_bias(ekf.bias + self.doubted / self.steady, 0.0)
+            self.steady = self.doubted = 0.0
+        return (f'the wheels are at rest, and imu_data turns steadily by {degrees(offset):.1f} degrees/s: somebody '
+                'turns the robot, or the bias has changed; the heading is uncertain'
+                if before <= DOUBTFUL < self.steady else '')

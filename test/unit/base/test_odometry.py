@@ -70,5 +70,5 @@ def test_driving_straight_a_rounded_heading_moves_the_robot_aside_by_up_to_30_cm
     for _ in range(100):
         odometry.move(Travel(0.01, 0.0))
     # 1 m at an error of 0.005 rad that is another one after each 0.3 m, and the rounding of the counts
-    assert odometry.covariance[1, 1] == pytest.approx(0.005 ** 2 * 1.0 * 0.3 + 1e-6)
-    assert odometry.covariance[0, 0] == pytest.approx(1e-6) and odometry.pose.x == pytest.approx(1.0)
+    assert odometry.covariance[1][1] == pytest.approx(0.005 ** 2 * 1.0 * 0.3 + 1e-6)
+    assert odometry.covariance[0][0] == pytest.approx(1e-6) and odometry.pose.x == pytest.approx(1.0)

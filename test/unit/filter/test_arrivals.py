@@ -23,7 +23,9 @@ def test_a_stamp_is_near_the_clock(offset, expected, sensor):
     if expected:
         with pytest.raises(RejectedMessage) as error:
             arrivals.add(sensor, NOW, NOW + offset)
-        assert str(error.value) == f'header.stamp: {(NOW + offset) / SECOND:.9f}: expected a stamp {expected}'
+        assert str(error.value) == (
+            f'header.stamp: {(NOW + offset) / SECOND:.9f}: expected a stamp {expected}; synchronize the clocks of both '
+            'computers, or for a bag, set use_sim_time before the nodes start, and play it with --clock')
         assert arrivals.last_stamp == {ODOM: None, IMU: None}
     else:
         assert arrivals.add(sensor, NOW, NOW + offset) is None

@@ -36,7 +36,7 @@ def make(frame_id='odom_combined', **changes):
 def test_pose_and_covariance(frame_id):
     pose, covariance = from_set_pose(make(frame_id, c1=0.03, c6=0.03, c5=-0.01, c30=-0.01), 'odom_combined')
     assert pose == pytest.approx((1.0, 2.0, 0.5))
-    assert covariance.tolist() == [[0.04, 0.03, -0.01], [0.03, 0.09, 0.0], [-0.01, 0.0, 0.01]]
+    assert covariance == ((0.04, 0.03, -0.01), (0.03, 0.09, 0.0), (-0.01, 0.0, 0.01))
 
 
 @pytest.mark.parametrize('message, text', [

@@ -2,19 +2,20 @@
 from math import pi
 from types import SimpleNamespace
 
-import numpy
 import pytest
 
 from rbx1_nav.base.kinematics import Pose
+from rbx1_nav.base.messages import diagonal
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.filter import estimate_publisher as module
 from rbx1_nav.filter.combined_odometry import Estimate
 from rbx1_nav.filter.estimate_publisher import EstimatePublisher
 from rbx1_nav.filter.inputs import Odom
 from rbx1_nav.filter.sensor_inputs import FrameTree
+from rbx1_nav.filter.velocity import Velocity
 from fake_topics import replace_topics
 
-COVARIANCE = numpy.diag([0.01, 0.04, 0.09])
+COVARIANCE = (0.01, 0.0, 0.0), (0.0, 0.04, 0.0), (0.0, 0.0, 0.09)
 
 
 @pytest.fixture(name='world')
@@ -31,11 +32,11 @@ def fixture_world(monkeypatch):
     return make
 
 
-def update(publisher, seconds, pose=Pose(1.0, 2.0, pi / 2), odom=Pose(3.0, 0.0, 0.0)):
+def update(publisher, seconds, pose=Pose(1.0, 2.0, pi / 2), odom=Pose(3.0, 0.0, 0.0), velocity=None):
     """Publish an Estimate at a time, s; return the last transform, as (parent, child, x, y)."""
     stamp = round(seconds * SECOND)
     estimate = Estimate(stamp=stamp, pose=pose, covariance=COVARIANCE, odom=Odom(stamp, odom))
-    publisher.update(SimpleNamespace(estimate=estimate, filter=None, placed=None), 'odom', 'base')
+    publisher.update(SimpleNamespace(estimate=estimate, velocity=velocity), 'odom', 'base')
     if not publisher.tf_pub.sent:
         return None
     transform, = publisher.tf_pub.sent[-1]
@@ -85,18 +86,14 @@ def test_poses_have_their_rate_and_their_covariance(world):
     assert publisher.odometry_pub.sent[-1].child_frame_id == 'base'
 
 
-def test_a_velocity_is_the_change_since_the_last_estimate_without_a_jump_in_between(world, monkeypatch):
-    used = []
-    monkeypatch.setattr(module, 'estimate_twist', lambda _, before: used.append(before and before.stamp // SECOND))
+@pytest.mark.parametrize('velocity', [None, Velocity(1.0, 2.0, 3.0, 0.4, 0.5, 0.6)])
+def test_an_odometry_message_has_the_velocity_and_is_only_made_for_a_subscriber(world, velocity):
     publisher = world(publish_tf=False)
-    # the filter is another one after a restart; set_pose may move the estimate after it
-    for second, ekf, placed in (1, 'one', None), (2, 'one', None), (3, 'one', 'there'), (4, 'one', None), (
-            5, 'one', None), (6, 'other', None), (7, 'other', None):
-        combined = SimpleNamespace(estimate=Estimate(second * SECOND, Pose(1.0, 2.0, 0.3), COVARIANCE, None),
-                                   filter=ekf, placed=placed)
-        for _ in range(2):      # the second time, there is no new estimate
-            publisher.update(combined, 'odom', 'base')
-    assert used == [None, 1, 2, None, 4, None, 6]
+    update(publisher, 10.0, velocity=velocity)
+    twist = publisher.odometry_pub.sent[-1].twist
+    linear, angular = twist.twist.linear, twist.twist.angular
+    assert (linear.x, linear.y, angular.z) == (velocity[:3] if velocity else (0, 0, 0))
+    assert list(twist.covariance) == diagonal(*(0.4, 0.5, 1e6, 1e6, 1e6, 0.6) if velocity else [1e6] * 6)
     publisher.odometry_pub.connections = 0
-    update(publisher, 9.0)
-    assert len(publisher.odometry_pub.sent) == 7 and publisher.published == 8
+    update(publisher, 11.0)
+    assert len(publisher.odometry_pub.sent) == 1 and publisher.published == 2

@@ -4,12 +4,11 @@ from threading import Lock
 from types import SimpleNamespace
 
 from diagnostic_updater import DiagnosticStatusWrapper
-import numpy
 import pytest
 import rospy
 
-from rbx1_nav.filter.filter import BIAS
 from rbx1_nav.filter.filter_status import CONTRADICTION, JUMPED, OK, WARN, Diagnostics
+from rbx1_nav.filter.pose_errors import BIAS
 
 NO_ESTIMATE, NO_MESSAGE, TIMED_OUT, USED = (
     (WARN, 'No estimate yet'), (WARN, 'No message yet'), (WARN, 'Timed out, not used'), (OK, 'Used'))
@@ -20,7 +19,7 @@ def make(case=None, timed_out=False, suspect=None, estimated=True):
     ekf = SimpleNamespace(bias=radians(0.5), sigma=lambda index: radians(0.25) if index == BIAS else 9.0)
     return SimpleNamespace(
         filter=ekf if estimated else None, case=case, timed_out={'odom': False, 'imu_data': timed_out}, suspect=suspect,
-        estimate=SimpleNamespace(covariance=numpy.diag([7.0, 8.0, radians(3) ** 2])) if estimated else None,
+        estimate=SimpleNamespace(covariance=((7.0, 0, 0), (0, 8.0, 0), (0, 0, radians(3) ** 2))) if estimated else None,
         doubts=SimpleNamespace(doubted='both'))
 
 

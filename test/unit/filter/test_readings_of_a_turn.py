@@ -4,7 +4,7 @@ from math import inf
 import pytest
 
 from rbx1_nav.base.units import SECOND
-from rbx1_nav.filter.gyro_readings import Readings, Sums, Window
+from rbx1_nav.filter.gyro_readings import MIN_DENSITY, NOISE_FACTOR, Readings
 from rbx1_nav.filter.inputs import Imu
 from rbx1_nav.filter.priors import Bounds
 
@@ -32,9 +32,9 @@ class Gyro:
             self.readings.last = imu
         return self
 
-    def turn(self, start, end, max_rate=inf, max_density=inf):
+    def turn(self, start, end, max_rate=inf):
         """Return the angle and the variance of the turn between two times (s)."""
-        return self.readings.turn(ns(start), ns(end), max_rate, max_density)
+        return self.readings.turn(ns(start), ns(end), max_rate)
 
 
 def steady(interval, count=5, **options):
@@ -66,7 +66,7 @@ def test_readings_from_before_the_step_do_not_count():
 
 @pytest.mark.parametrize('start, end', [(-0.01, 0.04), (0.0, 0.05), (0.05, 0.06), (0.02, 0.02)])
 def test_readings_that_do_not_cover_the_whole_time_measure_no_turn(start, end):
-    assert Gyro().report((0.02, 0.5), (0.04, 0.5)).readings.turn(ns(start), ns(end), inf, inf) is None
+    assert Gyro().report((0.02, 0.5), (0.04, 0.5)).readings.turn(ns(start), ns(end), inf) is None
 
 
 @pytest.mark.parametrize('rate, measured', [(1.99, True), (-1.99, True), (2.0, False), (-2.0, False)])
@@ -75,11 +75,15 @@ def test_a_rate_at_the_limit_of_the_measurement_range_is_not_measured(rate, meas
     assert (gyro.turn(0.0, 0.04, max_rate=2.0) is not None) == measured
 
 
-def test_a_noise_that_is_greater_than_the_gyro_has_shown_is_limited():
-    for density, variance in ((1.0, NOISE), (NOISE / 100, NOISE / 2)):
-        # a density in rad^2/s is the variance of the mean over 1 s; over 0.02 s, the variance is 50 times as large
-        gyro = Gyro().report((0.02, 0.5), (0.04, 0.5))
-        assert gyro.turn(0.0, 0.04, max_density=density) == pytest.approx((0.02, 2 * variance * 0.02 ** 2))
+@pytest.mark.parametrize('noise', [0.0, 1e-4, 2e-3])
+def test_a_noise_that_is_greater_than_the_gyro_has_shown_is_limited(noise):
+    rates = [noise * (-1) ** number for number in range(60)]
+    for count, limited in (10, False), (60, True):
+        gyro, start = moving([0.5, 0.4], rates[:count])
+        # differences of 2 * noise between readings have half of their squares as variance; a density is per second
+        density = NOISE_FACTOR * max(MIN_DENSITY, 2 * noise ** 2 * 0.02) if limited else 1.0
+        assert gyro.turn(start, start + 0.04) == pytest.approx(
+            (0.018, 2 * min(NOISE, density / 0.02) * 0.02 ** 2), rel=0.02)      # the first difference is half
 
 
 @pytest.mark.parametrize('interval', [0.0501, 0.1, 0.4])
@@ -113,7 +117,7 @@ def test_a_gap_that_is_not_within_one_step_is_uncertain_without_the_wheels(befor
     gyro.report((start + gap, 0.0))
     part = gap - before - after
     if before:
-        gyro.readings.turn(ns(start), ns(start + before), inf, inf)
+        gyro.readings.turn(ns(start), ns(start + before), inf)
     # the error of the rate is the same in all parts of the gap
     assert gyro.turn(start + before, start + gap - after) == pytest.approx(
         (0.0, (NOISE + error ** 2 / gap ** 2 / 3) * part * gap))
@@ -139,7 +143,7 @@ def test_readings_that_are_equal_while_the_robot_moves_are_not_measured(equal, m
     gyro, start = moving([2.0] * equal, NOISY)
     assert (gyro.turn(start, start + 0.02 * equal) is not None) == measured
     gyro.report((start + 0.02 * (equal + 1), 1.9))      # and measured again
-    assert gyro.turn(start + 0.02 * equal, start + 0.02 * (equal + 1)) == pytest.approx((0.038, NOISE * 0.02 ** 2))
+    assert gyro.turn(start + 0.02 * equal, start + 0.02 * (equal + 1)) == pytest.approx((0.038, 2.36e-9), rel=0.01)
 
 
 PAIRS = [rate for rate in NOISY for _ in range(2)]      # of a gyro with coarse steps
@@ -165,17 +169,3 @@ def test_another_interval_becomes_the_usual_one():
     for number, more in (0, lost), (4, lost), (80, 0.0):    # first, readings seem to be lost
         begin = start + 0.1 * number
         assert gyro.turn(begin, begin + 0.1) == pytest.approx((0.0, NOISE * 0.1 ** 2 + more))
-
-
-@pytest.mark.parametrize('sign', [1, -1])
-def test_a_window_sums_up_blocks_until_it_has_turned_by_2_rad_and_measures_their_scatter(sign):
-    window, closed = Window(), []
-    for wheels, gyro in (0.3, 0.5), (-0.8, -0.7), (1.1, 0.4):
-        for part in 0.25, 0.75:     # of a block of 1 s
-            assert window.close() is None
-            window.add(Sums(part, sign * part * wheels, sign * part * (wheels - 0.1), sign * part * gyro, part * 2.0,
-                            part * 0.01))
-        closed.append(window.close())
-    # each block has turned by the larger of its turns; the differences of gyro and expected turn are 0.3, 0.2, -0.6
-    assert closed == [None, None, pytest.approx((
-        3.0, sign * 0.6, sign * 0.3, sign * 0.2, 6.0, 0.03, 0.5 + 0.8 + 1.1, (0.3 ** 2 + 0.1 ** 2 + 0.8 ** 2) / 2))]

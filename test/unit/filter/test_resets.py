@@ -1,5 +1,4 @@
 """A reset or a restart forgets the estimate but not the stamps, and each restart is reported."""
-import numpy
 import pytest
 
 from rbx1_nav.base.kinematics import ORIGIN, Pose
@@ -29,7 +28,7 @@ def test_a_reset_forgets_what_was_waited_for_but_not_the_bias():
     robot = Robot()
     robot.send(100, bias=0.05)
     turn_with_wheels(robot, 150, -1.0, bias=0.05)
-    robot.combined.set_pose(robot.now + STEP, Pose(5.0, 0.0, 0.0), numpy.eye(3))
+    robot.combined.set_pose(robot.now + STEP, Pose(5.0, 0.0, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)))
     robot.combined.arrivals.set_timed_out('imu_data')
     assert robot.combined.contradicts and robot.combined.filter.rested
     robot.combined.reset(robot.now)

@@ -1,125 +1,140 @@
-"""The rules of a standstill at their limits: rest, the first bias, another bias, carried, and the noise of the gyro."""
-from math import inf, pi
+"""Odometry and gyro together decide whether the robot is at rest, is carried, or turns slowly."""
+from math import pi, radians
 
 import pytest
 
-from rbx1_nav.base.kinematics import Pose
-from rbx1_nav.base.units import SECOND
-from rbx1_nav.filter.standstill import CARRIED, STANDSTILL, Part, Standstill
+from rbx1_nav.base.kinematics import ORIGIN, Pose
+from rbx1_nav.filter.filter import Filter
+from rbx1_nav.filter.pose_errors import BIAS, YAW
+from rbx1_nav.filter.priors import UNKNOWN_FLOOR
+from rbx1_nav.filter.standstill import (
+    CARRIED, CREEP, DOUBTFUL, LONG, MOVE, SAME, STANDSTILL, STILL, TICK, TURN, UNDECIDED, WINDOW, Standstill)
 
-TIME = 0.125        # s, of each step: longer than a part, and exact as a float
-LIMIT = 0.25        # rad/s, the largest bias
-
-
-class Recorder:
-    """Stands for the filter, and records what it is told."""
-
-    def __init__(self, bias=None, sigma=0.0):
-        self.bias, self.deviation, self.rested = bias or 0.0, sigma, bias is not None
-        self.calls = []
-
-    def learn_bias(self, rate, variance):
-        self.calls.append(('bias', rate, variance))
-        if not self.rested:
-            self.bias, self.rested = rate, True
-
-    def sigma(self, _):
-        return self.deviation
-
-    def carry(self, angle, duration):
-        self.calls.append(('carried', angle, duration))
-
-    def doubt_bias(self, rate):
-        self.calls.append(('doubt', rate))
+STEP = 0.0625       # s, exact
+NOISE = 1e-10       # rad^2, of a step
 
 
-def rest(rates, variance=0.0, time=TIME, **known):
-    """Return a Standstill and its Recorder, after steps at rest with these rates (rad/s), and one more step."""
-    standstill, recorder = Standstill(LIMIT), Recorder(**known)
-    for rate in [*rates, 0.0]:
-        standstill.add(Part(time, rate * time, variance), recorder)
-    return standstill, recorder
+class Robot:
+    """A robot whose wheels and gyro report the same in each step."""
+
+    def __init__(self, rested=True):
+        self.ekf, self.standstill = Filter(UNKNOWN_FLOOR, ORIGIN), Standstill(radians(10))
+        self.pose, self.texts = ORIGIN, []
+        self.standstill.leave(ORIGIN, self.ekf)
+        if rested:
+            self.ekf.learn_bias(0.0, 1e-12)
+
+    def go(self, seconds, rate=0.0, moved=0.0, turned=0.0):
+        """Go on for so long with a rate of the gyro (rad/s), while the wheels move (m) and turn (rad) per second;
+        return the case."""
+        for _ in range(round(seconds / STEP)):
+            x, y, yaw = self.pose
+            self.pose = Pose(x + moved * STEP, y, yaw + turned * STEP)
+            if self.standstill.stands(self.pose, turned * STEP):
+                text = self.standstill.add(STEP, (rate * STEP, NOISE), self.pose, self.ekf)
+                self.texts += [text] if text else []
+            else:
+                self.standstill.leave(self.pose, self.ekf)
+                self.moving = True
+        return self.standstill.case
+
+    def sigma(self):
+        """Return 1 sigma of the heading, rad."""
+        return self.ekf.covariance[YAW][YAW] ** 0.5
 
 
-# the wheels
-
-def test_a_slow_motion_adds_up():
-    standstill = Standstill(LIMIT)
-    assert [standstill.follow(number * SECOND, Pose(0.6e-4 * number, 0.0, 0.0)) for number in range(4)] == [
-        False, True, False, True]
-
-
-def test_a_whole_turn_of_the_yaw_is_rest():
-    standstill = Standstill(LIMIT)
-    standstill.follow(0, Pose(0.0, 0.0, pi))
-    assert standstill.follow(SECOND, Pose(0.0, 0.0, -pi))
+@pytest.mark.parametrize('rate', [radians(9.9), radians(-9.9), 0.0])
+def test_the_first_steady_rate_within_the_limit_is_the_bias(rate):
+    robot = Robot(rested=False)
+    assert robot.go(0.5, rate) == STANDSTILL and not robot.ekf.rested       # too short for a tick of a coarse encoder
+    robot.go(STILL * TICK + WINDOW, rate)
+    assert robot.ekf.rested and robot.ekf.bias == pytest.approx(rate, abs=1e-5)
 
 
-# the first bias
-
-@pytest.mark.parametrize('rate', [LIMIT, -LIMIT, 0.0])
-def test_the_first_bias_is_a_rate_within_the_limit_that_is_steady_for_a_fifth_of_a_second(rate):
-    assert rest([rate])[1].calls == []
-    standstill, recorder = rest([rate, rate], variance=1e-4)
-    # the mean of two parts with a variance of 1e-4 rad^2 each
-    assert recorder.calls == [('bias', rate, pytest.approx(2e-4 / 0.25 ** 2))]
-    assert standstill.case == STANDSTILL
-    # a bias that is known becomes uncertain if another rate is steady for long
-    assert ('doubt', rate) in rest([rate] * 200, bias=0.02)[1].calls
+def test_a_rate_that_is_no_bias_is_a_robot_that_is_carried():
+    robot = Robot(rested=False)
+    assert robot.go(0.5, radians(10.1)) == CARRIED and not robot.ekf.rested
+    assert robot.go(0.125, 0.0) == STANDSTILL
+    robot = Robot(rested=False)     # not steady
+    robot.go(0.5, 0.0)
+    assert robot.go(STEP, radians(3)) == CARRIED
 
 
-# another rate
-
-def test_a_rate_that_is_not_steady_has_turned_the_robot():
-    carried = [('carried', pytest.approx(rate * TIME), TIME) for rate in (0.1, 0.2, 0.3)]
-    bias = 'bias', 0.2, 0.0
-    assert rest([0.1, 0.2, 0.2])[1].calls == [carried[0], bias]
-    # a rate above the limit is neither steady nor a bias
-    assert rest([0.2, 0.3, 0.2, 0.2])[1].calls == [carried[1], carried[2], bias]
-    standstill, recorder = rest([0.2], bias=0.05)
-    assert recorder.calls == [('carried', pytest.approx(0.15 * TIME), TIME)] and standstill.case == CARRIED
-
-
-@pytest.mark.parametrize('known', [dict(bias=0.0, variance=1e-4), dict(bias=0.0, sigma=0.1)])
-def test_a_rate_that_differs_by_the_noise_or_the_uncertainty_of_the_bias_is_the_bias(known):
-    # 0.01 rad in 0.125 s, and 0.1 rad/s, are 1 sigma: 0.2 rad/s is less than 5 or 2 of them
-    assert rest([0.2], **known)[1].calls == [('bias', 0.2, pytest.approx(known.get('variance', 0.0) / TIME ** 2))]
+def test_a_window_counts_when_the_next_one_is_complete_too():
+    robot = Robot()
+    robot.go(WINDOW, 1e-6)
+    assert robot.ekf.bias == 0.0
+    robot.go(WINDOW, 0.0)
+    assert robot.standstill.case == STANDSTILL and 0.0 < robot.ekf.bias < 1e-6
+    # what the robot turns in the last two windows, it may have turned on driving off
+    robot.go(2 * WINDOW, 2e-6)
+    before = robot.ekf.state.yaw
+    assert robot.go(STEP, 1.0, 1.0) is None and robot.ekf.state.yaw > before
 
 
-def test_a_rate_that_is_steady_for_10_s_is_another_bias_and_has_not_turned_the_robot():
-    _, recorder = rest([0.2] * 80, bias=0.05)
-    calls, last = recorder.calls[:81], recorder.calls[81:]
-    assert sum(angle for _, angle, _ in calls) == pytest.approx(0.0, abs=1e-12)     # rounding
-    assert sum(duration for *_, duration in calls) == 10.0
-    assert last == [('doubt', pytest.approx(0.2)), ('bias', pytest.approx(0.2), 0.0)]
+@pytest.mark.parametrize('moved, turned, stands', [
+    (0.9 * CREEP, 0.0, True), (MOVE + CREEP, 0.0, False), (0.0, 0.0009, True), (0.0, 1.1 * TURN * TICK + 0.001, False)])
+def test_a_creep_is_a_rest_and_a_slow_drive_is_none(moved, turned, stands):
+    robot = Robot()
+    robot.moving = False
+    case = robot.go(5.0, 0.0, 4 * moved if not stands else moved, 4 * turned if not stands else turned)
+    assert (case == STANDSTILL) == stands and robot.moving is not stands
 
 
-def test_the_noise_is_measured_from_differences_of_rates_that_may_be_the_bias():
-    standstill, recorder = Standstill(LIMIT), Recorder(bias=0.0, sigma=1.0)
-    for time, rate in (0.125, 0.1), (0.25, 0.2), (0.25, -0.1), (0.125, 0.3), (0.125, 0.0), (0.125, 0.0):
-        standstill.add(Part(time, rate * time), recorder)
-    # noise with a density D makes a difference of D / time + D / time; 0.3 rad/s is no bias, and the next is the first
-    assert standstill.density == pytest.approx((0.1 ** 2 / (8 + 4) + 0.3 ** 2 / (4 + 4)) / 2)
-    assert standstill.max_density == inf
-    for number in range(20):
-        standstill.add(Part(0.125, 0.02 * (-1) ** number * 0.125), recorder)
-    # twice as much as the noise, after enough differences
-    assert standstill.max_density == pytest.approx(2 * standstill.density) and standstill.samples == 22
+def test_a_slow_turn_is_undecided_until_the_wheels_show_it():
+    robot = Robot()
+    rate = radians(0.3)
+    for _ in range(20):
+        robot.go(1.0, rate, 0.0, rate)
+    assert abs(robot.ekf.bias) < 1e-7 and robot.ekf.state.yaw == 0.0     # the combined odometry turns the robot
+    assert not robot.texts
 
 
-# driving off
+def test_a_bias_that_has_changed_is_learned_when_the_wheels_have_not_shown_a_turn():
+    robot = Robot()
+    robot.ekf.moving, robot.ekf.P[BIAS][BIAS] = 100.0, 1e-7
+    assert robot.go(0.5, 0.005) == UNDECIDED
+    assert robot.go(4 * TICK / 0.005 + 0.25, 0.005) == STANDSTILL
+    assert robot.ekf.bias == pytest.approx(0.005, rel=0.1)
+    assert robot.texts == ['the bias of imu_data has changed by 0.29 degrees/s since the last rest: the heading is '
+                           'uncertain']
 
-def test_a_rate_that_was_steady_for_longer_than_a_second_may_be_the_bias():
-    for count, doubts in (4, []), (12, [('doubt', pytest.approx(0.2))]):
-        standstill, recorder = rest([0.2] * count, bias=0.0)
-        assert [call for call in recorder.calls if call[0] != 'carried'] == []
-        standstill.leave(recorder)
-        assert recorder.calls[count:] == doubts and standstill.case is None
+
+def test_a_turn_by_a_hand_or_a_turntable_is_a_doubt_until_the_old_rate_is_back():
+    robot = Robot()
+    rate = radians(5)
+    assert robot.go(DOUBTFUL, rate) == CARRIED and not robot.texts
+    robot.go(9.0, rate)
+    assert robot.ekf.bias == 0.0 and robot.sigma() == pytest.approx(10 * rate, rel=1e-3)
+    assert robot.texts == ['the wheels are at rest, and imu_data turns steadily by 5.0 degrees/s: somebody turns the '
+                           'robot, or the bias has changed; the heading is uncertain']
+    assert robot.go(1.0) == STANDSTILL and robot.sigma() < 0.01
+    # a hand does not turn steadily
+    for _ in range(10):
+        robot.go(0.5, rate)
+        robot.go(0.5, 2 * rate)
+    assert len(robot.texts) == 1 and robot.sigma() < 0.2
 
 
-def test_the_end_of_a_standstill_contains_the_parts_that_were_not_used():
-    standstill, recorder = rest([], bias=0.0, time=0.0625, variance=1e-6)
-    assert standstill.leave(recorder) == (0.0625, 0.0, 1e-6)
-    for rate in 0.5, 1.0:
-        standstill.add(Part(0.0625, 0.0625 * rate, 1e-6), recorder)
-    assert standstill.leave(recorder) == (0.125, 0.09375, 2e-6) and recorder.calls == []
+def test_a_robot_that_drives_off_while_it_is_turned_steadily_may_have_another_bias():
+    robot = Robot()
+    robot.go(5.0, 0.1)
+    robot.go(STEP, 0.1, 1.0)
+    assert robot.ekf.bias == 0.0 and robot.ekf.sigma(BIAS) == pytest.approx(0.1, rel=0.01)
+
+
+def test_a_rate_that_is_steady_for_longer_than_anybody_turns_a_robot_is_the_bias():
+    robot = Robot()
+    robot.go(LONG + 1.0, 0.1)
+    assert robot.ekf.bias == pytest.approx(0.1, rel=0.01) and robot.sigma() == pytest.approx(pi)
+    robot = Robot()
+    robot.go(LONG + 1.0, radians(11))       # no gyro has this bias
+    assert robot.ekf.bias == 0.0
+
+
+def test_the_smallest_turn_that_the_odometry_has_reported_is_its_tick():
+    robot = Robot()
+    assert robot.standstill.tick == TICK
+    robot.go(STEP, 0.0, 1.0, 0.001 / STEP)
+    robot.go(STEP, 0.0, 1.0, 0.9 * SAME / STEP)     # rounding
+    assert robot.standstill.tick == pytest.approx(0.001)

@@ -2,12 +2,11 @@
 import random
 from statistics import mean
 
-import numpy
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rbx1_nav.simulation.floor_noise import Noise, Roughness, cell_covariance, cell_errors
+from rbx1_nav.simulation.floor_noise import Noise, Roughness
 from sample_surface import SURFACE
 
 ROUGH = SURFACE._replace(heading_noise_turning=0.1, heading_noise_straight=0.08, distance_noise=0.03)
@@ -82,23 +81,3 @@ def test_the_errors_of_distance_and_heading_have_nothing_in_common():
     distance, angle = zip(*errors)
     correlation = mean(a * b for a, b in errors) / (mean(a * a for a in distance) * mean(b * b for b in angle)) ** 0.5
     assert abs(correlation) < 0.11      # five times 1 sigma, 1 / sqrt(2000)
-
-
-@given(st.lists(st.floats(0.0, 2.0), min_size=1, max_size=12), st.floats(0.05, 1.0), st.integers(1, 5))
-def test_the_variance_after_a_path_does_not_depend_on_its_steps(steps, cell, parts):
-    finer = numpy.repeat(numpy.array(steps) / parts, parts)
-    variances = [cell_covariance(numpy.ones((1, len(path))), numpy.array(path), cell).item()
-                 for path in (steps, [sum(steps)], finer)]
-    assert variances == pytest.approx(3 * variances[:1], abs=1e-9)
-    # never more than white noise, and smaller by a third of a cell on a path of many cells
-    assert variances[0] <= sum(steps) + 1e-9
-    assert variances[0] >= sum(steps) - cell / 3 - 1e-9
-
-
-def test_the_covariance_is_that_of_simulated_noise():
-    path = numpy.array([0.02, 0.3, 0.0, 0.05, 0.2, 0.1])
-    errors = cell_errors(numpy.random.default_rng(1), 100000, path, 0.25)
-    # 1 sigma of an estimated variance is 0.5 % for a normal distribution, and 0.8 % for these tails
-    assert errors.T @ errors / len(errors) == pytest.approx(cell_covariance(numpy.eye(len(path)), path, 0.25), abs=0.01)
-    # large errors are as frequent as in the noise of one run, see above
-    assert 5 < (errors[:, 1] ** 4).mean() / errors[:, 1].var() ** 2 < 7

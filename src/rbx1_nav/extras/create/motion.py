@@ -9,7 +9,7 @@ from typing import Mapping, NamedTuple, Union
 
 from rbx1_nav.base.kinematics import Pose
 from rbx1_nav.base.readings import MEASURED, Reading, Travel, UncertainOdometry
-from rbx1_nav.base.units import SECOND, Array
+from rbx1_nav.base.units import SECOND, Covariance
 from rbx1_nav.extras.create.fractions import UNSURE, Fractions, lost_part
 from rbx1_nav.extras.create.protocol import MAX_SPEED, Model
 from rbx1_nav.extras.create.settings import Settings
@@ -217,7 +217,7 @@ class State(NamedTuple):
 
     time: int                       # ns, time of the last reading
     pose: Pose
-    covariance: Array               # 3x3
+    covariance: Covariance
     velocity: tuple[float, float]   # m/s and rad/s, the mean since the last State
     variances: tuple[float, float]  # of both velocities
     travel: tuple[float, float]     # m, left and right wheel
@@ -282,10 +282,11 @@ class MotionReport:
             linear, angular = ((variance + error + 2 * rounding ** 2) / elapsed ** 2 + MEASURED
                                for variance, error, rounding in zip(self.since[2:], errors, self.rounding))
             variances = linear, angular
-        covariance = self.odometry.covariance
-        covariance[2, 2] += unread_variance
+        x, y, (x_yaw, y_yaw, yaw) = self.odometry.covariance
+        yaw += unread_variance
         if self.moving_yaw_variance and any(velocity):
-            covariance[2, 2] = self.moving_yaw_variance
+            yaw = self.moving_yaw_variance
             variances = variances[0], self.moving_yaw_variance
         self.reported, self.since = self.time, NOWHERE
-        return State(self.time, self.odometry.pose, covariance, velocity, variances, (self.left, self.right), gyro)
+        return State(self.time, self.odometry.pose, (x, y, (x_yaw, y_yaw, yaw)), velocity, variances,
+                     (self.left, self.right), gyro)

@@ -7,10 +7,11 @@ import numpy
 
 from rbx1_nav.base.surfaces import Surface
 from rbx1_nav.base.units import Array
+from rbx1_nav.extras.fitting.cell_noise import cell_errors
 from rbx1_nav.extras.fitting.prediction import Prediction, integrate
 from rbx1_nav.extras.fitting.recording import Recording, relative
 from rbx1_nav.extras.fitting.run import PreparedRun, Windows
-from rbx1_nav.simulation.floor_noise import KINDS, cell_errors
+from rbx1_nav.simulation.floor_noise import KINDS
 
 ENDS = 500      # number of simulated end poses per run
 LONG = 60.0     # s: longer runs are compared in parts, each of which starts at the true pose

@@ -10,8 +10,9 @@ import numpy
 
 from rbx1_nav.base.surfaces import Surface
 from rbx1_nav.base.units import Array
+from rbx1_nav.extras.fitting.cell_noise import cell_covariance
 from rbx1_nav.extras.fitting.run import Steps, Windows
-from rbx1_nav.simulation.floor_noise import KINDS, NOISES, NoiseKind, cell_covariance
+from rbx1_nav.simulation.floor_noise import KINDS, NOISES, NoiseKind
 from rbx1_nav.simulation.slip import floor_travel
 
 SPREADS = ('slip_straight_spread', 'slip_turning_spread')

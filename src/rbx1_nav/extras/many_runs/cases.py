@@ -69,7 +69,7 @@ def simulate_row(case: Case, seed: int) -> Row:
     except StuckError as error:
         raise StuckError(f'{case.method}, seed {seed}: {error}') from None
     end, covariance = result.end, result.covariance
-    upper = [None if covariance is None else float(covariance[row, column])
+    upper = [None if covariance is None else covariance[row][column]
              for row in range(3) for column in range(row, 3)]
     estimate = map(float, end.estimate) if end.estimate else (None,) * 3
     return (*map(float, end.truth), *map(float, end.odometry), *estimate, *upper, float(result.first_leg), end.time)

@@ -11,7 +11,7 @@ from typing import Callable, Mapping, NamedTuple
 from rbx1_nav.base.description import Robot
 from rbx1_nav.base.kinematics import Pose
 from rbx1_nav.base.surfaces import Surface
-from rbx1_nav.base.units import SECOND, Array
+from rbx1_nav.base.units import SECOND, Covariance
 from rbx1_nav.exercise.legs import REST, TRIAL_REST, Leg, Motion, out_and_back, out_and_back_by_odometry
 from rbx1_nav.exercise.methods import METHODS
 from rbx1_nav.filter.combined_odometry import CombinedOdometry
@@ -39,7 +39,7 @@ class Snapshot(NamedTuple):
 class SimulationResult(NamedTuple):
     end: Snapshot
     first_leg: float            # m, true distance after the first motion
-    covariance: Array | None    # 3x3, covariance of the filter's pose (m and rad); None without a filter
+    covariance: Covariance | None   # of the filter's pose; None without a filter
     path: list[Snapshot] | None     # Snapshots of all ticks; None if not kept
 
 

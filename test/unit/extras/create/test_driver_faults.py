@@ -93,7 +93,7 @@ def test_the_pose_of_a_robot_that_was_reset_while_disconnected_is_as_uncertain_a
         robot_type, linear, angular, index):
     driven = started(robot_type, **NO_ERRORS)
     driven.drive(linear, angular, 1)
-    covariance, before = driven.driver.motion.odometry.covariance, driven.pose
+    covariance, before = numpy.array(driven.driver.motion.odometry.covariance), driven.pose
     driven.pull()
     driven.run(4)
     driven.robot.switch_on(driven.now)

@@ -67,10 +67,10 @@ def test_while_it_is_commanded_to_move_the_velocity_of_a_robot_without_travel_is
 
 def test_the_variance_of_the_heading_of_create_node():
     motion, state = moved(moving_yaw_variance=1000.0)
-    assert state.covariance[2, 2] == state.variances[1] == 1000
-    assert state.variances[0] < 1 and state.covariance[0, 0] < 1
+    assert state.covariance[2][2] == state.variances[1] == 1000
+    assert state.variances[0] < 1 and state.covariance[0][0] < 1
     # at rest, and for the odometry itself, it is the calculated variance
     motion.add(3 * SECOND, NOWHERE)
     state = motion.state(None, unread_variance=0.5)
-    assert 0.5 < state.covariance[2, 2] < 1 and state.variances[1] < 1
-    assert moved()[1].covariance[2, 2] < 1
+    assert 0.5 < state.covariance[2][2] < 1 and state.variances[1] < 1
+    assert moved()[1].covariance[2][2] < 1

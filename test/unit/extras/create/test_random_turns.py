@@ -59,7 +59,7 @@ def random_drive(seed, drops):
     driven.command_zero()
     run(2, None)
     error = degrees(driven.pose.yaw - before) - (angle.total - true)
-    return error, degrees(driven.driver.motion.odometry.covariance[2, 2] ** 0.5), turned
+    return error, degrees(driven.driver.motion.odometry.covariance[2][2] ** 0.5), turned
 
 
 @pytest.mark.parametrize('drops, share', [(False, 0.007), (True, 0.015)])

@@ -27,5 +27,5 @@ def test_what_the_runs_do_not_tell_has_a_large_standard_error():
     run = PreparedRun(record((REST, FORWARD, REST)), 0.26)
     _, covariance = Fitter([run], [run.windows(2.0)], QUIET, by_cells=True).fit_means(FLOOR, ['slip_straight',
                                                                                         'slip_turning'])
-    assert covariance[0, 0] ** 0.5 < MEANS['slip_straight'][1]
-    assert covariance[1, 1] ** 0.5 > MEANS['slip_turning'][1]
+    assert covariance[0][0] ** 0.5 < MEANS['slip_straight'][1]
+    assert covariance[1][1] ** 0.5 > MEANS['slip_turning'][1]

@@ -76,7 +76,7 @@ def test_a_row_has_the_results_of_its_run(method):
     assert (row['first_leg (m)'], row['time (s)']) == (run.first_leg, run.end.time)
     if method == 'ekf':
         assert row['estimate_y (m)'] == run.end.estimate.y
-        assert row['covariance_y_heading (m rad)'] == run.covariance[1, 2]
+        assert row['covariance_y_heading (m rad)'] == run.covariance[1][2]
     else:
         assert row['estimate_y (m)'] is row['covariance_x_x (m^2)'] is None
     found, expected = Summary(), Summary()

@@ -1,0 +1,206 @@
+"""The pose of a robot that reckons its path from turns and distances, and the errors of that pose.
+
+The error of a turn rotates the whole later path about the place of the turn. So the errors of a pose are stored as the
+errors of turns about the start: an error d of a turn at (x, y) adds d (y, -x, 1) to them, wherever the robot drives
+later. For white noise, bias, slip and curvature these are sums, and a step needs no matrix.
+
+The error vector and its covariance P also contain the bias of the gyro (rad/s), the slip of the wheels in turns (a
+fraction of the turn), and the curvature that unequal wheels drive (rad/m), which cause the errors of the pose. Two more
+errors are not estimated, and have the spread of the floor: the gyro's scale error, and the slip in straight motion.
+"""
+from __future__ import annotations
+
+from math import cos, exp, hypot, pi, sin, sqrt
+from typing import List, NamedTuple
+
+from rbx1_nav.base.kinematics import Pose
+from rbx1_nav.base.units import Covariance
+from rbx1_nav.filter.gyro_readings import Measurement
+from rbx1_nav.filter.priors import UNKNOWN_FLOOR, Priors
+
+X, Y, YAW, BIAS, SLIP, CURVATURE = range(6)     # indices of P
+
+START_VARIANCE = 1e-9   # variance of the first pose, m^2 and rad^2: the frame begins at this pose
+BIAS_WALK = 4e-5        # rad/s after 1 s: random walk of the bias, 0.14 degrees/s in an hour. Twice that of a good MEMS
+#                         gyro: 1.9e-5 rad/s^2 per square root Hz (ADIS16448, in the EuRoC MAV dataset)
+PERIOD = 0.5            # s over which the turns of wheels and gyro are compared, and errors of the pose are added up
+CARRY_SPEED = 0.5       # m/s: possible speed of the robot (1 sigma) while it is carried
+
+
+class Yaw(NamedTuple):
+    """The turn of a step."""
+
+    angle: float        # rad
+    variance: float     # rad^2
+    by_gyro: bool       # whether the gyro measured it, or the wheels
+
+
+class PoseErrors:
+    """A pose, its errors, and their covariance."""
+
+    def __init__(self, prior: Priors, pose: Pose, first_bias: float) -> None:
+        """pose: initial pose; first_bias: 1 sigma of the bias, rad/s."""
+        self.prior = prior
+        # variances per unit of travel on the assumed floor, and on any floor
+        self.noises = [(each.heading_noise_turning ** 2, each.heading_noise_straight ** 2, each.distance_noise ** 2)
+                       for each in (prior, UNKNOWN_FLOOR)]
+        self.bias = 0.0         # rad/s, applied to the gyro
+        self.walk = BIAS_WALK ** 2
+        self.scale_error = prior.gyro_scale_error       # 1 sigma
+        self.moving = 0.0       # s since the last rest
+        self.error = [0.0, 0.0, 0.0, 0.0, prior.slip_turning, prior.curvature]
+        self.P = [[0.0] * 6 for _ in range(6)]
+        self.P[BIAS][BIAS] = first_bias ** 2
+        self.P[SLIP][SLIP], self.P[CURVATURE][CURVATURE] = prior.slip_turning_spread ** 2, prior.curvature_spread ** 2
+        self.place(pose)
+
+    def place(self, pose: Pose, covariance: Covariance | None = None) -> None:
+        """Set the robot's Pose, with its covariance (m and rad). What is known of the sensors remains."""
+        self.start, self.state = pose, pose
+        self.reach = 0.0        # m: the largest distance from the start
+        self.carried = 0.0      # m: how far the robot may have been carried
+        self.doubt = [0.0, 0.0, 0.0]    # errors of the pose if the gyro, or the bias, is not what it seems to be
+        self.by_scale = [0.0, 0.0, 0.0]         # derivative of the pose with respect to the scale error
+        # s since the last flush(), and derivatives since then, with respect to the bias, and to slip and curvature
+        self.unused = 0.0
+        self.by_bias, self.by_wheels = [0.0] * 3, [0.0] * 6
+        self.travel = 0.0, 0.0  # m: the path that the wheels have measured, from the start
+        self.error[:3] = 0.0, 0.0, 0.0
+        for index in range(3):
+            for other in range(6):
+                known = covariance[index][other] if covariance is not None and other < 3 else 0.0
+                self.P[index][other] = self.P[other][index] = known
+            self.P[index][index] += START_VARIANCE
+
+    @property
+    def covariance(self) -> Covariance:
+        """The covariance of x, y (m) and yaw (rad), 3x3."""
+        self.flush()
+        slip, scale = self.prior.slip_straight_spread, self.scale_error
+        straight = self.travel[0] * slip, self.travel[1] * slip, 0.0
+        P = [[self.P[i][j] + self.error[i] * self.error[j] + scale ** 2 * self.by_scale[i] * self.by_scale[j]
+              + straight[i] * straight[j] + self.doubt[i] * self.doubt[j] for j in range(3)] for i in range(3)]
+        # from errors of a turn about the start to errors at the pose
+        x, y = self.state.x - self.start.x, self.state.y - self.start.y
+        yaw = P[YAW][YAW]
+        x_yaw, y_yaw = P[X][YAW] - y * yaw, P[Y][YAW] + x * yaw
+        xx = P[X][X] - y * (P[X][YAW] + x_yaw)
+        yy = P[Y][Y] + x * (P[Y][YAW] + y_yaw)
+        xy = P[X][Y] + x * P[X][YAW] - y * y_yaw
+        # this holds for small errors of the heading: with a large one, the path has turned about its start
+        turned = ((1 - exp(-yaw)) * self.reach) ** 2
+        known = min(1.0, pi / sqrt(max(yaw, START_VARIANCE)))  # an unknown heading is no more than half a turn off
+        x_yaw, y_yaw = known * x_yaw, known * y_yaw
+        return ((xx + turned, xy, x_yaw), (xy, yy + turned, y_yaw), (x_yaw, y_yaw, known ** 2 * yaw))
+
+    def sigma(self, index: int) -> float:
+        """Return 1 sigma of an error, with an error that is estimated but not applied."""
+        self.flush()
+        unused = self.error[BIAS] - self.bias if index == BIAS else 0.0
+        return hypot(sqrt(self.P[index][index]), unused)
+
+    def wheel_variance(self, wheels: Measurement, forward: float) -> float:
+        """Return the variance (rad^2) of a turn that the wheels measured over a distance (m): at least the noise of the
+        assumed floor, and at most the noise of any floor, because many drivers report constants."""
+        (turning, straight, _), (most_turning, most_straight, _) = self.noises
+        turned, path = abs(wheels[0]), abs(forward)
+        return max(turning * turned + straight * path, min(wheels[1], most_turning * turned + most_straight * path))
+
+    def step(self, duration: float, turn: Yaw, wheels: float = 0.0, forward: float = 0.0, left: float = 0.0,
+             reported: float = 0.0) -> None:
+        """Make a step of `duration` (s) with a Yaw and a displacement.
+
+        wheels: the turn (rad) that the wheels report; forward, left: displacement (m) in the robot's frame halfway
+        through the turn; reported: its variance, m^2.
+        """
+        x, y, yaw = self.state
+        angle, variance, by_gyro = turn
+        middle = yaw + angle / 2
+        c, s = cos(middle), sin(middle)
+        dx, dy = forward * c - left * s, forward * s + left * c
+        grip = 1 - self.prior.slip_straight
+        self.state = Pose(x + grip * dx, y + grip * dy, yaw + angle)
+        self.travel = self.travel[0] + dx, self.travel[1] + dy
+        # the place of the turn, relative to the start
+        px, py = x + grip * dx / 2 - self.start.x, y + grip * dy / 2 - self.start.y
+        if px * px + py * py > self.reach * self.reach:
+            self.reach = hypot(px, py)
+        if by_gyro:
+            _add(self.by_bias, duration, px, py)
+            _add(self.by_scale, angle, px, py)
+        else:
+            self.by_wheels = [one + part * each for (one, part), each in zip(
+                zip(self.by_wheels, (-wheels,) * 3 + (forward,) * 3), (py, -px, 1.0) * 2)]
+        P = self.P
+        x_row, y_row, yaw_row = P[:3]
+        if forward or left:
+            path, ((*_, least), (*_, most)) = abs(forward) + abs(left), self.noises
+            length = grip ** 2 * max(least * path, min(reported, most * path))
+            x_row[X] += length * c * c
+            x_row[Y] += length * c * s
+            y_row[Y] += length * s * s
+        if variance:
+            by_x, by_y = variance * py, -variance * px
+            x_row[X] += by_x * py
+            x_row[Y] -= by_x * px
+            y_row[Y] -= by_y * px
+            x_row[YAW] += by_x
+            y_row[YAW] += by_y
+            yaw_row[YAW] += variance
+        P[BIAS][BIAS] += self.walk * duration
+        self.moving += duration
+        self.unused += duration
+        if self.unused > PERIOD:    # before the bias has walked far
+            self.flush()
+
+    def flush(self) -> None:
+        """Add to the errors of the pose what bias, slip and curvature have caused since the last time."""
+        self._mirror()
+        if not self.unused:
+            return
+        P, error = self.P, self.error
+        parts = [(-b, s, k) for b, s, k in zip(self.by_bias, self.by_wheels[:3], self.by_wheels[3:])]
+        for i, part in enumerate(parts):        # P = F P F', first the rows, then the columns
+            error[i] += part[0] * (error[BIAS] - self.bias)
+            row = P[i]
+            for j in range(6):
+                row[j] += part[0] * P[BIAS][j] + part[1] * P[SLIP][j] + part[2] * P[CURVATURE][j]
+        for j, part in enumerate(parts):
+            for row in P:
+                row[j] += part[0] * row[BIAS] + part[1] * row[SLIP] + part[2] * row[CURVATURE]
+        self.unused, self.by_bias, self.by_wheels = 0.0, [0.0] * 3, [0.0] * 6
+
+    def _mirror(self) -> None:
+        """Copy the upper triangle of the pose, in which the steps add up, to the lower one."""
+        P = self.P
+        P[Y][X], P[YAW][X], P[YAW][Y] = P[X][Y], P[X][YAW], P[Y][YAW]
+
+    def doubt_bias(self, rate: float) -> None:
+        """Make the bias uncertain: the wheels were at rest, and a steady rate (rad/s) of the gyro may be the bias."""
+        self.P[BIAS][BIAS] += (rate - self.bias) ** 2
+
+    def doubt_turn(self, angle: float) -> None:
+        """Allow for a turn (rad) here, which may have been none."""
+        _add(self.doubt, angle, self.state.x - self.start.x, self.state.y - self.start.y)
+
+    def carry(self, duration: float) -> None:
+        """Allow for a robot that has moved for a duration (s) with its wheels at rest."""
+        before, self.carried = self.carried, self.carried + CARRY_SPEED * duration
+        for index in X, Y:
+            self.P[index][index] += self.carried ** 2 - before ** 2
+
+    def update(self, H: tuple[float, ...], difference: float, variance: float) -> None:
+        """Update the errors with a measurement of H (derivatives with respect to bias, slip, curvature) that differs
+        from what is expected."""
+        PH = [sum(p * h for p, h in zip(row[3:], H)) for row in self.P]
+        S = variance + sum(p * h for p, h in zip(PH[3:], H))
+        for i, row in enumerate(self.P):
+            self.error[i] += PH[i] / S * difference
+            self.P[i] = [value - PH[i] * PH[j] / S for j, value in enumerate(row)]
+
+
+def _add(errors: List[float], angle: float, x: float, y: float) -> None:
+    """Add the error of a turn (rad) at a place, relative to the start."""
+    errors[0] += angle * y
+    errors[1] -= angle * x
+    errors[2] += angle
