@@ -15,6 +15,6 @@ def read(*path):
 def test_the_faults_of_the_emulated_robot():
     offered = {'pull_cable', 'power_cycle', *SWITCHES, *CHANGEABLE}
     text = ast.get_docstring(ast.parse(read('nodes', 'fake_create.py')))
-    assert len(offered) == 13
+    assert len(offered) == 17
     for name in offered:
         assert f'~{name}' in text
