@@ -4,10 +4,10 @@
 usage: fake_create.py [_parameter:=value ...] [topic:=new_topic ...]    usually started by fake_turtlebot_create.launch
 
 Events and faults of the robot:
-    services ~pull_cable, ~silence, ~drop_wheel, ~cliff, ~bump, ~dock, ~charging_fault (SetBool),
+    services ~pull_cable, ~silence, ~drop_wheel, ~cliff, ~bump, ~dock, ~charger, ~charging_fault (SetBool),
     ~power_cycle (Trigger);
-    topics ~charge, ~battery_temperature, ~battery_voltage, ~corruption and ~gyro_stuck (Float64), which set these
-    parameters
+    topics ~charge, ~battery_temperature, ~battery_voltage, ~switches, ~cliffs, ~buttons, ~corruption and ~gyro_stuck
+    (Float64), which set these parameters
 It publishes the true pose on /ground_truth, and each command that it receives, with its time, on /line.
 A pseudo-terminal has no RTS and DTR lines: a driver that requires them gets an error.
 """
