@@ -102,6 +102,7 @@ class TestCreateTopics(support.Case):
         self.robot.drive(0.2, 0.0, lambda: self.robot.odom.position()[0] > 0.2, 'the robot to drive')
         self.robot.commander.send()
         self.robot.wait_for_standstill()
+        self.robot.odom.wait_for_twist(0.0)     # the last reading, too
         rospy.ServiceProxy('/turtlebot_node/reset', EmptyService)()
         support.wait_for(lambda: reset.last, 'reset_odometry')
         self.assertEqual(support.pose(support.Watch('/odom', Odometry).next()), (0, 0, 0))
