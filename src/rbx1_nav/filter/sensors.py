@@ -132,7 +132,8 @@ class Doubts:
         elif doubted == 'bias' and (ekf.drifting or abs(ekf.error[YAW]) > REPORTED):
             self._once(doubted, 'the bias of imu_data seems to have drifted since the last rest, by '
                        f'{degrees(ekf.error[BIAS] - ekf.bias):.2f} degrees/s: the heading is uncertain; let it rest')
-        elif self.doubted == 'nothing' and (doubted == 'gyro' or abs(ekf.disagreement) > REPORTED):
+        elif (self.doubted == 'nothing' or self.doubted.startswith('wheels') and doubted in ('both', 'gyro')) and (
+                doubted == 'gyro' or abs(ekf.disagreement) > REPORTED):
             self.warn(turns + REASONS.get(doubted, REASONS['both']))
             self.doubted = f'{doubted or "both"} since {time / SECOND:.1f} s'
         elif self.doubted != 'nothing' and not ekf.gyro_left and abs(ekf.disagreement) < FADED:

@@ -70,7 +70,8 @@ def test_what_is_not_supported_is_logged(monkeypatch):
     (dict(tf_prefix=7), 'tf_prefix: 7: expected the name'), (dict(surface='sand'), 'sand.*; or auto, or unknown'),
     (dict(max_speed=0), 'max_speed: 0: expected a speed from 0.01 to 1000 in m/s'),
     (dict(gyro_bias='small'), "gyro_bias: 'small': expected a bias from 0.01 to 1000 in degrees/s")])
-def test_what_is_rejected(params, text):
+def test_what_is_rejected(monkeypatch, params, text):
+    monkeypatch.setattr(module.resources, 'surfaces', lambda: SURFACES)     # also without a workspace
     with pytest.raises(ConfigError, match=text):
         read_parameters(params)
 

@@ -40,6 +40,14 @@ def test_a_disagreement_and_its_end_are_reported_once(doubted, reason):
     assert reports.send('', 0.009) == 'odom and imu_data agree again' and reports.doubts.doubted == 'nothing'
 
 
+def test_wheels_that_only_seemed_to_slip_are_reported_again():
+    reports = Reports()
+    reports.send('wheels', 9.0)
+    text = reports.send('both', 9.0)
+    assert 'the heading is uncertain' in text and reports.doubts.doubted == 'both since 2.0 s'
+    assert reports.send('wheels', 9.0) == text and reports.doubts.doubted == 'both since 2.0 s'
+
+
 def test_a_gyro_that_is_left_is_reported_until_it_is_used_again():
     reports = Reports()
     assert reports.send('gyro', gyro_left=True).endswith(

@@ -1,4 +1,5 @@
 """A robot hangs in a turn, and answers late what it was asked meanwhile: no travel is lost, or counted twice."""
+from math import sqrt
 import random
 
 import numpy
@@ -26,6 +27,6 @@ def test_a_turn_during_a_hang_is_counted(robot_type, params, seed):
     driven.drive(*motion, choose.choice((0.1, 1.5)))    # the sender gives up, or does not notice
     driven.run(max(0, driven.hangs_until - driven.now) / SECOND + 1.5)
     error = numpy.array(driven.pose) - driven.truth
-    sigma = numpy.sqrt(driven.driver.motion.odometry.covariance[2, 2])
+    sigma = sqrt(driven.driver.motion.odometry.covariance[2][2])
     assert abs(wrap_angle(error[2])) < SIGMA * sigma + ROUNDING
     assert driven.speeds == (0, 0) and driven.driver.contact.answers
