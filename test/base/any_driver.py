@@ -150,11 +150,12 @@ def late(wait='2'):
 
 
 def through(topic):
-    """To a relay: a Rate before the wait for a connection."""
-    publisher, rate = advertise(topic), rospy.Rate(10)
-    while publisher.get_num_connections() < 1:
-        time.sleep(0.1)
-    loop(publisher, rate)
+    """To a relay, with the start that the page recommends: the base does not order the connection to a relay."""
+    publisher = advertise(topic)
+    while not publisher.get_num_connections():
+        rospy.sleep(0.1)
+    rospy.sleep(1)
+    loop(publisher, rospy.Rate(10))
 
 
 def main(kind, *arguments):
