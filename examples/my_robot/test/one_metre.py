@@ -23,8 +23,8 @@ class TestOneMetre(unittest.TestCase):
         try:
             end = drive()
         except KeyboardInterrupt:
-            # the base has exited, and roslaunch stops all nodes: without this line, rostest counts 0 tests and succeeds
-            self.fail('the base has exited: see its output for the reason')
+            # roslaunch stops all nodes when the base has exited: without this line, rostest counts 0 tests and succeeds
+            self.fail('the base has exited, or the time limit has passed: see the output of the base')
         self.assertEqual(end.twist.twist.linear.x, 0)
         self.assertAlmostEqual(end.pose.pose.position.x, 1, delta=1e-6)
         self.assertAlmostEqual(end.pose.pose.position.y, 0, delta=1e-6)

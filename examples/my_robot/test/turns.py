@@ -40,7 +40,7 @@ class TestTurns(unittest.TestCase):
         try:
             turns = find_turns()
         except KeyboardInterrupt:
-            self.fail('the base has exited: see its output for the reason')
+            self.fail('the base has exited, or the time limit has passed: see the output of the base')
         self.assertEqual(len(turns), TURNS)
         for found, expected in zip(turns, [1, 0] * TURNS):
             self.assertAlmostEqual(found, expected, delta=1e-6)

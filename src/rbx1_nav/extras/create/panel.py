@@ -15,7 +15,7 @@ BUTTONS = {'clean_button': 1, 'spot_button': 2, 'dock_button': 4, 'minute_button
            'day_button': 32}        # bits of packet 18
 LEDS = {'debris_led': 1, 'spot_led': 2, 'dock_led': 4, 'check_led': 8}      # bits of the command
 SONGS, NOTES = 5, 16        # a Create 2 stores 5 songs; a Create 16
-LONGEST = 255 / 64          # s, duration of a note
+SHORTEST, LONGEST = 1 / 64, 255 / 64    # s, duration of a note
 DIGITS = 4
 
 
@@ -60,9 +60,9 @@ def define_song(data: Sequence[float]) -> bytes:
     _check_song(number[0])
     for note, duration in zip(notes, durations):
         if not (isfinite(note) and note == int(note) and 0 <= note <= 127):
-            raise RejectedCommand(f'note {note:g}: expected a whole number from 0 to 127')
-        if not 0 <= duration <= LONGEST:
-            raise RejectedCommand(f'duration {duration:g} s: expected 0 to {LONGEST:.4g} s')
+            raise RejectedCommand(f'note {note:g}: expected a whole number from 0 to 127; below 31: a rest')
+        if not SHORTEST <= duration <= LONGEST:
+            raise RejectedCommand(f'duration {duration:g} s: expected {SHORTEST:.3f} to {LONGEST:.3f} s')
     pairs = (value for note, duration in zip(notes, durations) for value in (int(note), round(64 * duration)))
     return protocol.command('song', int(number[0]), len(notes), *pairs)
 
