@@ -6,7 +6,7 @@ FAULT = ('25 kinds of drivers on the clock: rospy.Rate, rospy.sleep, rospy.Timer
          'parameters, several publishers, at 5 to 50 Hz, at real_time_factor 20 with strict; in half of the runs '
          'beside six busy loops')
 PROMISE = 'the end pose of a driver is the same in every run to the last bit, and the base names no driver'
-FULL, SHORT = 8, 1      # runs of each kind of driver
+FULL, SHORT = 4, 1      # runs of each kind of driver
 ROOT, ALONE = False, True
 
 KINDS = (
