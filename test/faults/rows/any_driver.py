@@ -11,7 +11,8 @@ FAULT = ('drivers that do not wait for the time: a Rate before a wall-time sleep
          'transform; a publisher that is created late; relay and throttle of topic_tools; in rospy and roscpp, at '
          'real_time_factor 20 with strict; in every second run beside six busy loops')
 PROMISE = 'the end pose of a driver is the same in every run to the last bit, and the base names no driver'
-FULL, SHORT = 10, 0     # runs of each kind of driver; not in the short form: beside busy loops, 1 run in 20 of some kinds differs
+# runs of each kind of driver; not in the short form, because 1 run in 20 of some kinds differs beside busy loops
+FULL, SHORT = 10, 0
 ROOT, ALONE = False, True
 
 FOLDER = os.path.join(os.path.dirname(support.__file__), 'base')
