@@ -24,6 +24,7 @@ MAX_HEADER = 8192       # bytes
 # Reads from a WebSocket; a message takes three or four. The page sends 10 messages/s while a key is held.
 READ_RATE = 300.0       # 1/s
 READ_BURST = 200.0
+READS_AT_ONCE = 20      # of one browser, before the others are served
 HEADERS = {
     # load nothing from other hosts; no other page may embed this one, which prevents clickjacking
     'Content-Security-Policy': "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; "
@@ -60,16 +61,18 @@ class SocketHandler(WebSocketHandler):
         """Disconnect a client that sends too fast. tornado reads on as long as there is data, and serves nobody else
         meanwhile. It calls no function of a handler for the parts of a message, so the reads are counted."""
         stream = cast(Any, self.ws_connection).stream
-        read, left, last = stream.read_bytes, READ_BURST, time.monotonic()
+        read, left, last, count = stream.read_bytes, READ_BURST, time.monotonic(), 0
 
-        def read_bytes(*args: Any, **options: Any) -> Any:
-            nonlocal left, last
-            now = time.monotonic()
+        async def read_bytes(*args: Any, **options: Any) -> Any:
+            nonlocal left, last, count
+            now, count = time.monotonic(), count + 1
             left, last = min(READ_BURST, left + READ_RATE * (now - last)) - 1, now
             if left < 0 and not stream.closed():
                 self.connections.flooded(self)
                 stream.close()
-            return read(*args, **options)
+            if count % READS_AT_ONCE == 0:
+                await asyncio.sleep(0)
+            return await read(*args, **options)
         stream.read_bytes = read_bytes
 
     def on_message(self, message: str | bytes) -> None:

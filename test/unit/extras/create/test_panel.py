@@ -22,7 +22,8 @@ def test_the_bytes_of_a_song():
     ([5, 60, 1], 'song 5: expected a whole number from 0 to 4'), ([-1, 60, 1], 'song -1'), ([0.5, 60, 1], 'song 0.5'),
     ([nan, 60, 1], 'song nan'), ([0, 128, 1], 'note 128: expected a whole number from 0 to 127'),
     ([0, 60.5, 1], 'note 60.5'), ([0, nan, 1], 'note nan'), ([0, inf, 1], 'note inf'),
-    ([0, 60, 4], 'duration 4 s: expected 0.016 to 3.984 s'), ([0, 60, 0], 'duration 0 s'), ([0, 60, -0.1], 'duration -0.1'),
+    ([0, 60, 4], 'duration 4 s: expected 0.016 to 3.984 s'), ([0, 60, 0], 'duration 0 s'),
+    ([0, 60, -0.1], 'duration -0.1'),
     ([0, 60, nan], 'duration nan')])
 def test_a_bad_song(data, text):
     with pytest.raises(RejectedCommand, match=text):
