@@ -33,12 +33,6 @@ MOVE, CREEP = 0.002, 0.0005     # m, m/s: a tick of a coarse encoder; a TurtleBo
 CREEP_TURN = 0.001      # rad/s: and turns by 0.05 degrees/s (fuse, turtlebot3.bag)
 STILL, FIRST = 250.0, 1400.0    # s/rad * tick: length of a first window if the wheels are still, and if they creep or
 #                                 tick: a turn of 0.3 degrees/s would show in it
-ROUNDING = 1e-6         # s
-SAME = 1e-4             # m and rad: a smaller change is rounding
-MOVE, CREEP = 0.002, 0.0005     # m, m/s: a tick of a coarse encoder; a TurtleBot3 in its simulator creeps by 0.2 mm/s,
-CREEP_TURN = 0.001      # rad/s: and turns by 0.05 degrees/s (fuse, turtlebot3.bag)
-FIRST = 1400.0          # s/rad * tick: length of a window of the first rest if the wheels are not still; a turn of 0.3
-#                         degrees/s exceeds TURN and CREEP_TURN in it
 TICK = 0.004            # rad, until a smaller one is seen: a tick of 1 mm, with a track of 0.25 m
 TURN, TELLING = 2.1, 8.0        # ticks: both wheels may be off by one; they report more than that in such a turn, even
 #                                 if the robot turns twice as far as they report
