@@ -13,7 +13,6 @@ from rbx1_nav.base.units import SECOND, clamp
 MAX_COMMAND = 1e6   # m/s or rad/s: far above any robot, and far below where sums overflow
 WINDOW = SECOND // 2    # ns: a sender that was silent for longer has given up control of the base
 
-
 CLOSE, CLOSEST = 0.1, SECOND // 100     # too close: this part of the usual spacing, and at most this time (ns)
 # so many more commands than the sender can have sent since the first one are a burst. Up to two commands are behind a
 # first one that rospy.Rate sends too late

@@ -64,7 +64,7 @@ class Standstill:
         self.exact = True       # whether the wheels have not moved at all
 
     def _rest(self) -> None:
-        self.waiting = 0.0, 0.0, 0.0    # the same of the window before, which counts if the robot is at rest after it
+        self.waiting = 0.0, 0.0, 0.0    # of the previous window, used if the robot is still at rest
 
     def stands(self, pose: Pose, turned: float) -> bool:
         """Store a pose of the wheels and the turn (rad) to it, and return whether they may be at rest there."""
