@@ -23,8 +23,7 @@ RECONNECT_TIME = 0.6    # s of wall time: rospy 1.15.9 connects again at once, b
 START_SLEEP = 0.5       # s of wall time for which a node that is starting may sleep by the wall clock
 DRIVER_SLEEP = 3.0      # s for which it may do so if it publishes commands
 AWAKE_TIME = 2.0        # s of wall time: a publisher of commands is connected, even if a node is still awake
-# ns of CPU time: the master has answered a call (0.2 to 1 ms; 0.07 ms to look for work); what it needs after its answer
-MASTER_WORK, MASTER_REST = 100_000, 200_000
+MASTER_WORK = 100_000   # ns of CPU time: the master has answered a call (0.2 to 1 ms; 0.07 ms to look for work)
 
 
 class Watch(Pollers):
@@ -52,7 +51,9 @@ class Watch(Pollers):
         # nodes that are starting, by name; s of the monotonic clock since when they sleep by the wall clock
         self.starting: dict[str, float | None] = {}
         self.graph = Graph()
-        self.master_time = 0    # ns of CPU time that the master had used when all nodes were asleep
+        # ns of CPU time that the master had used when its last answer was valid; None: it has to be asked
+        self.master_time: int | None = 0
+        self.asked: list[object] | None = None      # activities of all processes when it was asked, until that is valid
         # registered nodes that are not connected, by topic and name; s of the monotonic clock when first missed
         self.missed: dict[tuple[str, str], float] = {}
         # connections to publishers of commands that are being made; s of the monotonic clock when they were allowed
@@ -83,7 +84,7 @@ class Watch(Pollers):
         listeners = {each.endpoint_id: each for each in self.clock.connections}
         for name, each in listeners.items():
             if self.listeners.get(name) is not each:
-                self.starting[name] = None
+                self.starting[name] = self.master_time = None
                 if name in self.listeners:
                     self.reads_again = monotonic() + RECONNECT_TIME
         for name in self.listeners.keys() - listeners.keys():
@@ -94,7 +95,7 @@ class Watch(Pollers):
         drivers = self.drivers
         self._select()
         if not self.drivers <= drivers:
-            self.find_sources()
+            self.master_time = None
         return True
 
     def _connections(self) -> list[Any]:
@@ -138,7 +139,6 @@ class Watch(Pollers):
             publishers, subscribers, _ = call(rosgraph.get_master_uri(), 'getSystemState')
         except Exception:       # the clock must continue after any error of the master
             return False
-        self.master_time = self.master.cpu_time() + MASTER_REST if self.master else 0
         others = {topic for topic, kind in types if any(kind == each.type for each in self.commands)}
         relays = self.graph.update(publishers, subscribers, topics, others, self.clock.resolved_name, self.own_name)
         for name in sorted(relays.difference(self.starting)):
@@ -214,12 +214,13 @@ class Watch(Pollers):
         has registered as a publisher of commands and is not connected yet. All nodes are asleep."""
         now = monotonic()
         used = self.master.cpu_time() if self.master else 0
-        last, self.master_time = self.master_time, max(used, self.master_time)
-        if used > last + MASTER_WORK:
-            before = set(self.processes)
-            self.find_sources()
-            if not self.processes.keys() <= before:
-                return self.own_name    # whether the new ones are asleep is not known
+        if self.master_time is None or used > self.master_time + MASTER_WORK:
+            activities = [process.activity(True) for process in self.processes.values()]
+            if activities != self.asked:    # what has run meanwhile may have registered after the answer
+                self.find_sources()
+                self.asked = activities
+                return self.own_name
+            self.master_time, self.asked = used, None
         if self.joining:
             name = self._missed('/clock', self.graph.on_clock - self.listeners.keys(), now)
             return name or self._join(now) or self._sleeps_by_the_wall_clock(now)
