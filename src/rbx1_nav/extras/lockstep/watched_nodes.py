@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from contextlib import contextmanager
-from operator import is_
+from operator import is_, itemgetter
 import socket
 from threading import Event
 from time import monotonic
@@ -36,11 +36,11 @@ class Watch(Pollers):
     """
 
     # Any: rospy has no types
-    def __init__(self, clock: rospy.Publisher, new_greetings: Callable[[], list[Callable[[], None]]]) -> None:
-        """clock: the publisher of /clock; new_greetings(): returns functions that send messages to new subscribers."""
+    def __init__(self, clock: rospy.Publisher, greetings: list[tuple[bool, Callable[[], None]]]) -> None:
+        """clock: the publisher of /clock; greetings: of new subscribers, False for those of /clock, which come first, and
+        a function that sends a message; any thread may append to this list."""
         self.clock = clock.impl
-        self.new_greetings = new_greetings
-        self.greetings: list[Callable[[], None]] = []
+        self.greetings = greetings
         self.own_name = rospy.get_name()
         self.commands: list[Any] = []       # the implementations of the subscribers to commands
         # the lists of connections at the last update; rospy replaces a list when it changes
@@ -64,8 +64,6 @@ class Watch(Pollers):
         self.own = own_process()        # the process of this node, without the thread that runs the clock
         self.master = listening_process(urlparse(rosgraph.get_master_uri()).port) if self.own else None
         self.network = Network()
-        # by incomplete connection: s of the monotonic clock when it was first seen
-        self.new: dict[Any, float] = {}
 
     def add(self, subscriber: rospy.Subscriber) -> None:
         """Watch the publishers that a subscriber to commands is connected to."""
@@ -78,9 +76,10 @@ class Watch(Pollers):
     def update(self) -> bool:
         """Update the set of watched processes; return whether it may have changed. Call this often."""
         now = [self.clock.connections] + [each.connections for each in self.commands]
-        if len(now) == len(self.known) and all(map(is_, now, self.known)) and not self.new:
+        if len(now) == len(self.known) and all(map(is_, now, self.known)):
             return bool(self.joining)
-        self.known = now
+        # the header of an incomplete connection will come without a change of the list
+        self.known = now if all(map(is_complete, self._connections())) else []
         listeners = {each.endpoint_id: each for each in self.clock.connections}
         for name, each in listeners.items():
             if self.listeners.get(name) is not each:
@@ -105,11 +104,8 @@ class Watch(Pollers):
         """Watch the processes of drivers, their sources, and nodes that are starting."""
         if not self.own:
             return
-        connections = self._connections()
-        start = monotonic()
-        self.new = {each: self.new.get(each, start) for each in connections if not is_complete(each)}
         # a node that does not subscribe to the clock cannot be in step, so there is no use in waiting for it
-        drivers = {each.header['callerid']: each.socket for each in connections
+        drivers = {each.header['callerid']: each.socket for each in self._connections()
                    if is_complete(each) and each.header['callerid'] in self.listeners}
         others = [name for name in (*self.graph.sources, *self.starting)
                   if name in self.listeners and name not in drivers]
@@ -174,21 +170,13 @@ class Watch(Pollers):
                     'visible from here')
         return None
 
-    def _is_connecting(self) -> bool:
-        """Return whether a publisher of commands is connecting. The publisher may consider itself connected a little
-        earlier."""
-        now = monotonic()
-        return any(not is_complete(each) and now - begin < CONNECT_TIME for each, begin in self.new.items())
-
     def awake(self) -> str | None:
         """Return the name of a node that is awake, or STARTING if one is connecting or starting; None if all are
         asleep."""
-        self.greetings += self.new_greetings()      # before the update, which finds the nodes that receive them
+        greetings = len(self.greetings)     # before the update, which finds the nodes that receive them
         self.update()
         if not self.own:
-            return self._greet()
-        if self._is_connecting():
-            return STARTING
+            return self._greet(greetings)
         if monotonic() < self.reads_again:
             return STARTING
         names, processes = list(self.processes), list(self.processes.values())
@@ -201,13 +189,13 @@ class Watch(Pollers):
             # the name of this node stands for the network
             return names[processes.index(found)] if isinstance(found, Process) else self.own_name
         # now, so that the first time that a node sees does not depend on how fast it starts
-        return self._greet() or self._still_starting()
+        return self._greet(greetings) or self._still_starting()
 
-    def _greet(self) -> str | None:
-        greetings, self.greetings = self.greetings, []
-        for send in greetings:
+    def _greet(self, count: int) -> str | None:
+        for _, send in sorted(self.greetings[:count], key=itemgetter(0)):
             send()
-        return self.own_name if greetings else None
+        del self.greetings[:count]
+        return self.own_name if count else None
 
     def _still_starting(self) -> str | None:
         """Return whether a node is starting, as awake() does: it is being connected, it sleeps by the wall clock, or it

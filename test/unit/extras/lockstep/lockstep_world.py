@@ -106,7 +106,6 @@ class World:
         self.target = SimpleNamespace(apply=lambda command: self.applied.append((self.lockstep.tick, command)))
         monkeypatch.setattr(lockstep, 'monotonic', lambda: self.now)
         monkeypatch.setattr(lockstep, 'sleep', self.sleep)
-        monkeypatch.setattr(self.lockstep.random, 'random', lambda: 1.0)
 
     def sleep(self, seconds):
         self.sleeps.append(seconds)

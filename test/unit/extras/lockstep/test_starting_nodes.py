@@ -142,14 +142,13 @@ def test_a_publisher_whose_subscription_to_the_clock_is_not_connected_yet_is_not
 
 def test_a_new_subscriber_is_greeted_when_all_nodes_are_asleep(world):
     greeted = []
-    world.watch.new_greetings = lambda: [world.greetings.pop()] if world.greetings else []
-    world.greetings = [lambda: greeted.append(world.watch.listeners.keys())]
+    world.greetings += [(True, lambda: greeted.append('state')), (False, lambda: greeted.append('time'))]
     world.drive(world.connect('/computing', 'while True: pass'))
     wait_for(lambda: world.watch.awake() == '/computing')
     assert not greeted
     world.drive(world.connect('/driver'))
     wait_for(lambda: not world.watch.awake() and greeted)
-    assert len(greeted) == 1
+    assert greeted == ['time', 'state']
 
 
 def test_a_subscriber_that_comes_during_a_check_is_greeted_after_the_next_one(world, monkeypatch):
@@ -157,9 +156,9 @@ def test_a_subscriber_that_comes_during_a_check_is_greeted_after_the_next_one(wo
     greeted = []
 
     def check(*_):
-        world.greetings = [lambda: greeted.append('/new')]
+        if not greeted:
+            world.greetings[:] = [(False, lambda: greeted.append('/new'))]
     monkeypatch.setattr(watched_nodes, 'awake', check)
-    world.watch.new_greetings = lambda: world.greetings
     assert world.watch.awake() is None and not greeted
     # it has connected after the update
     old, new = world.connect('/old'), world.connect('/new')
