@@ -171,14 +171,17 @@ class Watch(Pollers):
         return None
 
     def awake(self) -> str | None:
-        """Return the name of a node that is awake, or STARTING if one is connecting or starting; None if all are
+        """Return the name of a node that is awake, or a text about one that is connecting or starting; None if all are
         asleep."""
         greetings = len(self.greetings)     # before the update, which finds the nodes that receive them
         self.update()
         if not self.own:
             return self._greet(greetings)
         if monotonic() < self.reads_again:
-            return STARTING
+            return 'a node that has connected again'
+        # before the check, which finds whatever wakes after this
+        naps = [name for name in self.starting
+                if name in self.processes and self.processes[name].main_sleeps_briefly()]
         names, processes = list(self.processes), list(self.processes.values())
         for name, process in ((MASTER, self.master), (self.own_name, self.own)):
             if process and name not in self.forgotten:
@@ -189,7 +192,7 @@ class Watch(Pollers):
             # the name of this node stands for the network
             return names[processes.index(found)] if isinstance(found, Process) else self.own_name
         # now, so that the first time that a node sees does not depend on how fast it starts
-        return self._greet(greetings) or self._still_starting()
+        return self._greet(greetings) or self._still_starting(naps)
 
     def _greet(self, count: int) -> str | None:
         for _, send in sorted(self.greetings[:count], key=itemgetter(0)):
@@ -197,9 +200,9 @@ class Watch(Pollers):
         del self.greetings[:count]
         return self.own_name if count else None
 
-    def _still_starting(self) -> str | None:
-        """Return whether a node is starting, as awake() does: it is being connected, it sleeps by the wall clock, or it
-        has registered as a publisher of commands and is not connected yet. All nodes are asleep."""
+    def _still_starting(self, naps: list[str]) -> str | None:
+        """Return whether a node is starting, as awake() does: it is being connected, it sleeps by the wall clock (naps),
+        or it has registered as a publisher of commands and is not connected yet. All nodes are asleep."""
         now = monotonic()
         used = self.master.cpu_time() if self.master else 0
         if self.master_time is None or used > self.master_time + MASTER_WORK:
@@ -211,31 +214,35 @@ class Watch(Pollers):
             self.master_time, self.asked = used, None
         if self.joining:
             name = self._missed('/clock', self.graph.on_clock - self.listeners.keys(), now)
-            return name or self._join(now) or self._sleeps_by_the_wall_clock(now)
+            return name or self._join(now) or self._sleeps_by_the_wall_clock(naps, now)
         connected = {each.header['callerid'] for each in self._connections() if is_complete(each)}
         unconnected = (self.graph.registered & self.listeners.keys()) - connected - self.forgotten.keys()
-        return self._sleeps_by_the_wall_clock(now) or self._missed('commands', unconnected, now)
+        return self._sleeps_by_the_wall_clock(naps, now) or self._missed('commands', unconnected, now)
 
     def _missed(self, topic: str, names: set[str], now: float) -> str | None:
         """Return whether to wait for one of these nodes, which are not connected, as awake() does."""
-        since = [self.missed.setdefault((topic, name), now) for name in names]
-        return STARTING if any(now < each + CONNECT_TIME for each in since) else None
+        late = [name for name in sorted(names) if now < self.missed.setdefault((topic, name), now) + CONNECT_TIME]
+        return STARTING % late[0] if late else None
 
     def _join(self, now: float) -> str | None:
         """Let publishers of commands connect; return whether they do so, as awake() does."""
         for event, since in list(self.joining.items()):
             self.joining[event] = since or now
             event.set()
-        return STARTING if any(now < since + CONNECT_TIME for since in list(self.joining.values())) else None
+        waits = any(now < since + CONNECT_TIME for since in list(self.joining.values()))
+        return STARTING % 'a publisher of commands' if waits else None
 
-    def _sleeps_by_the_wall_clock(self, now: float) -> str | None:
-        """Return whether a node that is starting sleeps by the wall clock, as awake() does."""
-        for name, since in list(self.starting.items()):
-            process = self.processes.get(name)
-            if process and process.main_sleeps_briefly():
-                self.starting[name] = since = since or now
-                if now < since + (DRIVER_SLEEP if name in self.graph.similar else START_SLEEP):
-                    return STARTING
+    def _sleeps_by_the_wall_clock(self, naps: list[str], now: float) -> str | None:
+        """Return whether to wait for a node that is starting and sleeps by the wall clock, as awake() does."""
+        for name in naps:
+            self.starting[name] = since = self.starting.get(name) or now
+            drives = name in self.graph.similar
+            if now < since + (DRIVER_SLEEP if drives else START_SLEEP):
+                return STARTING % name
+            if drives:
+                rospy.logwarn('%s waits by the wall clock before its first command, and the clock waits for it no longer '
+                              'than %g s: the end pose of the robot may depend on the speed of the machine. Expected '
+                              'rospy.sleep instead of time.sleep', name, DRIVER_SLEEP)
         if self.starting:
             self.starting = {}
             self._select()
@@ -278,7 +285,7 @@ class Watch(Pollers):
         return any(connection.header is header for connection in self._connections())
 
 
-MASTER, STARTING = 'the master', 'a node that is starting'
+MASTER, STARTING = 'the master', '%s, which is starting'
 
 
 def is_complete(connection: Any) -> bool:

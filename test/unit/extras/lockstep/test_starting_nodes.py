@@ -5,9 +5,10 @@ from types import SimpleNamespace
 import pytest
 
 from rbx1_nav.extras.lockstep import watched_nodes
-from rbx1_nav.extras.lockstep.watched_nodes import STARTING
 from waiting import wait_for
 from watch_world import Master, worlds
+
+STARTING = '/node, which is starting'
 
 
 @pytest.fixture(name='world')
@@ -30,6 +31,24 @@ def test_a_driver_that_sleeps_by_the_wall_clock_before_its_first_command_is_wait
         world.watch.has_started('/node')
     world.settle()
     assert not world.watch.starting
+
+
+def test_a_node_that_wakes_after_the_check_is_still_waited_for(world, monkeypatch):
+    def check(*checked):
+        found = awake(*checked)
+        if not found:
+            node.socket.send(b'\n')
+            wait_for(lambda: not world.watch.processes['/node'].main_sleeps_briefly())
+        return found
+    awake = watched_nodes.awake
+    monkeypatch.setattr(watched_nodes, 'awake', check)
+    monkeypatch.setattr(watched_nodes, 'START_SLEEP', 1000.0)
+    world.watch.find_sources()
+    node = world.connect('/node', 'import select; select.select([s], [], []); sys.stdin.read()')
+    world.listen(node)
+    world.watch.master_time = 0
+    assert wait_for(lambda: (name := world.watch.awake()) != '/node' and name) == STARTING
+    world.settle()
 
 
 def test_a_publisher_that_registers_while_the_clock_runs_is_waited_for(world, monkeypatch):
@@ -137,7 +156,8 @@ def test_a_publisher_whose_subscription_to_the_clock_is_not_connected_yet_is_not
     assert {world.watch.awake() for _ in range(20)} == {STARTING} and not any(map(threading.Event.is_set,
                                                                                  world.watch.joining))
     world.listen(world.connect('/node'))
-    wait_for(lambda: world.watch.awake() == STARTING and all(map(threading.Event.is_set, world.watch.joining)))
+    wait_for(lambda: (world.watch.awake() or '').endswith('which is starting')
+             and all(map(threading.Event.is_set, world.watch.joining)))
 
 
 def test_a_new_subscriber_is_greeted_when_all_nodes_are_asleep(world):
