@@ -23,6 +23,7 @@ RECONNECT_TIME = 0.6    # s of wall time: rospy 1.15.9 connects again at once, b
 START_SLEEP = 0.5       # s of wall time for which a node that is starting may sleep by the wall clock
 DRIVER_SLEEP = 3.0      # s for which it may do so if it publishes commands
 AWAKE_TIME = 2.0        # s of wall time: a publisher of commands is connected, even if a node is still awake
+ASKS = 3        # questions to the master until an answer is valid: nodes such as RViz run between any two
 MASTER_WORK = 100_000   # ns of CPU time: the master has answered a call (0.2 to 1 ms; 0.07 ms to look for work)
 
 
@@ -37,8 +38,8 @@ class Watch(Pollers):
 
     # Any: rospy has no types
     def __init__(self, clock: rospy.Publisher, greetings: list[tuple[bool, Callable[[], None]]]) -> None:
-        """clock: the publisher of /clock; greetings: of new subscribers, False for those of /clock, which come first, and
-        a function that sends a message; any thread may append to this list."""
+        """clock: the publisher of /clock; greetings: for each new subscriber False if it is one of /clock, which come
+        first, and a function that sends a message. Any thread may append to this list."""
         self.clock = clock.impl
         self.greetings = greetings
         self.own_name = rospy.get_name()
@@ -51,9 +52,9 @@ class Watch(Pollers):
         # nodes that are starting, by name; s of the monotonic clock since when they sleep by the wall clock
         self.starting: dict[str, float | None] = {}
         self.graph = Graph()
-        # ns of CPU time that the master had used when its last answer was valid; None: it has to be asked
+        # ns of CPU time that the master had used when all nodes were asleep; None: it has to be asked
         self.master_time: int | None = 0
-        self.asked: list[object] | None = None      # activities of all processes when it was asked, until that is valid
+        self.asked: list[object] = []       # activities of all processes when it was asked, until its answer is valid
         # registered nodes that are not connected, by topic and name; s of the monotonic clock when first missed
         self.missed: dict[tuple[str, str], float] = {}
         # connections to publishers of commands that are being made; s of the monotonic clock when they were allowed
@@ -201,17 +202,19 @@ class Watch(Pollers):
         return self.own_name if count else None
 
     def _still_starting(self, naps: list[str]) -> str | None:
-        """Return whether a node is starting, as awake() does: it is being connected, it sleeps by the wall clock (naps),
-        or it has registered as a publisher of commands and is not connected yet. All nodes are asleep."""
+        """Return whether a node is starting, as awake() does: it is being connected, it sleeps by the wall clock, or
+        it has registered as a publisher of commands and is not connected yet. All nodes are asleep; naps: names of
+        those that are starting and sleep by the wall clock."""
         now = monotonic()
         used = self.master.cpu_time() if self.master else 0
         if self.master_time is None or used > self.master_time + MASTER_WORK:
             activities = [process.activity(True) for process in self.processes.values()]
-            if activities != self.asked:    # what has run meanwhile may have registered after the answer
+            # what has run since the last question may have registered after the answer
+            if activities not in self.asked and len(self.asked) < ASKS:
                 self.find_sources()
-                self.asked = activities
+                self.asked.append(activities)
                 return self.own_name
-            self.master_time, self.asked = used, None
+        self.master_time, self.asked = used, []
         if self.joining:
             name = self._missed('/clock', self.graph.on_clock - self.listeners.keys(), now)
             return name or self._join(now) or self._sleeps_by_the_wall_clock(naps, now)
@@ -240,8 +243,8 @@ class Watch(Pollers):
             if now < since + (DRIVER_SLEEP if drives else START_SLEEP):
                 return STARTING % name
             if drives:
-                rospy.logwarn('%s waits by the wall clock before its first command, and the clock waits for it no longer '
-                              'than %g s: the end pose of the robot may depend on the speed of the machine. Expected '
+                rospy.logwarn('%s waits by the wall clock before its first command, and the clock waits for it for at '
+                              'most %g s: the end pose of the robot may depend on the speed of the machine. Expected '
                               'rospy.sleep instead of time.sleep', name, DRIVER_SLEEP)
         if self.starting:
             self.starting = {}
