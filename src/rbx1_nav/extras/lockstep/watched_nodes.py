@@ -23,7 +23,6 @@ RECONNECT_TIME = 0.6    # s of wall time: rospy 1.15.9 connects again at once, b
 START_SLEEP = 0.5       # s of wall time for which a node that is starting may sleep by the wall clock
 DRIVER_SLEEP = 3.0      # s for which it may do so if it publishes commands
 AWAKE_TIME = 2.0        # s of wall time: a publisher of commands is connected, even if a node is still awake
-ASKS = 3        # questions to the master until an answer is valid: nodes such as RViz run between any two
 MASTER_WORK = 100_000   # ns of CPU time: the master has answered a call (0.2 to 1 ms; 0.07 ms to look for work)
 
 
@@ -54,7 +53,7 @@ class Watch(Pollers):
         self.graph = Graph()
         # ns of CPU time that the master had used when all nodes were asleep; None: it has to be asked
         self.master_time: int | None = 0
-        self.asked: list[object] = []       # activities of all processes when it was asked, until its answer is valid
+        self.asked = False      # whether the work of the master since then was the answer
         # registered nodes that are not connected, by topic and name; s of the monotonic clock when first missed
         self.missed: dict[tuple[str, str], float] = {}
         # connections to publishers of commands that are being made; s of the monotonic clock when they were allowed
@@ -84,7 +83,9 @@ class Watch(Pollers):
         listeners = {each.endpoint_id: each for each in self.clock.connections}
         for name, each in listeners.items():
             if self.listeners.get(name) is not each:
-                self.starting[name] = self.master_time = None
+                self.starting[name] = None
+                # what it has registered while the master was asked is in no answer
+                self.master_time, self.asked = None, False
                 if name in self.listeners:
                     self.reads_again = monotonic() + RECONNECT_TIME
         for name in self.listeners.keys() - listeners.keys():
@@ -95,7 +96,7 @@ class Watch(Pollers):
         drivers = self.drivers
         self._select()
         if not self.drivers <= drivers:
-            self.master_time = None
+            self.master_time, self.asked = None, False
         return True
 
     def _connections(self) -> list[Any]:
@@ -193,7 +194,8 @@ class Watch(Pollers):
             # the name of this node stands for the network
             return names[processes.index(found)] if isinstance(found, Process) else self.own_name
         # now, so that the first time that a node sees does not depend on how fast it starts
-        return self._greet(greetings) or self._still_starting(naps)
+        asked = self._ask_master()
+        return self._greet(greetings) or asked or self._still_starting(naps)
 
     def _greet(self, count: int) -> str | None:
         for _, send in sorted(self.greetings[:count], key=itemgetter(0)):
@@ -201,20 +203,22 @@ class Watch(Pollers):
         del self.greetings[:count]
         return self.own_name if count else None
 
+    def _ask_master(self) -> str | None:
+        """Ask the master for publishers of commands if it has worked; then return the name of this node, because others
+        may have woken meanwhile. All nodes are asleep."""
+        used = self.master.cpu_time() if self.master else 0
+        if not self.asked and (self.master_time is None or used > self.master_time + MASTER_WORK):
+            self.asked = True
+            self.find_sources()
+            return self.own_name
+        self.master_time, self.asked = used, False
+        return None
+
     def _still_starting(self, naps: list[str]) -> str | None:
         """Return whether a node is starting, as awake() does: it is being connected, it sleeps by the wall clock, or
         it has registered as a publisher of commands and is not connected yet. All nodes are asleep; naps: names of
         those that are starting and sleep by the wall clock."""
         now = monotonic()
-        used = self.master.cpu_time() if self.master else 0
-        if self.master_time is None or used > self.master_time + MASTER_WORK:
-            activities = [process.activity(True) for process in self.processes.values()]
-            # what has run since the last question may have registered after the answer
-            if activities not in self.asked and len(self.asked) < ASKS:
-                self.find_sources()
-                self.asked.append(activities)
-                return self.own_name
-        self.master_time, self.asked = used, []
         if self.joining:
             name = self._missed('/clock', self.graph.on_clock - self.listeners.keys(), now)
             return name or self._join(now) or self._sleeps_by_the_wall_clock(naps, now)
