@@ -56,8 +56,9 @@ class Watch(Pollers):
         self.asked = False      # whether the work of the master since then was the answer
         # registered nodes that are not connected, by topic and name; s of the monotonic clock when first missed
         self.missed: dict[tuple[str, str], float] = {}
-        # connections to publishers of commands that are being made; s of the monotonic clock when they were allowed
-        self.joining: dict[Event, float] = {}
+        # connections to publishers of commands that are being made; s of the monotonic clock when they were allowed, or
+        # 0; None: the master was not asked since
+        self.joining: dict[Event, float | None] = {}
         self.processes = {}     # drivers first
         # sockets by name; None: of the master, for good
         self.forgotten: dict[str, socket.socket | None] = {}
@@ -207,7 +208,9 @@ class Watch(Pollers):
         """Ask the master for publishers of commands if it has worked; then return the name of this node, because others
         may have woken meanwhile. All nodes are asleep."""
         used = self.master.cpu_time() if self.master else 0
-        if not self.asked and (self.master_time is None or used > self.master_time + MASTER_WORK):
+        new = [event for event, since in list(self.joining.items()) if since is None]
+        if new or not self.asked and (self.master_time is None or used > self.master_time + MASTER_WORK):
+            self.joining.update(dict.fromkeys(new, 0.0))
             self.asked = True
             self.find_sources()
             return self.own_name
@@ -234,9 +237,10 @@ class Watch(Pollers):
     def _join(self, now: float) -> str | None:
         """Let publishers of commands connect; return whether they do so, as awake() does."""
         for event, since in list(self.joining.items()):
-            self.joining[event] = since or now
-            event.set()
-        waits = any(now < since + CONNECT_TIME for since in list(self.joining.values()))
+            if since is not None:
+                self.joining[event] = since or now
+                event.set()
+        waits = any(now < (since or now) + CONNECT_TIME for since in list(self.joining.values()))
         return STARTING % 'a publisher of commands' if waits else None
 
     def _sleeps_by_the_wall_clock(self, naps: list[str], now: float) -> str | None:
@@ -261,7 +265,7 @@ class Watch(Pollers):
         nodes are asleep and have received the time: whether a command arrives must not depend on chance."""
         allowed = Event()
         if self.own and any(topic == each.resolved_name for each in self.commands):
-            self.joining[allowed] = 0.0
+            self.joining[allowed] = None
             allowed.wait(AWAKE_TIME)
         try:
             yield

@@ -149,8 +149,7 @@ def test_a_publisher_of_commands_is_connected_when_all_nodes_are_asleep(world, m
 def test_a_publisher_whose_subscription_to_the_clock_is_not_connected_yet_is_not_connected(world, monkeypatch):
     master = Master(monkeypatch, [['/cmd_vel', ['/node']]], [['/clock', ['/node', '/recorder']]])
     world.watch.master = master.process()
-    world.watch.joining[threading.Event()] = 0.0
-    master.work()
+    world.watch.joining[threading.Event()] = None
     wait_for(lambda: world.watch.awake() == STARTING)
     assert {world.watch.awake() for _ in range(20)} == {STARTING} and not any(map(threading.Event.is_set,
                                                                                  world.watch.joining))
