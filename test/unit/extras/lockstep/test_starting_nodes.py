@@ -33,6 +33,19 @@ def test_a_driver_that_sleeps_by_the_wall_clock_before_its_first_command_is_wait
     assert not world.watch.starting
 
 
+def test_a_driver_that_sleeps_by_the_wall_clock_for_long_is_named(world, monkeypatch):
+    Master(monkeypatch, [['/cmd_vel', ['/node', '/other']]])
+    monkeypatch.setattr(watched_nodes, 'CONNECT_TIME', 0.0)
+    monkeypatch.setattr(watched_nodes, 'START_SLEEP', 0.0)
+    monkeypatch.setattr(watched_nodes, 'DRIVER_SLEEP', 0.5)
+    named = []
+    monkeypatch.setattr(watched_nodes.rospy, 'logwarn', lambda text, name, _: named.append((name, text[3:30])))
+    world.listen(*[world.connect(name, 'time.sleep(1000)') for name in ('/node', '/clock_listener')],
+                 world.connect('/other'))
+    world.settle()
+    assert named == [('/node', 'waits by the wall clock bef')]
+
+
 def test_a_node_that_wakes_after_the_check_is_still_waited_for(world, monkeypatch):
     def check(*checked):
         found = awake(*checked)
