@@ -106,6 +106,7 @@ class World:
         self.target = SimpleNamespace(apply=lambda command: self.applied.append((self.lockstep.tick, command)))
         monkeypatch.setattr(lockstep, 'monotonic', lambda: self.now)
         monkeypatch.setattr(lockstep, 'sleep', self.sleep)
+        monkeypatch.setattr(self.lockstep.random, 'random', lambda: 1.0)
         monkeypatch.setattr(lockstep.rospy, 'loginfo', lambda text, *values: self.lines.append(text % values))
 
     def sleep(self, seconds):
