@@ -210,9 +210,10 @@ class Lockstep:
                 del awake[name]
                 if self.processes.forget(name):
                     self._report(name, f'did not become idle within {NODE_TIMEOUT:g} s')
-            if now - begin > LONG_WAIT and not said:
+            others = awake.keys() - {self.processes.own_name}
+            if now - begin > LONG_WAIT and others and not said:
                 said = True
-                rospy.loginfo('The clock waits for %s', ', '.join(sorted(awake.keys() - {self.processes.own_name})))
+                rospy.loginfo('The clock waits for %s', ', '.join(sorted(others)))
             if now - begin > LONG:
                 self._find_pollers()    # again: on a busy machine, such a thread may not run for a while
             sleep(min(max(LOOK[0], LOOK_LATER * (now - begin)), LOOK[1]))
