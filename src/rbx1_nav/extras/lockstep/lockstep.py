@@ -38,6 +38,7 @@ HOLD = 1.5          # duration of a hold, in intervals between two commands
 FIRST_HOLD = 0.02   # s of wall time: duration of the first hold, before an interval is known
 COMMANDS = 3        # that a driver on the clock may send after one message; stops do not count
 TEST, TESTS = 0.005, 4  # s of wall time in which a thread that polls usually runs more than once; how often to try
+LONG_WAIT = 2.0     # s of wall time: if a wait takes longer, the log says for whom
 LONG = 0.1          # s of wall time: if a wait takes longer, threads that poll may be the reason
 SLEEP = 0.05        # s: the longest sleep between two checks for a shutdown request
 
@@ -195,6 +196,7 @@ class Lockstep:
     def _wait_while_awake(self) -> None:
         begin = last = monotonic()
         awake: dict[str, float] = {}    # s of wall time for which each node was awake
+        said = False
         while not self.ended():
             name = self.processes.awake()
             if not name:
@@ -208,6 +210,10 @@ class Lockstep:
                 del awake[name]
                 if self.processes.forget(name):
                     self._report(name, f'did not become idle within {NODE_TIMEOUT:g} s')
+            others = awake.keys() - {self.processes.own_name}
+            if now - begin > LONG_WAIT and others and not said:
+                said = True
+                rospy.loginfo('The clock waits for %s', ', '.join(sorted(others)))
             if now - begin > LONG:
                 self._find_pollers()    # again: on a busy machine, such a thread may not run for a while
             sleep(min(max(LOOK[0], LOOK_LATER * (now - begin)), LOOK[1]))

@@ -150,7 +150,8 @@ class Process:
         return all(thread.sleeps() for thread in self.threads.values())
 
     def main_sleeps_briefly(self) -> bool:
-        return bool(self.those(lambda thread: thread.is_main and thread.needs_no_message()))
+        """Return whether the main thread will wake by itself, and does not poll the simulated time."""
+        return bool(self.those(lambda thread: thread.is_main and not thread.is_poller and thread.needs_no_message()))
 
     def polling(self) -> list[PollingThread]:
         """Return the threads that sleep only briefly."""

@@ -91,8 +91,7 @@ class OwnClock(Clock):
         simtime._clock_sub.unregister()
         # the usual limit of 1,024 open files is enough for the threads of about 17 drivers; see lockstep/processes.py
         setrlimit(RLIMIT_NOFILE, 2 * getrlimit(RLIMIT_NOFILE)[1:])
-        # new subscribers: False for those of /clock, which come first; a function that greets each of them
-        self.new: list[tuple[bool, Callable[[], None]]] = []
+        self.greetings: list[tuple[bool, Callable[[], None]]] = []      # see Watch
         self.publisher = rospy.Publisher('/clock', ClockMessage, NoDelay(self.greet_with_time), queue_size=10)
         watch = Watch(self.publisher, self.greetings)
         self.lockstep = Lockstep(watch, self.report, life.end_requested.is_set)
@@ -101,15 +100,10 @@ class OwnClock(Clock):
 
     def greet_with_time(self, _: str, publish: Callable[[ClockMessage], None]) -> None:
         if self.time:
-            self.new.append((False, lambda: publish(ClockMessage(self.stamp(self.time)))))
+            self.greetings.append((False, lambda: publish(ClockMessage(self.stamp(self.time)))))
 
     def greet(self, send: Callable[[], None]) -> None:
-        self.new.append((True, send))
-
-    def greetings(self) -> list[Callable[[], None]]:
-        """Return the functions that greet the new subscribers, and those of /clock first; each only once."""
-        new = [self.new.pop(0) for _ in range(len(self.new))]
-        return [send for _, send in sorted(new, key=lambda each: each[0])]
+        self.greetings.append((True, send))
 
     def now(self) -> int:
         return self.time

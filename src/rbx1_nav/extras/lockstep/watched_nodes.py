@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from contextlib import contextmanager
-from operator import is_
+from operator import is_, itemgetter
 import socket
 from threading import Event
 from time import monotonic
@@ -23,8 +23,7 @@ RECONNECT_TIME = 0.6    # s of wall time: rospy 1.15.9 connects again at once, b
 START_SLEEP = 0.5       # s of wall time for which a node that is starting may sleep by the wall clock
 DRIVER_SLEEP = 3.0      # s for which it may do so if it publishes commands
 AWAKE_TIME = 2.0        # s of wall time: a publisher of commands is connected, even if a node is still awake
-# ns of CPU time: the master has answered a call (0.2 to 1 ms; 0.07 ms to look for work); what it needs after its answer
-MASTER_WORK, MASTER_REST = 100_000, 200_000
+MASTER_WORK = 100_000   # ns of CPU time: the master has answered a call (0.2 to 1 ms; 0.07 ms to look for work)
 
 
 class Watch(Pollers):
@@ -37,11 +36,11 @@ class Watch(Pollers):
     """
 
     # Any: rospy has no types
-    def __init__(self, clock: rospy.Publisher, new_greetings: Callable[[], list[Callable[[], None]]]) -> None:
-        """clock: the publisher of /clock; new_greetings(): returns functions that send messages to new subscribers."""
+    def __init__(self, clock: rospy.Publisher, greetings: list[tuple[bool, Callable[[], None]]]) -> None:
+        """clock: the publisher of /clock; greetings: for each new subscriber False if it is one of /clock, which come
+        first, and a function that sends a message. Any thread may append to this list."""
         self.clock = clock.impl
-        self.new_greetings = new_greetings
-        self.greetings: list[Callable[[], None]] = []
+        self.greetings = greetings
         self.own_name = rospy.get_name()
         self.commands: list[Any] = []       # the implementations of the subscribers to commands
         # the lists of connections at the last update; rospy replaces a list when it changes
@@ -52,19 +51,20 @@ class Watch(Pollers):
         # nodes that are starting, by name; s of the monotonic clock since when they sleep by the wall clock
         self.starting: dict[str, float | None] = {}
         self.graph = Graph()
-        self.master_time = 0    # ns of CPU time that the master had used when all nodes were asleep
+        # ns of CPU time that the master had used when all nodes were asleep; None: it has to be asked
+        self.master_time: int | None = 0
+        self.asked = False      # whether the work of the master since then was the answer
         # registered nodes that are not connected, by topic and name; s of the monotonic clock when first missed
         self.missed: dict[tuple[str, str], float] = {}
-        # connections to publishers of commands that are being made; s of the monotonic clock when they were allowed
-        self.joining: dict[Event, float] = {}
+        # connections to publishers of commands that are being made; s of the monotonic clock when they were allowed, or
+        # 0; None: the master was not asked since
+        self.joining: dict[Event, float | None] = {}
         self.processes = {}     # drivers first
         # sockets by name; None: of the master, for good
         self.forgotten: dict[str, socket.socket | None] = {}
         self.own = own_process()        # the process of this node, without the thread that runs the clock
         self.master = listening_process(urlparse(rosgraph.get_master_uri()).port) if self.own else None
         self.network = Network()
-        # by incomplete connection: s of the monotonic clock when it was first seen
-        self.new: dict[Any, float] = {}
 
     def add(self, subscriber: rospy.Subscriber) -> None:
         """Watch the publishers that a subscriber to commands is connected to."""
@@ -77,13 +77,16 @@ class Watch(Pollers):
     def update(self) -> bool:
         """Update the set of watched processes; return whether it may have changed. Call this often."""
         now = [self.clock.connections] + [each.connections for each in self.commands]
-        if len(now) == len(self.known) and all(map(is_, now, self.known)) and not self.new:
+        if len(now) == len(self.known) and all(map(is_, now, self.known)):
             return bool(self.joining)
-        self.known = now
+        # the header of an incomplete connection will come without a change of the list
+        self.known = now if all(map(is_complete, self._connections())) else []
         listeners = {each.endpoint_id: each for each in self.clock.connections}
         for name, each in listeners.items():
             if self.listeners.get(name) is not each:
                 self.starting[name] = None
+                # what it has registered while the master was asked is in no answer
+                self.master_time, self.asked = None, False
                 if name in self.listeners:
                     self.reads_again = monotonic() + RECONNECT_TIME
         for name in self.listeners.keys() - listeners.keys():
@@ -94,7 +97,7 @@ class Watch(Pollers):
         drivers = self.drivers
         self._select()
         if not self.drivers <= drivers:
-            self.find_sources()
+            self.master_time, self.asked = None, False
         return True
 
     def _connections(self) -> list[Any]:
@@ -104,11 +107,8 @@ class Watch(Pollers):
         """Watch the processes of drivers, their sources, and nodes that are starting."""
         if not self.own:
             return
-        connections = self._connections()
-        start = monotonic()
-        self.new = {each: self.new.get(each, start) for each in connections if not is_complete(each)}
         # a node that does not subscribe to the clock cannot be in step, so there is no use in waiting for it
-        drivers = {each.header['callerid']: each.socket for each in connections
+        drivers = {each.header['callerid']: each.socket for each in self._connections()
                    if is_complete(each) and each.header['callerid'] in self.listeners}
         others = [name for name in (*self.graph.sources, *self.starting)
                   if name in self.listeners and name not in drivers]
@@ -138,7 +138,6 @@ class Watch(Pollers):
             publishers, subscribers, _ = call(rosgraph.get_master_uri(), 'getSystemState')
         except Exception:       # the clock must continue after any error of the master
             return False
-        self.master_time = self.master.cpu_time() + MASTER_REST if self.master else 0
         others = {topic for topic, kind in types if any(kind == each.type for each in self.commands)}
         relays = self.graph.update(publishers, subscribers, topics, others, self.clock.resolved_name, self.own_name)
         for name in sorted(relays.difference(self.starting)):
@@ -174,23 +173,18 @@ class Watch(Pollers):
                     'visible from here')
         return None
 
-    def _is_connecting(self) -> bool:
-        """Return whether a publisher of commands is connecting. The publisher may consider itself connected a little
-        earlier."""
-        now = monotonic()
-        return any(not is_complete(each) and now - begin < CONNECT_TIME for each, begin in self.new.items())
-
     def awake(self) -> str | None:
-        """Return the name of a node that is awake, or STARTING if one is connecting or starting; None if all are
+        """Return the name of a node that is awake, or a text about one that is connecting or starting; None if all are
         asleep."""
-        self.greetings += self.new_greetings()      # before the update, which finds the nodes that receive them
+        greetings = len(self.greetings)     # before the update, which finds the nodes that receive them
         self.update()
         if not self.own:
-            return self._greet()
-        if self._is_connecting():
-            return STARTING
+            return self._greet(greetings)
         if monotonic() < self.reads_again:
-            return STARTING
+            return 'a node that has connected again'
+        # before the check, which finds whatever wakes after this
+        naps = [name for name in self.starting
+                if name in self.processes and self.processes[name].main_sleeps_briefly()]
         names, processes = list(self.processes), list(self.processes.values())
         for name, process in ((MASTER, self.master), (self.own_name, self.own)):
             if process and name not in self.forgotten:
@@ -201,52 +195,65 @@ class Watch(Pollers):
             # the name of this node stands for the network
             return names[processes.index(found)] if isinstance(found, Process) else self.own_name
         # now, so that the first time that a node sees does not depend on how fast it starts
-        return self._greet() or self._still_starting()
+        asked = self._ask_master()
+        return self._greet(greetings) or asked or self._still_starting(naps)
 
-    def _greet(self) -> str | None:
-        greetings, self.greetings = self.greetings, []
-        for send in greetings:
+    def _greet(self, count: int) -> str | None:
+        for _, send in sorted(self.greetings[:count], key=itemgetter(0)):
             send()
-        return self.own_name if greetings else None
+        del self.greetings[:count]
+        return self.own_name if count else None
 
-    def _still_starting(self) -> str | None:
-        """Return whether a node is starting, as awake() does: it is being connected, it sleeps by the wall clock, or it
-        has registered as a publisher of commands and is not connected yet. All nodes are asleep."""
-        now = monotonic()
+    def _ask_master(self) -> str | None:
+        """Ask the master for publishers of commands if it has worked; then return the name of this node, because others
+        may have woken meanwhile. All nodes are asleep."""
         used = self.master.cpu_time() if self.master else 0
-        last, self.master_time = self.master_time, max(used, self.master_time)
-        if used > last + MASTER_WORK:
-            before = set(self.processes)
+        new = [event for event, since in list(self.joining.items()) if since is None]
+        if new or not self.asked and (self.master_time is None or used > self.master_time + MASTER_WORK):
+            self.joining.update(dict.fromkeys(new, 0.0))
+            self.asked = True
             self.find_sources()
-            if not self.processes.keys() <= before:
-                return self.own_name    # whether the new ones are asleep is not known
+            return self.own_name
+        self.master_time, self.asked = used, False
+        return None
+
+    def _still_starting(self, naps: list[str]) -> str | None:
+        """Return whether a node is starting, as awake() does: it is being connected, it sleeps by the wall clock, or
+        it has registered as a publisher of commands and is not connected yet. All nodes are asleep; naps: names of
+        those that are starting and sleep by the wall clock."""
+        now = monotonic()
         if self.joining:
             name = self._missed('/clock', self.graph.on_clock - self.listeners.keys(), now)
-            return name or self._join(now) or self._sleeps_by_the_wall_clock(now)
+            return name or self._join(now) or self._sleeps_by_the_wall_clock(naps, now)
         connected = {each.header['callerid'] for each in self._connections() if is_complete(each)}
         unconnected = (self.graph.registered & self.listeners.keys()) - connected - self.forgotten.keys()
-        return self._sleeps_by_the_wall_clock(now) or self._missed('commands', unconnected, now)
+        return self._sleeps_by_the_wall_clock(naps, now) or self._missed('commands', unconnected, now)
 
     def _missed(self, topic: str, names: set[str], now: float) -> str | None:
         """Return whether to wait for one of these nodes, which are not connected, as awake() does."""
-        since = [self.missed.setdefault((topic, name), now) for name in names]
-        return STARTING if any(now < each + CONNECT_TIME for each in since) else None
+        late = [name for name in sorted(names) if now < self.missed.setdefault((topic, name), now) + CONNECT_TIME]
+        return STARTING % late[0] if late else None
 
     def _join(self, now: float) -> str | None:
         """Let publishers of commands connect; return whether they do so, as awake() does."""
         for event, since in list(self.joining.items()):
-            self.joining[event] = since or now
-            event.set()
-        return STARTING if any(now < since + CONNECT_TIME for since in list(self.joining.values())) else None
+            if since is not None:
+                self.joining[event] = since or now
+                event.set()
+        waits = any(now < (since or now) + CONNECT_TIME for since in list(self.joining.values()))
+        return STARTING % 'a publisher of commands' if waits else None
 
-    def _sleeps_by_the_wall_clock(self, now: float) -> str | None:
-        """Return whether a node that is starting sleeps by the wall clock, as awake() does."""
-        for name, since in list(self.starting.items()):
-            process = self.processes.get(name)
-            if process and process.main_sleeps_briefly():
-                self.starting[name] = since = since or now
-                if now < since + (DRIVER_SLEEP if name in self.graph.similar else START_SLEEP):
-                    return STARTING
+    def _sleeps_by_the_wall_clock(self, naps: list[str], now: float) -> str | None:
+        """Return whether to wait for a node that is starting and sleeps by the wall clock, as awake() does."""
+        for name in naps:
+            self.starting[name] = since = self.starting.get(name) or now
+            drives = name in self.graph.similar
+            if now < since + (DRIVER_SLEEP if drives else START_SLEEP):
+                return STARTING % name
+            if drives:
+                rospy.logwarn('%s waits by the wall clock before its first command, and the clock waits for it for at '
+                              'most %g s: the end pose of the robot may depend on the speed of the machine. Expected '
+                              'rospy.sleep instead of time.sleep', name, DRIVER_SLEEP)
         if self.starting:
             self.starting = {}
             self._select()
@@ -258,7 +265,7 @@ class Watch(Pollers):
         nodes are asleep and have received the time: whether a command arrives must not depend on chance."""
         allowed = Event()
         if self.own and any(topic == each.resolved_name for each in self.commands):
-            self.joining[allowed] = 0.0
+            self.joining[allowed] = None
             allowed.wait(AWAKE_TIME)
         try:
             yield
@@ -289,7 +296,7 @@ class Watch(Pollers):
         return any(connection.header is header for connection in self._connections())
 
 
-MASTER, STARTING = 'the master', 'a node that is starting'
+MASTER, STARTING = 'the master', '%s, which is starting'
 
 
 def is_complete(connection: Any) -> bool:

@@ -98,7 +98,7 @@ class World:
     """A Lockstep; `applied` has the commands with the ticks at which they took effect."""
 
     def __init__(self, monkeypatch, report=None):
-        self.applied, self.reports, self.sleeps = [], [], []
+        self.applied, self.reports, self.sleeps, self.lines = [], [], [], []
         self.processes = Processes()
         self.headers = {name: {'callerid': name} for name in 'ab'}
         self.lockstep = Lockstep(self.processes, report or (lambda *each: self.reports.append(each)), lambda: False)
@@ -107,6 +107,7 @@ class World:
         monkeypatch.setattr(lockstep, 'monotonic', lambda: self.now)
         monkeypatch.setattr(lockstep, 'sleep', self.sleep)
         monkeypatch.setattr(self.lockstep.random, 'random', lambda: 1.0)
+        monkeypatch.setattr(lockstep.rospy, 'loginfo', lambda text, *values: self.lines.append(text % values))
 
     def sleep(self, seconds):
         self.sleeps.append(seconds)

@@ -5,9 +5,10 @@ from types import SimpleNamespace
 import pytest
 
 from rbx1_nav.extras.lockstep import watched_nodes
-from rbx1_nav.extras.lockstep.watched_nodes import STARTING
 from waiting import wait_for
 from watch_world import Master, worlds
+
+STARTING = '/node, which is starting'
 
 
 @pytest.fixture(name='world')
@@ -32,6 +33,37 @@ def test_a_driver_that_sleeps_by_the_wall_clock_before_its_first_command_is_wait
     assert not world.watch.starting
 
 
+def test_a_driver_that_sleeps_by_the_wall_clock_for_long_is_named(world, monkeypatch):
+    Master(monkeypatch, [['/cmd_vel', ['/node', '/other']]])
+    monkeypatch.setattr(watched_nodes, 'CONNECT_TIME', 0.0)
+    monkeypatch.setattr(watched_nodes, 'START_SLEEP', 0.0)
+    monkeypatch.setattr(watched_nodes, 'DRIVER_SLEEP', 0.5)
+    named = []
+    monkeypatch.setattr(watched_nodes.rospy, 'logwarn', lambda text, name, _: named.append((name, text[3:30])))
+    world.listen(*[world.connect(name, 'time.sleep(1000)') for name in ('/node', '/clock_listener')],
+                 world.connect('/other'))
+    world.settle()
+    assert named == [('/node', 'waits by the wall clock bef')]
+
+
+def test_a_node_that_wakes_after_the_check_is_still_waited_for(world, monkeypatch):
+    def check(*checked):
+        found = awake(*checked)
+        if not found:
+            node.socket.send(b'\n')
+            wait_for(lambda: not world.watch.processes['/node'].main_sleeps_briefly())
+        return found
+    awake = watched_nodes.awake
+    monkeypatch.setattr(watched_nodes, 'awake', check)
+    monkeypatch.setattr(watched_nodes, 'START_SLEEP', 1000.0)
+    world.watch.find_sources()
+    node = world.connect('/node', 'import select; select.select([s], [], []); sys.stdin.read()')
+    world.listen(node)
+    world.watch.master_time = 0
+    assert wait_for(lambda: (name := world.watch.awake()) != '/node' and name) == STARTING
+    world.settle()
+
+
 def test_a_publisher_that_registers_while_the_clock_runs_is_waited_for(world, monkeypatch):
     """The master has worked, so it is asked."""
     master = Master(monkeypatch, [])
@@ -39,10 +71,11 @@ def test_a_publisher_that_registers_while_the_clock_runs_is_waited_for(world, mo
     world.listen(world.connect('/node'), world.connect('/other'))
     world.settle()
     master.publishers = [['/cmd_vel', ['/node', '/gone']]]
-    assert world.watch.awake() is None and master.asked == 0
+    before = master.asked
+    assert world.watch.awake() is None and master.asked == before
     master.work()
     wait_for(lambda: world.watch.awake() == STARTING)
-    assert {world.watch.awake() for _ in range(20)} == {STARTING} and master.asked == 1
+    assert {world.watch.awake() for _ in range(20)} == {STARTING} and master.asked > before
     world.commands.connections = [world.clock.connections[0]]
     world.settle()
     assert world.watch.drivers == {'/node'}
@@ -50,6 +83,25 @@ def test_a_publisher_that_registers_while_the_clock_runs_is_waited_for(world, mo
     world.listen(world.clock.connections[1])
     world.commands.connections = []
     world.settle()
+
+
+def test_a_publisher_that_registers_while_the_master_is_asked_is_waited_for(world, monkeypatch):
+    """The answer does not name it, but its subscription to the clock is new."""
+    master = Master(monkeypatch, [])
+    world.watch.master = master.process()
+
+    def call(*question):
+        answer = master.call(*question)
+        if question[1] == 'getSystemState':
+            master.publishers = [['/cmd_vel', ['/node']]]
+            master.work()
+        return answer
+    monkeypatch.setattr(watched_nodes, 'call', call)
+    master.work()
+    world.settle()
+    assert world.watch.graph.registered == set()
+    world.listen(world.connect('/node'))
+    wait_for(lambda: world.watch.awake() == STARTING)
 
 
 def test_a_publisher_that_never_connects_is_waited_for_only_once(world, monkeypatch):
@@ -110,24 +162,24 @@ def test_a_publisher_of_commands_is_connected_when_all_nodes_are_asleep(world, m
 def test_a_publisher_whose_subscription_to_the_clock_is_not_connected_yet_is_not_connected(world, monkeypatch):
     master = Master(monkeypatch, [['/cmd_vel', ['/node']]], [['/clock', ['/node', '/recorder']]])
     world.watch.master = master.process()
-    world.watch.joining[threading.Event()] = 0.0
-    master.work()
+    world.watch.joining[threading.Event()] = None
+    wait_for(lambda: world.watch.awake() == STARTING)
     assert {world.watch.awake() for _ in range(20)} == {STARTING} and not any(map(threading.Event.is_set,
                                                                                  world.watch.joining))
     world.listen(world.connect('/node'))
-    wait_for(lambda: world.watch.awake() == STARTING and all(map(threading.Event.is_set, world.watch.joining)))
+    wait_for(lambda: (world.watch.awake() or '').endswith('which is starting')
+             and all(map(threading.Event.is_set, world.watch.joining)))
 
 
 def test_a_new_subscriber_is_greeted_when_all_nodes_are_asleep(world):
     greeted = []
-    world.watch.new_greetings = lambda: [world.greetings.pop()] if world.greetings else []
-    world.greetings = [lambda: greeted.append(world.watch.listeners.keys())]
+    world.greetings += [(True, lambda: greeted.append('state')), (False, lambda: greeted.append('time'))]
     world.drive(world.connect('/computing', 'while True: pass'))
     wait_for(lambda: world.watch.awake() == '/computing')
     assert not greeted
     world.drive(world.connect('/driver'))
     wait_for(lambda: not world.watch.awake() and greeted)
-    assert len(greeted) == 1
+    assert greeted == ['time', 'state']
 
 
 def test_a_subscriber_that_comes_during_a_check_is_greeted_after_the_next_one(world, monkeypatch):
@@ -135,9 +187,9 @@ def test_a_subscriber_that_comes_during_a_check_is_greeted_after_the_next_one(wo
     greeted = []
 
     def check(*_):
-        world.greetings = [lambda: greeted.append('/new')]
+        if not greeted:
+            world.greetings[:] = [(False, lambda: greeted.append('/new'))]
     monkeypatch.setattr(watched_nodes, 'awake', check)
-    world.watch.new_greetings = lambda: world.greetings
     assert world.watch.awake() is None and not greeted
     # it has connected after the update
     old, new = world.connect('/old'), world.connect('/new')

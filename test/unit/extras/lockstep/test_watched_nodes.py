@@ -37,7 +37,8 @@ def test_a_driver_is_watched_while_it_is_connected(world):
     world.drive(*world.commands.connections, world.connect('/computing', 'while True: pass'))
     wait_for(lambda: world.watch.awake() == '/computing')
     world.drive()
-    assert not world.watch.drivers and not world.watch.processes and world.watch.awake() is None
+    assert not world.watch.drivers and not world.watch.processes
+    world.settle()
 
 
 def test_what_keeps_a_node_from_being_in_step(world, monkeypatch):
@@ -97,7 +98,8 @@ def test_a_driver_that_is_forgotten_holds_the_clock_no_more(world):
     world.drive(world.connect('/driver', 'while True: pass'))
     wait_for(lambda: world.watch.awake() == '/driver')
     assert world.watch.forget('/driver')
-    assert world.watch.awake() is None and not world.watch.drivers
+    world.settle()
+    assert not world.watch.drivers
     # until it connects again
     world.drive(world.connect('/driver'))
     assert world.watch.drivers == {'/driver'}

@@ -18,7 +18,7 @@ class World:
         self.children, self.greetings = [], []
         self.clock = SimpleNamespace(connections=[], resolved_name='/clock')
         self.commands = SimpleNamespace(connections=[], resolved_name='/cmd_vel', type='geometry_msgs/Twist')
-        self.watch = Watch(SimpleNamespace(impl=self.clock), lambda: self.greetings)
+        self.watch = Watch(SimpleNamespace(impl=self.clock), self.greetings)
         self.watch.add(SimpleNamespace(impl=self.commands))
 
     def connect(self, name, code='sys.stdin.read()'):
