@@ -88,7 +88,9 @@ class EncoderTravel:
         left, right = map(self.difference, counts, last)
         if not self.fits(reading, elapsed, expected, lost_share):
             self.rejected += 1
-            if self.rejected < WRONG or not self._fits_before(counts, elapsed):
+            before, time = self.before or (None, 0.0)
+            # if only the last counts do not fit, they were corrupted: this travel takes back what they have added
+            if self.rejected < WRONG or before is None or not self._are_near(counts, before, time + elapsed):
                 if self.rejected >= RESET:
                     self.restart()
                 raise Implausible(f'encoders: {counts[0]} and {counts[1]} after {last[0]} and {last[1]}')
@@ -103,11 +105,6 @@ class EncoderTravel:
         """
         new, old = (reading['left_encoder'], reading['right_encoder']), self.counts
         return old is None or self._are_near(new, old, elapsed)
-
-    def _fits_before(self, counts: tuple[int, int], elapsed: float) -> bool:
-        """Return whether only the last counts do not fit, which were corrupted: the travel since then takes back what
-        they have added."""
-        return self.before is not None and self._are_near(counts, self.before[0], elapsed + self.before[1])
 
     def _are_near(self, new: tuple[int, int], old: tuple[int, int], elapsed: float) -> bool:
         return max(abs(self.difference(*each)) for each in zip(new, old)) <= reach(elapsed)
