@@ -13,7 +13,7 @@ SETS = {
     'set_calibration': ['angular_calibration', 'linear_calibration'],
     'set_fake_create': ['emulated_robot', 'independent_client'],
     'set_create': ['create_drives', 'create_gyro', 'create_port', 'topics_of_create', 'turning_at_bump'],
-    'set_create_fails': ['create_killed', 'create_refuses', 'create_safety', 'create_silence']}
+    'set_create_fails': ['create_killed', 'create_refuses', 'create_silence']}
 
 
 def read(path):

@@ -13,14 +13,10 @@ from rbx1_nav.base.units import SECOND, clamp
 MAX_COMMAND = 1e6   # m/s or rad/s: far above any robot, and far below where sums overflow
 WINDOW = SECOND // 2    # ns: a sender that was silent for longer has given up control of the base
 
-CLOSE, CLOSEST = 0.1, SECOND // 100     # too close: this part of the usual spacing, and at most this time (ns)
-# so many more commands than the sender can have sent since the first one are a burst. Up to two commands are behind a
-# first one that rospy.Rate sends too late
-EXCESS = 2.5
-RIGHT, RIGHTS = 0.5, 2      # part of the usual spacing that is right again, and how often it must be right
-LONGEST = SECOND // 2       # ns: a burst that lasts longer is a new spacing
-LEARN = 0.05        # weight of a new spacing in the mean
-OFTEN = 0.3         # share of close commands from which a sender always sends several at once
+CLOSE = SECOND // 1000  # ns: no live sender sends so fast for long; joy_node joins what happens within this time
+TOGETHER = 3        # commands that a live sender may send at once: one that is late, and up to two of rospy.Rate
+APART = 2           # consecutive commands that are not close, after which the sender is live
+LONGEST = SECOND // 2       # ns: a sender that sends for longer is live
 MAX_SENDERS = 20    # senders that are stored
 
 
@@ -92,39 +88,32 @@ class Spacing:
 
     def __init__(self, now: int) -> None:
         self.last = now
-        self.usual = 0.0        # mean without close commands
-        self.close_share = 0.0  # mean share of close commands
-        self.checked_since: int | None = None   # first command after a silence, until the spacing is right
-        self.count = self.close = self.right = 0    # numbers of commands since then; `right`: consecutive ones
+        self.together = self.usual = 1  # numbers of commands that were close to each other: the last ones, and before
+        self.checked_since: int | None = None   # first command after a silence, until the sender is known to be live
+        self.apart = 0          # number of consecutive commands since then that are not close
+        self.is_burst = False
 
     def is_late(self, now: int, silence: int, was_observed: bool) -> bool:
         """Return whether a command that arrives at `now` belongs to a burst. For the other arguments see Bursts."""
         gap, self.last = now - self.last, now
+        is_close = 0 <= gap < CLOSE
+        self.usual, self.together = (self.usual, self.together + 1) if is_close else (self.together, 1)
         if gap > silence or gap < 0:
-            self.checked_since = now if was_observed and self.close_share < OFTEN else None
-            self.count = self.close = self.right = 0
-            return False
-        is_close = gap < min(CLOSE * self.usual, CLOSEST)
-        if self.checked_since is None:
-            self.close_share += LEARN * (is_close - self.close_share)
-            if not is_close:
-                self.usual += (LEARN if self.usual else 1.0) * (gap - self.usual)
-            return False
-        self.count, self.close = self.count + 1, self.close + is_close
-        self.right = self.right + 1 if gap >= RIGHT * self.usual else 0
-        if self.right >= RIGHTS or now - self.checked_since > LONGEST:
-            self.checked_since = None
-            return False
-        excess = self.count - (now - self.checked_since) / self.usual if self.usual else 0.0
-        return self.close > EXCESS and excess > EXCESS
+            self.checked_since, self.apart, self.is_burst = now if was_observed else None, 0, False
+        elif self.checked_since is not None:
+            self.apart = 0 if is_close else self.apart + 1
+            self.is_burst = self.is_burst or self.together > max(TOGETHER, self.usual)
+            if self.apart >= APART or now - self.checked_since > LONGEST:
+                self.checked_since, self.is_burst = None, False
+        return self.is_burst
 
 
 class Bursts:
     """Recognizes commands that arrive long after they were sent: when the network works again after an outage, the
     kernel delivers at once whatever was sent meanwhile, even if the sender has died. A Twist has no time stamp.
 
-    The first command after a silence counts at once. If several follow much faster than this sender usually sends, they
-    are a burst, and the commands of this sender are dropped until they arrive at the usual spacing again.
+    The first command after a silence counts at once. If more arrive together than a live sender sends, they are a
+    burst, and the commands of this sender are dropped until two arrive apart.
     """
 
     def __init__(self, silence: int) -> None:

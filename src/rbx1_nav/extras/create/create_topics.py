@@ -25,7 +25,6 @@ from rbx1_nav.extras.create.create_status import FAULT, HOT
 from rbx1_nav.extras.create.driver import Driver
 from rbx1_nav.node.rospy_topics import NoDelay
 
-NOTHING_RECEIVED = 255      # infrared character of a Create; 0 on a Create 2 and in create_robot
 SWITCHES = 'bumps_and_wheel_drops'
 # topic, type, packet, bits: a Bool shows whether one of the bits is set, an Empty is published while one is
 SENSORS = (
@@ -147,7 +146,7 @@ class CreateTopics:
             if kind is Bool:
                 publisher.publish(bool(value))
             elif kind is UInt16:
-                publisher.publish(value % NOTHING_RECEIVED)
+                publisher.publish(value % protocol.NOTHING_RECEIVED)
             elif value:
                 publisher.publish()
         power = reading['charging_state'], reading['charging_sources']

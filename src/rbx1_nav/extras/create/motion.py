@@ -16,7 +16,7 @@ from rbx1_nav.extras.create.settings import Settings
 
 WHEEL_LIMIT = 1.3 * MAX_SPEED / 1000    # m/s: faster than any wheel
 MARGIN = 0.015          # m of wheel travel that one reading may miss and the next one include
-AGREED = 3              # consecutive implausible readings, which show that the robot was reset
+WRONG, RESET = 3, 6     # consecutive implausible readings: the last good one was corrupted; the robot was reset
 DOUBT = 0.5             # 1 sigma of a reading if all replies around it are lost, as a fraction of reach(); measured
 DIRTY = 0.01            # share of lost replies from which a turn that was not commanded counts as corrupted,
 DOUBTFUL = 16.0         # degrees, if it is larger: what a robot can turn between two readings
@@ -74,6 +74,7 @@ class EncoderTravel:
     def restart(self) -> None:
         """Handle a robot that counts from 0 again: the next reading yields no travel."""
         self.counts: tuple[int, int] | None = None
+        self.before: tuple[tuple[int, int], float] | None = None    # previous counts, and s from them to the last ones
         self.rejected = 0       # number of consecutive implausible counts
 
     def update(self, reading: Mapping[str, int], elapsed: float, expected: Expected, lost_share: float) -> Travel:
@@ -83,14 +84,17 @@ class EncoderTravel:
         if self.counts is None:
             self.counts = counts
             return NOWHERE
-        left, right = map(self.difference, counts, self.counts)
+        last = self.counts
+        left, right = map(self.difference, counts, last)
         if not self.fits(reading, elapsed, expected, lost_share):
             self.rejected += 1
-            before = self.counts
-            if self.rejected >= AGREED:
-                self.restart()
-            raise Implausible(f'encoders: {counts[0]} and {counts[1]} after {before[0]} and {before[1]}')
-        self.counts, self.rejected = counts, 0
+            before, time = self.before or (None, 0.0)
+            # if only the last counts do not fit, they were corrupted: this travel takes back what they have added
+            if self.rejected < WRONG or before is None or not self._are_near(counts, before, time + elapsed):
+                if self.rejected >= RESET:
+                    self.restart()
+                raise Implausible(f'encoders: {counts[0]} and {counts[1]} after {last[0]} and {last[1]}')
+        self.counts, self.before, self.rejected = counts, (last, elapsed), 0
         # from half a wrap on, the encoders may have wrapped
         wrap = self.WRAP * self.scale
         sigma = wrap if max(abs(each) for each in expected) > wrap / 2 else 0.0
@@ -100,7 +104,10 @@ class EncoderTravel:
         """Return whether a robot may have traveled so far since the last good reading. For the arguments see update().
         """
         new, old = (reading['left_encoder'], reading['right_encoder']), self.counts
-        return old is None or max(abs(self.difference(*each)) for each in zip(new, old)) <= reach(elapsed)
+        return old is None or self._are_near(new, old, elapsed)
+
+    def _are_near(self, new: tuple[int, int], old: tuple[int, int], elapsed: float) -> bool:
+        return max(abs(self.difference(*each)) for each in zip(new, old)) <= reach(elapsed)
 
     def is_reset(self, reading: Mapping[str, int]) -> bool:
         """Return whether this may be the reading of a robot that counts from 0 again."""

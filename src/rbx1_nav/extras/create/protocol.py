@@ -20,6 +20,7 @@ UPDATE_PERIOD = 0.015   # s, between two frames of the stream (Create p. 13, Cre
 ROBOT_RADIUS = 0.165    # m
 MIN_VOLTAGE, MAX_VOLTAGE = 5000, 25000      # mV, battery voltage of a running robot
 FRAME_HEADER = 19       # the first byte of a frame (Create p. 13, Create 2 p. 22)
+NOTHING_RECEIVED = 255  # infrared character of a Create; 0 on a Create 2 and in create_robot
 
 OFF, PASSIVE, SAFE, FULL = range(4)     # values of packet 35
 MODE_NAMES = ('off', 'passive', 'safe', 'full')

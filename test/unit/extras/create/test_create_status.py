@@ -3,8 +3,9 @@ from types import SimpleNamespace
 
 from diagnostic_updater import DiagnosticStatusWrapper
 import pytest
+import rospy
 
-from driven_create import DrivenCreate
+from driven_create import DrivenCreate, started
 from rbx1_nav.extras.create.create_status import ERROR, OK, WARN, CreateStatus, battery_status
 
 
@@ -29,6 +30,31 @@ def test_each_robot_has_a_status_at_each_rate(robot, baud):
     assert found['Base'].message == 'Stationary' and values['Robot type'] == robot
     # only a Create may lose fractions of a degree
     assert ('Fractions of a degree' in values) == ('Gyro' in found) == (robot == 'create')
+
+
+NO_ANSWER = ERROR, 'The robot does not answer'
+
+
+@pytest.mark.parametrize('attribute, value, expected', [
+    ('bumped', True, {'Base': (OK, 'Stationary'), 'Sensors': (WARN, 'bumper')}),
+    ('wheel_dropped', True, {'Base': (WARN, 'Not driven: a wheel dropped'), 'Sensors': (WARN, 'wheel drop')}),
+    ('cliff', True, {'Base': (WARN, 'Not driven: a cliff'),
+                     'Sensors': (WARN, 'cliff front left, cliff front right')}),
+    ('docked', True, {'Base': (WARN, 'Not driven: on the dock: publish on undock, or lift it off'),
+                      'Battery': (OK, 'trickle charging')}),
+    ('charge', 450, {'Base': (OK, 'Stationary'), 'Battery': (WARN, 'Low: 15 %')}),
+    ('charge', 0, {'Base': NO_ANSWER, 'Battery': NO_ANSWER, 'Sensors': NO_ANSWER, 'Serial line': (ERROR, 'Open')})])
+def test_what_prevents_a_robot_from_being_driven_is_reported(monkeypatch, attribute, value, expected):
+    lines = []
+    monkeypatch.setattr(rospy, 'logwarn', lambda form, *values: lines.append(form % values))
+    driven = started('create2')
+    driven.run(0.5)
+    setattr(driven.body, attribute, value)
+    driven.drive(0.1 if attribute == 'cliff' else 0.0, 0.0, 0.3)
+    driven.run(1)
+    found = statuses(driven)
+    assert {title: (found[title].level, found[title].message) for title in expected} == expected
+    assert lines == (['Battery: Low: 15 %: charge it soon'] if value == 450 else [])
 
 
 @pytest.mark.parametrize('changes, level, text', [

@@ -65,31 +65,63 @@ def test_the_robot_docks_and_charges(robot_type):
     assert driven.driver.reading['charging_state']
 
 
-@BOTH
-@pytest.mark.parametrize('velocity', [(0.0, 0.0), (0.1, 0.0)])
-def test_a_command_ends_docking(robot_type, velocity):
-    driven = docking(robot_type)
-    driven.command(*velocity, sender='/teleop')
-    driven.run(0.05)
-    assert not driven.robot.program_runs
-    assert any('no longer docking: a command from /teleop' in line for line in driven.log)
-    driven.drive(*velocity, 0.5)
-    assert driven.robot.mode == SAFE and not driven.refusals
-    assert driven.speeds == (1000 * velocity[0], 1000 * velocity[0])
+def plug_in_again(driven):
+    driven.pull()
+    driven.run(2)
+    driven.connect()
+    driven.run(2)
 
 
-@BOTH
-def test_a_stop_ends_docking(robot_type):
-    driven = docking(robot_type)
+def command_zero(driven):
+    driven.command(0.0, 0.0, sender='/teleop')
+
+
+def command_motion(driven):
+    driven.command(-0.1, 0.0, sender='/teleop')
+
+
+def stop(driven):
     driven.driver.stop(driven.now, 'the guardian process died')
-    driven.run(0.05)
-    assert not driven.body.moving and driven.robot.mode == SAFE
+
+
+def halt(driven):
+    """As a stall of the node does."""
+    driven.gate.halt()
 
 
 @BOTH
-@pytest.mark.parametrize('lost', [0, 1, 9, 14, 15, 17, 18])
-def test_the_exit_ends_docking_even_if_the_first_bytes_of_the_stop_are_lost(robot_type, lost):
+@pytest.mark.parametrize('end, text', [
+    (command_zero, 'a command from /teleop'), (command_motion, 'a command from /teleop'), (stop, 'the guardian'),
+    (plug_in_again, 'it did not answer')])
+def test_what_ends_docking(robot_type, end, text):
     driven = docking(robot_type)
+    end(driven)
+    driven.run(0.05)
+    assert not driven.robot.program_runs and not driven.driver.orders.state
+    assert any(f'no longer docking: {text}' in line for line in driven.log), driven.log
+    driven.drive(-0.1, 0.0, 0.5)
+    assert driven.robot.mode == SAFE and (driven.speeds == (-100, -100) or end in (stop, plug_in_again))
+
+
+@BOTH
+@pytest.mark.parametrize('end', [command_zero, stop, halt])
+def test_what_ends_undocking(robot_type, end):
+    driven = on_dock(robot_type)
+    drive_off(driven)
+    end(driven)
+    driven.run(0.1)
+    assert not driven.body.moving and driven.robot.mode == PASSIVE
+    driven.run(3)
+    assert not driven.body.moving and not driven.driver.orders.state
+
+
+@BOTH
+@pytest.mark.parametrize('state, lost', [
+    *(('docking', lost) for lost in (0, 1, 9, 14, 15, 17, 18)), ('undocking', 0), ('undocking', 14)])
+def test_the_exit_ends_both_even_if_the_first_bytes_of_the_stop_are_lost(robot_type, state, lost):
+    driven = docking(robot_type) if state == 'docking' else on_dock(robot_type)
+    if state == 'undocking':
+        drive_off(driven)
     driven.losing = lost
     driven.driver.leave(driven.now)
     for _ in range(200):
@@ -98,16 +130,6 @@ def test_the_exit_ends_docking_even_if_the_first_bytes_of_the_stop_are_lost(robo
     assert driven.driver.left and not driven.body.moving and driven.robot.mode == PASSIVE
     with pytest.raises(RefusedCommand, match='shutting down'):
         driven.driver.orders.dock(driven.now, driven.driver.reading)
-
-
-@BOTH
-def test_a_lost_connection_ends_docking(robot_type):
-    driven = docking(robot_type)
-    driven.pull()
-    driven.run(2)
-    driven.connect()
-    driven.run(2)
-    assert not driven.robot.program_runs and driven.robot.mode == SAFE and not driven.driver.orders.state
 
 
 @BOTH
@@ -199,20 +221,6 @@ def test_a_cliff_and_a_wheel_drop_stop_it_in_full_mode(robot_type, name, bits):
 
 
 @BOTH
-def test_a_command_and_a_stop_end_undocking(robot_type):
-    # the last one: as a stall of the node does
-    for end in (lambda: driven.command(0, 0), lambda: driven.driver.stop(driven.now, 'test'),
-                lambda: driven.gate.halt()):
-        driven = on_dock(robot_type)
-        drive_off(driven)
-        end()
-        driven.run(0.1)
-        assert not driven.body.moving and driven.robot.mode == PASSIVE
-        driven.run(3)
-        assert not driven.body.moving and not driven.driver.orders.state
-
-
-@BOTH
 def test_an_old_order_does_not_move_the_robot_after_an_outage(robot_type):
     driven = on_dock(robot_type)
     undock(driven)
@@ -223,15 +231,6 @@ def test_an_old_order_does_not_move_the_robot_after_an_outage(robot_type):
     driven.run(4)
     assert driven.driver.contact.answers and not driven.driver.orders.state
     assert not driven.body.moving and command('full') not in [data for _, data in driven.commands]
-
-
-@BOTH
-def test_the_exit_while_undocking(robot_type):
-    driven = on_dock(robot_type)
-    drive_off(driven)
-    driven.driver.leave(driven.now)
-    driven.run(0.1)
-    assert driven.driver.left and not driven.body.moving and driven.robot.mode == PASSIVE
 
 
 def test_wheels_that_are_blocked_on_the_dock():

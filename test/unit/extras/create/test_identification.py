@@ -11,7 +11,7 @@ from rbx1_nav.extras.create.emulator.serial_line import misread
 from rbx1_nav.extras.create.identification import RATES, WAKE_TIME, Search, is_battery
 from rbx1_nav.extras.create.sender import Sender
 
-from driven_create import DrivenCreate
+from driven_create import DrivenCreate, started
 
 KINDS = 'create', 'create2'     # which differ in their replies
 ROBOTS = pytest.mark.parametrize('robot', KINDS)
@@ -69,6 +69,20 @@ def test_a_robot_of_the_wrong_type_is_reported_once_and_not_driven(robot, robot_
     assert driven.log == ['A %s answers at %d baud: expected a %s; to drive it, restart this node with robot_type:=%s, '
                           'or auto' % (robot, protocol.MODELS[robot].baud, robot_type, robot)]
     assert not driven.body.moving and 'the robot does not answer' in driven.refusals
+
+
+def test_another_robot_at_another_adapter_gets_no_command_before_it_is_known():
+    driven = started('auto', robot='create')
+    driven.pull()
+    other = DrivenCreate('auto', robot='create2')
+    driven.line, driven.robot, driven.body = other.line, other.robot, other.body
+    driven.is_same = False
+    driven.run(1)
+    driven.connect()
+    driven.run(2)
+    assert set(names(other)) <= ALLOWED and not other.robot.programs_started
+    assert driven.log[-1] == ('A create2 answers at 115200 baud: expected a create; to drive it, restart this node '
+                              'with robot_type:=create2, or auto')
 
 
 @ROBOTS

@@ -47,13 +47,27 @@ def test_encoders_wrap(start, left, right):
     assert travel.distance_variance == travel.angle_variance == 0
 
 
-def test_three_implausible_readings_in_a_row_are_a_new_beginning():
+def test_six_implausible_readings_in_a_row_are_a_new_beginning():
     counter = encoder_travel(1000, 1000)
-    for count in range(3):
+    for count in range(6):
         with pytest.raises(Implausible):
             counter.update(encoders(20000 + count, 0), 0.015, STILL, 0.0)
-    assert counter.update(encoders(20002, 0), 0.015, STILL, 0.0) == NOWHERE
-    assert counter.update(encoders(20012, 10), 0.015, STILL, 0.0).distance == pytest.approx(10 * COUNT)
+    assert counter.update(encoders(20005, 0), 0.015, STILL, 0.0) == NOWHERE
+    assert counter.update(encoders(20015, 10), 0.015, STILL, 0.0).distance == pytest.approx(10 * COUNT)
+
+
+@pytest.mark.parametrize('third', [(), (1357, 3348 + 16384)])
+def test_a_corrupted_reading_that_looked_possible_is_taken_back_by_the_third_good_one_after_it(third):
+    counter = encoder_travel(1000, 3000)
+    # at 0.5 m/s, which is 1125 counts/s; 67 mm back are possible after lost replies
+    total = [counter.update(encoders(*counts), elapsed, STILL, 0.0)
+             for counts, elapsed in (((1020, 3010), 0.033), ((1020 - 150, 3235), 0.2))]
+    for number, counts in enumerate(filter(None, ((1282, 3272), (1320, 3310), third)), 1):
+        with pytest.raises(Implausible):
+            counter.update(encoders(*counts), number / 30, STILL, 0.0)
+    total.append(counter.update(encoders(1391, 3385), 0.13, STILL, 0.0))
+    assert sum(each.distance for each in total) == pytest.approx((391 + 385) / 2 * COUNT)
+    assert sum(each.angle for each in total) == pytest.approx((385 - 391) * COUNT / 0.235)
 
 
 def test_the_counters_of_a_create():

@@ -6,7 +6,8 @@ from typing import NamedTuple
 
 from rbx1_nav.base.surfaces import Surface
 from rbx1_nav.base.units import SECOND
-from rbx1_nav.extras.create.protocol import BUMP_LEFT, BUMP_RIGHT, UPDATE_PERIOD, WHEEL_DROP_LEFT, Model
+from rbx1_nav.extras.create.protocol import (
+    BUMP_LEFT, BUMP_RIGHT, NOTHING_RECEIVED, UPDATE_PERIOD, WHEEL_DROP_LEFT, Model)
 from rbx1_nav.simulation.simulated_base import make_wheels_and_gyro
 
 
@@ -37,7 +38,6 @@ CLIFFS = ('cliff_left', 'cliff_front_left', 'cliff_front_right', 'cliff_right') 
 CONTACT = 0.02          # m that a robot on its dock can move before it loses contact
 
 PULL_UPS = 15           # weak pull-ups on the digital inputs of a Create
-NOTHING_RECEIVED = 255  # infrared character of a Create; 0 on a Create 2
 
 
 class Tally:
