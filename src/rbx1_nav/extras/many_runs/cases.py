@@ -4,16 +4,20 @@ from __future__ import annotations
 import itertools
 from typing import Iterator, Mapping, NamedTuple, Sequence, Tuple
 
+import numpy
 import yaml
 
 from rbx1_nav.base.description import Robot
 from rbx1_nav.base.kinematics import Pose
 from rbx1_nav.base.surfaces import KEYS, Surface
 from rbx1_nav.exercise.legs import StuckError, out_and_back_by_odometry
+from rbx1_nav.exercise.methods import METHODS
 from rbx1_nav.extras.many_runs.simulated_run import PARAMETERS, SimulationResult, motions, simulate
 from rbx1_nav.extras.many_runs.summary import Summary
 from rbx1_nav.node.config import ConfigError, Section, show, show_name, suggestion
 from rbx1_nav.node.parameters import Parameter
+from rbx1_nav.simulation.floor import Floor
+from rbx1_nav.simulation.many_floors import ManyFloors
 
 # the results of a run: name and unit of each column of a file
 RESULTS = (*(f'{name}_{field}' for name in ('true', 'odometry', 'estimate')
@@ -62,23 +66,27 @@ class Chunk(NamedTuple):
         return Case(self.method, robot, self.combination.surface, self.combination.parameters)
 
 
-def simulate_row(case: Case, seed: int) -> Row:
-    """Return the RESULTS of a run. Raises StuckError, which names the run."""
+def simulate_row(case: Case, seed: int, floor: Floor | None = None) -> Row:
+    """Return the RESULTS of a run. Raises StuckError, which names the run. floor: see simulate()."""
     try:
-        result = simulate(case.method, case.robot, case.surface, seed, parameters=case.parameters)
+        result = simulate(case.method, case.robot, case.surface, seed, parameters=case.parameters, floor=floor)
     except StuckError as error:
         raise StuckError(f'{case.method}, seed {seed}: {error}') from None
     end, covariance = result.end, result.covariance
     upper = [None if covariance is None else covariance[row][column]
              for row in range(3) for column in range(row, 3)]
     estimate = map(float, end.estimate) if end.estimate else (None,) * 3
-    return (*map(float, end.truth), *map(float, end.odometry), *estimate, *upper, float(result.first_leg), end.time)
+    return (*end.truth, *end.odometry, *estimate, *upper, result.first_leg, end.time)
 
 
 def simulate_rows(task: tuple[Case, Sequence[int]]) -> list[Row]:
     """Return the RESULTS of the runs of a Case with several seeds."""
     case, seeds = task
-    return [simulate_row(case, seed) for seed in seeds]
+    if METHODS[case.method].pose == 'estimate' or len(seeds) == 1:
+        return [simulate_row(case, seed) for seed in seeds]
+    # no seed reaches the wheels, so they are computed once, and all runs get stuck together
+    row = simulate_row(case, seeds[0], ManyFloors(case.surface, seeds) if case.surface else None)
+    return list(zip(*(numpy.full(len(seeds), value).tolist() for value in row)))
 
 
 def simulate_paths(task: tuple[Case, Sequence[int]]) -> list[SimulationResult]:
