@@ -15,7 +15,7 @@ TRUTHS = [Pose(0.03, 0.04, radians(10)), Pose(0.06, -0.08, radians(350)), Pose(-
 def lines(method, *runs):
     """Return the lines for runs with these (truth, odometry, estimate)."""
     summary = Summary()
-    for some in runs[:1], runs[1:]:     # in two blocks
+    for some in filter(None, (runs[:1], runs[1:])):     # in two blocks
         truths, odometry, estimates = map(numpy.array, zip(*some))
         summary.add(truths, odometry, None if estimates[0] is None else estimates, 0.9 + truths[:, 0])
     return summary.lines(method)
