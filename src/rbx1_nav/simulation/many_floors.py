@@ -17,9 +17,9 @@ from rbx1_nav.simulation.floor_noise import Noise, Roughness, draw_noises, is_ro
 from rbx1_nav.simulation.slip import RandomErrors, draw_run, floor_travel
 
 
-def each(function: Callable[[float], float], values: Array) -> Array:
-    """Return a function of math for an array: numpy's own may differ in the last bit, depending on the processor."""
-    return numpy.fromiter(map(function, values.tolist()), float, len(values))
+def each(function: Callable[[float], float], values: Sequence[float]) -> Array:
+    """Return the values of a function of math: numpy's own may differ in the last bit, depending on the processor."""
+    return numpy.fromiter(map(function, values), float, len(values))
 
 
 class Odometries(Odometry):
@@ -29,11 +29,12 @@ class Odometries(Odometry):
         """See Odometry.move()."""
         half = angle / 2
         small = abs(half) <= SMALL
-        chord = distance * numpy.where(small, 1 - half * half / 6, each(sin, half) / numpy.where(small, 1.0, half))
-        direction = self.yaw + half
+        large = each(sin, half.tolist()) / numpy.where(small, 1.0, half)
+        chord = distance * numpy.where(small, 1 - half * half / 6, large)
+        directions = (self.yaw + half).tolist()
         # not +=, which would also change a pose that was read before
-        self.x = self.x + chord * each(cos, direction)
-        self.y = self.y + chord * each(sin, direction)
+        self.x = self.x + chord * each(cos, directions)
+        self.y = self.y + chord * each(sin, directions)
         self.yaw = self.yaw + angle
 
 
@@ -49,13 +50,13 @@ class Noises:
         """See Noise.over()."""
         errors: Array = self.slope * path
         crossing = numpy.flatnonzero(self.left < path)     # few of them
-        before = self.left[crossing].tolist()
-        self.left -= path
-        for index, left in zip(crossing.tolist(), before):
-            noise = self.noises[index]
+        noises = [self.noises[index] for index in crossing.tolist()]
+        for noise, left in zip(noises, self.left[crossing].tolist()):
             noise.left = left
-            errors[index] = noise.over(path)
-            self.left[index], self.slope[index] = noise.left, noise.slope
+        errors[crossing] = [noise.over(path) for noise in noises]
+        self.left -= path
+        self.left[crossing] = [noise.left for noise in noises]
+        self.slope[crossing] = [noise.slope for noise in noises]
         return errors
 
 
