@@ -110,12 +110,12 @@ def fit_ends(runs: Sequence[PreparedRun], surface: Surface, end_errors: Sequence
         values[key] = min(1.0, wider * getattr(surface, key))
     for key, mean in spreads.items():
         values[key] = float(min(0.5, wider * numpy.hypot(getattr(surface, key), errors.get(mean, 0.0))))
-    reasons.update((key, 'its part in the common factor is not known') for key in (*NOISES, *spreads) if values[key])
+    reasons.update((key, 'multiplied by the common factor') for key in (*NOISES, *spreads) if values[key])
     notes = [f'The noises and spreads of the starting surface are multiplied by {factor:.2f} +- '
              f'{factor / (2 * degrees) ** 0.5:.2f}, one common factor fitted to {len(runs)} end poses, and by '
-             f'{wider:.2f} because {3 * len(runs)} values are few: the 90 % region should contain 90 % of the end poses '
-             "of future runs (Student's t distribution). The spreads also contain the standard errors of the mean "
-             'slips.']
+             f'{wider:.2f} because {3 * len(runs)} values are few: the 90 % region should contain 90 % of the end '
+             "poses of future runs (Student's t distribution). The spreads also contain the standard errors of the "
+             'mean slips.']
     return EndsFit({key: float(value) for key, value in values.items()}, errors, reasons, notes)
 
 

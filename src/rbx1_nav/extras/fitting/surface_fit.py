@@ -176,7 +176,7 @@ class WholeFit:
                 break
             self.reasons[worst] = f'found {getattr(surface, worst):.3g} +- {errors[worst]:.2g}: too uncertain'
             if uncertainty(getattr(surface, worst), errors[worst], LARGEST[worst]) <= 1:
-                self.reasons[worst] = 'without effect on the end pose of these commands'
+                self.reasons[worst] = 'without effect on the end poses of these commands'
             start = with_values(surface, {worst: getattr(self.surface, worst)})
             means, noises = ([key for key in keys if key != worst] for keys in (means, noises))
             if not means and not noises:
