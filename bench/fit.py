@@ -50,6 +50,11 @@ def drive(chosen):
     return (*motions, REST)
 
 
+def drive_on(floor, chosen, name='run'):
+    """The Recording of a random drive."""
+    return record(drive(chosen), chosen.randrange(10 ** 6), floor, name)
+
+
 def fit(start, recordings):
     """(FitResult, {key: Value})."""
     result = WholeFit(recordings, WIDTH, start).run()
@@ -59,15 +64,14 @@ def fit(start, recordings):
 def clean(chosen, start):
     """Random drives on one floor: whether the fit warns of anything."""
     floor = make_floor(chosen)
-    result, values = fit(start, [record(drive(chosen), chosen.randrange(10 ** 6), floor, f'run{number}')
-                                 for number in range(RUNS)])
+    result, values = fit(start, [drive_on(floor, chosen, f'run{number}') for number in range(RUNS)])
     return bool(result.warnings), floor, values
 
 
 def mixed(chosen, start):
     """Drives on two floors with delays of 0.25 and 0.08 s: whether the fit reports the delay and groups the files."""
     floors = [make_floor(chosen, delay=delay) for delay in (0.25, 0.08)]
-    result, values = fit(start, [record(drive(chosen), chosen.randrange(10 ** 6), floors[number % 2], f'run{number}')
+    result, values = fit(start, [drive_on(floors[number % 2], chosen, f'run{number}')._replace(truth=None)
                                  for number in range(RUNS)])
     return any(re.match(r'delay 0.0\S+ in run1, run3 and 0.2\S+ in run0, run2[;:]', text)
                for text in result.warnings), floors[0], values
@@ -76,7 +80,7 @@ def mixed(chosen, start):
 def limit(chosen, start):
     """An acceleration limit that no command reaches: whether the fit keeps the value undetermined."""
     floor = make_floor(chosen, accel_limit=10.0)
-    _, values = fit(start, [record(drive(chosen), chosen.randrange(10 ** 6), floor) for _ in range(RUNS)])
+    _, values = fit(start, [drive_on(floor, chosen)._replace(truth=None) for _ in range(RUNS)])
     return values['accel_limit'].error is None, floor, values
 
 
@@ -87,12 +91,12 @@ def unused(chosen, start):
     return values['turning_loss'][1:3] == (start.turning_loss, None), floor, values
 
 
-def coverage(number, recordings, start, widen=True):
+def coverage(number, recordings, start):
     """Shares (percent) of the end poses of timed runs on a random floor with large spreads that are inside the 50 % and
     the 90 % region of runs on a surface fitted to so many recordings, and inside the regions of the floor itself."""
     chosen = random.Random(f'coverage {number}')
     floor = make_floor(chosen, **{key: chosen.uniform(0.02, 0.1) for key in SPREADS})
-    result, _ = fit(start, [record(drive(chosen), chosen.randrange(10 ** 6), floor) for _ in range(recordings)])
+    result, _ = fit(start, [drive_on(floor, chosen) for _ in range(recordings)])
     robot = load_robot(resources.path('config', 'turtlebot.yaml'))._replace(base_width=WIDTH)
     surfaces = floor, result.surface, floor
     ends = [numpy.array(simulate_rows((Case('timed', robot, surface, PARAMETERS), range(ENDS * index, ENDS * index + ENDS))),
