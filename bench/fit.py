@@ -24,6 +24,7 @@ from rbx1_nav.node import resources
 
 WIDTH = 0.26    # m
 RUNS = 4        # recordings of a fit
+FLOORS = 10     # of the coverage
 ENDS = 1000     # simulated end poses per floor
 # motors and floors from these ranges
 LOW = dict(lag=0.05, accel_limit=0.4, drag_straight=1e-4, drag_turning=1e-4, slip_straight=-0.05, slip_turning=0.0,
@@ -98,14 +99,13 @@ def coverage(number, recordings, start):
     floor = make_floor(chosen, **{key: chosen.uniform(0.02, 0.1) for key in SPREADS})
     result, _ = fit(start, [drive_on(floor, chosen) for _ in range(recordings)])
     robot = load_robot(resources.path('config', 'turtlebot.yaml'))._replace(base_width=WIDTH)
-    surfaces = floor, result.surface, floor
-    ends = [numpy.array(simulate_rows((Case('timed', robot, surface, PARAMETERS), range(ENDS * index, ENDS * index + ENDS))),
-                        dtype=float)[:, :2] for index, surface in enumerate(surfaces)]
-    found = []
-    for simulated in ends[1:]:
-        own = mahalanobis(simulated, simulated)
-        found += [round(100 * (mahalanobis(simulated, ends[0]) < numpy.quantile(own, part)).mean()) for part in (0.5, 0.9)]
-    return found
+    ends = []
+    for first, surface in ((0, floor), (ENDS, result.surface), (2 * ENDS, floor)):
+        rows = simulate_rows((Case('timed', robot, surface, PARAMETERS), range(first, first + ENDS)))
+        ends.append(numpy.array(rows, dtype=float)[:, :2])
+    return [round(100 * (mahalanobis(simulated, ends[0])
+                         < numpy.quantile(mahalanobis(simulated, simulated), part)).mean())
+            for simulated in ends[1:] for part in (0.5, 0.9)]
 
 
 CASES = {'clean': clean, 'mixed': mixed, 'limit': limit, 'unused': unused}
@@ -116,8 +116,14 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('--case', choices=CASES, action='append', help='default: all')
     parser.add_argument('--tries', type=int, default=20, help='of each case; default: 20')
+    parser.add_argument('--coverage', type=int, metavar='N', help='only the coverage of fits to N recordings')
     arguments = parser.parse_args()
     start = load_surface('low_ply_carpet', resources.surfaces())
+    if arguments.coverage:
+        shares = [coverage(number, arguments.coverage, start) for number in range(FLOORS)]
+        for name, values in ('mean', numpy.mean(shares, axis=0)), ('lowest', numpy.min(shares, axis=0)):
+            print('%s: fitted %.0f / %.0f, known %.0f / %.0f' % (name, *values))
+        return
     within = {}     # {key: whether the true value is within two standard errors}
     for name in arguments.case or CASES:
         said = 0

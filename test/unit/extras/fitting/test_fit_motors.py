@@ -44,8 +44,8 @@ def test_recordings_of_two_floors_are_named():
     recordings = [record(motions, seed, floor, f'{seed}.bag') for seed, (motions, floor) in enumerate(
         [(DRIVE, late), (EXERCISE, early), (DRIVE, early), (EXERCISE, late)])]
     text, = differing(fit_motors(START, 0.26, recordings), START, 0.26, recordings)
-    assert re.fullmatch(r'delay 0\.0[78]\d+ in 1\.bag, 2\.bag and 0\.2[45]\d* in 0\.bag, 3\.bag: expected recordings of '
-                        'one robot on one floor', text)
+    assert re.fullmatch(r'delay 0\.0[78]\d+ in 1\.bag, 2\.bag and 0\.2[45]\d* in 0\.bag, 3\.bag: expected recordings '
+                        'of one robot on one floor', text)
     one = recordings[1:3]
     assert differing(fit_motors(START, 0.26, one), START, 0.26, one) == []
     assert differing(fit_motors(START, 0.26, one[:1]), START, 0.26, one[:1]) == []
