@@ -149,9 +149,10 @@ def differing(fit: MotorFit, surface: Surface, base_width: float, recordings: Se
                  if key not in each.unused]
         if key in fit.unused or len(found) < 2:
             continue
-        values, errors, names = map(numpy.array, zip(*found))
+        values, errors = numpy.transpose([each[:2] for each in found])
+        names = numpy.array([each[2] for each in found])
         weights = errors.clip(SMALLEST[key]) ** -2.0
-        mean = numpy.average(values, weights=weights)
+        mean = (weights * values).sum() / weights.sum()
         if chi2.sf((weights * (values - mean) ** 2).sum(), len(found) - 1) < UNLIKELY:
             ordered = numpy.sort(values)
             gap = int(numpy.argmax(numpy.diff(ordered)))    # the largest one separates two groups

@@ -122,8 +122,9 @@ class Sweep:
                 passed = time.monotonic() - begun
                 if bar.disable and passed > reported + REPORT:
                     reported = passed
-                    print(tqdm.format_meter(self.done + len(rows), self.total, passed, ncols=0, prefix=chunk.method,
-                                            unit='run', initial=before), file=sys.stderr, flush=True)
+                    done = self.done + len(rows)
+                    print(tqdm.format_meter(done, self.total, passed, ncols=0, prefix=chunk.method, unit='run',
+                                            rate=(done - before) / passed), file=sys.stderr, flush=True)
                 yield place, chunk, rows
         if file:
             file.synchronize()
