@@ -112,19 +112,19 @@ class Sweep:
             return
         before, begun, reported = self.done, time.monotonic(), 0.0
         with open_place(jobs if long else 1, scheduler, self.robot, self.chunks[0].combination.surface) as place, tqdm(
-                total=self.total, initial=before, unit='run', leave=False, disable=None if long else True) as bar:
+                total=self.total, initial=self.done, unit='run', leave=False, disable=None if long else True) as bar:
             tasks = ((chunk.case(self.robot), chunk.seeds) for chunk in missing)
             for chunk, rows in zip(missing, in_order(place, simulate_rows, tasks)):
                 if file:
                     file.append(chunk, rows)
                 bar.set_description(chunk.method, refresh=False)
                 bar.update(len(rows))
-                passed = time.monotonic() - begun
+                passed, done = time.monotonic() - begun, self.done + len(rows)
                 if bar.disable and passed > reported + REPORT:
-                    reported = passed
-                    done = self.done + len(rows)
+                    # the current rate: methods differ a lot
                     print(tqdm.format_meter(done, self.total, passed, ncols=0, prefix=chunk.method, unit='run',
-                                            rate=(done - before) / passed), file=sys.stderr, flush=True)
+                                            rate=(done - before) / (passed - reported)), file=sys.stderr, flush=True)
+                    reported, before = passed, done
                 yield place, chunk, rows
         if file:
             file.synchronize()
