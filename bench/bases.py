@@ -111,7 +111,7 @@ def drive(robot, case, surface, seed, duration=RANDOM):
         leg = min(bisect_right(ends, stamp), len(legs) - 1)
         if leg != current and case.ratio != 1:
             ratio = case.ratio * max(0.5, rng.gauss(1, RATIO_SPREAD))
-            base.wheels.run = base.wheels.run._replace(slip_turning=1 - 1 / ratio)
+            base.wheels.floor.run = base.wheels.floor.run._replace(slip_turning=1 - 1 / ratio)
         current = leg
         linear, angular = legs[leg][1] * case.speed, legs[leg][2] * side
         if case.fault == 'carried' and at_fault:

@@ -13,7 +13,7 @@ try:
 except ImportError:
     distributed = None
 
-COMMAND = ('--surface', 'low_ply_carpet', '--method', 'timed', '--method', 'odom', '--runs', '400')
+COMMAND = ('--surface', 'low_ply_carpet', '--method', 'timed', '--method', 'ekf', '--runs', '300')
 
 
 @unittest.skipUnless(distributed, 'needs the Debian package python3-distributed')
@@ -56,7 +56,7 @@ class TestTwoWorkers(support.Case):
         status, output, content = self.wait(process, path)
         self.assertEqual(status, 0, output)
         self.assertEqual(content, self.content)
-        self.assertEqual(len(content.splitlines()), 801)
+        self.assertEqual(len(content.splitlines()), 601)
         self.assertEqual(output, self.output)
 
     def copy_package(self):

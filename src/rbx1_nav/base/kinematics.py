@@ -8,6 +8,9 @@ from math import cos, sin
 from typing import NamedTuple
 
 
+SMALL = 1e-4    # rad: below it, the next term of the series of a sine is below the resolution of a float
+
+
 class Pose(NamedTuple):
     """A pose in the odom frame."""
 
@@ -54,8 +57,7 @@ class Odometry:
         Introduction to Autonomous Mobile Robots, 2nd ed., section 5.2.4, without its straight-line approximation).
         """
         half = angle / 2
-        # below 1e-4 rad the next term of the series is below the resolution of a float
-        chord = distance * (sin(half) / half if abs(half) > 1e-4 else 1 - half * half / 6)
+        chord = distance * (sin(half) / half if abs(half) > SMALL else 1 - half * half / 6)
         direction = self.yaw + half
         self.x += chord * cos(direction)
         self.y += chord * sin(direction)

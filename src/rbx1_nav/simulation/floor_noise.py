@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from math import log
 import random
-from typing import NamedTuple
+from typing import Iterator, NamedTuple
 
 from rbx1_nav.base.surfaces import CELL_TRAVELLED, CELL_TURNED, Surface
 
@@ -61,9 +61,7 @@ class Roughness:
     """The motion errors of one run as a function of the wheel travel."""
 
     def __init__(self, surface: Surface, seed: int) -> None:
-        # one generator each: with a shared one, the length of the steps would determine which noise draws next
-        self.turning, self.heading, self.distance = (
-            Noise(getattr(surface, key), kind.cell, random.Random(f'{key} {seed}')) for key, kind in KINDS.items())
+        self.turning, self.heading, self.distance = draw_noises(surface, seed)
 
     def over(self, straight: float, turn: float) -> tuple[float, float]:
         """Return the errors of distance (m) and angle (rad) while the wheels travel `straight` (m) and `turn` (rad)."""
@@ -75,6 +73,18 @@ class Roughness:
         return distance, angle
 
 
+def draw_noises(surface: Surface, seed: int) -> Iterator[Noise]:
+    """Yield the Noise of each of NOISES in a run."""
+    for key, kind in KINDS.items():
+        # one generator each: with a shared one, the length of the steps would determine which noise draws next
+        yield Noise(getattr(surface, key), kind.cell, random.Random(f'{key} {seed}'))
+
+
+def is_rough(surface: Surface) -> bool:
+    """Return whether a Surface has noise."""
+    return any(getattr(surface, key) for key in NOISES)
+
+
 def make_roughness(surface: Surface, seed: int) -> Roughness | None:
     """Return the Roughness of a Surface, or None if the surface has no noise."""
-    return Roughness(surface, seed) if any(getattr(surface, key) for key in NOISES) else None
+    return Roughness(surface, seed) if is_rough(surface) else None

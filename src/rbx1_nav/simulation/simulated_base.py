@@ -9,20 +9,22 @@ from rbx1_nav.base.kinematics import ORIGIN, Odometry
 from rbx1_nav.base.readings import Reading
 from rbx1_nav.base.surfaces import Surface
 from rbx1_nav.base.units import SECOND
-from rbx1_nav.simulation.floor_noise import make_roughness
+from rbx1_nav.simulation.floor import Floor, make_floor
 from rbx1_nav.simulation.gyro import AnyGyro, Gyro, IdealGyro
-from rbx1_nav.simulation.slip import draw_run
 from rbx1_nav.simulation.wheels import AnyWheels, IdealWheels, Wheels
 
 MAX_SPEED_WINDOW = 0.1  # s: the longest time over which encoder counts are averaged to report a speed
 
 
-def make_base(robot: Robot, surface: Surface | None, seed: int) -> SimulatedBase:
+def make_base(robot: Robot, surface: Surface | None, seed: int, floor: Floor | None = None) -> SimulatedBase:
     """Return the SimulatedBase of a Robot on a Surface (None: ideal).
 
-    seed: an integer that determines the random errors of the run.
+    seed: an integer that determines the random errors of the run; floor: in place of the seed's, for many runs, whose
+    gyros are not simulated.
     """
-    wheels, gyro = make_wheels_and_gyro(robot.base_width, surface, seed, min(1 / robot.rate, MAX_SPEED_WINDOW))
+    window = min(1 / robot.rate, MAX_SPEED_WINDOW)
+    wheels, gyro = ((Wheels(robot.base_width, floor, window), IdealGyro()) if floor
+                    else make_wheels_and_gyro(robot.base_width, surface, seed, window))
     return SimulatedBase(wheels, CommandGate(robot.limits, robot.timeout), gyro)
 
 
@@ -34,8 +36,8 @@ def make_wheels_and_gyro(base_width: float, surface: Surface | None, seed: int,
     """
     if surface is None:
         return IdealWheels(base_width), IdealGyro()
-    run = draw_run(surface, seed)
-    return Wheels(base_width, surface, run, window, make_roughness(surface, seed)), Gyro(surface, run, seed)
+    floor = make_floor(surface, seed)
+    return Wheels(base_width, floor, window), Gyro(surface, floor.run, seed)
 
 
 class SimulatedBase:

@@ -1,4 +1,4 @@
-"""Simulated wheels: how they follow commands, what their encoders count, and how they move the robot."""
+"""Simulated wheels: how they follow commands, and what their encoders count."""
 from __future__ import annotations
 
 from math import floor, hypot
@@ -6,10 +6,8 @@ from typing import Union
 
 from rbx1_nav.base.kinematics import ORIGIN, Odometry
 from rbx1_nav.base.readings import MEASURED, OdometryErrors, Uncertainty
-from rbx1_nav.base.surfaces import Surface
-from rbx1_nav.simulation.floor_noise import Roughness
+from rbx1_nav.simulation.floor import Floor
 from rbx1_nav.simulation.motors import Delay, Motor
-from rbx1_nav.simulation.slip import RandomErrors, floor_travel
 
 
 class Encoder:
@@ -62,21 +60,21 @@ class IdealWheels:
 
 
 class Wheels:
-    """Two wheels with delay, inertia, drag and slip on a nonuniform floor, and encoders that count whole ticks.
+    """Two wheels with delay, inertia and drag on a floor, and encoders that count whole ticks.
 
     The two motors are identical, so their common motion (straight) and their opposite motion (turning) are independent.
-    Each of these motions has its own drag and slip.
+    Each of these motions has its own drag.
     """
 
-    def __init__(self, base_width: float, surface: Surface, run: RandomErrors, window: float,
-                 roughness: Roughness | None = None) -> None:
-        """run: the errors drawn from the surface; window: s, the time over which encoder counts are averaged to report
-        a speed."""
+    def __init__(self, base_width: float, floor: Floor, window: float) -> None:
+        """floor: in one run or in many; window: s, the time over which encoder counts are averaged to report a speed.
+        """
+        surface = floor.surface
         self.window = window
         self.base_width = base_width
         self.surface = surface
-        self.run = run
-        self.roughness = roughness
+        self.floor = floor
+        self.truth = floor.truth
         self.noise = OdometryErrors(surface.distance_noise, surface.heading_noise_turning,
                                     surface.heading_noise_straight)
         self.delay = Delay(surface.delay) if surface.delay else None
@@ -84,7 +82,6 @@ class Wheels:
         self.turning = Motor(surface.lag, surface.accel_limit, surface.drag_turning)
         self.left = Encoder(surface.ticks_meter)
         self.right = Encoder(surface.ticks_meter)
-        self.truth = Odometry(base_width)
         self.reset()
 
     def reset(self) -> None:
@@ -109,12 +106,7 @@ class Wheels:
             straight = self.straight.travel(linear, duration)
             turning = self.turning.travel(angular * self.base_width / 2, duration)
         self._rolling = bool(straight or turning or self.straight.speed or self.turning.speed)
-        turn = 2 * turning / self.base_width
-        distance, angle = floor_travel(self.surface, self.run, straight, turn)
-        if self.roughness:
-            further, more = self.roughness.over(straight, turn)
-            distance, angle = distance + further, angle + more
-        self.truth.move(distance, angle)
+        self.floor.move(straight, 2 * turning / self.base_width)
         left, right = self.left.count(straight - turning), self.right.count(straight + turning)
         self._update_velocity(left, right, duration)
         return left, right
@@ -125,7 +117,7 @@ class Wheels:
 
     def true_velocity(self, *_: float) -> tuple[float, float]:
         """Return the motors' speeds minus slip, whatever is commanded."""
-        return floor_travel(self.surface, self.run, self.straight.speed, 2 * self.turning.speed / self.base_width)
+        return self.floor.slipped(self.straight.speed, 2 * self.turning.speed / self.base_width)
 
     @property
     def at_rest(self) -> bool:

@@ -16,7 +16,7 @@ PROMISE = ('complete chunks or none, one line with the number of missing runs, a
 FULL, SHORT = 49, 7
 ROOT = ALONE = False
 
-COMMAND = ['--surface', 'low_ply_carpet', '--method', 'timed', '--runs', '1000', '--set', 'linear_speed=0.2,0.4']
+COMMAND = ['--surface', 'low_ply_carpet', '--method', 'timed', '--runs', '20000', '--set', 'linear_speed=0.2,0.4']
 FILE = 'runs.csv'
 LONGEST = 3.0       # s of wall time that the command takes on two cores, roughly
 
@@ -84,7 +84,7 @@ class Faults:
         # a signal before the command line was read leaves nothing to report
         assert 'Traceback' not in errors and len(lines) <= 1, errors[-1500:]
         if says and os.path.exists(f'{FILE}.json') and size > 1000:
-            assert lines and f'{FILE} lacks ' in lines[0] and ' of 2000 runs' in lines[0], errors[-1500:]
+            assert lines and f'{FILE} lacks ' in lines[0] and ' of 40000 runs' in lines[0], errors[-1500:]
         self.row.figure('rows when it was interrupted', self.content[:size].count(b'\n'))
 
     def sleep(self):

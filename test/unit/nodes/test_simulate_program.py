@@ -2,10 +2,12 @@
 from concurrent.futures.process import BrokenProcessPool
 import csv
 import os
+import re
 import signal
 
 import pytest
 
+from rbx1_nav.extras.many_runs import sweep
 from rbx1_nav.extras.many_runs.sweep import Sweep
 from loaded_nodes import ROOT, load, run_program
 
@@ -44,6 +46,17 @@ def test_pictures_and_a_file_of_the_robot(simulate, tmp_path):
     assert os.path.getsize('ends.png') and os.path.getsize('run.gif') and '/odom_ekf' not in out
     assert out.splitlines()[-2:] == ['Picture: ends.png', 'Animation: run.gif']
     assert out.startswith('1 run of each method on ideal, goal_distance 0.2, seed 2147483647.')
+
+
+def test_without_a_terminal_lines_show_rate_and_time_left(simulate, monkeypatch):
+    monkeypatch.setattr(sweep, 'MOMENT', 0.0)       # any command is long
+    monkeypatch.setattr(sweep, 'REPORT', 0.0)
+    command = '--runs', '2', '--method', 'odom', '--method', 'timed', '--surface', 'ideal', '--output', 'runs.csv'
+    assert simulate(*command)[0] == 0
+    with open('runs.csv', 'r+') as file:
+        file.truncate(len(''.join(file.readlines()[:3])))       # two of four runs
+    status, _, err = simulate(*command)
+    assert status == 0 and re.fullmatch(r'timed: 100% 4/4 \[00:00<00:00, +[0-9.]+run/s\]\n', err), err
 
 
 @pytest.mark.parametrize('arguments, status, text', [

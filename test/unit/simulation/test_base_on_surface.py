@@ -9,6 +9,7 @@ from rbx1_nav.base.command_gate import CommandGate
 from rbx1_nav.base.description import Limits
 from rbx1_nav.base.kinematics import ORIGIN
 from rbx1_nav.base.units import SECOND
+from rbx1_nav.simulation.floor import Floor
 from rbx1_nav.simulation.gyro import IdealGyro
 from rbx1_nav.simulation.simulated_base import SimulatedBase
 from rbx1_nav.simulation.wheels import Wheels
@@ -18,7 +19,7 @@ WIDTH = 0.26
 
 
 def make_base(timeout=1.0):
-    return SimulatedBase(Wheels(WIDTH, SURFACE, RUN, 0.02), CommandGate(Limits(10, 10), round(timeout * SECOND)),
+    return SimulatedBase(Wheels(WIDTH, Floor(SURFACE, RUN), 0.02), CommandGate(Limits(10, 10), round(timeout * SECOND)),
                          IdealGyro())
 
 

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from rbx1_nav.simulation.floor import Floor
 from rbx1_nav.simulation.motors import Delay
 from rbx1_nav.simulation.wheels import Wheels
 from sample_surface import RUN, SURFACE
@@ -50,7 +51,7 @@ def test_what_is_passed_on_is_what_came_in_a_delay_earlier(delay, commands):
 
 
 def test_wheels_start_and_stop_a_delay_later_and_travel_as_far():
-    late, punctual = Wheels(WIDTH, LATE, RUN, 0.02), Wheels(WIDTH, SURFACE, RUN, 0.02)
+    late, punctual = Wheels(WIDTH, Floor(LATE, RUN), 0.02), Wheels(WIDTH, Floor(SURFACE, RUN), 0.02)
     late.travel(0.2, 0.0, DELAY)
     assert late.truth.pose.x == 0 and not late.at_rest
     late.travel(0.2, 0.0, 2.0 - DELAY)

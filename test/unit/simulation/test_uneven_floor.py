@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from rbx1_nav.simulation.floor import Floor
 from rbx1_nav.simulation.floor_noise import make_roughness
 from rbx1_nav.simulation.slip import RandomErrors
 from rbx1_nav.simulation.wheels import Wheels
@@ -23,7 +24,7 @@ speeds = st.floats(-1, 1)
 
 
 def make_wheels(surface, seed=0):
-    return Wheels(WIDTH, surface, NO_SLIP, 0.02, make_roughness(surface, seed))
+    return Wheels(WIDTH, Floor(surface, NO_SLIP, make_roughness(surface, seed)), 0.02)
 
 
 def counted(wheels):

@@ -5,6 +5,7 @@ import pytest
 
 from rbx1_nav.base.kinematics import ORIGIN
 from rbx1_nav.base.readings import MEASURED
+from rbx1_nav.simulation.floor import Floor
 from rbx1_nav.simulation.slip import RandomErrors
 from rbx1_nav.simulation.wheels import IdealWheels, Wheels
 from sample_surface import RUN, SURFACE
@@ -32,7 +33,7 @@ def drive(wheels, *commands):
 @pytest.mark.parametrize('commands', [[(0.0, 0.0)], [(0.2, 0.0)], [(0.0, -1.0)], [(0.2, 0.5)],
                                       [(0.2, 0.0), (-0.3, 0.0)], [(0.1, 1.0), (-0.1, -1.0), (0.3, 0.0)]])
 def test_the_variances_of_the_pose_are_those_of_the_slip_and_of_a_tick(commands):
-    wheels = Wheels(WIDTH, SURFACE, RUN, WINDOW)
+    wheels = Wheels(WIDTH, Floor(SURFACE, RUN), WINDOW)
     path, turned = drive(wheels, *commands)
     # slip of 2 % with a spread of 1 %, and of 3 % with a spread of 1 % in turns; the heading shifts the whole path
     straight, yaw = 0.02 ** 2 + 0.01 ** 2, (0.03 ** 2 + 0.01 ** 2) * turned ** 2
@@ -41,8 +42,8 @@ def test_the_variances_of_the_pose_are_those_of_the_slip_and_of_a_tick(commands)
 
 
 def test_the_variances_of_the_pose_are_those_of_the_noise():
-    wheels = Wheels(WIDTH, FLAT._replace(distance_noise=0.03, heading_noise_turning=0.1, heading_noise_straight=0.2),
-                    NO_SLIP, WINDOW)
+    noisy = FLAT._replace(distance_noise=0.03, heading_noise_turning=0.1, heading_noise_straight=0.2)
+    wheels = Wheels(WIDTH, Floor(noisy, NO_SLIP), WINDOW)
     path, turned = drive(wheels, (0.2, 0.5), (-0.1, 0.7))
     yaw = 0.1 ** 2 * turned + 0.2 ** 2 * path
     assert wheels.uncertainty.position == pytest.approx(TICK ** 2 + 0.03 ** 2 * path + yaw * path ** 2)
@@ -51,7 +52,7 @@ def test_the_variances_of_the_pose_are_those_of_the_noise():
 
 @pytest.mark.parametrize('window', [0.02, 0.1])
 def test_the_variances_of_the_speeds_are_those_of_whole_ticks(window):
-    wheels = Wheels(WIDTH, FLAT, NO_SLIP, window)
+    wheels = Wheels(WIDTH, Floor(FLAT, NO_SLIP), window)
     drive(wheels, (0.2, 0.5))
     # the count of a wheel has two rounding errors of 1/12 tick^2; the mean of two wheels has half of this variance, and
     # their difference twice this variance
@@ -63,7 +64,7 @@ def test_the_variances_of_the_speeds_are_those_of_whole_ticks(window):
 @pytest.mark.parametrize('command', [(-0.2, -0.5), (0.2, 0.0), (0.0, 0.5)])
 def test_the_variances_of_the_speeds_grow_with_the_noise_in_both_directions(command):
     rough = FLAT._replace(distance_noise=0.03, heading_noise_turning=0.1, heading_noise_straight=0.2)
-    more, less = (Wheels(WIDTH, surface, NO_SLIP, WINDOW) for surface in (rough, FLAT))
+    more, less = (Wheels(WIDTH, Floor(surface, NO_SLIP), WINDOW) for surface in (rough, FLAT))
     for wheels in more, less:
         drive(wheels, command)
     linear, angular = map(abs, more.velocity())
@@ -75,7 +76,7 @@ def test_the_variances_of_the_speeds_grow_with_the_noise_in_both_directions(comm
 @pytest.mark.parametrize('step, steps', [(0.02, 1), (0.016, 1), (0.014, 2), (0.008, 2), (0.007, 3)])
 def test_a_speed_is_reported_after_about_a_window(step, steps):
     """Steps differ slightly from their nominal length, so three quarters of a window are enough."""
-    wheels, reported = Wheels(WIDTH, SURFACE._replace(ticks_meter=1e6), RUN, WINDOW), []
+    wheels, reported = Wheels(WIDTH, Floor(SURFACE._replace(ticks_meter=1e6), RUN), WINDOW), []
     while not any(wheels.velocity()):
         wheels.travel(0.5, 1.0, step)
         reported.append(wheels.velocity())
@@ -88,7 +89,7 @@ def test_a_speed_is_reported_after_about_a_window(step, steps):
 
 def test_after_a_reset_wheels_are_like_new_ones():
     surface = SURFACE._replace(delay=0.05)
-    used, new = (Wheels(WIDTH, surface, RUN, WINDOW) for _ in range(2))
+    used, new = (Wheels(WIDTH, Floor(surface, RUN), WINDOW) for _ in range(2))
     for _ in range(51):     # an odd number of steps that are shorter than the window
         used.travel(0.4, 1.0, 0.014)
     used.reset()

@@ -15,7 +15,7 @@ from scipy.stats import chi2, f as f_distribution
 
 from rbx1_nav.base.kinematics import Pose
 from rbx1_nav.base.surfaces import Surface
-from rbx1_nav.extras.fitting.floor_fit import MEANS, Fitter
+from rbx1_nav.extras.fitting.floor_fit import MEANS, Fitter, uncertainty
 from rbx1_nav.extras.fitting.prediction import SPREADS, with_values
 from rbx1_nav.extras.fitting.run import PreparedRun, Windows
 from rbx1_nav.node.config import ConfigError, Section, load_yaml, show, show_name
@@ -95,7 +95,7 @@ def fit_ends(runs: Sequence[PreparedRun], surface: Surface, end_errors: Sequence
             factor = fit_factor(fitter, surface, start, means)
             surface = scaled(surface, start, factor)
         errors: dict[str, float] = dict(zip(means, numpy.sqrt(numpy.diag(covariance))))
-        unknown = [key for key in means if not errors[key] <= MEANS[key][1]]
+        unknown = [key for key in means if not uncertainty(getattr(surface, key), errors[key], MEANS[key][1]) <= 1]
         if not unknown:
             break
         worst = max(unknown, key=lambda key: errors[key])
@@ -110,13 +110,13 @@ def fit_ends(runs: Sequence[PreparedRun], surface: Surface, end_errors: Sequence
         values[key] = min(1.0, wider * getattr(surface, key))
     for key, mean in spreads.items():
         values[key] = float(min(0.5, wider * numpy.hypot(getattr(surface, key), errors.get(mean, 0.0))))
-    relative = (1 / (2 * degrees)) ** 0.5
-    found = {key: float(values[key] * relative) for key in (*NOISES, *spreads) if values[key]}
-    notes = [f'The noises and spreads of the starting surface are multiplied by {factor:.2f}, one common factor fitted '
-             f'to {len(runs)} end poses, and by {wider:.2f} because {3 * len(runs)} values are few: the 90 % region '
-             "should contain 90 % of the end poses of future runs (Student's t distribution). The spreads also contain "
-             'the standard errors of the mean slips.']
-    return EndsFit({key: float(value) for key, value in values.items()}, {**errors, **found}, reasons, notes)
+    reasons.update((key, 'multiplied by the common factor') for key in (*NOISES, *spreads) if values[key])
+    notes = [f'The noises and spreads of the starting surface are multiplied by {factor:.2f} +- '
+             f'{factor / (2 * degrees) ** 0.5:.2f}, one common factor fitted to {len(runs)} end poses, and by '
+             f'{wider:.2f} because {3 * len(runs)} values are few: the 90 % region should contain 90 % of the end '
+             "poses of future runs (Student's t distribution). The spreads also contain the standard errors of the "
+             'mean slips.']
+    return EndsFit({key: float(value) for key, value in values.items()}, errors, reasons, notes)
 
 
 def ends_of(run: PreparedRun, surface: Surface) -> Windows:

@@ -22,6 +22,7 @@ MEANS = {'delay': (0.01, 0.1), 'lag': (0.01, 0.1), 'slip_straight': (1e-3, 0.05)
          'drag_turning': (1e-4, 0.01)}
 BOUNDS = {**{key: KEYS[key].limits for key in MEANS}, 'lag': (1e-3, 60.0)}
 ROUNDS = 3
+RELATIVE = 1 / 3    # largest standard error of an accepted value, in units of the value, if this is more
 VAGUE_MEAN = 100    # prior 1 sigma of a value, in units of its largest standard error
 VAGUE = 0.5     # 1 sigma of the logarithm of a strength above which the strength may be 0
 MIN_STRENGTH, MAX_STRENGTH = 1e-4, 1.0      # of a noise or a spread; the minimum counts as 0
@@ -69,6 +70,15 @@ class Fitter:
         result = least_squares(residuals, start, jacobian, numpy.transpose([BOUNDS[key] for key in keys]),
                                x_scale=[MEANS[key][1] for key in keys], xtol=1e-4, ftol=1e-6)
         return result.x, numpy.linalg.inv(result.jac.T @ result.jac + vague(keys))
+
+    def mean_errors(self, surface: Surface, keys: Sequence[str]) -> dict[str, float]:
+        """Return the standard errors of keys of MEANS that the runs allow, if the Surface is right."""
+        information = vague(keys)
+        for prediction, slopes in zip(self.predictions(surface), self.slopes(surface, keys)):
+            covariance = Covariance(surface, prediction.sensitivities(self.by_cells), self.floor)
+            white = numpy.stack([covariance.whitened(column) for column in numpy.moveaxis(slopes, 2, 0)])
+            information = information + white @ white.T
+        return dict(zip(keys, numpy.sqrt(numpy.diag(numpy.linalg.inv(information))).tolist()))
 
     def slopes(self, surface: Surface, keys: Sequence[str]) -> list[Array]:
         """Return the derivatives of all end poses with respect to keys of MEANS: for each run an array (n, 3, keys)."""
@@ -142,6 +152,12 @@ class Fitter:
         for index in numpy.flatnonzero(unclear):
             errors[index] = upper_error(cost, result, index)
         return values, errors
+
+
+def uncertainty(value: float, error: float, largest: float) -> float:
+    """Return how uncertain a value is: above 1, its standard error is too large. largest: an error that is never too
+    large, in the unit of the value."""
+    return error / max(largest, RELATIVE * abs(value))
 
 
 def vague(keys: Sequence[str]) -> Array:

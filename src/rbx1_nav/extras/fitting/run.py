@@ -3,6 +3,7 @@ pose is known.
 """
 from __future__ import annotations
 
+from copy import copy
 from typing import NamedTuple
 
 import numpy
@@ -84,6 +85,12 @@ class PreparedRun:
             last += ROLL_OUT    # the robot coasts to its end pose
         self.times = grid(max(first, first if start is None else start), min(last, last if end is None else end))
         self._steps: dict[tuple[float, ...] | None, Steps] = {}
+
+    def commanded(self) -> PreparedRun:
+        """Return this run without its odometry, with the same times."""
+        other = copy(self)
+        other.recording, other._steps = self.recording._replace(odometry=None), {}
+        return other
 
     def steps(self, surface: Surface) -> Steps:
         """Return the Steps from the odometry, or without odometry from the commands on a Surface."""

@@ -8,9 +8,9 @@ import numpy
 
 from rbx1_nav.base.surfaces import KEYS, Surface
 from rbx1_nav.extras.fitting.end_poses import TYPICAL, fit_ends
-from rbx1_nav.extras.fitting.floor_fit import BOUNDS, MEANS, MIN_STRENGTH, Fitter, fit_floor
+from rbx1_nav.extras.fitting.floor_fit import BOUNDS, MEANS, MIN_STRENGTH, Fitter, fit_floor, uncertainty
 from rbx1_nav.extras.fitting.gyro_fit import fit_gyro, rests_at
-from rbx1_nav.extras.fitting.motor_fit import LIMITS, fit_motors
+from rbx1_nav.extras.fitting.motor_fit import LIMITS, differing, fit_motors
 from rbx1_nav.extras.fitting.prediction import SPREADS, with_values
 from rbx1_nav.extras.fitting.recording import CAMERAS, Recording
 from rbx1_nav.extras.fitting.run import MOTORS, PreparedRun
@@ -26,7 +26,7 @@ CLEARLY_WIDER = 2.0
 MIN_RUNS = 3        # number of runs required for a spread from run to run
 LARGEST = {'accel_limit': 0.3, 'lag': 0.1, 'gyro_noise': 0.02, 'gyro_bias': 0.02, 'gyro_scale_error': 0.01,
            **{key: error for key, (_, error) in MEANS.items()},
-           **dict.fromkeys(NOISES, 0.05), **dict.fromkeys(SPREADS, 0.02)}  # largest standard error of an accepted value
+           **dict.fromkeys(NOISES, 0.05), **dict.fromkeys(SPREADS, 0.02)}  # see uncertainty()
 POOR = 0.1          # fraction of the travel, rms, that the motor model may leave unexplained; but always at least
 POOR_TRAVEL = 0.002     # m
 
@@ -90,7 +90,7 @@ class WholeFit:
     def _set(self, key: str, value: float, error: float, bounds: tuple[float, float] | None = None) -> bool:
         """Accept a fitted value unless its standard error is too large. Returns whether it was accepted."""
         low, high = bounds or KEYS[key].limits
-        if not error <= LARGEST[key]:
+        if not uncertainty(value, error, LARGEST[key]) <= 1:
             self.reasons[key] = f'found {value:.3g} +- {error:.2g}: too uncertain'
             return False
         if bounds and (value <= low * 1.001 + 1e-9 or value >= high * 0.999) and low != 0:
@@ -106,6 +106,7 @@ class WholeFit:
 
     def _fit_motors(self) -> None:
         fit = fit_motors(self.start, self.base_width, self.recordings)
+        self.warnings += differing(fit, self.start, self.base_width, self.recordings)
         for key in MOTORS:
             if key not in fit.unused:
                 self._set(key, fit.values[key], fit.errors[key], LIMITS[key])
@@ -161,14 +162,21 @@ class WholeFit:
         """Fit the keys that the runs determine. Returns (Surface, {key: standard error}). The other keys keep their
         current values."""
         prior = start
+        # rounding to whole ticks looks like turns in the odometry, but not in the commands
+        commanded = Fitter([run.commanded() for run in fitter.runs], fitter.windows, RESOLUTION, fitter.by_cells)
         while True:
             surface, errors = fit_floor(fitter, start, means, noises, prior)
-            unknown = [key for key in (*means, *noises) if not errors[key] <= LARGEST[key]]
-            if not unknown:
-                break
+            commanded.measured, commanded.wider = fitter.measured, fitter.wider
+            by_commands = commanded.mean_errors(surface, means)
+            unsure = {key: uncertainty(getattr(surface, key), max(errors[key], by_commands.get(key, 0.0)), LARGEST[key])
+                      for key in (*means, *noises)}
             # drop the worst first: without it, the others may be determined
-            worst = max(unknown, key=lambda key: errors[key] / LARGEST[key])
+            worst = max(unsure, key=lambda key: unsure[key])
+            if unsure[worst] <= 1:
+                break
             self.reasons[worst] = f'found {getattr(surface, worst):.3g} +- {errors[worst]:.2g}: too uncertain'
+            if uncertainty(getattr(surface, worst), errors[worst], LARGEST[worst]) <= 1:
+                self.reasons[worst] = 'without effect on the end poses of these commands'
             start = with_values(surface, {worst: getattr(self.surface, worst)})
             means, noises = ([key for key in keys if key != worst] for keys in (means, noises))
             if not means and not noises:

@@ -4,16 +4,20 @@ from __future__ import annotations
 import itertools
 from typing import Iterator, Mapping, NamedTuple, Sequence, Tuple
 
+import numpy
 import yaml
 
 from rbx1_nav.base.description import Robot
-from rbx1_nav.base.kinematics import Pose
 from rbx1_nav.base.surfaces import KEYS, Surface
+from rbx1_nav.base.units import Array
 from rbx1_nav.exercise.legs import StuckError, out_and_back_by_odometry
+from rbx1_nav.exercise.methods import METHODS
 from rbx1_nav.extras.many_runs.simulated_run import PARAMETERS, SimulationResult, motions, simulate
 from rbx1_nav.extras.many_runs.summary import Summary
-from rbx1_nav.node.config import ConfigError, Section, show, show_name, suggestion
+from rbx1_nav.node.config import ConfigError, Section, YamlValue, show, show_name, suggestion
 from rbx1_nav.node.parameters import Parameter
+from rbx1_nav.simulation.floor import Floor
+from rbx1_nav.simulation.many_floors import ManyFloors
 
 # the results of a run: name and unit of each column of a file
 RESULTS = (*(f'{name}_{field}' for name in ('true', 'odometry', 'estimate')
@@ -21,8 +25,9 @@ RESULTS = (*(f'{name}_{field}' for name in ('true', 'odometry', 'estimate')
            *(f'covariance_{name}' for name in ('x_x (m^2)', 'x_y (m^2)', 'x_heading (m rad)', 'y_y (m^2)',
                                                'y_heading (m rad)', 'heading_heading (rad^2)')),
            'first_leg (m)', 'time (s)')
-CHUNK = 200     # runs that are computed and written together, at most
-CHUNKS = 100    # chunks of each method, at least
+CHUNK = 2000    # runs whose wheels are computed once, and which are written together, at most
+FILTERED = 200  # runs with a filter that are computed and written together, at most
+CHUNKS = 100    # chunks of a method with a filter, at least
 
 Row = Tuple[object, ...]    # the values of RESULTS; None without a filter
 
@@ -62,23 +67,32 @@ class Chunk(NamedTuple):
         return Case(self.method, robot, self.combination.surface, self.combination.parameters)
 
 
-def simulate_row(case: Case, seed: int) -> Row:
-    """Return the RESULTS of a run. Raises StuckError, which names the run."""
+def is_filtered(method: str) -> bool:
+    """Return whether a filter stops the motions of a method: its gyro, and so the seed, reaches the wheels."""
+    return METHODS[method].pose == 'estimate'
+
+
+def simulate_row(case: Case, seed: int, floor: Floor | None = None) -> Row:
+    """Return the RESULTS of a run. Raises StuckError, which names the run. floor: see simulate()."""
     try:
-        result = simulate(case.method, case.robot, case.surface, seed, parameters=case.parameters)
+        result = simulate(case.method, case.robot, case.surface, seed, parameters=case.parameters, floor=floor)
     except StuckError as error:
         raise StuckError(f'{case.method}, seed {seed}: {error}') from None
     end, covariance = result.end, result.covariance
     upper = [None if covariance is None else covariance[row][column]
              for row in range(3) for column in range(row, 3)]
     estimate = map(float, end.estimate) if end.estimate else (None,) * 3
-    return (*map(float, end.truth), *map(float, end.odometry), *estimate, *upper, float(result.first_leg), end.time)
+    return (*end.truth, *end.odometry, *estimate, *upper, result.first_leg, end.time)
 
 
 def simulate_rows(task: tuple[Case, Sequence[int]]) -> list[Row]:
     """Return the RESULTS of the runs of a Case with several seeds."""
     case, seeds = task
-    return [simulate_row(case, seed) for seed in seeds]
+    if is_filtered(case.method) or len(seeds) == 1:
+        return [simulate_row(case, seed) for seed in seeds]
+    # no seed reaches the wheels, so they are computed once, and all runs get stuck together
+    row = simulate_row(case, seeds[0], ManyFloors(case.surface, seeds) if case.surface else None)
+    return list(zip(*(numpy.full(len(seeds), value).tolist() for value in row)))
 
 
 def simulate_paths(task: tuple[Case, Sequence[int]]) -> list[SimulationResult]:
@@ -87,18 +101,28 @@ def simulate_paths(task: tuple[Case, Sequence[int]]) -> list[SimulationResult]:
     return [simulate(method, robot, surface, seed, keep=True, parameters=parameters) for seed in seeds]
 
 
-def add_row(summary: Summary, row: Row) -> None:
-    """Add the RESULTS of a run to a Summary."""
-    truth, odometry, estimate = (Pose(*row[first:first + 3]) for first in (0, 3, 6))    # type: ignore[arg-type]
-    summary.add(truth, odometry, None if estimate.x is None else estimate, row[-2])     # type: ignore[arg-type]
+def add_rows(summary: Summary, rows: Sequence[Row]) -> Array:
+    """Add the RESULTS of runs to a Summary, and return the true end poses (n, 3)."""
+    values: Array = numpy.array(rows, dtype=float)      # None becomes nan
+    truths, odometry, estimates = (values[:, first:first + 3] for first in (0, 3, 6))
+    summary.add(truths, odometry, None if rows[0][6] is None else estimates, values[:, -2])
+    return truths
 
 
 def chunks(combinations: Sequence[Combination], methods: Sequence[str], seeds: range) -> Iterator[Chunk]:
     """Yield the Chunks of a sweep, in the order of the file."""
-    size = max(1, min(CHUNK, len(seeds) // CHUNKS))
     for combination, method in itertools.product(combinations, methods):
+        size = max(1, min(FILTERED, len(seeds) // CHUNKS)) if is_filtered(method) else CHUNK
         for start in range(0, len(seeds), size):
             yield Chunk(combination, method, seeds[start:start + size], start + size >= len(seeds))
+
+
+def number_of(value: YamlValue) -> YamlValue:
+    """Return a value of YAML, whose texts include 1e9, as a number if possible."""
+    try:
+        return float(value) if isinstance(value, str) else value
+    except ValueError:
+        return value
 
 
 def read_sweep(texts: Sequence[str], declared: Sequence[Parameter]) -> dict[str, list[float]]:
@@ -117,7 +141,7 @@ def read_sweep(texts: Sequence[str], declared: Sequence[Parameter]) -> dict[str,
         values[key] = []
         for each in listed.split(','):
             try:
-                section = Section({key: yaml.safe_load(each or "''")}, '--set')
+                section = Section({key: number_of(yaml.safe_load(each or "''"))}, '--set')
             except yaml.YAMLError:
                 raise ConfigError(f'--set: {key}: {show(each)}: expected a number') from None
             declaration = KEYS.get(key)

@@ -45,22 +45,29 @@ class Place(NamedTuple):
 
 
 def versions() -> dict[str, str]:
-    """Return the version of all on which the results depend. The version of rbx1_nav is a digest of its code."""
+    """Return the version of all on which the results depend. The version of rbx1_nav is a digest of the code of a run.
+    """
     import numpy
     return {'Python': platform.python_version(), 'numpy': numpy.__version__, 'rbx1_nav': code_version()}
 
 
 def code_version() -> str:
-    """Return a digest of the code of this package."""
+    """Return a digest of the code on which the results of a run depend: all that it imports."""
     digest = hashlib.sha256()
-    folder = os.path.realpath(os.path.join(os.path.dirname(__file__), '..', '..'))
-    for path, folders, names in os.walk(folder):
-        folders.sort()
-        for name in sorted(names):
-            if name.endswith('.py'):
-                with open(os.path.join(path, name), 'rb') as file:
-                    digest.update(file.read())
+    folder = os.path.realpath(os.path.join(os.path.dirname(__file__), *[os.pardir] * 3))
+    needed = ['rbx1_nav.extras.many_runs.simulated_run', 'rbx1_nav.simulation.many_floors']
+    for module in needed:       # the list grows
+        with open(os.path.join(folder, *module.split('.')) + '.py', 'rb') as file:
+            text = file.read()
+        digest.update(text)
+        for name in re.findall(rb'^from (rbx1_nav\.[\w.]+) import', text, re.MULTILINE):
+            if name.decode() not in needed:
+                needed.append(name.decode())
     return digest.hexdigest()[:12]
+
+
+def differs(name: str, version: str, expected: str) -> str:
+    return f'{name} {version}: expected {expected}, as in the program that uses the cluster'
 
 
 def require(requirements: Requirements) -> None:
@@ -70,7 +77,7 @@ def require(requirements: Requirements) -> None:
     here = versions()
     for name, version in requirements.versions.items():
         if here[name] != version:
-            raise ConfigError(f'{name} {here[name]}: expected {version}, as in the program that uses the cluster')
+            raise ConfigError(differs(name, here[name], version))
     for case, seed, row in requirements.runs:
         if simulate_row(case, seed) != row:
             raise ConfigError(f'the {case.method} run with seed {seed} has another result there, although the '
@@ -115,11 +122,15 @@ def open_cluster(address: str, robot: Robot, surface: Surface | None) -> Iterato
         requirements = Requirements(versions(), list(sample_runs(robot, surface)))
         for worker in workers:
             try:
+                # first, because another Python cannot read the requirements
+                python = client.run(platform.python_version, workers=[worker])[worker]
+                if python != requirements.versions['Python']:
+                    raise ConfigError(differs('Python', python, requirements.versions['Python']))
                 client.run(require, requirements, workers=[worker])
             except OSError:     # it has just gone
                 pass
             except Exception as error:      # also what Dask makes of an ImportError
-                raise ConfigError(f'worker {worker}: {error}') from None
+                raise ConfigError(f'worker {worker}: {show_name(str(error))}') from None
         # a worker that joins later checks itself
         submit = partial(connected, client.get_executor(pure=False).submit, checked, requirements)
         yield Place(submit, lambda: sum(connected(client.nthreads).values()))

@@ -38,6 +38,7 @@ ODOMETRY = '#f21000'    # red
 ESTIMATE = '#00a64d'    # green
 
 PATHS = 20      # number of paths in a plot; more would hide each other
+SHOWN = 5000    # number of end poses of each method in a plot; more would be a spot without structure
 
 Extent = Tuple[float, float, float, float]    # xmin, xmax, ymin, ymax, m
 SIMULATED = ESTIMATE    # results of a model, as opposed to measurements
@@ -67,18 +68,20 @@ def draw(file: str, surface: str, results: Mapping[str, Sequence[SimulationResul
     panels = figure.subplots(2, len(results), squeeze=False)
     runs = (f'1 run (seed {seeds[0]})' if len(seeds) == 1
             else f'{len(seeds)} runs (seeds {seeds[0]} to {seeds[-1]})')
-    figure.suptitle(f'Out and back on {surface}, {runs}')
+    figure.suptitle(f'Out and back on {surface}, {runs}'
+                    + (f'; the end poses of the first {SHOWN}' if len(seeds) > SHOWN else ''))
     ends = {method: with_heading_errors(truths[method]) for method in results}
-    extent = square([poses[:, :2] for poses in ends.values()], 0.05, 0.6)
+    shown = [poses[:SHOWN] for poses in ends.values()]
+    extent = square([poses[:, :2] for poses in shown], 0.05, 0.6)
     floor = widened((-0.35, 1.25, -0.45, 0.85), [each for kept in results.values() for each in kept])
-    norm = common_norm(ends.values())
+    norm = common_norm(shown)
     for (above, below), method in zip(panels.T, results):
         draw_paths(above, results[method], floor)
         distances, errors = numpy.hypot(*ends[method].T[:2]), ends[method][:, 2]
         mean = 'mean ' if len(seeds) > 1 else ''
         above.set_title(f'{METHODS[method].title}: {mean}{100 * distances.mean():.1f} cm from the start, '
                         f'{errors.mean():.1f} degrees off', fontsize='medium')
-        points = draw_ends(below, ends[method], extent, norm)
+        points = draw_ends(below, ends[method][:SHOWN], extent, norm)
     if norm:
         figure.colorbar(points, ax=list(panels[1]), label='heading error (degrees)').solids.set(alpha=1)
     save(figure, file)
@@ -152,7 +155,7 @@ def draw_ends(axes: Axes, poses: Array, extent: Extent, norm: Normalize | None) 
     bar."""
     x, y, error = poses.T
     few = len(x) <= 500
-    style = dict(s=12 if few else 3, alpha=0.8 if few else 0.4, linewidths=0)
+    style = dict(s=30 if len(x) < 100 else 12 if few else 3, alpha=0.8 if few else 0.4, linewidths=0)
     color = dict(c=error, norm=norm) if norm else dict(color=TRUTH)
     points = axes.scatter(x, y, **style, **color)
     axes.plot(0, 0, marker='+', markersize=14, color='black')

@@ -17,6 +17,7 @@ from rbx1_nav.exercise.methods import METHODS
 from rbx1_nav.filter.combined_odometry import CombinedOdometry
 from rbx1_nav.filter.inputs import Imu, Odom
 from rbx1_nav.filter.priors import Priors, priors
+from rbx1_nav.simulation.floor import Floor
 from rbx1_nav.simulation.simulated_base import make_base
 
 # the tutorial's values, which are the nodes' defaults: m/s, m, rad/s, rad, Hz
@@ -66,10 +67,11 @@ class Simulation:
     """A robot, and a filter that receives its odometry and gyro readings."""
 
     def __init__(self, robot: Robot, surface: Surface | None, seed: int, filtered: bool, keep: bool,
-                 prior: Priors | None = None, listen: Listen | None = None, rate: float = EXERCISE['rate']) -> None:
-        """filtered: whether there is a filter; keep: whether to keep a Snapshot of each tick in `path`; prior, listen:
-        see simulate(); rate: ticks per second."""
-        self.base = make_base(robot, surface, seed)
+                 prior: Priors | None = None, listen: Listen | None = None, rate: float = EXERCISE['rate'],
+                 floor: Floor | None = None) -> None:
+        """filtered: whether there is a filter; keep: whether to keep a Snapshot of each tick in `path`; prior, listen,
+        floor: see simulate(); rate: ticks per second."""
+        self.base = make_base(robot, surface, seed, floor)
         self.filter = CombinedOdometry(prior or priors(surface), SECOND) if filtered else None
         self.listen = listen
         if filtered or listen:
@@ -130,16 +132,16 @@ class Simulation:
 
 def simulate(method: str, robot: Robot, surface: Surface | None, seed: int, filtered: bool = False, keep: bool = False,
              prior: Priors | None = None, listen: Listen | None = None,
-             parameters: Mapping[str, float] = PARAMETERS) -> SimulationResult:
+             parameters: Mapping[str, float] = PARAMETERS, floor: Floor | None = None) -> SimulationResult:
     """Run the exercise with one of METHODS, and return a SimulationResult. Raises StuckError.
 
     robot: a Robot; surface: a Surface, or None; seed: seed of the run's random errors; filtered: whether to run the
     filter, which always runs if its pose stops the motions; keep: whether to keep the path; prior: Priors of the
     filter, if they differ from the surface; listen(Snapshot, Messages): called at each tick; parameters: all PARAMETERS
-    with their values.
+    with their values; floor: in place of the seed's, for many runs without a filter, whose true poses are arrays.
     """
     filtered = filtered or METHODS[method].pose == 'estimate'
-    simulation = Simulation(robot, surface, seed, filtered, keep, prior, listen, parameters['rate'])
+    simulation = Simulation(robot, surface, seed, filtered, keep, prior, listen, parameters['rate'], floor)
     simulation.rest(CALIBRATION)
     distances = []
     for drive in _drives(simulation, method, parameters):

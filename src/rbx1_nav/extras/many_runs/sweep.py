@@ -1,7 +1,9 @@
-"""Computes all runs of a sweep that its file lacks, and shows the progress in a terminal."""
+"""Computes all runs of a sweep that its file lacks, and shows the progress."""
 from __future__ import annotations
 
 from array import array
+from math import inf
+import sys
 import time
 from typing import Iterator, NamedTuple, Sequence
 
@@ -9,10 +11,11 @@ import numpy
 from tqdm import tqdm
 
 from rbx1_nav.base.description import Robot
-from rbx1_nav.base.units import Array
+from rbx1_nav.base.surfaces import KEYS
+from rbx1_nav.base.units import SECOND, Array
 from rbx1_nav.extras.many_runs.cases import (
-    Chunk, Combination, Row, add_row, chunks, simulate_paths, simulate_row, simulate_rows)
-from rbx1_nav.extras.many_runs.cluster import Place, code_version
+    Chunk, Combination, Row, add_rows, chunks, simulate_paths, simulate_row, simulate_rows)
+from rbx1_nav.extras.many_runs.cluster import Place, versions
 from rbx1_nav.extras.many_runs.executor import in_order, open_place
 from rbx1_nav.extras.many_runs.runs_file import RunsFile
 from rbx1_nav.extras.many_runs.simulated_run import SimulationResult
@@ -20,6 +23,7 @@ from rbx1_nav.extras.many_runs.summary import HEADER, Summary
 from rbx1_nav.node.config import ConfigError
 
 MOMENT = 1.0    # s: shorter sweeps show no bar, and use one process
+REPORT = 10.0   # s between two lines about the progress, without a terminal
 
 
 class Finished(NamedTuple):
@@ -57,13 +61,19 @@ class Sweep:
 
     def open_file(self, path: str, keys: Sequence[str]) -> RunsFile:
         """Return the RunsFile of this sweep. keys: titles of the columns of its values. Raises ConfigError, OSError."""
+        first, robot = self.combinations[0], self.robot
+        swept = {key: list(dict.fromkeys(each.values[key] for each in self.combinations)) for key in first.values}
+        found = versions()
         return RunsFile(path, {
-            'rbx1_nav': code_version(), 'config': self.robot, 'method': self.methods, 'seed': self.seeds[0],
-            'runs': len(self.seeds),
-            **{key: list(dict.fromkeys(each.values[key] for each in self.combinations))
-               for key in self.combinations[0].values},
-            'surface': list(dict.fromkeys(each.surface_name for each in self.combinations)),
-            'values of the surface': {each.surface_name: each.surface for each in self.combinations}}, keys)
+            'rbx1_nav': found.pop('rbx1_nav'),
+            'config': {'base_width': robot.base_width, 'rate': robot.rate, 'timeout': robot.timeout / SECOND,
+                       **{f'max_{name}_speed': limit for name, limit in robot.limits._asdict().items()
+                          if limit < inf}},
+            'method': self.methods, 'seed': self.seeds[0], 'runs': len(self.seeds),
+            **{key: value for key, value in first.parameters.items() if key not in swept}, **swept,
+            'surface': {each.surface_name: each.surface and {
+                key: KEYS[key].from_si(getattr(each.surface, key)) for key in KEYS if key not in swept}
+                for each in self.combinations}}, keys, found)
 
     def run(self, jobs: int, scheduler: str | None, file: RunsFile | None = None, keep_truths: bool = False,
             paths: int = 0) -> Iterator[Finished]:
@@ -74,10 +84,9 @@ class Sweep:
         """
         summary, truths = Summary(), array('d')
         for place, chunk, rows in self._rows(jobs, scheduler, file):
-            for row in rows:
-                add_row(summary, row)
-                if keep_truths:
-                    truths.extend(row[:3])      # type: ignore[arg-type]
+            poses = add_rows(summary, rows)
+            if keep_truths:
+                truths.frombytes(poses.tobytes())
             self.done += len(rows)
             if chunk.is_last:
                 tasks = [(chunk.case(self.robot), [seed]) for seed in self.seeds[:paths]]
@@ -92,7 +101,7 @@ class Sweep:
         first = simulate_row(self.chunks[0].case(self.robot), self.seeds[0])
         long = (time.monotonic() - start) * self.total > MOMENT
         number = 0
-        for chunk, rows in file.read(self.chunks) if file else ():
+        for chunk, rows in file.read(self.chunks, self.robot) if file else ():
             if number == 0 and rows[0] != first:
                 raise ConfigError(f'{self.methods[0]}, seed {self.seeds[0]}: this computer has another result for the '
                                   'run: expected a file from one with an equal processor and equal libraries')
@@ -101,6 +110,7 @@ class Sweep:
         missing = self.chunks[number:]
         if not missing:
             return
+        before, begun, reported = self.done, time.monotonic(), 0.0
         with open_place(jobs if long else 1, scheduler, self.robot, self.chunks[0].combination.surface) as place, tqdm(
                 total=self.total, initial=self.done, unit='run', leave=False, disable=None if long else True) as bar:
             tasks = ((chunk.case(self.robot), chunk.seeds) for chunk in missing)
@@ -109,4 +119,12 @@ class Sweep:
                     file.append(chunk, rows)
                 bar.set_description(chunk.method, refresh=False)
                 bar.update(len(rows))
+                passed, done = time.monotonic() - begun, self.done + len(rows)
+                if bar.disable and passed > reported + REPORT:
+                    # the current rate: methods differ a lot
+                    print(tqdm.format_meter(done, self.total, passed, ncols=0, prefix=chunk.method, unit='run',
+                                            rate=(done - before) / (passed - reported)), file=sys.stderr, flush=True)
+                    reported, before = passed, done
                 yield place, chunk, rows
+        if file:
+            file.synchronize()

@@ -63,4 +63,4 @@ def test_on_a_surface_the_robot_rolls_out_slips_and_its_gyro_is_noisy():
     robot.run(2)
     counted = robot.read(19)['distance'] / 1000
     assert robot.pose.x > at_stop + 0.01
-    assert counted * (1 - robot.body.wheels.run.slip_straight) == pytest.approx(robot.pose.x, abs=1e-3)
+    assert counted * (1 - robot.body.wheels.floor.run.slip_straight) == pytest.approx(robot.pose.x, abs=1e-3)

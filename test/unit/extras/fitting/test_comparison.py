@@ -9,8 +9,8 @@ from rbx1_nav.extras.fitting.comparison import inner_share, mahalanobis, simulat
 from rbx1_nav.extras.fitting.prediction import SPREADS, Covariance, Prediction
 from rbx1_nav.extras.fitting.recording import Commands
 from rbx1_nav.extras.fitting.run import STEP, Windows, commanded_travel, grid
-from rbx1_nav.simulation.floor_noise import NOISES, make_roughness
-from rbx1_nav.simulation.slip import draw_run
+from rbx1_nav.simulation.floor import make_floor
+from rbx1_nav.simulation.floor_noise import NOISES
 from rbx1_nav.simulation.wheels import Wheels
 from sample_surface import SURFACE
 
@@ -34,7 +34,7 @@ def predict(surface, sequence):
 
 def drive(surface, sequence, seed):
     """Return the true poses of a simulated robot after each step."""
-    wheels = Wheels(WIDTH, surface, draw_run(surface, seed), 0.02, make_roughness(surface, seed))
+    wheels = Wheels(WIDTH, make_floor(surface, seed), 0.02)
     for linear, angular, duration in sequence:
         for _ in range(round(duration / STEP)):
             wheels.travel(linear, angular, STEP)

@@ -1,9 +1,11 @@
 """Delay, lag, acceleration limit and drag are fitted to commands and odometry."""
+import re
+
 from hypothesis import Phase, given, settings, strategies as st
 import numpy
 import pytest
 
-from rbx1_nav.extras.fitting.motor_fit import fit_motors, standard_errors
+from rbx1_nav.extras.fitting.motor_fit import differing, fit_motors, standard_errors
 from rbx1_nav.extras.fitting.run import MOTORS
 from sample_runs import DRIVE, EXERCISE, FLOOR, FORWARD, REST, record
 
@@ -35,6 +37,18 @@ def test_a_limit_that_is_never_reached_is_not_told():
     fit = fit_motors(START, 0.26, [record(EXERCISE, surface=surface)])
     assert 'accel_limit' in fit.unused
     assert fit.values['lag'] == pytest.approx(surface.lag, rel=0.02)
+
+
+def test_recordings_of_two_floors_are_named():
+    late, early = FLOOR._replace(delay=0.25), FLOOR._replace(delay=0.08)
+    recordings = [record(motions, seed, floor, f'{seed}.bag') for seed, (motions, floor) in enumerate(
+        [(DRIVE, late), (EXERCISE, early), (DRIVE, early), (EXERCISE, late)])]
+    text, = differing(fit_motors(START, 0.26, recordings), START, 0.26, recordings)
+    assert re.fullmatch(r'delay 0\.0[78]\d+ in 1\.bag, 2\.bag and 0\.2[45]\d* in 0\.bag, 3\.bag: expected recordings '
+                        'of one robot on one floor', text)
+    one = recordings[1:3]
+    assert differing(fit_motors(START, 0.26, one), START, 0.26, one) == []
+    assert differing(fit_motors(START, 0.26, one[:1]), START, 0.26, one[:1]) == []
 
 
 @pytest.mark.parametrize('limit', [1.4, 1.7, 2.0, 2.3])

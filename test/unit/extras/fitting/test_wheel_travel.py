@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from rbx1_nav.base.kinematics import Pose, arc
 from rbx1_nav.extras.fitting.recording import Commands, Track
 from rbx1_nav.extras.fitting.run import STEP, commanded_travel, grid, reported_travel
+from rbx1_nav.simulation.floor import Floor
 from rbx1_nav.simulation.wheels import Wheels
 from sample_surface import RUN, SURFACE
 
@@ -27,7 +28,7 @@ def test_the_travel_of_commands_is_that_of_the_simulated_wheels(parts, delay, st
     given_commands, end = series(parts, start)
     times = grid(start, end + 2.0)
     steps = commanded_travel(surface, WIDTH, given_commands, times)
-    wheels = Wheels(WIDTH, surface, RUN, 0.02)
+    wheels = Wheels(WIDTH, Floor(surface, RUN), 0.02)
     pieces = [*parts, (0.0, 0.0, 3.0)]
     straight, turn = [], []
     for length in numpy.diff(times):

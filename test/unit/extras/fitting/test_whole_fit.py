@@ -1,5 +1,6 @@
 """A fit to recordings: the values that are found, and the reasons for values that cannot be determined."""
 from math import radians
+import re
 
 import numpy
 import pytest
@@ -71,6 +72,21 @@ def test_runs_without_a_turn():
     assert values['slip_straight'].error
 
 
+def test_a_turning_loss_without_effect_on_the_exercise_is_not_fitted():
+    """Rounding to whole ticks looks like turns while driving, but the robot never turns while it drives."""
+    _, values = fit([record(EXERCISE, seed, FLOOR._replace(turning_loss=0.035)) for seed in range(3)])
+    assert values['turning_loss'] == ('turning_loss', START.turning_loss, None,
+                                      'without effect on the end poses of these commands')
+    assert values['slip_turning'].error
+
+
+def test_a_large_spread_may_have_a_large_error():
+    floor = FLOOR._replace(slip_turning_spread=0.12, heading_noise_turning=0.02)
+    _, values = fit([record(DRIVE, seed, floor) for seed in range(5)])
+    value = values['slip_turning_spread']
+    assert value.error > 0.02 and abs(value.value - 0.12) < 3 * value.error
+
+
 def test_runs_without_gyro_or_truth():
     _, values = fit([record(DRIVE)._replace(gyro=None, truth=None)])
     for key in 'gyro_noise', 'gyro_bias', 'gyro_scale_error':
@@ -96,7 +112,10 @@ def test_ends_tell_slips_and_one_factor():
     assert abs(values['slip_turning'].value - FLOOR.slip_turning) < 3 * values['slip_turning'].error
     # the spread contains the uncertainty of the mean after three runs
     assert values['slip_turning_spread'].value > values['slip_turning'].error
-    assert values['heading_noise_turning'].error and values['curvature'].error is None
+    # each noise has the error of the common factor, which is given once
+    assert values['heading_noise_turning'][2:] == (None, 'multiplied by the common factor')
+    assert re.match('The noises .* are multiplied by [0-9.]+ [+]- [0-9.]+, one common factor ', result.notes[0])
+    assert values['curvature'].error is None
     assert "Student's t distribution" in result.notes[0]
 
 

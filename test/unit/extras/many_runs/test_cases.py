@@ -1,10 +1,11 @@
 """The values of a sweep, their combinations, and the row of a run."""
 import os
 
+import numpy
 import pytest
 
 from rbx1_nav.base.description import Limits, load_robot
-from rbx1_nav.extras.many_runs.cases import RESULTS, Case, add_row, chunks, combine, read_sweep, simulate_row, units
+from rbx1_nav.extras.many_runs.cases import RESULTS, Case, add_rows, chunks, combine, read_sweep, simulate_row, units
 from rbx1_nav.extras.many_runs.simulated_run import PARAMETERS, simulate
 from rbx1_nav.extras.many_runs.summary import Summary
 from rbx1_nav.extras.many_runs.sweep import Sweep
@@ -35,12 +36,17 @@ def test_all_combinations_of_surfaces_and_values_the_last_one_fastest():
     (['lag'], "--set/lag: '': expected a number from 0.0001 to 60 in s"),
     (['lag=1,,2'], "--set/lag: '': expected"), (['lag=1', 'lag=2'], '--set: lag: given twice'),
     (['lag=1,1.0'], '--set: lag: 1: given twice'), (['lag=[1'], r"--set: lag: '\[1': expected a number"),
-    (['lag=1e-2'], "--set/lag: '1e-2' .text to YAML: write 1.0e-2"),
+    (['lag=1e9x'], "--set/lag: '1e9x': expected"), (['lag=1e9'], '--set/lag: 1000000000.0: expected .* to 60 in s'),
     (['rate=1'], '--set/rate: 1: expected .* 2 to 1000'),
     (['slip_turning=0.6'], '--set/slip_turning: 0.6: expected a fraction from -0.5 to 0.5')])
 def test_an_invalid_value_is_named(texts, text):
     with pytest.raises(ConfigError, match=text):
         read_sweep(texts, DECLARED)
+
+
+def test_numbers_that_are_texts_to_yaml():
+    assert read_sweep(['goal_distance=1e5,2', 'lag=5e-2'], [number('goal_distance', 1.0, 'm', 'a distance')]) == {
+        'goal_distance': [1e5, 2.0], 'lag': [0.05]}
 
 
 def test_a_combination_that_cannot_be_driven_is_named_before_the_first_run():
@@ -61,10 +67,13 @@ def test_a_combination_that_is_too_fast_for_the_robot_is_named_before_the_first_
 
 
 def test_the_chunks_cover_each_run_once_in_the_order_of_the_file():
-    found = list(chunks(combine({'a': SURFACE, 'b': SURFACE}, {}), ['timed', 'odom'], range(5, 50005)))
+    found = list(chunks(combine({'a': SURFACE, 'b': SURFACE}, {}), ['timed', 'ekf'], range(5, 50005)))
     assert [(chunk.combination.surface_name, chunk.method) for chunk in found if chunk.is_last] == [
-        ('a', 'timed'), ('a', 'odom'), ('b', 'timed'), ('b', 'odom')]
-    assert [seed for chunk in found[:250] for seed in chunk.seeds] == list(range(5, 50005))
+        ('a', 'timed'), ('a', 'ekf'), ('b', 'timed'), ('b', 'ekf')]
+    # the wheels of a timed run are computed once for a chunk; a run with a filter takes long
+    assert [len(chunk.seeds) for chunk in found[:26]] == 25 * [2000] + [200]
+    assert [seed for chunk in found[:25] for seed in chunk.seeds] == list(range(5, 50005))
+    assert [seed for chunk in found[25:275] for seed in chunk.seeds] == list(range(5, 50005))
 
 
 @pytest.mark.parametrize('method', ['timed', 'ekf'])
@@ -80,6 +89,8 @@ def test_a_row_has_the_results_of_its_run(method):
     else:
         assert row['estimate_y (m)'] is row['covariance_x_x (m^2)'] is None
     found, expected = Summary(), Summary()
-    add_row(found, tuple(row.values()))
-    expected.add(run.end.truth, run.end.odometry, run.end.estimate, run.first_leg)
+    truths = add_rows(found, [tuple(row.values())])
+    assert truths.tolist() == [list(run.end.truth)]
+    expected.add(*(None if pose is None else numpy.array([pose])
+                   for pose in (run.end.truth, run.end.odometry, run.end.estimate)), numpy.array([run.first_leg]))
     assert found.lines(method) == expected.lines(method)

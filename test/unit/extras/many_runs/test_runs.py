@@ -47,8 +47,9 @@ def drawn(monkeypatch, tmp_path):
     figures = []
     monkeypatch.setattr(Figure, 'savefig', lambda figure, *_, **__: figures.append(figure))
 
-    def call(results):
-        draw(str(tmp_path / 'a.png'), 'test', results, range(3), {key: ends(each) for key, each in results.items()})
+    def call(results, seeds=range(3), truths=None):
+        draw(str(tmp_path / 'a.png'), 'test', results, seeds,
+             truths or {key: ends(each) for key, each in results.items()})
         return figures[-1]
     return call
 
@@ -60,6 +61,17 @@ def test_the_lower_row_has_one_scale_and_one_colour_bar(drawn):
     assert len(panels) == 4 and bar.get_ylabel() == 'heading error (degrees)'
     assert lower[0].get_xlim() == lower[1].get_xlim() and lower[0].get_ylim() == lower[1].get_ylim()
     assert lower[0].collections[0].norm is lower[1].collections[0].norm
+
+
+def test_a_picture_of_many_runs_has_few_points_and_the_mean_of_all(drawn):
+    truths = numpy.zeros((20000, 3))
+    truths[:, 0] = numpy.linspace(0, 1, 20000)
+    figure = drawn({'timed': NEAR}, range(7, 20007), {'timed': truths})
+    above, below = figure.axes[:2]
+    assert len(below.collections[0].get_offsets()) == 5000 and below.get_xlim()[1] < 0.3
+    assert above.get_title().startswith('timed: mean 50.0 cm from the start')
+    assert figure._suptitle.get_text().endswith('20000 runs (seeds 7 to 20006); the end poses of the first 5000')
+    assert figure.axes[1].collections[0].get_sizes() < drawn({'timed': FAR}).axes[1].collections[0].get_sizes()
 
 
 @contextmanager

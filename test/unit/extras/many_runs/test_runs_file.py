@@ -8,11 +8,13 @@ import signal
 import pytest
 
 from rbx1_nav.extras.many_runs.cases import RESULTS, chunks, combine
+from rbx1_nav.extras.many_runs import runs_file
 from rbx1_nav.extras.many_runs.runs_file import RunsFile
 from rbx1_nav.node.config import ConfigError
 
-COMMAND = {'runs': 250, 'lag': [0.1]}
-CHUNKS = list(chunks(combine({'ideal': None}, {}), ['timed', 'odom'], range(7, 257)))
+COMMAND = {'runs': 250, 'lag': [0.1], 'surface': {'a': {'delay': 0.2, 'lag': 0.3}}}
+VERSIONS = {'Python': '3.8.2'}
+CHUNKS = list(chunks(combine({'ideal': None}, {}), ['timed', 'ekf'], range(7, 257)))[1:]     # of 2 runs each
 
 
 def rows(chunk):
@@ -23,8 +25,8 @@ def rows(chunk):
 
 def write(path, number, command=None):
     """Continue a file until it has a number of chunks; return the number that it had."""
-    file = RunsFile(str(path), command or COMMAND, [])
-    before = list(file.read(CHUNKS))
+    file = RunsFile(str(path), command or COMMAND, [], VERSIONS)
+    before = list(file.read(CHUNKS, None))
     assert all(found == rows(chunk) for chunk, found in before)
     for chunk in CHUNKS[len(before):number]:
         file.append(chunk, rows(chunk))
@@ -33,12 +35,12 @@ def write(path, number, command=None):
 
 
 def test_a_file_that_is_continued_at_any_byte_is_equal_to_one_that_was_never_interrupted(tmp_path):
-    assert len(CHUNKS) == 250 and [len(chunk.seeds) for chunk in CHUNKS[:2]] == [2, 2]
+    assert len(CHUNKS) == 125 and [len(chunk.seeds) for chunk in CHUNKS[:2]] == [2, 2]
     whole = tmp_path / 'whole.csv'
     assert write(whole, len(CHUNKS)) == 0
     content = whole.read_bytes()
     header = content.index(b'\n') + 1
-    assert content[header:].startswith(b'timed,ideal,7,2.3333333333333335,') and content.count(b'\n') == 501
+    assert content[header:].startswith(b'ekf,ideal,7,2.3333333333333335,') and content.count(b'\n') == 251
     for size in (0, 10, header - 1, header, header + 5, header + 70, 2000, len(content) - 1, len(content)):
         part = tmp_path / f'{size}.csv'
         part.write_bytes(content[:size])
@@ -49,10 +51,11 @@ def test_a_file_that_is_continued_at_any_byte_is_equal_to_one_that_was_never_int
 
 
 @pytest.mark.parametrize('command, text', [
-    ({'runs': 251, 'lag': [0.1]}, 'written with another runs: 250: expected 251, or a new file'),
-    ({'runs': 250, 'lag': [0.2]}, r'written with another lag: \[0.1\]: expected \[0.2\]'),
-    ({'runs': 250}, r'another lag: \[0.1\]: expected None'),
-    ({'runs': 250, 'lag': [0.1], 'delay': [0.2]}, 'another delay: None')])
+    (dict(COMMAND, runs=251), 'written with another runs: 250: expected 251, or a new file'),
+    (dict(COMMAND, lag=[0.2]), r'written with another lag: \[0.1\]: expected \[0.2\]'),
+    (dict(COMMAND, surface={'a': {'delay': 0.2, 'lag': 0.4}}), 'with another surface/a/lag: 0.3: expected 0.4, or'),
+    ({'runs': 250, 'surface': COMMAND['surface']}, r'another lag: \[0.1\]: expected None'),
+    (dict(COMMAND, delay=[0.2]), 'another delay: None')])
 def test_another_command_is_refused_with_the_key_that_differs(tmp_path, command, text):
     write(tmp_path / 'a.csv', 3)
     before = (tmp_path / 'a.csv').read_bytes()
@@ -76,7 +79,7 @@ def test_rows_of_other_runs_are_refused(tmp_path):
     path = tmp_path / 'a.csv'
     write(path, 2)
     path.write_bytes(path.read_bytes().replace(b'ideal,8', b'ideal,9'))
-    with pytest.raises(ConfigError, match="'timed,ideal,9.*expected the run timed, ideal, 8, or a new file"):
+    with pytest.raises(ConfigError, match="'ekf,ideal,9.*expected the run ekf, ideal, 8, or a new file"):
         write(path, 3)
 
 
@@ -96,14 +99,14 @@ def test_rows_that_somebody_has_appended_are_not_cut_off(tmp_path):
     ('/none/a.csv', 'a file that can be written: No such file or directory')])
 def test_a_path_that_is_no_file(path, reason):
     with pytest.raises(ConfigError, match=f'^--output: {path}: expected {reason}'):
-        RunsFile(path, COMMAND, [])
+        RunsFile(path, COMMAND, [], VERSIONS)
 
 
 def test_two_programs_do_not_write_one_file_and_the_record_belongs_to_the_first(tmp_path):
-    first = RunsFile(str(tmp_path / 'a.csv'), COMMAND, [])
+    first = RunsFile(str(tmp_path / 'a.csv'), COMMAND, [], VERSIONS)
     record = (tmp_path / 'a.csv.json').read_bytes()
     with pytest.raises(ConfigError, match='another program is writing it'):
-        RunsFile(str(tmp_path / 'a.csv'), {**COMMAND, 'runs': 7}, [])
+        RunsFile(str(tmp_path / 'a.csv'), {**COMMAND, 'runs': 7}, [], VERSIONS)
     assert (tmp_path / 'a.csv.json').read_bytes() == record
     first.file.close()
 
@@ -125,3 +128,47 @@ def test_a_full_disk_leaves_complete_chunks(tmp_path):
     left = path.read_bytes()
     assert 2000 < len(left) <= 3000 and content.startswith(left) and left.count(b'\n') % 2 == 1
     assert not [name for name in os.listdir(tmp_path) if name not in ('a.csv', 'a.csv.json')]
+
+
+@pytest.mark.parametrize('old, new, text', [
+    (b',3.0,', b',3.5,', r"row 4: true_x \(m\): '3.5': altered: expected 3.0, or a new file"),
+    (b',3.3333333333333335,', b',8.3333333333333335,', "row 5: true_x .m.: '8.3333333333333335': altered: .* 3.333"),
+    (b',CHECK', b',0badf00d', "row 2: check: '0badf00d': altered: expected CHECK")])
+def test_an_altered_digit_is_refused_with_its_row_and_column(tmp_path, monkeypatch, old, new, text):
+    path = tmp_path / 'a.csv'
+    write(path, 3)
+    content = path.read_bytes()
+    check = content.split(b'\n')[1].rpartition(b',')[2]        # of the first run
+    old, text = old.replace(b'CHECK', check), text.replace('CHECK', check.decode())
+    assert old in content
+    path.write_bytes(content.replace(old, new, 1))
+    # the run is repeated, to find the column
+    monkeypatch.setattr(runs_file, 'simulate_row', lambda _, seed: rows(CHUNKS[(seed - 7) // 2])[(seed - 7) % 2])
+    monkeypatch.setattr(type(CHUNKS[0]), 'case', lambda *_: None)
+    with pytest.raises(ConfigError, match=f'^--output: {path}: {text}'):
+        write(path, 3)
+
+
+def test_the_record_is_json_for_all_programs_and_another_version_of_python_continues(tmp_path):
+    write(tmp_path / 'a.csv', 1)
+    record = json.loads((tmp_path / 'a.csv.json').read_text(), parse_constant=pytest.fail)
+    assert record == {'versions': VERSIONS, **COMMAND}
+    (tmp_path / 'a.csv.json').write_text(json.dumps({**record, 'versions': {'Python': '3.8.3'}}))
+    assert write(tmp_path / 'a.csv', 2) == 1
+    with pytest.raises(ValueError, match='not JSON compliant'):
+        RunsFile(str(tmp_path / 'b.csv'), {'limit': float('inf')}, [], VERSIONS)
+
+
+def test_the_disk_is_synchronized_at_most_once_a_second(tmp_path, monkeypatch):
+    now, calls = [0.0], []
+    monkeypatch.setattr(runs_file.time, 'monotonic', lambda: now[0])
+    file = RunsFile(str(tmp_path / 'a.csv'), COMMAND, [], VERSIONS)
+    monkeypatch.setattr(runs_file.os, 'fsync', calls.append)
+    list(file.read(CHUNKS, None))
+    for chunk in CHUNKS[:40]:       # 10 s
+        now[0] += 0.25
+        file.append(chunk, rows(chunk))
+    assert len(calls) == 8      # after 1.25 s each
+    file.synchronize()
+    assert len(calls) == 9
+    file.file.close()
