@@ -64,7 +64,7 @@ def test_the_chinese_page_follows_the_english_one(page):
     assert not wrong, '\n'.join(wrong)
 
 
-@pytest.mark.parametrize('name', os.listdir(os.path.join(ROOT, 'docs', 'zh')))
+@pytest.mark.parametrize('name', sorted(os.listdir(os.path.join(ROOT, 'docs', 'zh'))))
 def test_the_traditional_page_is_up_to_date(name):
     simplified, page = (markdown.read(ROOT, f'docs/{folder}/{name}') for folder in ('zh', 'zh_TW'))
     assert traditional.marked(simplified, page.rpartition('\n<!-- ')[0]) == page, 'run script/traditional.py'
