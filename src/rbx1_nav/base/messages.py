@@ -1,7 +1,7 @@
 """Conversions between the types of the core and ROS messages."""
 from __future__ import annotations
 
-from math import atan2, cos, isnan, nan, pi, sin, sqrt
+from math import atan2, cos, isnan, nan, pi, remainder, sin, sqrt
 from typing import Any, Mapping, Sequence
 
 from geometry_msgs.msg import Pose as PoseMessage, PoseWithCovarianceStamped, Quaternion, TransformStamped
@@ -49,8 +49,10 @@ def yaw_of(rotation: Quaternion) -> float:
 
 
 def quaternion(yaw: float) -> Quaternion:
-    """Return the Quaternion of a rotation by yaw (rad) about z."""
-    return Quaternion(0.0, 0.0, sin(yaw / 2), cos(yaw / 2))
+    """Return the Quaternion of a rotation by yaw (rad) about z. Its w is not negative, so that 2 * atan2(z, w) is an
+    angle between -pi and pi."""
+    half = remainder(yaw, 2 * pi) / 2
+    return Quaternion(0.0, 0.0, sin(half), cos(half))
 
 
 def planar(covariance: Covariance) -> list[float]:
@@ -73,7 +75,7 @@ def _stamped(message: Any, stamp: rospy.Time, frame_id: str, child_frame_id: str
 
 def _set_pose(message: PoseMessage, pose: Pose) -> None:
     message.position.x, message.position.y = pose.x, pose.y
-    message.orientation = quaternion(pose.yaw % (2 * pi))
+    message.orientation = quaternion(pose.yaw)
 
 
 def odometry(stamp: rospy.Time, frames: tuple[str, str], pose: Pose, velocity: tuple[float, float],
@@ -98,7 +100,7 @@ def odometry(stamp: rospy.Time, frames: tuple[str, str], pose: Pose, velocity: t
 def imu(stamp: rospy.Time, frame_id: str, reading: Reading) -> Imu:
     """Return an Imu message with the Reading of a gyro, which measures only the vertical axis."""
     message = _stamped(Imu(), stamp, frame_id)
-    message.orientation = quaternion(reading.yaw % (2 * pi))
+    message.orientation = quaternion(reading.yaw)
     message.orientation_covariance = [UNKNOWN, 0, 0, 0, UNKNOWN, 0, 0, 0, reading.yaw_variance]
     message.angular_velocity.z = reading.rate
     message.angular_velocity_covariance = [UNKNOWN, 0, 0, 0, UNKNOWN, 0, 0, 0, reading.rate_variance]
@@ -110,7 +112,7 @@ def transform(stamp: rospy.Time, frame_id: str, child_frame_id: str, pose: Pose)
     """Return a TransformStamped with the Pose of the child frame."""
     message = _stamped(TransformStamped(), stamp, frame_id, child_frame_id)
     message.transform.translation.x, message.transform.translation.y = pose.x, pose.y
-    message.transform.rotation = quaternion(pose.yaw % (2 * pi))
+    message.transform.rotation = quaternion(pose.yaw)
     return message
 
 

@@ -77,6 +77,12 @@ def test_joints_and_wheels():
         ('arm', 0.25, 0.5), ('left', 3.0, 4.0), ('right', 5.0, 6.0)]
 
 
+@pytest.mark.parametrize('yaw, heading', [(-1e-9, -1e-9), (-3.0, -3.0), (4.0, 4.0 - 2 * pi), (-4.0, 2 * pi - 4.0)])
+def test_the_usual_formula_for_the_heading_gives_no_extra_turn(yaw, heading):
+    rotation = messages.transform(STAMP, 'odom', 'base_link', POSE._replace(yaw=yaw)).transform.rotation
+    assert 2 * atan2(rotation.z, rotation.w) == pytest.approx(heading)
+
+
 def test_the_yaw_of_a_robot_on_a_slope():
     """A quaternion with roll, pitch and yaw, not quite of length 1."""
     roll, pitch, yaw, scale = 0.1, -0.2, 2.0, 1.01
