@@ -1,0 +1,43 @@
+#!/usr/bin/env python3
+"""Writes the pages of docs/zh_TW/, in traditional Chinese, from docs/zh/. Needs Debian's package opencc.
+
+OpenCC chooses words that are used in Taiwan (s2twp). TERMS corrects its choices, in this order.
+"""
+import hashlib
+import os
+import subprocess
+
+DOCS = os.path.realpath(os.path.join(os.path.dirname(__file__), '..', 'docs'))
+TERMS = dict(pair.split('>') for pair in (
+    '話題>主題 引數>參數 功能包>套件 軟體包>套件 軟體源>套件庫 倉庫>儲存庫 克隆>複製 指令碼>腳本 回撥>回呼 '
+    '釋出>發布 發佈>發布 傳送>發送 異常>例外 丟擲>拋出 程式碼塊>程式碼區塊 註釋>註解 全域性>全域 '
+    '名稱空間>命名空間 標定>校正 超時>逾時 實時>即時 運行>執行 教程>教學 終端>終端機 複選框>核取方塊 '
+    '膝上型電腦>筆記型電腦 影象>影像 卷尺>捲尺 電機>馬達 串列埠>序列埠 主目錄>家目錄 臺>台 釐米>公分 毫米>公釐 '
+    '米>公尺').split())
+
+
+def digest(text):
+    """A short hash that does not depend on line breaks."""
+    return hashlib.sha1(' '.join(text.split()).encode()).hexdigest()[:8]
+
+
+def marked(simplified, traditional):
+    """The page, with a last line that changes with the simplified page, with this page, and with TERMS."""
+    return f'{traditional}\n<!-- script/traditional.py: {digest(simplified + traditional + str(TERMS))} -->\n'
+
+
+def convert(simplified):
+    """The page in traditional Chinese."""
+    text = subprocess.run(['opencc', '-c', 's2twp'], input=simplified.encode(), stdout=subprocess.PIPE,
+                          check=True).stdout.decode()
+    for chosen, usual in TERMS.items():
+        text = text.replace(chosen, usual)
+    return text
+
+
+if __name__ == '__main__':
+    for name in os.listdir(os.path.join(DOCS, 'zh')):
+        with open(os.path.join(DOCS, 'zh', name), encoding='utf-8') as file:
+            page = file.read()
+        with open(os.path.join(DOCS, 'zh_TW', name), 'w', encoding='utf-8') as file:
+            file.write(marked(page, convert(page)))
