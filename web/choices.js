@@ -33,7 +33,7 @@ export class Choices {
     if (name === 'surface') {
       input.append(...surfaces.map(surface => new Option(surface)));
     } else {
-      input.size = 8;
+      input.size = 6;
       input.type = 'text';
       input.inputMode = name === 'seed' ? 'numeric' : 'decimal';
     }

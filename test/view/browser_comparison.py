@@ -65,6 +65,29 @@ class TestBrowserComparison(PageTest):
         self.assertEqual(self.count('.earlier path'), 1)
         self.assertEqual(self.page.find('.earlier g').get_attribute('data-run'), 'with odometry')
 
+    def choose(self, name, value):
+        """Choose a value in the page, as soon as this is possible."""
+        def chosen():
+            return self.driver.execute_script("""
+                const input = document.querySelector(`#choices [name=${arguments[0]}]`);
+                if (input.disabled) { return false; }
+                input.value = arguments[1];
+                input.onchange();
+                return true""", name, value)
+        support.wait_for(chosen, f'{name} to be enabled')
+
+    def test_another_floor_for_a_shorter_distance(self):
+        self.addCleanup(rospy.set_param, '/out_and_back/goal_distance', 0.2)
+        for surface, seed in ('hard_floor', '42'), ('low_ply_carpet', '7'):
+            self.choose('surface', surface)
+            self.page.wait_for_text('facts', surface)
+            self.choose('seed', seed)
+            self.page.wait_for_text('facts', rf'Seed\s+{seed}\b')
+        self.choose('distance', '0,35')
+        support.wait_for(lambda: rospy.get_param('/out_and_back/goal_distance') == 0.35, 'the parameter')
+        self.choose('seed', '1.5')
+        self.page.wait_for_text('notice', 'Refused: seed: expected')
+
     def test_how_far_the_robot_has_missed_its_start(self):
         self.page.run('timed')
         self.page.wait_for_text('headline', r'^Timed: missed the start by \d\.\d\d m and \d+°$')

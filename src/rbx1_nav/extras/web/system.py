@@ -170,7 +170,10 @@ class System:
     def choose(self, name: str, value: str | float) -> None:
         """Set the parameter of a choice. Raises OSError and the exceptions of xmlrpc."""
         key = self._of_scripts(SCRIPTS[name]) if name in SCRIPTS else f'{self.private}/{name}'
-        call(rosgraph.get_master_uri(), 'setParam', key, value)
+        if value == DEFAULTS.get(name):     # a script warns of parameters of earlier runs
+            call(rosgraph.get_master_uri(), 'deleteParam', key)
+        else:
+            call(rosgraph.get_master_uri(), 'setParam', key, value)
         if name in SCRIPTS:
             self.state.set_status(**{name: value})
 
