@@ -62,12 +62,12 @@ class TestBrowserLayout(support.Case):
         super().setUpClass()
         cls.folder = tempfile.TemporaryDirectory()
         state = finished_run()
-        connections = Connections(state, NoControls(), Access('x'), time.monotonic)
+        connections = Connections(state, NoControls(), Access('token', 'code'), time.monotonic)
         cls.server = PageServer(resources.path('web'), {'/socket': connections}, 'localhost', 0)
         state.tick = lambda now: None       # the poses do not time out
         cls.server.start()
         cls.driver = start_chromium(cls.folder.name)
-        cls.page = Page(cls.driver, f'http://localhost:{cls.server.port}/')
+        cls.page = Page(cls.driver, f'http://localhost:{cls.server.port}/#code')
         cls.page.wait_for_text('headline', r'missed the start by 0\.50 m and 63°')
 
     @classmethod
