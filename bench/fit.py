@@ -79,8 +79,9 @@ def mixed(chosen, start):
 
 
 def limit(chosen, start):
-    """An acceleration limit that no command reaches: whether the fit keeps the value undetermined."""
-    floor = make_floor(chosen, accel_limit=10.0)
+    """An acceleration limit just above what the fastest stop needs: whether the fit keeps the value undetermined."""
+    floor = make_floor(chosen)
+    floor = floor._replace(accel_limit=1.05 * (0.3 + floor.drag_straight) / floor.lag)
     _, values = fit(start, [drive_on(floor, chosen)._replace(truth=None) for _ in range(RUNS)])
     return values['accel_limit'].error is None, floor, values
 

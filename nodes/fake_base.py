@@ -16,7 +16,7 @@ from rbx1_nav.node import life
 from rbx1_nav.node.frames import resolve_frame
 from rbx1_nav.node.parameters import elsewhere
 from rbx1_nav.node.private_parameters import param, stored_params
-from rbx1_nav.simulation.floor_parameters import FLOOR
+from rbx1_nav.simulation.floor_parameters import FLOOR, ChosenFloor
 from rbx1_nav.simulation.simulated_robot import SimulatedRobot
 
 PARAMETERS = [
@@ -32,7 +32,8 @@ def main() -> int:
     life.init_node('arbotix', __doc__, PARAMETERS, check=read_robot)
     robot = read_robot(stored_params())
     clock = read_clock(robot.rate)
-    simulated = SimulatedRobot(with_frames(robot, resolve_frame), param('surface'), param('seed'), clock, Refusals())
+    simulated = SimulatedRobot(with_frames(robot, resolve_frame), param('surface'), param('seed'), clock, Refusals(),
+                               '', ChosenFloor(stored_params).changed)
     key = f'controllers/{robot.name}'
     ModelCheck(simulated.publisher, (f'{key}/base_frame_id', key), simulated.diagnostics).start()
     simulated.start()

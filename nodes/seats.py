@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Starts a ROS master, a simulated TurtleBot and its page in the browser for each of several learners on this machine.
 
-Prints the address of each page, which contains the token of the seat, and the ROS_MASTER_URI for terminals of the
-learner. Ctrl-C stops all seats.
+Prints the address of each page, which lets the first browser that opens it drive, and the ROS_MASTER_URI for terminals
+of the learner. Ctrl-C stops all seats.
 """
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ import time
 from typing import Sequence
 
 from rbx1_nav.base.surfaces import known_surfaces, load_surface
+from rbx1_nav.extras.web.choices import CHOICES, read_choices
 from rbx1_nav.extras.web.seat import Seat
 from rbx1_nav.node import resources
 from rbx1_nav.node.config import ConfigError
@@ -32,8 +33,10 @@ def read_arguments() -> argparse.Namespace:
     parser.add_argument('seats', type=int, help=f'number of seats, 1 to {MAX_SEATS}')
     parser.add_argument('--surface', default='ideal', metavar='NAME',
                         help=f"one of {', '.join(known_surfaces(resources.surfaces()))}; default: ideal. On all "
-                             'others, the filter is also started')
+                             'others, and if learners can choose the surface, the filter is also started')
     parser.add_argument('--seed', default='random', help='seed of the errors; default: random')
+    parser.add_argument('--choices', default=','.join(CHOICES), metavar='NAMES',
+                        help=f"what learners can choose: some of {','.join(CHOICES)}, or none; default: all")
     parser.add_argument('--rviz', action='store_true', help='also start what RViz needs to show the robot')
     parser.add_argument('--address', default='localhost',
                         help='where the pages are served; default: localhost, for this machine only')
@@ -52,6 +55,7 @@ def read_arguments() -> argparse.Namespace:
         parser.error(f'--web-port: {arguments.web_port}: expected a port that is {arguments.seats} or more away from '
                      f'--master-port, {arguments.master_port}')
     try:
+        read_choices(arguments.choices)
         load_surface(arguments.surface, resources.surfaces())
         read_seed(arguments.seed if arguments.seed == RANDOM else int(arguments.seed))
     except (ConfigError, ValueError) as error:
@@ -62,7 +66,8 @@ def read_arguments() -> argparse.Namespace:
 def launch_arguments(arguments: argparse.Namespace) -> list[str]:
     """Return the arguments of seat.launch that are the same for all seats."""
     model = resources.path('urdf', 'turtlebot.urdf') if arguments.rviz else 'none'
-    return [f'model:={model}', f'surface:={arguments.surface}', f'seed:={arguments.seed}']
+    return [f'model:={model}', f'surface:={arguments.surface}', f'seed:={arguments.seed}',
+            f'choices:={arguments.choices}']
 
 
 def report(text: str) -> None:
@@ -83,7 +88,7 @@ def check_ports(seats: Sequence[Seat], address: str) -> None:
 
 
 def run(seats: Sequence[Seat]) -> int:
-    """Start the seats, and start those again that exit, with the same addresses. Returns 1 when none is left."""
+    """Start the seats, and start those again that exit. Returns 1 when none is left."""
     print('seat  ROS_MASTER_URI            page')
     for seat in seats:
         if not seat.start():
@@ -94,7 +99,9 @@ def run(seats: Sequence[Seat]) -> int:
     while left:
         for seat in [each for each in left if not each.is_running]:
             report(f'seat {seat.number}: exited: {seat.error()}; starting it again')
-            if not seat.start():
+            if seat.start():
+                report(f'seat {seat.number}: started again; another browser can use {seat.page}')
+            else:
                 left.remove(seat)
                 report(f'seat {seat.number}: not started: {seat.error()}')
         time.sleep(0.5)

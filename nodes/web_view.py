@@ -3,7 +3,7 @@
 
 usage: web_view.py [_parameter:=value ...] [topic:=new_topic ...]      usually started by web_view.launch, or web:=true
 
-Prints the address to open. It contains the token that is needed to move the robot. docs/web_view.md describes the page.
+Prints the address to open. Whoever opens it first may move the robot. docs/web_view.md describes the page.
 """
 from __future__ import annotations
 
@@ -19,7 +19,9 @@ from typing import Callable
 import rospy
 from rospy.names import get_resolved_mappings
 
-from rbx1_nav.extras.web.access import LOCALHOST, TOKEN_VARIABLE, make_token, page_address
+from rbx1_nav.extras.web.access import (
+    CODE_VARIABLE, LOCALHOST, TOKEN_VARIABLE, Access, make_token, page_address)
+from rbx1_nav.extras.web.choices import CHOICES, read_choices
 from rbx1_nav.extras.web.connections import Connections
 from rbx1_nav.extras.web.controls import Controls
 from rbx1_nav.extras.web.hand_drive import HandDrive, command_publisher
@@ -52,6 +54,8 @@ PARAMETERS = [
            'this node', 0, 20, 'a number'),
     number('spacing', 1.0, 'm', 'distance between the starts of neighbors in a fleet', 0, 1000, 'a distance'),
     custom('title', 'Out and back', 'title of the page', partial(check_text, 'title')),
+    custom('choices', ','.join(CHOICES), 'what can be chosen in the page for a simulated robot', read_choices,
+           note='none, or some of the default'),
     flag('stop_needs_token', False, 'whether Stop needs the token, for a machine that is shared with strangers'),
     number('linear_speed', 0.2, 'm/s', 'speed while an arrow key drives forward or backward', 0.01, 1),
     number('angular_speed', 1.0, 'rad/s', 'speed while an arrow key turns the robot', 0.01, 4)]
@@ -70,12 +74,13 @@ def remappings() -> dict[str, str]:
 class RobotView:
     """The view of one robot."""
 
-    def __init__(self, name: str, token: str) -> None:
-        """name: namespace of the robot, '' for the namespace of this node; token: needed to move the robot."""
+    def __init__(self, name: str, access: Access) -> None:
+        """name: namespace of the robot, '' for the namespace of this node; access: who may move the robot."""
         namespace = f'/{name}/' if name else ''
         self.state = PageState()
         self.state.set_status(title=param('title'), robots=robot_names(), spacing=param('spacing'))
-        self.hand, self.system = HandDrive(command_publisher(namespace)), System(self.state, namespace)
+        self.hand = HandDrive(command_publisher(namespace))
+        self.system = System(self.state, namespace, param('choices'))
         self.runs = Runs(os.path.dirname(os.path.abspath(sys.argv[0])),
                          lambda name, outcome: self.state.set_status(started=name, outcome=outcome),
                          self.system.forget_frame, remappings(), namespace)
@@ -83,7 +88,7 @@ class RobotView:
                             (param('linear_speed'), param('angular_speed')), in_background,
                             log=partial(rospy.loginfo_throttle, 5),
                             stop_needs_token=param('stop_needs_token'))
-        self.connections = Connections(self.state, controls, token, time.monotonic)
+        self.connections = Connections(self.state, controls, access, time.monotonic)
 
     def start(self) -> None:
         """Start the threads."""
@@ -105,8 +110,9 @@ def main() -> int:
     """Serve the page until the node shuts down; return the exit status."""
     # the page takes its time from the odometry, so the node need not read /clock
     life.init_node('web_view', __doc__, PARAMETERS, wall_time=True)
-    address, token = param('address'), os.environ.get(TOKEN_VARIABLE) or make_token()
-    views = {f'/socket/{name}': RobotView(name, token) for name in robot_names()}
+    address, token = param('address'), os.environ.get(TOKEN_VARIABLE)
+    access = Access(token or make_token(), os.environ.get(CODE_VARIABLE, ''))
+    views = {f'/socket/{name}': RobotView(name, access) for name in robot_names()}
     views['/socket'] = next(iter(views.values()))
     try:
         server = PageServer(resources.path('web'), {path: view.connections for path, view in views.items()}, address,
@@ -119,7 +125,8 @@ def main() -> int:
         view.start()
     server.start()
     # printed instead of logged, because everyone who can reach the master can read the log
-    print(f'[INFO] [{time.time():.6f}]: Open {page_address(address, server.port, token)}')
+    page = page_address(address, server.port, '' if token else access.invite())
+    print(f'[INFO] [{time.time():.6f}]: Open {page}')
     life.end_requested.wait()
     for view in set(views.values()):
         view.stop()

@@ -5,24 +5,23 @@ const DEAD = 2000;                          // ms of silence after which the con
                                             // a restart of a router, and the browser would notice this only after minutes
 const RETRY = [500, 1000, 2000, 4000];      // ms
 
-// The token is the part of the printed address after #, which a browser does not send to the server. It is stored for
-// this tab, and removed from the address bar, so that nobody can read it on a projector.
-function readToken() {
-  const given = location.hash.slice(1);
-  if (given) {
-    sessionStorage.setItem('token', given);
+// The part of the printed address after #, which a browser does not send to the server: a code, which the node exchanges
+// once for the token. The browser keeps the token; the code is removed from the address bar.
+function readCode() {
+  const code = location.hash.slice(1);
+  if (code) {
     history.replaceState(null, '', location.pathname + location.search);
   }
-  return sessionStorage.getItem('token') || '';
+  return code;
 }
 
 export class Connection extends EventTarget {
-  // Events: welcome, frame, refused, stopping, stopped (detail: the message), lost, silent (no frame for a while), heard.
+  // Events: welcome, frame, refused, invited, stopping, stopped (detail: the message), lost, silent (no frame for a while), heard.
   // robot: its name in a fleet, '' for the only robot.
   constructor(robot) {
     super();
     this.path = robot ? `/socket/${robot}` : '/socket';
-    this.token = readToken();
+    this.code = readCode();
     this.failures = 0;
     this.heard = 0;         // ms: when the last message arrived
     this.clock = 0;         // s, clock of the node in the last frame: a request carries it, and so its age
@@ -30,8 +29,10 @@ export class Connection extends EventTarget {
     setInterval(() => this.checkSilence(), 100);
     // pasting another printed address into an open page changes only the part after #, and does not reload the page
     window.addEventListener('hashchange', () => {
-      this.token = readToken();
-      this.replace();
+      this.code = readCode();
+      if (this.code) {
+        this.replace();
+      }
     });
     this.connect();
   }
@@ -41,11 +42,13 @@ export class Connection extends EventTarget {
     const socket = new WebSocket(`${protocol}://${location.host}${this.path}`);
     this.socket = socket;
     this.begun = performance.now();
-    socket.onopen = () => this.send({type: 'hello', token: this.token});
+    socket.onopen = () => this.send({type: 'hello', token: localStorage.getItem('token') || '', code: this.code});
     socket.onmessage = event => {
       const message = JSON.parse(event.data);
       if (message.type === 'welcome') {
         this.failures = 0;
+        this.code = '';
+        localStorage.setItem('token', message.token);
       }
       this.heard = performance.now();
       this.clock = message.clock ?? this.clock;

@@ -1,12 +1,15 @@
 // Controls that move the robot (runs, reset, arrow keys), and Stop.
 
+import {WORDS} from './words.js';
+
 const ANSWER = 900, STOP_AGAIN = 450;      // ms: time for an answer to Stop; Stop is repeated until it is answered
 const HELD = 300;       // ms: after a longer pause, as of a frozen browser, a key must be pressed again
 const REPEAT = 100;     // ms: the node stops the robot if held keys are not repeated within 300 ms
 const KEYS = {ArrowUp: [1, 0], ArrowDown: [-1, 0], ArrowLeft: [0, 1], ArrowRight: [0, -1]};    // forward, left
 
 export class Drive {
-  // notify(text, alarm): shows a message to the user, in red if alarm is true; '' removes it.
+  // notify(cause, text, alarm): shows a message to the user, in red if alarm is true, in place of the last one of this
+  // cause; '' removes it.
   constructor(connection, model, notify) {
     Object.assign(this, {connection, model, notify});
     this.trusted = false;
@@ -134,7 +137,7 @@ export class Drive {
       this.dialog.close('cancel');
     }
     this.begin();
-    this.answer = 'Stopping.';
+    this.answer = WORDS.stopping;
     this.stops += 1;
     this.answered = performance.now();
     this.stopTimer = setInterval(() => this.sendStop(), STOP_AGAIN);
@@ -143,9 +146,9 @@ export class Drive {
 
   sendStop() {
     if (!this.connection.send({type: 'stop', number: this.stops})) {
-      this.alarm('Not connected: Stop did not reach the robot. Stop it by hand. This page repeats Stop until it is answered.');
+      this.alarm(WORDS.notReached);
     } else if (performance.now() - this.answered >= ANSWER) {
-      this.alarm('No answer: the robot may still be moving. Stop it by hand. This page repeats Stop until it is answered.');
+      this.alarm(WORDS.noAnswer);
     }
   }
 
@@ -167,15 +170,15 @@ export class Drive {
   }
 
   alarm(text) {
-    this.notify(text, true);
+    this.notify('stop', text, true);
   }
 
-  // Ends the previous action, and removes its messages.
+  // Ends the previous action, and removes its messages. What may still move stays in red until Stop has an answer.
   begin() {
     clearInterval(this.stopTimer);
     this.stopTimer = null;
     this.answer = '';
-    this.notify('');
+    this.notify('refused', '');
   }
 
   // Asks the user whether a real robot may move. Resolves to true if so, or if the robot is simulated.
@@ -191,8 +194,7 @@ export class Drive {
   }
 
   async startRun(button) {
-    if (await this.confirm(
-        'It will drive 1 m forward and back. It needs 1.5 m of free floor ahead and 1 m on either side.')) {
+    if (await this.confirm(WORDS.confirmRun)) {
       this.begin();
       this.setHand(false);
       const reset = Boolean(this.model.status.can_reset && document.getElementById('reset-first').checked);
@@ -201,7 +203,7 @@ export class Drive {
   }
 
   async switchHand(on) {
-    if (on && !await this.confirm('It will follow the arrow keys, and stop when you release them.')) {
+    if (on && !await this.confirm(WORDS.confirmHand)) {
       return;
     }
     this.begin();
@@ -228,7 +230,7 @@ export class Drive {
     if (message.what === 'drive') {     // report this only once, although held keys are repeated
       this.setHand(false);
     }
-    this.notify(`Refused: ${message.reason}.`);
+    this.notify('refused', WORDS.refused(message.reason));
   }
 
   // Enables the buttons that can be used now, and shows what is running.
@@ -248,19 +250,20 @@ export class Drive {
     }
     document.getElementById('reset').disabled = !ready || running || !status.can_reset;
     document.getElementById('reset-first').disabled = !status.can_reset;
-    this.toggle.disabled = !ready || running;
+    this.idle = ready && !running;      // whether a run could be started
+    this.toggle.disabled = !this.idle;
+    document.getElementById('invite').disabled = !this.connected || !this.trusted;
     const answered = this.answer && this.connected && !running && !this.hand && !status.master;
-    const text = this.stopTimer || answered ? this.answer : !this.connected ? '' : !this.trusted ?
-      'This page can only watch and stop the robot. To drive, open the complete address that the web view printed.'
-      : status.master === 'silent' ? 'The ROS master does not answer. Start roscore, the base and the web view again.'
-      : status.master === 'restarted' ? 'The ROS master was restarted. Start the web view again, then reload this page.'
-      : !ready ? 'Waiting for a base that publishes /odom.'
-      : running ? `Running: ${status.driver || status.started}. Stop it to use the other buttons.`
-      : this.hand ? 'The arrow keys drive the robot.'
-      : status.started ? `${status.started[0].toUpperCase()}${status.started.slice(1)}: ${status.outcome}` : '';
+    const text = this.stopTimer || answered ? this.answer : !this.connected ? '' : status.master === 'silent' ? WORDS.masterSilent
+      : status.master === 'restarted' ? WORDS.masterRestarted
+      : !status.base ? WORDS.noBase
+      : !this.trusted ? WORDS.noToken
+      : running ? WORDS.running(status.driver || status.started)
+      : this.hand ? WORDS.keysDrive
+      : status.started ? WORDS.outcome(WORDS[status.started], status.outcome) : '';
     const why = !ready || running ? [] : [
-      ...unfiltered.map(run => `${run.textContent} needs the filter: roslaunch rbx1_bringup odom_ekf.launch.`),
-      !status.can_reset && 'Only a simulated robot can be reset.'];
+      ...unfiltered.map(run => WORDS.needsFilter(run.textContent)),
+      !status.can_reset && WORDS.noReset];
     for (const [id, shown] of Object.entries({'run-state': text, why: why.filter(Boolean).join(' ')})) {
       const line = document.getElementById(id);
       if (line.textContent !== shown) {

@@ -2,6 +2,7 @@
 
 import {Connection} from './connection.js';
 import {Model} from './model.js';
+import {WORDS} from './words.js';
 
 export class Fleet {
   // selected: the name of the robot of this page, '' for the first one.
@@ -30,7 +31,7 @@ export class Fleet {
       }
       return link;
     }));
-    document.getElementById('stop').firstChild.textContent = `Stop ${this.selected} `;
+    document.getElementById('stop').firstChild.textContent = WORDS.stopOne(this.selected);
     robots.forEach((name, index) => index !== own && this.watch(name, index, (own - index) * spacing));
   }
 

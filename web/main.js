@@ -1,25 +1,37 @@
 // Connects the parts of the page: frames from the node update the model, and the other parts draw it.
 
+import {Choices} from './choices.js';
 import {Connection} from './connection.js';
 import {Drive} from './drive.js';
 import {Fleet} from './fleet.js';
 import {Floor} from './floor.js';
 import {LogView} from './log.js';
 import {Model, SOURCES, endOf} from './model.js';
-import {savePng, saveSvg} from './picture.js';
+import {save} from './picture.js';
 import {Plot} from './plot.js';
-import {EarlierRuns, Poses, fixed, rowOf} from './tables.js';
+import {EarlierRuns, Poses, fixed, rowOf, swatch} from './tables.js';
 import {connectView} from './view_controls.js';
+import {WORDS, fill} from './words.js';
 
 const byId = id => document.getElementById(id);
-const LEGEND = {truth: 'truth', odometry: 'odometry', estimate: 'estimate',
-  commanded: 'commanded', reported: 'reported by the wheels', true: 'true'};
 
-function notify(text, alarm = false) {
-  byId('notice').className = alarm ? 'alarm' : '';
-  byId('notice').textContent = text;
-  byId('notice').hidden = !text;
+// Shows a message in place of the last one of this cause (token, stop, refused); without a text, removes it.
+function notify(cause, text, alarm = false) {
+  let line = byId('notice').querySelector(`[data-cause=${cause}]`);
+  if (!text) {
+    line?.remove();
+    return;
+  }
+  if (!line) {
+    line = document.createElement('p');
+    line.dataset.cause = cause;
+    byId('notice').append(line);
+  }
+  line.className = alarm ? 'alarm' : '';
+  line.textContent = text;
 }
+
+fill();
 
 const model = new Model();
 const robot = new URLSearchParams(location.search).get('robot') || '';
@@ -30,22 +42,23 @@ const poses = new Poses(byId('tables'));
 const earlierRuns = new EarlierRuns(byId('earlier'), () => floor.drawEarlier(model.earlier));
 const log = new LogView(byId('lines'));
 const drive = new Drive(connection, model, notify);
-const plots = [new Plot(byId('linear'), 'forward (m/s)', 1, 0.25), new Plot(byId('angular'), 'turning (rad/s), left is up', 2, 1.2)];
+const choices = new Choices(byId('choices'), connection);
+const plots = [new Plot(byId('linear'), WORDS.linearAxis, 1, 0.25), new Plot(byId('angular'), WORDS.angularAxis, 2, 1.2)];
 let waiting = false;    // whether a redraw has been requested
 
 function facts() {
   const {status} = model, found = [];
   if (status.base) {
-    found.push(['Robot', status.simulated ? 'simulated' : 'real']);
+    found.push([WORDS.robot, status.simulated ? WORDS.simulated : WORDS.real]);
   }
   if (status.surface) {
-    found.push(['Surface', status.surface]);
+    found.push([WORDS.surface, status.surface]);
   }
   if (status.seed && status.surface !== 'ideal') {
-    found.push(['Seed', status.seed]);
+    found.push([WORDS.seed, status.seed]);
   }
   if (status.base) {
-    found.push(['Time', status.simulated_time ? `simulated, ${status.factor} times real time` : 'real']);
+    found.push([WORDS.time, status.simulated_time ? WORDS.factor(status.factor) : WORDS.real]);
   }
   return found;
 }
@@ -74,6 +87,7 @@ function draw() {
   poses.draw(model);
   log.draw(model.log);
   drive.draw();
+  choices.draw(model.status, drive.idle);
   drawFacts();
   earlierRuns.draw(model.earlier);
   drawHeadline();
@@ -89,15 +103,16 @@ function draw() {
 }
 
 function kindOf({name, stopped}) {
-  return `${name}${stopped ? ', stopped' : ''}`;
+  return stopped ? WORDS.stopped(name) : name;
 }
 
-// What the exercise is about: how far the robot has missed its start.
+// What the exercise is about: how far this method has missed the start.
 function drawHeadline() {
   const {status, run} = model, end = endOf(model.poses);
-  const text = end && run && status.started === run && status.outcome === 'finished' ?
-    `${model.poses.truth ? 'Missed' : 'By its odometry, missed'} the start by ${fixed(Math.hypot(end[0], end[1]), 2)} m and ${
-      fixed(Math.abs(Number(rowOf(end)[2])), 0)}°` : '';
+  const text = !run || status.started !== run ? '' : !end || status.outcome !== 'finished' ? WORDS[run] : WORDS.outcome(
+    WORDS[run], WORDS.missed(fixed(Math.hypot(end[0], end[1]), 2), fixed(Math.abs(Number(rowOf(end)[2])), 0),
+      'truth' in model.poses));
+  document.body.classList.toggle('used', Boolean(run || model.earlier.length));
   if (byId('headline').textContent !== text) {
     byId('headline').textContent = text;
   }
@@ -106,14 +121,13 @@ function drawHeadline() {
 // The lines of a saved picture: what was run, and the numbers, which are also the legend of the colors.
 function caption() {
   const {surface, seed} = model.status;
-  const what = [model.run, surface, surface && surface !== 'ideal' && seed && `seed ${seed}`].filter(Boolean).join(', ');
+  const what = [model.run, surface && surface !== 'ideal' && seed ? WORDS.withSeed(surface, seed) : surface]
+    .filter(Boolean).join(', ');
   const shown = model.earlier.filter(run => run.shown);
   const earlier = [...new Set(shown.map(kindOf))].map(kind =>
-    ['', `Earlier runs (${kind}): ${shown.filter(run => kindOf(run) === kind).map(run => run.number).join(', ')}`]);
-  const numbers = SOURCES.filter(source => model.poses[source]).map(source => {
-    const [x, y, heading, distance] = rowOf(model.poses[source]);
-    return [source, `${source}: x ${x} m, y ${y} m, heading ${heading}°, ${distance} m from the start`];
-  });
+    ['', WORDS.earlierRuns(kind, shown.filter(run => kindOf(run) === kind).map(run => run.number).join(', '))]);
+  const numbers = SOURCES.filter(source => model.poses[source]).map(
+    source => [source, WORDS.numbers(WORDS[source], rowOf(model.poses[source]))]);
   return [['', what], ...earlier, ...numbers];
 }
 
@@ -125,8 +139,7 @@ function redraw() {
 }
 
 function legendItem(name, parent, checkbox) {
-  const label = document.createElement(checkbox ? 'label' : 'span'), swatch = document.createElement('span');
-  swatch.className = `swatch ${name}`;
+  const label = document.createElement(checkbox ? 'label' : 'span');
   if (checkbox) {
     const box = document.createElement('input');
     box.type = 'checkbox';
@@ -137,15 +150,14 @@ function legendItem(name, parent, checkbox) {
     };
     label.append(box);
   }
-  label.append(swatch, ` ${LEGEND[name]}`);
+  label.append(swatch(name), ` ${WORDS[name]}`);
   parent.append(label);
 }
 
 function showConnection() {
   if (drive.connected) {
     byId('connection').className = connection.silent ? 'lost' : 'live';
-    byId('connection').textContent = connection.silent ? 'No answer: the page does not show where the robot is now'
-      : drive.trusted ? 'Connected' : 'Connected, watching only';
+    byId('connection').textContent = connection.silent ? WORDS.silent : drive.trusted ? WORDS.connected : WORDS.watching;
   }
 }
 
@@ -158,11 +170,11 @@ function large() {
 SOURCES.forEach(source => legendItem(source, byId('legend'), true));
 ['commanded', 'reported', 'true'].forEach(name => legendItem(name, byId('speed-legend'), false));
 connectView(floor, model, redraw);
-byId('save-svg').onclick = () => saveSvg(floor.svg, caption());
-byId('save-png').onclick = () => savePng(floor.svg, caption());
+byId('save').onclick = () => save(floor.svg, caption(), model);
 byId('window').onchange = redraw;
 byId('end').oninput = redraw;
 byId('large').onclick = large;
+byId('invite').onclick = () => connection.send({type: 'invite'});
 
 connection.addEventListener('welcome', ({detail}) => {
   model.forget();
@@ -170,8 +182,7 @@ connection.addEventListener('welcome', ({detail}) => {
   drive.connected = true;
   drive.setHand(false);
   showConnection();
-  notify(detail.known_token ? '' :
-    'The token in this address is not valid. Open the complete address that the web view printed when it was last started.');
+  notify('token', WORDS.rejected[detail.rejected]);
 });
 connection.addEventListener('frame', ({detail}) => {
   model.add(detail);
@@ -184,14 +195,15 @@ connection.addEventListener('silent', () => {
   drive.draw();
 });
 connection.addEventListener('heard', showConnection);
+connection.addEventListener('invited', ({detail}) => notify('refused', WORDS.invited(`${location.origin}/#${detail.code}`)));
 connection.addEventListener('refused', ({detail}) => drive.refused(detail));
 connection.addEventListener('lost', ({detail}) => {
   drive.connected = false;
   drive.setHand(false);
   redraw();
   byId('connection').className = 'lost';
-  byId('connection').textContent = `Not connected${detail ? ` (${detail})` : ''}; retrying`;
+  byId('connection').textContent = WORDS.lost(detail);
 });
 window.matchMedia('(prefers-color-scheme: dark)').addEventListener('change', redraw);
 // for tests, and for use in the console of the browser
-window.rbx1 = {model, floor, drive};
+window.rbx1 = {model, floor, drive, caption};

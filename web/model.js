@@ -40,12 +40,12 @@ export class Model {
   // Keeps the run that is over: its path, the true one if it is known; floor and seed; and its end pose. before: the end
   // poses that the node has sent, because this page may have been asleep at the end of the run.
   keep(before) {
-    const points = this.paths.truth.length ? this.paths.truth : this.paths.odometry;
+    const source = this.paths.truth.length ? 'truth' : 'odometry', points = this.paths[source];
     if (points.some(([x, y]) => Math.hypot(x, y) > MOVED)) {
       const number = (this.earlier[this.earlier.length - 1]?.number || 0) + 1;
       const {surface, seed} = this.status, end = endOf(before);
-      this.earlier = [...this.earlier, {number, name: this.run, stopped: this.stopped, points, surface, seed, end, shown: true}]
-        .slice(-MAX_EARLIER);
+      const run = {number, name: this.run, stopped: this.stopped, source, points, surface, seed, end, shown: true};
+      this.earlier = [...this.earlier, run].slice(-MAX_EARLIER);
     }
   }
 

@@ -1,4 +1,4 @@
-// Saves the picture of the floor as SVG or PNG.
+// Saves the picture of the floor as PNG, and the paths on it as CSV.
 
 const STYLES = ['fill', 'fill-opacity', 'stroke', 'stroke-width', 'stroke-dasharray', 'stroke-linecap', 'stroke-linejoin',
   'opacity', 'display', 'font-family', 'font-size', 'text-anchor'];
@@ -48,15 +48,18 @@ function download(blob, name) {
   setTimeout(() => URL.revokeObjectURL(link.href), 1000);
 }
 
-function fileName(kind) {
-  return `rbx1_nav-${new Date().toISOString().slice(0, 19).replace(/[:T]/g, '-')}.${kind}`;
+// The paths of this run and of the earlier runs that are shown, one pose per line: m, and degrees.
+function table({run, status: {surface, seed}, paths, earlier}) {
+  const number = (earlier[earlier.length - 1]?.number || 0) + 1;
+  const all = [...earlier.filter(({shown}) => shown), ...Object.entries(paths).map(
+    ([source, points]) => ({number, name: run, surface, seed, source, points}))];
+  return ['run,method,surface,seed,source,x,y,heading', ...all.flatMap(each => each.points.map(([x, y, yaw]) =>
+    [each.number, each.name, each.surface, each.seed, each.source, x, y, (yaw * 180 / Math.PI).toFixed(2)].join()))].join('\n');
 }
 
-export function saveSvg(svg, lines) {
-  download(new Blob([standalone(svg, lines).text], {type: 'image/svg+xml'}), fileName('svg'));
-}
-
-export async function savePng(svg, lines) {
+export async function save(svg, lines, model) {
+  const name = `rbx1_nav-${new Date().toISOString().slice(0, 19).replace(/[:T]/g, '-')}`;
+  download(new Blob([table(model), '\n'], {type: 'text/csv'}), `${name}.csv`);
   const {text, width, height} = standalone(svg, lines), image = new Image();
   image.src = URL.createObjectURL(new Blob([text], {type: 'image/svg+xml'}));
   await image.decode();
@@ -65,5 +68,5 @@ export async function savePng(svg, lines) {
   canvas.height = PNG_SCALE * height;
   canvas.getContext('2d').drawImage(image, 0, 0, canvas.width, canvas.height);
   URL.revokeObjectURL(image.src);
-  canvas.toBlob(blob => download(blob, fileName('png')), 'image/png');
+  canvas.toBlob(blob => download(blob, `${name}.png`), 'image/png');
 }

@@ -1,9 +1,7 @@
 // The table that pose.py prints, and the list of earlier runs.
 
 import {SOURCES} from './model.js';
-
-const HEAD = ['', 'x (m)', 'y (m)', 'heading (°)', 'from start (m)'];
-const NAMES = {truth: 'truth', odometry: 'odometry', estimate: 'estimate'};
+import {WORDS} from './words.js';
 
 // A number with this many decimals, and without the sign of -0.000.
 export function fixed(value, digits) {
@@ -33,32 +31,32 @@ function makeTable(parent, id, headers) {
   return table;
 }
 
-function swatch() {
+// A short line in the color and the line style of a path or a curve.
+export function swatch(name) {
   const made = document.createElement('span');
-  made.className = 'swatch';
+  made.className = `swatch ${name}`;
   return made;
 }
 
 export class Poses {
   constructor(parent) {
-    const table = makeTable(parent, 'table-now', HEAD), body = table.createTBody();
+    const table = makeTable(parent, 'table-now', WORDS.poseHead), body = table.createTBody();
     this.caption = table.createCaption();
     this.rows = Object.fromEntries(SOURCES.map(source => {
       const row = body.insertRow(), name = document.createElement('th');
       name.scope = 'row';
-      name.className = source;
-      name.append(swatch(), ` ${NAMES[source]}`);
+      name.append(swatch(source), ` ${WORDS[source]}`);
       row.append(name);
       return [source, [0, 1, 2, 3].map(() => row.insertCell())];
     }));
   }
 
   draw({run, poses}) {
-    this.caption.textContent = `This run${run ? `: ${run}` : ''}`;
+    this.caption.textContent = WORDS.thisRun(run);
     for (const source of SOURCES) {
       const texts = rowOf(poses[source]);
       if (!poses[source]) {
-        texts[0] = '–';
+        texts[0] = WORDS.none;
       }
       this.rows[source].forEach((cell, index) => {
         if (cell.textContent !== texts[index]) {
@@ -74,7 +72,7 @@ export class EarlierRuns {
   // changed(): called when a run is shown or hidden
   constructor(parent, changed) {
     Object.assign(this, {parent, changed});
-    this.body = makeTable(parent, 'runs', ['', 'run', 'floor', 'from start (m)', 'heading (°)']).createTBody();
+    this.body = makeTable(parent, 'runs', WORDS.runHead).createTBody();
   }
 
   draw(runs) {
@@ -89,17 +87,17 @@ export class EarlierRuns {
       row.dataset.run = run.name;
       box.type = 'checkbox';
       box.checked = run.shown;
-      box.ariaLabel = `Show run ${run.number}`;
+      box.ariaLabel = WORDS.showRun(run.number);
       box.onchange = () => {
         run.shown = box.checked;
         this.changed();
       };
-      label.append(box, swatch());
+      label.append(box, swatch(''));
       row.insertCell().append(label);
       name.scope = 'row';
-      name.textContent = `${run.number} ${run.name}${run.stopped ? ', stopped' : ''}`;
+      name.textContent = `${run.number} ${run.stopped ? WORDS.stopped(run.name) : run.name}`;
       row.append(name);
-      const floor = run.surface && run.surface !== 'ideal' ? `${run.surface}, seed ${run.seed}` : run.surface || '';
+      const floor = run.surface && run.surface !== 'ideal' ? WORDS.withSeed(run.surface, run.seed) : run.surface || '';
       for (const text of [floor, distance, heading]) {
         row.insertCell().textContent = text;
       }

@@ -26,9 +26,9 @@ def request(port, path='/', host=None, method='GET', **headers):
 class WebClient:
     """A WebSocket to the view."""
 
-    def __init__(self, port, token=None, small=False, **headers):
-        """token: sent with hello, unless None; small: whether to use a small receive buffer. Raises ConnectionError
-        with the HTTP status if the server rejects the request."""
+    def __init__(self, port, token=None, small=False, code='', **headers):
+        """token, code: sent with hello, unless the token is None; small: whether to use a small receive buffer. Raises
+        ConnectionError with the HTTP status if the server rejects the request."""
         self.socket = socket.socket()
         if small:
             self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 2048)
@@ -47,7 +47,7 @@ class WebClient:
             self.close()
             raise ConnectionError(head.split()[1].decode())
         if token is not None:
-            self.send(type='hello', token=token)
+            self.send(type='hello', token=token, code=code)
 
     def receive(self):
         """Wait for data. Raises ConnectionError if the connection is closed."""

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """seats.py gives each learner a master, a base and a page, and stops all of them when it exits."""
-from contextlib import suppress
+from contextlib import closing, suppress
 import os
 import signal
 import sys
@@ -32,6 +32,14 @@ def title(port, token):
         return client.wait_for('welcome')['trusted'] and client.wait_for('frame')['status']['title']
 
 
+def token_of(port, process):
+    """Return the token of the seat whose page is at a port: exchange the code that its process prints."""
+    code = process.wait_for_line(r' 1 .*/#(\S+)').group(1)
+    client = WebClient(port, '', code=code)
+    with closing(client):
+        return client.wait_for('welcome')['token']
+
+
 class TestSeats(support.Case):
     def start(self, *arguments):
         """Start seats.py; return its Process."""
@@ -61,7 +69,7 @@ class TestSeats(support.Case):
     def test_a_neighbor_cannot_stop_a_seat(self):
         page = free_port()
         process = self.start(1, '--master-port', free_port() - 1, '--web-port', page - 1)
-        token = process.wait_for_line(r' 1 .*/#(\S+)').group(1)
+        token = token_of(page, process)
         for given, answer in ('', 'refused'), (token, 'stopping'):
             client = WebClient(page, given)
             client.send(type='stop', number=1)
@@ -74,7 +82,7 @@ class TestSeats(support.Case):
     def test_a_seat_that_exits_is_started_again(self):
         masters, page = free_port() - 1, free_port()
         process = self.start(1, '--master-port', masters, '--web-port', page - 1)
-        token = process.wait_for_line(r' 1 .*/#(\S+)').group(1)
+        token = token_of(page, process)
         self.assertEqual(title(page, token), 'Seat 1')
         process.wait_for_line('Ready: 1 seats')
         master = ServerProxy(f'http://localhost:{masters + 1}')

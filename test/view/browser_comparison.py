@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """Tests what the page offers for comparing runs: earlier paths, speeds that can be scrolled, a saved picture with its
 numbers, reasons for disabled buttons; and a session by keyboard alone."""
+import csv
 import os
 import re
 
@@ -64,9 +65,32 @@ class TestBrowserComparison(PageTest):
         self.assertEqual(self.count('.earlier path'), 1)
         self.assertEqual(self.page.find('.earlier g').get_attribute('data-run'), 'with odometry')
 
+    def choose(self, name, value):
+        """Choose a value in the page, as soon as this is possible."""
+        def chosen():
+            return self.driver.execute_script("""
+                const input = document.querySelector(`#choices [name=${arguments[0]}]`);
+                if (input.disabled) { return false; }
+                input.value = arguments[1];
+                input.onchange();
+                return true""", name, value)
+        support.wait_for(chosen, f'{name} to be enabled')
+
+    def test_another_floor_for_a_shorter_distance(self):
+        self.addCleanup(rospy.set_param, '/out_and_back/goal_distance', 0.2)
+        for surface, seed in ('hard_floor', '42'), ('low_ply_carpet', '7'):
+            self.choose('surface', surface)
+            self.page.wait_for_text('facts', surface)
+            self.choose('seed', seed)
+            self.page.wait_for_text('facts', rf'Seed\s+{seed}\b')
+        self.choose('distance', '0,35')
+        support.wait_for(lambda: rospy.get_param('/out_and_back/goal_distance') == 0.35, 'the parameter')
+        self.choose('seed', '1.5')
+        self.page.wait_for_text('notice', 'Refused: seed: expected')
+
     def test_how_far_the_robot_has_missed_its_start(self):
         self.page.run('timed')
-        self.page.wait_for_text('headline', r'^Missed the start by \d\.\d\d m and \d+°$')
+        self.page.wait_for_text('headline', r'^Timed: missed the start by \d\.\d\d m and \d+°$')
         _, _, heading, distance = self.page.row('table-now', 'truth')
         meters, degrees = re.findall(r'[\d.]+', self.page.text('headline'))
         self.assertAlmostEqual(float(meters), distance, delta=0.0056)
@@ -102,16 +126,22 @@ class TestBrowserComparison(PageTest):
             self.page.run(method)
             self.page.wait_for_text('run-state', ': finished')
         support.wait_for(lambda: self.driver.execute_script('return rbx1.model.status.seed') == '7', 'the seed')
-        self.page.click('#save-svg')
-        name = support.wait_for(lambda: [each for each in os.listdir(self.folder.name) if each.endswith('.svg')],
+        lines = [text for _, text in self.driver.execute_script('return rbx1.caption()')]
+        self.assertEqual(lines[:2], ['with odometry, low_ply_carpet, seed 7', 'Earlier runs (timed): 1'])
+        ends = {source: self.page.row('table-now', source)[:2] for source in ('truth', 'odometry')}
+        for line, (source, (x, y)) in zip(lines[2:], ends.items()):
+            self.assertTrue(line.startswith(f'{source}: x {x:.3f} m, y {y:.3f} m'), line)
+        self.page.click('#save')
+        name = support.wait_for(lambda: [each for each in os.listdir(self.folder.name) if each.endswith('.csv')],
                                 'a file')
         with open(os.path.join(self.folder.name, name[0]), encoding='utf-8') as file:
-            text = file.read()
-        self.assertIn('with odometry, low_ply_carpet, seed 7<', text)
-        self.assertIn('Earlier runs (timed): 1<', text)
-        for source in 'truth', 'odometry':
-            x = self.page.row('table-now', source)[0]
-            self.assertIn(f'{source}: x {x:.3f} m', text)
+            rows = list(csv.DictReader(file))
+        self.assertEqual({row['run']: row['method'] for row in rows}, {'1': 'timed', '2': 'with odometry'})
+        for source, end in ends.items():
+            row = [each for each in rows if each['source'] == source and each['run'] == '2'][-1]
+            self.assertEqual((row['surface'], row['seed']), ('low_ply_carpet', '7'))
+            for name, value in zip('xy', end):      # the points of a path are at most 2 cm apart
+                self.assertAlmostEqual(float(row[name]), value, delta=0.021)
 
     def test_why_a_button_is_disabled(self):
         support.wait_for(lambda: self.page.find('.run[data-method=timed]').is_enabled(), 'a base')
@@ -127,7 +157,7 @@ class TestBrowserComparison(PageTest):
         support.wait_for(lambda: self.odom.position()[0] > 0.05, 'the run')
         self.assertEqual(self.driver.execute_script('return document.getAnimations().length'), 0)
         self.press(Keys.ESCAPE)
-        self.page.wait_for_text('run-state', 'The robot is stationary')
+        self.page.wait_for_text('run-state', 'The robot was stationary')
         self.go_to('reset')
         self.press(Keys.SPACE)
         support.wait_for(lambda: self.odom.position() == (0, 0), 'the reset')

@@ -36,14 +36,14 @@ class TestBrowserFleet(support.Case):
         support.wait_for(lambda: self.x('robot2') > 0.1, 'robot2 to drive')
         self.assertEqual(self.x('robot1'), 0)
         page.click('#stop')
-        page.wait_for_text('run-state', 'The robot is stationary')
+        page.wait_for_text('run-state', 'The robot was stationary')
         # the robot on the floor, too
         page.driver.execute_script('document.querySelector(".other").dispatchEvent(new Event("click"))')
         page.wait_for_text('stop', 'Stop robot1')
         page.run('odometry')
         support.wait_for(lambda: self.x('robot1') > 0.1, 'robot1 to drive')
         page.click('#stop')
-        page.wait_for_text('run-state', 'The robot is stationary')
+        page.wait_for_text('run-state', 'The robot was stationary')
         self.assertEqual(page.console_errors(), [])
 
 

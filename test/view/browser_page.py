@@ -7,7 +7,6 @@ import re
 import signal
 import socket
 import threading
-import xml.etree.ElementTree as ElementTree
 
 from nav_msgs.msg import Odometry
 import rospy
@@ -74,7 +73,7 @@ class TestBrowserPage(PageTest):
     def setUp(self):
         self.page = Page(self.driver, self.url)
         self.page.click('#stop')
-        self.page.wait_for_text('run-state', 'The robot is stationary')
+        self.page.wait_for_text('run-state', 'The robot was stationary')
         self.page.reset()
         support.wait_for(lambda: self.odom.position() == (0, 0), 'the reset')
 
@@ -135,7 +134,7 @@ class TestBrowserPage(PageTest):
         support.wait_for(lambda: self.odom.position()[0] > 0.05, 'the robot to drive')
         self.page.click('#stop')
         self.odom.wait_for_twist(0.0)
-        self.page.wait_for_text('run-state', 'The robot is stationary')
+        self.page.wait_for_text('run-state', 'The robot was stationary')
         self.assertFalse(rospy.has_param('/out_and_back/odom_frame'), 'it would affect the next run in a terminal')
         self.assertLess(self.odom.position()[0], 0.9)   # before the end of the first leg
 
@@ -176,7 +175,7 @@ class TestBrowserPage(PageTest):
         self.page.click('#stop')
         self.page.wait_for_text('notice', 'No answer: the robot may still be moving|Not connected: Stop did not reach')
         os.kill(pid, signal.SIGCONT)
-        self.page.wait_for_text('run-state', r'Stopped\. The robot is stationary\.')
+        self.page.wait_for_text('run-state', r'Stopped\. The robot was stationary')
         support.wait_for(lambda: not self.page.find('#notice').is_displayed(), 'the alarm to disappear')
         self.page.wait_for_text('connection', 'Connected')
 
@@ -187,7 +186,7 @@ class TestBrowserPage(PageTest):
         self.drive_ahead(0.05)
         relay.break_connections()
         self.page.click('#stop')
-        self.page.wait_for_text('run-state', r'The robot is stationary\.')
+        self.page.wait_for_text('run-state', r'The robot was stationary')
         self.page.wait_for_text('connection', 'Connected')
         self.assertEqual(self.page.find('#notice').text, '')
         self.page.key('keyUp', 'ArrowUp')
@@ -235,12 +234,15 @@ class TestBrowserPage(PageTest):
         self.assertFalse(self.driver.find_elements('css selector', '.earlier path'))
         self.page.click('#home')
         self.page.click('#stop')
-        self.page.wait_for_text('run-state', 'The robot is stationary')
+        self.page.wait_for_text('run-state', 'The robot was stationary')
 
     def test_without_the_token_nothing_moves(self):
-        self.driver.execute_script('sessionStorage.clear()')
-        self.page = Page(self.driver, self.url.partition('#')[0])
+        token = self.driver.execute_script('return localStorage.getItem("token")')
+        self.driver.execute_script('localStorage.clear()')
+        self.addCleanup(self.driver.execute_script, 'localStorage.setItem("token", arguments[0])', token)
+        self.page = Page(self.driver, self.url)
         self.page.wait_for_text('connection', 'watching only')
+        self.page.wait_for_text('notice', 'has been used already')      # the address of the set-up
         for selector in '.run[data-method=timed]', '#reset', '#hand', '.pad button':
             support.wait_for(lambda: not self.page.find(selector).is_enabled(), f'{selector} to be disabled')
         for message in (dict(type='run', method='timed'), dict(type='hand', on=True), dict(type='drive', forward=1)):
@@ -254,6 +256,19 @@ class TestBrowserPage(PageTest):
         self.assertNotIn('#', self.driver.current_url)
         self.assertNotIn(self.url.partition('#')[2], self.page.text('lines'))
 
+    def test_an_address_for_another_browser(self):
+        self.page.click('#invite')
+        self.page.wait_for_text('notice', rf'drive: {self.url.partition("#")[0]}#\S{{20,}}$')
+        address = self.page.text('notice').rpartition(' ')[2]
+        tokens = []
+        for connected in 'Connected$', 'Connected, watching only':      # the second use
+            self.driver.execute_script('localStorage.clear()')
+            self.page = Page(self.driver, address)
+            self.page.wait_for_text('connection', connected)
+            tokens.append(self.driver.execute_script('return localStorage.getItem("token")'))
+        self.assertEqual(tokens[1], '')
+        self.driver.execute_script('localStorage.setItem("token", arguments[0])', tokens[0])
+
     def test_the_picture_is_saved(self):
         self.drive_ahead(0.1)
         self.page.key('keyUp', 'ArrowUp')
@@ -262,11 +277,8 @@ class TestBrowserPage(PageTest):
         def saved(kind):
             return [os.path.join(self.folder.name, name) for name in os.listdir(self.folder.name)
                     if name.endswith(kind)]
-        self.page.click('#save-svg')
-        self.page.click('#save-png')
-        support.wait_for(lambda: saved('.svg') and saved('.png'), 'two files')
-        picture = ElementTree.parse(saved('.svg')[0])
-        self.assertTrue([each for each in picture.iter() if each.get('stroke', '').startswith('rgb')])
+        self.page.click('#save')
+        support.wait_for(lambda: saved('.csv') and saved('.png'), 'two files')
         with open(saved('.png')[0], 'rb') as file:
             self.assertEqual(file.read(8), b'\x89PNG\r\n\x1a\n')
 

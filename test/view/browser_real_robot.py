@@ -63,7 +63,7 @@ class TestBrowserRealRobot(support.Case):
         support.wait_for(self.moves, 'the robot to move')
         page.click('#stop')
         self.odom.wait_for_twist(0.0)
-        page.wait_for_text('run-state', 'The robot is stationary')
+        page.wait_for_text('run-state', 'The robot was stationary')
         self.assertEqual(page.console_errors(), [])
         self.view.signal(signal.SIGINT)
         self.assertEqual(self.view.wait(), 0, self.view.output)

@@ -38,7 +38,7 @@ class Server:
         self._proxy('close')()
 
     # Any: what a call returns depends on its method
-    def call(self, method: str, *args: str | bool) -> Any:
+    def call(self, method: str, *args: str | float) -> Any:
         """Return the result of a call. Raises OSError, http.client.HTTPException or xmlrpc.client.Error if it fails."""
         return getattr(self._proxy, method)(rospy.get_name(), *args)[2]
 
@@ -47,7 +47,7 @@ class Server:
         return self.call('getParam', name) if self.call('hasParam', name) else default
 
 
-def call(uri: str, method: str, *args: str, timeout: float = TIMEOUT) -> Any:
+def call(uri: str, method: str, *args: str | float, timeout: float = TIMEOUT) -> Any:
     """Return the result of one call, like Server.call()."""
     with Server(uri, timeout) as server:
         return server.call(method, *args)

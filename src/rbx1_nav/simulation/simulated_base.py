@@ -22,10 +22,15 @@ def make_base(robot: Robot, surface: Surface | None, seed: int, floor: Floor | N
     seed: an integer that determines the random errors of the run; floor: in place of the seed's, for many runs, whose
     gyros are not simulated.
     """
-    window = min(1 / robot.rate, MAX_SPEED_WINDOW)
+    window = speed_window(robot)
     wheels, gyro = ((Wheels(robot.base_width, floor, window), IdealGyro()) if floor
                     else make_wheels_and_gyro(robot.base_width, surface, seed, window))
     return SimulatedBase(wheels, CommandGate(robot.limits, robot.timeout), gyro)
+
+
+def speed_window(robot: Robot) -> float:
+    """Return the time over which encoder counts are averaged to report a speed, s."""
+    return min(1 / robot.rate, MAX_SPEED_WINDOW)
 
 
 def make_wheels_and_gyro(base_width: float, surface: Surface | None, seed: int,
@@ -106,6 +111,10 @@ class SimulatedBase:
         if last is None or self.now <= last:
             return None
         return self.gyro.read(self.wheels.truth.yaw, (self.now - last) / SECOND, self.at_rest)
+
+    def change_floor(self, surface: Surface | None, seed: int, window: float) -> None:
+        """Put the base on another floor; see make_wheels_and_gyro(). To be followed by reset()."""
+        self.wheels, self.gyro = make_wheels_and_gyro(self.wheels.base_width, surface, seed, window)
 
     def reset(self) -> None:
         """Put the base back at the origin, at rest."""

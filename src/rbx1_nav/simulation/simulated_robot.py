@@ -20,9 +20,10 @@ from rbx1_nav.base.running_bases import Refusals
 from rbx1_nav.base.schedule import Schedule
 from rbx1_nav.base.surfaces import Surface
 from rbx1_nav.base.units import SECOND
+from rbx1_nav.node.config import ConfigError
 from rbx1_nav.node.frames import with_prefix
 from rbx1_nav.node.rospy_topics import NoDelay
-from rbx1_nav.simulation.simulated_base import make_base
+from rbx1_nav.simulation.simulated_base import make_base, speed_window
 from rbx1_nav.simulation.wheels import IdealWheels
 
 
@@ -30,20 +31,20 @@ class SimulatedRobot:
     """The topics and services of a simulated base."""
 
     def __init__(self, robot: Robot, surface: Surface | None, seed: int, clock: Clock, refusals: Refusals,
-                 name: str = '') -> None:
+                 name: str = '', changed_floor: Callable[[], tuple[Surface | None, int] | None] = lambda: None) -> None:
         """surface: None for the ideal floor; seed: of its errors; refusals: of this node; name: namespace of the
-        robot, '' for the namespace of this node."""
+        robot, '' for the namespace of this node; changed_floor(): see ChosenFloor."""
         topics, private = (f'/{name}/', f'/{name}/arbotix/') if name else ('', '~')
         if robot.hardware:
             rospy.loginfo('Ignoring %d parameters that apply only to hardware', len(robot.hardware))
         if robot.unknown:
             rospy.logwarn('Ignoring unknown parameters: %s', ', '.join(robot.unknown))
-        rospy.loginfo('Surface: %s', f'{surface.name}; seed:={seed} repeats this run' if surface else 'ideal')
         self.robot = robot
+        self.changed_floor = changed_floor
         self.base = make_base(robot, surface, seed)
         self.base.now = clock.now()
         self.clock = clock
-        self.floor = surface.name if surface else 'ideal', seed
+        self._name_floor(surface, seed)
         self.lock = threading.Lock()
         self.last_stamp: rospy.Time | None = None
         self.joints_time: int | None = None     # ns, of the last motion of the joints
@@ -122,11 +123,24 @@ class SimulatedRobot:
         publish(self.publisher.transform(stamp, pose) if topic == '/tf' else
                 messages.odometry(stamp, self.publisher.frames, pose, velocity, uncertainty))
 
+    def _name_floor(self, surface: Surface | None, seed: int) -> None:
+        rospy.loginfo('Surface: %s', f'{surface.name}; seed:={seed} repeats this run' if surface else 'ideal')
+        self.floor = surface.name if surface else 'ideal', seed
+
     def on_reset(self, _: EmptyRequest) -> EmptyResponse:
-        """Put the robot back at the origin, at rest."""
+        """Put the robot back at the origin, at rest, and on another floor if its parameters have changed."""
+        try:
+            floor = self.changed_floor()
+        except (ConfigError, OSError, rospy.ROSException) as error:
+            rospy.logerr('The floor is still %s: %s', self.floor[0], error)
+            floor = None
         with self.lock:
             self.base.advance(self.clock.now())
+            if floor:
+                self.base.change_floor(*floor, speed_window(self.robot))
             self.base.reset()
+        if floor:
+            self._name_floor(*floor)
         self.reset_pub.publish()
         rospy.loginfo('Reset: %s is back at the origin of %s', self.robot.base_frame_id, self.robot.odom_frame_id)
         return EmptyResponse()

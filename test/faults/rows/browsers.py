@@ -8,6 +8,8 @@ import struct
 import time
 
 import support
+from rbx1_nav.extras.web.access import TOKEN_VARIABLE, make_token
+
 from web_client import WebClient, request
 
 FAULT = ('requests and WebSockets from a foreign page; another user without the token; 100 connections; slow readers; '
@@ -33,9 +35,9 @@ class View:
     """The node under test."""
 
     def __init__(self, row):
+        os.environ[TOKEN_VARIABLE] = self.token = make_token()
         self.process = row.node('web_view.py', '_port:=0')
-        match = self.process.wait_for_line(r'Open http://localhost:(\d+)/#(\S+)')
-        self.port, self.token = int(match.group(1)), match.group(2)
+        self.port = int(self.process.wait_for_line(r'Open http://localhost:(\d+)/').group(1))
         self.odom = support.OdomWatch()
         # until the first message on /ground_truth, the robot counts as real
         with_token = WebClient(self.port, self.token)

@@ -15,9 +15,11 @@ def read(*path):
 def test_each_method_has_a_script_and_a_button_with_its_title():
     for each in METHODS.values():
         assert os.path.exists(os.path.join(ROOT, 'nodes', each.script)) and each.pose in ('', 'odometry', 'estimate')
-    button = re.compile(r'class="run" data-method="(\w+)" data-pose="(\w*)" disabled>([^<]+)<')
+    button = re.compile(r'class="run" data-method="(\w+)" data-pose="(\w*)" data-text="([^"]+)" disabled')
     buttons = button.findall(read('web', 'index.html'))
-    assert buttons == [(name, each.pose, each.title.capitalize()) for name, each in OF_PAGE.items()]
+    assert buttons == [(name, each.pose, each.title) for name, each in OF_PAGE.items()]
+    for each in OF_PAGE.values():
+        assert f"'{each.title}': '{each.title.capitalize()}'" in read('web', 'words.js')
 
 
 def test_the_fleet_starts_each_method_without_the_filter():

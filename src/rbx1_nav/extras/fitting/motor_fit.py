@@ -4,7 +4,7 @@ from __future__ import annotations
 from typing import NamedTuple, Sequence
 
 import numpy
-from scipy.optimize import OptimizeResult, least_squares
+from scipy.optimize import least_squares
 from scipy.stats import chi2
 
 from rbx1_nav.base.surfaces import Surface
@@ -20,7 +20,6 @@ STEPS = dict(delay=1e-3, lag=1e-3, accel_limit=1e-2, drag_straight=1e-5, drag_tu
 LIMITS: dict[str, tuple[float, float]] = {**BOUNDS, 'accel_limit': (0.01, 100)}
 FIRST_DELAYS = 0.0, 0.05, 0.1, 0.2, 0.4, 0.8    # s: the fit starts at the best of these; far away, the cost is flat
 
-LIMITED = numpy.array([key == 'accel_limit' for key in MOTORS])
 SMALLEST = dict(delay=0.002, lag=0.002, accel_limit=0.02, drag_straight=2e-4, drag_turning=2e-4)   # errors
 UNLIKELY = 1e-4     # probability of a difference by chance, below which it is reported
 SIGNIFICANT = 9.0   # required decrease of the sum of squares by a limit, in variances of a residual: 3 sigma
@@ -104,35 +103,25 @@ def fit_motors(surface: Surface, base_width: float, recordings: Sequence[Recordi
 
     given = numpy.array([numpy.clip(getattr(surface, key), *LIMITS[key]) for key in MOTORS])
     start = min((numpy.array([delay, *given[1:]]) for delay in FIRST_DELAYS), key=squares)
-
-    def solve(start: Array, least: float = 0.0) -> OptimizeResult:
-        """least: of the limit, in units of its largest value."""
-        bounds = numpy.array([LIMITS[key] for key in MOTORS]).T
-        bounds[0] = numpy.where(LIMITED, bounds[0].clip(least * bounds[1]), bounds[0])
-        return least_squares(residuals, start, jacobian, bounds, x_scale=[0.01, 0.01, 0.3, 0.001, 0.001], xtol=1e-6,
-                             ftol=1e-8, max_nfev=60)
-
-    result = solve(start)
-    found = result.x
+    result = least_squares(residuals, start, jacobian, numpy.transpose([LIMITS[key] for key in MOTORS]),
+                           x_scale=[0.01, 0.01, 0.3, 0.001, 0.001], xtol=1e-6, ftol=1e-8, max_nfev=60)
     slopes = jacobian(result.x)
     left = residuals(result.x)
     # a parameter without effect: a tenth of its value changes the residuals by less than 1 micrometer in total
     unused = [key for key, column, value in zip(MOTORS, slopes.T, result.x)
               if abs(column).sum() * max(abs(value), STEPS[key]) < 1e-5]
-    if 'accel_limit' not in unused:
-        # without a limit, other values may explain the travel as well
-        unlimited = solve(numpy.where(LIMITED, LIMITS['accel_limit'][1], result.x), 0.999)
-        variance = (left ** 2).sum() / max(1, len(left) - len(MOTORS))
-        if 2 * (unlimited.cost - result.cost) < SIGNIFICANT * variance:
-            unused.append('accel_limit')
-            found = numpy.where(LIMITED, found, unlimited.x)
+    # a limit just above the acceleration that the motors need also has no effect
+    without = residuals(numpy.where([key == 'accel_limit' for key in MOTORS], LIMITS['accel_limit'][1], result.x))
+    variance = (left ** 2).sum() / max(1, len(left) - len(MOTORS))
+    if 'accel_limit' not in unused and (without ** 2).sum() - (left ** 2).sum() < SIGNIFICANT * variance:
+        unused.append('accel_limit')
     used = [index for index, key in enumerate(MOTORS) if key not in unused]
     errors = dict.fromkeys(MOTORS, numpy.inf)
     if used:
         borders = numpy.cumsum([len(each.travel) for each in intervals])
         errors.update(zip((MOTORS[index] for index in used), standard_errors(slopes[:, used], left, borders)))
     travel = numpy.concatenate([each.travel for each in intervals])
-    return MotorFit(dict(zip(MOTORS, found.tolist())), errors, unused, float(numpy.sqrt((left ** 2).mean())),
+    return MotorFit(dict(zip(MOTORS, result.x.tolist())), errors, unused, float(numpy.sqrt((left ** 2).mean())),
                     float(numpy.sqrt((travel ** 2).mean())))
 
 

@@ -94,10 +94,7 @@ class Watch(Pollers):
             self.missed['/clock', name] = 0.0       # it may have been killed: not waited for until it unregisters
         self.listeners = listeners
         self.starting = {name: until for name, until in self.starting.items() if name in listeners}
-        drivers = self.drivers
         self._select()
-        if not self.drivers <= drivers:
-            self.master_time, self.asked = None, False
         return True
 
     def _connections(self) -> list[Any]:
@@ -218,9 +215,8 @@ class Watch(Pollers):
         return None
 
     def _still_starting(self, naps: list[str]) -> str | None:
-        """Return whether a node is starting, as awake() does: it is being connected, it sleeps by the wall clock, or
-        it has registered as a publisher of commands and is not connected yet. All nodes are asleep; naps: names of
-        those that are starting and sleep by the wall clock."""
+        """Return whether a node is starting, as awake() does: it is being connected, it sleeps by the wall clock, or it
+        has registered as a publisher of commands. All nodes are asleep; naps: names of those that sleep so."""
         now = monotonic()
         if self.joining:
             name = self._missed('/clock', self.graph.on_clock - self.listeners.keys(), now)

@@ -11,7 +11,7 @@ import numpy
 
 from rbx1_nav.base.kinematics import Pose
 from rbx1_nav.exercise.methods import METHODS
-from rbx1_nav.extras.many_runs.plots import ESTIMATE, ODOMETRY, TRUTH, Extent, widened
+from rbx1_nav.extras.many_runs.plots import ESTIMATE, ODOMETRY, STYLES, TRUTH, Extent, widened
 from rbx1_nav.extras.many_runs.simulated_run import SimulationResult, Snapshot
 from rbx1_nav.node.config import ConfigError
 from rbx1_nav.node.files import check_writable, write_file
@@ -49,7 +49,7 @@ class Panel:
         self.robot, = axes.plot([], [], color=TRUTH, linewidth=2.5)
         # on top, so that it is also visible where the robot is
         color = ESTIMATE if METHODS[method].pose == 'estimate' else ODOMETRY
-        self.believed, = axes.plot([], [], color=color, linestyle='--', linewidth=1.8)
+        self.believed, = axes.plot([], [], color=color, linestyle=STYLES[color], linewidth=1.8)
 
     def show(self, time: float) -> None:
         """Show the robot at a time (s), or at its end pose after the run."""
@@ -90,13 +90,13 @@ def animate(file: str, surface: str, results: Mapping[str, SimulationResult]) ->
     figure = Figure(figsize=(3.2 * len(results), 3.9))
     figure.subplots_adjust(left=0.01, right=0.99, bottom=0.1, top=0.8, wspace=0.04)
     figure.suptitle(f'Out and back on {surface}')
-    shown = {'true pose': (TRUTH, '-')}
+    shown = {'true pose': TRUTH}
     by_estimate = [METHODS[method].pose == 'estimate' for method in results]
     if not all(by_estimate):
-        shown['odometry'] = ODOMETRY, '--'
+        shown['odometry'] = ODOMETRY
     if any(by_estimate):
-        shown['estimate from odometry and gyro'] = ESTIMATE, '--'
-    figure.legend([Line2D([], [], color=color, linestyle=style, linewidth=2) for color, style in shown.values()],
+        shown['estimate from odometry and gyro'] = ESTIMATE
+    figure.legend([Line2D([], [], color=color, linestyle=STYLES[color], linewidth=2) for color in shown.values()],
                   list(shown), loc='lower center', ncol=len(shown), frameon=False)
     canvas = FigureCanvasAgg(figure)
     extent = widened((-0.45, 1.45, -0.65, 1.05), results.values())

@@ -2,9 +2,9 @@
 
 Each function imports matplotlib when it draws: programs that draw only on request would take twice as long to start.
 
-The colors are used in plots, animations, RViz (rviz/*.rviz) and the browser (web/style.css). With simulated protanopia,
-deuteranopia and tritanopia (Machado et al. 2009), two of them differ by at least 23 in CIELAB. On the backgrounds of
-all pictures, their contrast is at least 3.
+The colors are used in plots, animations, RViz (rviz/*.rviz) and the browser (web/style.css). Two of them differ in
+luminance by a contrast of at least 1.5, and with simulated protanopia, deuteranopia and tritanopia (Machado et al.
+2009) by at least 22 in CIELAB. On the backgrounds of all pictures, their contrast is at least 3.
 """
 from __future__ import annotations
 
@@ -33,15 +33,16 @@ if TYPE_CHECKING:
 # matplotlib cannot save its list of fonts on a full disk; the error of the picture is enough
 logging.getLogger('matplotlib.font_manager').setLevel(logging.ERROR)
 
-TRUTH = '#267dff'       # blue
-ODOMETRY = '#f21000'    # red
-ESTIMATE = '#00a64d'    # green
+# blue, red, green
+TRUTH, ODOMETRY, ESTIMATE = '#1040b0', '#d01000', '#00a64d'
+STYLES = {TRUTH: '-', ODOMETRY: '--', ESTIMATE: ':'}    # of their lines
+ON_DARK = '#32a5ff', '#f21000', '#00f06e'       # the same on the dark backgrounds of RViz and the browser
 
 PATHS = 20      # number of paths in a plot; more would hide each other
 SHOWN = 5000    # number of end poses of each method in a plot; more would be a spot without structure
 
 Extent = Tuple[float, float, float, float]    # xmin, xmax, ymin, ymax, m
-SIMULATED = ESTIMATE    # results of a model, as opposed to measurements
+SIMULATED = '#707070'   # gray: results of a model, as opposed to measurements
 REGIONS = (0.9, 0.2), (0.5, 0.35)       # share of the simulated end poses, opacity
 MARGIN = 0.08       # margin around all paths, as a fraction of their extent
 POINTS = 150        # number of simulated end poses shown per run
@@ -183,7 +184,8 @@ def draw_fit(file: str, title: str, comparisons: Sequence[Comparison]) -> None:
     recorded, simulated, ends = figure.subplots(1, 3)
     for number, each in enumerate(comparisons):
         if each.recorded is not None:
-            recorded.plot(*each.recorded, color=TRUTH if each.is_truth else ODOMETRY, linewidth=1, alpha=0.7,
+            color = TRUTH if each.is_truth else ODOMETRY
+            recorded.plot(*each.recorded, color=color, linestyle=STYLES[color], linewidth=1, alpha=0.7,
                           label=None if number else 'truth' if each.is_truth else 'odometry')
         if each.end is not None:
             for axes in (recorded, ends):

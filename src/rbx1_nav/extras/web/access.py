@@ -12,28 +12,54 @@ import re
 import secrets
 import socket
 
-from rbx1_nav.extras.web.page_messages import Request, StopRequest
+from rbx1_nav.extras.web.page_messages import InviteRequest, Request, StopRequest
 
 LOCALHOST = 'localhost'
 TOKEN_BYTES = 16
-TOKEN_VARIABLE = 'RBX1_NAV_TOKEN'   # environment variable with the token, if several processes must agree on it
+# environment variables with the token and the code, if another process makes and prints them
+TOKEN_VARIABLE, CODE_VARIABLE = 'RBX1_NAV_TOKEN', 'RBX1_NAV_CODE'
 
 
-def without_token(message: Request, stop_needs_token: bool) -> str:
+class Access:
+    """Who may move the robot: whoever has the token. A printed address contains a code, which a browser exchanges once
+    for the token, because logs and histories of browsers keep addresses."""
+
+    def __init__(self, token: str, code: str = '') -> None:
+        """code: '' for none, until invite()."""
+        self.token = token
+        self.codes = {code} - {''}
+
+    def check(self, token: str, code: str) -> tuple[str, str]:
+        """Return the token, or '' if neither token nor code is valid; and which was rejected: token, code or ''. A code
+        is valid once."""
+        if same_token(self.token, token):
+            return self.token, ''
+        found = next((each for each in self.codes if same_token(each, code)), '')
+        self.codes.discard(found)
+        return (self.token, '') if found else ('', 'code' if code else 'token' if token else '')
+
+    def invite(self) -> str:
+        """Return a new code, for another browser."""
+        code = make_token()
+        self.codes.add(code)
+        return code
+
+
+def without_token(message: Request | InviteRequest, stop_needs_token: bool) -> str:
     """Return why a request of a browser without the token is rejected, or ''. Without it, a browser may only stop."""
     if not isinstance(message, StopRequest):
-        return 'this page can only watch: open the complete address that the web view printed, with its token'
+        return 'this page can only watch: open the complete address that the web view printed'
     return 'Stop needs the token here: open the complete address that the web view printed' if stop_needs_token else ''
 
 
 def make_token() -> str:
-    """Return a new token that cannot be guessed."""
+    """Return a new token or code that cannot be guessed."""
     return secrets.token_urlsafe(TOKEN_BYTES)
 
 
-def page_address(address: str, port: int, token: str) -> str:
-    """Return the address to open. A browser does not send the part after #, so no proxy can log the token."""
-    return f'http://{LOCALHOST if is_wildcard(address) else in_url(address)}:{port}/#{token}'
+def page_address(address: str, port: int, code: str = '') -> str:
+    """Return the address to open. A browser does not send the part after #, so no proxy can log the code."""
+    return f"http://{LOCALHOST if is_wildcard(address) else in_url(address)}:{port}/{'#' if code else ''}{code}"
 
 
 def in_url(address: str) -> str:

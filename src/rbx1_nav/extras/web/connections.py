@@ -6,9 +6,10 @@ from typing import Callable
 
 from tornado.websocket import WebSocketHandler
 
-from rbx1_nav.extras.web.access import same_token
+from rbx1_nav.extras.web.access import Access, without_token
 from rbx1_nav.extras.web.controls import Controls
-from rbx1_nav.extras.web.page_messages import Hello, InvalidMessage, StopRequest, encode, kind_of, parse
+from rbx1_nav.extras.web.page_messages import (
+    Hello, InvalidMessage, InviteRequest, StopRequest, encode, kind_of, parse)
 from rbx1_nav.extras.web.state import PageState
 
 # Maximum numbers of browsers without the token, in all and from one address, and of those that have not sent hello. A
@@ -45,11 +46,11 @@ class Browser:
 class Connections:
     """All connected browsers. The methods may only be called from the server thread."""
 
-    def __init__(self, state: PageState, controls: Controls, token: str, clock: Callable[[], float]) -> None:
+    def __init__(self, state: PageState, controls: Controls, access: Access, clock: Callable[[], float]) -> None:
         """clock(): returns the monotonic time, s."""
         self.state = state
         self.controls = controls
-        self.token = token
+        self.access = access
         self.clock = clock
         self.browsers: dict[WebSocketHandler, Browser] = {}
 
@@ -86,6 +87,10 @@ class Connections:
         if isinstance(message, Hello):
             self._greet(browser, message)
             return
+        if isinstance(message, InviteRequest):
+            browser.send(encode('invited', code=self.access.invite()) if browser.trusted else
+                         encode('refused', what='invite', reason=without_token(message, False)))
+            return
         refused = self.controls.handle(browser, browser.trusted, message)
         if isinstance(message, StopRequest) and not refused:
             browser.send(encode('stopping', number=message.number))
@@ -93,13 +98,14 @@ class Connections:
             browser.send(encode('refused', what=kind_of(message), reason=refused))
 
     def _greet(self, browser: Browser, hello: Hello) -> None:
-        browser.greeted, browser.trusted = True, same_token(self.token, hello.token)
+        token, rejected = self.access.check(hello.token, hello.code)
+        browser.greeted, browser.trusted = True, bool(token)
         watchers = [each.address for each in self.browsers.values() if each.greeted and not each.trusted]
         if not browser.trusted and (len(watchers) > MAX_WATCHERS or watchers.count(browser.address) > MAX_OF_ADDRESS):
             self._disconnect(browser.socket, TRY_AGAIN, 'too many pages without the token')
             return
         linear, angular = self.controls.speeds
-        browser.send(encode('welcome', trusted=browser.trusted, known_token=browser.trusted or not hello.token,
+        browser.send(encode('welcome', trusted=browser.trusted, token=token, rejected=rejected,
                             speeds=[linear, angular]))
 
     def _disconnect(self, socket: WebSocketHandler, code: int, reason: str) -> None:

@@ -5,8 +5,10 @@ import time
 from typing import Any, Callable, NamedTuple
 
 from rbx1_nav.extras.web.access import without_token
+from rbx1_nav.extras.web.choices import FLOOR, read_choice
 from rbx1_nav.extras.web.hand_drive import HandDrive
-from rbx1_nav.extras.web.page_messages import DriveRequest, HandRequest, Request, ResetRequest, RunRequest, StopRequest
+from rbx1_nav.extras.web.page_messages import (
+    ChooseRequest, DriveRequest, HandRequest, Request, RunRequest, StopRequest)
 from rbx1_nav.extras.web.page_runs import Runs
 from rbx1_nav.extras.web.state import PageState
 from rbx1_nav.extras.web.system import System
@@ -37,13 +39,13 @@ class Stopper:
     be called from the server thread.
     """
 
-    def __init__(self, stop: Callable[[], None], system: System, speed: Callable[[float], float | None],
+    def __init__(self, stop: Callable[[], None], system: System, last_speed: Callable[[], tuple[float, float]],
                  log: Callable[[str], None]) -> None:
-        """stop(): stops the run and driving by hand, without waiting; speed(since): speed in the odometry, the
-        larger of m/s and rad/s, or None without odometry since that time; log(text): logs a message."""
+        """stop(): stops the run and driving by hand, without waiting; last_speed(): see
+        PageState; log(text): logs a message."""
         self.stop = stop
         self.system = system
-        self.speed = speed
+        self.last_speed = last_speed
         self.log = log
         self.waiting: dict[Any, int] = {}   # browsers that wait for an answer: the number of their request
         self.again = False      # whether a Stop has arrived since the last search for driving nodes
@@ -68,8 +70,9 @@ class Stopper:
         if not self.waiting:
             return {}
         self._search()
-        speed = self.speed(max(self.begun, now - FRESH))
-        stationary = speed is not None and speed < REST
+        speed, observed = self.last_speed()
+        known = observed > max(self.begun, now - FRESH)
+        stationary = known and speed < REST
         stopping = self.again or busy or self.system.pending or not stationary
         if stopping and now - self.begun < LIMIT:
             return {}
@@ -78,9 +81,9 @@ class Stopper:
                  'Zero commands were sent.']
         if silent:
             texts.append(f'No answer from {" and ".join(silent)}: the robot may move again.')
-        texts.append('The robot is stationary.' if stationary else
-                     'There is no odometry: the robot may still be moving.' if speed is None else
-                     'The robot is still moving.')
+        since = f'{max(0.0, observed - self.begun):.1f} s after Stop'
+        texts.append(f"The robot was {'stationary' if stationary else 'still moving'} {since}." if known else
+                     f'There is no odometry later than {since}: the robot may still be moving.')
         waiting, self.waiting = self.waiting, {}
         return {browser: Answer(number, stationary, silent, ' '.join(texts)) for browser, number in waiting.items()}
 
@@ -103,7 +106,7 @@ class Controls:
         self.clock = clock
         self.log = log
         self.stop_needs_token = stop_needs_token
-        self.stopper = Stopper(self._stop, system, state.speed_since, log)
+        self.stopper = Stopper(self._stop, system, state.last_speed, log)
 
     def handle(self, browser: object, trusted: bool, message: Request) -> str:
         """Execute a request. trusted: whether the browser sent the token. Returns why it was rejected, or ''."""
@@ -126,7 +129,9 @@ class Controls:
             return self._hand(browser, message)
         if isinstance(message, RunRequest):
             return self._run(message)
-        return self._reset(message)
+        if isinstance(message, ChooseRequest):
+            return self._choose(message)
+        return self._reset()
 
     def _hand(self, browser: object, message: HandRequest) -> str:
         if not message.on:
@@ -146,7 +151,8 @@ class Controls:
         started = self.runs.start(message.method, self._reset_robot if reset else self.hand.wait_until_quiet)
         return '' if started else BUSY
 
-    def _reset(self, _: ResetRequest) -> str:
+    def _reset(self, before: Callable[[], None] = lambda: None) -> str:
+        """Reset the robot. before(): is called before that, in the background."""
         if not self.system.simulated:
             return 'only a simulated robot can be reset'
         refused = self._reason_against(True)
@@ -156,10 +162,24 @@ class Controls:
 
         def reset() -> None:
             try:
+                before()
                 self._reset_robot(lambda: False)
             except Exception as error:
                 self.state.set_status(outcome=f'reset failed: {error}')
         self.in_background(reset)
+        return ''
+
+    def _choose(self, message: ChooseRequest) -> str:
+        name = message.name
+        if name not in self.system.choices:
+            return 'this cannot be chosen here'
+        try:
+            value = read_choice(name, message.value, self.system.surfaces)
+        except ValueError as error:
+            return f'{name}: {error}'
+        if name in FLOOR:
+            return self._reset(lambda: self.system.choose(name, value))
+        self.in_background(lambda: self.system.choose(name, value))
         return ''
 
     def _reason_against(self, confirmed: bool) -> str:

@@ -20,7 +20,8 @@ class InvalidMessage(ValueError):
 class Hello(NamedTuple):
     """The first message of a browser."""
 
-    token: str = ''     # '' for a browser that can only watch
+    token: str = ''     # '' for a browser that has none
+    code: str = ''      # of a printed address, to be exchanged for the token
 
 
 class RunRequest(NamedTuple):
@@ -54,20 +55,32 @@ class ResetRequest(NamedTuple):
     clock: float = 0.0      # s, as in RunRequest
 
 
+class ChooseRequest(NamedTuple):
+    """Choose the floor, its seed, the distance or the speed of a simulated robot."""
+
+    name: str = ''      # see choices.py
+    value: str = ''
+    clock: float = 0.0  # s, as in RunRequest
+
+
+class InviteRequest(NamedTuple):
+    """Make an address for another browser."""
+
+
 class StopRequest(NamedTuple):
     """Stop the robot, regardless of which node drives it."""
 
     number: int = 0     # returned in the answer
 
 
-Request = Union[RunRequest, HandRequest, DriveRequest, ResetRequest, StopRequest]
-KINDS: dict[str, type[Union[Hello, Request]]] = {
+Request = Union[RunRequest, HandRequest, DriveRequest, ResetRequest, ChooseRequest, StopRequest]
+KINDS: dict[str, type[Union[Hello, Request, InviteRequest]]] = {
     'hello': Hello, 'run': RunRequest, 'hand': HandRequest, 'drive': DriveRequest, 'reset': ResetRequest,
-    'stop': StopRequest}
+    'choose': ChooseRequest, 'invite': InviteRequest, 'stop': StopRequest}
 RANGES = {'forward': (-1, 1), 'left': (-1, 1), 'clock': (0, MAX_NUMBER), 'number': (0, MAX_NUMBER)}
 
 
-def parse(text: object) -> Hello | Request:
+def parse(text: object) -> Hello | Request | InviteRequest:
     """Parse a message from a browser. Raises InvalidMessage."""
     if not isinstance(text, str) or len(text) > MAX_MESSAGE:
         raise InvalidMessage('expected text of at most 1 KB')
@@ -77,7 +90,7 @@ def parse(text: object) -> Hello | Request:
         raise InvalidMessage('expected JSON') from None
     kind = fields.get('type') if isinstance(fields, dict) else None
     if not isinstance(kind, str) or kind not in KINDS:
-        raise InvalidMessage('type: expected hello, run, hand, drive, reset or stop')
+        raise InvalidMessage(f"type: expected one of {', '.join(KINDS)}")
     defaults = KINDS[kind]()
     return defaults._replace(**{name: _checked(name, fields.get(name, default), default)
                                 for name, default in defaults._asdict().items()})
@@ -103,7 +116,7 @@ def _checked(name: str, value: object, default: Any) -> Any:
     return value
 
 
-def kind_of(message: Hello | Request) -> str:
+def kind_of(message: Request) -> str:
     return next(kind for kind, each in KINDS.items() if isinstance(message, each))
 
 

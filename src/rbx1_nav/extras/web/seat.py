@@ -8,7 +8,7 @@ import subprocess
 from threading import Event, Thread
 from typing import Callable, Sequence
 
-from rbx1_nav.extras.web.access import TOKEN_VARIABLE, make_token, page_address
+from rbx1_nav.extras.web.access import CODE_VARIABLE, TOKEN_VARIABLE, make_token, page_address
 
 START_TIMEOUT = 60.0    # s for a seat to start
 LINES = 20      # of the output that are kept
@@ -16,7 +16,7 @@ COLOR = re.compile('\x1b\\[[0-9;]*m')
 
 
 class Seat:
-    """The process of a seat. It can be started again, with the same address of its page."""
+    """The process of a seat. It can be started again: browsers that were at its page are then admitted again."""
 
     def __init__(self, number: int, master_port: int, address: str, web_port: int, arguments: Sequence[str],
                  report: Callable[[str], None]) -> None:
@@ -26,7 +26,8 @@ class Seat:
         self.master_port = master_port
         self.web_port = web_port
         self.token = make_token()
-        self.page = page_address(address, web_port, self.token)
+        self.address = address
+        self.page = ''      # its address, with a code that is valid once
         self.command = ['roslaunch', '-p', str(master_port), 'rbx1_bringup', 'seat.launch', f'address:={address}',
                         f'port:={web_port}', f'title:=Seat {number}', *arguments]
         self.report = report
@@ -35,11 +36,13 @@ class Seat:
 
     def start(self) -> bool:
         """Start the process. Returns whether base and page are ready."""
-        self.lines, ready = [], Event()
+        self.lines, ready, code = [], Event(), make_token()
+        self.page = page_address(self.address, self.web_port, code)
         # it gets SIGINT when this process exits, however it exits; and Ctrl-C in the terminal reaches only this process
         self.process = subprocess.Popen(['setpriv', '--pdeathsig', 'INT', *self.command], stdin=subprocess.DEVNULL,
                                         stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-                                        start_new_session=True, env={**os.environ, TOKEN_VARIABLE: self.token})
+                                        start_new_session=True,
+                                        env={**os.environ, TOKEN_VARIABLE: self.token, CODE_VARIABLE: code})
         Thread(target=self._read, args=(self.process, ready), daemon=True).start()
         return ready.wait(START_TIMEOUT) and self.is_running
 

@@ -140,10 +140,10 @@ class PageState:
         name, time = self.other
         return name if now - time < DRIVING_TIMEOUT else ''
 
-    def speed_since(self, since: float) -> float | None:
-        """Return the larger of m/s and rad/s in the odometry, or None without odometry since a time (s, monotonic)."""
+    def last_speed(self) -> tuple[float, float]:
+        """Return the larger of m/s and rad/s in the last odometry, and when it arrived (s, monotonic; 0: never)."""
         with self.lock:
-            return self.speed if self.last is not None and self.last[1] > since else None
+            return self.speed, self.last[1] if self.last else 0.0
 
     def forget_driver(self) -> None:
         """Forget which node drove, because all of them were stopped."""

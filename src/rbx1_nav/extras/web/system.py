@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections import deque
 from threading import Lock, Thread
 import time
-from typing import Any, Callable
+from typing import Any, Callable, Sequence
 
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import Twist
@@ -20,9 +20,11 @@ from std_srvs.srv import Empty as EmptyService
 
 from rbx1_nav.base import messages
 from rbx1_nav.base.running_bases import private_namespace
+from rbx1_nav.base.surfaces import known_surfaces
+from rbx1_nav.extras.web.choices import DEFAULTS, SCRIPTS
 from rbx1_nav.extras.web.hand_drive import COMMANDS
 from rbx1_nav.extras.web.state import BY_HAND, PageState, PoseAndSpeed
-from rbx1_nav.node import life
+from rbx1_nav.node import life, resources
 from rbx1_nav.node.master import Server, call
 
 TOPICS = {'truth': 'ground_truth', 'odometry': 'odom', 'estimate': 'odom_ekf'}
@@ -43,15 +45,20 @@ def subscribe(topic: str, kind: type, callback: Callable[..., None], args: Any =
 class System:
     """Subscribes to the topics, queries the master once per PERIOD, and updates the state of the page."""
 
-    def __init__(self, state: PageState, namespace: str = '') -> None:
-        """namespace: of the robot, with a slash at the end, '' for the namespace of this node."""
+    def __init__(self, state: PageState, namespace: str = '', choices: Sequence[str] = ()) -> None:
+        """namespace: of the robot, with a slash at the end, '' for the namespace of this node; choices: what a learner
+        can choose, see choices.py."""
         self.state = state
         self.namespace = namespace
+        self.choices = choices
+        self.surfaces = known_surfaces(resources.surfaces())
+        state.set_status(choices=choices, surfaces=self.surfaces, **DEFAULTS)
         self.lock = Lock()
         self.drawn: tuple[str, str] | None = None   # surface and seed, from /diagnostics
         self.base: str | None = None    # the node that publishes the odometry
         self.connections: deque[object] = deque(maxlen=10)  # the latest ones to publishers of odometry
         self.truth: str | None = None   # the node that publishes the ground truth
+        self.private = ''       # namespace of the base that publishes the odometry
         self.reset_service = ''     # '' if there is none
         self.searching = False      # whether the master is being asked for driving nodes
         self.shutting_down: set[str] = set()    # nodes that have not answered yet
@@ -136,7 +143,7 @@ class System:
         services = {name for name, _ in offered}
         base = self.base if self.state.hears('odometry') else None
         odom = rospy.resolve_name(f'{self.namespace}odom')
-        private = private_namespace(base, odom, master) if base else ''
+        self.private = private = private_namespace(base, odom, master) if base else ''
         name = f'{private}/reset'
         self.reset_service = name if base and name in services else ''
         self.state.set_status(base=base or '', simulated=self.simulated,
@@ -152,7 +159,23 @@ class System:
                 del values['surface'], values['seed']
         else:
             self.drawn = None
+        for choice, name in SCRIPTS.items():
+            values[choice] = master.param(self._of_scripts(name), DEFAULTS[choice])
         self.state.set_status(**values)
+
+    def _of_scripts(self, name: str) -> str:
+        """Return the full name of a parameter of the driving scripts."""
+        return str(rospy.resolve_name(f'{self.namespace}out_and_back/{name}'))
+
+    def choose(self, name: str, value: str | float) -> None:
+        """Set the parameter of a choice. Raises OSError and the exceptions of xmlrpc."""
+        key = self._of_scripts(SCRIPTS[name]) if name in SCRIPTS else f'{self.private}/{name}'
+        if value == DEFAULTS.get(name):     # a script warns of parameters of earlier runs
+            call(rosgraph.get_master_uri(), 'deleteParam', key)
+        else:
+            call(rosgraph.get_master_uri(), 'setParam', key, value)
+        if name in SCRIPTS:
+            self.state.set_status(**{name: value})
 
     def reset(self) -> None:
         """Put a simulated robot back at its start. Raises ROSException or rospy.ServiceException."""
@@ -163,7 +186,7 @@ class System:
 
     def forget_frame(self) -> None:
         """Delete the parameter of a run that the page has started, so that it does not affect later runs."""
-        call(rosgraph.get_master_uri(), 'deleteParam', rospy.resolve_name(f'{self.namespace}out_and_back/odom_frame'))
+        call(rosgraph.get_master_uri(), 'deleteParam', self._of_scripts('odom_frame'))
 
     @property
     def pending(self) -> bool:

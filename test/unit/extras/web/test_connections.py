@@ -5,11 +5,12 @@ from types import SimpleNamespace
 
 import pytest
 
+from rbx1_nav.extras.web.access import Access
 from rbx1_nav.extras.web.connections import MAX_OF_ADDRESS, MAX_SILENT, MAX_WATCHERS, Connections
 from rbx1_nav.extras.web.controls import Controls
 from rbx1_nav.extras.web.state import PoseAndSpeed, PageState
 
-TOKEN = 'the token'
+TOKEN, CODE = 'the token', 'a code'
 MOVES = dict(type='run', method='timed'), dict(type='hand', on=True), dict(type='reset')
 
 
@@ -119,13 +120,13 @@ class View:
         self.log = []
         self.controls = Controls(self.state, self.system, self.hand, self.runs, (0.2, 1.0), lambda call: call(),
                                  lambda: self.now, self.log.append)
-        self.connections = Connections(self.state, self.controls, TOKEN, lambda: self.now)
+        self.connections = Connections(self.state, self.controls, Access(TOKEN, CODE), lambda: self.now)
 
-    def connect(self, token=None, slow=False, address='10.0.0.1'):
+    def connect(self, token=None, slow=False, address='10.0.0.1', code=''):
         socket = Socket(slow, address)
         self.connections.opened(socket)
         if token is not None:
-            self.send(socket, type='hello', token=token)
+            self.send(socket, type='hello', token=token, code=code)
         return socket
 
     def send(self, socket, **fields):
@@ -147,7 +148,25 @@ def test_without_the_token_nothing_moves(view, message, token):
     view.send(socket, **message)
     assert socket.kinds == ['welcome', 'refused'] and 'can only watch' in socket.messages[1]['reason']
     assert not (view.hand.calls or view.runs.calls or view.system.calls or view.hand.drivers)
-    assert socket.messages[0]['trusted'] is False and socket.messages[0]['known_token'] is (token == '')
+    assert socket.messages[0]['trusted'] is False and socket.messages[0]['token'] == ''
+    assert socket.messages[0]['rejected'] == ('token' if token else '')
+
+
+def test_a_code_is_exchanged_once_for_the_token(view):
+    first, second = view.connect('', code=CODE), view.connect('', code=CODE)
+    assert first.messages[0]['trusted'] and first.messages[0]['token'] == TOKEN
+    assert not second.messages[0]['trusted'] and second.messages[0]['rejected'] == 'code'
+    # with the token, another code is not used up
+    view.send(first, type='invite')
+    code = first.messages[-1]['code']
+    assert view.connect(TOKEN, code=code).messages[0]['rejected'] == '' != code
+    assert view.connect('', code=code).messages[0]['token'] == TOKEN
+
+
+def test_only_the_owner_invites(view):
+    socket = view.connect('')
+    view.send(socket, type='invite')
+    assert socket.kinds == ['welcome', 'refused']
 
 
 def test_stop_needs_no_token(view):

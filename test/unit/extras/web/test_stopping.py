@@ -32,7 +32,7 @@ def test_the_answer_waits_until_the_robot_is_stationary(view):
         assert not answer(view, socket), name
     view.runs.busy = False
     assert answer(view, socket) == [{'type': 'stopped', 'number': 7, 'stationary': True, 'silent': [],
-                                     'text': 'Stopped /out_and_back. The robot is stationary.'}]
+                                     'text': 'Stopped /out_and_back. The robot was stationary 0.1 s after Stop.'}]
     assert len(answer(view, socket)) == 1
 
 
@@ -48,9 +48,10 @@ def test_after_the_answer_no_other_node_drives(view):
 
 
 @pytest.mark.parametrize('silent, speed, text', [
-    ([], None, 'Zero commands were sent. There is no odometry: the robot may still be moving.'),
-    ([], 0.2, 'Zero commands were sent. The robot is still moving.'),
-    (['/b'], 0.0, 'Stopped. No answer from /b: the robot may move again. The robot is stationary.')])
+    ([], None, 'Zero commands were sent. There is no odometry later than 0.0 s after Stop: the robot may still be '
+               'moving.'),
+    ([], 0.2, 'Zero commands were sent. The robot was still moving 3.1 s after Stop.'),
+    (['/b'], 0.0, 'Stopped. No answer from /b: the robot may move again. The robot was stationary 3.1 s after Stop.')])
 def test_what_is_missing_is_in_the_answer(view, silent, speed, text):
     socket = view.connect('')
     view.system.silent = silent
@@ -71,7 +72,8 @@ def test_odometry_of_a_base_that_hangs_is_not_the_present_speed(view):
     view.now += FRESH + 0.1
     assert not answer(view, socket)
     view.now += LIMIT
-    assert answer(view, socket)[0]['text'].endswith('There is no odometry: the robot may still be moving.')
+    text = answer(view, socket)[0]['text']
+    assert text.endswith('There is no odometry later than 0.1 s after Stop: the robot may still be moving.')
 
 
 def test_stops_are_one_while_one_is_pending(view):

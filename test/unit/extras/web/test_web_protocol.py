@@ -5,12 +5,15 @@ from hypothesis import given, strategies
 import pytest
 
 from rbx1_nav.extras.web.page_messages import (
-    DriveRequest, HandRequest, Hello, InvalidMessage, ResetRequest, RunRequest, StopRequest, encode, parse)
+    DriveRequest, HandRequest, Hello, InvalidMessage, InviteRequest, ResetRequest, RunRequest, StopRequest, encode,
+    parse)
 
 
 @pytest.mark.parametrize('fields, message', [
     ({'type': 'hello', 'token': 'abc'}, Hello('abc')),
-    ({'type': 'hello'}, Hello('')),
+    ({'type': 'hello'}, Hello('', '')),
+    ({'type': 'hello', 'code': 'a'}, Hello('', 'a')),
+    ({'type': 'invite'}, InviteRequest()),
     ({'type': 'run', 'method': 'gyro', 'reset': True}, RunRequest('gyro', True, False, 0.0)),
     ({'type': 'hand', 'on': True, 'confirmed': True, 'clock': 2.5}, HandRequest(True, True, 2.5)),
     ({'type': 'drive', 'forward': 1, 'left': -0.5}, DriveRequest(1.0, -0.5, 0.0)),

@@ -1,0 +1,115 @@
+#!/usr/bin/python3
+"""Tests the first screen of the page on the screens of a classroom, without a robot: the floor, Stop, the methods and
+the result are on it, and nothing is cut."""
+import os
+import tempfile
+import time
+
+from rbx1_nav.extras.web.access import Access
+from rbx1_nav.extras.web.connections import Connections
+from rbx1_nav.extras.web.server import PageServer
+from rbx1_nav.extras.web.state import PageState, PoseAndSpeed
+from rbx1_nav.node import resources
+
+import support
+from browser import Page, start_chromium
+
+SURFACE = 'the_long_pile_carpet_of_the_gymnasium_of_our_school'
+WIDE, NARROW = ('#stop', '#floor', '.runs', '#headline'), ('#stop', '#floor-box', '.runs', '#headline')
+# width, height, whether it is a touch screen, what is on the first screen
+SCREENS = [(1920, 1080, False, WIDE), (1300, 950, False, WIDE), (1024, 768, False, WIDE), (390, 844, True, WIDE),
+           (844, 390, True, WIDE), (320, 640, False, NARROW), (320, 256, False, ('#stop',))]
+PROJECTORS = [(1920, 1080), (1024, 768)]
+# the edges of an element, and those of the screen that the page can show without scrolling
+EDGES = 'const {left, top, right, bottom} = document.querySelector(arguments[0]).getBoundingClientRect(); ' \
+        'return [left, top, right, bottom]'
+# the parts of the page whose text is wider than they are
+CUT = '''return [...document.querySelectorAll('button, th, td, dt, dd, p, h1, h2, label')].filter(
+  each => each.offsetParent && each.scrollWidth > each.clientWidth + 1 && getComputedStyle(each).display !== 'inline')
+  .map(each => each.id || each.textContent)'''
+
+
+class NoControls:
+    """A view of a robot that nobody can drive."""
+
+    speeds = 0.2, 1.0
+
+    def answers(self):
+        return {}
+
+    def leave(self, browser):
+        pass
+
+
+def finished_run():
+    """Return the state after a run."""
+    state = PageState()
+    now = time.monotonic()
+    state.set_status(title='Out and back', robots=[''], spacing=1, base='/arbotix', simulated=True, can_reset=True,
+                     surface=SURFACE, seed='4294967295', simulated_time=True, started='with odometry and gyro',
+                     outcome='')
+    state.move('odometry', PoseAndSpeed(0.0, (0.0, 0.0, 0.0), 0.0, 0.0), now)
+    state.command(0.2, 0.0, '/out_and_back', now)
+    for source, (x, y) in dict(truth=(0.3, 0.4), odometry=(-0.3, 0.2), estimate=(0.31, 0.35)).items():
+        state.move(source, PoseAndSpeed(20.0, (x, y, -1.1), 0.0, 0.0), now)
+    state.set_status(outcome='finished')
+    return state
+
+
+class TestBrowserLayout(support.Case):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.folder = tempfile.TemporaryDirectory()
+        state = finished_run()
+        connections = Connections(state, NoControls(), Access('token', 'code'), time.monotonic)
+        cls.server = PageServer(resources.path('web'), {'/socket': connections}, 'localhost', 0)
+        state.tick = lambda now: None       # the poses do not time out
+        cls.server.start()
+        cls.driver = start_chromium(cls.folder.name)
+        cls.page = Page(cls.driver, f'http://localhost:{cls.server.port}/#code')
+        cls.page.wait_for_text('headline', r'missed the start by 0\.50 m and 63°')
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.driver.quit()
+        cls.server.stop()
+        cls.folder.cleanup()
+
+    def show(self, width, height, touch=False):
+        """Show the page on a screen of this size, pixels, and return what is wrong there for every size."""
+        self.driver.execute_cdp_cmd('Emulation.setDeviceMetricsOverride', {
+            'width': width, 'height': height, 'deviceScaleFactor': 1, 'mobile': touch})
+        self.driver.execute_cdp_cmd('Emulation.setTouchEmulationEnabled', {'enabled': touch})
+        self.driver.execute_script('scrollTo(0, 0)')
+        self.assertEqual(self.driver.execute_script(CUT), [], f'{width} x {height}: cut')
+        scrolled, shown = self.driver.execute_script(
+            'const {scrollWidth, clientWidth} = document.documentElement; return [scrollWidth, clientWidth]')
+        self.assertLessEqual(scrolled, shown, f'{width} x {height}: scrolls to the side')
+        if os.environ.get('RBX1_PICTURE_DIR'):
+            self.page.picture(os.path.join(os.environ['RBX1_PICTURE_DIR'], f'{width}x{height}.png'))
+
+    def test_the_first_screen(self):
+        for width, height, touch, parts in SCREENS:
+            self.show(width, height, touch)
+            for part in parts:
+                left, top, right, bottom = self.driver.execute_script(EDGES, part)
+                with self.subTest(screen=(width, height), part=part):
+                    self.assertTrue(0 <= left < right <= width and 0 <= top < bottom, (left, top, right, bottom))
+                    # the floor may continue below Stop, which covers the lower edge of a phone
+                    self.assertLessEqual(bottom if part != '#floor-box' else top + 150, height)
+            self.assertEqual(self.page.find('#zoom-in').is_displayed(), not touch)
+
+    def test_a_projector_cuts_nothing(self):
+        self.page.click('#large')
+        self.addCleanup(self.page.click, '#large')
+        for width, height in PROJECTORS:
+            self.show(width, height)
+            self.assertLessEqual(self.driver.execute_script('return document.documentElement.scrollHeight'), height)
+            sizes = [float(self.page.find(each).value_of_css_property('font-size')[:-2])
+                     for each in ('#stop', '#facts')]
+            self.assertGreater(*sizes)
+
+
+if __name__ == '__main__':
+    support.main(TestBrowserLayout)
