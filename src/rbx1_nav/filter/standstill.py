@@ -61,7 +61,8 @@ class Standstill:
     def _begin(self, pose: Pose | None) -> None:
         self.anchor = pose
         self.time = self.angle = self.variance = 0.0    # s, rad, rad^2: what the gyro has measured in the window
-        self.exact = True       # whether the wheels have not moved at all
+        self.exact = True       # whether the wheels have not moved at all, or only crept
+        self.crept = True
 
     def _rest(self) -> None:
         self.waiting = 0.0, 0.0, 0.0    # of the previous window, used if the robot is still at rest
@@ -74,8 +75,9 @@ class Standstill:
         if last:
             moved, turned = hypot(pose.x - last.x, pose.y - last.y), abs(wrap_angle(pose.yaw - last.yaw))
             self.exact = self.exact and moved <= SAME and turned <= SAME
-            if moved <= MOVE + CREEP * self.time and turned <= TURN * self.tick + CREEP_TURN * self.time:
-                return True
+            crept, crept_turn = CREEP * self.time, CREEP_TURN * self.time
+            self.crept = moved <= SAME + crept and turned <= SAME + crept_turn
+            return moved <= MOVE + crept and turned <= TURN * self.tick + crept_turn
         return False
 
     def leave(self, pose: Pose, ekf: Filter) -> None:
@@ -91,7 +93,8 @@ class Standstill:
         """Turn the robot by what the gyro has measured in the last two windows, in which it may have begun to turn."""
         if self.case == STANDSTILL:
             time, angle, _ = self.waiting
-            ekf.step(0.0, Yaw(angle + self.angle - ekf.bias * (time + self.time), 0.0, True))
+            time += self.time
+            ekf.step(time, Yaw(angle + self.angle - ekf.bias * time, 0.0, True))
 
     def add(self, duration: float, gyro: Measurement, pose: Pose, ekf: Filter) -> str:
         """Add a step (s) at rest, which ends at a pose of the wheels. Return a text if the user should know."""
@@ -120,7 +123,7 @@ class Standstill:
             return ''
         change, (time, angle, variance) = 0.0, self.waiting
         self.waiting = self.time, self.angle, self.variance
-        self._begin(pose)
+        self._begin(pose if self.crept else self.anchor)
         if drifted or time:
             time, angle, variance = self.waiting if drifted else (time, angle, variance)
             change = ekf.learn_bias(angle / time, variance / time ** 2)

@@ -81,6 +81,16 @@ def test_a_creep_is_a_rest_and_a_slow_drive_is_none(moved, turned, stands):
     assert (case == STANDSTILL) == stands and robot.moving is not stands
 
 
+@pytest.mark.parametrize('phase', range(4))      # steps since a window began
+def test_a_robot_that_drives_off_leaves_after_the_same_distance_wherever_its_window_began(phase):
+    robot = Robot()
+    robot.go(1.0 + phase * STEP)
+    steps = 0
+    while robot.go(STEP, 0.0, 0.9 * MOVE / STEP / 3) == STANDSTILL:
+        steps += 1
+    assert steps == 3
+
+
 def test_a_slow_turn_is_undecided_until_the_wheels_show_it():
     robot = Robot()
     rate = radians(0.3)
