@@ -29,7 +29,8 @@ STANDSTILL, UNDECIDED, CARRIED = 'standstill', 'undecided', 'carried'
 WINDOW = 0.25           # s over which the turn is summed up at least
 ROUNDING = 1e-6         # s
 SAME = 1e-4             # m and rad: a smaller change is rounding
-MOVE, CREEP = 0.002, 0.0005     # m, m/s: a tick of a coarse encoder; a TurtleBot3 in its simulator creeps by 0.2 mm/s,
+MOVE = 0.5              # m/rad * tick: both wheels may be off by one; 1 mm for a turn of 0.004 rad
+CREEP = 0.0005          # m/s: a TurtleBot3 in its simulator creeps by 0.2 mm/s,
 CREEP_TURN = 0.001      # rad/s: and turns by 0.05 degrees/s (fuse, turtlebot3.bag)
 STILL, FIRST = 250.0, 1400.0    # s/rad * tick: length of a first window if the wheels are still, and if they creep or
 #                                 tick: a turn of 0.3 degrees/s would show in it
@@ -77,7 +78,7 @@ class Standstill:
             self.exact = self.exact and moved <= SAME and turned <= SAME
             crept, crept_turn = CREEP * self.time, CREEP_TURN * self.time
             self.crept = moved <= SAME + crept and turned <= SAME + crept_turn
-            return moved <= MOVE + crept and turned <= TURN * self.tick + crept_turn
+            return moved <= MOVE * self.tick + crept and turned <= TURN * self.tick + crept_turn
         return False
 
     def leave(self, pose: Pose, ekf: Filter) -> None:
