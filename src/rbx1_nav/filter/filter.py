@@ -22,7 +22,7 @@ from rbx1_nav.filter.priors import Bounds, Priors
 
 FIRST_BIAS = 0.05       # 1 sigma of the bias before the first rest / its limit: 0.5 degrees/s, as gyros have after a
 #                         calibration at another temperature (surface files: gyro_bias)
-KNOWN_BIAS = 0.8        # of FIRST_BIAS: the wheels have shown the bias if it is less uncertain. At a constant speed,
+KNOWN_BIAS = 0.65       # of FIRST_BIAS: the wheels have shown the bias if it is less uncertain. At a constant speed,
 #                         bias and curvature are confused: with more, a Husky is 11 m off instead of 3
 SKEW = 0.1              # s by which the stamps of wheels and gyro may be apart
 LEAST_MOTION = 0.02     # m and rad in a PERIOD: in a smaller one, the robot is stationary, or somebody carries it
@@ -32,7 +32,7 @@ ROUNDING = 0.005        # rad: 1 sigma of a turn in odometry that is rounded to 
 RARE, CLEAR = 3.0, 5.0  # standard deviations of a rare difference, and of a contradiction: 1 of 370, and of 1.7 million
 POSSIBLE_SLIP = -0.3, 0.95      # beyond it, one of the sensors is wrong. The wheels of a Jackal, a skid-steer, report
 #                         7.4 times its turn (robot_localization, test2.bag: a slip of 0.865)
-FIRST_NOISE = 0.05      # weight of the noise of any floor, in measurements of the noise
+FIRST_NOISE = 0.25      # weight of the noise of any floor, in measurements of the noise
 FADE = 0.85             # fraction of a doubt that remains after each PERIOD in a turn in which wheels and gyro agree
 SMOOTH = 0.1            # noise of the wheels / noise of any floor, below which a steady difference is no slip
 MAX_SCALE = 0.1         # a larger error of the scale is none: data sheets of MEMS gyros have 3 % (ADXRS613)
