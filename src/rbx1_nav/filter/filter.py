@@ -23,7 +23,7 @@ from rbx1_nav.filter.priors import Bounds, Priors
 FIRST_BIAS = 0.05       # 1 sigma of the bias before the first rest / its limit: 0.5 degrees/s, as gyros have after a
 #                         calibration at another temperature (surface files: gyro_bias)
 KNOWN_BIAS = 0.65       # of FIRST_BIAS: the wheels have shown the bias if it is less uncertain. At a constant speed,
-#                         bias and curvature are confused: with more, a Husky is 11 m off instead of 3
+#                         bias and curvature are confused: without this limit, a Husky is 11 m off instead of 3
 SKEW = 0.1              # s by which the stamps of wheels and gyro may be apart
 LEAST_MOTION = 0.02     # m and rad in a PERIOD: in a smaller one, the robot is stationary, or somebody carries it
 ENOUGH_TURN = 0.1       # rad in a PERIOD that show whether a gyro turns

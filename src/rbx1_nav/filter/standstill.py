@@ -62,8 +62,7 @@ class Standstill:
     def _begin(self, pose: Pose | None) -> None:
         self.anchor = pose
         self.time = self.angle = self.variance = 0.0    # s, rad, rad^2: what the gyro has measured in the window
-        self.exact = True       # whether the wheels have not moved at all, or only crept
-        self.crept = True
+        self.exact = self.crept = True      # whether the wheels have not moved at all, or only crept
 
     def _rest(self) -> None:
         self.waiting = 0.0, 0.0, 0.0    # of the previous window, used if the robot is still at rest

@@ -221,7 +221,7 @@ def test_the_error_that_an_unstable_bias_has_caused_remains_after_the_next_rest(
     for _ in range(2):
         ekf.step(20.0, Yaw(0.0, 0.0, True))
         ekf.learn_bias(0.0, 1e-12)
-    assert sqrt(ekf.covariance[YAW][YAW]) == pytest.approx(sqrt(2) * 20 * INSTABILITY, rel=0.02)     # and the walk, 1 mrad
+    assert sqrt(ekf.covariance[YAW][YAW]) == pytest.approx(sqrt(2) * 20 * INSTABILITY, rel=0.02)  # and a walk
 
 
 def test_before_the_first_rest_the_wheels_show_the_bias_unless_it_may_be_a_curvature():
@@ -294,17 +294,3 @@ def test_a_scale_error_on_a_smooth_floor_is_held_by_the_covariance(sign):
     ekf = Filter(UNKNOWN_FLOOR, ORIGIN)
     ekf.learn_bias(0.0, 1e-9)
     assert 'scale' not in compare(ekf, 100, lambda _: sign * 0.2, lambda _: sign * (0.21 + rng.normal(0, 0.04)))
-
-
-def test_a_period_in_which_the_gyro_has_not_measured_is_not_compared():
-    ekf = Filter(UNKNOWN_FLOOR, ORIGIN)
-    for gyro in (0.5, 1e-8), None, (0.1, 1e-8):
-        assert ekf.compare(PERIOD / 2, 0.1, gyro, 0.1) is None
-    sums, _ = ekf.compare(PERIOD / 2, 0.1, (0.1, 1e-8), 0.1)
-    assert sums.gyro == pytest.approx(0.2) and abs(ekf.error[BIAS]) < 1e-6
-
-
-def test_a_robot_that_hardly_moves_is_not_compared():
-    ekf = Filter(UNKNOWN_FLOOR, ORIGIN)
-    assert set(compare(ekf, 10, lambda _: 0.005, lambda _: 0.1, (0.01,))) == {None}
-    assert ekf.error[BIAS] == 0.0

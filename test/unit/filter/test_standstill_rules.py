@@ -73,7 +73,8 @@ def test_a_window_counts_when_the_next_one_is_complete_too():
 
 
 @pytest.mark.parametrize('moved, turned, stands', [
-    (0.9 * CREEP, 0.0, True), (MOVE * TICK + CREEP, 0.0, False), (0.0, 0.0009, True), (0.0, 1.1 * TURN * TICK + 0.001, False)])
+    (0.9 * CREEP, 0.0, True), (MOVE * TICK + CREEP, 0.0, False), (0.0, 0.0009, True),
+    (0.0, 1.1 * TURN * TICK + 0.001, False)])
 def test_a_creep_is_a_rest_and_a_slow_drive_is_none(moved, turned, stands):
     robot = Robot()
     robot.moving = False
