@@ -23,9 +23,6 @@ RATES = {
     'rospy': {'latest': (20, 50), 'tf_loop': (20,), 'callback': (10, 50), 'tf_callback': (50,), 'filters': (50,)},
     'roscpp': {'latest': (20, 50), 'tf_loop': (20,), 'callback': (10, 50), 'tf_callback': (50,)},
     'filter': {'latest_ekf': (10, 20, 50)}}
-# m: the filter's estimate depends on the time at rest; the ends differed by up to 10 micrometers. A command that is a
-# tick late changes the end by millimeters
-TOLERANCE = {'latest_ekf': 50 * support.MICROMETRE}
 # those that are also started on wall time; a loop may then begin a tick earlier than its first command takes effect
 WALL = (('callback', 50),)
 
@@ -38,11 +35,6 @@ def driver_in(language):
 def commands(x, y, yaw):
     """Return the velocities that feedback_driver.py sends at a pose."""
     return min(max(1.0 * (1.0 - x), 0.05), 0.3), 0.5 * (0.05 - y) - 0.5 * yaw
-
-
-def tolerance(kind):
-    """Return the largest deviation from ideal_end(), m."""
-    return TOLERANCE.get(kind, support.MICROMETRE)
 
 
 def effective_rate(kind, rate):
@@ -101,12 +93,13 @@ class TestFeedback(support.Case):
             self.skipTest('no package message_filters')
         ends = [self.drive(driver_in(language), kind, rate, *start) for _ in range(RUNS)]
         texts = [text for text, _ in ends]
+        # the filter's estimate rounds differently after another time at rest
         if kind != 'latest_ekf':
             self.assertEqual(len(set(texts)), 1, '\n'.join(['end poses of the runs:'] + texts))
         for _, end in ends:
             for coordinate, ideal in zip(end, ideal_end(effective_rate(kind, rate))):
                 # the base and this test round differently
-                self.assertAlmostEqual(coordinate, ideal, delta=tolerance(kind), msg=texts)
+                self.assertAlmostEqual(coordinate, ideal, delta=support.MICROMETRE, msg=texts)
 
 
 if __name__ == '__main__':

@@ -229,22 +229,17 @@ class CombinedOdometry:
         reported = odom.linear_variance * duration ** 2
         case, stands = None, gyro is not None and self.standstill.stands(odom.pose, turned)
         if gyro and stands:
-            self._warn_of(self.standstill.add(duration, gyro, odom.pose, ekf))
+            text = self.standstill.add(duration, gyro, odom.pose, ekf)
+            if text:
+                self.warn(text)
             case = self.standstill.case
         else:
             self.standstill.leave(odom.pose, ekf)
         self.motion = Motion(duration, forward, left, turned, gyro, case == CARRIED)
-        if case == STANDSTILL:
-            ekf.step(duration, AT_REST, 0.0, forward, left, reported)
-            return
-        turn = ekf.turn(duration, (turned, odom.angular_variance * duration ** 2), gyro, forward)
-        ekf.step(duration, turn, turned, forward, left, reported)
-        if gyro and not stands:
-            self.doubts.report(ekf.compare(duration, turned, gyro[0], forward, gyro[1]), ekf, odom.stamp)
-
-    def _warn_of(self, text: str) -> None:
-        if text:
-            self.warn(text)
+        turn = AT_REST if case == STANDSTILL else ekf.turn(
+            duration, (turned, odom.angular_variance * duration ** 2), gyro, forward)
+        ekf.step(duration, turn, 0.0 if case == STANDSTILL else turned, forward, left, reported)
+        self.doubts.report(ekf.compare(duration, turned, gyro, forward), ekf, odom.stamp)
 
     def _place(self, ekf: Filter) -> None:
         """Move the filter to the pose of set_pose()."""

@@ -21,8 +21,9 @@ from rbx1_nav.filter.priors import UNKNOWN_FLOOR, Priors
 X, Y, YAW, BIAS, SLIP, CURVATURE = range(6)     # indices of P
 
 START_VARIANCE = 1e-9   # variance of the first pose, m^2 and rad^2: the frame begins at this pose
-BIAS_WALK = 4e-5        # rad/s after 1 s: random walk of the bias, 0.14 degrees/s in an hour. Twice that of a good MEMS
-#                         gyro: 1.9e-5 rad/s^2 per square root Hz (ADIS16448, in the EuRoC MAV dataset)
+INSTABILITY = 3.5e-4    # rad/s: how far the bias is soon from its mean at a rest. 72 degrees/h; gyros of tactical grade
+#                         have up to 10, of commercial grade 360 (El-Sheimy and Youssef 2020, table 1)
+BIAS_WALK = 1.94e-5     # rad/s after 1 s: random walk of the bias (ADIS16448, in the EuRoC MAV dataset)
 PERIOD = 0.5            # s over which the turns of wheels and gyro are compared, and errors of the pose are added up
 CARRY_SPEED = 0.5       # m/s: possible speed of the robot (1 sigma) while it is carried
 
@@ -48,11 +49,11 @@ class PoseErrors:
         self.walk = BIAS_WALK ** 2
         self.scale_error = prior.gyro_scale_error       # 1 sigma
         self.moving = 0.0       # s since the last rest
-        self.error = [0.0, 0.0, 0.0, 0.0, prior.slip_turning, prior.curvature]
+        self.error = [0.0] * 6
         self.P = [[0.0] * 6 for _ in range(6)]
         self.P[BIAS][BIAS] = first_bias ** 2
-        self.P[SLIP][SLIP], self.P[CURVATURE][CURVATURE] = prior.slip_turning_spread ** 2, prior.curvature_spread ** 2
         self.place(pose)
+        self.forget_wheels()
 
     def place(self, pose: Pose, covariance: Covariance | None = None) -> None:
         """Set the robot's Pose, with its covariance (m and rad). What is known of the sensors remains."""
@@ -60,7 +61,8 @@ class PoseErrors:
         self.reach = 0.0        # m: the largest distance from the start
         self.carried = 0.0      # m: how far the robot may have been carried
         self.doubt = [0.0, 0.0, 0.0]    # errors of the pose if the gyro, or the bias, is not what it seems to be
-        self.by_scale = [0.0, 0.0, 0.0]         # derivative of the pose with respect to the scale error
+        # derivatives of the pose with respect to the scale error, and to the bias since the last rest
+        self.by_scale, self.by_rest = [0.0] * 3, [0.0] * 3
         # s since the last flush(), and derivatives since then, with respect to the bias, and to slip and curvature
         self.unused = 0.0
         self.by_bias, self.by_wheels = [0.0] * 3, [0.0] * 6
@@ -79,6 +81,7 @@ class PoseErrors:
         slip, scale = self.prior.slip_straight_spread, self.scale_error
         straight = self.travel[0] * slip, self.travel[1] * slip, 0.0
         P = [[self.P[i][j] + self.error[i] * self.error[j] + scale ** 2 * self.by_scale[i] * self.by_scale[j]
+              + INSTABILITY ** 2 * self.by_rest[i] * self.by_rest[j]
               + straight[i] * straight[j] + self.doubt[i] * self.doubt[j] for j in range(3)] for i in range(3)]
         # from errors of a turn about the start to errors at the pose
         x, y = self.state.x - self.start.x, self.state.y - self.start.y
@@ -94,7 +97,7 @@ class PoseErrors:
         return ((xx + turned, xy, x_yaw), (xy, yy + turned, y_yaw), (x_yaw, y_yaw, known ** 2 * yaw))
 
     def sigma(self, index: int) -> float:
-        """Return 1 sigma of an error, with an error that is estimated but not applied."""
+        """Return 1 sigma of an error."""
         self.flush()
         unused = self.error[BIAS] - self.bias if index == BIAS else 0.0
         return hypot(sqrt(self.P[index][index]), unused)
@@ -161,6 +164,7 @@ class PoseErrors:
         P, error = self.P, self.error
         parts = [(-b, s, k) for b, s, k in zip(self.by_bias, self.by_wheels[:3], self.by_wheels[3:])]
         for i, part in enumerate(parts):        # P = F P F', first the rows, then the columns
+            self.by_rest[i] += part[0]
             error[i] += part[0] * (error[BIAS] - self.bias)
             row = P[i]
             for j in range(6):
@@ -178,6 +182,25 @@ class PoseErrors:
     def doubt_bias(self, rate: float) -> None:
         """Make the bias uncertain: the wheels were at rest, and a steady rate (rad/s) of the gyro may be the bias."""
         self.P[BIAS][BIAS] += (rate - self.bias) ** 2
+
+    def rest(self) -> None:
+        """Begin a rest: at the next one, the bias will be another, by INSTABILITY."""
+        self.flush()
+        for i, one in enumerate(self.by_rest):
+            for j, other in enumerate(self.by_rest):
+                self.P[i][j] += INSTABILITY ** 2 * one * other
+        self.by_rest = [0.0, 0.0, 0.0]
+
+    def forget_wheels(self) -> None:
+        """Begin to learn slip and curvature again."""
+        self.flush()
+        prior = self.prior
+        for index, value, spread in ((SLIP, prior.slip_turning, prior.slip_turning_spread),
+                                     (CURVATURE, prior.curvature, prior.curvature_spread)):
+            self.error[index] = value
+            for other in range(6):
+                self.P[index][other] = self.P[other][index] = 0.0
+            self.P[index][index] = spread ** 2
 
     def doubt_turn(self, angle: float) -> None:
         """Allow for a turn (rad) here, which may have been none."""

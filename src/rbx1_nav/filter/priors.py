@@ -37,11 +37,11 @@ class Priors(NamedTuple):
 
 
 # any floor. The noise was measured with five real robots, config/surfaces/create_lab_floor.yaml; the spreads are as
-# wide as the differences between the slips of all files
+# wide as the differences between the slips of all files. Curvature: 0.5 % between the wheels, 0.25 m apart
 UNKNOWN_FLOOR = Priors(
     slip_straight=0.0, slip_straight_spread=0.05, slip_turning=0.0, slip_turning_spread=0.3, curvature=0.0,
     gyro_scale_error=Bounds().gyro_scale_error, gyro_measurement_range=Bounds().max_turn_rate,
-    heading_noise_turning=0.084, heading_noise_straight=0.066, distance_noise=0.044, curvature_spread=0.05)
+    heading_noise_turning=0.084, heading_noise_straight=0.066, distance_noise=0.044, curvature_spread=0.02)
 
 
 def priors(surface: Surface | None) -> Priors:

@@ -7,7 +7,7 @@ from typing import Callable
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.filter.filter import Filter, Verdict
 from rbx1_nav.filter.inputs import RejectedMessage
-from rbx1_nav.filter.pose_errors import BIAS, YAW
+from rbx1_nav.filter.pose_errors import BIAS
 
 ODOM, IMU = 'odom', 'imu_data'  # the sensors, by their topics
 
@@ -129,9 +129,9 @@ class Doubts:
         if doubted == 'scale':
             self._once(doubted, f'imu_data and odom differ by {100 * ekf.scale_error:.0f} % in all turns: the scale of '
                        'the gyro or the track width is wrong; the heading is uncertain')
-        elif doubted == 'bias' and (ekf.drifting or abs(ekf.error[YAW]) > REPORTED):
+        elif doubted == 'bias':
             self._once(doubted, 'the bias of imu_data seems to have drifted since the last rest, by '
-                       f'{degrees(ekf.error[BIAS] - ekf.bias):.2f} degrees/s: the heading is uncertain; let it rest')
+                       f'{degrees(ekf.drift):.2f} degrees/s: the heading is uncertain; let it rest')
         elif (self.doubted == 'nothing' or self.doubted.startswith('wheels') and doubted in ('both', 'gyro')) and (
                 doubted == 'gyro' or abs(ekf.disagreement) > REPORTED):
             self.warn(turns + REASONS.get(doubted, REASONS['both']))

@@ -29,7 +29,8 @@ STANDSTILL, UNDECIDED, CARRIED = 'standstill', 'undecided', 'carried'
 WINDOW = 0.25           # s over which the turn is summed up at least
 ROUNDING = 1e-6         # s
 SAME = 1e-4             # m and rad: a smaller change is rounding
-MOVE, CREEP = 0.002, 0.0005     # m, m/s: a tick of a coarse encoder; a TurtleBot3 in its simulator creeps by 0.2 mm/s,
+MOVE = 0.5              # m/rad * tick: both wheels may be off by one; 1 mm for a turn of 0.004 rad
+CREEP = 0.0005          # m/s: a TurtleBot3 in its simulator creeps by 0.2 mm/s,
 CREEP_TURN = 0.001      # rad/s: and turns by 0.05 degrees/s (fuse, turtlebot3.bag)
 STILL, FIRST = 250.0, 1400.0    # s/rad * tick: length of a first window if the wheels are still, and if they creep or
 #                                 tick: a turn of 0.3 degrees/s would show in it
@@ -61,7 +62,7 @@ class Standstill:
     def _begin(self, pose: Pose | None) -> None:
         self.anchor = pose
         self.time = self.angle = self.variance = 0.0    # s, rad, rad^2: what the gyro has measured in the window
-        self.exact = True       # whether the wheels have not moved at all
+        self.exact = self.crept = True      # whether the wheels have not moved at all, or only crept
 
     def _rest(self) -> None:
         self.waiting = 0.0, 0.0, 0.0    # of the previous window, used if the robot is still at rest
@@ -74,8 +75,9 @@ class Standstill:
         if last:
             moved, turned = hypot(pose.x - last.x, pose.y - last.y), abs(wrap_angle(pose.yaw - last.yaw))
             self.exact = self.exact and moved <= SAME and turned <= SAME
-            if moved <= MOVE + CREEP * self.time and turned <= TURN * self.tick + CREEP_TURN * self.time:
-                return True
+            crept, crept_turn = CREEP * self.time, CREEP_TURN * self.time
+            self.crept = moved <= SAME + crept and turned <= SAME + crept_turn
+            return moved <= MOVE * self.tick + crept and turned <= TURN * self.tick + crept_turn
         return False
 
     def leave(self, pose: Pose, ekf: Filter) -> None:
@@ -91,7 +93,8 @@ class Standstill:
         """Turn the robot by what the gyro has measured in the last two windows, in which it may have begun to turn."""
         if self.case == STANDSTILL:
             time, angle, _ = self.waiting
-            ekf.step(0.0, Yaw(angle + self.angle - ekf.bias * (time + self.time), 0.0, True))
+            time += self.time
+            ekf.step(time, Yaw(angle + self.angle - ekf.bias * time, 0.0, True))
 
     def add(self, duration: float, gyro: Measurement, pose: Pose, ekf: Filter) -> str:
         """Add a step (s) at rest, which ends at a pose of the wheels. Return a text if the user should know."""
@@ -120,7 +123,7 @@ class Standstill:
             return ''
         change, (time, angle, variance) = 0.0, self.waiting
         self.waiting = self.time, self.angle, self.variance
-        self._begin(pose)
+        self._begin(pose if self.crept else self.anchor)
         if drifted or time:
             time, angle, variance = self.waiting if drifted else (time, angle, variance)
             change = ekf.learn_bias(angle / time, variance / time ** 2)

@@ -6,7 +6,9 @@ import pytest
 
 from rbx1_nav.base.kinematics import ORIGIN, Pose, arc
 from rbx1_nav.base.units import SECOND
+from rbx1_nav.filter.filter import FIRST_NOISE
 from rbx1_nav.filter.inputs import Imu, Odom
+from rbx1_nav.filter.priors import UNKNOWN_FLOOR
 from sample_priors import IDEAL
 from sample_robot import STEP, Robot, exact
 
@@ -110,3 +112,9 @@ def test_set_pose_does_not_depend_on_the_order_of_the_messages():
             robot.combined.set_pose(at, ORIGIN, SMALL)
         results.append(robot.send(20, 0.2, 0.5).pose)
     assert results[0] == pytest.approx(results[1], abs=1e-9)
+
+
+def test_a_slow_drive_is_compared_in_all_steps():
+    robot = Robot(UNKNOWN_FLOOR)
+    robot.send(501, 0.06, 0.1)      # 1.2 mm in a step, which may be a tick of a robot at rest
+    assert robot.combined.filter.noise[1] == pytest.approx(FIRST_NOISE + 20)     # 10 s

@@ -34,7 +34,7 @@ def test_an_unknown_floor_has_the_noise_of_a_lab_floor_and_any_slip():
         assert getattr(UNKNOWN_FLOOR, field) == pytest.approx(getattr(lab, field), abs=5e-4)
     assert (UNKNOWN_FLOOR.slip_straight, UNKNOWN_FLOOR.slip_turning) == (0.0, 0.0)
     assert (UNKNOWN_FLOOR.slip_straight_spread, UNKNOWN_FLOOR.slip_turning_spread) == (0.05, 0.3)
-    assert (UNKNOWN_FLOOR.curvature, UNKNOWN_FLOOR.curvature_spread) == (0.0, 0.05)
+    assert (UNKNOWN_FLOOR.curvature, UNKNOWN_FLOOR.curvature_spread) == (0.0, 0.02)
 
 
 def test_on_an_unknown_floor_the_limits_are_the_errors_of_the_gyro():

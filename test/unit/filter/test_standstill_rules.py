@@ -73,12 +73,23 @@ def test_a_window_counts_when_the_next_one_is_complete_too():
 
 
 @pytest.mark.parametrize('moved, turned, stands', [
-    (0.9 * CREEP, 0.0, True), (MOVE + CREEP, 0.0, False), (0.0, 0.0009, True), (0.0, 1.1 * TURN * TICK + 0.001, False)])
+    (0.9 * CREEP, 0.0, True), (MOVE * TICK + CREEP, 0.0, False), (0.0, 0.0009, True),
+    (0.0, 1.1 * TURN * TICK + 0.001, False)])
 def test_a_creep_is_a_rest_and_a_slow_drive_is_none(moved, turned, stands):
     robot = Robot()
     robot.moving = False
     case = robot.go(5.0, 0.0, 4 * moved if not stands else moved, 4 * turned if not stands else turned)
     assert (case == STANDSTILL) == stands and robot.moving is not stands
+
+
+@pytest.mark.parametrize('phase', range(4))      # steps since a window began
+def test_a_robot_that_drives_off_leaves_after_the_same_distance_wherever_its_window_began(phase):
+    robot = Robot()
+    robot.go(1.0 + phase * STEP)
+    steps = 0
+    while robot.go(STEP, 0.0, 0.9 * MOVE * TICK / STEP / 3) == STANDSTILL:
+        steps += 1
+    assert steps == 3
 
 
 def test_a_slow_turn_is_undecided_until_the_wheels_show_it():
