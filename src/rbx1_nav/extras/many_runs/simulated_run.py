@@ -139,7 +139,11 @@ def simulate(method: str, robot: Robot, surface: Surface | None, seed: int, filt
     with their values.
     """
     filtered = filtered or METHODS[method].pose == 'estimate'
-    simulation = Simulation(robot, surface, seed, filtered, keep, prior, listen, parameters['rate'])
+    return run(Simulation(robot, surface, seed, filtered, keep, prior, listen, parameters['rate']), method, parameters)
+
+
+def run(simulation: Simulation, method: str, parameters: Mapping[str, float] = PARAMETERS) -> SimulationResult:
+    """Run the exercise with a new Simulation; see simulate()."""
     simulation.rest(CALIBRATION)
     distances = []
     for drive in _drives(simulation, method, parameters):
