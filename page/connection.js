@@ -92,7 +92,7 @@ export class Connection extends EventTarget {
       ...text && {log: [[ERROR, this.time, '/page', text]]}});
   }
 
-  // Runs one after another. Of each: method; seed, if another than that of the settings; whether to show only its result.
+  // Runs one after another. Of each: method; seed, unless it is that of the settings; whether to show only its end.
   async run(runs) {
     const turn = this.cancel();
     for (const {method, seed = this.settings.seed, atOnce = false} of runs) {

@@ -48,7 +48,7 @@ async function restore() {
 }
 
 function build(surfaces) {
-  const seed = make('input', {type: 'number', id: 'seed', value: settings.seed, min: 0, max: 2 ** 31 - 1 - MANY, step: 1,
+  const seed = make('input', {type: 'number', id: 'seed', value: settings.seed, min: 0, max: 2 ** 31 - MANY,
     required: true});
   const methods = Object.entries(connection.titles).filter(([name]) => name !== 'script');
   const many = select('many-method', methods, 'timed');
@@ -61,7 +61,7 @@ function build(surfaces) {
       number('goal_distance', 'Distance (m) ', 1, 0.1, 5, 0.1),
       field('Play ', select('pace', [[1, 'in real time'], [5, '5 times as fast'], [20, '20 times as fast'],
         [1000, 'at once']], 1),
-        value => { settings.pace = Number(value); })),
+      value => { settings.pace = Number(value); })),
     make('p', {className: 'fields'},
       button('many', `${MANY} runs`, () => connection.run(Array.from({length: MANY},
         (_, index) => ({method: many.value, seed: settings.seed + index, atOnce: true})))), many));
