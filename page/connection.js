@@ -4,6 +4,7 @@ import {Python} from './python.js';
 
 const PERIOD = 20;          // ms between two frames, about
 const LIMIT = 60000;        // ms for the computation of a run; Python itself ends a script that does not sleep for 2 s
+const IDLE = 10000;         // ms after which a second worker is loaded: it takes over when the first one is ended
 const ERROR = 8;            // level of rosgraph_msgs/Log
 
 export class Connection extends EventTarget {
@@ -33,8 +34,7 @@ export class Connection extends EventTarget {
     }
     this.emit('welcome', {trusted: true, known_token: true});
     this.begin();
-    this.spare = new Python();
-    this.spare.ready.catch(() => { this.spare = null; });
+    setTimeout(() => this.prepare(), IDLE);
   }
 
   emit(type, detail) {
@@ -134,7 +134,12 @@ export class Connection extends EventTarget {
   replace(reason) {
     this.python.end(reason);
     this.python = this.spare || new Python();
+    this.prepare();
+  }
+
+  prepare() {
     this.spare = new Python();
+    this.spare.ready.catch(() => { this.spare = null; });
   }
 
   // Shows frames when it is their time. Resolves after the last one.

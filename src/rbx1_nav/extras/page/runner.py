@@ -89,7 +89,7 @@ def describe(error: BaseException) -> str:
         text = str(error)
     else:
         text = f'{type(error).__name__}: {error}'
-    return f'line {line}: {text}'
+    return f'line {line}: ' + ' '.join(text.split())
 
 
 def no_threads(*_: object) -> None:

@@ -73,6 +73,7 @@ def test_a_robot_that_is_left_moving_stops_as_the_base_does():
 
 
 @pytest.mark.parametrize('text, line', [
+    ('raise ValueError("two\\nlines")\n', 'line 7: ValueError: two lines'),
     ('twist.linear.X = 1\n', "line 7: AttributeError: 'Vector3' object has no attribute 'X'"),
     ('def drive():\n    return 1 / 0\ndrive()\n', 'line 8: ZeroDivisionError: division by zero'),
     ('rospy.Subscriber("odom", print)\n', 'line 7: rospy.Subscriber does not exist on this page'),
