@@ -13,8 +13,9 @@ export class Connection extends EventTarget {
     super();
     Connection.instance = this;
     this.silent = false;
-    // of the next run; seed: of the floor; pace: of the display, in times of real time
-    this.settings = {surface: 'ideal', seed: 7, parameters: {}, pace: 1, text: ''};
+    this.chosen = {surface: 'low_ply_carpet', seed: 7};     // for the next run, by the names of the choices
+    this.pace = 1;          // of the display, in times of real time
+    this.text = '';         // of the script
     this.epoch = 0;
     this.poses = this.before = {};      // in the last frame, and at the end of the run before
     this.status = {};
@@ -27,12 +28,13 @@ export class Connection extends EventTarget {
 
   async start() {
     try {
-      Object.assign(this, await this.python.ready);
+      this.page = await this.python.ready;
     } catch (error) {
       this.emit('lost', `Python cannot be loaded: ${error.message}`);
       return;
     }
-    this.emit('welcome', {trusted: true, known_token: true});
+    Object.assign(this.chosen, this.page.defaults);
+    this.emit('welcome', {trusted: true});
     this.begin();
     setTimeout(() => this.prepare(), IDLE);
   }
@@ -50,10 +52,22 @@ export class Connection extends EventTarget {
     } else if (message.type === 'stop') {
       this.emit('stopping', message);
       this.stop(message.number);
+    } else if (message.type === 'choose') {
+      this.choose(message.name, message.value);
     } else if (message.type === 'hand') {
       this.emit('refused', {what: 'hand', reason: 'only scripts drive the robot of this page'});
     }
     return true;
+  }
+
+  async choose(name, text) {
+    try {
+      this.chosen[name] = await this.python.choose(name, text);
+      this.cancel();
+      this.begin();
+    } catch (error) {
+      this.emit('refused', {what: 'choose', reason: `${name}: ${error.message}`});
+    }
   }
 
   // Ends the last action of the user, and returns the number of this one.
@@ -65,20 +79,22 @@ export class Connection extends EventTarget {
 
   // Puts the robot at its start. request: of the run that begins, if one does.
   begin(request) {
-    const {surface, seed} = request || this.settings, origin = [0, 0, 0];
+    const {surface, seed} = request || this.chosen, origin = [0, 0, 0];
     this.epoch += 1;
     this.begun = Date.now() / 1000;
     this.before = this.poses;
     this.show({time: 0, run: '', poses: {truth: origin, odometry: origin, estimate: origin}, status: {
       base: 'simulated', simulated: true, simulated_time: true, can_reset: true, driver: '', surface,
-      seed: String(seed), started: request ? this.titles[request.method] : '', outcome: ''}});
+      seed: String(seed), started: request ? this.page.titles[request.method] : '', outcome: ''}});
   }
 
   show(frame) {
     this.poses = frame.poses;
     this.time = frame.time;
     if (frame.status) {
-      this.status = frame.status = {...frame.status, before: this.before, factor: this.settings.pace};
+      const {choices, surfaces} = this.page, {distance, speed} = this.chosen;
+      this.status = frame.status = {...frame.status, choices, surfaces, distance, speed, before: this.before,
+        factor: this.pace};
     }
     for (const line of frame.log || []) {
       line[1] += this.begun;      // the log shows the time of day
@@ -92,12 +108,14 @@ export class Connection extends EventTarget {
       ...text && {log: [[ERROR, this.time, '/page', text]]}});
   }
 
-  // Runs one after another. Of each: method; seed, unless it is that of the settings; whether to show only its end.
+  // Runs one after another. Of each: method; seed, unless it is the chosen one; whether to show only its end.
   async run(runs) {
-    const turn = this.cancel();
-    for (const {method, seed = this.settings.seed, atOnce = false} of runs) {
-      const {surface, parameters, text} = this.settings;
-      const request = {method, surface, seed, parameters, text, stop: null, as_one_frame: atOnce};
+    const turn = this.cancel(), {scripts, defaults} = this.page, {chosen, text} = this;
+    // a default is not passed on, so that it can be changed in the script
+    const parameters = Object.fromEntries(Object.keys(scripts).filter(name => chosen[name] !== defaults[name]).map(
+      name => [scripts[name], chosen[name]]));
+    for (const {method, seed = chosen.seed, atOnce = false} of runs) {
+      const request = {method, surface: chosen.surface, seed, parameters, text, stop: null, as_one_frame: atOnce};
       this.begin(request);
       try {
         const frames = await this.compute(request);
@@ -144,7 +162,7 @@ export class Connection extends EventTarget {
 
   // Shows frames when it is their time. Resolves after the last one.
   play(frames, atOnce) {
-    const {pace} = this.settings, begun = performance.now(), from = this.time;
+    const {pace} = this, begun = performance.now(), from = this.time;
     return new Promise(resolve => {
       const step = () => {
         const time = from + (performance.now() - begun) / 1000 * pace;

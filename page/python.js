@@ -2,7 +2,7 @@
 
 export class Python {
   constructor() {
-    // resolves to {surfaces, titles}: names of the surfaces, and titles of the runs by method
+    // resolves to what describe_page() of the runner returns
     this.ready = this.start();
   }
 
@@ -19,6 +19,11 @@ export class Python {
       this.worker.onerror = ({message: text}) => reject(new Error(text));
       this.worker.postMessage(message);
     });
+  }
+
+  // Returns the value of a choice that is given as text.
+  async choose(name, text) {
+    return (await this.ask({choose: [name, text]})).value;
   }
 
   // Returns the frames of a run.

@@ -12,19 +12,21 @@ async function load(base) {
   python = runtime;
   return JSON.parse(runtime.runPython(`
 import json
-from rbx1_nav.exercise.methods import OF_PAGE
-from rbx1_nav.extras.page.runner import SCRIPT, run_request
+from rbx1_nav.extras.page.runner import choose, describe_page, run_request
 with open('config.json') as file:
     config = json.load(file)
-json.dumps({'surfaces': list(config['surfaces']),
-            'titles': {SCRIPT: SCRIPT, **{name: each.title for name, each in OF_PAGE.items()}}})`));
+describe_page(config)`));
+}
+
+function call(name, ...values) {
+  return python.globals.get(name)(python.globals.get('config'), ...values);
 }
 
 onmessage = async ({data}) => {
   try {
-    postMessage(data.base ? await load(data.base)
-      : {frames: python.globals.get('run_request')(python.globals.get('config'), data.request)});
+    postMessage(data.base ? await load(data.base) : data.choose ? {value: call('choose', ...data.choose)}
+      : {frames: call('run_request', data.request)});
   } catch (error) {
-    postMessage({error: String(error).trim().split('\n').pop()});
+    postMessage({error: String(error).trim().split('\n').pop().replace('ValueError: ', '')});
   }
 };

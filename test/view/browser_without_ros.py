@@ -24,7 +24,7 @@ RUN = '''const [request, done] = arguments;
 import('./connection.js').then(({Connection}) => Connection.instance.python.run(request)).then(
   frames => done(frames[frames.length - 1].poses), error => done(String(error)))'''
 SET = '''arguments[0].value = arguments[1];
-arguments[0].dispatchEvent(new Event('input'))'''
+['input', 'change'].forEach(each => arguments[0].dispatchEvent(new Event(each)))'''
 OWN = '''import rospy
 from geometry_msgs.msg import Twist
 rospy.init_node('own')
@@ -63,6 +63,12 @@ class TestBrowserWithoutRos(support.Case):
         """Set a field of the page."""
         self.driver.execute_script(SET, self.page.find(f'#{name}'), value)
 
+    def choose(self, name, value):
+        """Type the value of a choice."""
+        field = f'[name={name}]'
+        support.wait_for(lambda: self.page.find(field).is_enabled(), field)
+        self.driver.execute_script(SET, self.page.find(field), value)
+
     def test_end_poses(self):
         self.driver.set_script_timeout(support.LIMIT)
         robot = load_robot(resources.path('config', 'turtlebot.yaml'))
@@ -83,12 +89,14 @@ class TestBrowserWithoutRos(support.Case):
         # as in step 5 of the tutorial
         self.assertEqual(self.page.row('table-now', 'truth')[:3], [0.096, 0.482, -56.9])
         self.assertIn('Stopping the robot...', self.page.text('lines'))
-        self.set('goal_distance', 0.5)
+        self.choose('distance', '0.5')
         self.page.click('#run-script')
         self.page.wait_for_text('table-now', 'script')
         support.wait_for(lambda: abs(self.page.row('table-now', 'truth')[0] - 0.096) > 0.002
                          and 'finished' in self.page.text('run-state'), 'another end')
-        self.set('goal_distance', 1.0)
+        self.choose('distance', '9')
+        self.page.wait_for_text('notice', 'distance: expected a number from 0.1 to 3')
+        self.choose('distance', '1')
         self.set('text', OWN)
         self.page.click('#run-script')
         self.page.wait_for_text('lines', r'line 6: rospy\.Subscriber does not exist on this page')

@@ -1,15 +1,13 @@
 """The runs that the page requests: the exercise with one of its methods, or a script of the user."""
 from __future__ import annotations
 
-from contextlib import redirect_stdout
-import io
 import json
 import sys
 import threading
 from time import monotonic
 import traceback
 from types import FrameType
-from typing import Any, Mapping
+from typing import Any, Callable, Mapping
 
 from rbx1_nav.base.description import read_robot
 from rbx1_nav.base.surfaces import read_surface
@@ -18,9 +16,24 @@ from rbx1_nav.exercise.methods import OF_PAGE
 from rbx1_nav.extras.many_runs.simulated_run import CALIBRATION, EXERCISE, PARAMETERS, run
 from rbx1_nav.extras.page.recording import ERROR, INFO, RecordedSimulation, Stopped
 from rbx1_nav.extras.page.stand_in import ROSException, ROSInterruptException, Rospy
+from rbx1_nav.extras.web.choices import CHOICES, DEFAULTS, SCRIPTS, read_choice
+from rbx1_nav.simulation.slip import read_seed
 
 SCRIPT = 'script'       # name of the script in tracebacks, and of its run
 PATIENCE = 2.0          # s of wall time without a sleep after which a script is ended
+
+
+def describe_page(config: Mapping[str, Any]) -> str:
+    """Return what the page can choose, as JSON. config: see run_request()."""
+    return json.dumps({
+        'surfaces': list(config['surfaces']), 'choices': CHOICES, 'defaults': DEFAULTS, 'scripts': SCRIPTS,
+        'titles': {SCRIPT: SCRIPT, **{name: each.title for name, each in OF_PAGE.items()}}})
+
+
+def choose(config: Mapping[str, Any], name: str, text: str) -> Any:
+    """Return the value of a choice, given as text. Raises ValueError with what was expected."""
+    value = read_choice(name, text, list(config['surfaces']))
+    return read_seed(value) if name == 'seed' else value
 
 
 class Busy(BaseException):
@@ -96,20 +109,6 @@ def no_threads(*_: object) -> None:
     raise NotImplementedError('threads do not exist on this page')
 
 
-class Lines(io.StringIO):
-    """Logs what a script prints."""
-
-    def __init__(self, simulation: RecordedSimulation) -> None:
-        super().__init__()
-        self.simulation, self.begun = simulation, ''
-
-    def write(self, text: str) -> int:
-        *lines, self.begun = (self.begun + text).split('\n')
-        for line in lines:
-            self.simulation.log(INFO, line)
-        return len(text)
-
-
 def run_script(simulation: RecordedSimulation, text: str, parameters: Mapping[str, Any]) -> str:
     """Run a script as rosrun does, with the stand-in for rospy, and return the outcome."""
     simulation.rest(CALIBRATION)
@@ -117,12 +116,14 @@ def run_script(simulation: RecordedSimulation, text: str, parameters: Mapping[st
     ros = Rospy(simulation, simulation.log, dict(parameters))
     outcome = 'finished'
 
-    def call(function: Any, *arguments: object) -> None:
+    def show(*values: object, **_: object) -> None:
+        simulation.log(INFO, ' '.join(map(str, values)))
+
+    def call(function: Callable[[], object]) -> None:
         nonlocal outcome
-        watch = Watch(simulation)
-        sys.settrace(watch)
+        sys.settrace(Watch(simulation))
         try:
-            function(*arguments)
+            function()
         except (SystemExit, ROSInterruptException, Stopped):
             pass
         except BaseException as error:
@@ -132,9 +133,8 @@ def run_script(simulation: RecordedSimulation, text: str, parameters: Mapping[st
             sys.settrace(None)
     try:
         setattr(threading.Thread, 'start', no_threads)
-        with redirect_stdout(Lines(simulation)):
-            call(lambda: exec(compile(text, SCRIPT, 'exec'), {'__name__': '__main__', '__doc__': None}))
-            call(ros.shutdown)
+        call(lambda: exec(compile(text, SCRIPT, 'exec'), {'__name__': '__main__', 'print': show}))
+        call(ros.shutdown)
     finally:
         setattr(threading.Thread, 'start', start_thread)
         sys.modules.clear()
