@@ -5,7 +5,9 @@ const CACHE = `page-${Object.values(HASHES).map(hash => hash.slice(0, 2)).join('
 
 self.oninstall = event => {
   self.skipWaiting();
-  event.waitUntil(caches.open(CACHE).then(cache => cache.addAll(['./', ...Object.keys(HASHES)])));
+  // no-cache: a file that the browser has loaded is compared, not loaded again
+  const files = ['./', ...Object.keys(HASHES)].map(path => new Request(path, {cache: 'no-cache'}));
+  event.waitUntil(caches.open(CACHE).then(cache => cache.addAll(files)));
 };
 
 self.onactivate = event => event.waitUntil(caches.keys().then(names => Promise.all(
