@@ -32,6 +32,11 @@ rospy.Publisher('cmd_vel', Twist).publish(Twist())
 rospy.sleep(0.5)
 rospy.Subscriber('odom', print)
 '''
+ELSEWHERE = '''import js
+request = js.XMLHttpRequest.new()
+request.open('GET', 'https://example.org/', False)
+request.send()
+'''
 
 
 def printed(pose):
@@ -104,6 +109,15 @@ class TestBrowserWithoutRos(support.Case):
         self.page.click('#restore')
         support.wait_for(lambda: 'OutAndBack' in self.page.find('#text').get_attribute('value'), 'the script')
 
+    def test_script_reaches_no_other_address(self):
+        self.set('text', ELSEWHERE)
+        self.page.click('#run-script')
+        self.page.wait_for_text('lines', 'line 4: JsException: NetworkError')
+        self.page.click('#restore')
+        errors = self.page.console_errors()
+        self.assertTrue(errors)
+        self.assertEqual([each for each in errors if 'Content Security Policy' not in each], [])
+
     def test_stop(self):
         self.set('pace', 5)
         self.page.click('#run-script')
@@ -125,7 +139,7 @@ class TestBrowserWithoutRos(support.Case):
         support.wait_for(lambda: self.driver.execute_script(controlled), 'the service worker')
         self.server.signal(signal.SIGINT)
         self.assertEqual(self.server.wait(), 130, self.server.output)
-        self.driver.refresh()
+        self.driver.get(self.driver.current_url)
         self.page.wait_for_text('connection', 'Connected')
         self.page.run('timed')
         sources = self.driver.execute_script('return performance.getEntriesByType("resource").map(each => each.name)')
