@@ -25,6 +25,7 @@ ALLOWED = {
     'extras.fitting': {'base', 'filter', 'node', 'simulation'},
     'extras.lockstep': {'base', 'node'},
     'extras.many_runs': {'base', 'exercise', 'extras.fitting', 'filter', 'node', 'simulation'},
+    'extras.page': {'base', 'exercise', 'extras.many_runs', 'extras.web', 'simulation'},
     'extras.web': {'base', 'exercise', 'node'},
 }
 ALLOWED['nodes'] = set(ALLOWED) - {''}

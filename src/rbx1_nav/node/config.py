@@ -8,8 +8,6 @@ import re
 import reprlib
 from typing import Iterable, Mapping, Sequence, TypeVar, Union
 
-import yaml
-
 AUTO = 'auto'       # a value that is determined at run time
 SHORT = 4           # letters of the longest name that counts as short
 NUMBER = re.compile(r'\s*[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?\s*', re.IGNORECASE)
@@ -84,6 +82,7 @@ def as_yaml_number(text: str) -> str:
 
 def load_yaml(path: str) -> YamlValue:
     """Return the content of a YAML file. Raises ConfigError, which does not name the file."""
+    import yaml     # here, because the page without ROS has neither YAML files nor this module
     try:
         with open(path, encoding='utf-8') as file:
             content: YamlValue = yaml.safe_load(file)

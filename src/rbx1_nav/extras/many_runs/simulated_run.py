@@ -142,6 +142,11 @@ def simulate(method: str, robot: Robot, surface: Surface | None, seed: int, filt
     """
     filtered = filtered or METHODS[method].pose == 'estimate'
     simulation = Simulation(robot, surface, seed, filtered, keep, prior, listen, parameters['rate'], floor)
+    return run(simulation, method, parameters)
+
+
+def run(simulation: Simulation, method: str, parameters: Mapping[str, float] = PARAMETERS) -> SimulationResult:
+    """Run the exercise with a new Simulation; see simulate()."""
     simulation.rest(CALIBRATION)
     distances = []
     for drive in _drives(simulation, method, parameters):

@@ -1,0 +1,1 @@
+"""The exercise in a browser without ROS: a stand-in for rospy, and runs as frames for the page."""
