@@ -98,7 +98,7 @@ class CombinedOdometry:
 
     @property
     def velocity(self) -> Velocity | None:
-        """The Velocity in the last step; None after a start, a restart or set_pose()."""
+        """The Velocity in the last step; None after a start or a restart."""
         ekf, odom, motion = self.filter, self.odom, self.motion
         return velocity(motion, odom, ekf, self.contradicts) if ekf and odom and motion else None
 
@@ -235,9 +235,10 @@ class CombinedOdometry:
             case = self.standstill.case
         else:
             self.standstill.leave(odom.pose, ekf)
-        self.motion = Motion(duration, forward, left, turned, gyro, case == CARRIED)
         turn = AT_REST if case == STANDSTILL else ekf.turn(
             duration, (turned, odom.angular_variance * duration ** 2), gyro, forward)
+        used = gyro if case == STANDSTILL or turn.by_gyro else None
+        self.motion = Motion(duration, forward, left, turned, used, case == CARRIED)
         ekf.step(duration, turn, 0.0 if case == STANDSTILL else turned, forward, left, reported)
         self.doubts.report(ekf.compare(duration, turned, gyro, forward), ekf, odom.stamp)
 

@@ -57,3 +57,11 @@ def test_the_velocity_of_a_robot_is_what_it_does_now():
         assert robot.combined.velocity[:3] == pytest.approx((linear, 0.0, angular), abs=1e-6)   # arc and chord
     robot.combined.restart()
     assert robot.combined.velocity is None
+
+
+def test_a_gyro_that_fails_is_not_used_for_the_turn_either():
+    robot = Robot(UNKNOWN_FLOOR)
+    robot.send(60)
+    for sign in 1, -1:
+        robot.send(100, 0.0, sign * 0.5, bias=-sign)    # it turns the other way
+    assert robot.combined.filter.gyro_left and robot.combined.velocity.turn == pytest.approx(-0.5)

@@ -12,7 +12,7 @@ from typing import Any
 from rbx1_nav.base.units import wrap_angle
 
 PATH_POINTS, SPEED_POINTS, LOG_LINES = 3000, 3000, 50
-# distances between the points of a path; an arrow is drawn for every 0.1 m or 0.15 rad
+# distances between the points of a path; an arrow is drawn for every 0.1 m or 0.5 rad
 STEP, TURN = 0.02, 0.05     # m, rad
 HOLD = 1.0      # s: period of the samples while a speed is constant
 
