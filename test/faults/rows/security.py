@@ -25,6 +25,8 @@ CODE = '!!python/object/apply:os.system ["touch %s"]'
 # in calls, names that evaluate text or bytes; subprocess and shells are looked at as `shell=True`
 EVALUATE = {'eval', 'exec', 'compile', '__import__', 'system', 'popen', 'unsafe_load', 'full_load', 'load_all',
             'FullLoader', 'UnsafeLoader', 'Unpickler'}
+# runs the script that a user has typed, in a browser
+RUNNER = 'extras/page/runner.py'
 MODULES = {'pickle', 'marshal', 'shelve', 'dill', 'cloudpickle'}
 
 
@@ -109,7 +111,8 @@ def sources(_):
                     name = getattr(node.func, 'attr', getattr(node.func, 'id', None))
                     module = getattr(getattr(node.func, 'value', None), 'id', None)
                     regular = (module, name) == ('re', 'compile')
-                    assert name not in EVALUATE or regular, f'{where}: {name}'
+                    runs = path.endswith(RUNNER) and name in ('compile', 'exec')
+                    assert name not in EVALUATE or regular or runs, f'{where}: {name}'
                     assert (module, name) != ('yaml', 'load'), where
                     assert not any(keyword.arg == 'shell' for keyword in node.keywords), where
 
