@@ -25,7 +25,9 @@ def start_chromium(downloads):
     options.binary_location = '/usr/bin/chromium'
     for argument in ARGUMENTS:
         options.add_argument(argument)
-    options.add_experimental_option('prefs', {'download.default_directory': downloads})
+    # 1: as if a user had answered that the page may save several files
+    options.add_experimental_option('prefs', {'download.default_directory': downloads,
+                                              'profile.default_content_setting_values.automatic_downloads': 1})
     options.set_capability('goog:loggingPrefs', {'browser': 'ALL'})
     try:
         from selenium.webdriver.chrome.service import Service

@@ -182,7 +182,11 @@ class TestBrowserPage(PageTest):
     def test_a_connection_that_is_dead_is_replaced(self):
         relay = Relay(int(re.search(r':(\d+)/', self.url).group(1)))
         self.addCleanup(relay.close)
-        self.page = Page(self.driver, re.sub(r':\d+/', f':{relay.port}/', self.url))
+        token = self.driver.execute_script('return localStorage.getItem("token")')
+        url = re.sub(r':\d+/', f':{relay.port}/', self.url)
+        Page(self.driver, url)      # for the browser, this is another site
+        self.driver.execute_script('localStorage.setItem("token", arguments[0])', token)
+        self.page = Page(self.driver, url)
         self.drive_ahead(0.05)
         relay.break_connections()
         self.page.click('#stop')
