@@ -34,7 +34,7 @@ def test_any_path_on_a_floor_with_all_errors():
     chosen = random.Random(0)
     for _ in range(300):
         path = chosen.choice([(0.004, 0.0), (0.0, -0.02), (-0.4, 0.7), (0.003, 1e-4), (0.02, -0.01), (0.0, 3.0)])
-        for floor in together, *single:
+        for floor in (together, *single):
             floor.move(*path)
         assert [list(values) for values in together.truth.pose] == list(map(list, zip(*(
             floor.truth.pose for floor in single))))
