@@ -1,4 +1,6 @@
 """What the messages of the topics change on the page, and which nodes Stop shuts down."""
+import os
+
 from nav_msgs.msg import Odometry
 import pytest
 import rospy
@@ -7,12 +9,14 @@ from rbx1_nav.extras.web import system
 from rbx1_nav.extras.web.state import PageState
 from waiting import wait_for
 
+SURFACES = os.path.join(os.path.dirname(__file__), '..', '..', '..', '..', 'config', 'surfaces')
 PUBLISHERS = [['/cmd_vel', ['/stranger']], ['/other/cmd_vel', ['/driver', '/unnamed']]]
 
 
 @pytest.fixture(name='view')
 def make_view(monkeypatch):
     monkeypatch.setattr(system, 'MIN_PERIOD', 0)
+    monkeypatch.setattr(system.resources, 'surfaces', lambda: SURFACES)     # also without a workspace
     return system.System(PageState())
 
 
