@@ -20,7 +20,7 @@ WIDE, NARROW = ('#stop', '#floor', '.runs', '#headline'), ('#stop', '#floor-box'
 SCREENS = [(1920, 1080, False, WIDE), (1300, 950, False, WIDE), (1024, 768, False, WIDE), (390, 844, True, WIDE),
            (844, 390, True, WIDE), (320, 640, False, NARROW), (320, 256, False, ('#stop',))]
 PROJECTORS = [(1920, 1080), (1024, 768)]
-# the edges of an element, and those of the screen that the page can show without scrolling
+# the edges of an element, and the edges of the screen that the page can show without scrolling
 EDGES = 'const {left, top, right, bottom} = document.querySelector(arguments[0]).getBoundingClientRect(); ' \
         'return [left, top, right, bottom]'
 # the parts of the page whose text is wider than they are

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Tests the page that script/page builds, in Chromium: its runs end where those of simulate.py do, a script runs and
+"""Tests the page that script/page builds, in Chromium: its runs have the end poses of simulate.py, a script runs and
 can be stopped, and the page works when its server has gone. RBX1_PAGE_SEEDS: number of seeds to compare, default 1."""
 import math
 import os

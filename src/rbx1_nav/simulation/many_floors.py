@@ -1,6 +1,6 @@
 """The floors of many runs whose wheels travel alike, computed at once: each pose has one number per run.
 
-The results are the same, to the last bit, as those of single runs.
+Single runs give the same results, to the last bit.
 """
 from __future__ import annotations
 

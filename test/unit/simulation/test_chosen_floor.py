@@ -1,4 +1,4 @@
-"""A running base reads its floor again at a reset: the result is that of a base that was started there."""
+"""A running base reads its floor again at a reset: the next run equals a run of a base that was started there."""
 import pytest
 from rbx1_nav.base.description import read_robot
 from rbx1_nav.base.surfaces import load_surface

@@ -109,7 +109,7 @@ class Rospy:
         return self.simulation.now
 
     def command(self, message: Any) -> None:
-        """Put a Twist in force: after a shutdown request, only those of the functions of on_shutdown."""
+        """Put a Twist in force; after a shutdown request, only the functions of on_shutdown can do so."""
         time, linear, angular = self.now(), message.linear, message.angular
         try:
             if not self.is_shutdown and self.simulation.base.command(

@@ -41,8 +41,8 @@ class Stopper:
 
     def __init__(self, stop: Callable[[], None], system: System, last_speed: Callable[[], tuple[float, float]],
                  log: Callable[[str], None]) -> None:
-        """stop(): stops the run and driving by hand, without waiting; last_speed(): see
-        PageState; log(text): logs a message."""
+        """stop(): stops the run and driving by hand, without waiting; last_speed(): see PageState;
+        log(text): logs a message."""
         self.stop = stop
         self.system = system
         self.last_speed = last_speed

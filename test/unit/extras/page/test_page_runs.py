@@ -1,4 +1,4 @@
-"""The runs of the page are those of simulate.py, and their frames are those of the web view."""
+"""The page and simulate.py compute the same runs, and the page receives the frames of the web view."""
 import os
 import subprocess
 import sys
