@@ -67,6 +67,7 @@ def code_version() -> str:
 
 
 def differs(name: str, version: str, expected: str) -> str:
+    """Return why a worker with another version is refused."""
     return f'{name} {version}: expected {expected}, as in the program that uses the cluster'
 
 
