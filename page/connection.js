@@ -1,6 +1,7 @@
 // In place of the WebSocket to the node: runs that Python computes in a worker, played as if a robot drove now.
 
 import {Python} from './python.js';
+import {WORDS} from './words.js';
 
 const PERIOD = 20;          // ms between two frames, about
 const LIMIT = 60000;        // ms for the computation of a run; Python itself ends a script that does not sleep for 2 s
@@ -30,7 +31,7 @@ export class Connection extends EventTarget {
     try {
       this.page = await this.python.ready;
     } catch (error) {
-      this.emit('lost', `Python cannot be loaded: ${error.message}`);
+      this.emit('lost', WORDS.noPython(error.message));
       return;
     }
     Object.assign(this.chosen, this.page.defaults);
@@ -55,7 +56,7 @@ export class Connection extends EventTarget {
     } else if (message.type === 'choose') {
       this.choose(message.name, message.value);
     } else if (message.type === 'hand') {
-      this.emit('refused', {what: 'hand', reason: 'only scripts drive the robot of this page'});
+      this.emit('refused', {what: 'hand', reason: WORDS.onlyScripts});
     }
     return true;
   }
@@ -138,7 +139,7 @@ export class Connection extends EventTarget {
 
   async compute(request) {
     const python = this.python, limit = setTimeout(
-      () => this.replace(`The script was ended, because its run was not computed within ${LIMIT / 1000} s.`), LIMIT);
+      () => this.replace(WORDS.tooLong(LIMIT / 1000)), LIMIT);
     this.computing = true;
     try {
       return await python.run(request);

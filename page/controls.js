@@ -4,10 +4,8 @@ import {Connection} from './connection.js';
 import {WORDS} from './words.js';
 
 const MANY = 30;
-const PACES = [[1, 'in real time'], [5, '5 times as fast'], [20, '20 times as fast'], [1000, 'at once']];
+const PACES = [1, 5, 20, 1000];     // times real time; the last one is at once
 const connection = Connection.instance;
-
-WORDS.script = 'Script';    // the title of its run
 
 function make(kind, properties, ...children) {
   const made = Object.assign(document.createElement(kind), properties);
@@ -34,22 +32,23 @@ function allow() {
 }
 
 function build() {
-  const pace = select('pace', 'Play', PACES);
+  const pace = select('pace', WORDS.play, PACES.map((pace, index) => [pace, WORDS.paces[index]]));
   pace.onchange = () => { connection.pace = Number(pace.value); };
-  const many = select('many-method', 'Method of the runs',
-    Object.entries(connection.page.titles).filter(([name]) => name !== 'script'));
-  const text = make('textarea', {id: 'text', spellcheck: false, wrap: 'off', ariaLabel: 'Script, which you can edit'});
+  const many = select('many-method', WORDS.manyHelp,
+    Object.entries(connection.page.titles).filter(([name]) => name !== 'script').map(
+      ([name, title]) => [name, WORDS.run(title)]));
+  const text = make('textarea', {id: 'text', spellcheck: false, wrap: 'off', ariaLabel: WORDS.scriptHelp});
   text.oninput = () => { connection.text = text.value; };
   const restore = async () => {
     text.value = connection.text = await (await fetch('script.py')).text();
   };
-  const cloud = button('many', `${MANY} runs`, () => Array.from({length: MANY}, (_, index) => (
+  const cloud = button('many', WORDS.manyRuns(MANY), () => Array.from({length: MANY}, (_, index) => (
     {method: many.value, seed: connection.chosen.seed + index, atOnce: true})));
-  document.getElementById('drive').append(make('p', {className: 'row'}, make('label', {}, 'Play ', pace),
+  document.getElementById('drive').append(make('p', {className: 'row'}, make('label', {}, WORDS.play, ' ', pace),
     make('span', {}, cloud, ' ', many)));
   document.querySelector('main').append(make('section', {id: 'script'}, make('h2', {}, WORDS.script), text,
-    make('p', {}, button('run-script', 'Run the script', () => [{method: 'script'}]), ' ',
-      make('button', {type: 'button', id: 'restore', onclick: restore}, 'Restore'))));
+    make('p', {}, button('run-script', WORDS.runScript, () => [{method: 'script'}]), ' ',
+      make('button', {type: 'button', id: 'restore', onclick: restore}, WORDS.restore))));
   new MutationObserver(allow).observe(document.querySelector('.run'), {attributes: true});
   allow();
   restore();

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the pages of docs/zh_TW/, in traditional Chinese, from docs/zh/. Needs Debian's package opencc.
+"""Writes docs/zh_TW/ and web/words_zh_tw.js, in traditional Chinese, from simplified. Needs Debian's package opencc.
 
 OpenCC chooses words that are used in Taiwan (s2twp). TERMS corrects its choices, in this order.
 """
@@ -7,13 +7,15 @@ import hashlib
 import os
 import subprocess
 
-DOCS = os.path.realpath(os.path.join(os.path.dirname(__file__), '..', 'docs'))
+ROOT = os.path.realpath(os.path.join(os.path.dirname(__file__), '..'))
+FILES = {'web/words_zh.js': 'web/words_zh_tw.js', **{
+    f'docs/zh/{name}': f'docs/zh_TW/{name}' for name in os.listdir(os.path.join(ROOT, 'docs', 'zh'))}}
 TERMS = dict(pair.split('>') for pair in (
     '話題>主題 引數>參數 功能包>套件 軟體包>套件 軟體源>套件庫 倉庫>儲存庫 克隆>複製 指令碼>腳本 回撥>回呼 '
     '釋出>發布 發佈>發布 傳送>發送 異常>例外 丟擲>拋出 程式碼塊>程式碼區塊 註釋>註解 全域性>全域 '
     '名稱空間>命名空間 標定>校正 超時>逾時 實時>即時 運行>執行 教程>教學 終端>終端機 複選框>核取方塊 '
     '膝上型電腦>筆記型電腦 影象>影像 卷尺>捲尺 電機>馬達 串列埠>序列埠 主目錄>家目錄 臺>台 釐米>公分 毫米>公釐 '
-    '米>公尺').split())
+    '米>公尺 許可權>權限 “>「 ”>」').split())
 
 
 def digest(text):
@@ -22,12 +24,13 @@ def digest(text):
 
 
 def marked(simplified, traditional):
-    """The page, with a last line that changes with the simplified page, with this page, and with TERMS."""
-    return f'{traditional}\n<!-- script/traditional.py: {digest(simplified + traditional + str(TERMS))} -->\n'
+    """The text, with a last line that changes with the simplified text, with this text, and with TERMS."""
+    mark = f'script/traditional.py: {digest(simplified + traditional + str(TERMS))}'
+    return f'{traditional}\n' + (f'// {mark}\n' if traditional.startswith('//') else f'<!-- {mark} -->\n')
 
 
 def convert(simplified):
-    """The page in traditional Chinese."""
+    """The text in traditional Chinese."""
     text = subprocess.run(['opencc', '-c', 's2twp'], input=simplified.encode(), stdout=subprocess.PIPE,
                           check=True).stdout.decode()
     for chosen, usual in TERMS.items():
@@ -36,8 +39,8 @@ def convert(simplified):
 
 
 if __name__ == '__main__':
-    for name in os.listdir(os.path.join(DOCS, 'zh')):
-        with open(os.path.join(DOCS, 'zh', name), encoding='utf-8') as file:
-            page = file.read()
-        with open(os.path.join(DOCS, 'zh_TW', name), 'w', encoding='utf-8') as file:
-            file.write(marked(page, convert(page)))
+    for source, target in FILES.items():
+        with open(os.path.join(ROOT, source), encoding='utf-8') as file:
+            text = file.read()
+        with open(os.path.join(ROOT, target), 'w', encoding='utf-8') as file:
+            file.write(marked(text, convert(text)))

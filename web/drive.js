@@ -163,8 +163,8 @@ export class Drive {
   stopAnswered({number, stationary, silent, text}) {
     if (this.stopTimer && number === this.stops) {
       this.begin();
-      this.answer = text;
-      this.alarm(stationary && !silent.length ? '' : text);
+      this.answer = WORDS.said(text);
+      this.alarm(stationary && !silent.length ? '' : this.answer);
       this.draw();
     }
   }
@@ -230,7 +230,7 @@ export class Drive {
     if (message.what === 'drive') {     // report this only once, although held keys are repeated
       this.setHand(false);
     }
-    this.notify('refused', WORDS.refused(message.reason));
+    this.notify('refused', WORDS.refused(WORDS.said(message.reason)));
   }
 
   // Enables the buttons that can be used now, and shows what is running.
@@ -260,7 +260,7 @@ export class Drive {
       : !this.trusted ? WORDS.noToken
       : running ? WORDS.running(status.driver || status.started)
       : this.hand ? WORDS.keysDrive
-      : status.started ? WORDS.outcome(WORDS[status.started], status.outcome) : '';
+      : status.started ? WORDS.outcome(WORDS[status.started], WORDS.said(status.outcome)) : '';
     const why = !ready || running ? [] : [
       ...unfiltered.map(run => WORDS.needsFilter(run.textContent)),
       !status.can_reset && WORDS.noReset];

@@ -22,9 +22,10 @@ export class Fleet {
     const own = robots.indexOf(this.selected);
     this.links.hidden = false;
     this.links.replaceChildren(...robots.map((name, index) => {
-      const link = document.createElement('a');
+      const link = document.createElement('a'), query = new URLSearchParams(location.search);
+      query.set('robot', name);
       link.textContent = name;
-      link.href = `?robot=${name}`;
+      link.href = `?${query}`;
       link.className = `robot-${index % 5}`;
       if (index === own) {
         link.setAttribute('aria-current', 'true');

@@ -64,7 +64,7 @@ function facts() {
 }
 
 function drawFacts() {
-  const {title} = model.status;
+  const title = WORDS.said(model.status.title || '');
   if (title && title !== document.title) {
     document.title = byId('title').textContent = title;
   }
@@ -103,7 +103,7 @@ function draw() {
 }
 
 function kindOf({name, stopped}) {
-  return stopped ? WORDS.stopped(name) : name;
+  return WORDS.run(name, stopped);
 }
 
 // What the exercise is about: how far this method has missed the start.
@@ -121,7 +121,7 @@ function drawHeadline() {
 // The lines of a saved picture: what was run, and the numbers, which are also the legend of the colors.
 function caption() {
   const {surface, seed} = model.status;
-  const what = [model.run, surface && surface !== 'ideal' && seed ? WORDS.withSeed(surface, seed) : surface]
+  const what = [model.run && WORDS.run(model.run), surface && surface !== 'ideal' && seed ? WORDS.withSeed(surface, seed) : surface]
     .filter(Boolean).join(', ');
   const shown = model.earlier.filter(run => run.shown);
   const earlier = [...new Set(shown.map(kindOf))].map(kind =>

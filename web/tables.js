@@ -95,7 +95,7 @@ export class EarlierRuns {
       label.append(box, swatch(''));
       row.insertCell().append(label);
       name.scope = 'row';
-      name.textContent = `${run.number} ${run.stopped ? WORDS.stopped(run.name) : run.name}`;
+      name.textContent = `${run.number} ${WORDS.run(run.name, run.stopped)}`;
       row.append(name);
       const floor = run.surface && run.surface !== 'ideal' ? WORDS.withSeed(run.surface, run.seed) : run.surface || '';
       for (const text of [floor, distance, heading]) {

@@ -1,80 +1,16 @@
-// All words of the page, in one place. index.html and the other files name them; the node sends answers and log lines.
+// The words of the page in the language of the browser, or of ?lang= in its address.
 
-export const WORDS = {
-  // header
-  title: 'Out and back', robots: 'Robots', facts: 'Robot and floor', connecting: 'Connecting',
-  stop: 'Stop', stopOne: robot => `Stop ${robot}`, escape: 'Esc',
-  robot: 'Robot', simulated: 'simulated', real: 'real', surface: 'Surface', seed: 'Seed', time: 'Time',
-  factor: factor => `simulated, ${factor} times real time`,
-  connected: 'Connected', watching: 'Connected, watching only',
-  silent: 'No answer: the page does not show where the robot is now',
-  lost: reason => `Not connected${reason ? ` (${reason})` : ''}; retrying`,
+import {WORDS as ENGLISH} from './words_en.js';
+import {WORDS as SIMPLIFIED} from './words_zh.js';
+import {WORDS as TRADITIONAL} from './words_zh_tw.js';
 
-  // methods, by the titles of the runs
-  drive: 'Methods',
-  'timed': 'Timed', 'with odometry': 'With odometry', 'with odometry and gyro': 'With odometry and gyro',
-  intro: 'Each method drives the robot 1 m out, turns it round, drives it back, and turns it round again, so that it should ' +
-    'finish where it started. Timed moves for fixed durations; the other two stop each motion when the wheels, or the ' +
-    'wheels and a gyro, have measured it.',
-  missed: (distance, angle, known) =>
-    `${known ? 'missed' : 'by its odometry, missed'} the start by ${distance} m and ${angle}°`,
-  needsFilter: method => `${method} needs the filter: roslaunch rbx1_bringup odom_ekf.launch.`,
-  noReset: 'Only a simulated robot can be reset.',
-  noToken: 'This page can only watch and stop the robot. To drive, open the complete address that the web view printed, or ' +
-    'ask for one in a page that can drive.',
-  masterSilent: 'The ROS master does not answer. Start roscore, the base and the web view again.',
-  masterRestarted: 'The ROS master was restarted. Start the web view again.',
-  noBase: 'Waiting for a base. Start one: roslaunch rbx1_bringup fake_turtlebot.launch',
-  running: name => `Running: ${name}. Stop it to use the other buttons.`,
-  keysDrive: 'The arrow keys drive the robot.',
-  outcome: (name, outcome) => `${name}: ${outcome}`,
-
-  // Stop and other messages
-  stopping: 'Stopping.',
-  notReached: 'Not connected: Stop did not reach the robot. Stop it by hand. This page repeats Stop until it is answered.',
-  noAnswer: 'No answer: the robot may still be moving. Stop it by hand. This page repeats Stop until it is answered.',
-  refused: reason => `Refused: ${reason}.`,
-  rejected: {
-    token: 'This browser may no longer drive, because the web view was started again: open the address that it has printed.',
-    code: 'The address that was opened has been used already, or is from an earlier start, so this page can only watch. If ' +
-      'nobody whom you know has used it, start the web view again.'},
-  invite: 'Another browser', inviteHelp: 'Make an address with which one more browser can drive',
-  invited: address => `For one more browser, which can then drive: ${address}`,
-  realRobot: 'This robot is real', cancel: 'Cancel', allow: 'Allow motion',
-  confirmRun: 'It will drive 1 m forward and back. It needs 1.5 m of free floor ahead and 1 m on either side.',
-  confirmHand: 'It will follow the arrow keys, and stop when you release them.',
-
-  // floor
-  floor: 'Floor', floorHelp: 'Floor seen from above, x to the right. Arrow keys move the view, + and - zoom.',
-  zoomIn: 'Zoom in (+)', zoomOut: 'Zoom out (-)', fit: 'Fit view', fitHelp: 'Show the start and all paths (0)',
-  follow: 'Follow', followHelp: 'Keep the robot in the middle (F)',
-  arrows: 'Arrows', arrowsHelp: 'Show or hide the arrows (A)',
-  clear: 'Clear', clearHelp: 'Remove the paths from this page (C)',
-  save: 'Save', saveHelp: 'Save the picture, and the numbers of the run as CSV',
-  large: 'Projector', largeHelp: 'Large floor and numbers',
-  legend: 'Paths to show', truth: 'truth', odometry: 'odometry', estimate: 'estimate',
-  earlier: 'Earlier runs to show', showRun: number => `Show run ${number}`, stopped: name => `${name}, stopped`,
-  withSeed: (surface, seed) => `${surface}, seed ${seed}`,
-  earlierRuns: (kind, numbers) => `Earlier runs (${kind}): ${numbers}`,
-  numbers: (source, [x, y, heading, distance]) =>
-    `${source}: x ${x} m, y ${y} m, heading ${heading}°, ${distance} m from the start`,
-
-  // further controls
-  more: 'Floor, reset and driving by hand', resetFirst: 'Reset before each run', reset: 'Reset', byHand: 'Drive by hand',
-  distance: 'Distance (m)', speed: 'Speed (m/s)',
-  pad: 'Hold to drive', forward: 'Forward', backward: 'Backward', left: 'Turn left', right: 'Turn right',
-
-  // tables, plots, log
-  poses: 'Where the robot is', thisRun: name => `This run${name ? `: ${name}` : ''}`, none: '–',
-  poseHead: ['', 'x (m)', 'y (m)', 'heading (°)', 'from start (m)'],
-  runHead: ['', 'run', 'floor', 'from start (m)', 'heading (°)'],
-  speeds: 'Speed over time', window: 'Window', until: 'Until', linear: 'Forward speed', angular: 'Turn rate',
-  linearAxis: 'forward (m/s)', angularAxis: 'turning (rad/s), left is up',
-  commanded: 'commanded', reported: 'reported by the wheels', true: 'true',
-  log: 'Log', logHelp: 'Last log messages'};
+const LANGUAGES = [['zh-TW', /^zh-(TW|HK|MO|Hant)/i, TRADITIONAL], ['zh-CN', /^zh/i, SIMPLIFIED], ['en', /^en/i, ENGLISH]];
+const wanted = [new URLSearchParams(location.search).get('lang') || '', ...navigator.languages, 'en'];
+export const [LANGUAGE, , WORDS] = wanted.map(name => LANGUAGES.find(([, pattern]) => pattern.test(name))).find(Boolean);
 
 // Writes the words into the elements of index.html.
 export function fill() {
+  document.documentElement.lang = LANGUAGE;
   for (const [key, write] of Object.entries({
     text: (element, word) => { element.textContent = word; },
     label: (element, word) => element.setAttribute('aria-label', word),

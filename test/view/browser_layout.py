@@ -2,6 +2,7 @@
 """Tests the first screen of the page on the screens of a classroom, without a robot: the floor, Stop, the methods and
 the result are on it, and nothing is cut."""
 import os
+import re
 import tempfile
 import time
 
@@ -87,7 +88,8 @@ class TestBrowserLayout(support.Case):
             'const {scrollWidth, clientWidth} = document.documentElement; return [scrollWidth, clientWidth]')
         self.assertLessEqual(scrolled, shown, f'{width} x {height}: scrolls to the side')
         if os.environ.get('RBX1_PICTURE_DIR'):
-            self.page.picture(os.path.join(os.environ['RBX1_PICTURE_DIR'], f'{width}x{height}.png'))
+            language = self.driver.execute_script('return document.documentElement.lang')
+            self.page.picture(os.path.join(os.environ['RBX1_PICTURE_DIR'], f'{language}_{width}x{height}.png'))
 
     def test_the_first_screen(self):
         for width, height, touch, parts in SCREENS:
@@ -99,6 +101,19 @@ class TestBrowserLayout(support.Case):
                     # the floor may continue below Stop, which covers the lower edge of a phone
                     self.assertLessEqual(bottom if part != '#floor-box' else top + 150, height)
             self.assertEqual(self.page.find('#zoom-in').is_displayed(), not touch)
+
+    def test_other_languages(self):
+        address = f'http://localhost:{self.server.port}/'
+        self.addCleanup(self.driver.get, address)
+        for language, title, headline in (
+                ('zh', '往返运动', '用里程计和陀螺仪：离起点 0.50 m，航向差 63°'),
+                ('zh-TW', '往返運動', '用里程計和陀螺儀：離起點 0.50 m，航向差 63°'),
+                ('de', 'Out and back', 'With odometry and gyro: missed the start by 0.50 m and 63°')):
+            self.driver.get(f'{address}?lang={language}')
+            self.page.wait_for_text('headline', re.escape(headline))
+            self.assertEqual((self.driver.title, self.page.text('title')), (title, title))
+            self.show(1300, 950)
+            self.show(390, 844, True)
 
     def test_a_projector_cuts_nothing(self):
         self.page.click('#large')

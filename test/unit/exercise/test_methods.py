@@ -19,7 +19,7 @@ def test_each_method_has_a_script_and_a_button_with_its_title():
     buttons = button.findall(read('web', 'index.html'))
     assert buttons == [(name, each.pose, each.title) for name, each in OF_PAGE.items()]
     for each in OF_PAGE.values():
-        assert f"'{each.title}': '{each.title.capitalize()}'" in read('web', 'words.js')
+        assert f"'{each.title}': '{each.title.capitalize()}'" in read('web', 'words_en.js')
 
 
 def test_the_fleet_starts_each_method_without_the_filter():

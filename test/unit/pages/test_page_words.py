@@ -1,4 +1,4 @@
-"""All words of the page in the browser are in web/words.js."""
+"""All words of the page in the browser are in web/words_*.js, in each language."""
 from html.parser import HTMLParser
 import os
 import re
@@ -14,7 +14,7 @@ def read(name):
 
 
 class Words(HTMLParser):
-    """Collects the texts of a page, and the names of the texts that it takes from words.js."""
+    """Collects the texts of a page, and the names of the texts that it takes from words_en.js."""
 
     def __init__(self, text):
         super().__init__()
@@ -31,19 +31,29 @@ class Words(HTMLParser):
             self.texts.add(data.strip())
 
 
+def keys(name):
+    """The names of the texts in a file of words."""
+    found = re.findall(r"(?:[{,]|^)\s*(?:'([a-z ]+)'|(\w+)): ", read(name), re.M)
+    return {quoted or plain for quoted, plain in found}
+
+
 def test_the_page_takes_its_words_from_one_file():
-    page, words = Words(read('index.html')), read('words.js')
+    page, words = Words(read('index.html')), keys('words_en.js')
     assert page.texts == NAMES
-    keys = set(re.findall(r"(?:[{,]|^)\s*'?([a-zA-Z][a-zA-Z ]*?)'?: ", words, re.M))
-    assert page.names <= keys, page.names - keys
-    scripts = [name for name in os.listdir(WEB) if name.endswith('.js')]
+    assert page.names <= words, page.names - words
+    scripts = [os.path.join(folder, name) for folder in ('.', '../page') for name in os.listdir(os.path.join(WEB, folder))
+               if name.endswith('.js')]
     used = {name for each in scripts for name in re.findall(r'\bWORDS\.(\w+)', read(each))}
-    assert used <= keys, used - keys
+    assert used <= words, used - words
+
+
+def test_the_chinese_words_have_the_names_of_the_english_ones():
+    assert keys('words_zh.js') == keys('words_zh_tw.js') == keys('words_en.js')
 
 
 def test_no_other_file_has_sentences():
     for name in os.listdir(WEB):
-        if name.endswith('.js') and name != 'words.js':
+        if name.endswith('.js') and not name.startswith('words_'):
             code = re.sub(r'//.*', '', read(name))
             texts = re.findall(r"'([^'\n]*)'|`([^`]*)`", code)
             found = [each for each in map(''.join, texts) if re.match(r"[A-Z][a-z]+ [a-z]+", each)]
