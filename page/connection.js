@@ -3,6 +3,7 @@
 import {Python} from './python.js';
 import {WORDS} from './words.js';
 
+export const AT_ONCE = 1000;    // times real time
 const PERIOD = 20;          // ms between two frames, about
 const LIMIT = 60000;        // ms for the computation of a run; Python itself ends a script that does not sleep for 2 s
 const IDLE = 10000;         // ms after which a second worker is loaded: it takes over when the first one is ended
@@ -95,7 +96,7 @@ export class Connection extends EventTarget {
     if (frame.status) {
       const {choices, surfaces} = this.page, {distance, speed} = this.chosen;
       this.status = frame.status = {...frame.status, choices, surfaces, distance, speed, before: this.before,
-        factor: this.pace};
+        factor: this.pace === AT_ONCE ? '' : this.pace};
     }
     for (const line of frame.log || []) {
       line[1] += this.begun;      // the log shows the time of day

@@ -1,10 +1,10 @@
 // What this page has in addition to the page of the web view: how fast a run is shown, many runs, and the script.
 
-import {Connection} from './connection.js';
+import {AT_ONCE, Connection} from './connection.js';
 import {WORDS} from './words.js';
 
 const MANY = 30;
-const PACES = [1, 5, 20, 1000];     // times real time; the last one is at once
+const PACES = [1, 5, 20, AT_ONCE];
 const connection = Connection.instance;
 
 function make(kind, properties, ...children) {

@@ -5,7 +5,7 @@ export const WORDS = {
   title: 'Out and back', robots: 'Robots', facts: 'Robot and floor', connecting: 'Connecting',
   stop: 'Stop', stopOne: robot => `Stop ${robot}`, escape: 'Esc',
   robot: 'Robot', simulated: 'simulated', real: 'real', surface: 'Surface', seed: 'Seed', time: 'Time',
-  factor: factor => `simulated, ${factor} times real time`,
+  factor: factor => factor ? `simulated, ${factor} times real time` : 'simulated',
   connected: 'Connected', watching: 'Connected, watching only',
   silent: 'No answer: the page does not show where the robot is now',
   lost: reason => `Not connected${reason ? ` (${reason})` : ''}; retrying`,

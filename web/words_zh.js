@@ -24,7 +24,7 @@ export const WORDS = {
   title: '往返运动', robots: '机器人', facts: '机器人和地面', connecting: '正在连接',
   stop: '停止', stopOne: robot => `停止 ${robot}`, escape: 'Esc',
   robot: '机器人', simulated: '仿真', real: '真实', surface: '地面', seed: '随机种子', time: '时间',
-  factor: factor => `仿真，实际时间的 ${factor} 倍`,
+  factor: factor => factor ? `仿真，实际时间的 ${factor} 倍` : '仿真',
   connected: '已连接', watching: '已连接，只能看',
   silent: '没有应答：页面显示的不是机器人现在的位置',
   lost: reason => `未连接${reason ? `（${reason}）` : ''}，正在重试`,

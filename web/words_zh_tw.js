@@ -24,7 +24,7 @@ export const WORDS = {
   title: '往返運動', robots: '機器人', facts: '機器人和地面', connecting: '正在連線',
   stop: '停止', stopOne: robot => `停止 ${robot}`, escape: 'Esc',
   robot: '機器人', simulated: '模擬', real: '真實', surface: '地面', seed: '隨機種子', time: '時間',
-  factor: factor => `模擬，實際時間的 ${factor} 倍`,
+  factor: factor => factor ? `模擬，實際時間的 ${factor} 倍` : '模擬',
   connected: '已連線', watching: '已連線，只能看',
   silent: '沒有應答：頁面顯示的不是機器人現在的位置',
   lost: reason => `未連線${reason ? `（${reason}）` : ''}，正在重試`,
@@ -98,4 +98,4 @@ export const WORDS = {
   onlyScripts: '在這個頁面裡，只有腳本驅動機器人',
   tooLong: seconds => `這次執行在 ${seconds} s 內沒有算完，所以腳本被結束了。`};
 
-// script/traditional.py: b912f236
+// script/traditional.py: 846114bb
