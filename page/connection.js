@@ -136,6 +136,9 @@ export class Connection extends EventTarget {
       }
     }
     this.request = null;
+    if (runs.length > 1) {
+      this.begin();     // the last run joins the others, and the seed is the chosen one again
+    }
   }
 
   async compute(request) {

@@ -38,10 +38,9 @@ function build() {
     Object.entries(connection.page.titles).filter(([name]) => name !== 'script').map(
       ([name, title]) => [name, WORDS.run(title)]));
   const text = make('textarea', {id: 'text', spellcheck: false, wrap: 'off', ariaLabel: WORDS.scriptHelp});
-  text.oninput = () => { connection.text = text.value; };
-  const restore = async () => {
-    text.value = connection.text = await (await fetch('script.py')).text();
-  };
+  const edit = script => { text.value = connection.text = sessionStorage.script = script; };    // kept when the page is loaded again
+  text.oninput = () => edit(text.value);
+  const restore = async () => edit(await (await fetch('script.py')).text());
   const cloud = button('many', WORDS.manyRuns(MANY), () => Array.from({length: MANY}, (_, index) => (
     {method: many.value, seed: connection.chosen.seed + index, atOnce: true})));
   document.getElementById('drive').append(make('p', {className: 'row'}, make('label', {}, WORDS.play, ' ', pace),
@@ -51,7 +50,11 @@ function build() {
       make('button', {type: 'button', id: 'restore', onclick: restore}, WORDS.restore))));
   new MutationObserver(allow).observe(document.querySelector('.run'), {attributes: true});
   allow();
-  restore();
+  if (sessionStorage.script) {
+    edit(sessionStorage.script);
+  } else {
+    restore();
+  }
 }
 
 connection.addEventListener('welcome', build, {once: true});

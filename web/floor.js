@@ -176,13 +176,13 @@ export class Floor {
       const group = element('g', {'data-run': name}), drawn = points.filter(near);
       element('path', {class: 'path', 'vector-effect': 'non-scaling-stroke',
         d: lineOf(drawn)}, group);
-      let [x, y] = drawn[drawn.length - 1];
-      while (places.some(place => Math.abs(place[0] - x) < size && Math.abs(place[1] - y) < size)) {
-        x += size;
+      // the number is at the end of the path, or beside another one there; if there is no place, it is left out
+      const [end, y] = drawn[drawn.length - 1], x = [end, end + size, end + 2 * size].find(each => !places.some(
+        place => Math.abs(place[0] - each) < size && Math.abs(place[1] - y) < size));
+      if (x !== undefined) {
+        places.push([x, y]);
+        element('text', {transform: `translate(${x} ${y}) scale(1 -1)`}, group).textContent = number;
       }
-      places.push([x, y]);
-      const label = element('text', {transform: `translate(${x} ${y}) scale(1 -1)`}, group);
-      label.textContent = number;
       return group;
     }));
   }

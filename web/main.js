@@ -151,6 +151,7 @@ function legendItem(name, parent, checkbox) {
     label.append(box);
   }
   label.append(swatch(name), ` ${WORDS[name]}`);
+  label.title = WORDS.meaning[name] || '';
   parent.append(label);
 }
 
@@ -196,7 +197,10 @@ connection.addEventListener('silent', () => {
 });
 connection.addEventListener('heard', showConnection);
 connection.addEventListener('invited', ({detail}) => notify('refused', WORDS.invited(`${location.origin}/#${detail.code}`)));
-connection.addEventListener('refused', ({detail}) => drive.refused(detail));
+connection.addEventListener('refused', ({detail}) => {
+  drive.refused(detail);
+  redraw();     // a refused choice disappears
+});
 connection.addEventListener('lost', ({detail}) => {
   drive.connected = false;
   drive.setHand(false);

@@ -2,7 +2,7 @@
 
 export const SOURCES = ['truth', 'odometry', 'estimate'];
 export const SPEEDS = ['commanded', 'reported', 'true'];
-const MAX_POINTS = 6000, MAX_LINES = 50, MAX_EARLIER = 30;
+const MAX_POINTS = 6000, MAX_LINES = 50, MAX_EARLIER = 100;
 const MOVED = 0.02;         // m: a run that never left its start is not kept
 
 function lists(names) {

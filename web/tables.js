@@ -67,6 +67,21 @@ export class Poses {
   }
 }
 
+// For each method and surface with more than one complete run: [name, number of runs, surface, mean distance from the start
+// (m), mean size of the heading (degrees)].
+function meansOf(runs) {
+  const groups = new Map();
+  for (const {name, surface, end} of runs.filter(run => run.end && !run.stopped)) {
+    const key = JSON.stringify([name, surface]);
+    groups.set(key, [...groups.get(key) || [], rowOf(end)]);
+  }
+  const mean = (rows, index) => rows.reduce((sum, row) => sum + Math.abs(row[index]), 0) / rows.length;
+  return [...groups].filter(([, rows]) => rows.length > 1).map(([key, rows]) => {
+    const [name, surface] = JSON.parse(key);
+    return [name, rows.length, surface, mean(rows, 3), mean(rows, 2)];
+  });
+}
+
 // The earlier runs, each with a check box, and where it ended.
 export class EarlierRuns {
   // changed(): called when a run is shown or hidden
@@ -81,7 +96,19 @@ export class EarlierRuns {
     }
     this.drawn = runs;
     this.parent.hidden = !runs.length;
-    this.body.replaceChildren(...runs.map(run => {
+    this.body.replaceChildren(...meansOf(runs).map(([name, number, surface, distance, angle]) => {
+      const row = document.createElement('tr'), title = document.createElement('th');
+      row.dataset.run = name;
+      row.className = 'mean';
+      row.insertCell().append(swatch(''));
+      title.scope = 'row';
+      title.textContent = WORDS.mean(WORDS.run(name), number);
+      row.append(title);
+      for (const text of [surface, fixed(distance, 3), fixed(angle, 1)]) {
+        row.insertCell().textContent = text;
+      }
+      return row;
+    }), ...runs.map(run => {
       const row = document.createElement('tr'), box = document.createElement('input'), label = document.createElement('label');
       const [, , heading, distance] = rowOf(run.end), name = document.createElement('th');
       row.dataset.run = run.name;

@@ -13,9 +13,9 @@ export const WORDS = {
   // methods, by the titles of the runs
   drive: 'Methods',
   'timed': 'Timed', 'with odometry': 'With odometry', 'with odometry and gyro': 'With odometry and gyro',
-  intro: 'Each method drives the robot 1 m out, turns it round, drives it back, and turns it round again, so that it should ' +
-    'finish where it started. Timed moves for fixed durations; the other two stop each motion when the wheels, or the ' +
-    'wheels and a gyro, have measured it.',
+  intro: 'Each method drives the robot out, turns it round, drives it back, and turns it round again, so that it should ' +
+    'finish where it started. Timed moves for fixed durations. With odometry stops each motion when the wheels have ' +
+    'measured it, but wheels slip; the gyro also measures how far the robot has turned.',
   missed: (distance, angle, known) =>
     `${known ? 'missed' : 'by its odometry, missed'} the start by ${distance} m and ${angle}°`,
   needsFilter: method => `${method} needs the filter: roslaunch rbx1_bringup odom_ekf.launch.`,
@@ -55,7 +55,11 @@ export const WORDS = {
   save: 'Save', saveHelp: 'Save the picture, and the numbers of the run as CSV',
   large: 'Projector', largeHelp: 'Large floor and numbers',
   legend: 'Paths to show', truth: 'truth', odometry: 'odometry', estimate: 'estimate',
+  meaning: {
+    truth: 'Where the robot really is, which only a simulation knows', odometry: 'Where the robot is by its wheels',
+    estimate: 'Where the robot is by its wheels and its gyro'},
   earlier: 'Earlier runs to show', showRun: number => `Show run ${number}`,
+  mean: (name, number) => `${name}, mean of ${number} runs`,
   withSeed: (surface, seed) => `${surface}, seed ${seed}`,
   earlierRuns: (kind, numbers) => `Earlier runs (${kind}): ${numbers}`,
   numbers: (source, [x, y, heading, distance]) =>

@@ -32,8 +32,8 @@ export const WORDS = {
   // methods, by the titles of the runs
   drive: '方法',
   ...RUNS,
-  intro: '每种方法都让机器人前进 1 m，掉头，返回，再掉头，这样它应该回到出发时的位姿。“定时”按固定的时间运动；' +
-    '另外两种方法由轮子的测量，或者轮子和陀螺仪的测量，决定每个动作何时停下。',
+  intro: '每种方法都让机器人前进，掉头，返回，再掉头，这样它应该回到出发时的位姿。“定时”按固定的时间运动。' +
+    '“用里程计”在轮子测到目标时停下，但是轮子会打滑；陀螺仪还测量机器人转了多少。',
   missed: (distance, angle, known) => `${known ? '' : '按照里程计，'}离起点 ${distance} m，航向差 ${angle}°`,
   needsFilter: method => `“${method}”需要滤波器：roslaunch rbx1_bringup odom_ekf.launch。`,
   noReset: '只有仿真的机器人才能复位。',
@@ -70,7 +70,10 @@ export const WORDS = {
   save: '保存', saveHelp: '保存图片，并把这次运行的数值存成 CSV',
   large: '投影', largeHelp: '把地面和数字放大',
   legend: '要显示的路径', truth: '真值', odometry: '里程计', estimate: '估计值',
+  meaning: {
+    truth: '机器人真实的位姿，只有仿真才知道', odometry: '由轮子得到的位姿', estimate: '由轮子和陀螺仪得到的位姿'},
   earlier: '要显示的以前的运行', showRun: number => `显示第 ${number} 次运行`,
+  mean: (name, number) => `${name}，${number} 次运行的平均`,
   withSeed: (surface, seed) => `${surface}，随机种子 ${seed}`,
   earlierRuns: (kind, numbers) => `以前的运行（${kind}）：${numbers}`,
   numbers: (source, [x, y, heading, distance]) =>

@@ -32,8 +32,8 @@ export const WORDS = {
   // methods, by the titles of the runs
   drive: '方法',
   ...RUNS,
-  intro: '每種方法都讓機器人前進 1 m，掉頭，返回，再掉頭，這樣它應該回到出發時的位姿。「定時」按固定的時間運動；' +
-    '另外兩種方法由輪子的測量，或者輪子和陀螺儀的測量，決定每個動作何時停下。',
+  intro: '每種方法都讓機器人前進，掉頭，返回，再掉頭，這樣它應該回到出發時的位姿。「定時」按固定的時間運動。' +
+    '「用里程計」在輪子測到目標時停下，但是輪子會打滑；陀螺儀還測量機器人轉了多少。',
   missed: (distance, angle, known) => `${known ? '' : '按照里程計，'}離起點 ${distance} m，航向差 ${angle}°`,
   needsFilter: method => `「${method}」需要濾波器：roslaunch rbx1_bringup odom_ekf.launch。`,
   noReset: '只有模擬的機器人才能復位。',
@@ -70,7 +70,10 @@ export const WORDS = {
   save: '儲存', saveHelp: '儲存圖片，並把這次執行的數值存成 CSV',
   large: '投影', largeHelp: '把地面和數字放大',
   legend: '要顯示的路徑', truth: '真值', odometry: '里程計', estimate: '估計值',
+  meaning: {
+    truth: '機器人真實的位姿，只有模擬才知道', odometry: '由輪子得到的位姿', estimate: '由輪子和陀螺儀得到的位姿'},
   earlier: '要顯示的以前的執行', showRun: number => `顯示第 ${number} 次執行`,
+  mean: (name, number) => `${name}，${number} 次執行的平均`,
   withSeed: (surface, seed) => `${surface}，隨機種子 ${seed}`,
   earlierRuns: (kind, numbers) => `以前的執行（${kind}）：${numbers}`,
   numbers: (source, [x, y, heading, distance]) =>
@@ -98,4 +101,4 @@ export const WORDS = {
   onlyScripts: '在這個頁面裡，只有腳本驅動機器人',
   tooLong: seconds => `這次執行在 ${seconds} s 內沒有算完，所以腳本被結束了。`};
 
-// script/traditional.py: 846114bb
+// script/traditional.py: 856cfec0

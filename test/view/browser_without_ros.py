@@ -128,14 +128,17 @@ class TestBrowserWithoutRos(support.Case):
         support.wait_for(lambda: self.driver.execute_script('return rbx1.model.time') > 1, 'a robot that moves')
         self.page.click('#stop')
         self.page.wait_for_text('run-state', 'The robot is stationary')
-        self.assertIn('Out-and-Back node terminated.', self.page.text('lines'))
+        self.page.wait_for_text('lines', 'Out-and-Back node terminated.')
         self.assertEqual(self.driver.execute_script('return rbx1.model.status.outcome'), 'stopped')
 
     def test_many_runs(self):
         self.page.click('#many')
         shown = 'return rbx1.model.earlier.filter(run => run.name === "timed").map(run => run.seed)'
-        support.wait_for(lambda: len(self.driver.execute_script(shown)) >= 29, '30 runs')
-        self.assertEqual(self.driver.execute_script(shown)[-29:], [str(seed) for seed in range(7, 36)])
+        support.wait_for(lambda: len(self.driver.execute_script(shown)) >= 30, '30 runs')
+        self.assertEqual(self.driver.execute_script(shown)[-30:], [str(seed) for seed in range(7, 37)])
+        support.wait_for(lambda: re.match(r'timed, mean of 3\d runs low_ply_carpet 0\.4', self.page.find('.mean').text),
+                         'the mean')
+        self.assertEqual(self.page.find('[name=seed]').get_attribute('value'), '7')
 
     def test_without_its_server(self):
         """Named last: it stops the server."""

@@ -41,8 +41,8 @@ def test_the_page_takes_its_words_from_one_file():
     page, words = Words(read('index.html')), keys('words_en.js')
     assert page.texts == NAMES
     assert page.names <= words, page.names - words
-    scripts = [os.path.join(folder, name) for folder in ('.', '../page') for name in os.listdir(os.path.join(WEB, folder))
-               if name.endswith('.js')]
+    scripts = [os.path.join(folder, name) for folder in ('.', os.path.join('..', 'page'))
+               for name in os.listdir(os.path.join(WEB, folder)) if name.endswith('.js')]
     used = {name for each in scripts for name in re.findall(r'\bWORDS\.(\w+)', read(each))}
     assert used <= words, used - words
 

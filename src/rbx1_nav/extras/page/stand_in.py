@@ -110,11 +110,13 @@ class Rospy:
 
     def command(self, message: Any) -> None:
         """Put a Twist in force; after a shutdown request, only the functions of on_shutdown can do so."""
-        time, linear, angular = self.now(), message.linear, message.angular
+        time, linear, angular, gate = self.now(), message.linear, message.angular, self.simulation.base.gate
         try:
             if not self.is_shutdown and self.simulation.base.command(
-                    time, linear.x, angular.z, (linear.y, linear.z, angular.x, angular.y)):
-                self.log(WARNING, f'Clamped a command: {linear.x:g} m/s, {angular.z:g} rad/s')
+                    time, linear.x, angular.z, (linear.y, linear.z, angular.x, angular.y)) and gate.clamped == 1:
+                limits = gate.limits
+                self.log(WARNING, f'{linear.x:g} m/s, {angular.z:g} rad/s: expected at most {limits.linear:g} m/s, '
+                                  f'{limits.angular:g} rad/s; clamped')
         except RejectedCommand as error:
             self.log(WARNING, f'Rejected a command: {error}')
 

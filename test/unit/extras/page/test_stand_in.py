@@ -98,11 +98,12 @@ def test_rospy_before_init_node():
     assert run_script('import rospy\nrospy.Rate(5)\n')[1] == ['line 2: expected rospy.init_node() before this line']
 
 
-@pytest.mark.parametrize('x, line', [
-    (0.7, 'Clamped a command: 0.7 m/s, 0 rad/s'), (float('nan'), 'Rejected a command: nan')])
-def test_a_command_that_is_not_followed_is_logged(x, line):
-    frame, log = run_script(BEGIN + f'twist.linear.x = float("{x}")\npub.publish(twist)\n')
-    assert log[0].startswith(line) and frame['poses']['truth'][0] == pytest.approx(0.5 if x == 0.7 else 0)
+@pytest.mark.parametrize('x, lines, line, end', [
+    (0.7, 1, '0.7 m/s, 0 rad/s: expected at most 0.5 m/s, 3.8 rad/s; clamped', 0.5),
+    (float('nan'), 2, 'Rejected a command: nan', 0)])
+def test_a_command_that_is_not_followed_is_logged(x, lines, line, end):
+    frame, log = run_script(BEGIN + f'twist.linear.x = float("{x}")\npub.publish(twist)\n' * 2)
+    assert log[0].startswith(line) and len(log) == lines and frame['poses']['truth'][0] == pytest.approx(end)
 
 
 def test_a_script_ends_after_300_simulated_seconds_also_in_a_function_of_on_shutdown():
