@@ -8,12 +8,12 @@ from typing import Callable, Deque, NamedTuple
 
 from rbx1_nav.base.kinematics import Pose
 from rbx1_nav.base.units import SECOND, Covariance, wrap_angle
-from rbx1_nav.filter.filter import Filter
-from rbx1_nav.filter.gyro_readings import Measurement, Readings
+from rbx1_nav.filter.filter import ENOUGH_TURN, Filter
+from rbx1_nav.filter.gyro_readings import Readings
 from rbx1_nav.filter.inputs import Imu, Odom, check_imu, check_odom, distance, format_pose, has_jumped
 from rbx1_nav.filter.pose_errors import Yaw
 from rbx1_nav.filter.priors import UNKNOWN_FLOOR, Priors, Bounds
-from rbx1_nav.filter.sensors import IMU, MAX_LEAD, MAX_WAIT, ODOM, REPORTED, Arrivals, Doubts
+from rbx1_nav.filter.sensors import IMU, MAX_LEAD, MAX_WAIT, ODOM, Arrivals, Doubts
 from rbx1_nav.filter.standstill import CARRIED, STANDSTILL, Standstill
 from rbx1_nav.filter.velocity import Motion, Velocity, velocity
 
@@ -57,6 +57,7 @@ class CombinedOdometry:
         self.learned: Filter | None = None
         self.standstill = Standstill(limits.gyro_bias)
         self.doubts = Doubts(warn)
+        self.unmeasured = 0.0       # rad: turn of the wheels while the gyro has never changed
         self.restart()
 
     def reset(self, now: int) -> None:
@@ -111,7 +112,7 @@ class CombinedOdometry:
     def contradicts(self) -> bool:
         """Whether wheels and gyro contradict each other."""
         ekf = self.filter
-        return ekf is not None and (ekf.gyro_left or abs(ekf.disagreement) > REPORTED)
+        return ekf is not None and (ekf.gyro_left or ekf.contradicts)
 
     @property
     def case(self) -> str | None:
@@ -184,32 +185,16 @@ class CombinedOdometry:
     def _step(self, odom: Odom) -> None:
         if self.odom and self._reject_outlier(self.odom, odom):
             return
-        ekf, last = self.filter, self.odom
-        if not ekf or not last:
-            self._begin(odom)
-            return
-        if self.placed and odom.stamp > self.placed[0]:
-            self._place(ekf)
-        duration = (odom.stamp - last.stamp) / SECOND
-        gyro = self.readings.turn(last.stamp, odom.stamp, self.prior.gyro_measurement_range)
-        dx, dy = odom.pose.x - last.pose.x, odom.pose.y - last.pose.y
-        turned = wrap_angle(odom.pose.yaw - last.pose.yaw)
-        if (gyro and self.readings.dead and abs(turned - gyro[0]) > abs(turned) / 2
-                and self.doubts.is_dead(turned, self.limits.gyro_bias * duration)):
-            ekf.leave_gyro()
-            gyro = None
-        # in the frame of the robot halfway through the turn
-        heading = last.pose.yaw + turned / 2
-        c, s = cos(heading), sin(heading)
-        self._move(ekf, odom, duration, dx * c + dy * s, dy * c - dx * s, turned, gyro)
-        self.odom, self._estimate = odom, None
-
-    def _begin(self, odom: Odom) -> None:
-        """Begin at the pose of the first Odom."""
-        ekf = self.filter = deepcopy(self.learned) or Filter(self.prior, odom.pose, self.limits.gyro_bias)
-        ekf.place(odom.pose)
-        if self.placed:
-            self._place(ekf)
+        ekf = self.filter
+        if ekf and self.odom:
+            if self.placed and odom.stamp > self.placed[0]:
+                self._place(ekf)
+            self._move(ekf, self.odom, odom)
+        else:
+            ekf = self.filter = deepcopy(self.learned) or Filter(self.prior, odom.pose, self.limits.gyro_bias)
+            ekf.place(odom.pose)
+            if self.placed:
+                self._place(ekf)
         self.odom, self._estimate = odom, None
 
     def _reject_outlier(self, last: Odom, odom: Odom) -> bool:
@@ -223,11 +208,22 @@ class CombinedOdometry:
             self.suspect = odom
         return self.suspect is not None
 
-    def _move(self, ekf: Filter, odom: Odom, duration: float, forward: float, left: float, turned: float,
-              gyro: Measurement | None) -> None:
-        """Move the robot to an Odom, as wheels and gyro have measured in a duration (s)."""
-        reported = odom.linear_variance * duration ** 2
+    def _move(self, ekf: Filter, last: Odom, odom: Odom) -> None:
+        """Move the robot from one Odom to the next, as wheels and gyro have measured."""
+        duration = (odom.stamp - last.stamp) / SECOND
+        gyro = self.readings.turn(last.stamp, odom.stamp, self.prior.gyro_measurement_range)
+        dx, dy = odom.pose.x - last.pose.x, odom.pose.y - last.pose.y
+        turned = wrap_angle(odom.pose.yaw - last.pose.yaw)
+        middle = last.pose.yaw + turned / 2     # in the frame of the robot halfway through the turn
+        c, s = cos(middle), sin(middle)
+        forward, left = dx * c + dy * s, dy * c - dx * s
         case, stands = None, gyro is not None and self.standstill.stands(odom.pose, turned)
+        if gyro and not stands and self.readings.dead and turned and abs(turned - gyro[0]) > abs(turned) / 2:
+            self.unmeasured += abs(turned)
+            if self.unmeasured > ENOUGH_TURN:
+                ekf.leave_gyro()
+                self.doubts.report('dead', ekf)
+            gyro = None
         if gyro and stands:
             text = self.standstill.add(duration, gyro, odom.pose, ekf)
             if text:
@@ -239,8 +235,12 @@ class CombinedOdometry:
             duration, (turned, odom.angular_variance * duration ** 2), gyro, forward)
         used = gyro if case == STANDSTILL or turn.by_gyro else None
         self.motion = Motion(duration, forward, left, turned, used, case == CARRIED)
-        ekf.step(duration, turn, 0.0 if case == STANDSTILL else turned, forward, left, reported)
-        self.doubts.report(ekf.compare(duration, turned, gyro, forward), ekf, odom.stamp)
+        ekf.step(duration, turn, 0.0 if case == STANDSTILL else turned, forward, left,
+                 odom.linear_variance * duration ** 2)
+        found = ekf.compare(duration, turned, gyro, forward)
+        if found is not None:
+            ekf.doubted = found or ekf.doubted
+            self.doubts.report(found if ekf.rested else found or 'rest', ekf)
 
     def _place(self, ekf: Filter) -> None:
         """Move the filter to the pose of set_pose()."""

@@ -69,7 +69,7 @@ class Diagnostics:
                 'Case': case or 'none',
                 'Gyro bias (degrees/s)':
                     f'{degrees(ekf.bias):.4f} +- {degrees(ekf.sigma(BIAS)):.4f}' if ekf else 'unknown',
-                'Doubted': combined.doubts.doubted if combined else 'nothing',
+                'Doubted': ekf.doubted if ekf else 'nothing',
                 'Standard deviation of the heading (degrees)':
                     f'{degrees(sqrt(estimate.covariance[2][2])):.2f}' if estimate else 'unknown',
                 'Poses published': published,

@@ -63,10 +63,7 @@ class PoseErrors:
         self.doubt = [0.0, 0.0, 0.0]    # errors of the pose if the gyro, or the bias, is not what it seems to be
         # derivatives of the pose with respect to the scale error, and to the bias since the last rest
         self.by_scale, self.by_rest = [0.0] * 3, [0.0] * 3
-        # s since the last flush(), and derivatives since then, with respect to the bias, and to slip and curvature
-        self.unused = 0.0
-        self.by_bias, self.by_wheels = [0.0] * 3, [0.0] * 6
-        self.travel = 0.0, 0.0  # m: the path that the wheels have measured, from the start
+        self._begin()
         self.error[:3] = 0.0, 0.0, 0.0
         for index in range(3):
             for other in range(6):
@@ -74,17 +71,22 @@ class PoseErrors:
                 self.P[index][other] = self.P[other][index] = known
             self.P[index][index] += START_VARIANCE
 
+    def _begin(self) -> None:
+        """Begin to add up what bias, slip and curvature cause."""
+        self.unused = 0.0       # s
+        self.by_bias, self.by_slip, self.by_curvature = [0.0] * 3, [0.0] * 3, [0.0] * 3      # derivatives of the pose
+
     @property
     def covariance(self) -> Covariance:
         """The covariance of x, y (m) and yaw (rad), 3x3."""
         self.flush()
-        slip, scale = self.prior.slip_straight_spread, self.scale_error
-        straight = self.travel[0] * slip, self.travel[1] * slip, 0.0
+        x, y, scale = self.state.x - self.start.x, self.state.y - self.start.y, self.scale_error
+        slip = self.prior.slip_straight_spread / (1 - self.prior.slip_straight)
+        straight = slip * x, slip * y, 0.0
         P = [[self.P[i][j] + self.error[i] * self.error[j] + scale ** 2 * self.by_scale[i] * self.by_scale[j]
               + INSTABILITY ** 2 * self.by_rest[i] * self.by_rest[j]
               + straight[i] * straight[j] + self.doubt[i] * self.doubt[j] for j in range(3)] for i in range(3)]
         # from errors of a turn about the start to errors at the pose
-        x, y = self.state.x - self.start.x, self.state.y - self.start.y
         yaw = P[YAW][YAW]
         x_yaw, y_yaw = P[X][YAW] - y * yaw, P[Y][YAW] + x * yaw
         xx = P[X][X] - y * (P[X][YAW] + x_yaw)
@@ -123,19 +125,17 @@ class PoseErrors:
         dx, dy = forward * c - left * s, forward * s + left * c
         grip = 1 - self.prior.slip_straight
         self.state = Pose(x + grip * dx, y + grip * dy, yaw + angle)
-        self.travel = self.travel[0] + dx, self.travel[1] + dy
         # the place of the turn, relative to the start
         px, py = x + grip * dx / 2 - self.start.x, y + grip * dy / 2 - self.start.y
         if px * px + py * py > self.reach * self.reach:
             self.reach = hypot(px, py)
         if by_gyro:
-            _add(self.by_bias, duration, px, py)
+            _add(self.by_bias, -duration, px, py)
             _add(self.by_scale, angle, px, py)
         else:
-            self.by_wheels = [one + part * each for (one, part), each in zip(
-                zip(self.by_wheels, (-wheels,) * 3 + (forward,) * 3), (py, -px, 1.0) * 2)]
-        P = self.P
-        x_row, y_row, yaw_row = P[:3]
+            _add(self.by_slip, -wheels, px, py)
+            _add(self.by_curvature, forward, px, py)
+        x_row, y_row, yaw_row = self.P[:3]      # only the upper triangle
         if forward or left:
             path, ((*_, least), (*_, most)) = abs(forward) + abs(left), self.noises
             length = grip ** 2 * max(least * path, min(reported, most * path))
@@ -150,7 +150,7 @@ class PoseErrors:
             x_row[YAW] += by_x
             y_row[YAW] += by_y
             yaw_row[YAW] += variance
-        P[BIAS][BIAS] += self.walk * duration
+        self.P[BIAS][BIAS] += self.walk * duration
         self.moving += duration
         self.unused += duration
         if self.unused > PERIOD:    # before the bias has walked far
@@ -158,26 +158,21 @@ class PoseErrors:
 
     def flush(self) -> None:
         """Add to the errors of the pose what bias, slip and curvature have caused since the last time."""
-        self._mirror()
+        P, error = self.P, self.error
+        P[Y][X], P[YAW][X], P[YAW][Y] = P[X][Y], P[X][YAW], P[Y][YAW]
         if not self.unused:
             return
-        P, error = self.P, self.error
-        parts = [(-b, s, k) for b, s, k in zip(self.by_bias, self.by_wheels[:3], self.by_wheels[3:])]
-        for i, part in enumerate(parts):        # P = F P F', first the rows, then the columns
-            self.by_rest[i] += part[0]
-            error[i] += part[0] * (error[BIAS] - self.bias)
-            row = P[i]
-            for j in range(6):
-                row[j] += part[0] * P[BIAS][j] + part[1] * P[SLIP][j] + part[2] * P[CURVATURE][j]
-        for j, part in enumerate(parts):
-            for row in P:
-                row[j] += part[0] * row[BIAS] + part[1] * row[SLIP] + part[2] * row[CURVATURE]
-        self.unused, self.by_bias, self.by_wheels = 0.0, [0.0] * 3, [0.0] * 6
-
-    def _mirror(self) -> None:
-        """Copy the upper triangle of the pose, in which the steps add up, to the lower one."""
-        P = self.P
-        P[Y][X], P[YAW][X], P[YAW][Y] = P[X][Y], P[X][YAW], P[Y][YAW]
+        for i, part in enumerate(self.by_bias):
+            self.by_rest[i] += part
+            error[i] += part * (error[BIAS] - self.bias)
+        for cause, parts in (BIAS, self.by_bias), (SLIP, self.by_slip), (CURVATURE, self.by_curvature):
+            if any(parts):
+                for i, part in enumerate(parts):        # P = F P F', first the rows, then the columns
+                    P[i] = [value + part * other for value, other in zip(P[i], P[cause])]
+                for row in P:
+                    for j, part in enumerate(parts):
+                        row[j] += part * row[cause]
+        self._begin()
 
     def doubt_bias(self, rate: float) -> None:
         """Make the bias uncertain: the wheels were at rest, and a steady rate (rad/s) of the gyro may be the bias."""
@@ -186,9 +181,9 @@ class PoseErrors:
     def rest(self) -> None:
         """Begin a rest: at the next one, the bias will be another, by INSTABILITY."""
         self.flush()
-        for i, one in enumerate(self.by_rest):
+        for row, one in zip(self.P, self.by_rest):
             for j, other in enumerate(self.by_rest):
-                self.P[i][j] += INSTABILITY ** 2 * one * other
+                row[j] += INSTABILITY ** 2 * one * other
         self.by_rest = [0.0, 0.0, 0.0]
 
     def forget_wheels(self) -> None:

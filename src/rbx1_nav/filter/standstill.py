@@ -27,7 +27,6 @@ from rbx1_nav.filter.pose_errors import BIAS, Yaw
 STANDSTILL, UNDECIDED, CARRIED = 'standstill', 'undecided', 'carried'
 
 WINDOW = 0.25           # s over which the turn is summed up at least
-ROUNDING = 1e-6         # s
 SAME = 1e-4             # m and rad: a smaller change is rounding
 MOVE = 0.5              # m/rad * tick: both wheels may be off by one; 1 mm for a turn of 0.004 rad
 CREEP = 0.0005          # m/s: a TurtleBot3 in its simulator creeps by 0.2 mm/s,
@@ -86,6 +85,8 @@ class Standstill:
             self._release(ekf)
             if self.steady > DOUBTFUL:
                 ekf.doubt_bias(ekf.bias + self.doubted / self.steady)
+            else:
+                self._believe_turn(ekf)
             self.restart()
         self.anchor, self.exact = pose, True
 
@@ -102,9 +103,7 @@ class Standstill:
         usual = ekf.bias if ekf.rested else self.angle / self.time if self.time else rate
         if abs(rate) > self.max_bias or abs(rate - usual) > margin + (2 * ekf.sigma(BIAS) if ekf.rested else 0.0):
             return self._carry(duration, rate, margin, ekf)
-        if self.steady:     # the rate is that of the bias again, so the robot was turned
-            ekf.doubt_turn(-self.doubted)
-            self.steady = self.doubted = 0.0
+        self._believe_turn(ekf)     # the rate is that of the bias again, so the robot was turned
         if not ekf.rested:      # nothing is known of the bias, and the wheels do not turn
             self.case = STANDSTILL
         elif self.case == CARRIED:
@@ -112,7 +111,7 @@ class Standstill:
         self.turning = 0.0
         self.time, self.angle, self.variance = self.time + duration, self.angle + gyro[0], self.variance + gyro[1]
         least = 0.0 if ekf.rested or self.waiting[0] else self.tick * (STILL if self.exact else FIRST)
-        if self.time < max(WINDOW, least) - ROUNDING:
+        if self.time < max(WINDOW, least) - 1e-6:
             return ''
         turn = abs(self.angle - ekf.bias * self.time)
         drifted = ekf.rested and turn ** 2 > RARE ** 2 * (self.variance + (ekf.sigma(BIAS) * self.time) ** 2)
@@ -142,8 +141,7 @@ class Standstill:
             ekf.carry(duration)
         offset = rate - ekf.bias
         if self.steady and abs(offset - self.doubted / self.steady) > margin:    # no bias changes like this
-            ekf.doubt_turn(-self.doubted)
-            self.steady = self.doubted = 0.0
+            self._believe_turn(ekf)
         before, self.steady, self.doubted = self.steady, self.steady + duration, self.doubted + offset * duration
         ekf.doubt_turn(offset * duration)
         if self.steady > LONG and abs(rate) <= self.max_bias:
@@ -153,3 +151,8 @@ class Standstill:
         return (f'the wheels are at rest, and imu_data turns steadily by {degrees(offset):.1f} degrees/s: somebody '
                 'turns the robot, or the bias has changed; the heading is uncertain'
                 if before <= DOUBTFUL < self.steady else '')
+
+    def _believe_turn(self, ekf: Filter) -> None:
+        """Do not doubt any more that the robot was turned."""
+        ekf.doubt_turn(-self.doubted)
+        self.steady = self.doubted = 0.0

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from rbx1_nav.base.kinematics import ORIGIN, Pose
 from rbx1_nav.filter import pose_errors
-from rbx1_nav.filter.filter import RARE, Filter
+from rbx1_nav.filter.filter import RARE, ROUNDING, Filter
 from rbx1_nav.filter.pose_errors import (
     BIAS, BIAS_WALK, CARRY_SPEED, CURVATURE, INSTABILITY, PERIOD, SLIP, START_VARIANCE, X, Y, YAW, Yaw)
 from rbx1_nav.filter.priors import UNKNOWN_FLOOR
@@ -120,7 +120,7 @@ def test_a_reported_variance_counts_between_the_noise_of_the_assumed_floor_and_o
 def test_a_turn_is_measured_by_the_wheels_if_they_are_more_certain():
     ekf = Filter(FLAT, ORIGIN)
     ekf.bias = 0.01
-    for wheels, limit in (0.0, 0.005 ** 2), (-2.0, (0.05 * 2) ** 2):    # rounding of odometry, 5 % of slip
+    for wheels, limit in (0.0, ROUNDING ** 2), (-2.0, (0.05 * 2) ** 2):      # 5 % of slip
         by_wheels = ekf.turn(2.0, (wheels, 0.0), None, 0.5)
         assert by_wheels == (pytest.approx(0.9 * wheels + 0.2 * 0.5), 0.0, False)   # slip and curvature
         assert ekf.turn(2.0, (wheels, 0.0), (0.3, 1.01 * limit), 0.5) == by_wheels
@@ -205,8 +205,7 @@ def compare(ekf, periods, wheels=lambda number: 0.0, gyro=lambda number: 0.0, sp
     for number in range(periods):
         turns, gyros, forward = wheels(number), gyro(number), speeds[number // 5 % len(speeds)]
         ekf.step(PERIOD, ekf.turn(PERIOD, (turns, 0.0), (gyros, 1e-8), forward), turns, forward)
-        verdict = ekf.compare(PERIOD, turns, (gyros, 1e-8), forward)
-        doubts.append(verdict[1] if verdict else None)
+        doubts.append(ekf.compare(PERIOD, turns, (gyros, 1e-8), forward))
     return doubts
 
 
@@ -257,16 +256,22 @@ def test_wheels_without_a_difference_leave_the_heading_certain():
 
 
 @pytest.mark.parametrize('sign', [1, -1])
-def test_turns_that_no_slip_explains_are_a_doubt_that_fades_while_both_agree(sign):
+def test_wheels_that_spin_are_a_contradiction_and_no_reason_to_doubt_the_gyro(sign):
     ekf = Filter(UNKNOWN_FLOOR, ORIGIN)
     ekf.learn_bias(0.0, 1e-9)
     compare(ekf, 100, alternately, alternately)
-    assert 'both' in compare(ekf, 4, lambda _: sign * 0.4, lambda _: sign * -0.4)
-    assert abs(ekf.disagreement) > 1.5 and sqrt(ekf.covariance[YAW][YAW]) > 1.0
-    compare(ekf, 40, alternately, alternately)
-    assert abs(ekf.disagreement) < 0.01 and sqrt(ekf.covariance[YAW][YAW]) < 0.2
-    # wheels that spin are no reason to doubt the gyro
-    assert 'both' not in compare(ekf, 3, lambda _: sign * 0.9) and sqrt(ekf.covariance[YAW][YAW]) < 0.2
+    assert not any(compare(ekf, 3, lambda _: sign * 0.9)) and ekf.contradicts
+    assert not any(compare(ekf, 100, alternately, alternately)) and not ekf.contradicts
+    assert sqrt(ekf.covariance[YAW][YAW]) < 0.2 and abs(ekf.bias) < radians(0.1)
+
+
+@pytest.mark.parametrize('sign', [1, -1])
+def test_wheels_that_turn_steadily_faster_than_any_bias_drifts_make_the_heading_uncertain(sign):
+    ekf = Filter(UNKNOWN_FLOOR, ORIGIN)
+    ekf.learn_bias(0.0, 1e-9)
+    assert 'both' in compare(ekf, 60, lambda number: alternately(number) + sign * 0.03, alternately, SPEEDS)
+    # of which nothing is a bias
+    assert abs(ekf.bias) < radians(0.2) and sqrt(ekf.covariance[YAW][YAW]) > 0.5
 
 
 @pytest.mark.parametrize('factor', [0.0, -1.0])

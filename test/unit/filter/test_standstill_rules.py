@@ -8,7 +8,8 @@ from rbx1_nav.filter.filter import Filter
 from rbx1_nav.filter.pose_errors import BIAS, YAW
 from rbx1_nav.filter.priors import UNKNOWN_FLOOR
 from rbx1_nav.filter.standstill import (
-    CARRIED, CREEP, DOUBTFUL, LONG, MOVE, SAME, STANDSTILL, STILL, TICK, TURN, UNDECIDED, WINDOW, Standstill)
+    CARRIED, CREEP, DOUBTFUL, LONG, MOVE, SAME, STANDSTILL, STILL, STILL_TELLING, TICK, TURN, UNDECIDED, WINDOW,
+    Standstill)
 
 STEP = 0.0625       # s, exact
 NOISE = 1e-10       # rad^2, of a step
@@ -105,7 +106,7 @@ def test_a_bias_that_has_changed_is_learned_when_the_wheels_have_not_shown_a_tur
     robot = Robot()
     robot.ekf.moving, robot.ekf.P[BIAS][BIAS] = 100.0, 1e-7
     assert robot.go(0.5, 0.005) == UNDECIDED
-    assert robot.go(4 * TICK / 0.005 + 0.25, 0.005) == STANDSTILL
+    assert robot.go(STILL_TELLING * TICK / 0.005 + 0.25, 0.005) == STANDSTILL
     assert robot.ekf.bias == pytest.approx(0.005, rel=0.1)
     assert robot.texts == ['the bias of imu_data has changed by 0.29 degrees/s since the last rest: the heading is '
                            'uncertain']
