@@ -80,18 +80,18 @@ class PoseErrors:
     def covariance(self) -> Covariance:
         """The covariance of x, y (m) and yaw (rad), 3x3."""
         self.flush()
-        x, y, scale = self.state.x - self.start.x, self.state.y - self.start.y, self.scale_error
+        x, y = self.state.x - self.start.x, self.state.y - self.start.y
         slip = self.prior.slip_straight_spread / (1 - self.prior.slip_straight)
-        straight = slip * x, slip * y, 0.0
-        P = [[self.P[i][j] + self.error[i] * self.error[j] + scale ** 2 * self.by_scale[i] * self.by_scale[j]
-              + INSTABILITY ** 2 * self.by_rest[i] * self.by_rest[j]
-              + straight[i] * straight[j] + self.doubt[i] * self.doubt[j] for j in range(3)] for i in range(3)]
+        errors = (self.error, [self.scale_error * each for each in self.by_scale],
+                  [INSTABILITY * each for each in self.by_rest], (slip * x, slip * y, 0.0), self.doubt)
+        xx, xy, yy, start_x_yaw, start_y_yaw, yaw = (
+            self.P[i][j] + sum([each[i] * each[j] for each in errors])
+            for i, j in ((X, X), (X, Y), (Y, Y), (X, YAW), (Y, YAW), (YAW, YAW)))
         # from errors of a turn about the start to errors at the pose
-        yaw = P[YAW][YAW]
-        x_yaw, y_yaw = P[X][YAW] - y * yaw, P[Y][YAW] + x * yaw
-        xx = P[X][X] - y * (P[X][YAW] + x_yaw)
-        yy = P[Y][Y] + x * (P[Y][YAW] + y_yaw)
-        xy = P[X][Y] + x * P[X][YAW] - y * y_yaw
+        x_yaw, y_yaw = start_x_yaw - y * yaw, start_y_yaw + x * yaw
+        xx -= y * (start_x_yaw + x_yaw)
+        yy += x * (start_y_yaw + y_yaw)
+        xy += x * start_x_yaw - y * y_yaw
         # this holds for small errors of the heading: with a large one, the path has turned about its start
         turned = ((1 - exp(-yaw)) * self.reach) ** 2
         known = min(1.0, pi / sqrt(max(yaw, START_VARIANCE)))  # an unknown heading is no more than half a turn off

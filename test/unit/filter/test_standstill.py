@@ -79,7 +79,7 @@ def test_standstill_wheels_that_report_later_than_the_gyro_are_not_carried():
         robot.go(1.0, 0.1, 0.5)
         error, sigma = robot.go(1.5 + 0.02 * number)
     # 0.04 s of 0.5 rad/s are 1.1 degrees each time
-    assert not robot.combined.filter.carried and abs(error) < 3.0 and sigma < 15.0
+    assert not robot.combined.filter.carried and abs(error) < 3.0 and sigma < 5.0
 
 
 def test_a_drifting_bias_makes_the_heading_as_uncertain_as_it_is_wrong():
