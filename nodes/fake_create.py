@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import rbx1_nav.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
 
+from threading import Lock
 import time
 
 import rospy
@@ -38,7 +39,7 @@ FRAMES = 'odom', 'base_footprint'
 
 
 class FakeCreate:
-    """Connects an EmulatedCreate with a pseudo-terminal and with ROS. Only the main thread touches the robot."""
+    """Connects an EmulatedCreate with a pseudo-terminal and with ROS."""
 
     def __init__(self, robot: EmulatedCreate, terminal: PseudoTerminal) -> None:
         self.robot = robot
@@ -47,17 +48,20 @@ class FakeCreate:
         self.truth_pub = rospy.Publisher('ground_truth', Odometry, queue_size=10)
         self.line_pub = rospy.Publisher('line', String, queue_size=1000)
         robot.on_command = self.publish_command
-        self.faults = RobotFaults(robot, terminal)
+        self.lock = Lock()          # held while the robot or the terminal is used
+        self.faults = RobotFaults(robot, terminal, self.lock)
 
     def run(self) -> None:
         """Run until shutdown is requested."""
         while not life.end_requested.is_set():
-            self.step()
+            with self.lock:
+                self.step()
             self.terminal.wait(max(0.0, (self.robot.next_time - time.monotonic_ns()) / SECOND))
         # a driver that exits at the same time stops the robot first; without the robot it would report a disconnection
         deadline = time.monotonic() + CLIENT_TIMEOUT
         while self.terminal.has_client() and time.monotonic() < deadline:
-            self.step()
+            with self.lock:
+                self.step()
             life.sleep(0.005)
         self.terminal.unplug()
 
@@ -66,7 +70,6 @@ class FakeCreate:
         robot, terminal, now = self.robot, self.terminal, time.monotonic_ns()
         self.set_host_baud()
         data = robot.advance(now)
-        self.faults.apply()
         terminal.write(data)
         data = terminal.read()
         self.set_host_baud()        # the client has set it before it sent the data

@@ -12,7 +12,7 @@ SETS = {
     'set_real_time': ['keyboard_driving', 'contradictory_commands'],
     'set_calibration': ['angular_calibration', 'linear_calibration'],
     'set_fake_create': ['emulated_robot', 'independent_client'],
-    'set_create': ['create_drives', 'create_gyro', 'create_port', 'topics_of_create', 'turning_at_bump'],
+    'set_create': ['create_drives', 'create_port', 'topics_of_create', 'turning_at_bump'],
     'set_create_fails': ['create_killed', 'create_refuses', 'create_silence']}
 
 

@@ -27,16 +27,6 @@ class TestCreateRefuses(support.Case):
         robot.switch('drop_wheel', True)
         self.check_refusal(script, 'a wheel dropped')
         robot.wait_for_standstill()
-        # another sender, which has not noticed the stop
-        robot.switch('drop_wheel', False)
-        robot.drive(0.2, 0.0, lambda: robot.value(None, 'Refused commands') != '0', 'commands to be refused')
-        robot.drive(0.2, 0.0, lambda: robot.value(None, 'Mode') == 'safe', 'safe mode')
-        count = len(robot.received())
-        robot.drive(0.2, 0.0, lambda: len(robot.received()) > count + 30, 'a second of commands')
-        self.assertFalse(robot.moving)
-        # its commands are refused until it sends a stop
-        robot.commander.send(0.0, 0.0)
-        robot.wait_for_motion()
 
     def test_a_cable_that_is_out(self):
         robot = DrivenRobot(self, 'create')

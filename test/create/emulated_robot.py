@@ -52,41 +52,28 @@ class TestEmulatedRobot(support.Case):
 
     def test_a_cable_that_is_pulled_and_put_back(self):
         robot = self.robot('create2', command('full'), drive_direct(100, 100))
-        device = os.path.realpath(robot.link)
         robot.switch('pull_cable', True)
         with self.assertRaises(serial.SerialException):
             robot.port.read()
         self.assertFalse(os.path.lexists(robot.link))
-        start = robot.position
-        support.wait_for(lambda: robot.position > start + 0.05, 'the robot to move on')
         os.mkdir(robot.link)
         response = rospy.ServiceProxy('/fake_create/pull_cable', SetBool)(False)
         os.rmdir(robot.link)
         self.assertFalse(response.success)
         self.assertIn(f'link: {robot.link}: exists, and is not a link: expected', response.message)
         robot.switch('pull_cable', False)
-        old = robot.port
         robot.open()
-        # while the old device is still open, the new device must have a different name
-        self.assertNotEqual(os.path.realpath(robot.link), device)
-        old.close()
         self.assertEqual(robot.read(35), {'mode': FULL})
         robot.end()
         self.assertFalse(os.path.lexists(robot.link))
 
     def test_a_power_cycle(self):
         robot = self.robot('create2', command('safe'), drive_direct(100, 100))
-        support.wait_for(lambda: robot.read(43)['left_encoder'] > 100, 'the encoders to count')
+        support.wait_for(lambda: robot.moving, 'the robot to drive')
         robot.port.reset_input_buffer()
         robot.power_cycle()
         self.assertFalse(robot.moving)
         self.assertEqual(robot.port.read(8), b'bl-start')
-
-        def restarted():
-            robot.port.write(command('start'))
-            return robot.received()[-1][1] == command('start')
-        support.wait_for(restarted, 'the robot to listen again')
-        self.assertEqual(robot.read(43), {'left_encoder': 0})
 
     def test_services_and_topics(self):
         robot = self.robot('create')

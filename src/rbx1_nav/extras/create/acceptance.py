@@ -8,12 +8,11 @@ from rbx1_nav.base.command_gate import CommandGate, RefusedCommand
 from rbx1_nav.base.readings import Travel
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.extras.create import protocol
-from rbx1_nav.extras.create.connection import BUMPS, CLIFFS, WHEEL_DROPS, Supervisor
+from rbx1_nav.extras.create.connection import Supervisor
 from rbx1_nav.extras.create.motion import Expected
 from rbx1_nav.extras.create.queries import Queries
-from rbx1_nav.extras.create.sender import Sender, wheel_speeds
+from rbx1_nav.extras.create.sender import ANSWERING, Phase, Sender, wheel_speeds
 from rbx1_nav.extras.create.settings import Settings
-from rbx1_nav.extras.create.phases import ANSWERING, Phase
 
 MAX_SENDERS = 20    # senders that are stored before the silent ones are removed
 OUTAGE = 3 * SECOND // 10   # longest harmless time in which the robot does not answer or obey
@@ -22,44 +21,6 @@ BLOCKED = 0.1               # m, commanded travel of a wheel without a turn of a
 TURNED = 0.1                # fraction of the commanded travel from which the wheels count as turning
 AT_CLIFF = 1 << 8       # a bit that bumps and wheel drops do not use
 BACK_UP = 'a cliff: expected a command that backs up'
-
-
-class Lockout:
-    """Refuses commands after an event until their sender has sent a zero command or has been silent for a while.
-
-    All times are in ns.
-    """
-
-    def __init__(self, silence: int) -> None:
-        """silence: how long a sender must be silent."""
-        self.silence = silence
-        self.reason = ''        # reason of the last event
-        self._released: set[str] | None = None      # senders whose commands are accepted; None for all senders
-        self._latest: dict[str, int] = {}   # arrival time of the last command, by sender
-
-    def lock(self, reason: str, unobserved: int = 0) -> None:
-        """Refuse the commands of all senders, because something has stopped the robot.
-
-        unobserved: time until now in which no command could be received, which does not count as silence.
-        """
-        self.reason, self._released = reason, set()
-        self._latest = {name: time + unobserved for name, time in self._latest.items()}
-
-    def refuses(self, now: int, sender: str, moving: bool) -> bool:
-        """Return whether to refuse a command that arrives at `now`.
-
-        sender: name of the sender; moving: whether the command moves the robot.
-        """
-        last = self._latest.get(sender)
-        self._latest[sender] = now
-        if len(self._latest) > MAX_SENDERS:
-            self._latest = {name: time for name, time in self._latest.items() if now - time <= self.silence}
-        if self._released is None or sender in self._released:
-            return False
-        if moving and last is not None and now - last <= self.silence:
-            return True
-        self._released.add(sender)
-        return False
 
 
 class Acceptance:
@@ -72,7 +33,10 @@ class Acceptance:
         self.sender = sender
         self.queries = queries
         self.supervisor = supervisor
-        self.lockout = Lockout(gate.timeout)
+        # after an event, a sender is refused until it has sent a zero command, or nothing for the timeout of a command
+        self._reason = ''       # of the last event
+        self._released: set[str] | None = None      # senders whose commands are accepted; None for all senders
+        self._latest: dict[str, int] = {}   # arrival time of the last command, by sender
         self._ran: int | None = None    # time at which the driver last ran
         # bumps, wheel drops and AT_CLIFF: in the last reading, and in both of the last two readings
         self._bits = self._felt = 0
@@ -82,9 +46,9 @@ class Acceptance:
 
     def feel(self, reading: Mapping[str, int]) -> bool:
         """Process a reading. Returns whether two readings show a dropped wheel, since one may be corrupted."""
-        bits = reading['bumps_and_wheel_drops'] | (AT_CLIFF if any(reading[name] for name in CLIFFS) else 0)
+        bits = reading['bumps_and_wheel_drops'] | (AT_CLIFF if any(reading[name] for name in protocol.CLIFFS) else 0)
         self._felt, self._bits = bits & self._bits, bits
-        return bool(self._felt & WHEEL_DROPS)
+        return bool(self._felt & protocol.WHEEL_DROPS)
 
     def follow(self, elapsed: float, expected: Expected, travel: Travel, width: float) -> None:
         """Check a Travel of the wheels since the last reading, `elapsed` s ago. expected: commanded travel, which is
@@ -94,10 +58,14 @@ class Acceptance:
         self._blocked = 0.0 if turns or elapsed > OUTAGE / SECOND else self._blocked + by_commands
 
     def lock(self, reason: str, unobserved: int = 0) -> None:
-        """Halt, and lock out senders that have not noticed the stop: see Lockout."""
+        """Halt, because something has stopped the robot, and lock out all senders that have not noticed it.
+
+        unobserved: time until now in which no command could be received, which does not count as silence.
+        """
         self.gate.halt()
         self._blocked = 0.0
-        self.lockout.lock(reason, unobserved)
+        self._reason, self._released = reason, set()
+        self._latest = {name: time + unobserved for name, time in self._latest.items()}
 
     def notice_stall(self, now: int) -> None:
         """Lock if the driver did not run for so long that a command would have expired: the commands that arrive now
@@ -113,10 +81,18 @@ class Acceptance:
             self.lock(f'{100 * share:.0f} % of the replies of the robot are lost or corrupted')
 
     def check_sender(self, now: int, sender: str, moving: bool) -> None:
-        """Raise RefusedCommand for a sender that has not noticed that the robot was stopped."""
-        if self.lockout.refuses(now, sender, moving):
-            raise RefusedCommand(f'{self.lockout.reason}; expected a zero command, or none for '
-                                 f'{self.gate.timeout / SECOND:g} s, before it is driven again')
+        """Raise RefusedCommand for a sender that has not noticed that the robot was stopped. moving: whether the
+        command moves it."""
+        silence, last = self.gate.timeout, self._latest.get(sender)
+        self._latest[sender] = now
+        if len(self._latest) > MAX_SENDERS:
+            self._latest = {name: time for name, time in self._latest.items() if now - time <= silence}
+        if self._released is None or sender in self._released:
+            return
+        if moving and last is not None and now - last <= silence:
+            raise RefusedCommand(f'{self._reason}; expected a zero command, or none for {silence / SECOND:g} s, before '
+                                 'it is driven again')
+        self._released.add(sender)
 
     def check_obedience(self, now: int) -> None:
         """Raise RefusedCommand if the robot does not follow the command in force, and will not do so shortly."""
@@ -134,7 +110,7 @@ class Acceptance:
         """Return the wheel speeds (left, right; mm/s) that a robot of this Model may have now."""
         linear, angular = self.gate.linear, self.gate.angular
         bits = self._bits
-        if not self._is_obeyed or bits & WHEEL_DROPS or self._is_bumped(bits) or self._is_at_edge(bits):
+        if not self._is_obeyed or bits & protocol.WHEEL_DROPS or self._is_bumped(bits) or self._is_at_edge(bits):
             return 0.0, 0.0
         if angular:
             angular = copysign(max(abs(angular), self.settings.min_abs_yaw_vel), angular)
@@ -155,7 +131,7 @@ class Acceptance:
                 and not self.backs)
 
     def _is_bumped(self, bits: int) -> bool:
-        return self.gate.linear > 0 and self.settings.stop_motors_on_bump and bool(bits & BUMPS)
+        return self.gate.linear > 0 and self.settings.stop_motors_on_bump and bool(bits & protocol.BUMPS)
 
     def _obstacle(self, now: int) -> str:
         """Return why the robot has not followed the command in force for some time; else ''."""

@@ -12,18 +12,13 @@ from rbx1_nav.extras.create import sequences
 from rbx1_nav.extras.create.identification import RATES, Found, Search
 from rbx1_nav.extras.create.link import Link
 from rbx1_nav.extras.create.queries import Queries
-from rbx1_nav.extras.create.sender import Sender
+from rbx1_nav.extras.create.sender import ANSWERING, Kind, Phase, Sender
 from rbx1_nav.extras.create.settings import Settings
-from rbx1_nav.extras.create.phases import ANSWERING, Kind, Phase
 
 HOLD = SECOND           # ns without the cause before the driver takes control again
 RETRY = SECOND // 2     # ns between two attempts
 ATTEMPTS_BEFORE_LOG = 3            # number of attempts that fail without a known cause before the failure is logged
-CLIFFS = ('cliff_left', 'cliff_front_left', 'cliff_front_right', 'cliff_right')
-WHEEL_DROPS = protocol.WHEEL_DROP_LEFT | protocol.WHEEL_DROP_RIGHT | protocol.WHEEL_DROP_CASTOR
-BUMPS = protocol.BUMP_LEFT | protocol.BUMP_RIGHT
 CLIFF = 'a cliff'       # the only cause that a command can remove
-CHARGER, DOCK = 1, 2    # bits of packet 34
 SILENCE = SECOND // 2           # time without a reading after which the robot counts as not answering
 FLUSH_WAIT = SECOND // 10       # time without an answer after which garbage may have swallowed the stop
 FIRST_WAIT = 3 * SECOND // 10   # time that a robot that is on may need to answer; after it, the robot is started
@@ -34,11 +29,11 @@ ROUNDS_BEFORE_WARNING = 2       # rounds of the search before the first warning
 def causes(reading: Mapping[str, int]) -> list[str]:
     """Return the reasons why a robot with this reading leaves safe mode."""
     found = []
-    if reading['bumps_and_wheel_drops'] & WHEEL_DROPS:
+    if reading['bumps_and_wheel_drops'] & protocol.WHEEL_DROPS:
         found.append('a wheel dropped')
-    if any(reading[name] for name in CLIFFS):
+    if any(reading[name] for name in protocol.CLIFFS):
         found.append(CLIFF)
-    if reading['charging_sources'] & CHARGER:
+    if reading['charging_sources'] & protocol.CHARGER:
         found.append('the charger is plugged in')
     return found
 
@@ -103,7 +98,7 @@ class Supervisor:
         if self.in_control:
             self.clear_since, self.failures = None, 0
             return None
-        found, docked = causes(reading), bool(reading['charging_sources'] & DOCK)
+        found, docked = causes(reading), bool(reading['charging_sources'] & protocol.DOCK)
         reasons = list(found)
         if docked:
             reasons.append('on the dock: publish on undock, or lift it off')

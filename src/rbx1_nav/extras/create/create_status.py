@@ -1,6 +1,7 @@
 """Reports the state of a Create on /diagnostics: base, battery, sensors, gyro and serial line."""
 from __future__ import annotations
 
+from math import isnan, nan
 from typing import Mapping
 
 import rospy
@@ -10,10 +11,10 @@ from diagnostic_updater import DiagnosticStatusWrapper, Updater
 from rbx1_nav.base.command_subscriber import VelocityCommands
 from rbx1_nav.base.messages import fill_status
 from rbx1_nav.extras.create import protocol
-from rbx1_nav.extras.create.connection import BUMPS, CLIFFS, WHEEL_DROPS
 from rbx1_nav.extras.create.driver import Driver
 from rbx1_nav.extras.create.link import Link
 from rbx1_nav.extras.create.motion import CounterTravel
+from rbx1_nav.extras.create.protocol import BUMPS, CLIFFS, WHEEL_DROPS
 
 LOW, EMPTY = 0.2, 0.05      # levels of the battery's charge, fractions of its capacity
 OVERFULL = 1.1      # the capacity is an estimate of the robot, so a full battery may exceed it a little
@@ -28,20 +29,24 @@ OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.E
 NO_ANSWER = ERROR, 'The robot does not answer'
 
 
+def charge_ratio(reading: Mapping[str, int]) -> float:
+    """Return the charge as a part of the capacity, which the robot estimates; nan if it is unknown."""
+    return reading['charge'] / reading['capacity'] if reading['capacity'] else nan
+
+
 def battery_status(reading: Mapping[str, int]) -> tuple[int, str]:
     """Return the level and the summary of the battery's status: its worst problem."""
-    charge = reading['charge'] / reading['capacity'] if reading['capacity'] else None    # a fraction
-    state = reading['charging_state']
-    percent = '' if charge is None else f'{100 * charge:.0f} %'
-    docked = charge is None or reading['charging_sources']
+    charge, state = charge_ratio(reading), reading['charging_state']
+    percent = f'{100 * charge:.0f} %'
+    docked = isnan(charge) or reading['charging_sources']
     found = [(OK, CHARGING_STATES[state] if docked else percent)]
     if state == FAULT:
         found.append((ERROR, CHARGING_STATES[FAULT]))
     if reading['temperature'] > HOT:
         found.append((ERROR, f"{reading['temperature']} degrees C: expected at most {HOT}"))
-    if charge is not None and charge < LOW and state == 0:
+    if charge < LOW and state == 0:
         found.append((ERROR if charge < EMPTY else WARN, f'Low: {percent}'))
-    if charge is not None and charge > OVERFULL:
+    if charge > OVERFULL:
         found.append((WARN, f'{percent}: expected at most {100 * OVERFULL:.0f} %'))
     if reading['voltage'] < FLAT:
         found.append((WARN, f"{reading['voltage'] / 1000:g} V: expected at least {FLAT / 1000:g} V"))

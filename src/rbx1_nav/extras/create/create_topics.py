@@ -20,9 +20,9 @@ from rbx1_nav.base.command_gate import RefusedCommand, RejectedCommand
 from rbx1_nav.base.description import Robot
 from rbx1_nav.base.schedule import Schedule
 from rbx1_nav.extras.create import panel, protocol
-from rbx1_nav.extras.create.connection import CLIFFS, WHEEL_DROPS
-from rbx1_nav.extras.create.create_status import FAULT, HOT
+from rbx1_nav.extras.create.create_status import FAULT, HOT, charge_ratio
 from rbx1_nav.extras.create.driver import Driver
+from rbx1_nav.extras.create.protocol import CLIFFS, WHEEL_DROPS
 from rbx1_nav.node.rospy_topics import NoDelay
 
 SWITCHES = 'bumps_and_wheel_drops'
@@ -39,17 +39,12 @@ BATTERY: tuple[tuple[str, Any, Callable[[Reading], float]], ...] = (
     ('battery/current', Float32, lambda reading: reading['current'] / 1000),
     ('battery/charge', Float32, lambda reading: reading['charge'] / 1000),
     ('battery/capacity', Float32, lambda reading: reading['capacity'] / 1000),
-    ('battery/charge_ratio', Float32, lambda reading: charge_ratio(reading)),
+    ('battery/charge_ratio', Float32, charge_ratio),
     ('battery/temperature', Int16, lambda reading: reading['temperature']))
 # by charging state, see create_status; trickle charging keeps a full battery full
 POWER_STATUS = (BatteryState.POWER_SUPPLY_STATUS_DISCHARGING, BatteryState.POWER_SUPPLY_STATUS_CHARGING,
                 BatteryState.POWER_SUPPLY_STATUS_CHARGING, BatteryState.POWER_SUPPLY_STATUS_FULL,
                 BatteryState.POWER_SUPPLY_STATUS_NOT_CHARGING, BatteryState.POWER_SUPPLY_STATUS_NOT_CHARGING)
-
-
-def charge_ratio(reading: Reading) -> float:
-    """Return the charge as a part of the capacity, which the robot estimates; nan if it is unknown."""
-    return reading['charge'] / reading['capacity'] if reading['capacity'] else nan
 
 
 def battery_state(stamp: rospy.Time, frame: str, reading: Reading) -> BatteryState:

@@ -11,7 +11,7 @@ from rbx1_nav.extras.create import protocol
 from rbx1_nav.extras.create import sequences
 from rbx1_nav.extras.create.acceptance import OUTAGE, Acceptance
 from rbx1_nav.extras.create.analog_gyro import AnalogGyro, Step
-from rbx1_nav.extras.create.connection import WHEEL_DROPS, Contact, Supervisor, causes
+from rbx1_nav.extras.create.connection import Contact, Supervisor, causes
 from rbx1_nav.extras.create.fractions import Fractions
 from rbx1_nav.extras.create.link import Link
 from rbx1_nav.extras.create.motion import (
@@ -21,9 +21,8 @@ from rbx1_nav.base.schedule import Schedule
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.extras.create.orders import Orders
 from rbx1_nav.extras.create.queries import Queries
-from rbx1_nav.extras.create.sender import Sender, is_too_fast
+from rbx1_nav.extras.create.sender import Kind, Phase, Sender, is_too_fast
 from rbx1_nav.extras.create.settings import Settings
-from rbx1_nav.extras.create.phases import Kind, Phase
 
 INSIST_WAIT = SECOND // 10      # ns without confirmation after which the last stop is repeated
 GAP = 3                         # periods without a reading after which one gyro rate no longer represents all of them
@@ -251,7 +250,7 @@ class Driver:
         _, variance = self.settings.errors.variances(travel.distance, travel.angle)
         variance = travel.angle_variance + variance + self.counter.rounding[1] ** 2
         return Step(elapsed, travel.angle, variance, (expected.right - expected.left) / self.model.wheel_separation,
-                    self.motion.stands and not bits & WHEEL_DROPS,      # a lifted robot may be turned by hand
+                    self.motion.stands and not bits & protocol.WHEEL_DROPS,      # a lifted robot may be turned by hand
                     self.sender.phase is Phase.DRIVEN, bool(bits),
                     elapsed * self.settings.update_rate > GAP)
 

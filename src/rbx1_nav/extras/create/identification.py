@@ -12,9 +12,8 @@ from rbx1_nav.base.units import SECOND
 from rbx1_nav.extras.create import protocol
 from rbx1_nav.extras.create import sequences
 from rbx1_nav.extras.create.link import Link
-from rbx1_nav.extras.create.phases import Kind
 from rbx1_nav.extras.create.queries import Layout
-from rbx1_nav.extras.create.sender import Sender
+from rbx1_nav.extras.create.sender import Kind, Sender
 
 RATES = (57600, 115200, 19200)      # of a Create, of a Create 2, and of either after its buttons were held
 REPLY_TIME = SECOND * 12 // 100     # ns after the last byte of a query within which the reply arrives

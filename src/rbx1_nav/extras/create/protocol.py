@@ -27,6 +27,9 @@ MODE_NAMES = ('off', 'passive', 'safe', 'full')
 
 # bits of packet 7; the caster bit exists only on the Create (Create p. 17, Create 2 p. 24)
 BUMP_RIGHT, BUMP_LEFT, WHEEL_DROP_RIGHT, WHEEL_DROP_LEFT, WHEEL_DROP_CASTOR = 1, 2, 4, 8, 16
+BUMPS, WHEEL_DROPS = BUMP_LEFT | BUMP_RIGHT, WHEEL_DROP_LEFT | WHEEL_DROP_RIGHT | WHEEL_DROP_CASTOR
+CLIFFS = ('cliff_left', 'cliff_front_left', 'cliff_front_right', 'cliff_right')     # packets 9 to 12
+CHARGER, DOCK = 1, 2        # bits of packet 34
 
 # special values of a radius in mm (Create p. 9, Create 2 p. 13)
 STRAIGHT = (32767, -32768)

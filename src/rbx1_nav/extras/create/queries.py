@@ -16,8 +16,7 @@ from rbx1_nav.base.units import SECOND
 from rbx1_nav.extras.create import protocol
 from rbx1_nav.extras.create import sequences
 from rbx1_nav.extras.create.motion import STILL, Counter, Expected
-from rbx1_nav.extras.create.sender import Sender
-from rbx1_nav.extras.create.phases import Kind
+from rbx1_nav.extras.create.sender import Kind, Sender
 
 REPLY_TIMEOUT = SECOND // 5     # time from a query to the first byte of its reply
 BYTE_TIMEOUT = SECOND // 20     # time between two bytes of a reply

@@ -1,15 +1,59 @@
-"""Sends bytes and wheel speeds to the robot, and integrates the travel that the speeds command. All times are in ns."""
+"""Sends bytes and wheel speeds to the robot, if the phase of the contact with it allows them, and integrates the travel
+that the speeds command. All times are in ns.
+
+The guardian is a process of its own: it sends only its stop, after the node has died or while it hangs.
+"""
 from __future__ import annotations
 
+from enum import Enum
 from typing import Callable
 
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.extras.create import protocol
 from rbx1_nav.extras.create import sequences
 from rbx1_nav.extras.create.motion import STILL, Expected
-from rbx1_nav.extras.create.phases import MAY_SEND, Kind, Phase
 
 BACKLOG = SECOND // 100     # backlog of bytes on the line beyond which only a stop is sent at once
+
+
+class Kind(Enum):
+    """What is sent, and who sends it."""
+
+    SEARCH = 'bytes that no receiver can mistake for another command'       # Search
+    STOP = 'a stop, alone or with the change to passive mode at the end'    # Driver, Contact
+    START = 'a stop and the start of the interface'                         # Contact
+    QUERY = 'a query'                                                       # Queries
+    MODE = 'the request for the mode in which the robot is driven'          # Supervisor
+    PANEL = 'lights and songs'                                              # Orders
+    DOCK = 'a stop and the start of docking'                                # Orders
+    SPEEDS = 'wheel speeds other than 0'                                    # Driver, from the CommandGate
+
+
+class Phase(Enum):
+    """What is known of the robot."""
+
+    NO_LINE = 'no line'
+    SEARCHING = 'robot or rate unknown'
+    SILENT = 'known, does not answer'
+    STARTED = 'known, was started, and has not answered since'
+    WAITING = 'answers, is not in the mode in which it is driven'
+    DRIVEN = 'answers, is in the mode in which it is driven'
+    DOCKING = 'answers, drives itself onto its dock, in passive mode'
+    LEAVING = 'the node exits'
+    LEFT = 'the node exits, and the robot has confirmed that it stopped'
+
+
+MAY_SEND: dict[Phase, set[Kind]] = {
+    Phase.NO_LINE: set(),
+    Phase.SEARCHING: {Kind.SEARCH},
+    Phase.SILENT: {Kind.STOP, Kind.QUERY, Kind.START},
+    Phase.STARTED: {Kind.STOP, Kind.QUERY},
+    Phase.WAITING: {Kind.STOP, Kind.QUERY, Kind.MODE, Kind.DOCK},
+    Phase.DRIVEN: {Kind.STOP, Kind.QUERY, Kind.MODE, Kind.DOCK, Kind.PANEL, Kind.SPEEDS},
+    Phase.DOCKING: {Kind.STOP, Kind.QUERY, Kind.MODE, Kind.DOCK},
+    Phase.LEAVING: {Kind.STOP, Kind.QUERY},
+    Phase.LEFT: set()}
+ANSWERING = {Phase.WAITING, Phase.DRIVEN, Phase.DOCKING}
 
 
 def is_too_fast(linear: float, angular: float, width: float) -> bool:

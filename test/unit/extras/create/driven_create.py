@@ -6,7 +6,7 @@ import pytest
 from rbx1_nav.base.command_gate import CommandGate, RefusedCommand
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.extras.create.driver import Driver
-from rbx1_nav.extras.create.emulator.body import Body, Quirks
+from rbx1_nav.extras.create.emulator.body import Body
 from rbx1_nav.extras.create.emulator.emulator import EmulatedCreate
 from rbx1_nav.extras.create.emulator.serial_line import SerialLine
 from rbx1_nav.extras.create.protocol import MODELS
@@ -22,9 +22,10 @@ class DrivenCreate:
 
     is_same = True      # whether the line uses the same adapter as the previous line
 
-    def __init__(self, robot_type, surface=None, seed=0, robot=None, quirks=Quirks(), **params):
-        """robot_type: auto, create or create2; surface, seed, quirks: see Body; robot: the true type, if it differs;
-        params: parameters of the node."""
+    def __init__(self, robot_type, surface=None, seed=0, robot=None, mode_plus_one=False, drops_fractions=False,
+                 **params):
+        """robot_type: auto, create or create2; robot: the true type, if it differs; surface, seed, drops_fractions: see
+        Body; mode_plus_one: see Model; params: parameters of the node."""
         self.settings, base = read_settings(dict(params, robot_type=robot_type))
         self.gate = CommandGate(base.limits, base.timeout)
         self.log = []
@@ -32,7 +33,8 @@ class DrivenCreate:
         self.driver = Driver(self.settings, self.gate, self.log.append, self.log.append, self.log_error)
         self.now = SECOND
         model = MODELS[robot or robot_type]
-        self.body = Body(model, surface, seed, quirks=quirks)
+        model = model._replace(mode_plus_one=model.mode_plus_one or mode_plus_one)
+        self.body = Body(model, surface, seed, drops_fractions=drops_fractions)
         self.line = SerialLine(model.baud, seed)
         self.commands = []      # (time, bytes) that have arrived at the robot
         self.robot = EmulatedCreate(model, self.body, self.line, self.now,

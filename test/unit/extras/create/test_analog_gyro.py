@@ -5,7 +5,7 @@ import pytest
 
 from rbx1_nav.base.surfaces import load_surface
 from rbx1_nav.extras.create.analog_gyro import FEW
-from rbx1_nav.extras.create.emulator.body import BodyErrors, Quirks
+from rbx1_nav.extras.create.emulator.body import BodyErrors
 
 from driven_create import SURFACES, DrivenCreate, started
 
@@ -117,13 +117,13 @@ def test_a_gyro_that_jumps_at_rest_is_noticed_at_once_however_long_it_was_right(
 def test_who_lifts_the_robot_may_turn_it(mode):
     driven = calibrated(operation_mode=mode)
     offset = driven.driver.gyro.offset
-    driven.body.wheel_dropped = True
+    driven.body.switches = 8
     driven.run(0.1)
     rates, first, _ = read(driven, 5, 300)      # 62 degrees/s
     assert not first and not lines(driven) and rates[-1] == pytest.approx(62, abs=1)
     driven.body.gyro_stuck = -1
     driven.run(0.1)
-    driven.body.wheel_dropped = False
+    driven.body.switches = 0
     driven.run(2)
     assert driven.driver.gyro.offset == pytest.approx(offset, abs=0.1) and not lines(driven)
 
@@ -143,13 +143,13 @@ def test_a_wrong_reading_in_motion_is_noticed_at_the_next_stop(count):
     assert first < 0.7 + PROOF and len(lines(driven)) == 1
 
 
-@pytest.mark.parametrize('event', ['bumped', 'wheel_dropped'])
+@pytest.mark.parametrize('bits', [3, 8])       # bumpers, wheel drop
 @pytest.mark.parametrize('velocity, seconds, count', [((0.2, 0), 4, 800), ((0, 0), 1, 300)])
-def test_a_turn_of_a_robot_that_is_held_or_lifted_is_not_judged(event, velocity, seconds, count):
+def test_a_turn_of_a_robot_that_is_held_or_lifted_is_not_judged(bits, velocity, seconds, count):
     driven = calibrated(stop_motors_on_bump=False, operation_mode=3)
     driven.velocity = velocity
     driven.run(1)
-    setattr(driven.body, event, True)
+    driven.body.switches = bits
     driven.run(0.1)
     rates, first, _ = read(driven, seconds, count)
     assert len(rates) > 20 and not first and not lines(driven)
@@ -158,7 +158,7 @@ def test_a_turn_of_a_robot_that_is_held_or_lifted_is_not_judged(event, velocity,
 @pytest.mark.parametrize('surface, sensitivity, drops', [
     ('ideal', 1.5, True), ('low_ply_carpet', 0.5, False)])
 def test_a_gyro_that_works_is_never_taken_for_broken(surface, sensitivity, drops):
-    driven = started('create', 4, surface=load_surface(surface, SURFACES), quirks=Quirks(drops_fractions=drops))
+    driven = started('create', 4, surface=load_surface(surface, SURFACES), drops_fractions=drops)
     driven.body.errors = BodyErrors(gyro_sensitivity=sensitivity)
     for linear, angular, seconds in [(0.5, 0, 6), (0.1, 0.2, 20), (0, 0.05, 20),
                                      (0, 0.3, 10), (0.3, -1, 10), (0, 2, 5)]:

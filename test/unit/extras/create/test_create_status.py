@@ -36,21 +36,22 @@ NO_ANSWER = ERROR, 'The robot does not answer'
 
 
 @pytest.mark.parametrize('attribute, value, expected', [
-    ('bumped', True, {'Base': (OK, 'Stationary'), 'Sensors': (WARN, 'bumper')}),
-    ('wheel_dropped', True, {'Base': (WARN, 'Not driven: a wheel dropped'), 'Sensors': (WARN, 'wheel drop')}),
-    ('cliff', True, {'Base': (WARN, 'Not driven: a cliff'),
-                     'Sensors': (WARN, 'cliff front left, cliff front right')}),
+    ('switches', 3, {'Base': (OK, 'Stationary'), 'Sensors': (WARN, 'bumper')}),
+    ('switches', 8, {'Base': (WARN, 'Not driven: a wheel dropped'), 'Sensors': (WARN, 'wheel drop')}),
+    ('cliffs', 6, {'Base': (WARN, 'Not driven: a cliff'),
+                 'Sensors': (WARN, 'cliff front left, cliff front right')}),
     ('docked', True, {'Base': (WARN, 'Not driven: on the dock: publish on undock, or lift it off'),
                       'Battery': (OK, 'trickle charging')}),
+    ('gyro_stuck', 12, {'Base': (OK, 'Stationary'), 'Gyro': (
+        ERROR, '12 counts: expected at least 100: does it have power?')}),
     ('charge', 450, {'Base': (OK, 'Stationary'), 'Battery': (WARN, 'Low: 15 %')}),
     ('charge', 0, {'Base': NO_ANSWER, 'Battery': NO_ANSWER, 'Sensors': NO_ANSWER, 'Serial line': (ERROR, 'Open')})])
-def test_what_prevents_a_robot_from_being_driven_is_reported(monkeypatch, attribute, value, expected):
+def test_a_problem_of_the_robot_is_reported(monkeypatch, attribute, value, expected):
     lines = []
     monkeypatch.setattr(rospy, 'logwarn', lambda form, *values: lines.append(form % values))
-    driven = started('create2')
-    driven.run(0.5)
+    driven = started('create', 2.5)
     setattr(driven.body, attribute, value)
-    driven.drive(0.1 if attribute == 'cliff' else 0.0, 0.0, 0.3)
+    driven.drive(0.1 if attribute == 'cliffs' else 0.0, 0.0, 0.3)
     driven.run(1)
     found = statuses(driven)
     assert {title: (found[title].level, found[title].message) for title in expected} == expected

@@ -8,9 +8,9 @@ from rbx1_nav.extras.create.protocol import FULL, OFF, PASSIVE, SAFE, WHEEL_DROP
 from driven_create import BOTH, started
 
 
-def docking(robot_type, **params):
+def docking(robot_type):
     """Return a robot that is looking for its dock."""
-    driven = started(robot_type, **params)
+    driven = started(robot_type)
     driven.driver.orders.dock(driven.now, driven.driver.reading)
     driven.run(1)
     assert driven.robot.program_runs and driven.robot.mode == PASSIVE and driven.body.moving
@@ -19,10 +19,9 @@ def docking(robot_type, **params):
 
 def on_dock(robot_type, **params):
     """Return a robot that stands on its dock."""
-    driven = started(robot_type)
+    driven = started(robot_type, **params)
     driven.body.docked = True
     driven.run(2)
-    assert driven.robot.mode == PASSIVE
     return driven
 
 
@@ -30,22 +29,26 @@ def undock(driven):
     driven.driver.orders.undock(driven.now, driven.driver.reading)
 
 
-def drive_off(driven):
-    """Undock until the robot moves."""
+def undocking(robot_type):
+    """Return a robot that has begun to move on its dock."""
+    driven = on_dock(robot_type)
     undock(driven)
     while not driven.body.moving:
         driven.run(0.01)
     assert driven.robot.mode == FULL and driven.body.docked
+    return driven
 
 
 def modes(driven, seconds):
-    """Run; return the modes of the robot in this time, in order, without repetitions."""
-    found = [driven.robot.mode]
+    """Run; return the modes of the robot in this time, in order, and how long (s) it was in each."""
+    found, times = [driven.robot.mode], [0.0]
     for _ in range(round(100 * seconds)):
         driven.run(0.01)
         if driven.robot.mode != found[-1]:
             found.append(driven.robot.mode)
-    return found
+            times.append(0.0)
+        times[-1] += 0.01
+    return found, times
 
 
 @BOTH
@@ -60,7 +63,7 @@ def test_the_robot_docks_and_charges(robot_type):
     driven.run(1)
     assert driven.robot.program_runs and driven.driver.orders.state
     driven.body.docked = True
-    assert modes(driven, 5) == [PASSIVE]
+    assert modes(driven, 5)[0] == [PASSIVE]
     assert not driven.body.moving and 'The robot is on its dock' in driven.log and not driven.driver.orders.state
     assert driven.driver.reading['charging_state']
 
@@ -103,25 +106,31 @@ def test_what_ends_docking(robot_type, end, text):
     assert driven.robot.mode == SAFE and (driven.speeds == (-100, -100) or end in (stop, plug_in_again))
 
 
+def senses(name, bits):
+    return lambda driven: setattr(driven.body, name, bits)
+
+
 @BOTH
-@pytest.mark.parametrize('end', [command_zero, stop, halt])
-def test_what_ends_undocking(robot_type, end):
-    driven = on_dock(robot_type)
-    drive_off(driven)
+@pytest.mark.parametrize('end, text', [
+    (command_zero, 'a command from /teleop'), (stop, 'the guardian'), (halt, 'it was stopped'),
+    (senses('switches', WHEEL_DROP_RIGHT), 'a wheel dropped'), (senses('cliffs', 1), 'a cliff'),
+    (senses('cliffs', 8), 'a cliff')])
+def test_what_ends_undocking(robot_type, end, text):
+    driven = undocking(robot_type)
     end(driven)
     driven.run(0.1)
-    assert not driven.body.moving and driven.robot.mode == PASSIVE
+    assert not driven.body.moving and driven.robot.mode == PASSIVE and not driven.driver.orders.state
+    assert any(f'no longer undocking: {text}' in line for line in driven.log), driven.log
+    driven.body.switches = driven.body.cliffs = 0
     driven.run(3)
-    assert not driven.body.moving and not driven.driver.orders.state
+    assert not driven.body.moving and driven.robot.mode == PASSIVE and driven.driver.reading['charging_state']
 
 
 @BOTH
-@pytest.mark.parametrize('state, lost', [
-    *(('docking', lost) for lost in (0, 1, 9, 14, 15, 17, 18)), ('undocking', 0), ('undocking', 14)])
-def test_the_exit_ends_both_even_if_the_first_bytes_of_the_stop_are_lost(robot_type, state, lost):
-    driven = docking(robot_type) if state == 'docking' else on_dock(robot_type)
-    if state == 'undocking':
-        drive_off(driven)
+@pytest.mark.parametrize('begin, lost', [
+    *((docking, lost) for lost in (0, 1, 9, 14, 15, 17, 18)), (undocking, 0), (undocking, 14)])
+def test_the_exit_ends_both_even_if_the_first_bytes_of_the_stop_are_lost(robot_type, begin, lost):
+    driven = begin(robot_type)
     driven.losing = lost
     driven.driver.leave(driven.now)
     for _ in range(200):
@@ -151,14 +160,15 @@ def test_an_order_to_dock_that_was_lost_is_repeated(robot_type):
 @BOTH
 @pytest.mark.parametrize('mode', [SAFE, FULL])
 def test_the_robot_leaves_its_dock_in_full_mode(robot_type, mode):
-    driven = started(robot_type, operation_mode=mode)
-    driven.body.docked = True
-    driven.run(2)
-    driven.driver.orders.undock(driven.now, driven.driver.reading)
+    driven = on_dock(robot_type, operation_mode=mode)
+    undock(driven)
     x = driven.truth.x
-    found = modes(driven, 6)
+    found, times = modes(driven, 6)
     if mode == SAFE:
         assert found == [PASSIVE, FULL, SAFE]
+        # no wait, as after a wheel drop; then 2 cm at 0.1 m/s, three readings until it moves, and three until it is
+        # seen to have left
+        assert times[0] < 0.3 and times[1] < 0.2 + 6 / 30
     assert driven.robot.mode == mode and not driven.body.moving
     # it stops after the reading that shows 0.2 m: two periods at 0.1 m/s
     assert driven.truth.x - x == pytest.approx(-0.2, abs=0.01)
@@ -168,28 +178,8 @@ def test_the_robot_leaves_its_dock_in_full_mode(robot_type, mode):
 
 
 @BOTH
-def test_full_mode_lasts_only_as_long_as_the_contact(robot_type):
-    driven = on_dock(robot_type)
-    undock(driven)
-    driven.run(0.3)     # no wait, as after a wheel drop
-    assert driven.robot.mode == FULL
-    driven = on_dock(robot_type)
-    undock(driven)
-    start = None
-    for _ in range(300):
-        driven.run(0.01)
-        if driven.robot.mode == FULL and start is None:
-            start = driven.now
-        if start and driven.robot.mode == SAFE:
-            break
-    # 2 cm at 0.1 m/s, three readings until it moves and three until it is seen to have left
-    assert driven.robot.mode == SAFE and (driven.now - start) / 1e9 < 0.2 + 6 / 30
-
-
-@BOTH
 def test_one_reading_without_contact_does_not_end_full_mode(robot_type):
-    driven = on_dock(robot_type)
-    drive_off(driven)
+    driven = undocking(robot_type)
     state = driven.driver.orders.state
     driven.driver.orders.update(driven.now, dict(driven.driver.reading, charging_sources=0), 0.0)
     assert driven.driver.orders.state == state
@@ -205,19 +195,6 @@ def test_a_program_that_was_started_by_a_button_is_replaced(robot_type):
     driven.driver.orders.dock(driven.now, driven.driver.reading)
     driven.run(2)
     assert driven.robot.program_runs and driven.robot.programs_started == 2
-
-
-@BOTH
-@pytest.mark.parametrize('name, bits', [('switches', WHEEL_DROP_RIGHT), ('cliffs', 1), ('cliffs', 8)])
-def test_a_cliff_and_a_wheel_drop_stop_it_in_full_mode(robot_type, name, bits):
-    driven = on_dock(robot_type)
-    drive_off(driven)
-    setattr(driven.body, name, bits)
-    driven.run(0.1)
-    assert not driven.body.moving and driven.robot.mode == PASSIVE
-    setattr(driven.body, name, 0)
-    driven.run(3)
-    assert not driven.body.moving and driven.robot.mode == PASSIVE and driven.driver.reading['charging_state']
 
 
 @BOTH
@@ -237,7 +214,7 @@ def test_wheels_that_are_blocked_on_the_dock():
     driven = on_dock('create2')
     undock(driven)
     driven.body.wheels.travel = lambda *_: (0.0, 0.0)
-    assert modes(driven, 7) == [PASSIVE, FULL, PASSIVE]
+    assert modes(driven, 7)[0] == [PASSIVE, FULL, PASSIVE]
     assert any('has not driven 0.2 m in 5 s' in line for line in driven.log)
 
 

@@ -50,7 +50,7 @@ def test_a_command_times_out(robot_type):
 
 def test_a_bump_does_not_stop_if_it_should_not():
     driven = started('create', stop_motors_on_bump=False)
-    driven.body.bumped = True
+    driven.body.switches = 3
     driven.drive(0.2, 0, 0.5)
     assert driven.speeds == (200, 200)
 
@@ -70,14 +70,6 @@ def test_states_are_reported_at_the_update_rate(robot_type):
     assert len(driven.states) - count == pytest.approx(100, abs=2)
 
 
-def test_without_a_line_nothing_is_reported():
-    driven = DrivenCreate('create2')
-    driven.run(1)
-    driven.driver.tick(driven.now)
-    driven.command(0.2, 0)
-    assert driven.driver.state() is None and driven.commands == []
-
-
 def test_a_slow_line_at_the_highest_update_rate_loses_no_reply():
     """A reply takes 16 ms, so the next query is due while it arrives."""
     driven = DrivenCreate('create', update_rate=60, baud=19200)
@@ -92,7 +84,7 @@ def test_a_slow_line_at_the_highest_update_rate_loses_no_reply():
 @BOTH
 def test_a_base_is_ready_when_the_robot_can_be_driven_or_the_reason_is_known(robot_type):
     driven = DrivenCreate(robot_type, robot=robot_type)
-    driven.body.wheel_dropped = True
+    driven.body.switches = 8
     assert not driven.driver.is_ready
     driven.connect()
     assert not driven.driver.is_ready

@@ -47,22 +47,22 @@ def test_it_drives_in_safe_and_full_mode_only(model, mode):
 
 
 @both
-@pytest.mark.parametrize('fault', ['wheel_dropped', 'cliff', 'docked'])
-def test_safe_mode_ends_when_something_happens_and_full_mode_does_not(model, fault):
+@pytest.mark.parametrize('fault, bits', [('switches', 8), ('cliffs', 6), ('docked', True)])
+def test_safe_mode_ends_when_something_happens_and_full_mode_does_not(model, fault, bits):
     for mode, after in (SAFE, PASSIVE), (FULL, FULL):
         robot = robot_in(mode, model)
         robot.send(drive_direct(100, 100))
-        setattr(robot.body, fault, True)
+        setattr(robot.body, fault, bits)
         robot.run(0.015)
         assert robot.mode == after
         stopped = robot.pose
         robot.run(1)
         assert (robot.pose == stopped) == (after == PASSIVE)
         # safe mode stops again while the cause lasts
-        if after == PASSIVE and fault != 'cliff':
+        if after == PASSIVE and fault != 'cliffs':
             robot.send(command('safe'))
             assert robot.mode == PASSIVE
-            setattr(robot.body, fault, False)
+            setattr(robot.body, fault, 0)
             robot.send(command('safe'))
             assert robot.mode == SAFE
 
@@ -74,7 +74,7 @@ def test_safe_mode_ends_when_something_happens_and_full_mode_does_not(model, fau
 def test_a_cliff_counts_while_the_robot_moves_forward_or_back_in_a_small_circle(model, right, left, mode):
     robot = robot_in(SAFE, model)
     robot.send(drive_direct(right, left))
-    robot.body.cliff = True
+    robot.body.cliffs = 6
     robot.run(0.1)
     assert robot.mode == mode
 
@@ -85,21 +85,6 @@ def test_an_interface_that_is_off_listens_for_start_only(model):
     assert robot.send(command('sensors', 35), command('safe'), drive_direct(100, 100)) == b'' and robot.mode == OFF
     robot.send(command('start'))
     assert robot.read(35) == {'mode': PASSIVE}
-
-
-def test_reset_restarts_a_create_2_which_names_its_firmware():
-    robot = robot_in(FULL, CREATE_2)
-    robot.send(drive_direct(200, 200), command('stream', 1, 7), command('baud', 10))
-    robot.robot.line.host_baud = 57600
-    robot.run(1)
-    robot.send(command('reset'))
-    robot.robot.line.host_baud = 115200
-    robot.send(command('start'))        # too early
-    assert robot.mode == OFF and not robot.body.moving
-    robot.run(1)
-    robot.send(command('start'))
-    assert robot.mode == PASSIVE
-    assert robot.read(101)['left_encoder'] == 0
 
 
 # driving

@@ -25,7 +25,7 @@ def test_every_packet_and_group_is_answered(model):
 @both
 def test_a_query_list_is_answered_in_its_order(model):
     robot = robot_in(SAFE, model)
-    robot.body.bumped = True
+    robot.body.switches = 3
     robot.run(0.1)
     assert robot.send(command('query_list', 3, 35, 7, 1)) == bytes((SAFE, 3, 3)) + bytes(9)
 

@@ -4,7 +4,6 @@ from math import degrees, pi, trunc
 import pytest
 
 from rbx1_nav.base.surfaces import load_surface
-from rbx1_nav.extras.create.emulator.body import Quirks
 from rbx1_nav.extras.create.fractions import AUTO, KEPT, LOST, MEASURED, TEST, Fractions
 
 from driven_create import SURFACES, started
@@ -17,7 +16,7 @@ LOSES = pytest.mark.parametrize('loses', [False, True])
 @pytest.mark.parametrize('surface', ['ideal', 'low_ply_carpet'])
 @pytest.mark.parametrize('is_known', [False, True])
 def test_a_turn_is_reported_whatever_the_robot_does_with_fractions(is_known, surface, rate, loses):
-    driven = started('create', surface=load_surface(surface, SURFACES), quirks=Quirks(drops_fractions=loses),
+    driven = started('create', surface=load_surface(surface, SURFACES), drops_fractions=loses,
                      angle_fractions=(LOST if loses else KEPT) if is_known else AUTO)
     before = driven.pose.yaw, driven.body.angle.total
     driven.drive(0, rate, 2 * pi / abs(rate))
@@ -30,7 +29,7 @@ def test_a_turn_is_reported_whatever_the_robot_does_with_fractions(is_known, sur
 @LOSES
 @pytest.mark.parametrize('rate', [0.2, -0.25, 0.3])
 def test_one_turn_shows_what_the_robot_does_with_fractions(rate, loses):
-    driven = started('create', quirks=Quirks(drops_fractions=loses), angle_fractions=TEST)
+    driven = started('create', drops_fractions=loses, angle_fractions=TEST)
     fractions = driven.driver.counter.fractions
     driven.drive(0, rate, 2.5 / abs(rate))
     assert fractions.known == TEST
@@ -43,7 +42,7 @@ def test_one_turn_shows_what_the_robot_does_with_fractions(rate, loses):
 
 @LOSES
 def test_a_fast_turn_shows_nothing(loses):
-    driven = started('create', quirks=Quirks(drops_fractions=loses), angle_fractions=TEST)
+    driven = started('create', drops_fractions=loses, angle_fractions=TEST)
     driven.drive(0, 0.6, 15)
     assert driven.driver.counter.fractions.known == TEST
 

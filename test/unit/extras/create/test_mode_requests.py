@@ -4,7 +4,6 @@ import pytest
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.extras.create import protocol
 from rbx1_nav.extras.create.connection import Supervisor, causes
-from rbx1_nav.extras.create.emulator.body import Quirks
 from rbx1_nav.extras.create.protocol import FULL, OFF, PASSIVE, SAFE
 
 from driven_create import BOTH, started
@@ -87,14 +86,14 @@ MODES = pytest.mark.parametrize('mode', [protocol.PASSIVE, protocol.SAFE, protoc
 @MODES
 @pytest.mark.parametrize('plus_one', [False, True])
 def test_with_the_right_workaround_the_robot_is_driven(robot_type, mode, plus_one):
-    driven = started(robot_type, quirks=Quirks(mode_plus_one=plus_one), operation_mode=mode,
+    driven = started(robot_type, mode_plus_one=plus_one, operation_mode=mode,
                      oi_mode_workaround=plus_one)
     assert driven.robot.mode == driven.driver.supervisor.mode == mode and len(driven.log) == 2
     driven.drive(0.2, 0, 0.2)
     assert driven.body.moving == (mode != protocol.PASSIVE)
-    driven.body.wheel_dropped = True
+    driven.body.switches = 8
     driven.run(1)
-    driven.body.wheel_dropped = False
+    driven.body.switches = 0
     driven.run(2)
     driven.command_zero()
     assert driven.driver.supervisor.in_control
@@ -106,7 +105,7 @@ def test_with_the_right_workaround_the_robot_is_driven(robot_type, mode, plus_on
 @BOTH
 def test_in_full_mode_a_robot_that_reports_its_mode_plus_one_needs_no_workaround(robot_type):
     """It reports a mode that does not exist."""
-    driven = started(robot_type, quirks=Quirks(mode_plus_one=True), operation_mode=FULL)
+    driven = started(robot_type, mode_plus_one=True, operation_mode=FULL)
     driven.drive(0.3, 0.5, 2)
     assert driven.body.moving
     driven.run(1)
@@ -123,7 +122,7 @@ def test_in_full_mode_a_robot_that_reports_its_mode_plus_one_needs_no_workaround
 @pytest.mark.parametrize('plus_one', [False, True])
 @pytest.mark.parametrize('mode', [SAFE, FULL])
 def test_a_robot_that_was_not_driven_confirms_the_last_stop_in_any_mode(robot_type, mode, plus_one):
-    driven = started(robot_type, quirks=Quirks(mode_plus_one=plus_one), operation_mode=mode,
+    driven = started(robot_type, mode_plus_one=plus_one, operation_mode=mode,
                      oi_mode_workaround=not plus_one)
     driven.driver.leave(driven.now)
     driven.run(0.1)
@@ -134,7 +133,7 @@ def test_a_robot_that_was_not_driven_confirms_the_last_stop_in_any_mode(robot_ty
 @pytest.mark.parametrize('mode', [protocol.PASSIVE, protocol.SAFE])
 @pytest.mark.parametrize('plus_one', [False, True])
 def test_a_wrong_workaround_is_named_and_the_robot_is_not_driven(robot_type, mode, plus_one):
-    driven = started(robot_type, 5, quirks=Quirks(mode_plus_one=plus_one), operation_mode=mode,
+    driven = started(robot_type, 5, mode_plus_one=plus_one, operation_mode=mode,
                      oi_mode_workaround=not plus_one)
     assert driven.log[1:] == [
         'The robot cannot be driven: it reports mode %d after it was asked for %s mode: expected %d, or '

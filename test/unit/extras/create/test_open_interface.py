@@ -1,15 +1,12 @@
 """The tables of the Open Interface match the documents (see protocol.py), and encode and decode values."""
 from math import pi
-from struct import Struct
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rbx1_nav.extras.create import protocol
 from rbx1_nav.extras.create.protocol import (
-    COUNTED, CREATE, CREATE_2, FRAME_HEADER, MODELS, NOTES, command, drive_direct, encode_frame, packets_format,
-    single_packets)
+    COUNTED, CREATE, CREATE_2, FRAME_HEADER, MODELS, NOTES, command, encode_frame, packets_format, single_packets)
 
 from robots import both
 
@@ -71,11 +68,6 @@ def test_the_robots():
     assert CREATE_2.counts_per_metre == pytest.approx(508.8 / (pi * 0.072))
 
 
-@pytest.mark.parametrize('data, checksum', [(b'', 0), (b'\0', 0), (b'\1', 255), (b'\xff', 1), (b'\x80\x80', 0)])
-def test_a_checksum(data, checksum):
-    assert protocol.checksum(data) == checksum
-
-
 @st.composite
 def frames(draw):
     """Draw (model, numbers of packets and groups, values by packet name)."""
@@ -106,8 +98,3 @@ def test_the_bytes_of_the_document():
     values = {'cliff_front_left_signal': 549, 'virtual_wall': 0}
     assert encode_frame(CREATE, [29, 13], values) == bytes((19, 5, 29, 2, 37, 13, 0, 151))
     assert command('leds', 8, 0, 128) == bytes((139, 8, 0, 128))
-
-
-@given(st.integers(-500, 500), st.integers(-500, 500))
-def test_drive_direct(right, left):
-    assert Struct('>Bhh').unpack(drive_direct(right, left)) == (145, right, left)

@@ -69,10 +69,10 @@ def test_lights_are_set_again_when_control_is_regained(robot_type):
     driven.run(1)
     assert [data for _, data in driven.commands].count(lights.commands) == 1
     assert driven.robot.panel.lights == (2, 0, 255)
-    driven.body.wheel_dropped = True
+    driven.body.switches = 8
     driven.run(1)
     driven.commands.clear()
-    driven.body.wheel_dropped = False
+    driven.body.switches = 0
     driven.run(2)
     assert [data for _, data in driven.commands].count(lights.commands) == 1
 
@@ -96,7 +96,7 @@ def test_a_song_that_cannot_be_played(robot_type):
     with pytest.raises(RefusedCommand, match='the serial line is busy'):
         for _ in range(20):
             driven.driver.orders.send(driven.now, define_song([0] + 16 * [60, 1]), driven.driver.reading)
-    driven.body.wheel_dropped = True
+    driven.body.switches = 8
     driven.run(1)
     driven.commands.clear()
     with pytest.raises(RefusedCommand, match='not driven: a wheel dropped'):

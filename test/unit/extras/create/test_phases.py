@@ -1,8 +1,7 @@
 """What may be sent in each phase of the contact with a robot."""
 import pytest
 
-from rbx1_nav.extras.create.phases import MAY_SEND, Kind, Phase
-from rbx1_nav.extras.create.sender import Sender
+from rbx1_nav.extras.create.sender import MAY_SEND, Kind, Phase, Sender
 
 
 @pytest.mark.parametrize('phase', Phase)

@@ -49,15 +49,15 @@ def test_commands_that_stop_a_program(model, name):
     assert robot.robot.programs_started == 1
 
 
-@pytest.mark.parametrize('fault', ['wheel_dropped', 'cliff', 'docked'])
+@pytest.mark.parametrize('fault, bits', [('switches', 8), ('cliffs', 6), ('docked', True)])
 @pytest.mark.parametrize('model, name', CLEANING_OF)
-def test_a_wheel_drop_a_cliff_and_the_dock_end_it(model, name, fault):
+def test_a_wheel_drop_a_cliff_and_the_dock_end_it(model, name, fault, bits):
     robot = running(model, command(name))
     robot.run(2)
-    setattr(robot.body, fault, True)
+    setattr(robot.body, fault, bits)
     robot.run(0.02)     # more than an update
     check_it_is_over(robot)
-    setattr(robot.body, fault, False)
+    setattr(robot.body, fault, 0)
     check_it_is_over(robot)
 
 
@@ -105,16 +105,19 @@ def test_a_robot_that_was_switched_off_does_nothing_until_it_is_switched_on(mode
     assert robot.mode == PASSIVE and robot.read(19) == {'distance': 0}
 
 
-def test_reset_restarts_a_create_without_a_word():
-    robot = driving(CREATE)
+@pytest.mark.parametrize('model, seconds', [(CREATE, 3), (CREATE_2, 1)])
+def test_reset_restarts_the_robot_and_only_a_create_2_names_its_firmware(model, seconds):
+    robot = driving(model)
     robot.send(command('baud', 7), command('pause_resume_stream', 0))
     robot.robot.line.host_baud = 19200
     robot.run(0.1)
-    assert robot.send(command('reset')) == b'' and robot.mode == OFF and not robot.body.moving
-    robot.robot.line.host_baud = 57600
-    robot.run(2.8)
+    assert bool(robot.send(command('reset'))) == (model is CREATE_2)
+    assert robot.mode == OFF and not robot.body.moving
+    robot.robot.line.host_baud = model.baud
+    robot.run(seconds - 0.2)
     robot.send(command('start'))    # too early
     assert robot.mode == OFF
     robot.run(0.15)
     robot.send(command('start'))
-    assert robot.mode == PASSIVE and robot.read(19) == {'distance': 0} and robot.run(1) == b''
+    assert robot.mode == PASSIVE and robot.run(1) == b''
+    assert robot.read(19) == {'distance': 0} and not robot.body.values.get('left_encoder')

@@ -4,7 +4,6 @@ import random
 
 import pytest
 
-from rbx1_nav.extras.create.emulator.body import Quirks
 
 from driven_create import started
 
@@ -30,7 +29,7 @@ class Hand:
 def random_drive(seed, drops):
     """Return (error, sigma, sum of the absolute turns) in degrees at the end of a random drive."""
     choose = random.Random(seed)
-    driven = started('create', quirks=Quirks(drops_fractions=drops), odom_linear_error=0.0, odom_angular_error=0.0,
+    driven = started('create', drops_fractions=drops, odom_linear_error=0.0, odom_angular_error=0.0,
                      odom_heading_error=0.0)
     hand, angle = Hand(driven.body), driven.body.angle
     before, true, turned = driven.pose.yaw, angle.total, 0.0

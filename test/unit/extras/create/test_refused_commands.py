@@ -6,10 +6,9 @@ import pytest
 from rbx1_nav.base.command_gate import CommandGate, RefusedCommand
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.extras.create.acceptance import Acceptance
-from rbx1_nav.extras.create.connection import CLIFFS
 from rbx1_nav.extras.create.motion import NOWHERE, Expected
-from rbx1_nav.extras.create.phases import Phase
-from rbx1_nav.extras.create.protocol import CREATE
+from rbx1_nav.extras.create.protocol import CLIFFS, CREATE
+from rbx1_nav.extras.create.sender import Phase
 from rbx1_nav.extras.create.settings import read_settings
 
 NOW = 10 * SECOND
@@ -115,6 +114,25 @@ def test_a_robot_that_is_not_in_the_requested_mode_for_0_3_s(reason, text):
     assert base.command(0.2, 0, NOW + SECOND) == ''
     base.control(False)
     assert base.command(0.2, 0, NOW + 2 * SECOND) == ''
+
+
+@pytest.mark.parametrize('sender, moving, pause, refused', [
+    ('driver', True, SECOND * 3 // 5, True), ('driver', True, SECOND * 3 // 5 + 1, False),
+    ('driver', False, 1, False), ('other', True, 1, False)])
+def test_a_sender_is_locked_out_until_it_stops_or_has_been_silent_for_more_than_the_timeout(
+        sender, moving, pause, refused):
+    base = Base()
+    base.acceptance.check_sender(NOW, 'driver', True)
+    for _ in range(2):      # the second event concerns everybody again
+        base.acceptance.lock('the robot was reset')
+        base.acceptance.check_sender(NOW, 'driver', False)
+    base.acceptance.lock('a wheel dropped')
+    if refused:
+        with pytest.raises(RefusedCommand, match='a wheel dropped; expected a zero command, or none for 0.6 s'):
+            base.acceptance.check_sender(NOW + pause, sender, moving)
+        return
+    base.acceptance.check_sender(NOW + pause, sender, moving)
+    base.acceptance.check_sender(NOW + pause + 1, sender, True)
 
 
 def test_a_command_to_stop_is_never_refused():

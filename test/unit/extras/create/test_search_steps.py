@@ -5,8 +5,7 @@ from rbx1_nav.base.units import SECOND
 from rbx1_nav.extras.create import protocol
 from rbx1_nav.extras.create import sequences
 from rbx1_nav.extras.create.identification import Search, has_frames
-from rbx1_nav.extras.create.phases import Phase
-from rbx1_nav.extras.create.sender import Sender
+from rbx1_nav.extras.create.sender import Phase, Sender
 
 RATES = (57600, 115200, 19200)
 MODEL_QUERY = bytes((142, 43, 142, 8))
@@ -86,15 +85,6 @@ def test_two_replies_in_a_row_are_required():
     searching.answer(battery())
     assert searching.line.sent[-1] == sequences.PAUSE_STREAM
     assert searching.search._deadline - searching.now == SECOND // 20
-
-
-@pytest.mark.parametrize('size, model', [(1, protocol.CREATE), (3, protocol.CREATE_2)])
-def test_two_equal_replies_show_the_model(size, model):
-    """A Create answers only the query for the wall sensor; a Create 2 also answers with two bytes of an encoder."""
-    searching = Searching()
-    searching.find_battery()
-    assert searching.answer(bytes(size)) is None and searching.line.sent[-1] == MODEL_QUERY
-    assert searching.answer(bytes(size)) == (model, 57600)
 
 
 @pytest.mark.parametrize('baud, model', [

@@ -1,4 +1,6 @@
 """Whatever stops the robot, a sender that has not noticed it does not drive it on: scenario x what the sender does."""
+from itertools import product
+
 import pytest
 
 from rbx1_nav.extras.create import protocol
@@ -10,10 +12,16 @@ REFUSAL = 'expected a zero command, or none for 0.6 s, before it is driven again
 
 
 def drop_a_wheel(driven):
-    driven.body.wheel_dropped = True
+    driven.body.switches = 8
     driven.run(1)
-    driven.body.wheel_dropped = False
+    driven.body.switches = 0
     driven.run(2)       # the driver takes control again
+
+
+def see_a_cliff(driven):
+    driven.body.cliffs = 6
+    driven.run(0.5)
+    driven.body.cliffs = 0
 
 
 def reset(driven):
@@ -84,9 +92,9 @@ def another_helps(driven):
 
 
 @BOTH
-@pytest.mark.parametrize('mode', [protocol.SAFE, protocol.FULL])
+@pytest.mark.parametrize('mode, scenario', [
+    *product([protocol.SAFE, protocol.FULL], SCENARIOS), (protocol.SAFE, see_a_cliff)])
 @pytest.mark.parametrize('sender', [goes_on, gives_up, another_helps])
-@pytest.mark.parametrize('scenario', SCENARIOS)
 def test_after_a_stop_only_who_has_noticed_it_drives_the_robot(scenario, sender, mode, robot_type):
     driven = started(robot_type, 1.2, operation_mode=mode)
     driven.drive(*DRIVING, 0.5)

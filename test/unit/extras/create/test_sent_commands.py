@@ -7,9 +7,8 @@ from rbx1_nav.extras.create import protocol
 from rbx1_nav.extras.create import sequences
 from rbx1_nav.extras.create.fractions import KEPT, Fractions
 from rbx1_nav.extras.create.motion import STILL, CounterTravel, EncoderTravel
-from rbx1_nav.extras.create.phases import Phase
 from rbx1_nav.extras.create.queries import Queries
-from rbx1_nav.extras.create.sender import Sender, is_too_fast, wheel_speeds
+from rbx1_nav.extras.create.sender import Phase, Sender, is_too_fast, wheel_speeds
 
 
 def tenths(count):

@@ -10,11 +10,6 @@ from rbx1_nav.extras.create.protocol import BAUD_RATES
 rates = st.sampled_from(BAUD_RATES)
 
 
-@given(st.binary(), rates)
-def test_at_the_same_baud_rate_everything_arrives(data, baud):
-    assert misread(data, baud, baud) == data
-
-
 @given(st.binary(), st.floats(0.965, 1.035))
 def test_a_receiver_tolerates_a_clock_that_is_a_little_off(data, ratio):
     # half a bit in 9.5 bits is 5 %, and the previous bit must be over

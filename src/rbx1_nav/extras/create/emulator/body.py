@@ -6,8 +6,7 @@ from typing import NamedTuple
 
 from rbx1_nav.base.surfaces import Surface
 from rbx1_nav.base.units import SECOND
-from rbx1_nav.extras.create.protocol import (
-    BUMP_LEFT, BUMP_RIGHT, NOTHING_RECEIVED, UPDATE_PERIOD, WHEEL_DROP_LEFT, Model)
+from rbx1_nav.extras.create.protocol import CLIFFS, NOTHING_RECEIVED, UPDATE_PERIOD, WHEEL_DROPS, Model
 from rbx1_nav.simulation.simulated_base import make_wheels_and_gyro
 
 
@@ -19,24 +18,13 @@ class BodyErrors(NamedTuple):
     wheel_base: float = 1.0         # true wheel separation relative to its nominal value
 
 
-class Quirks(NamedTuple):
-    """Differences between some robots and the documents."""
-
-    mode_plus_one: bool = False     # packet 35 is the mode plus one, as on a Roomba 642 (create_robot issue 64)
-    # each reading of the angle starts at 0 and loses the fraction of a degree, as on a Create (libcreate issue 22,
-    # create_robot issue 28)
-    drops_fractions: bool = False
-
-
 FINE = 1e6              # ticks per meter of the simulated wheels: practically no rounding, since this file counts
 ADC_ZERO = 512          # gyro signal at rest, in the range 0 to 1023
 CAPACITY = 3000         # mAh
 EMPTY, FULL = 13.0, 16.5    # V
 CHARGING, RESTING, MOVING = 1500, -300, -1000     # mA: current of the battery
 FLOOR, NO_FLOOR = 1500, 20  # signals of a cliff sensor
-CLIFFS = ('cliff_left', 'cliff_front_left', 'cliff_front_right', 'cliff_right')     # the bits of Body.cliffs
 CONTACT = 0.02          # m that a robot on its dock can move before it loses contact
-
 PULL_UPS = 15           # weak pull-ups on the digital inputs of a Create
 
 
@@ -74,20 +62,22 @@ class Body:
     """The robot without its electronics. All times are in ns."""
 
     def __init__(self, model: Model, surface: Surface | None = None, seed: int = 0, errors: BodyErrors = BodyErrors(),
-                 gyro_range: float = 150.0, quirks: Quirks = Quirks()) -> None:
-        """model: a protocol.Model; surface, seed: see simulated_base.make_base(); gyro_range: degrees/s."""
+                 gyro_range: float = 150.0, drops_fractions: bool = False) -> None:
+        """surface, seed: see simulated_base.make_base(); gyro_range: degrees/s; drops_fractions: whether each reading
+        of the angle starts at 0 and loses the fraction of a degree, as on some Creates (libcreate issue 22,
+        create_robot issue 28)."""
         self.model = model
         self.errors = errors
         self.gyro_range = gyro_range
-        self.quirks = quirks
+        self.drops_fractions = drops_fractions
         self.gyro_stuck = -1                # 0 to 1023: fixed value of the analog input; negative: the gyro works
         self.wheels, self.gyro = make_wheels_and_gyro(
             model.wheel_separation * errors.wheel_base, surface._replace(ticks_meter=FINE) if surface else None, seed,
             UPDATE_PERIOD)
         self.drive(0, 0)
-        self.bumped = self.wheel_dropped = self.cliff = self.charging_fault = False
+        self.charging_fault = False
         self.charger = False                # whether the cable of the charger is plugged in
-        self.switches = self.cliffs = self.buttons = 0      # further bits: packet 7, CLIFFS, packet 18
+        self.switches = self.cliffs = self.buttons = 0      # bits of packet 7, of CLIFFS, and of packet 18
         self.infrared = 0 if 52 in model.packets else NOTHING_RECEIVED  # character that is received
         self._dock: float | None = None     # m, where the robot touches its dock, on its odometer
         self._odometer = 0.0
@@ -101,7 +91,7 @@ class Body:
         """Reset all counters of the robot to 0."""
         self._counted_left = self._counted_right = 0.0  # m
         self.distance = Tally()     # mm
-        self.angle = DroppingTally() if self.quirks.drops_fractions else Tally()    # degrees
+        self.angle = DroppingTally() if self.drops_fractions else Tally()    # degrees
         self.values: dict[str, int] = dict.fromkeys((packet.name for packet in self.model.packets.values()), 0)
 
     def drive(self, left: float, right: float) -> None:
@@ -121,20 +111,9 @@ class Body:
         self._dock = self._odometer if on else None
 
     @property
-    def switch_bits(self) -> int:
-        """The bits of packet 7."""
-        return (self.switches | (BUMP_LEFT | BUMP_RIGHT if self.bumped else 0)
-                | (WHEEL_DROP_LEFT if self.wheel_dropped else 0))
-
-    @property
     def dropped(self) -> bool:
         """Whether a wheel has dropped."""
-        return self.switch_bits > BUMP_LEFT | BUMP_RIGHT
-
-    @property
-    def cliff_bits(self) -> int:
-        """The bits of CLIFFS."""
-        return self.cliffs | (0b0110 if self.cliff else 0)
+        return bool(self.switches & WHEEL_DROPS)
 
     @property
     def moving(self) -> bool:
@@ -163,9 +142,9 @@ class Body:
         charge = round(self.charge)
         linear, angular = self.velocity
         rate = degrees(self.gyro.read(self.wheels.truth.yaw, duration, False).rate) * self.errors.gyro_sensitivity
-        cliffs = [self.cliff_bits >> bit & 1 for bit in range(len(CLIFFS))]
+        cliffs = [self.cliffs >> bit & 1 for bit in range(len(CLIFFS))]
         self.values.update(
-            zip(CLIFFS, cliffs), capacity=CAPACITY, bumps_and_wheel_drops=self.switch_bits,
+            zip(CLIFFS, cliffs), capacity=CAPACITY, bumps_and_wheel_drops=self.switches,
             buttons=self.buttons & self.model.packets[18].high, infrared=self.infrared,
             # fault, trickle charging, full charging, none
             charging_state=5 if self.charging_fault else (3 if charge >= CAPACITY else 2) if charging else 0,

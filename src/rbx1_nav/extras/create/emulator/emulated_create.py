@@ -2,21 +2,19 @@
 cable or a dropped wheel."""
 from __future__ import annotations
 
-from concurrent.futures import Future
 from functools import partial
 from math import floor
-import queue
+from threading import Lock
 from typing import Callable
 
 import rospy
 from std_msgs.msg import Float64
 from std_srvs.srv import SetBool, SetBoolResponse, Trigger, TriggerResponse
 
-from rbx1_nav.extras.create.emulator.body import CAPACITY, Body, BodyErrors, Quirks
+from rbx1_nav.extras.create.emulator.body import CAPACITY, Body, BodyErrors
 from rbx1_nav.extras.create.emulator.emulator import EmulatedCreate
 from rbx1_nav.extras.create.emulator.serial_line import PseudoTerminal, SerialLine
-from rbx1_nav.extras.create.protocol import BAUD_RATES, CREATE, MODELS
-from rbx1_nav.node import life
+from rbx1_nav.extras.create.protocol import BAUD_RATES, BUMPS, CREATE, MODELS, WHEEL_DROP_LEFT
 from rbx1_nav.node.config import ConfigError, Section, YamlValue, show
 from rbx1_nav.node.parameters import Parameter, choice, custom, flag, number, read
 from rbx1_nav.node.private_parameters import param
@@ -33,10 +31,6 @@ _BODY = {
     'gyro_sensitivity': "ratio of the gyro's sensitivity to its nominal value",
     'wheel_travel': 'ratio of the distance counted by the encoders to the distance traveled by the wheels',
     'wheel_base': 'ratio of the true wheel separation to its nominal value'}
-_QUIRKS = {
-    'mode_plus_one': 'whether the robot reports its mode plus one, like a Roomba 642 and other models with Wi-Fi',
-    'drops_fractions': 'whether each reading of the angle starts at 0 and loses the fraction of a degree'}
-
 _BITS = {
     'switches': ('bits of packet 7: bumper right 1, left 2, wheel drop right 4, left 8, caster 16', 31),
     'cliffs': ('bits of the cliff sensors: left 1, front left 2, front right 4, right 8', 15),
@@ -59,7 +53,9 @@ PARAMETERS = (
     *(number(name, 1.0, '', _BODY[name], 0.1, 10, 'a factor') for name in BodyErrors._fields),
     number('gyro_stuck', -1.0, '', 'count at which the analog input is stuck; -1: it is not stuck', -1, 1023,
            'a count'),
-    *(flag(name, False, _QUIRKS[name]) for name in Quirks._fields))
+    flag('mode_plus_one', False,
+         'whether the robot reports its mode plus one, like a Roomba 642 and other models with Wi-Fi'),
+    flag('drops_fractions', False, 'whether each reading of the angle starts at 0 and loses the fraction of a degree'))
 
 # parameters that a topic can change: what they set, a part of the robot and its attribute, and the conversion
 CHANGEABLE: dict[str, tuple[str, str, Callable[[float], float]]] = {
@@ -69,11 +65,11 @@ CHANGEABLE: dict[str, tuple[str, str, Callable[[float], float]]] = {
     **{name: ('body', name, int) for name in _BITS},
     'corruption': ('line', 'corruption', float),
     'gyro_stuck': ('body', 'gyro_stuck', floor)}
-# services that switch an attribute of a part of the robot
+# services that switch bits of an attribute of a part of the robot
 SWITCHES = {
-    'silence': ('line', 'silent'), 'drop_wheel': ('body', 'wheel_dropped'), 'cliff': ('body', 'cliff'),
-    'bump': ('body', 'bumped'), 'dock': ('body', 'docked'), 'charger': ('body', 'charger'),
-    'charging_fault': ('body', 'charging_fault')}
+    'silence': ('line', 'silent', True), 'drop_wheel': ('body', 'switches', WHEEL_DROP_LEFT),
+    'cliff': ('body', 'cliffs', 0b0110), 'bump': ('body', 'switches', BUMPS), 'dock': ('body', 'docked', True),
+    'charger': ('body', 'charger', True), 'charging_fault': ('body', 'charging_fault', True)}
 
 
 def _set(robot: EmulatedCreate, name: str, value: float) -> None:
@@ -81,11 +77,18 @@ def _set(robot: EmulatedCreate, name: str, value: float) -> None:
     setattr(getattr(robot, part), attribute, convert(value))
 
 
+def _switch(robot: EmulatedCreate, name: str, on: bool) -> None:
+    part, attribute, bits = SWITCHES[name]
+    others = getattr(getattr(robot, part), attribute) & ~bits
+    setattr(getattr(robot, part), attribute, others | bits if on else others)
+
+
 def make_robot(now: int) -> EmulatedCreate:
     """Return an EmulatedCreate with the parameters of this node. now: ns."""
     model = MODELS[param('robot_type')]
+    model = model._replace(mode_plus_one=model.mode_plus_one or param('mode_plus_one'))
     body = Body(model, param('surface'), param('seed'), BodyErrors(*map(param, BodyErrors._fields)),
-                param('gyro_measurement_range'), Quirks(*map(param, Quirks._fields)))
+                param('gyro_measurement_range'), param('drops_fractions'))
     robot = EmulatedCreate(model, body, SerialLine(param('baud') or model.baud, param('seed')), now)
     for name in CHANGEABLE:
         _set(robot, name, param(name))
@@ -93,38 +96,26 @@ def make_robot(now: int) -> EmulatedCreate:
 
 
 class RobotFaults:
-    """The services and topics. Requests take effect when the thread that owns the robot calls apply()."""
+    """The services and topics."""
 
-    def __init__(self, robot: EmulatedCreate, terminal: PseudoTerminal) -> None:
-        self.robot = robot
-        self.terminal = terminal
-        # functions to be called, each with a Future for its result: an error text, or ''
-        self.requests: queue.Queue[tuple[Callable[[], object], Future[str]]] = queue.Queue()
+    def __init__(self, robot: EmulatedCreate, terminal: PseudoTerminal, lock: Lock) -> None:
+        """lock: held while the robot or the terminal is used."""
+        self.robot, self.terminal, self.lock = robot, terminal, lock
 
     def serve(self) -> None:
         """Offer the services and topics."""
         self._offer_switch('pull_cable', lambda on: self.terminal.unplug() if on else self.terminal.plug())
-        for name, (part, attribute) in SWITCHES.items():
-            self._offer_switch(name, partial(setattr, getattr(self.robot, part), attribute))
+        for name in SWITCHES:
+            self._offer_switch(name, partial(_switch, self.robot, name))
         rospy.Service('~power_cycle', Trigger, lambda _: TriggerResponse(
-            *self._request('power_cycle', lambda: self.robot.switch_on(self.robot.now))))
+            *self._change('power_cycle', lambda: self.robot.switch_on(self.robot.now))))
         for each in PARAMETERS:
             if each.name in CHANGEABLE:
                 rospy.Subscriber(f'~{each.name}', Float64, self._on_number, each)
 
-    def apply(self) -> None:
-        """Execute all pending requests."""
-        while not self.requests.empty():
-            function, done = self.requests.get()
-            try:
-                function()
-                done.set_result('')
-            except ConfigError as error:    # the link cannot be created any more
-                done.set_result(str(error))
-
     def _offer_switch(self, name: str, switch: Callable[[bool], None]) -> None:
         rospy.Service(f'~{name}', SetBool, lambda request: SetBoolResponse(
-            *self._request(f'{name}: {request.data}', lambda: switch(request.data))))
+            *self._change(f'{name}: {request.data}', lambda: switch(request.data))))
 
     def _on_number(self, message: Float64, parameter: Parameter) -> None:
         name = parameter.name
@@ -133,18 +124,16 @@ class RobotFaults:
         except ConfigError as error:
             rospy.logerr('%s; rejected', error)
         else:
-            self._request(f'{name}: {message.data:g}', lambda: _set(self.robot, name, message.data))
+            self._change(f'{name}: {message.data:g}', lambda: _set(self.robot, name, message.data))
 
-    def _request(self, text: str, function: Callable[[], object]) -> tuple[bool, str]:
-        """Request a call of a function and wait for it; return whether it succeeded, and the text that is logged."""
-        done: Future[str] = Future()
-        self.requests.put((function, done))
-        while not done.done():
-            if life.end_requested.is_set():
-                return False, f'{text}: the node is shutting down'
-            life.sleep(0.001)
-        if done.result():
-            rospy.logerr('%s: %s', text, done.result())
-            return False, f'{text}: {done.result()}'
+    def _change(self, text: str, function: Callable[[], object]) -> tuple[bool, str]:
+        """Call a function; return whether it succeeded, and the text that is logged."""
+        try:
+            with self.lock:
+                function()
+        except ConfigError as error:    # the link cannot be created any more
+            text = f'{text}: {error}'
+            rospy.logerr('%s', text)
+            return False, text
         rospy.loginfo('%s', text)
         return True, text

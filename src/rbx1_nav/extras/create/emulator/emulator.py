@@ -120,7 +120,7 @@ class EmulatedCreate:
             return
         if self.mode == SAFE and self._unsafe():
             self._enter(PASSIVE)
-        if self.body.dropped or self.body.cliff_bits or self.body.docked:
+        if self.body.dropped or self.body.cliffs or self.body.docked:
             self._stop_program()
         if self.program_runs:
             self._drive_curve(*CIRCLE)
@@ -132,7 +132,7 @@ class EmulatedCreate:
         body = self.body
         linear, angular = body.velocity
         small_radius = abs(linear) < abs(angular) * ROBOT_RADIUS
-        return body.dropped or body.docked or body.charger or bool(body.cliff_bits and (linear > 0 or small_radius))
+        return body.dropped or body.docked or body.charger or bool(body.cliffs and (linear > 0 or small_radius))
 
     def _enter(self, mode: int) -> None:
         if mode in (OFF, PASSIVE):
@@ -254,7 +254,7 @@ class EmulatedCreate:
         names = {packet.name for packet in single_packets(self.model, numbers)}
         return dict(
             body.values, **self._requested,
-            mode=self.mode + int(self.model.mode_plus_one or body.quirks.mode_plus_one),
+            mode=self.mode + int(self.model.mode_plus_one),
             stream_packets=len(self._stream), song_number=self.panel.number, song_playing=int(self.panel.is_playing),
             distance=body.distance.take() if 'distance' in names else 0,
             angle=body.angle.take() if 'angle' in names else 0)

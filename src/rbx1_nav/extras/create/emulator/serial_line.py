@@ -199,10 +199,11 @@ class PseudoTerminal:
 
     def has_client(self, duration: float = 0.0) -> bool:
         """Return whether a client has opened the device. Waits until it sends something, for at most `duration` (s)."""
-        if self._master is None:
+        master = self._master       # another thread may unplug the cable
+        if master is None:
             return False
         poll = select.poll()
-        poll.register(self._master, select.POLLIN)
+        poll.register(master, select.POLLIN)
         events = poll.poll(1000 * duration)
         return not events or bool(events[0][1] & select.POLLIN)
 
