@@ -5,9 +5,8 @@ According to the specification, each reading continues where the last one stoppe
 a third of the turn. The angle is therefore read rarely, and the heading follows the commands in between, unless the
 robot is known to keep fractions.
 
-A calibration shows which kind of robot this is: for some degrees the angle is read rarely, then as many degrees at each
-update. A robot that keeps fractions reports the same both times. One that drops them reports nothing at each update, if
-it turns slowly.
+A calibration shows which kind of robot this is: in a slow turn, the angle is read at each update. A robot that keeps
+fractions reports the turn that was commanded, one that drops them next to nothing.
 """
 from __future__ import annotations
 
@@ -31,9 +30,9 @@ MAX_CORRECTION = 120.0  # degrees/s: a filter would mistake a large jump of the 
 GAP = 0.3               # s without a reading after which the angle is read
 UNSURE = 0.1            # 1 sigma of a commanded turn that was not read, as a part of it
 UNCERTAIN = 1.0         # degrees: a lost turn of this size does not show in the next reading
-ENOUGH = 80.0           # degrees of each kind of reading that the test needs
-SLOW = 0.6              # degrees between two frequent readings of the test: a robot that drops fractions reports 0
-SAME = 0.5              # ratio of the two turns of the test below which the robot drops fractions
+ENOUGH = 160.0          # degrees that the test needs
+SLOW = 0.6              # degrees between two readings of the test: a robot that drops fractions reports 0
+SAME = 0.5              # part of the commanded turn below which the robot drops fractions
 
 
 class CountedTurn(NamedTuple):
@@ -52,51 +51,26 @@ def lost_part(lost: float, after: float, reading: float, uncertain: float) -> tu
     return (0.0, 0.0) if abs(reading - after - lost) < abs(reading - after) else (lost, UNSURE * abs(lost))
 
 
-class Comparison:
-    """Compares the turns that frequent and rare readings report."""
-
-    def __init__(self) -> None:
-        self.dense = False          # whether to read at each update
-        self._block = 0.0           # degrees, commanded in this block of readings of one kind
-        # absolute turns in degrees, of rare and of frequent readings
-        self._commanded, self._read = [0.0, 0.0], [0.0, 0.0]
-
-    def add(self, commanded: float, angle: int) -> None:
-        """Add a reading. commanded: turn since the last one."""
-        if not self.dense or abs(commanded) <= SLOW:
-            self._commanded[self.dense] += abs(commanded)
-            self._read[self.dense] += abs(angle)
-        self._block += abs(commanded)
-        if self._block >= COARSE_ANGLE:
-            self._block, self.dense = 0.0, not self.dense
-
-    @property
-    def result(self) -> str:
-        """KEPT or LOST; TEST until it is known."""
-        if min(self._commanded) < ENOUGH or not self._read[0]:
-            return TEST
-        rare, frequent = (read / commanded for read, commanded in zip(self._read, self._commanded))
-        return MEASURED + (KEPT if frequent > SAME * rare else LOST)
-
-
 class Fractions:
     """Decides when to read the angle, and converts the readings to turns. Angles are in degrees."""
 
     def __init__(self, kind: str = AUTO) -> None:
         """kind: one of KINDS."""
         self.kind = kind
-        self.comparison = Comparison() if kind == TEST else None
         self._mean_loss = {KEPT: 0.0, LOST: 0.5}.get(kind, 0.25)    # a fraction is uniformly distributed
         self._angle = COARSE_ANGLE_LOST if kind == LOST else COARSE_ANGLE   # the fewer readings, the less is dropped
         self._count = 0                         # number of readings
         self.turn = self.time = 0.0             # commanded turn and time (s) since the last reading of the angle
         self.lost = 0.0                         # the part of `turn` before a lost reply
         self._owed = 0.0                        # correction of the commanded turn that was not returned yet
+        self._commanded = self._counted = 0.0   # absolute turns of the test: commanded, and read from the robot
 
     @property
     def known(self) -> str:
         """What is known of the robot: its kind, or the result of the test."""
-        return self.comparison.result if self.comparison else self.kind
+        if self.kind != TEST or self._commanded < ENOUGH:
+            return self.kind
+        return MEASURED + (KEPT if self._counted > SAME * self._commanded else LOST)
 
     @property
     def unread(self) -> float:
@@ -105,7 +79,7 @@ class Fractions:
 
     def is_due(self, turn: float, time: float) -> bool:
         """Return whether to read the angle now. turn, time: commanded turn and time (s) since the last update."""
-        if self.kind == KEPT or time > GAP or (self.comparison and self.comparison.dense):
+        if self.kind in (KEPT, TEST) or time > GAP:
             return True
         factor = 1 + VARIATION * (self._count * GOLDEN % 1)
         return abs(self.turn + turn) >= factor * self._angle or (not turn and self.time + time >= factor * COARSE_TIME)
@@ -135,11 +109,11 @@ class Fractions:
     def _read(self, angle: int) -> CountedTurn:
         """Return the CountedTurn since the last reading."""
         self._count += 1
-        if self.comparison:
-            dense = self.comparison.dense
-            self.comparison.add(self.turn, angle)
-            if dense:       # these readings may have lost most of the turn
-                return CountedTurn(self.turn, (UNSURE * self.turn) ** 2)
+        if self.kind == TEST:
+            if abs(self.turn) <= SLOW:
+                self._commanded += abs(self.turn)
+                self._counted += abs(angle)
+            return CountedTurn(self.turn, (UNSURE * self.turn) ** 2)    # the reading may have lost most of the turn
         lost, sigma = lost_part(self.lost, self.turn - self.lost, angle, UNCERTAIN)
         turn = angle + lost + (copysign(self._mean_loss, angle) if angle else 0.0)
         return CountedTurn(turn, sigma ** 2 + (LOSS_VARIANCE if self.kind != KEPT and (angle or self.turn) else 0.0))
