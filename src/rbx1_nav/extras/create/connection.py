@@ -7,8 +7,7 @@ from __future__ import annotations
 from typing import Callable, Mapping
 
 from rbx1_nav.base.units import SECOND
-from rbx1_nav.extras.create import protocol
-from rbx1_nav.extras.create import sequences
+from rbx1_nav.extras.create import protocol, sequences
 from rbx1_nav.extras.create.identification import RATES, Found, Search
 from rbx1_nav.extras.create.link import Link
 from rbx1_nav.extras.create.queries import Queries

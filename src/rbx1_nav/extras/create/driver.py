@@ -7,8 +7,7 @@ from __future__ import annotations
 from typing import Callable, Mapping, Sequence
 
 from rbx1_nav.base.command_gate import CommandGate
-from rbx1_nav.extras.create import protocol
-from rbx1_nav.extras.create import sequences
+from rbx1_nav.extras.create import protocol, sequences
 from rbx1_nav.extras.create.acceptance import OUTAGE, Acceptance
 from rbx1_nav.extras.create.analog_gyro import AnalogGyro, Step
 from rbx1_nav.extras.create.connection import Contact, Supervisor, causes
@@ -97,7 +96,6 @@ class Driver:
         """Stop the robot and leave it in passive mode. `left` becomes true once the robot has confirmed this, if it
         can. Raises OSError."""
         self.gate.halt()
-        self.orders.closed = True
         self.leaving = now
         at_rest = self.contact.found is None or (not self.contact.answers and self.motion.stands)
         if self.sender.may_send(Kind.STOP):

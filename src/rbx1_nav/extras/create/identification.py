@@ -9,8 +9,7 @@ from __future__ import annotations
 from typing import Callable, NamedTuple, Optional, Sequence
 
 from rbx1_nav.base.units import SECOND
-from rbx1_nav.extras.create import protocol
-from rbx1_nav.extras.create import sequences
+from rbx1_nav.extras.create import protocol, sequences
 from rbx1_nav.extras.create.link import Link
 from rbx1_nav.extras.create.queries import Layout
 from rbx1_nav.extras.create.sender import Kind, Sender

@@ -17,8 +17,7 @@ import serial
 from serial.tools import list_ports
 
 from rbx1_nav.base.units import SECOND
-from rbx1_nav.extras.create import protocol
-from rbx1_nav.extras.create import sequences
+from rbx1_nav.extras.create import protocol, sequences
 from rbx1_nav.extras.create.guardian import Guardian
 from rbx1_nav.extras.create.settings import Settings
 from rbx1_nav.node.config import AUTO

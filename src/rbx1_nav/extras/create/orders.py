@@ -9,8 +9,7 @@ from typing import Callable, Mapping
 
 from rbx1_nav.base.command_gate import CommandGate, RefusedCommand
 from rbx1_nav.base.units import SECOND
-from rbx1_nav.extras.create import protocol
-from rbx1_nav.extras.create import sequences
+from rbx1_nav.extras.create import protocol, sequences
 from rbx1_nav.extras.create.connection import RETRY, Contact, Supervisor, causes
 from rbx1_nav.extras.create.protocol import DOCK
 from rbx1_nav.extras.create.sender import Kind, Phase, Sender
@@ -35,7 +34,6 @@ class Orders:
         self.info = info
         self.warn = warn
         self.state = ''
-        self.closed = False         # whether the driver has stopped the robot for good
         self.lights = self._shown = b''     # commands that set the wanted lights, and those that were sent
         self._docked = False        # whether the last reading shows the dock
         self._since = 0             # when the state, or the last request to dock, began
@@ -44,7 +42,7 @@ class Orders:
 
     def check(self, reading: Mapping[str, int] | None) -> Mapping[str, int]:
         """Return the last reading, if the robot can follow orders. Raises RefusedCommand."""
-        if self.closed:
+        if self.sender.phase in (Phase.LEAVING, Phase.LEFT):
             raise RefusedCommand('the node is shutting down')
         if self.wanted == protocol.PASSIVE:
             raise RefusedCommand('operation_mode: 1: the robot is not driven in passive mode')

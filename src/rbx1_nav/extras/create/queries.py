@@ -13,8 +13,7 @@ from operator import le
 from typing import Dict, NamedTuple
 
 from rbx1_nav.base.units import SECOND
-from rbx1_nav.extras.create import protocol
-from rbx1_nav.extras.create import sequences
+from rbx1_nav.extras.create import protocol, sequences
 from rbx1_nav.extras.create.motion import STILL, Counter, Expected
 from rbx1_nav.extras.create.sender import Kind, Sender
 

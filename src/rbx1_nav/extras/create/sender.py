@@ -9,8 +9,7 @@ from enum import Enum
 from typing import Callable
 
 from rbx1_nav.base.units import SECOND
-from rbx1_nav.extras.create import protocol
-from rbx1_nav.extras.create import sequences
+from rbx1_nav.extras.create import protocol, sequences
 from rbx1_nav.extras.create.motion import STILL, Expected
 
 BACKLOG = SECOND // 100     # backlog of bytes on the line beyond which only a stop is sent at once

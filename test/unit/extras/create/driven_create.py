@@ -37,7 +37,7 @@ class DrivenCreate:
         self.body = Body(model, surface, seed, drops_fractions=drops_fractions)
         self.line = SerialLine(model.baud, seed)
         self.commands = []      # (time, bytes) that have arrived at the robot
-        self.robot = EmulatedCreate(model, self.body, self.line, self.now,
+        self.robot = EmulatedCreate(self.body, self.line, self.now,
                                     lambda time, data: self.commands.append((time, data)))
         self.connected = False
         self.states = []

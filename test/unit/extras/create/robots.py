@@ -23,7 +23,7 @@ class Robot:
         self.model = model
         self.commands = []
         self.now = 0
-        self.robot = EmulatedCreate(model, self.body, SerialLine(baud or model.baud), 0,
+        self.robot = EmulatedCreate(self.body, SerialLine(baud or model.baud), 0,
                                     lambda time, data: self.commands.append((time, data)))
 
     def run(self, seconds):

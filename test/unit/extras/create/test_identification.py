@@ -4,8 +4,7 @@ from itertools import permutations
 import pytest
 
 from rbx1_nav.base.units import SECOND
-from rbx1_nav.extras.create import protocol
-from rbx1_nav.extras.create import sequences
+from rbx1_nav.extras.create import protocol, sequences
 from rbx1_nav.extras.create.emulator.emulator import EmulatedCreate
 from rbx1_nav.extras.create.emulator.serial_line import misread
 from rbx1_nav.extras.create.identification import RATES, WAKE_TIME, Search, is_battery
@@ -192,7 +191,7 @@ class SciRobot(EmulatedCreate):
 
 def test_a_roomba_400_is_named():
     driven = DrivenCreate('auto', robot='create')
-    driven.robot = SciRobot(driven.body.model, driven.body, driven.line, driven.now)
+    driven.robot = SciRobot(driven.body, driven.line, driven.now)
     driven.run(0.05)
     driven.connect()
     driven.run(20)

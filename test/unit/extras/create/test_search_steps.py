@@ -2,8 +2,7 @@
 import pytest
 
 from rbx1_nav.base.units import SECOND
-from rbx1_nav.extras.create import protocol
-from rbx1_nav.extras.create import sequences
+from rbx1_nav.extras.create import protocol, sequences
 from rbx1_nav.extras.create.identification import Search, has_frames
 from rbx1_nav.extras.create.sender import Phase, Sender
 

@@ -3,8 +3,7 @@ from hypothesis import given, strategies
 import pytest
 
 from rbx1_nav.base.units import SECOND
-from rbx1_nav.extras.create import protocol
-from rbx1_nav.extras.create import sequences
+from rbx1_nav.extras.create import protocol, sequences
 from rbx1_nav.extras.create.fractions import KEPT, Fractions
 from rbx1_nav.extras.create.motion import STILL, CounterTravel, EncoderTravel
 from rbx1_nav.extras.create.queries import Queries

@@ -1,8 +1,7 @@
 """The bytes that are sent to the robot; a stop takes effect after any incomplete command."""
 import pytest
 
-from rbx1_nav.extras.create import protocol
-from rbx1_nav.extras.create import sequences
+from rbx1_nav.extras.create import protocol, sequences
 
 from rbx1_nav.extras.create.queries import probe
 

@@ -89,7 +89,7 @@ def make_robot(now: int) -> EmulatedCreate:
     model = model._replace(mode_plus_one=model.mode_plus_one or param('mode_plus_one'))
     body = Body(model, param('surface'), param('seed'), BodyErrors(*map(param, BodyErrors._fields)),
                 param('gyro_measurement_range'), param('drops_fractions'))
-    robot = EmulatedCreate(model, body, SerialLine(param('baud') or model.baud, param('seed')), now)
+    robot = EmulatedCreate(body, SerialLine(param('baud') or model.baud, param('seed')), now)
     for name in CHANGEABLE:
         _set(robot, name, param(name))
     return robot

@@ -22,6 +22,7 @@ MAX_PWM = 255
 PROGRAMS, CIRCLE = {'spot', 'cover', 'max', 'dock', 'demo'}, (200, 300)
 DEMOS, ABORT = 10, 255      # number of demos (Create p. 8); -1, the number that stops the running demo
 PAIR = Struct('>hh')
+REQUESTED = range(39, 43)       # packets of the requested motion
 
 
 def command_size(model: Model, data: bytes | bytearray) -> int | None:
@@ -38,13 +39,13 @@ def command_size(model: Model, data: bytes | bytearray) -> int | None:
 class EmulatedCreate:
     """The robot on a SerialLine."""
 
-    def __init__(self, model: Model, body: Body, line: SerialLine, now: int,
+    def __init__(self, body: Body, line: SerialLine, now: int,
                  on_command: Callable[[int, bytes], None] | None = None) -> None:
         """line: at the robot's initial baud rate.
 
         on_command(time, data): called with the bytes of each command that arrives, even if the robot ignores it.
         """
-        self.model = model
+        self.model = body.model
         self.body = body
         self.line = line
         self.on_command = on_command or (lambda time, data: None)
@@ -69,8 +70,6 @@ class EmulatedCreate:
         self._stop_program()
         self._input = bytearray()
         self._next_update = now + TICK
-        self._requested = dict.fromkeys(('requested_velocity', 'requested_radius', 'requested_right_velocity',
-                                         'requested_left_velocity'), 0)
         self._stream: list[int] = []
         self._streaming = False
         self.panel = Panel(now)
@@ -137,7 +136,7 @@ class EmulatedCreate:
     def _enter(self, mode: int) -> None:
         if mode in (OFF, PASSIVE):
             self._drive(0, 0)
-            self._requested = dict.fromkeys(self._requested, 0)
+            self.body.values.update((packet.name, 0) for packet in single_packets(self.model, REQUESTED))
         self.mode = mode
 
     # bytes and commands
@@ -220,7 +219,7 @@ class EmulatedCreate:
     def _do_drive(self, data: bytes) -> None:
         velocity, radius = PAIR.unpack(data)
         velocity = int(clamp(velocity, MAX_SPEED))
-        self._requested.update(requested_velocity=velocity, requested_radius=radius)
+        self.body.values.update(requested_velocity=velocity, requested_radius=radius)
         self._drive_curve(velocity, radius)
 
     def _drive_curve(self, velocity: float, radius: float) -> None:
@@ -236,7 +235,7 @@ class EmulatedCreate:
 
     def _do_drive_direct(self, data: bytes) -> None:
         right, left = (int(clamp(speed, MAX_SPEED)) for speed in PAIR.unpack(data))
-        self._requested.update(requested_right_velocity=right, requested_left_velocity=left)
+        self.body.values.update(requested_right_velocity=right, requested_left_velocity=left)
         self._drive(left, right)
 
     def _do_drive_pwm(self, data: bytes) -> None:
@@ -253,8 +252,7 @@ class EmulatedCreate:
         body = self.body
         names = {packet.name for packet in single_packets(self.model, numbers)}
         return dict(
-            body.values, **self._requested,
-            mode=self.mode + int(self.model.mode_plus_one),
+            body.values, mode=self.mode + int(self.model.mode_plus_one),
             stream_packets=len(self._stream), song_number=self.panel.number, song_playing=int(self.panel.is_playing),
             distance=body.distance.take() if 'distance' in names else 0,
             angle=body.angle.take() if 'angle' in names else 0)
