@@ -7,17 +7,16 @@ from __future__ import annotations
 from typing import Callable, Mapping, Sequence
 
 from rbx1_nav.base.command_gate import CommandGate
+from rbx1_nav.base.readings import Reading, Travel
+from rbx1_nav.base.schedule import Schedule
+from rbx1_nav.base.units import SECOND
 from rbx1_nav.extras.create import protocol, sequences
 from rbx1_nav.extras.create.acceptance import OUTAGE, Acceptance
 from rbx1_nav.extras.create.analog_gyro import AnalogGyro, Step
 from rbx1_nav.extras.create.connection import Contact, Supervisor, causes
 from rbx1_nav.extras.create.fractions import Fractions
 from rbx1_nav.extras.create.link import Link
-from rbx1_nav.extras.create.motion import (
-    Counter, CounterTravel, EncoderTravel, Expected, Implausible, MotionReport, State, unknown)
-from rbx1_nav.base.readings import Reading, Travel
-from rbx1_nav.base.schedule import Schedule
-from rbx1_nav.base.units import SECOND
+from rbx1_nav.extras.create.motion import Counter, CounterTravel, EncoderTravel, Expected, MotionReport, State, unknown
 from rbx1_nav.extras.create.orders import Orders
 from rbx1_nav.extras.create.queries import Queries
 from rbx1_nav.extras.create.sender import Kind, Phase, Sender, is_too_fast
@@ -217,9 +216,8 @@ class Driver:
                  and self.supervisor.is_passive(reading) and self.counter.is_reset(reading))
         if reset:
             self.counter.restart()
-        try:
-            travel = self.counter.update(reading, elapsed, expected, queries.lost_share)
-        except Implausible:
+        travel = self.counter.update(reading, elapsed, expected, queries.lost_share)
+        if travel is None:
             self.implausible += 1
             queries.lose_reply()
             return

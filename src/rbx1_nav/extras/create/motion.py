@@ -40,10 +40,6 @@ NOWHERE = Travel(0.0, 0.0, 0.0, 0.0)
 STILL = Expected(0.0, 0.0)
 
 
-class Implausible(ValueError):
-    """A reading that no robot could produce: it is corrupted, or the robot has been reset."""
-
-
 def reach(elapsed: float) -> float:
     """Return how far (m) a wheel can travel in `elapsed` seconds, according to one reading."""
     return WHEEL_LIMIT * elapsed + MARGIN
@@ -77,9 +73,11 @@ class EncoderTravel:
         self.before: tuple[tuple[int, int], float] | None = None    # previous counts, and s from them to the last ones
         self.rejected = 0       # number of consecutive implausible counts
 
-    def update(self, reading: Mapping[str, int], elapsed: float, expected: Expected, lost_share: float) -> Travel:
-        """Return the Travel since the last good reading, `elapsed` s ago. expected: commanded travel in this time;
-        lost_share: share of the last replies that were lost. Raises Implausible."""
+    def update(self, reading: Mapping[str, int], elapsed: float, expected: Expected, lost_share: float
+               ) -> Travel | None:
+        """Return the Travel since the last good reading, `elapsed` s ago; None if no robot could produce this reading:
+        it is corrupted, or the robot has been reset. expected: commanded travel in this time; lost_share: share of the
+        last replies that were lost."""
         counts = reading['left_encoder'], reading['right_encoder']
         if self.counts is None:
             self.counts = counts
@@ -93,7 +91,7 @@ class EncoderTravel:
             if self.rejected < WRONG or before is None or not self._are_near(counts, before, time + elapsed):
                 if self.rejected >= RESET:
                     self.restart()
-                raise Implausible(f'encoders: {counts[0]} and {counts[1]} after {last[0]} and {last[1]}')
+                return None
         self.counts, self.before, self.rejected = counts, (last, elapsed), 0
         # from half a wrap on, the encoders may have wrapped
         wrap = self.WRAP * self.scale
@@ -163,15 +161,15 @@ class CounterTravel:
         self.asks_angle = self.first or self.fractions.is_due(self._turn(expected), elapsed)
         return self.asks_angle
 
-    def update(self, reading: Mapping[str, int], elapsed: float, expected: Expected, lost_share: float) -> Travel:
+    def update(self, reading: Mapping[str, int], elapsed: float, expected: Expected, lost_share: float
+               ) -> Travel | None:
         if self.first:
             self.restart()
             self.first = False
             return NOWHERE
         distance, angle = reading['distance'] / 1000, reading['angle'] if self.asks_angle else None
         if not self.fits(reading, elapsed, expected, lost_share):
-            raise Implausible(f"distance: {reading['distance']} mm, angle: {reading.get('angle')} degrees in "
-                              f'{elapsed:.3f} s')
+            return None
         lost, sigma = self._lost_distance(distance, elapsed, expected)
         sigma = hypot(sigma, DOUBT * lost_share ** 1.5 * reach(elapsed))    # this reading may be corrupted, too
         if max(abs(reading['distance']), abs(angle or 0)) >= self.CAP:

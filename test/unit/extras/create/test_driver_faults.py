@@ -70,20 +70,6 @@ def test_a_robot_that_never_answers_is_reported_once():
 
 
 @BOTH
-def test_a_reset_is_no_travel(robot_type):
-    driven = started(robot_type)
-    driven.drive(0.2, 0.3, 3)
-    driven.run(1)
-    before = driven.pose
-    driven.robot.switch_on(driven.now)
-    driven.run(5)
-    assert driven.robot.mode == protocol.SAFE
-    assert driven.pose == before
-    driven.drive(0.2, 0, 1)
-    assert driven.speeds == (200, 200)
-
-
-@BOTH
 @pytest.mark.parametrize('linear, angular, index', [(0.2, 0, 0), (0, 0.8, 2)])
 def test_the_pose_of_a_robot_that_was_reset_while_disconnected_is_as_uncertain_as_its_commanded_travel(
         robot_type, linear, angular, index):

@@ -57,7 +57,7 @@ def test_safe_mode_ends_when_something_happens_and_full_mode_does_not(model, fau
         assert robot.mode == after
         stopped = robot.pose
         robot.run(1)
-        assert (robot.pose == stopped) == (after == PASSIVE)
+        assert (robot.pose == stopped) == (after == PASSIVE) == (robot.read(41) == {'requested_right_velocity': 0})
         # safe mode stops again while the cause lasts
         if after == PASSIVE and fault != 'cliffs':
             robot.send(command('safe'))

@@ -80,19 +80,6 @@ def test_the_gyro_on_the_analog_input_of_a_create():
     assert robot_in(PASSIVE, CREATE_2).read(33) == {'analog_input': 0}
 
 
-# baud rate
-
-@both
-def test_baud(model):
-    robot = robot_in(PASSIVE, model)
-    robot.send(command('baud', 7))
-    assert robot.robot.line.baud == 19200
-    robot.send(command('sensors', 35))
-    robot.robot.line.host_baud = 19200
-    robot.run(1)
-    assert robot.read(35) == {'mode': PASSIVE}
-
-
 # battery
 
 @both

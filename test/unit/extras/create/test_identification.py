@@ -61,7 +61,7 @@ def test_nothing_moves_while_the_robot_is_not_known(robot, baud, robot_type):
     assert bool(driven.found) == (robot == robot_type)
 
 
-@pytest.mark.parametrize('robot, robot_type', permutations(KINDS, 2))
+@pytest.mark.parametrize('robot, robot_type', [*permutations(KINDS, 2), ('create', 'roomba600_wifi')])
 def test_a_robot_of_the_wrong_type_is_reported_once_and_not_driven(robot, robot_type):
     driven = searching(robot, robot_type=robot_type)
     driven.drive(0.2, 0, 10)

@@ -59,11 +59,3 @@ def test_a_roomba_600_with_wi_fi_is_driven_by_its_name_and_found_as_a_create_2()
     driven.connect()
     driven.run(3)
     check_it_drives(driven, CREATE_2)
-
-
-def test_a_robot_without_what_the_model_has_is_refused():
-    driven = DrivenCreate('roomba600_wifi', robot='create')
-    driven.connect()
-    driven.run(3)
-    assert driven.log == ['A create answers at 57600 baud: expected a roomba600_wifi; to drive it, restart this node '
-                          'with robot_type:=create, or auto']
