@@ -15,6 +15,8 @@ from rbx1_nav.extras.create.settings import read_settings
 SURFACES = os.path.join(os.path.dirname(__file__), '..', '..', '..', '..', 'config', 'surfaces')
 STEP = SECOND // 500
 BOTH = pytest.mark.parametrize('robot_type', ['create', 'create2'])
+# parameters of the node: an ideal floor adds no error
+NO_ERRORS = {'odom_linear_error': 0.0, 'odom_angular_error': 0.0, 'odom_heading_error': 0.0}
 
 
 class DrivenCreate:

@@ -8,10 +8,9 @@ from rbx1_nav.base.surfaces import load_surface
 from rbx1_nav.base.units import wrap_angle
 from rbx1_nav.extras.create import protocol
 
-from driven_create import BOTH, SURFACES, DrivenCreate, started
+from driven_create import BOTH, NO_ERRORS, SURFACES, DrivenCreate, started
 
 STOP = protocol.drive_direct(0, 0)
-NO_ERRORS = {'odom_linear_error': 0.0, 'odom_angular_error': 0.0, 'odom_heading_error': 0.0}
 CHI_SQUARE = 16.3       # 99.9 % quantile for 3 degrees of freedom
 
 

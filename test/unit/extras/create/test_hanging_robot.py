@@ -7,9 +7,8 @@ import pytest
 
 from rbx1_nav.base.units import SECOND, wrap_angle
 
-from driven_create import started
+from driven_create import NO_ERRORS, started
 
-NO_ERRORS = {'odom_linear_error': 0.0, 'odom_angular_error': 0.0, 'odom_heading_error': 0.0}
 SIGMA = 3
 ROUNDING = 0.02     # rad: a Create counts whole degrees
 

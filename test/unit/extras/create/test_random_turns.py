@@ -5,7 +5,7 @@ import random
 import pytest
 
 
-from driven_create import started
+from driven_create import NO_ERRORS, started
 
 DRIVES = range(15)
 STEP = 0.05     # s
@@ -29,8 +29,7 @@ class Hand:
 def random_drive(seed, drops):
     """Return (error, sigma, sum of the absolute turns) in degrees at the end of a random drive."""
     choose = random.Random(seed)
-    driven = started('create', drops_fractions=drops, odom_linear_error=0.0, odom_angular_error=0.0,
-                     odom_heading_error=0.0)
+    driven = started('create', drops_fractions=drops, **NO_ERRORS)
     hand, angle = Hand(driven.body), driven.body.angle
     before, true, turned = driven.pose.yaw, angle.total, 0.0
 
