@@ -84,7 +84,6 @@ class Body:
         self.charge: float = CAPACITY       # mAh; more than CAPACITY if the robot misjudges its battery
         self.temperature = 25               # degrees C, of the battery
         self.voltage = 0                    # mV; 0: it follows the charge
-        self.now: int | None = None
         self.reset_counters()
 
     def reset_counters(self) -> None:
@@ -119,9 +118,9 @@ class Body:
     def moving(self) -> bool:
         return bool(self.left or self.right)
 
-    def advance(self, now: int) -> None:
-        duration, self.now = now - (now if self.now is None else self.now), now
-        if duration <= 0:
+    def advance(self, duration: int) -> None:
+        """duration: ns."""
+        if not duration:
             return
         left, right = self.wheels.travel(*self.velocity, duration / SECOND)
         self._odometer += (left + right) / 2

@@ -106,8 +106,8 @@ class EmulatedCreate:
         self._go_to(now)
 
     def _go_to(self, time: int) -> None:
+        self.body.advance(max(0, time - self.now))
         self.now = self.panel.now = max(time, self.now)
-        self.body.advance(self.now)
 
     # the update every 15 ms
 
