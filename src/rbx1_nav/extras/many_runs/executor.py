@@ -13,6 +13,7 @@ from typing import Any, Callable, Deque, Iterable, Iterator, TypeVar
 from rbx1_nav.base.description import Robot
 from rbx1_nav.base.surfaces import Surface
 from rbx1_nav.extras.many_runs.cluster import Place, open_cluster
+from rbx1_nav.node.config import ConfigError
 
 LOOK = 1.0          # s between two checks of a cluster whose result is late
 AHEAD = 4           # tasks per process that are submitted before their results are needed
@@ -23,7 +24,7 @@ Result = TypeVar('Result')
 def in_order(place: Place | None, function: Callable[[Task], Result], tasks: Iterable[Task]) -> Iterator[Result]:
     """Yield the results of a function for all tasks, in the order of the tasks. Few of them are in memory at a time.
 
-    place: None for this process. Raises ConnectionError if a cluster is lost.
+    place: None for this process. Raises ConnectionError if a cluster is lost, and ConfigError if a worker differs.
     """
     if place is None:
         yield from map(function, tasks)
@@ -46,7 +47,14 @@ def in_order(place: Place | None, function: Callable[[Task], Result], tasks: Ite
 def _result(place: Place, future: Future[Result]) -> Result:
     while not wait([future], LOOK).done:
         place.jobs()
-    return future.result()
+    try:
+        return future.result()
+    except Exception as error:
+        if type(error) is not Exception:
+            raise
+        # what Dask makes of an error that a worker could not send: the bytes of a pickle
+        raise ConfigError('a worker that joined later cannot read the runs: expected the Python and the packages of '
+                          'the program that uses the cluster') from None
 
 
 @contextmanager

@@ -1,4 +1,5 @@
 """Tasks on several processes: order, few tasks in memory, and the life of the processes."""
+from concurrent.futures import Future
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import suppress
 import multiprocessing
@@ -10,7 +11,9 @@ import time
 
 import pytest
 
+from rbx1_nav.extras.many_runs.cluster import Place
 from rbx1_nav.extras.many_runs.executor import AHEAD, in_order, open_place
+from rbx1_nav.node.config import ConfigError
 
 
 def double(number):
@@ -55,6 +58,14 @@ def test_a_process_that_is_killed_is_an_error():
         os.kill(multiprocessing.active_children()[0].pid, signal.SIGKILL)
         with pytest.raises(BrokenProcessPool):
             list(results)
+
+
+def test_a_worker_that_joins_later_and_cannot_read_the_tasks():
+    """The error is as Dask 2022.12.1 gave it for a worker with Python 3.8 and without numpy."""
+    future = Future()
+    future.set_exception(Exception(b'\x80\x05\x95tblib.pickling_support'))
+    with pytest.raises(ConfigError, match='^a worker that joined later cannot read the runs: expected the Python'):
+        list(in_order(Place(lambda function, task: future, lambda: 1), abs, [-1]))
 
 
 KILLED = """
