@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Fit surfaces to simulated recordings of random floors, and count what the fit reports. See README.md."""
 import argparse
+from math import radians
 import os
 import random
 import re
@@ -14,6 +15,7 @@ import numpy
 
 from sample_runs import EXERCISE, FLOOR, REST, record
 from rbx1_nav.base.description import load_robot
+from rbx1_nav.base.kinematics import Pose
 from rbx1_nav.base.surfaces import KEYS, load_surface
 from rbx1_nav.extras.fitting.comparison import mahalanobis
 from rbx1_nav.extras.fitting.prediction import SPREADS
@@ -26,6 +28,7 @@ WIDTH = 0.26    # m
 RUNS = 4        # recordings of a fit
 FLOORS = 10     # of the coverage
 ENDS = 1000     # simulated end poses per floor
+TAPE = 0.01, 0.01, radians(2)   # m, m, rad: errors of an end pose measured by hand
 # motors and floors from these ranges
 LOW = dict(lag=0.05, accel_limit=0.4, drag_straight=1e-4, drag_turning=1e-4, slip_straight=-0.05, slip_turning=0.0,
            delay=0.0, curvature=-0.05, turning_loss=0.02, heading_noise_turning=0.02, heading_noise_straight=0.02,
@@ -58,7 +61,7 @@ def drive_on(floor, chosen, name='run'):
 
 def fit(start, recordings):
     """(FitResult, {key: Value})."""
-    result = WholeFit(recordings, WIDTH, start).run()
+    result = WholeFit(recordings, WIDTH, start, TAPE).run()
     return result, {value.key: value for value in result.values}
 
 
@@ -93,12 +96,20 @@ def unused(chosen, start):
     return values['turning_loss'][1:3] == (start.turning_loss, None), floor, values
 
 
-def coverage(number, recordings, start):
+def measure_by_hand(chosen, floor):
+    """The Recording of the exercise, with its end pose in place of the truth."""
+    recording = record(EXERCISE, chosen.randrange(10 ** 6), floor)
+    end = Pose(*(chosen.gauss(values[-1], error) for values, error in zip(recording.truth[1:], TAPE)))
+    return recording._replace(truth=None, end=end)
+
+
+def coverage(number, recordings, start, by_hand):
     """Shares (percent) of the end poses of timed runs on a random floor with large spreads that are inside the 50 % and
     the 90 % region of runs on a surface fitted to so many recordings, and inside the regions of the floor itself."""
     chosen = random.Random(f'coverage {number}')
     floor = make_floor(chosen, **{key: chosen.uniform(0.02, 0.1) for key in SPREADS})
-    result, _ = fit(start, [drive_on(floor, chosen) for _ in range(recordings)])
+    result, _ = fit(start, [measure_by_hand(chosen, floor) if by_hand else drive_on(floor, chosen)
+                            for _ in range(recordings)])
     robot = load_robot(resources.path('config', 'turtlebot.yaml'))._replace(base_width=WIDTH)
     ends = []
     for first, surface in ((0, floor), (ENDS, result.surface), (2 * ENDS, floor)):
@@ -118,10 +129,11 @@ def main():
     parser.add_argument('--case', choices=CASES, action='append', help='default: all')
     parser.add_argument('--tries', type=int, default=20, help='of each case; default: 20')
     parser.add_argument('--coverage', type=int, metavar='N', help='only the coverage of fits to N recordings')
+    parser.add_argument('--by-hand', action='store_true', help='of recordings with end poses measured by hand')
     arguments = parser.parse_args()
     start = load_surface('low_ply_carpet', resources.surfaces())
     if arguments.coverage:
-        shares = [coverage(number, arguments.coverage, start) for number in range(FLOORS)]
+        shares = [coverage(number, arguments.coverage, start, arguments.by_hand) for number in range(FLOORS)]
         for name, values in ('mean', numpy.mean(shares, axis=0)), ('lowest', numpy.min(shares, axis=0)):
             print('%s: fitted %.0f / %.0f, known %.0f / %.0f' % (name, *values))
         return

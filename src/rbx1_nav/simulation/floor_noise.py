@@ -37,11 +37,12 @@ class Noise:
         self.scale: float = strength / (2 * cell) ** 0.5       # a Laplace distribution of scale 1 has a variance of 2
         self.cell = cell
         self.random = generator.random
-        self._draw(cell * self.random())
+        self.left = cell * self.random()
+        self.slope = self.draw()
 
-    def _draw(self, size: float) -> None:
-        self.slope = self.scale * log((1 - self.random()) / (1 - self.random()))     # Laplace
-        self.left = size
+    def draw(self) -> float:
+        """Return the error per unit of the path in the next cell."""
+        return self.scale * log((1 - self.random()) / (1 - self.random()))     # Laplace
 
     def over(self, path: float) -> float:
         """Return the error over the next `path` (0 or more)."""
@@ -52,7 +53,7 @@ class Noise:
         while path > self.left:
             error += self.slope * self.left
             path -= self.left
-            self._draw(self.cell)
+            self.slope, self.left = self.draw(), self.cell
         self.left -= path
         return error + self.slope * path
 

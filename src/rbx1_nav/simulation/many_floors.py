@@ -42,22 +42,23 @@ class Noises:
     """The same Noise in many runs, all of which have the same path."""
 
     def __init__(self, noises: Sequence[Noise]) -> None:
-        self.noises = noises
+        self.draws = [noise.draw for noise in noises]
+        self.cell = noises[0].cell
         self.left = numpy.array([noise.left for noise in noises])
         self.slope = numpy.array([noise.slope for noise in noises])
 
     def over(self, path: float) -> Array:
         """See Noise.over()."""
-        errors: Array = self.slope * path
-        crossing = numpy.flatnonzero(self.left < path)     # few of them
-        noises = [self.noises[index] for index in crossing.tolist()]
-        for noise, left in zip(noises, self.left[crossing].tolist()):
-            noise.left = left
-        errors[crossing] = [noise.over(path) for noise in noises]
-        self.left -= path
-        self.left[crossing] = [noise.left for noise in noises]
-        self.slope[crossing] = [noise.slope for noise in noises]
-        return errors
+        errors, rest = numpy.zeros(len(self.left)), numpy.full(len(self.left), path)
+        crossing = numpy.flatnonzero(rest > self.left)     # few of them
+        while len(crossing):
+            errors[crossing] += self.slope[crossing] * self.left[crossing]
+            rest[crossing] -= self.left[crossing]
+            self.slope[crossing] = [self.draws[index]() for index in crossing.tolist()]
+            self.left[crossing] = self.cell
+            crossing = crossing[rest[crossing] > self.cell]
+        self.left -= rest
+        return errors + self.slope * rest
 
 
 class ManyRoughness(Roughness):

@@ -5,9 +5,9 @@ noises and spreads are multiplied by one common factor. The remaining uncertaint
 """
 from __future__ import annotations
 
-from math import radians
+from math import exp, hypot, log1p, radians
 import os
-from typing import NamedTuple, Sequence
+from typing import Mapping, NamedTuple, Sequence
 
 import numpy
 from scipy.optimize import minimize_scalar
@@ -104,13 +104,11 @@ def fit_ends(runs: Sequence[PreparedRun], surface: Surface, end_errors: Sequence
         surface = with_values(surface, {worst: getattr(start, worst)})
     degrees = 3 * len(runs) - len(means)
     wider = widening(degrees)
-    spreads = {'slip_straight_spread': 'slip_straight', 'slip_turning_spread': 'slip_turning'}
     values = {key: getattr(surface, key) for key in means}
     for key in NOISES:
         values[key] = min(1.0, wider * getattr(surface, key))
-    for key, mean in spreads.items():
-        values[key] = float(min(0.5, wider * numpy.hypot(getattr(surface, key), errors.get(mean, 0.0))))
-    reasons.update((key, 'multiplied by the common factor') for key in (*NOISES, *spreads) if values[key])
+    values.update(future_spreads(surface, errors, degrees))
+    reasons.update((key, 'multiplied by the common factor') for key in NOISES + SPREADS if values[key])
     notes = [f'The noises and spreads of the starting surface are multiplied by {factor:.2f} +- '
              f'{factor / (2 * degrees) ** 0.5:.2f}, one common factor fitted to {len(runs)} end poses, and by '
              f'{wider:.2f} because {3 * len(runs)} values are few: the 90 % region should contain 90 % of the end '
@@ -139,6 +137,19 @@ def fit_factor(fitter: Fitter, surface: Surface, start: Surface, means: Sequence
         return cost(scaled(surface, start, numpy.exp(logarithm))) + logarithm ** 2 / (2 * PRIOR ** 2)
 
     return float(numpy.exp(minimize_scalar(total, bounds=numpy.log(FACTORS), method='bounded').x))
+
+
+def future_spreads(surface: Surface, errors: Mapping[str, float], degrees: int) -> dict[str, float]:
+    """Return the SPREADS of a Surface for runs to which it was not fitted: the root mean squares of the deviations from
+    the fitted slips, widened for few degrees of freedom. errors: standard errors of slips and spreads, if fitted."""
+    wider = widening(degrees)
+    spreads = {}
+    for key, mean in zip(SPREADS, SLIPS):
+        spread = getattr(surface, key)
+        # the logarithm of a fitted spread has a normal distribution: see fit_noise()
+        size = exp(log1p(errors[key] / spread) ** 2) if key in errors else 1.0
+        spreads[key] = min(0.5, wider * size * hypot(spread, errors.get(mean, 0.0)))
+    return spreads
 
 
 def widening(degrees: int) -> float:

@@ -154,10 +154,10 @@ class Fitter:
         return values, errors
 
 
-def uncertainty(value: float, error: float, largest: float) -> float:
-    """Return how uncertain a value is: above 1, its standard error is too large. largest: an error that is never too
-    large, in the unit of the value."""
-    return error / max(largest, RELATIVE * abs(value))
+def uncertainty(value: float, error: float, largest: float, relative: float = RELATIVE) -> float:
+    """Return how uncertain a value is: above 1, its standard error is too large. largest, relative: errors that are
+    never too large, in the unit of the value and in units of the value."""
+    return error / max(largest, relative * abs(value))
 
 
 def vague(keys: Sequence[str]) -> Array:

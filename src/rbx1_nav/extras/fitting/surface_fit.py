@@ -7,8 +7,8 @@ from typing import Callable, NamedTuple, Sequence
 import numpy
 
 from rbx1_nav.base.surfaces import KEYS, Surface
-from rbx1_nav.extras.fitting.end_poses import TYPICAL, fit_ends
-from rbx1_nav.extras.fitting.floor_fit import BOUNDS, MEANS, MIN_STRENGTH, Fitter, fit_floor, uncertainty
+from rbx1_nav.extras.fitting.end_poses import TYPICAL, fit_ends, future_spreads
+from rbx1_nav.extras.fitting.floor_fit import BOUNDS, MEANS, MIN_STRENGTH, RELATIVE, Fitter, fit_floor, uncertainty
 from rbx1_nav.extras.fitting.gyro_fit import fit_gyro, rests_at
 from rbx1_nav.extras.fitting.motor_fit import LIMITS, differing, fit_motors
 from rbx1_nav.extras.fitting.prediction import SPREADS, with_values
@@ -25,8 +25,8 @@ WIDEST = 10.0       # largest ratio of the error of an end pose in motion to the
 CLEARLY_WIDER = 2.0
 MIN_RUNS = 3        # number of runs required for a spread from run to run
 LARGEST = {'accel_limit': 0.3, 'lag': 0.1, 'gyro_noise': 0.02, 'gyro_bias': 0.02, 'gyro_scale_error': 0.01,
-           **{key: error for key, (_, error) in MEANS.items()},
-           **dict.fromkeys(NOISES, 0.05), **dict.fromkeys(SPREADS, 0.02)}  # see uncertainty()
+           **{key: error for key, (_, error) in MEANS.items()}, **dict.fromkeys(NOISES, 0.05)}  # see uncertainty()
+LARGEST_SPREAD = 1.5    # the same for a spread, in units of the spread: a larger error is that of the prior
 POOR = 0.1          # fraction of the travel, rms, that the motor model may leave unexplained; but always at least
 POOR_TRAVEL = 0.002     # m
 
@@ -90,7 +90,7 @@ class WholeFit:
     def _set(self, key: str, value: float, error: float, bounds: tuple[float, float] | None = None) -> bool:
         """Accept a fitted value unless its standard error is too large. Returns whether it was accepted."""
         low, high = bounds or KEYS[key].limits
-        if not uncertainty(value, error, LARGEST[key]) <= 1:
+        if not doubt(key, value, error) <= 1:
             self.reasons[key] = f'found {value:.3g} +- {error:.2g}: too uncertain'
             return False
         if bounds and (value <= low * 1.001 + 1e-9 or value >= high * 0.999) and low != 0:
@@ -149,6 +149,15 @@ class WholeFit:
         if 'delay' in means:
             start = start._replace(delay=self.surface.delay or 0.1)
         surface, errors = self._fit_known(fitter, start, means, noises)
+        fitted = [key for key in SPREADS if key in errors]
+        if fitted:
+            spreads, found = future_spreads(surface, errors, len(runs) - 1), surface
+            surface = with_values(surface, {key: spreads[key] for key in fitted})
+            errors.update((key, errors[key] * spreads[key] / getattr(found, key)) for key in fitted)
+            self.notes.append(', '.join(f'{key}: found {getattr(found, key):.2g}' for key in fitted) + '. The file has '
+                              f'larger spreads, because {len(runs)} runs are few: they contain the standard errors of '
+                              'the slips and of the spreads, and the 90 % region should contain 90 % of the end poses '
+                              "of future runs (Student's t distribution).")
         for key, error in errors.items():
             self._set(key, getattr(surface, key), error, BOUNDS.get(key))
         if fitter.wider > CLEARLY_WIDER:
@@ -168,14 +177,14 @@ class WholeFit:
             surface, errors = fit_floor(fitter, start, means, noises, prior)
             commanded.measured, commanded.wider = fitter.measured, fitter.wider
             by_commands = commanded.mean_errors(surface, means)
-            unsure = {key: uncertainty(getattr(surface, key), max(errors[key], by_commands.get(key, 0.0)), LARGEST[key])
+            unsure = {key: doubt(key, getattr(surface, key), max(errors[key], by_commands.get(key, 0.0)))
                       for key in (*means, *noises)}
             # drop the worst first: without it, the others may be determined
             worst = max(unsure, key=lambda key: unsure[key])
             if unsure[worst] <= 1:
                 break
             self.reasons[worst] = f'found {getattr(surface, worst):.3g} +- {errors[worst]:.2g}: too uncertain'
-            if uncertainty(getattr(surface, worst), errors[worst], LARGEST[worst]) <= 1:
+            if doubt(worst, getattr(surface, worst), errors[worst]) <= 1:
                 self.reasons[worst] = 'without effect on the end poses of these commands'
             start = with_values(surface, {worst: getattr(self.surface, worst)})
             means, noises = ([key for key in keys if key != worst] for keys in (means, noises))
@@ -209,6 +218,11 @@ class WholeFit:
                 self.reasons[key] = f'found {value:.2g}: smaller than its uncertainty'
             else:
                 self._set(key, value, error)
+
+
+def doubt(key: str, value: float, error: float) -> float:
+    """Return the uncertainty() of the value of a key."""
+    return uncertainty(value, error, LARGEST.get(key, 0.0), LARGEST_SPREAD if key in SPREADS else RELATIVE)
 
 
 def check_alike(recordings: Sequence[Recording]) -> None:

@@ -6,7 +6,7 @@ import numpy
 import pytest
 
 from rbx1_nav.base.kinematics import Pose
-from rbx1_nav.extras.fitting.end_poses import widening
+from rbx1_nav.extras.fitting.end_poses import future_spreads, widening
 from rbx1_nav.extras.fitting.gyro_fit import rests_at
 from rbx1_nav.extras.fitting.surface_file import PARTS
 from rbx1_nav.extras.fitting.surface_fit import WholeFit
@@ -66,6 +66,7 @@ def test_one_run_tells_no_spread():
 
 def test_runs_without_a_turn():
     _, values = fit([record((REST, FORWARD, REST, FORWARD, REST), seed) for seed in range(3)])
+    assert values['slip_turning_spread'][1:3] == (START.slip_turning_spread, None)
     assert values['drag_turning'] == ('drag_turning', START.drag_turning, None, 'no measurable effect in these runs')
     for key in 'slip_turning', 'turning_loss', 'gyro_scale_error':
         assert values[key].error is None and values[key].value == getattr(START, key), key
@@ -126,6 +127,27 @@ def test_a_region_from_few_runs_is_wider(degrees):
     assert widening(degrees) == pytest.approx(ratio ** 0.5)
 
 
+def test_spreads_of_future_runs_contain_what_the_fit_does_not_know():
+    """The same as the deviations of slips that are drawn from what the fit knows."""
+    surface = FLOOR._replace(slip_straight_spread=0.03, slip_turning_spread=0.05)
+    errors = dict(slip_straight=0.02, slip_turning_spread=0.02)     # an upward error of 40 %
+    generator = numpy.random.default_rng(2)
+    drawn = 0.05 * 1.4 ** generator.standard_normal(100000) * generator.standard_normal(100000)
+    found = future_spreads(surface, errors, 4)
+    assert found['slip_straight_spread'] == pytest.approx(widening(4) * 13 ** 0.5 / 100)
+    # the standard error of a deviation from 100,000 numbers is 0.3 %
+    assert found['slip_turning_spread'] == pytest.approx(widening(4) * drawn.std(), rel=0.01)
+
+
+def test_the_file_has_the_spreads_of_future_runs():
+    floor = FLOOR._replace(slip_straight_spread=0.06, slip_turning_spread=0.09)
+    result, values = fit([record(DRIVE, seed, floor) for seed in range(3)])
+    found = dict(re.findall(r'(slip_\w+_spread): found ([\d.]+\d)', result.notes[0]))
+    assert list(found) == ['slip_straight_spread', 'slip_turning_spread']
+    for key, text in found.items():
+        assert values[key].value == getattr(result.surface, key) > widening(2) * float(text), key
+
+
 def test_a_truth_that_is_worse_in_motion_is_not_taken_for_noise_of_the_floor():
     def shaken(run, generator):
         moving = ~rests_at(run, run.truth.time, 0.75)
@@ -137,6 +159,7 @@ def test_a_truth_that_is_worse_in_motion_is_not_taken_for_noise_of_the_floor():
     for key in 'heading_noise_turning', 'heading_noise_straight', 'distance_noise':
         assert abs(values[key].value - getattr(FLOOR, key)) < 3 * values[key].error, key
         assert values[key].error < 0.03, key
-    assert len(result.notes) == 1 and result.notes[0].startswith('The end poses of the windows have ')
+    text = 'The end poses of the windows have '
+    assert result.notes[-1].startswith(text)
     exact, _ = fit([record(DRIVE, seed) for seed in range(4)])
-    assert exact.notes == []
+    assert not exact.notes[-1].startswith(text)
