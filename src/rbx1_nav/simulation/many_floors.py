@@ -49,7 +49,8 @@ class Noises:
 
     def over(self, path: float) -> Array:
         """See Noise.over()."""
-        errors, rest = numpy.zeros(len(self.left)), numpy.full(len(self.left), path)
+        errors: Array = numpy.zeros(len(self.left))
+        rest = numpy.full(len(self.left), path)
         crossing = numpy.flatnonzero(rest > self.left)     # few of them
         while len(crossing):
             errors[crossing] += self.slope[crossing] * self.left[crossing]
@@ -58,7 +59,8 @@ class Noises:
             self.left[crossing] = self.cell
             crossing = crossing[rest[crossing] > self.cell]
         self.left -= rest
-        return errors + self.slope * rest
+        errors += self.slope * rest
+        return errors
 
 
 class ManyRoughness(Roughness):
