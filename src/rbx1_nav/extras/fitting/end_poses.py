@@ -102,7 +102,7 @@ def fit_ends(runs: Sequence[PreparedRun], surface: Surface, end_errors: Sequence
         reasons[worst] = f'found {getattr(surface, worst):.3g} +- {errors[worst]:.2g}: too uncertain'
         means.remove(worst)
         surface = with_values(surface, {worst: getattr(start, worst)})
-    degrees = 3 * len(runs) - len(means)
+    degrees = max(1, 2 * (len(runs) - 1))       # the region has two coordinates
     wider = widening(degrees)
     values = {key: getattr(surface, key) for key in means}
     for key in NOISES:
@@ -111,7 +111,7 @@ def fit_ends(runs: Sequence[PreparedRun], surface: Surface, end_errors: Sequence
     reasons.update((key, 'multiplied by the common factor') for key in NOISES + SPREADS if values[key])
     notes = [f'The noises and spreads of the starting surface are multiplied by {factor:.2f} +- '
              f'{factor / (2 * degrees) ** 0.5:.2f}, one common factor fitted to {len(runs)} end poses, and by '
-             f'{wider:.2f} because {3 * len(runs)} values are few: the 90 % region should contain 90 % of the end '
+             f'{wider:.2f} because {len(runs)} runs are few: the 90 % region should contain 90 % of the end '
              "poses of future runs (Student's t distribution). The spreads also contain the standard errors of the "
              'mean slips.']
     return EndsFit({key: float(value) for key, value in values.items()}, errors, reasons, notes)

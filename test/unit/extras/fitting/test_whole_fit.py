@@ -117,7 +117,7 @@ def test_ends_tell_slips_and_one_factor():
     assert values['heading_noise_turning'][2:] == (None, 'multiplied by the common factor')
     assert re.match('The noises .* are multiplied by [0-9.]+ [+]- [0-9.]+, one common factor ', result.notes[0])
     assert values['curvature'].error is None
-    assert "Student's t distribution" in result.notes[0]
+    assert f'by {widening(4):.2f} because 3 runs are few' in result.notes[0]    # x and y of three runs, without means
 
 
 @pytest.mark.parametrize('degrees', [2, 4, 50])
