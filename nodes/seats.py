@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Starts a ROS master, a simulated TurtleBot and its page in the browser for each of several learners on this machine.
 
-Prints the address of each page, which lets the first browser that opens it drive, and the ROS_MASTER_URI for terminals
-of the learner. Ctrl-C stops all seats.
+Prints the addresses of the teacher's page and of each learner's, which are valid for the first browser that opens them,
+and the ROS_MASTER_URI for terminals of the learner. Ctrl-C stops all seats.
 """
 from __future__ import annotations
 
@@ -17,8 +17,11 @@ import time
 from typing import Sequence
 
 from rbx1_nav.base.surfaces import known_surfaces, load_surface
+from rbx1_nav.extras.web.access import Access, make_token, page_address
 from rbx1_nav.extras.web.choices import CHOICES, read_choices
 from rbx1_nav.extras.web.seat import Seat
+from rbx1_nav.extras.web.seat_list import SeatList
+from rbx1_nav.extras.web.server import PageServer
 from rbx1_nav.node import resources
 from rbx1_nav.node.config import ConfigError
 from rbx1_nav.simulation.slip import RANDOM, read_seed
@@ -43,7 +46,7 @@ def read_arguments() -> argparse.Namespace:
     parser.add_argument('--master-port', type=int, default=11311, metavar='PORT',
                         help='seat N has its master at this port plus N; default: 11311')
     parser.add_argument('--web-port', type=int, default=8080, metavar='PORT',
-                        help='seat N has its page at this port plus N; default: 8080')
+                        help="port of the teacher's page; seat N has its page at this port plus N; default: 8080")
     arguments = parser.parse_args()
     if not 1 <= arguments.seats <= MAX_SEATS:
         parser.error(f'seats: {arguments.seats}: expected an integer from 1 to {MAX_SEATS}')
@@ -51,9 +54,9 @@ def read_arguments() -> argparse.Namespace:
         if not 1024 <= getattr(arguments, name) <= 65535 - MAX_SEATS:
             parser.error(f"--{name.replace('_', '-')}: {getattr(arguments, name)}: expected 1024 to "
                          f'{65535 - MAX_SEATS}')
-    if abs(arguments.master_port - arguments.web_port) < arguments.seats:
-        parser.error(f'--web-port: {arguments.web_port}: expected a port that is {arguments.seats} or more away from '
-                     f'--master-port, {arguments.master_port}')
+    if abs(arguments.master_port - arguments.web_port) <= arguments.seats:
+        parser.error(f'--web-port: {arguments.web_port}: expected a port that is {arguments.seats + 1} or more away '
+                     f'from --master-port, {arguments.master_port}')
     try:
         read_choices(arguments.choices)
         load_surface(arguments.surface, resources.surfaces())
@@ -75,9 +78,10 @@ def report(text: str) -> None:
     print(text, file=sys.stderr)
 
 
-def check_ports(seats: Sequence[Seat], address: str) -> None:
-    """Exit with a message if a seat cannot use its ports."""
-    for host, port in [each for seat in seats for each in (('', seat.master_port), (address, seat.web_port))]:
+def check_ports(seats: Sequence[Seat], address: str, web_port: int) -> None:
+    """Exit with a message if the teacher's page or a seat cannot use its ports."""
+    for host, port in [(address, web_port), *(
+            each for seat in seats for each in (('', seat.master_port), (address, seat.web_port)))]:
         with socket.socket() as test:
             test.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
             try:
@@ -85,6 +89,14 @@ def check_ports(seats: Sequence[Seat], address: str) -> None:
             except OSError as error:
                 sys.exit(f'address {host or "of this machine"}, port {port}: {error}: expected an address of this '
                          'machine and free ports; see --address, --master-port and --web-port')
+
+
+def serve_teacher(seats: Sequence[Seat], address: str, port: int) -> None:
+    """Serve the teacher's page, and print its address."""
+    access = Access(make_token())
+    PageServer(resources.path('web'), {'/socket': SeatList(access, seats)}, address, port, 'seats.html',
+               [each.web_port for each in seats]).start()
+    print(f'Page for the teacher: {page_address(address, port, access.invite())}')
 
 
 def run(seats: Sequence[Seat]) -> int:
@@ -112,11 +124,13 @@ def main() -> int:
     """Run until Ctrl-C; return the exit status."""
     arguments = read_arguments()
     shared = launch_arguments(arguments)
-    seats = [Seat(number, arguments.master_port + number, arguments.address, arguments.web_port + number, shared,
-                  report) for number in range(1, arguments.seats + 1)]
-    check_ports(seats, arguments.address)
+    address, web_port = arguments.address, arguments.web_port
+    seats = [Seat(number, arguments.master_port + number, address, web_port + number, web_port, shared, report)
+             for number in range(1, arguments.seats + 1)]
+    check_ports(seats, address, web_port)
     signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
+        serve_teacher(seats, address, web_port)
         return run(seats)
     except KeyboardInterrupt:
         return 0

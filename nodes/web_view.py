@@ -20,7 +20,7 @@ import rospy
 from rospy.names import get_resolved_mappings
 
 from rbx1_nav.extras.web.access import (
-    CODE_VARIABLE, LOCALHOST, TOKEN_VARIABLE, Access, make_token, page_address)
+    CODE_VARIABLE, LOCALHOST, TEACHER_VARIABLE, TOKEN_VARIABLE, Access, make_token, page_address)
 from rbx1_nav.extras.web.choices import CHOICES, read_choices
 from rbx1_nav.extras.web.connections import Connections
 from rbx1_nav.extras.web.controls import Controls
@@ -116,7 +116,7 @@ def main() -> int:
     views['/socket'] = next(iter(views.values()))
     try:
         server = PageServer(resources.path('web'), {path: view.connections for path, view in views.items()}, address,
-                            round(param('port')))
+                            round(param('port')), teacher_port=int(os.environ.get(TEACHER_VARIABLE, 0)))
     except OSError as error:
         rospy.logfatal('address %s, port %g: %s: expected an address of this machine and a free port', address,
                        param('port'), error)

@@ -17,20 +17,21 @@ function readCode() {
 
 export class Connection extends EventTarget {
   // Events: welcome, frame, refused, invited, stopping, stopped (detail: the message), lost, silent (no frame for a while), heard.
-  // robot: its name in a fleet, '' for the only robot.
-  constructor(robot) {
+  // robot: its name in a fleet, '' for the only robot. host, token: of a seat, for the page of the teacher.
+  constructor(robot = '', host = location.host, token = '') {
     super();
+    Object.assign(this, {host, token});
     this.path = robot ? `/socket/${robot}` : '/socket';
-    this.code = readCode();
+    this.code = token ? '' : readCode();
     this.failures = 0;
     this.heard = 0;         // ms: when the last message arrived
     this.clock = 0;         // s, clock of the node in the last frame: a request carries it, and so its age
     this.silent = false;
-    setInterval(() => this.checkSilence(), 100);
+    this.timer = setInterval(() => this.checkSilence(), 100);
     // pasting another printed address into an open page changes only the part after #, and does not reload the page
     window.addEventListener('hashchange', () => {
       this.code = readCode();
-      if (this.code) {
+      if (this.code && !token) {
         this.replace();
       }
     });
@@ -39,16 +40,19 @@ export class Connection extends EventTarget {
 
   connect() {
     const protocol = location.protocol === 'https:' ? 'wss' : 'ws';
-    const socket = new WebSocket(`${protocol}://${location.host}${this.path}`);
+    const socket = new WebSocket(`${protocol}://${this.host}${this.path}`);
     this.socket = socket;
     this.begun = performance.now();
-    socket.onopen = () => this.send({type: 'hello', token: localStorage.getItem('token') || '', code: this.code});
+    socket.onopen = () => this.send({
+      type: 'hello', token: this.token || localStorage.getItem('token') || '', code: this.code});
     socket.onmessage = event => {
       const message = JSON.parse(event.data);
       if (message.type === 'welcome') {
         this.failures = 0;
         this.code = '';
-        localStorage.setItem('token', message.token);
+        if (!this.token) {
+          localStorage.setItem('token', message.token);
+        }
       }
       this.heard = performance.now();
       this.clock = message.clock ?? this.clock;
@@ -63,11 +67,21 @@ export class Connection extends EventTarget {
     };
   }
 
-  // Abandons the connection without waiting for its end, which may never come, and opens another one.
-  replace() {
+  // Abandons the connection without waiting for its end, which may never come.
+  abandon() {
     clearTimeout(this.retry);
     this.socket.onopen = this.socket.onmessage = this.socket.onclose = null;
     this.socket.close();
+  }
+
+  // Closes the connection until another address is pasted.
+  end() {
+    clearInterval(this.timer);
+    this.abandon();
+  }
+
+  replace() {
+    this.abandon();
     this.dispatchEvent(new CustomEvent('lost', {detail: ''}));
     this.connect();
   }

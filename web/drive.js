@@ -1,8 +1,9 @@
 // Controls that move the robot (runs, reset, arrow keys), and Stop.
 
+import {drivenBy} from './model.js';
+import {Stop} from './stop.js';
 import {WORDS} from './words.js';
 
-const ANSWER = 900, STOP_AGAIN = 450;      // ms: time for an answer to Stop; Stop is repeated until it is answered
 const HELD = 300;       // ms: after a longer pause, as of a frozen browser, a key must be pressed again
 const REPEAT = 100;     // ms: the node stops the robot if held keys are not repeated within 300 ms
 const KEYS = {ArrowUp: [1, 0], ArrowDown: [-1, 0], ArrowLeft: [0, 1], ArrowRight: [0, -1]};    // forward, left
@@ -14,9 +15,7 @@ export class Drive {
     Object.assign(this, {connection, model, notify});
     this.trusted = false;
     this.connected = false;
-    this.answer = '';       // the answer to Stop, if it was the last action on this page
-    this.stops = 0;         // number of the last Stop
-    this.stopTimer = null;  // repeats Stop until it is answered
+    this.stopping = new Stop(connection, text => notify('stop', text, true), () => this.answered());
     this.hand = false;
     this.held = new Set();
     this.timer = null;
@@ -137,47 +136,17 @@ export class Drive {
       this.dialog.close('cancel');
     }
     this.begin();
-    this.answer = WORDS.stopping;
-    this.stops += 1;
-    this.answered = performance.now();
-    this.stopTimer = setInterval(() => this.sendStop(), STOP_AGAIN);
-    this.sendStop();
+    this.stopping.press();
   }
 
-  sendStop() {
-    if (!this.connection.send({type: 'stop', number: this.stops})) {
-      this.alarm(WORDS.notReached);
-    } else if (performance.now() - this.answered >= ANSWER) {
-      this.alarm(WORDS.noAnswer);
-    }
+  answered() {
+    this.notify('refused', '');
+    this.draw();
   }
 
-  // The node has received Stop, and waits until the robot is stationary.
-  stopReceived({number}) {
-    if (this.stopTimer && number === this.stops) {
-      this.answered = performance.now();
-      this.alarm('');
-    }
-  }
-
-  stopAnswered({number, stationary, silent, text}) {
-    if (this.stopTimer && number === this.stops) {
-      this.begin();
-      this.answer = WORDS.said(text);
-      this.alarm(stationary && !silent.length ? '' : this.answer);
-      this.draw();
-    }
-  }
-
-  alarm(text) {
-    this.notify('stop', text, true);
-  }
-
-  // Ends the previous action, and removes its messages. What may still move stays in red until Stop has an answer.
+  // Ends the previous action, and removes its messages.
   begin() {
-    clearInterval(this.stopTimer);
-    this.stopTimer = null;
-    this.answer = '';
+    this.stopping.end();
     this.notify('refused', '');
   }
 
@@ -235,7 +204,7 @@ export class Drive {
 
   // Enables the buttons that can be used now, and shows what is running.
   draw() {
-    const {status} = this.model, running = Boolean(status.started) && !status.outcome || Boolean(status.driver);
+    const {status} = this.model, {answer, timer} = this.stopping, driver = drivenBy(status), running = Boolean(driver);
     const ready = this.connected && !this.connection.silent && this.trusted && !status.master && Boolean(status.base) &&
       'odometry' in this.model.poses;
     if (running && this.hand) {     // another browser has started a run
@@ -253,12 +222,12 @@ export class Drive {
     this.idle = ready && !running;      // whether a run could be started
     this.toggle.disabled = !this.idle;
     document.getElementById('invite').disabled = !this.connected || !this.trusted;
-    const answered = this.answer && this.connected && !running && !this.hand && !status.master;
-    const text = this.stopTimer || answered ? this.answer : !this.connected ? '' : status.master === 'silent' ? WORDS.masterSilent
+    const answered = answer && this.connected && !running && !this.hand && !status.master;
+    const text = timer || answered ? answer : !this.connected ? '' : status.master === 'silent' ? WORDS.masterSilent
       : status.master === 'restarted' ? WORDS.masterRestarted
       : !status.base ? WORDS.noBase
       : !this.trusted ? WORDS.noToken
-      : running ? WORDS.running(status.driver || status.started)
+      : running ? WORDS.running(driver)
       : this.hand ? WORDS.keysDrive
       : status.started ? WORDS.outcome(WORDS[status.started], WORDS.said(status.outcome)) : '';
     const why = !ready || running ? [] : [

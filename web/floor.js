@@ -101,7 +101,7 @@ export class Floor {
   }
 
   makeRobot(source, parent = this.world) {
-    const robot = element('g', {class: `robot ${source}`, ...source && {id: `robot-${source}`}}, parent);
+    const robot = element('g', {class: `robot ${source}`}, parent);
     element('circle', {r: RADIUS, 'vector-effect': 'non-scaling-stroke'}, robot);
     element('path', {d: `M${-0.4 * RADIUS} ${0.5 * RADIUS}L${0.8 * RADIUS} 0L${-0.4 * RADIUS} ${-0.5 * RADIUS}`,
       fill: 'none', 'vector-effect': 'non-scaling-stroke'}, robot);

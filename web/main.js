@@ -6,10 +6,10 @@ import {Drive} from './drive.js';
 import {Fleet} from './fleet.js';
 import {Floor} from './floor.js';
 import {LogView} from './log.js';
-import {Model, SOURCES, endOf} from './model.js';
+import {Model, SOURCES} from './model.js';
 import {save} from './picture.js';
 import {Plot} from './plot.js';
-import {EarlierRuns, Poses, fixed, rowOf, swatch} from './tables.js';
+import {EarlierRuns, Poses, missed, rowOf, swatch} from './tables.js';
 import {connectView} from './view_controls.js';
 import {WORDS, fill} from './words.js';
 
@@ -108,10 +108,7 @@ function kindOf({name, stopped}) {
 
 // What the exercise is about: how far this method has missed the start.
 function drawHeadline() {
-  const {status, run} = model, end = endOf(model.poses);
-  const text = !run || status.started !== run ? '' : !end || status.outcome !== 'finished' ? WORDS[run] : WORDS.outcome(
-    WORDS[run], WORDS.missed(fixed(Math.hypot(end[0], end[1]), 2), fixed(Math.abs(Number(rowOf(end)[2])), 0),
-      'truth' in model.poses));
+  const {run} = model, text = missed(model);
   document.body.classList.toggle('used', Boolean(run || model.earlier.length));
   if (byId('headline').textContent !== text) {
     byId('headline').textContent = text;
@@ -189,8 +186,6 @@ connection.addEventListener('frame', ({detail}) => {
   model.add(detail);
   redraw();
 });
-connection.addEventListener('stopping', ({detail}) => drive.stopReceived(detail));
-connection.addEventListener('stopped', ({detail}) => drive.stopAnswered(detail));
 connection.addEventListener('silent', () => {
   showConnection();
   drive.draw();

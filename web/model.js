@@ -14,6 +14,11 @@ export function endOf(poses) {
   return poses.truth || poses.odometry;
 }
 
+// Who drives the robot, or ''.
+export function drivenBy({driver, started, outcome}) {
+  return driver || !outcome && started || '';
+}
+
 export class Model {
   constructor() {
     this.earlier = [];      // runs of this page that are over, see keep()

@@ -1,6 +1,6 @@
 // The table that pose.py prints, and the list of earlier runs.
 
-import {SOURCES} from './model.js';
+import {SOURCES, endOf} from './model.js';
 import {WORDS} from './words.js';
 
 // A number with this many decimals, and without the sign of -0.000.
@@ -16,6 +16,14 @@ export function rowOf(pose) {
   const [x, y, yaw] = pose;
   const heading = Math.atan2(Math.sin(yaw), Math.cos(yaw)) * 180 / Math.PI;
   return [fixed(x, 3), fixed(y, 3), fixed(heading, 1), fixed(Math.hypot(x, y), 3)];
+}
+
+// The method of the run and, when it has finished, by how much it has missed the start.
+export function missed({status, run, poses}) {
+  const end = endOf(poses);
+  return !run || status.started !== run ? '' : !end || status.outcome !== 'finished' ? WORDS[run] : WORDS.outcome(
+    WORDS[run], WORDS.missed(fixed(Math.hypot(end[0], end[1]), 2), fixed(Math.abs(Number(rowOf(end)[2])), 0),
+      'truth' in poses));
 }
 
 // Makes a table with these headers.

@@ -79,6 +79,11 @@ export const WORDS = {
   commanded: 'commanded', reported: 'reported by the wheels', true: 'true',
   log: 'Log', logHelp: 'Last log messages',
 
+  // the page of the teacher
+  seats: 'Seats', seat: number => `Seat ${number}`, stopAll: 'Stop all', floorOf: seat => `Floor of ${seat}`,
+  idle: 'Idle', driving: name => `Driving: ${name}`, seatsConnected: (number, all) => `${number} of ${all} seats connected`,
+  teacherAddress: 'Open the address for the teacher that seats.py printed last. It is valid for the first browser that opens it.',
+
   // the page without ROS
   script: 'Script', scriptHelp: 'Script, which you can edit', runScript: 'Run the script', restore: 'Restore',
   play: 'Play', paces: ['in real time', '5 times as fast', '20 times as fast', 'at once'],

@@ -93,6 +93,12 @@ export const WORDS = {
   commanded: '命令', reported: '轮子报告的', true: '真实的',
   log: '日志', logHelp: '最近的日志',
 
+  // the page of the teacher
+  seats: '座位', seat: number => `座位 ${number}`, stopAll: '全部停止', floorOf: seat => `${seat}的地面`,
+  idle: '空闲', driving: name => `正在驱动：${RUNS[name] || name}`,
+  seatsConnected: (number, all) => `${all} 个座位，已连接 ${number} 个`,
+  teacherAddress: '请打开 seats.py 最近一次打印的教师地址。第一个打开它的浏览器才能使用。',
+
   // the page without ROS
   scriptHelp: '脚本，可以修改', runScript: '运行脚本', restore: '恢复原样',
   play: '播放', paces: ['实际速度', '5 倍速度', '20 倍速度', '立即显示'],

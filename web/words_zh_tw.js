@@ -93,6 +93,12 @@ export const WORDS = {
   commanded: '命令', reported: '輪子報告的', true: '真實的',
   log: '日誌', logHelp: '最近的日誌',
 
+  // the page of the teacher
+  seats: '座位', seat: number => `座位 ${number}`, stopAll: '全部停止', floorOf: seat => `${seat}的地面`,
+  idle: '空閒', driving: name => `正在驅動：${RUNS[name] || name}`,
+  seatsConnected: (number, all) => `${all} 個座位，已連線 ${number} 個`,
+  teacherAddress: '請開啟 seats.py 最近一次列印的教師地址。第一個開啟它的瀏覽器才能使用。',
+
   // the page without ROS
   scriptHelp: '腳本，可以修改', runScript: '執行腳本', restore: '恢復原樣',
   play: '播放', paces: ['實際速度', '5 倍速度', '20 倍速度', '立即顯示'],
@@ -101,4 +107,4 @@ export const WORDS = {
   onlyScripts: '在這個頁面裡，只有腳本驅動機器人',
   tooLong: seconds => `這次執行在 ${seconds} s 內沒有算完，所以腳本被結束了。`};
 
-// script/traditional.py: 856cfec0
+// script/traditional.py: 9d6ca729

@@ -98,7 +98,7 @@ class TestSeats(support.Case):
                 (('--help',), 0, 'usage: seats.py'),
                 ((0,), 2, 'seats: 0: expected an integer from 1 to 100'),
                 ((1, '--web-port', 80), 2, '--web-port: 80: expected 1024 to'),
-                ((3, '--master-port', 8082), 2, '--web-port: 8080: expected a port that is 3 or more away from'),
+                ((3, '--master-port', 8082), 2, '--web-port: 8080: expected a port that is 4 or more away from'),
                 ((1, '--surface', 'sand'), 2, "surface: 'sand'"),
                 ((1, '--seed', 'x'), 2, "'x'"),
                 ((1, '--address', '192.0.2.1'), 1, 'address 192.0.2.1, port'),

@@ -40,10 +40,10 @@ WITH_ROS = {f'rbx1_nav.{room}.{name}' for room, names in {
     'extras.create.emulator': 'emulated_create',
     'extras.fitting': 'bags',
     'extras.lockstep': 'lockstep simulated_clock watched_nodes',
-    'extras.web': 'connections controls hand_drive server system',
+    'extras.web': 'connections controls hand_drive system',
 }.items() for name in names.split()} | {'rbx1_nav.driving'}
 # what the other rooms may import in addition to Python's own modules
-THIRD_PARTY = {'PIL', 'matplotlib', 'numpy', 'scipy', 'serial', 'yaml'}
+THIRD_PARTY = {'PIL', 'matplotlib', 'numpy', 'scipy', 'serial', 'tornado', 'yaml'}
 OF_MODULE = {'rbx1_nav.extras.many_runs.cluster': {'dask', 'distributed'}, 'rbx1_nav.extras.many_runs.sweep': {'tqdm'}}
 MAX_NODE_LINES, MAX_LINES = 150, 300
 

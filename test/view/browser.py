@@ -41,11 +41,12 @@ def start_chromium(downloads):
 class Page:
     """The page of the web view in a browser."""
 
-    def __init__(self, driver, url):
+    def __init__(self, driver, url, connected='Connected'):
+        """connected: how the text about the connection begins."""
         self.driver = driver
         driver.get('about:blank')   # a URL that differs only after the # would not be loaded
         driver.get(url)
-        support.wait_for(lambda: self.text('connection').startswith('Connected'), 'a connection')
+        support.wait_for(lambda: self.text('connection').startswith(connected), 'a connection')
 
     def find(self, selector):
         """Return the element for a CSS selector."""
@@ -97,7 +98,7 @@ class Page:
 
     def robot(self, source):
         """Return where the page draws a robot: x, y (m), heading (degrees)."""
-        transform = self.find(f'#robot-{source}').get_attribute('transform')
+        transform = self.find(f'.robot.{source}').get_attribute('transform')
         return [float(each) for each in re.findall(r'-?\d+\.?\d*(?:e[-+]?\d+)?', transform)]
 
     def row(self, table, source):

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """Tests the first screen of the page on the screens of a classroom, without a robot: the floor, Stop, the methods and
-the result are on it, and nothing is cut."""
+the result are on it, and nothing is cut. The page of the teacher has thirty seats on a projector."""
+from collections import namedtuple
 import os
 import re
 import tempfile
@@ -8,10 +9,12 @@ import time
 
 from rbx1_nav.extras.web.access import Access
 from rbx1_nav.extras.web.connections import Connections
+from rbx1_nav.extras.web.seat_list import SeatList
 from rbx1_nav.extras.web.server import PageServer
 from rbx1_nav.extras.web.state import PageState, PoseAndSpeed
 from rbx1_nav.node import resources
 
+from ports import free_port
 import support
 from browser import Page, start_chromium
 
@@ -20,6 +23,7 @@ WIDE, NARROW = ('#stop', '#floor', '.runs', '#headline'), ('#stop', '#floor-box'
 # width, height, whether it is a touch screen, what is on the first screen
 SCREENS = [(1920, 1080, False, WIDE), (1300, 950, False, WIDE), (1024, 768, False, WIDE), (390, 844, True, WIDE),
            (844, 390, True, WIDE), (320, 640, False, NARROW), (320, 256, False, ('#stop',))]
+Seat = namedtuple('Seat', 'number web_port token')
 PROJECTORS = [(1920, 1080), (1024, 768)]
 # the edges of an element, and the edges of the screen that the page can show without scrolling
 EDGES = 'const {left, top, right, bottom} = document.querySelector(arguments[0]).getBoundingClientRect(); ' \
@@ -53,6 +57,7 @@ def finished_run():
     state.command(0.2, 0.0, '/out_and_back', now)
     for source, (x, y) in dict(truth=(0.3, 0.4), odometry=(-0.3, 0.2), estimate=(0.31, 0.35)).items():
         state.move(source, PoseAndSpeed(20.0, (x, y, -1.1), 0.0, 0.0), now)
+    state.command(0.0, 0.0, '/out_and_back', now)
     state.set_status(outcome='finished')
     return state
 
@@ -64,9 +69,13 @@ class TestBrowserLayout(support.Case):
         cls.folder = tempfile.TemporaryDirectory()
         state = finished_run()
         connections = Connections(state, NoControls(), Access('token', 'code'), time.monotonic)
-        cls.server = PageServer(resources.path('web'), {'/socket': connections}, 'localhost', 0)
         state.tick = lambda now: None       # the poses do not time out
+        folder, teacher_port = resources.path('web'), free_port()
+        cls.server = PageServer(folder, {'/socket': connections}, 'localhost', 0, teacher_port=teacher_port)
+        seats = SeatList(Access('token', 'code'), [Seat(number, cls.server.port, 'token') for number in range(1, 31)])
+        cls.teacher = PageServer(folder, {'/socket': seats}, 'localhost', teacher_port, 'seats.html', [cls.server.port])
         cls.server.start()
+        cls.teacher.start()
         cls.driver = start_chromium(cls.folder.name)
         cls.page = Page(cls.driver, f'http://localhost:{cls.server.port}/#code')
         cls.page.wait_for_text('headline', r'missed the start by 0\.50 m and 63°')
@@ -75,6 +84,7 @@ class TestBrowserLayout(support.Case):
     def tearDownClass(cls):
         cls.driver.quit()
         cls.server.stop()
+        cls.teacher.stop()
         cls.folder.cleanup()
 
     def show(self, width, height, touch=False):
@@ -88,8 +98,8 @@ class TestBrowserLayout(support.Case):
             'const {scrollWidth, clientWidth} = document.documentElement; return [scrollWidth, clientWidth]')
         self.assertLessEqual(scrolled, shown, f'{width} x {height}: scrolls to the side')
         if os.environ.get('RBX1_PICTURE_DIR'):
-            language = self.driver.execute_script('return document.documentElement.lang')
-            self.page.picture(os.path.join(os.environ['RBX1_PICTURE_DIR'], f'{language}_{width}x{height}.png'))
+            name = '_'.join(self.driver.execute_script('return [document.title, document.documentElement.lang]'))
+            self.page.picture(os.path.join(os.environ['RBX1_PICTURE_DIR'], f'{name}_{width}x{height}.png'))
 
     def test_the_first_screen(self):
         for width, height, touch, parts in SCREENS:
@@ -124,6 +134,19 @@ class TestBrowserLayout(support.Case):
             sizes = [float(self.page.find(each).value_of_css_property('font-size')[:-2])
                      for each in ('#stop', '#facts')]
             self.assertGreater(*sizes)
+
+    def test_thirty_seats_on_a_projector(self):
+        self.addCleanup(self.driver.get, self.driver.current_url)
+        page = Page(self.driver, f'http://localhost:{self.teacher.port}/#code', '30 of 30 seats connected')
+        last, result = '.seat:nth-child(30)', r'missed the start by 0\.50 m and 63°'
+        support.wait_for(lambda: re.search(result, page.find(f'{last} .state').text), result)
+        for width, height, touch in (1920, 1080, False), (390, 844, True):
+            self.show(width, height, touch)
+            self.assertEqual(len(self.driver.find_elements('css selector', '.seat .robot.truth')), 30)
+            if not touch:
+                left, top, right, bottom = self.driver.execute_script(EDGES, last)
+                self.assertTrue(right <= width and bottom <= height, (right, bottom))
+                self.assertGreater(bottom - top, 180)
 
 
 if __name__ == '__main__':

@@ -5,7 +5,7 @@ import re
 
 WEB = os.path.join(os.path.dirname(__file__), '..', '..', '..', 'web')
 # texts that are not words of the page: its name before any script runs, and what is shown without scripts
-NAMES = {'Out and back', 'This page needs JavaScript.'}
+NAMES = {'Out and back', 'Seats', 'This page needs JavaScript.'}
 
 
 def read(name):
@@ -38,7 +38,7 @@ def keys(name):
 
 
 def test_the_page_takes_its_words_from_one_file():
-    page, words = Words(read('index.html')), keys('words_en.js')
+    page, words = Words(read('index.html') + read('seats.html')), keys('words_en.js')
     assert page.texts == NAMES
     assert page.names <= words, page.names - words
     scripts = [os.path.join(folder, name) for folder in ('.', os.path.join('..', 'page'))

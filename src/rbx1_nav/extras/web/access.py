@@ -18,6 +18,7 @@ LOCALHOST = 'localhost'
 TOKEN_BYTES = 16
 # environment variables with the token and the code, if another process makes and prints them
 TOKEN_VARIABLE, CODE_VARIABLE = 'RBX1_NAV_TOKEN', 'RBX1_NAV_CODE'
+TEACHER_VARIABLE = 'RBX1_NAV_TEACHER_PORT'      # of the teacher's page on this machine, which may connect to a seat
 
 
 class Access:

@@ -8,7 +8,7 @@ import subprocess
 from threading import Event, Thread
 from typing import Callable, Sequence
 
-from rbx1_nav.extras.web.access import CODE_VARIABLE, TOKEN_VARIABLE, make_token, page_address
+from rbx1_nav.extras.web.access import CODE_VARIABLE, TEACHER_VARIABLE, TOKEN_VARIABLE, make_token, page_address
 
 START_TIMEOUT = 60.0    # s for a seat to start
 LINES = 20      # of the output that are kept
@@ -18,13 +18,14 @@ COLOR = re.compile('\x1b\\[[0-9;]*m')
 class Seat:
     """The process of a seat. It can be started again: browsers that were at its page are then admitted again."""
 
-    def __init__(self, number: int, master_port: int, address: str, web_port: int, arguments: Sequence[str],
-                 report: Callable[[str], None]) -> None:
-        """address: where the page is served; arguments: further arguments of seat.launch; report(text): called when a
-        node of the seat exits."""
+    def __init__(self, number: int, master_port: int, address: str, web_port: int, teacher_port: int,
+                 arguments: Sequence[str], report: Callable[[str], None]) -> None:
+        """address: where the page is served; teacher_port: where the teacher's page is served; arguments: further
+        arguments of seat.launch; report(text): called when a node of the seat exits."""
         self.number = number
         self.master_port = master_port
         self.web_port = web_port
+        self.teacher_port = teacher_port
         self.token = make_token()
         self.address = address
         self.page = ''      # its address, with a code that is valid once
@@ -42,7 +43,8 @@ class Seat:
         self.process = subprocess.Popen(['setpriv', '--pdeathsig', 'INT', *self.command], stdin=subprocess.DEVNULL,
                                         stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                                         start_new_session=True,
-                                        env={**os.environ, TOKEN_VARIABLE: self.token, CODE_VARIABLE: code})
+                                        env={**os.environ, TOKEN_VARIABLE: self.token, CODE_VARIABLE: code,
+                                             TEACHER_VARIABLE: str(self.teacher_port)})
         Thread(target=self._read, args=(self.process, ready), daemon=True).start()
         return ready.wait(START_TIMEOUT) and self.is_running
 

@@ -5,7 +5,7 @@ import asyncio
 import logging
 from threading import Event, Thread
 import time
-from typing import Any, Mapping, cast
+from typing import Any, Iterable, Mapping, Protocol, Sequence, cast
 
 from tornado.httpserver import HTTPServer
 from tornado.ioloop import PeriodicCallback
@@ -14,7 +14,6 @@ from tornado.web import Application, StaticFileHandler
 from tornado.websocket import WebSocketHandler
 
 from rbx1_nav.extras.web.access import accepted_hosts
-from rbx1_nav.extras.web.connections import Connections
 from rbx1_nav.extras.web.page_messages import MAX_MESSAGE
 
 FRAME_PERIOD = 50       # ms
@@ -25,10 +24,10 @@ MAX_HEADER = 8192       # bytes
 READ_RATE = 300.0       # 1/s
 READ_BURST = 200.0
 READS_AT_ONCE = 20      # of one browser, before the others are served
+# load nothing from other hosts; no other page may embed this one, which prevents clickjacking
+POLICY = ("default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; base-uri 'none'; "
+          "form-action 'none'; frame-ancestors 'none'; connect-src 'self'")
 HEADERS = {
-    # load nothing from other hosts; no other page may embed this one, which prevents clickjacking
-    'Content-Security-Policy': "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; "
-                               "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
     'X-Frame-Options': 'DENY',
     'X-Content-Type-Options': 'nosniff',
     'Referrer-Policy': 'no-referrer',
@@ -40,17 +39,41 @@ for logger in 'tornado.access', 'tornado.general':
     logging.getLogger(logger).setLevel(logging.CRITICAL)    # otherwise, any client could fill the log
 
 
+class PageConnections(Protocol):
+    """The browsers at a WebSocket; see Connections and SeatList."""
+
+    @property
+    def browsers(self) -> Iterable[WebSocketHandler]: ...
+
+    def opened(self, socket: WebSocketHandler) -> None: ...
+
+    def received(self, socket: WebSocketHandler, text: object) -> None: ...
+
+    def closed(self, socket: WebSocketHandler) -> None: ...
+
+    def flooded(self, socket: WebSocketHandler) -> None: ...
+
+    def send_frames(self) -> None: ...
+
+
 class FileHandler(StaticFileHandler):
     def set_default_headers(self) -> None:
         for name, value in HEADERS.items():
             self.set_header(name, value)
+        seats = (f' ws://{self.request.host_name}:{port}' for port in self.settings['seat_ports'])
+        self.set_header('Content-Security-Policy', POLICY + ''.join(seats))
 
 
 class SocketHandler(WebSocketHandler):
-    """The WebSocket of a browser. tornado rejects a foreign Origin."""
+    """The WebSocket of a browser."""
 
-    def initialize(self, connections: Connections) -> None:
+    def initialize(self, connections: PageConnections) -> None:
         self.connections = connections
+
+    def check_origin(self, origin: str) -> bool:
+        """Return whether the page of this Origin may connect: the one of this server, or the teacher's."""
+        teacher = f"http://{self.request.host_name}:{self.settings['teacher_port']}"
+        return super().check_origin(origin) or origin == teacher
 
     def open(self, *_: str, **__: str) -> None:
         self.set_nodelay(True)
@@ -85,18 +108,20 @@ class SocketHandler(WebSocketHandler):
 class PageServer:
     """Serves the page."""
 
-    def __init__(self, folder: str, connections: Mapping[str, Connections], address: str, port: int) -> None:
+    def __init__(self, folder: str, connections: Mapping[str, PageConnections], address: str, port: int,
+                 page: str = 'index.html', seat_ports: Sequence[int] = (), teacher_port: int = 0) -> None:
         """folder: directory of the page's files; connections: by the path of the socket; address: where the server
-        listens; port: 0 for any free port. Raises OSError."""
+        listens; port: 0 for any free port; page: its file; seat_ports: servers on this machine to which the page
+        connects; teacher_port: server on this machine whose page may connect, 0: none. Raises OSError."""
         self.connections = set(connections.values())
         self.sockets = bind_sockets(port, address)
         self.port = int(self.sockets[0].getsockname()[1])
         self.application = Application(
             websocket_ping_interval=PING_PERIOD, websocket_max_message_size=MAX_MESSAGE,
-            log_function=lambda handler: None)
+            log_function=lambda handler: None, seat_ports=seat_ports, teacher_port=teacher_port)
         self.application.add_handlers(accepted_hosts(address), [
             *((path, SocketHandler, dict(connections=each)) for path, each in connections.items()),
-            ('/(.*)', FileHandler, dict(path=folder, default_filename='index.html'))])
+            ('/(.*)', FileHandler, dict(path=folder, default_filename=page))])
         self.loop: asyncio.AbstractEventLoop | None = None
         self.ready = Event()
         self.thread = Thread(target=self._run, daemon=True)

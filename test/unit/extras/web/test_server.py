@@ -39,7 +39,7 @@ class Connections:
 
 @pytest.fixture(name='server')
 def start():
-    server = PageServer(FOLDER, {'/socket': Connections()}, 'localhost', 0)
+    server = PageServer(FOLDER, {'/socket': Connections()}, 'localhost', 0, seat_ports=[8081, 8082], teacher_port=8080)
     server.start()
     yield server
     server.stop()
@@ -83,7 +83,7 @@ def test_the_page_needs_nothing_of_other_hosts():
     for name in os.listdir(FOLDER):
         with open(os.path.join(FOLDER, name), encoding='utf-8') as file:
             text = file.read().replace('http://www.w3.org/', '')      # names, not addresses
-        assert '://' not in text.replace('`${protocol}://${location.host}${this.path}`', ''), name
+        assert '://' not in text.replace('`${protocol}://${this.host}${this.path}`', ''), name
 
 
 @pytest.mark.parametrize('path', ['/../setup.py', '/..%2fsetup.py', '//etc/passwd', '/web', '/socket/', '/A.js'])
@@ -96,12 +96,25 @@ def test_a_foreign_host_is_refused(server, path):
     assert status(get(server, path, Host='evil.example')) == 404
 
 
-@pytest.mark.parametrize('origin', ['http://evil.example', 'null', '', 'http://localhost:1', 'http://localhost'])
+@pytest.mark.parametrize('origin', [
+    'http://evil.example', 'null', '', 'http://localhost:1', 'http://localhost', 'http://evil.example:8080',
+    'http://127.0.0.1:8080', 'https://localhost:8080', 'http://localhost:80801'])
 def test_a_foreign_origin_is_refused(server, origin):
     async def talk():
         with pytest.raises(HTTPClientError, match='403'):
             await connect(server, Origin=origin)
     asyncio.run(talk())
+
+
+def test_the_page_of_the_teacher_may_connect(server):
+    async def talk():
+        (await connect(server, Origin='http://localhost:8080')).close()
+    asyncio.run(talk())
+
+
+def test_the_page_may_connect_to_its_own_server_and_to_the_seats_only(server):
+    policy, = re.findall('Content-Security-Policy: (.*)', get(server))
+    assert policy.strip().endswith("; connect-src 'self' ws://localhost:8081 ws://localhost:8082")
 
 
 def connect(server, **headers):
