@@ -8,7 +8,7 @@ import {Floor} from './floor.js';
 import {LogView} from './log.js';
 import {Model, SOURCES} from './model.js';
 import {save} from './picture.js';
-import {Plot} from './plot.js';
+import {Cursor, Plot} from './plot.js';
 import {EarlierRuns, Poses, missed, rowOf, swatch} from './tables.js';
 import {connectView} from './view_controls.js';
 import {WORDS, fill} from './words.js';
@@ -43,7 +43,9 @@ const earlierRuns = new EarlierRuns(byId('earlier'), () => floor.drawEarlier(mod
 const log = new LogView(byId('lines'));
 const drive = new Drive(connection, model, notify);
 const choices = new Choices(byId('choices'), connection);
-const plots = [new Plot(byId('linear'), WORDS.linearAxis, 1, 0.25), new Plot(byId('angular'), WORDS.angularAxis, 2, 1.2)];
+const cursor = new Cursor([byId('linear'), byId('angular')], redraw);
+const plots = [new Plot(byId('linear'), WORDS.linearAxis, 1, 0.25, cursor),
+  new Plot(byId('angular'), WORDS.angularAxis, 2, 1.2, cursor)];
 let waiting = false;    // whether a redraw has been requested
 
 function facts() {

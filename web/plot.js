@@ -1,20 +1,71 @@
-// Plot of the commanded, reported and true speed over time.
+// Plots of the commanded, reported and true speed over time, with a cursor.
 
 import {SPEEDS} from './model.js';
 import {element, roundStep, short} from './svg.js';
+import {fixed} from './tables.js';
+import {WORDS} from './words.js';
 
 const MISSING = 2;        // s between two samples without a line; the node sends at least one per second
 const MARGIN = {left: 42, right: 8, top: 18, bottom: 20};      // pixels
 
+const LINE = 13;                // pixels between two values
+const KEYS = {ArrowLeft: -0.01, ArrowRight: 0.01, PageDown: -0.1, PageUp: 0.1, Home: -1, End: 1};
+
+// Where the pointer or the arrow keys are in the plots, as a fraction of their width; null: nowhere.
+export class Cursor {
+  // changed(): called after each change
+  constructor(svgs, changed) {
+    this.at = null;
+    const move = at => {
+      this.at = at === null ? null : Math.max(0, Math.min(1, at));
+      changed();
+    };
+    for (const svg of svgs) {
+      for (const name of ['pointerdown', 'pointermove']) {
+        svg.addEventListener(name, ({clientX}) => {
+          const {left, width} = svg.getBoundingClientRect();
+          move((clientX - left - MARGIN.left) / (width - MARGIN.left - MARGIN.right));
+        });
+      }
+      for (const name of ['pointerleave', 'blur']) {
+        svg.addEventListener(name, () => move(null));
+      }
+      svg.addEventListener('keydown', event => {
+        // while driving by hand is on, drive.js has handled the arrow keys
+        if (KEYS[event.key] && !event.defaultPrevented) {
+          event.preventDefault();
+          move((this.at ?? 1) + KEYS[event.key]);
+        }
+      });
+    }
+  }
+}
+
+// The value of a speed at a time, interpolated as it is drawn; null where nothing is drawn.
+function valueAt(samples, index, time, steps) {
+  const next = samples.findIndex(sample => sample[0] > time), last = samples.at(next < 0 ? -1 : next - 1);
+  if (!last || next === 0) {
+    return null;
+  }
+  const after = samples[next] || [Math.max(time, last[0]), ...last.slice(1)];
+  if (steps || after[0] === last[0]) {
+    return last[index];
+  }
+  return after[0] - last[0] < MISSING
+    ? last[index] + (after[index] - last[index]) * (time - last[0]) / (after[0] - last[0]) : null;
+}
+
 export class Plot {
   // index: of the value in a sample, 1: forward speed, 2: turn rate; least: smallest range of the vertical axis.
-  constructor(svg, title, index, least) {
-    Object.assign(this, {svg, title, index, least});
+  constructor(svg, title, index, least, cursor) {
+    Object.assign(this, {svg, title, index, least, cursor});
     this.grid = element('path', {class: 'grid'}, svg);
     this.axes = element('path', {class: 'axes'}, svg);
     this.labels = element('g', {}, svg);
     this.curves = Object.fromEntries(['true', 'reported', 'commanded'].map(
       name => [name, element('path', {class: `curve ${name}`}, svg)]));
+    this.line = element('path', {class: 'cursor'}, svg);
+    this.values = element('g', {}, svg);
   }
 
   // The samples since the time `from`, and the last sample before it.
@@ -47,6 +98,25 @@ export class Plot {
     for (const name of SPEEDS) {
       this.curves[name].setAttribute('d', this.curve(shown[name], name, from, end, x, y));
     }
+    this.drawCursor(shown, from, end, seconds, x, height);
+  }
+
+  // The line at the time of the cursor, and the values beside it.
+  drawCursor(shown, from, end, seconds, x, height) {
+    const {at} = this.cursor, time = from + (at ?? 0) * seconds;
+    this.line.setAttribute('d', at === null ? '' : `M${x(time).toFixed(1)} ${MARGIN.top}V${height - MARGIN.bottom}`);
+    const values = at === null || time > end ? [] : SPEEDS.map(
+      name => [name, valueAt(shown[name], this.index, time, name === 'commanded')]).filter(([, value]) => value !== null);
+    const texts = at === null ? [] : [['', `${fixed(time, 2)} s`],
+      ...values.map(([name, value]) => [name, `${WORDS[name]} ${fixed(value, 3)}`])];
+    this.values.replaceChildren(...texts.map(([name, text], index) => {
+      const left = at < 0.6, made = element('text', {class: `value ${name}`, x: (x(time) + (left ? 6 : -6)).toFixed(1),
+        y: MARGIN.top + LINE * (index + 0.8), 'text-anchor': left ? 'start' : 'end'});
+      made.textContent = text;
+      return made;
+    }));
+    this.svg.setAttribute('aria-valuenow', Math.round(100 * (at ?? 1)));
+    this.svg.setAttribute('aria-valuetext', texts.map(([, text]) => text).join(', '));
   }
 
   curve(samples, name, from, end, x, y) {

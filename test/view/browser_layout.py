@@ -54,7 +54,9 @@ def finished_run():
                      surface=SURFACE, seed='4294967295', simulated_time=True, started='with odometry and gyro',
                      outcome='')
     state.move('odometry', PoseAndSpeed(0.0, (0.0, 0.0, 0.0), 0.0, 0.0), now)
-    state.command(0.2, 0.0, '/out_and_back', now)
+    state.command(0.2, 0.7, '/out_and_back', now)
+    for speed in (18.5, 0.1, -0.3), (19.5, 0.2, -0.5):
+        state.move('odometry', PoseAndSpeed(speed[0], (-0.3, 0.2, -1.1), *speed[1:]), now)
     for source, (x, y) in dict(truth=(0.3, 0.4), odometry=(-0.3, 0.2), estimate=(0.31, 0.35)).items():
         state.move(source, PoseAndSpeed(20.0, (x, y, -1.1), 0.0, 0.0), now)
     state.command(0.0, 0.0, '/out_and_back', now)
@@ -124,6 +126,38 @@ class TestBrowserLayout(support.Case):
             self.assertEqual((self.driver.title, self.page.text('title')), (title, title))
             self.show(1300, 950)
             self.show(390, 844, True)
+
+    def values(self, plot):
+        """Return the numbers beside the cursor of a plot by their names; the time has none."""
+        pairs = [re.fullmatch(r'(.*?) ?(-?[\d.]+)( s)?', each.text).groups() for each in
+                 self.driver.find_elements('css selector', f'#{plot} .value')]
+        return {name: float(number) for name, number, _ in pairs}
+
+    def test_the_cursor_of_the_plots(self):
+        self.show(1300, 950)
+        self.page.find('#angular').location_once_scrolled_into_view
+        left, top, right, bottom = self.driver.execute_script(EDGES, '#linear')
+        # 19 s in the plot of 30 s, without its margins; between the samples at 18.5 s and 19.5 s
+        x, pixel = left + 42 + 19 / 30 * (right - left - 50), 30 / (right - left - 50)
+        self.driver.execute_cdp_cmd('Input.dispatchMouseEvent', {
+            'type': 'mouseMoved', 'x': x, 'y': (top + bottom) / 2})
+        support.wait_for(lambda: self.values('angular'), 'the values')
+        for plot, expected, slope in ('linear', {'': 19, 'commanded': 0.2, 'reported by the wheels': 0.15}, 0.1), (
+                'angular', {'': 19, 'commanded': 0.7, 'reported by the wheels': -0.4}, 0.2):
+            values = self.values(plot)
+            self.assertEqual(set(values), set(expected))
+            for name, value in expected.items():    # a pixel, and the rounding of the text
+                self.assertAlmostEqual(values[name], value, delta=(slope if name else 1) * pixel + 0.006)
+        self.driver.execute_cdp_cmd('Input.dispatchMouseEvent', {'type': 'mouseMoved', 'x': 5, 'y': 5})
+        support.wait_for(lambda: not self.values('linear'), 'no values')
+        self.driver.execute_script("document.getElementById('angular').focus()")
+        for _ in range(100 - 66):       # hundredths of the width, from its right edge
+            self.page.key('keyDown', 'ArrowLeft')
+        support.wait_for(lambda: self.values('linear').get('') == 19.8, 'the values at 19.8 s')
+        self.assertEqual(self.page.find('#linear').get_attribute('aria-valuetext'),
+                         '19.80 s, commanded 0.200, reported by the wheels 0.080')
+        self.driver.execute_script("document.getElementById('angular').blur()")
+        support.wait_for(lambda: not self.values('linear'), 'no values')
 
     def test_a_projector_cuts_nothing(self):
         self.page.click('#large')
