@@ -80,6 +80,10 @@ class Seat {
     this.outdated = false;
     const {model, connected, connection} = this, [, ...commanded] = model.speeds.commanded.at(-1) || [];
     const driver = drivenBy(model.status) || commanded.some(Boolean) && model.run;
+    if (driver && !this.driver && !this.stop.timer) {       // the answer is about an earlier run
+      this.stop.answer = '';
+    }
+    this.driver = driver;
     const state = !connected ? WORDS.lost('') : connection.silent ? WORDS.silent : driver ? WORDS.driving(driver)
       : missed(model) || WORDS.idle;
     this.section.classList.toggle('lost', !connected || connection.silent);

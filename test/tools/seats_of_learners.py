@@ -57,7 +57,8 @@ class TestSeats(support.Case):
                                           rf'(http://localhost:{pages + number}/)#(\S+)')
             tokens.add(match.group(2))
             self.assertIn(b'Out and back', urlopen(match.group(1)).read())
-            support.wait_for(lambda: {'/arbotix', '/web_view', '/odom_ekf'} <= answers(masters + number), 'all nodes')
+            nodes = {'/arbotix', '/web_view', '/robot_pose_ekf'}
+            support.wait_for(lambda: nodes <= answers(masters + number), 'all nodes')
         self.assertEqual(len(tokens), seats)
         process.signal(ending)
         self.assertEqual(process.wait(), status, process.output)

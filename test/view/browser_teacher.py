@@ -69,6 +69,8 @@ class TestBrowserTeacher(support.Case):
             support.wait_for(lambda: self.driver.execute_script(
                 'return rbx1.seats()[1].model.status.distance') == 0.1, 'the distance')
             learner.send(type='run', method='timed', reset=True)
+            self.wait_for(2, 'state', '^Driving: timed$')
+            self.wait_for(2, 'answer', '^$')
             self.wait_for(2, 'state', '^Timed: missed the start by 0.00 m and 0°')
         self.assertEqual(page.console_errors(), [])
 

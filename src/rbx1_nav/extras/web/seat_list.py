@@ -45,6 +45,3 @@ class SeatList:
 
     def flooded(self, socket: WebSocketHandler) -> None:
         """A browser that sends too fast is disconnected anyway."""
-
-    def send_frames(self) -> None:
-        """There are none: the page gets them from the seats."""

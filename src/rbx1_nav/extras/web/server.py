@@ -53,8 +53,6 @@ class PageConnections(Protocol):
 
     def flooded(self, socket: WebSocketHandler) -> None: ...
 
-    def send_frames(self) -> None: ...
-
 
 class FileHandler(StaticFileHandler):
     def set_default_headers(self) -> None:
@@ -113,7 +111,8 @@ class PageServer:
         """folder: directory of the page's files; connections: by the path of the socket; address: where the server
         listens; port: 0 for any free port; page: its file; seat_ports: servers on this machine to which the page
         connects; teacher_port: server on this machine whose page may connect, 0: none. Raises OSError."""
-        self.connections = set(connections.values())
+        # Any: SeatList sends no frames
+        self.connections: set[Any] = set(connections.values())
         self.sockets = bind_sockets(port, address)
         self.port = int(self.sockets[0].getsockname()[1])
         self.application = Application(
@@ -140,7 +139,8 @@ class PageServer:
                             idle_connection_timeout=IDLE_TIMEOUT, body_timeout=IDLE_TIMEOUT)
         server.add_sockets(self.sockets)
         frames = PeriodicCallback(self._send_frames, FRAME_PERIOD)
-        frames.start()
+        if not self.application.settings['seat_ports']:     # otherwise, the page gets its frames from the seats
+            frames.start()
         self.ready.set()
         await self.end.wait()
         frames.stop()
