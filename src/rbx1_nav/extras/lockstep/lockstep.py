@@ -11,12 +11,11 @@ from __future__ import annotations
 
 from collections import Counter
 from io import BytesIO
-from random import Random
 import select
 import socket
 from threading import Event, Lock
 from time import monotonic, sleep
-from typing import Any, Callable, NamedTuple
+from typing import Any, Callable, Collection, NamedTuple
 
 from genpy import Message
 from rosgraph_msgs.msg import Clock
@@ -25,6 +24,7 @@ from rospy.exceptions import TransportException
 from rospy.msg import serialize_message
 
 from rbx1_nav.base.schedule import NODE_TIMEOUT
+from rbx1_nav.extras.lockstep.processes import Process, find_pollers, polling, still_polling
 from rbx1_nav.extras.lockstep.watched_nodes import Watch
 
 ANSWER_TIME = 3e-4      # s of wall time in which a driver usually answers
@@ -33,11 +33,11 @@ LONGEST_LOOK = 0.1  # s: if it takes longer from one check to the next, the base
 LOOK_LATER = 0.05   # s between two checks per s of waiting so far: a node that is starting needs the processor itself
 INTERVALS = 2       # between the first commands of a motion, of which one may be unusual
 HOLDS = 3           # ticks with commands at which the clock is held, at the beginning of a motion
-HOLD_LATER = 1 / 128    # fraction of the later ticks at which the clock is held
+HOLD_LATER = 128    # later, the clock is held at each tick whose number is a multiple of this
 HOLD = 1.5          # duration of a hold, in intervals between two commands
 FIRST_HOLD = 0.02   # s of wall time: duration of the first hold, before an interval is known
 COMMANDS = 3        # that a driver on the clock may send after one message; stops do not count
-TEST, TESTS = 0.005, 4  # s of wall time in which a thread that polls usually runs more than once; how often to try
+TEST = 0.005        # s of wall time in which a thread that polls usually runs more than once
 LONG_WAIT = 2.0     # s of wall time: if a wait takes longer, the log says for whom
 LONG = 0.1          # s of wall time: if a wait takes longer, threads that poll may be the reason
 SLEEP = 0.05        # s: the longest sleep between two checks for a shutdown request
@@ -65,7 +65,6 @@ class DriverConnection:
         self.header = header
         self.name = header['callerid']
         self.in_step = True
-        self.motions = 0        # motions that have begun
         self.moving = False     # whether the last command was not a stop
         self.tick = 0           # of the last command
         self.first_tick = 0     # of the first command to move
@@ -77,10 +76,9 @@ class DriverConnection:
 class Lockstep:
     """Delivers messages, and applies each command at the tick at which it was sent."""
 
-    def __init__(self, processes: Watch, report: Callable[[str, str], None], ended: Callable[[], bool]) -> None:
+    def __init__(self, watch: Watch, report: Callable[[str, str], None], ended: Callable[[], bool]) -> None:
         """report(name, reason): reports a node that is not in step; ended(): whether to stop waiting."""
-        self.processes = processes
-        self.add, self.remove = processes.add, processes.remove     # a subscriber to commands
+        self.watch = watch
         self.report = report
         self.ended = ended
         # by the id of the header, which stays unique because the DriverConnection keeps the header alive
@@ -92,21 +90,20 @@ class Lockstep:
         self.idle = True        # whether everything was asleep, and nothing has been delivered since
         self.held = False       # whether the clock was held after the last tick
         self.tick = 0
-        self.random = Random(0)
 
     def receive(self, target: Any, header: dict[str, str], command: Any) -> None:
         """Accept a command that just arrived, in any thread. header: see Received."""
         with self.lock:     # a node that is starting may wait by the wall clock, and send through a relay
             self.arrived.append(Received(target, header, command, monotonic(),
-                                         self.idle and not self.processes.starting))
-        self.processes.has_started(header['callerid'])
+                                         self.idle and not self.watch.starting))
+        self.watch.starting.pop(header['callerid'], None)
         self.heard.set()
 
     def begin(self) -> None:
         """Begin a tick. What has woken by itself still belongs to the tick before."""
         self.tick += 1
         moving = {driver.name for driver in self.drivers.values() if driver.moving}
-        if self.processes.update() or self.held or not self.processes.drivers or not self.processes.drivers <= moving:
+        if self.watch.update() or self.held or not self.watch.drivers or not self.watch.drivers <= moving:
             self._settle()      # otherwise, all of them wait for the tick
         while self._has_arrived():
             self._settle()
@@ -114,13 +111,13 @@ class Lockstep:
     def deliver(self, publisher: rospy.Publisher, message: Message) -> None:
         """Publish a message, and wait until everything that it has woken is asleep again."""
         topic = publisher.impl
-        receivers = self.processes.receivers(topic)
+        receivers = self.watch.receivers(topic)
         if not receivers:
             return
         topic.seq += 1
         buffer = BytesIO()
         serialize_message(buffer, topic.seq, message)
-        for connections, wait in self.processes.groups(receivers):
+        for connections, wait in self.watch.groups(receivers):
             self.heard.clear()
             for connection in connections:
                 write(connection, buffer.getvalue())
@@ -141,16 +138,15 @@ class Lockstep:
         later = max(until, monotonic() + hold)
         for driver in self.drivers.values():
             driver.time += min(hold, later - until)     # not part of the interval
-        if self.processes.have_new_threads():
+        if any(process.new_threads for process in self._watched()):
             self._find_pollers()
         self._sleep(later)
 
+    def _watched(self) -> Collection[Process]:
+        return self.watch.processes.values()
+
     def _find_pollers(self) -> None:
-        runs = self.processes.runs()
-        for _ in range(TESTS):
-            self._sleep(monotonic() + TEST)
-            if not self.processes.find_pollers(runs):
-                break
+        find_pollers(self._watched(), lambda: self._sleep(monotonic() + TEST))
 
     def _sleep(self, until: float) -> None:
         while monotonic() < until and not self.ended():
@@ -158,15 +154,14 @@ class Lockstep:
 
     def _hold(self, driver: DriverConnection) -> float:
         """Return for how long to hold the clock after this tick because of a driver, s of wall time."""
-        if not (driver.moving and driver.name in self.processes.drivers):
+        if not (driver.moving and driver.name in self.watch.drivers):
             return 0.0
         if driver.holds:
             if driver.tick != self.tick:
                 return 0.0
             driver.holds -= 1
-            is_first = driver.motions == 1 and driver.holds == HOLDS - 1
-            return FIRST_HOLD if is_first else HOLD * max(driver.intervals, default=0.0)
-        return HOLD * min(driver.intervals) if self.random.random() < HOLD_LATER else 0.0
+            return FIRST_HOLD if driver.first_tick == self.tick else HOLD * max(driver.intervals, default=0.0)
+        return HOLD * min(driver.intervals) if self.tick % HOLD_LATER == 0 else 0.0
 
     def _has_arrived(self) -> bool:
         """Return whether a command of the tick before has arrived that is not ordered yet. If not, the next tick has
@@ -179,9 +174,9 @@ class Lockstep:
         """Wait until everything is asleep, and order the commands that have arrived. new_time: whether the time was
         delivered, for which some threads poll."""
         self._wait_while_awake()
-        polling = new_time and self.processes.polling()     # these may not have seen the time yet
-        if polling:
-            while self.processes.still_polling(polling) and not self.ended():
+        threads = new_time and polling(self._watched())     # these may not have seen the time yet
+        if threads:
+            while still_polling(threads) and not self.ended():
                 sleep(LOOK[0])
             self._wait_while_awake()
         with self.lock:
@@ -198,19 +193,19 @@ class Lockstep:
         awake: dict[str, float] = {}    # s of wall time for which each node was awake
         said = False
         while not self.ended():
-            name = self.processes.awake()
+            name = self.watch.awake()
             if not name:
                 return
             now = monotonic()
             awake[name] = awake.get(name, 0.0) + min(now - last, LONGEST_LOOK)
             last = now
             if awake[name] > NODE_TIMEOUT:
-                if name == self.processes.own_name:     # messages keep this node busy: no reason to blame anybody
+                if name == self.watch.own_name:     # messages keep this node busy: no reason to blame anybody
                     return
                 del awake[name]
-                if self.processes.forget(name):
+                if self.watch.forget(name):
                     self._report(name, f'did not become idle within {NODE_TIMEOUT:g} s')
-            others = awake.keys() - {self.processes.own_name}
+            others = awake.keys() - {self.watch.own_name}
             if now - begin > LONG_WAIT and others and not said:
                 said = True
                 rospy.loginfo('The clock waits for %s', ', '.join(sorted(others)))
@@ -222,7 +217,7 @@ class Lockstep:
         """Return the DriverConnection of a connection."""
         if id(header) not in self.drivers:
             self.drivers = {key: driver for key, driver in self.drivers.items()
-                            if self.processes.is_connected(driver.header)}
+                            if self.watch.is_connected(driver.header)}
             self.drivers[id(header)] = DriverConnection(header)
         return self.drivers[id(header)]
 
@@ -234,23 +229,22 @@ class Lockstep:
         if not driver.moving:
             return
         if first:
-            driver.motions += 1
             driver.first_tick = driver.first_tick or self.tick
             driver.intervals, driver.holds = [], HOLDS
         elif len(driver.intervals) < INTERVALS:
             driver.intervals.append(received.time - driver.time)
         driver.tick, driver.time = self.tick, received.time
-        driver.in_step = driver.in_step and driver.name not in self.processes.forgotten     # reported already
+        driver.in_step = driver.in_step and driver.name not in self.watch.forgotten     # reported already
         if not driver.in_step or driver.first_tick == self.tick:
             return      # a node may wait by the wall clock before its first motion
         # a node that has exited since it sent the command is no longer visible
-        reason = self.processes.obstacle(driver.name) if self.processes.is_connected(driver.header) else None
+        reason = self.watch.obstacle(driver.name) if self.watch.is_connected(driver.header) else None
         if not reason and count > COMMANDS:
             reason = f'sends more than {COMMANDS} commands at once'
-        elif not reason and received.idle and not self.processes.find_sources():
+        elif not reason and received.idle and not self.watch.find_sources():
             reason = 'sends commands that no tick of /clock has prompted'
         if reason:
-            self.processes.forget(driver.name)
+            self.watch.forget(driver.name)
             self._report(driver.name, reason)
 
     def _report(self, name: str, reason: str) -> None:

@@ -10,18 +10,19 @@ from __future__ import annotations
 import os
 import socket
 import time
-from typing import Callable, Iterable, List, Optional, Tuple
+from typing import Any, Callable, Iterable, List, Optional, Tuple
 
 # s: a thread that sleeps for less than this polls. On simulated time, ros::Rate sleeps for 1 ms at a time, which took
 # up to 3.8 ms on a busy machine
 POLL = 0.02
 # the greatest number of processes with threads that poll at which it is usual that none of them has run during a check
 AT_REST = 2
-ENDED = b'X', b'Z'      # states of a thread that has exited
-FUTEX, NANOSLEEP = b'futex_', b'hrtimer_nanosleep'
+TESTS = 4       # how often to look for threads that poll, as long as it is uncertain for one of them
+ENDED = b'X', b'Z', b''     # states of a thread that has exited
+NANOSLEEP = b'hrtimer_nanosleep'
 TIMED = b'sleep', b'poll', b'select'    # parts of the names of kernel functions that wait with a timeout
 # first parts of the names of the kernel functions in which most threads wait, always in state S
-INTERRUPTIBLE = FUTEX, b'poll_schedule_timeout', b'wait_woken', b'inet_csk_accept', NANOSLEEP
+INTERRUPTIBLE = b'futex_', b'poll_schedule_timeout', b'wait_woken', b'inet_csk_accept', NANOSLEEP
 
 
 def _cpu_clock(number: int, of_thread: bool) -> int:
@@ -54,16 +55,23 @@ class Thread:
             os.close(file)
         self.files = []
 
+    def _read(self, number: int) -> bytes:
+        """Return the content of a file; nothing if the thread has exited."""
+        try:
+            return os.pread(self.files[number], 512, 0)
+        except (OSError, IndexError):       # IndexError: the files are closed
+            return b''
+
     def look(self) -> bytes:
         """Update `ran` and return it."""
-        ran = os.pread(self.files[2], 64, 0)
+        ran = self._read(2)
         if ran != self.ran:
             self.ran, self.changed = ran, time.monotonic()
         return ran
 
     def waits_in(self) -> bytes:
         """Return the name of the kernel function in which the thread waits; 0 if it is running or runnable."""
-        self.place = os.pread(self.files[1], 64, 0)
+        self.place = self._read(1)
         return self.place
 
     def sleeps(self) -> bool:
@@ -76,29 +84,30 @@ class Thread:
 
     def state(self) -> bytes:
         """Return the letter of the state of the thread."""
-        return os.pread(self.files[0], 512, 0).rpartition(b') ')[2][:1]     # the name in () may contain any characters
+        return self._read(0).rpartition(b') ')[2][:1]     # the name in () may contain any characters
 
-    def needs_no_message(self) -> bool:
-        """Return whether the thread is running, runnable, or will wake by itself."""
-        name = self.waits_in()
+    def naps(self) -> bool:
+        """Return whether this is the main thread, and is running or will wake by itself, but not to look at the time
+        again and again."""
+        name = self.waits_in() if self.is_main and not self.is_poller else b''
         return name == b'0' or any(part in name for part in TIMED)
 
     def runs(self) -> int:
-        """Return how often the thread has run."""
-        return int(self.look().split()[2])
+        """Return how often the thread has run; 0 if it has exited."""
+        fields = self.look().split()
+        return int(fields[2]) if fields else 0
 
     def polls(self) -> bool:
         """Return whether the thread is running or runnable, or sleeps only briefly; to be called after sleeps()."""
         if not (self.is_poller or self.place.startswith((b'0', NANOSLEEP))):
             return False
         now = time.monotonic()      # before the look: on a busy machine, the caller may be suspended in between
-        self.look()
+        exists = self.look() and self.state() not in ENDED
         self.is_poller = self.is_poller and now - self.changed < POLL
-        return now - self.changed < POLL or self.waits_in() == b'0' and self.state() not in ENDED
+        return bool(exists) and (now - self.changed < POLL or self.waits_in() == b'0')
 
 
-Runs = List[Tuple[Thread, int]]     # how often threads have run
-PollingThread = Tuple[Thread, Optional[bytes]]      # a Thread and its `ran`
+Polling = List[Tuple[Thread, Optional[bytes]]]      # threads that poll, each with its `ran`
 
 
 class Process:
@@ -112,7 +121,7 @@ class Process:
         self.without = without
         self.socket: socket.socket | None = None    # the connection by which it was found
         self.threads: dict[int, Thread] = {}       # by number
-        self.new_threads = True
+        self.new_threads = True     # whether there are threads that find_pollers() has not seen
         self._update()
         if not self.threads:
             raise ProcessLookupError(f'no process {pid}')
@@ -122,9 +131,9 @@ class Process:
             thread.close()
         self.threads = {}
 
-    def activity(self, without_pollers: bool) -> object:
+    def activity(self, without_pollers: bool = False) -> Any:
         """Return a value that changes when a thread runs, and is up to date for waiting threads. None if the process
-        has exited. without_pollers: whether the threads that poll do not count."""
+        has exited. without_pollers: whether the threads that poll do not count; otherwise, it is a CPU time, ns."""
         try:
             if without_pollers and self.has_pollers():
                 return [thread.look() for thread in self.threads.values() if not thread.is_poller]
@@ -135,56 +144,27 @@ class Process:
         except OSError:
             return None
 
-    def cpu_time(self) -> int:
-        """Return the CPU time that it has used, ns; 0 if it has exited."""
-        try:
-            return time.clock_gettime_ns(self.clock)
-        except OSError:
-            return 0
-
     def sleeps(self) -> bool:
-        """Return whether all threads are asleep."""
-        if os.stat(self.folder).st_nlink != len(self.threads) + 2 + (self.without is not None):
-            self._update()
-            return False
-        return all(thread.sleeps() for thread in self.threads.values())
-
-    def main_sleeps_briefly(self) -> bool:
-        """Return whether the main thread will wake by itself, and does not poll the simulated time."""
-        return bool(self.those(lambda thread: thread.is_main and not thread.is_poller and thread.needs_no_message()))
-
-    def polling(self) -> list[PollingThread]:
-        """Return the threads that sleep only briefly."""
-        return [(thread, thread.ran) for thread in self.those(Thread.polls)]
+        """Return whether all threads are asleep or have exited."""
+        try:
+            if os.stat(self.folder).st_nlink == len(self.threads) + 2 + (self.without is not None):
+                return all(thread.sleeps() for thread in self.threads.values())
+        except OSError:
+            pass
+        return self.ended()     # which updates the list of threads
 
     def has_pollers(self) -> bool:
         """Return whether there are threads that were found to wake by themselves."""
         return any(thread.is_poller for thread in self.threads.values())
-
-    def has_new_threads(self) -> bool:
-        """Return whether there are threads that did not exist at the last call."""
-        new, self.new_threads = self.new_threads, False
-        return new
-
-    def runs(self) -> Runs:
-        """Return how often each thread has run."""
-        return runs_since((thread, 0) for thread in self.threads.values())
 
     def ended(self) -> bool:
         """Update the list of threads after one has exited; return whether all have exited."""
         self._update()
         return not self.threads
 
-    def those(self, function: Callable[[Thread], object]) -> list[Thread]:
-        """Call a function with each thread; return the threads for which it is true, without those that have exited."""
-        found = []
-        for thread in self.threads.values():
-            try:
-                if function(thread):
-                    found.append(thread)
-            except OSError:
-                pass
-        return found
+    def naps(self) -> bool:
+        """Return whether the main thread naps, see Thread."""
+        return any(thread.naps() for thread in self.threads.values())
 
     def _update(self) -> None:
         try:
@@ -231,62 +211,35 @@ def awake(processes: Iterable[Process], network: Network | None = None) -> Proce
         return network
     # a second check finds what a thread that polls has woken after the first one
     for process in processes * (1 + ignore):
-        try:
-            if not process.sleeps():
-                return process
-        except OSError:
-            if not process.ended():
-                return process
+        if not process.sleeps():
+            return process
     for process, activity in zip(processes, before):
         if process.activity(ignore) != activity and not process.ended():
             return process
     return None
 
 
-def still_polling(threads: Iterable[PollingThread]) -> bool:
-    """Return whether one of these threads, from Process.polling(), is still in the same sleep."""
-    try:
-        return any(thread.polls() and thread.ran == ran for thread, ran in threads)
-    except OSError:     # it has exited
-        return False
+def polling(processes: Iterable[Process]) -> Polling:
+    """Return the threads that sleep only briefly: they poll the time instead of waiting for a message."""
+    return [(thread, thread.ran) for process in processes for thread in process.threads.values() if thread.polls()]
 
 
-def runs_since(before: Iterable[tuple[Thread, int]]) -> Runs:
-    """Return how often threads have run since then, without those that have exited."""
-    runs = []
-    for thread, count in before:
-        try:
-            runs.append((thread, thread.runs() - count))
-        except (OSError, IndexError):       # IndexError: its files are closed
-            pass
-    return runs
+def still_polling(threads: Polling) -> bool:
+    """Return whether one of these threads, from polling(), is still in the same sleep."""
+    return any(thread.polls() and thread.ran == ran for thread, ran in threads)
 
 
-class Pollers:
-    """The threads that poll in some processes."""
-
-    processes: dict[str, Process]       # by the name of the node
-
-    def polling(self) -> list[PollingThread]:
-        """Return the threads that poll the time instead of waiting for a message, as an argument for
-        still_polling()."""
-        return [each for process in self.processes.values() for each in process.polling()]
-
-    def have_new_threads(self) -> bool:
-        """Return whether there are new threads in the watched nodes since the last call."""
-        return any([process.has_new_threads() for process in self.processes.values()])
-
-    def runs(self) -> Runs:
-        """Return how often each thread of the watched nodes has run."""
-        return [each for process in self.processes.values() for each in process.runs()]
-
-    @staticmethod
-    def find_pollers(before: Runs) -> bool:
-        """Look for threads that have run although nothing was delivered since runs(); return whether it is still
-        uncertain for one of them."""
-        runs = runs_since(before)
+def find_pollers(processes: Iterable[Process], pause: Callable[[], None]) -> None:
+    """Find the threads that run while nothing is delivered. pause(): sleeps for so long that a thread that polls
+    usually runs more than once."""
+    before = []
+    for process in processes:
+        process.new_threads = False
+        before += [(thread, thread.runs()) for thread in process.threads.values()]
+    for _ in range(TESTS):
+        pause()
+        runs = [(thread, thread.runs() - count) for thread, count in before]
         for thread, count in runs:
             thread.is_poller = thread.is_poller or count > 1
-        return any(count == 1 for _, count in runs)
-
-    still_polling = staticmethod(still_polling)
+        if all(count != 1 for _, count in runs):
+            break

@@ -91,19 +91,18 @@ class OwnClock(Clock):
         simtime._clock_sub.unregister()
         # the usual limit of 1,024 open files is enough for the threads of about 17 drivers; see lockstep/processes.py
         setrlimit(RLIMIT_NOFILE, 2 * getrlimit(RLIMIT_NOFILE)[1:])
-        self.greetings: list[tuple[bool, Callable[[], None]]] = []      # see Watch
         self.publisher = rospy.Publisher('/clock', ClockMessage, NoDelay(self.greet_with_time), queue_size=10)
-        watch = Watch(self.publisher, self.greetings)
-        self.lockstep = Lockstep(watch, self.report, life.end_requested.is_set)
-        rospy_topics.gates.append(watch.connecting)
+        self.nodes = Watch(self.publisher)
+        self.lockstep = Lockstep(self.nodes, self.report, life.end_requested.is_set)
+        rospy_topics.gates.append(self.nodes.connecting)
         self.not_in_step: dict[str, str] = {}   # reasons, by the name of the node
 
     def greet_with_time(self, _: str, publish: Callable[[ClockMessage], None]) -> None:
         if self.time:
-            self.greetings.append((False, lambda: publish(ClockMessage(self.stamp(self.time)))))
+            self.nodes.greetings.append((False, lambda: publish(ClockMessage(self.stamp(self.time)))))
 
     def greet(self, send: Callable[[], None]) -> None:
-        self.greetings.append((True, send))
+        self.nodes.greetings.append((True, send))
 
     def now(self) -> int:
         return self.time
@@ -112,10 +111,10 @@ class OwnClock(Clock):
         return rospy.Time(0, instant)
 
     def watch(self, subscriber: Any) -> None:
-        self.lockstep.add(subscriber)
+        self.nodes.commands.append(subscriber.impl)
 
     def unwatch(self, subscriber: Any) -> None:
-        self.lockstep.remove(subscriber)
+        self.nodes.commands.remove(subscriber.impl)
 
     def receive(self, target: Any, header: dict[str, str], command: Any) -> None:
         self.lockstep.receive(target, header, command)

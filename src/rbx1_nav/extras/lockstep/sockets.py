@@ -5,6 +5,7 @@ Source: proc(5).
 from __future__ import annotations
 
 import os
+from pathlib import Path
 import socket
 import sys
 import threading
@@ -12,7 +13,9 @@ from typing import Callable
 
 from rbx1_nav.extras.lockstep.processes import Process
 
-LISTEN = '0A'           # state of a socket in /proc/net/tcp
+TABLES = Path('/proc/net/tcp'), Path('/proc/net/tcp6')     # the second one exists only with IPv6
+INODE = 9               # number of the field
+LISTEN = '0A'           # state of a socket
 MAPPED = socket.inet_pton(socket.AF_INET6, '::ffff:0:0')[:12]   # first bytes of an IPv4 address as an IPv6 address
 
 
@@ -46,26 +49,14 @@ def listening_process(port: int) -> Process | None:
 
 def _process_with(matches: Callable[[list[str]], bool]) -> Process | None:
     """Return the Process that owns a socket; matches(fields): whether a line of /proc/net/tcp describes the socket."""
-    link = f'socket:[{_inode(matches)}]'
+    lines = (line.split() for table in TABLES if table.exists() for line in table.read_text('ascii').splitlines())
+    link = f'socket:[{next((fields[INODE] for fields in lines if matches(fields)), None)}]'
     for pid in filter(str.isdigit, os.listdir('/proc')):
         folder = f'/proc/{pid}/fd/'
         try:
             if int(pid) != os.getpid() and any(_read_link(folder + file) == link for file in os.listdir(folder)):
                 return Process(int(pid))
         except OSError:     # it has exited, or belongs to another user
-            pass
-    return None
-
-
-def _inode(matches: Callable[[list[str]], bool]) -> str | None:
-    """Return the inode of the first matching socket as a text; None if there is none."""
-    for table in ('/proc/net/tcp', '/proc/net/tcp6'):
-        try:
-            with open(table, encoding='ascii') as file:
-                for fields in map(str.split, file):
-                    if matches(fields):
-                        return fields[9]
-        except OSError:     # no IPv6
             pass
     return None
 

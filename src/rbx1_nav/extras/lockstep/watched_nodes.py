@@ -14,7 +14,7 @@ import rospy
 
 from rbx1_nav.extras.lockstep.graph import Graph
 from rbx1_nav.extras.lockstep.sockets import listening_process, own_process, peer_process
-from rbx1_nav.extras.lockstep.processes import Network, Pollers, Process, awake
+from rbx1_nav.extras.lockstep.processes import Network, Process, awake
 from rbx1_nav.node.master import call
 
 # s of wall time to wait for a new connection of cmd_vel; less than NODE_TIMEOUT. A busy machine takes more than 1 s
@@ -26,7 +26,13 @@ AWAKE_TIME = 2.0        # s of wall time: a publisher of commands is connected, 
 MASTER_WORK = 100_000   # ns of CPU time: the master has answered a call (0.2 to 1 ms; 0.07 ms to look for work)
 
 
-class Watch(Pollers):
+class Permission(Event):
+    """To connect to a publisher of commands."""
+
+    since = 0.0     # s of the monotonic clock: when it was given
+
+
+class Watch:
     """Watches the processes of the nodes that publish commands, and the processes that they may wait for.
 
     These are the publishers of the topics that the nodes subscribe to (a multiplexer passes on commands from others),
@@ -36,13 +42,15 @@ class Watch(Pollers):
     """
 
     # Any: rospy has no types
-    def __init__(self, clock: rospy.Publisher, greetings: list[tuple[bool, Callable[[], None]]]) -> None:
-        """clock: the publisher of /clock; greetings: for each new subscriber False if it is one of /clock, which come
-        first, and a function that sends a message. Any thread may append to this list."""
+    def __init__(self, clock: rospy.Publisher) -> None:
+        """clock: the publisher of /clock."""
         self.clock = clock.impl
-        self.greetings = greetings
+        # for each new subscriber False if it is one of /clock, which come first, and a function that sends a message;
+        # any thread may append to this list
+        self.greetings: list[tuple[bool, Callable[[], None]]] = []
         self.own_name = rospy.get_name()
-        self.commands: list[Any] = []       # the implementations of the subscribers to commands
+        # the implementations of the subscribers to commands, whose publishers are watched
+        self.commands: list[Any] = []
         # the lists of connections at the last update; rospy replaces a list when it changes
         self.known: list[Any] = []
         self.listeners: dict[str, Any] = {}     # connections to the subscribers of /clock, by name
@@ -51,28 +59,18 @@ class Watch(Pollers):
         # nodes that are starting, by name; s of the monotonic clock since when they sleep by the wall clock
         self.starting: dict[str, float | None] = {}
         self.graph = Graph()
-        # ns of CPU time that the master had used when all nodes were asleep; None: it has to be asked
-        self.master_time: int | None = 0
+        self.master_time = 0    # ns of CPU time that the master had used when all nodes were asleep
         self.asked = False      # whether the work of the master since then was the answer
-        # registered nodes that are not connected, by topic and name; s of the monotonic clock when first missed
-        self.missed: dict[tuple[str, str], float] = {}
-        # connections to publishers of commands that are being made; s of the monotonic clock when they were allowed, or
-        # 0; None: the master was not asked since
-        self.joining: dict[Event, float | None] = {}
-        self.processes = {}     # drivers first
+        self.news = Event()     # set if the master has to be asked in any case
+        # registered nodes that are not connected, by name; s of the monotonic clock when first missed
+        self.missed: dict[str, float] = {}
+        self.joining: list[Permission] = []     # for the connections that are being made; any thread may change this
+        self.processes: dict[str, Process] = {}     # by name; drivers first
         # sockets by name; None: of the master, for good
         self.forgotten: dict[str, socket.socket | None] = {}
         self.own = own_process()        # the process of this node, without the thread that runs the clock
         self.master = listening_process(urlparse(rosgraph.get_master_uri()).port) if self.own else None
         self.network = Network()
-
-    def add(self, subscriber: rospy.Subscriber) -> None:
-        """Watch the publishers that a subscriber to commands is connected to."""
-        self.commands.append(subscriber.impl)
-
-    def remove(self, subscriber: rospy.Subscriber) -> None:
-        """Undo add()."""
-        self.commands.remove(subscriber.impl)
 
     def update(self) -> bool:
         """Update the set of watched processes; return whether it may have changed. Call this often."""
@@ -85,13 +83,12 @@ class Watch(Pollers):
         for name, each in listeners.items():
             if self.listeners.get(name) is not each:
                 self.starting[name] = None
-                # what it has registered while the master was asked is in no answer
-                self.master_time, self.asked = None, False
+                self.missed.pop(name, None)
+                self.news.set()     # what it has registered while the master was asked is in no answer
                 if name in self.listeners:
                     self.reads_again = monotonic() + RECONNECT_TIME
         for name in self.listeners.keys() - listeners.keys():
-            self.missed.pop(('commands', name), None)
-            self.missed['/clock', name] = 0.0       # it may have been killed: not waited for until it unregisters
+            self.missed[name] = 0.0     # it may have been killed: not waited for until it unregisters
         self.listeners = listeners
         self.starting = {name: until for name, until in self.starting.items() if name in listeners}
         self._select()
@@ -107,9 +104,9 @@ class Watch(Pollers):
         # a node that does not subscribe to the clock cannot be in step, so there is no use in waiting for it
         drivers = {each.header['callerid']: each.socket for each in self._connections()
                    if is_complete(each) and each.header['callerid'] in self.listeners}
-        others = [name for name in (*self.graph.sources, *self.starting)
-                  if name in self.listeners and name not in drivers]
-        sockets = {**drivers, **{name: self.listeners[name].socket for name in others}}
+        others = {name: self.listeners[name].socket for name in (*self.graph.sources, *self.starting)
+                  if name in self.listeners and name not in drivers}
+        sockets = {**drivers, **others}
         self.forgotten = {name: sock for name, sock in self.forgotten.items() if sock in (None, sockets.get(name))}
         processes = {}
         for name, sock in sockets.items():
@@ -140,7 +137,7 @@ class Watch(Pollers):
         for name in sorted(relays.difference(self.starting)):
             rospy.logwarn('%s has advertised %s only now: the command for which it did so is lost. Before the first '
                           'run, send a zero command, and wait for a second', name, ', '.join(sorted(topics)))
-        self.missed = {key: since for key, since in self.missed.items() if key[1] in self.graph.registered}
+        self.missed = {name: since for name, since in self.missed.items() if name in self.graph.registered}
         self._select()
         return not before >= set(self.graph.sources)
 
@@ -173,74 +170,61 @@ class Watch(Pollers):
     def awake(self) -> str | None:
         """Return the name of a node that is awake, or a text about one that is connecting or starting; None if all are
         asleep."""
-        greetings = len(self.greetings)     # before the update, which finds the nodes that receive them
+        # before the update, which finds the nodes that receive them
+        greetings, joining = len(self.greetings), list(self.joining)
         self.update()
-        if not self.own:
-            return self._greet(greetings)
         if monotonic() < self.reads_again:
             return 'a node that has connected again'
         # before the check, which finds whatever wakes after this
-        naps = [name for name in self.starting
-                if name in self.processes and self.processes[name].main_sleeps_briefly()]
-        names, processes = list(self.processes), list(self.processes.values())
-        for name, process in ((MASTER, self.master), (self.own_name, self.own)):
-            if process and name not in self.forgotten:
-                names.append(name)
-                processes.append(process)
+        naps = [name for name in self.starting if name in self.processes and self.processes[name].naps()]
+        watched = {**self.processes, MASTER: self.master, self.own_name: self.own}
+        processes = {process: name for name, process in watched.items() if process and name not in self.forgotten}
         found = awake(processes, self.network)
         if found:
-            # the name of this node stands for the network
-            return names[processes.index(found)] if isinstance(found, Process) else self.own_name
-        # now, so that the first time that a node sees does not depend on how fast it starts
-        asked = self._ask_master()
-        return self._greet(greetings) or asked or self._still_starting(naps)
-
-    def _greet(self, count: int) -> str | None:
-        for _, send in sorted(self.greetings[:count], key=itemgetter(0)):
-            send()
-        del self.greetings[:count]
-        return self.own_name if count else None
+            return processes[found] if isinstance(found, Process) else self.own_name    # or messages are in transit
+        return (self._ask_master() or self._greet(greetings)
+                or self._missed(self.graph.on_clock - self.listeners.keys()) or self._join(joining)
+                or self._missed((self.graph.registered & self.listeners.keys()) - self.forgotten.keys()
+                                - {each.header['callerid'] for each in self._connections() if is_complete(each)})
+                or self._sleeps_by_the_wall_clock(naps))
 
     def _ask_master(self) -> str | None:
         """Ask the master for publishers of commands if it has worked; then return the name of this node, because others
-        may have woken meanwhile. All nodes are asleep."""
-        used = self.master.cpu_time() if self.master else 0
-        new = [event for event, since in list(self.joining.items()) if since is None]
-        if new or not self.asked and (self.master_time is None or used > self.master_time + MASTER_WORK):
-            self.joining.update(dict.fromkeys(new, 0.0))
+        may have woken meanwhile."""
+        used = self.master and self.master.activity() or 0
+        if self.news.is_set() or not self.asked and used > self.master_time + MASTER_WORK:
+            self.news.clear()
             self.asked = True
             self.find_sources()
             return self.own_name
         self.master_time, self.asked = used, False
         return None
 
-    def _still_starting(self, naps: list[str]) -> str | None:
-        """Return whether a node is starting, as awake() does: it is being connected, it sleeps by the wall clock, or it
-        has registered as a publisher of commands. All nodes are asleep; naps: names of those that sleep so."""
-        now = monotonic()
-        if self.joining:
-            name = self._missed('/clock', self.graph.on_clock - self.listeners.keys(), now)
-            return name or self._join(now) or self._sleeps_by_the_wall_clock(naps, now)
-        connected = {each.header['callerid'] for each in self._connections() if is_complete(each)}
-        unconnected = (self.graph.registered & self.listeners.keys()) - connected - self.forgotten.keys()
-        return self._sleeps_by_the_wall_clock(naps, now) or self._missed('commands', unconnected, now)
+    def _greet(self, count: int) -> str | None:
+        """Send the first greetings, so many: the first time that a node sees does not depend on how fast it starts."""
+        for _, send in sorted(self.greetings[:count], key=itemgetter(0)):
+            send()
+        del self.greetings[:count]
+        return self.own_name if count else None
 
-    def _missed(self, topic: str, names: set[str], now: float) -> str | None:
+    def _missed(self, names: set[str]) -> str | None:
         """Return whether to wait for one of these nodes, which are not connected, as awake() does."""
-        late = [name for name in sorted(names) if now < self.missed.setdefault((topic, name), now) + CONNECT_TIME]
+        now = monotonic()
+        late = [name for name in sorted(names) if now < self.missed.setdefault(name, now) + CONNECT_TIME]
         return STARTING % late[0] if late else None
 
-    def _join(self, now: float) -> str | None:
+    def _join(self, joining: list[Permission]) -> str | None:
         """Let publishers of commands connect; return whether they do so, as awake() does."""
-        for event, since in list(self.joining.items()):
-            if since is not None:
-                self.joining[event] = since or now
-                event.set()
-        waits = any(now < (since or now) + CONNECT_TIME for since in list(self.joining.values()))
+        now = monotonic()
+        for each in joining:
+            each.since = each.since or now
+            each.set()
+        waits = any(now < each.since + CONNECT_TIME for each in joining if each in self.joining)
         return STARTING % 'a publisher of commands' if waits else None
 
-    def _sleeps_by_the_wall_clock(self, naps: list[str], now: float) -> str | None:
+    def _sleeps_by_the_wall_clock(self, naps: list[str]) -> str | None:
         """Return whether to wait for a node that is starting and sleeps by the wall clock, as awake() does."""
+        now = monotonic()
         for name in naps:
             self.starting[name] = since = self.starting.get(name) or now
             drives = name in self.graph.similar
@@ -259,32 +243,26 @@ class Watch(Pollers):
     def connecting(self, topic: str) -> Iterator[None]:
         """Connect to a publisher of a topic inside; may be called by any thread. If these are commands, wait until all
         nodes are asleep and have received the time: whether a command arrives must not depend on chance."""
-        allowed = Event()
-        if self.own and any(topic == each.resolved_name for each in self.commands):
-            self.joining[allowed] = None
-            allowed.wait(AWAKE_TIME)
+        if not self.own or all(topic != each.resolved_name for each in self.commands):
+            yield
+            return
+        permission = Permission()
+        self.news.set()
+        self.joining.append(permission)
+        permission.wait(AWAKE_TIME)
         try:
             yield
         finally:
-            self.joining.pop(allowed, None)
+            self.joining.remove(permission)
 
     def forget(self, name: str) -> bool:
         """Stop watching a node for as long as its connection lasts; return whether commands depend on it."""
         watched = name in self.drivers or name in self.graph.needed or name == MASTER
         self.starting.pop(name, None)
-        process = self.processes.pop(name, None)
-        if process:
-            self.forgotten[name] = process.socket
-            process.close()
-        elif name == MASTER:
-            self.forgotten[name] = None
-        self.drivers = self.drivers - {name}
-        self.known = []
+        if name == MASTER or name in self.processes:
+            self.forgotten[name] = self.processes[name].socket if name in self.processes else None
+            self._select()
         return watched
-
-    def has_started(self, name: str) -> None:
-        """Note that a node has sent its first command."""
-        self.starting.pop(name, None)
 
     def is_connected(self, header: object) -> bool:
         """Return whether a connection to a publisher of commands still exists. header: the header object of the

@@ -27,7 +27,6 @@ class Processes:
 
     def __init__(self):
         self.drivers, self.own_name = {'a', 'b'}, 'base'
-        self.add = self.remove = None
         self.work = []          # functions, one called at each look; while there are any, a node is awake
         self.never_sleeps = None
         self.looks = 0
@@ -35,9 +34,7 @@ class Processes:
         self.starting = {}
         self.forgotten = {}
         self.new_source = False
-        self.new_threads = False
-        self.poll = []          # functions, one called at each call of still_polling()
-        self.tests = 0
+        self.processes = {}
 
     def update(self):
         return False
@@ -49,32 +46,11 @@ class Processes:
             return 'a'
         return self.never_sleeps
 
-    def polling(self):
-        return list(self.poll)
-
-    def still_polling(self, _):
-        if self.poll:
-            self.poll.pop()()
-        return bool(self.poll)
-
-    def have_new_threads(self):
-        return self.new_threads
-
-    def runs(self):
-        return []
-
-    def find_pollers(self, _):
-        self.tests += 1
-        return self.tests < 2
-
     def forget(self, name):
         self.drivers.discard(name)
         if self.never_sleeps == name:
             self.never_sleeps = None
         return name != 'starting'
-
-    def has_started(self, _):
-        pass
 
     def is_connected(self, _):
         return True
@@ -98,7 +74,7 @@ class World:
     """A Lockstep; `applied` has the commands with the ticks at which they took effect."""
 
     def __init__(self, monkeypatch, report=None):
-        self.applied, self.reports, self.sleeps, self.lines = [], [], [], []
+        self.applied, self.reports, self.sleeps, self.lines, self.tests = [], [], [], [], []
         self.processes = Processes()
         self.headers = {name: {'callerid': name} for name in 'ab'}
         self.lockstep = Lockstep(self.processes, report or (lambda *each: self.reports.append(each)), lambda: False)
@@ -106,7 +82,7 @@ class World:
         self.target = SimpleNamespace(apply=lambda command: self.applied.append((self.lockstep.tick, command)))
         monkeypatch.setattr(lockstep, 'monotonic', lambda: self.now)
         monkeypatch.setattr(lockstep, 'sleep', self.sleep)
-        monkeypatch.setattr(self.lockstep.random, 'random', lambda: 1.0)
+        monkeypatch.setattr(lockstep, 'find_pollers', lambda *_: self.tests.append(self.now))
         monkeypatch.setattr(lockstep.rospy, 'loginfo', lambda text, *values: self.lines.append(text % values))
 
     def sleep(self, seconds):

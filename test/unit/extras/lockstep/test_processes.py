@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from rbx1_nav.extras.lockstep.processes import Process, awake, still_polling
+from rbx1_nav.extras.lockstep.processes import Process, awake, polling, still_polling
 from waiting import wait_for
 
 BEGIN = 'import socket, sys, threading, time\nprint("up", flush=True)\n'
@@ -94,18 +94,18 @@ def test_a_process_that_has_ended_counts_as_asleep(start):
     child.kill()
     wait_for(lambda: not awake([process]))
     child.wait()
-    assert not awake([process]) and not process.polling()
+    assert not awake([process]) and not polling([process])
     with pytest.raises(OSError):
         Process(child.pid)
 
 
 def test_a_thread_that_polls(start):
     process = Process(start('while True: time.sleep(0.001)').pid)
-    polling = wait_for(process.polling)
-    wait_for(lambda: not still_polling(polling))
+    threads = wait_for(lambda: polling([process]))
+    wait_for(lambda: not still_polling(threads))
     sleeper = Process(start('time.sleep(1000)').pid)
     wait_for(lambda: not awake([sleeper]))
-    wait_for(lambda: not sleeper.polling())
+    wait_for(lambda: not polling([sleeper]))
     # a process that waits for a message does not poll, even if it has just run
     reader = start('for line in sys.stdin: print("read", flush=True)')
     process = Process(reader.pid)
@@ -114,7 +114,7 @@ def test_a_thread_that_polls(start):
         reader.stdin.flush()
         reader.stdout.readline()
         wait_for(lambda: not awake([process]))
-        assert not process.polling()
+        assert not polling([process])
 
 
 def test_messages_in_transit(start):

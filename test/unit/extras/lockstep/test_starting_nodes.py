@@ -19,7 +19,7 @@ def make_world(monkeypatch):
 @pytest.mark.parametrize('publishers, waits', [([['/cmd_vel', ['/node']]], True), ([['/cmd_vel', ['/other']]], False)])
 def test_a_driver_that_sleeps_by_the_wall_clock_before_its_first_command_is_waited_for(
         world, monkeypatch, publishers, waits):
-    world.watch.master = Master(monkeypatch, publishers).process()
+    world.watch.master = Master(monkeypatch, publishers)
     world.watch.master_time = -1_000_000
     monkeypatch.setattr(watched_nodes, 'CONNECT_TIME', 0.0)
     monkeypatch.setattr(watched_nodes, 'START_SLEEP', 0.0)
@@ -28,7 +28,7 @@ def test_a_driver_that_sleeps_by_the_wall_clock_before_its_first_command_is_wait
     if waits:
         wait_for(lambda: world.watch.awake() == STARTING)
         assert {world.watch.awake() for _ in range(20)} == {STARTING}
-        world.watch.has_started('/node')
+        world.watch.starting.pop('/node')
     world.settle()
     assert not world.watch.starting
 
@@ -51,7 +51,7 @@ def test_a_node_that_wakes_after_the_check_is_still_waited_for(world, monkeypatc
         found = awake(*checked)
         if not found:
             node.socket.send(b'\n')
-            wait_for(lambda: not world.watch.processes['/node'].main_sleeps_briefly())
+            wait_for(lambda: not world.watch.processes['/node'].naps())
         return found
     awake = watched_nodes.awake
     monkeypatch.setattr(watched_nodes, 'awake', check)
@@ -59,7 +59,7 @@ def test_a_node_that_wakes_after_the_check_is_still_waited_for(world, monkeypatc
     world.watch.find_sources()
     node = world.connect('/node', 'import select; select.select([s], [], []); sys.stdin.read()')
     world.listen(node)
-    world.watch.master_time = 0
+    world.watch.news.clear()
     assert wait_for(lambda: (name := world.watch.awake()) != '/node' and name) == STARTING
     world.settle()
 
@@ -67,7 +67,7 @@ def test_a_node_that_wakes_after_the_check_is_still_waited_for(world, monkeypatc
 def test_a_publisher_that_registers_while_the_clock_runs_is_waited_for(world, monkeypatch):
     """The master has worked, so it is asked."""
     master = Master(monkeypatch, [])
-    world.watch.master = master.process()
+    world.watch.master = master
     world.listen(world.connect('/node'), world.connect('/other'))
     world.settle()
     master.publishers = [['/cmd_vel', ['/node', '/gone']]]
@@ -88,7 +88,7 @@ def test_a_publisher_that_registers_while_the_clock_runs_is_waited_for(world, mo
 def test_a_publisher_that_registers_while_the_master_is_asked_is_waited_for(world, monkeypatch):
     """The answer does not name it, but its subscription to the clock is new."""
     master = Master(monkeypatch, [])
-    world.watch.master = master.process()
+    world.watch.master = master
 
     def call(*question):
         answer = master.call(*question)
@@ -106,7 +106,7 @@ def test_a_publisher_that_registers_while_the_master_is_asked_is_waited_for(worl
 
 def test_a_publisher_that_never_connects_is_waited_for_only_once(world, monkeypatch):
     master = Master(monkeypatch, [['/cmd_vel', ['/node']]])
-    world.watch.master = master.process()
+    world.watch.master = master
     monkeypatch.setattr(watched_nodes, 'CONNECT_TIME', 0.5)
     world.listen(world.connect('/node'))
     master.work()
@@ -124,7 +124,7 @@ def test_a_relay_is_watched_before_it_publishes(world, monkeypatch):
     monkeypatch.setattr(watched_nodes.rospy, 'logwarn', lambda text, *values: warnings.append(text % values))
     publishers, subscribers = [['/relayed', ['/driver']]], [['/relayed', ['/relay']]]
     master = Master(monkeypatch, publishers, subscribers, [['/relayed', 'geometry_msgs/Twist']])
-    world.watch.master = master.process()
+    world.watch.master = master
     world.listen(*[world.connect(name) for name in ('/relay', '/driver', '/recorder')])
     master.work()
     world.settle()
@@ -161,19 +161,19 @@ def test_a_publisher_of_commands_is_connected_when_all_nodes_are_asleep(world, m
 
 def test_a_publisher_whose_subscription_to_the_clock_is_not_connected_yet_is_not_connected(world, monkeypatch):
     master = Master(monkeypatch, [['/cmd_vel', ['/node']]], [['/clock', ['/node', '/recorder']]])
-    world.watch.master = master.process()
-    world.watch.joining[threading.Event()] = None
+    world.watch.master = master
+    permission = watched_nodes.Permission()
+    world.watch.joining.append(permission)
+    master.work()
     wait_for(lambda: world.watch.awake() == STARTING)
-    assert {world.watch.awake() for _ in range(20)} == {STARTING} and not any(map(threading.Event.is_set,
-                                                                                 world.watch.joining))
+    assert {world.watch.awake() for _ in range(20)} == {STARTING} and not permission.is_set()
     world.listen(world.connect('/node'))
-    wait_for(lambda: (world.watch.awake() or '').endswith('which is starting')
-             and all(map(threading.Event.is_set, world.watch.joining)))
+    wait_for(lambda: (world.watch.awake() or '').endswith('which is starting') and permission.is_set())
 
 
 def test_a_new_subscriber_is_greeted_when_all_nodes_are_asleep(world):
     greeted = []
-    world.greetings += [(True, lambda: greeted.append('state')), (False, lambda: greeted.append('time'))]
+    world.watch.greetings += [(True, lambda: greeted.append('state')), (False, lambda: greeted.append('time'))]
     world.drive(world.connect('/computing', 'while True: pass'))
     wait_for(lambda: world.watch.awake() == '/computing')
     assert not greeted
@@ -188,7 +188,7 @@ def test_a_subscriber_that_comes_during_a_check_is_greeted_after_the_next_one(wo
 
     def check(*_):
         if not greeted:
-            world.greetings[:] = [(False, lambda: greeted.append('/new'))]
+            world.watch.greetings[:] = [(False, lambda: greeted.append('/new'))]
     monkeypatch.setattr(watched_nodes, 'awake', check)
     assert world.watch.awake() is None and not greeted
     # it has connected after the update
@@ -196,7 +196,7 @@ def test_a_subscriber_that_comes_during_a_check_is_greeted_after_the_next_one(wo
     world.listen(old)
     world.clock.connections = [old, new]
     assert world.watch.receivers(world.clock) == [old]
-    assert world.watch.awake() is not None and greeted == ['/new']
+    wait_for(lambda: world.watch.awake() and greeted)
     assert world.watch.receivers(world.clock) == [old, new]
     other = SimpleNamespace(connections=[new])
     assert world.watch.receivers(other) == [new]

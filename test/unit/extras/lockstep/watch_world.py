@@ -15,11 +15,11 @@ class World:
         self.server = socket.socket()
         self.server.bind(('127.0.0.1', 0))
         self.server.listen()
-        self.children, self.greetings = [], []
+        self.children = []
         self.clock = SimpleNamespace(connections=[], resolved_name='/clock')
         self.commands = SimpleNamespace(connections=[], resolved_name='/cmd_vel', type='geometry_msgs/Twist')
-        self.watch = Watch(SimpleNamespace(impl=self.clock), self.greetings)
-        self.watch.add(SimpleNamespace(impl=self.commands))
+        self.watch = Watch(SimpleNamespace(impl=self.clock))
+        self.watch.commands.append(self.commands)
 
     def connect(self, name, code='sys.stdin.read()'):
         """Return a connection to a node with this name that runs Python code."""
@@ -43,7 +43,20 @@ class World:
         wait_for(lambda: not self.watch.awake())
 
 
-class Master:
+class Asleep:
+    """A Process that is asleep."""
+
+    def activity(self, _=False):
+        return 0
+
+    def sleeps(self):
+        return True
+
+    def has_pollers(self):
+        return False
+
+
+class Master(Asleep):
     """Answers the calls of a Watch."""
 
     def __init__(self, monkeypatch, publishers, subscribers=(), types=()):
@@ -61,18 +74,15 @@ class Master:
         """Use as much CPU time as an answer takes."""
         self.time += 1_000_000
 
-    def process(self):
-        """Return its Process."""
-        return SimpleNamespace(cpu_time=lambda: self.time, activity=lambda _: 0, sleeps=lambda: True,
-                               has_pollers=lambda: False)
+    def activity(self, _=False):
+        return self.time
 
 
 def worlds(monkeypatch):
     """Yield one World, for a fixture."""
     monkeypatch.setenv('ROS_MASTER_URI', 'http://127.0.0.1:1')      # nothing listens there
     # the process of pytest itself may have no other thread
-    monkeypatch.setattr(watched_nodes, 'own_process', lambda: SimpleNamespace(
-        activity=lambda _: 0, sleeps=lambda: True, has_pollers=lambda: False))
+    monkeypatch.setattr(watched_nodes, 'own_process', Asleep)
     # other tests on this machine use the network
     monkeypatch.setattr(watched_nodes, 'Network', lambda: SimpleNamespace(busy=lambda: False))
     world = World()
