@@ -12,7 +12,6 @@ from __future__ import annotations
 from collections import Counter
 from io import BytesIO
 import select
-import socket
 from threading import Event, Lock
 from time import monotonic, sleep
 from typing import Any, Callable, Collection, NamedTuple
@@ -105,19 +104,23 @@ class Lockstep:
         moving = {driver.name for driver in self.drivers.values() if driver.moving}
         if self.watch.update() or self.held or not self.watch.drivers or not self.watch.drivers <= moving:
             self._settle()      # otherwise, all of them wait for the tick
-        while self._has_arrived():
+        while True:
+            with self.lock:     # if nothing has arrived, the next tick has begun
+                self.idle = bool(self.arrived)
+            if not self.idle:
+                break
             self._settle()
 
     def deliver(self, publisher: rospy.Publisher, message: Message) -> None:
         """Publish a message, and wait until everything that it has woken is asleep again."""
         topic = publisher.impl
-        receivers = self.watch.receivers(topic)
-        if not receivers:
+        groups = self.watch.groups(topic)
+        if not groups:
             return
         topic.seq += 1
         buffer = BytesIO()
         serialize_message(buffer, topic.seq, message)
-        for connections, wait in self.watch.groups(receivers):
+        for connections, wait in groups:
             self.heard.clear()
             for connection in connections:
                 write(connection, buffer.getvalue())
@@ -125,10 +128,11 @@ class Lockstep:
                 self.heard.wait(ANSWER_TIME)    # before a command arrives, there is no need to look
                 self._settle(isinstance(message, Clock))
 
-    def take(self) -> list[tuple[Any, Any]]:
-        """Return the commands that take effect now, each with its target."""
+    def apply(self) -> None:
+        """Put the commands that have arrived in force."""
         ready, self.ready = self.ready, []
-        return ready
+        for target, command in ready:
+            target.apply(command)
 
     def listen(self, until: float) -> None:
         """Wait until a time (s of the monotonic clock), or longer if this tick tests who sends without being woken."""
@@ -162,13 +166,6 @@ class Lockstep:
             driver.holds -= 1
             return FIRST_HOLD if driver.first_tick == self.tick else HOLD * max(driver.intervals, default=0.0)
         return HOLD * min(driver.intervals) if self.tick % HOLD_LATER == 0 else 0.0
-
-    def _has_arrived(self) -> bool:
-        """Return whether a command of the tick before has arrived that is not ordered yet. If not, the next tick has
-        begun."""
-        with self.lock:
-            self.idle = bool(self.arrived)
-            return self.idle
 
     def _settle(self, new_time: bool = False) -> None:
         """Wait until everything is asleep, and order the commands that have arrived. new_time: whether the time was
@@ -205,10 +202,9 @@ class Lockstep:
                 del awake[name]
                 if self.watch.forget(name):
                     self._report(name, f'did not become idle within {NODE_TIMEOUT:g} s')
-            others = awake.keys() - {self.watch.own_name}
-            if now - begin > LONG_WAIT and others and not said:
+            if now - begin > LONG_WAIT and name != self.watch.own_name and not said:
                 said = True
-                rospy.loginfo('The clock waits for %s', ', '.join(sorted(others)))
+                rospy.loginfo('The clock waits for %s', name)
             if now - begin > LONG:
                 self._find_pollers()    # again: on a busy machine, such a thread may not run for a while
             sleep(min(max(LOOK[0], LOOK_LATER * (now - begin)), LOOK[1]))
@@ -257,9 +253,11 @@ def write(connection: Any, data: bytes) -> None:
     """Send a serialized message; without a detour through the thread of the connection, unless that has work to do or
     the receiver does not read."""
     try:
+        writable = select.poll()
         with connection._lock:
-            is_free = bool(connection._cond_data_available._waiters)    # its thread waits for a message
-        if is_free and is_writable(connection.socket):
+            if connection._cond_data_available._waiters:    # its thread waits for a message
+                writable.register(connection.socket, select.POLLOUT)
+        if writable.poll(0):
             connection = connection._connection
         connection.write_data(data)
     except Exception as error:
@@ -267,10 +265,3 @@ def write(connection: Any, data: bytes) -> None:
         if not (isinstance(error, (TransportException, OSError)) or connection.done):
             raise
         connection.close()      # the node has exited
-
-
-def is_writable(connected: socket.socket) -> bool:
-    """Return whether a message can be sent without waiting for the receiver."""
-    poll = select.poll()
-    poll.register(connected, select.POLLOUT)
-    return bool(poll.poll(0))

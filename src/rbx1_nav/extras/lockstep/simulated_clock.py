@@ -146,29 +146,24 @@ class OwnClock(Clock):
                 found = set(clock_publishers()) - named
             except Exception:       # the master does not answer
                 continue
-            new, before = found & before, found     # not a base that is about to exit
-            for name in new:
+            for name in found & before:     # not a base that is about to exit
+                named.add(name)
                 rospy.logerr('%s publishes /clock, too, so that time moves back and forth: expected only this base to '
                              'publish it (rosbag play: without --clock)', name)
-            named |= new
+            before = found
 
     def run(self, step: Callable[[], None]) -> None:
         threading.Thread(target=self.watch_clocks, daemon=True).start()
         beat = time.monotonic()
         while not life.end_requested.is_set():
             self.lockstep.begin()
-            self.apply()
+            self.lockstep.apply()
             self.time += self.period
             stamp = self.stamp(self.time)
             rospy.rostime._set_rostime(stamp)
             if self.schedule.due(self.time):
                 step()
             self.publish(self.publisher, ClockMessage(stamp))
-            self.apply()
+            self.lockstep.apply()
             beat = max(beat + self.period / SECOND / self.factor, time.monotonic() - CATCH_UP)
             self.lockstep.listen(beat)
-
-    def apply(self) -> None:
-        """Put the commands that have arrived in force."""
-        for target, command in self.lockstep.take():
-            target.apply(command)

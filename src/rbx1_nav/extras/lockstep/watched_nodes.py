@@ -6,7 +6,7 @@ from operator import is_, itemgetter
 import socket
 from threading import Event
 from time import monotonic
-from typing import Any, Callable, Iterator, Sequence
+from typing import Any, Callable, Iterator
 from urllib.parse import urlparse
 
 import rosgraph
@@ -141,22 +141,18 @@ class Watch:
         self._select()
         return not before >= set(self.graph.sources)
 
-    def receivers(self, topic: Any) -> Sequence[Any]:
-        """Return the connections to the subscribers of a topic that may receive a message. topic: the implementation of
-        a publisher. A new subscriber of the clock is first greeted, when it is asleep."""
-        return list(self.listeners.values()) if topic is self.clock else topic.connections
-
-    def groups(self, connections: Sequence[Any]) -> list[tuple[Sequence[Any], bool]]:
-        """Return connections to the subscribers of a topic in groups, in the order in which they receive a message, and
-        whether to wait after each group: nodes that are not watched, sources of commands one by one, and drivers."""
+    def groups(self, topic: Any) -> list[tuple[list[Any], bool]]:
+        """Return the connections to the subscribers of a topic in groups, in the order in which they receive a message,
+        and whether to wait after each group: nodes that are not watched, sources of commands one by one, and drivers.
+        topic: the implementation of a publisher. A new subscriber of the clock is first greeted, when it is asleep."""
+        connections = list(self.listeners.values()) if topic is self.clock else topic.connections
         by_name = {each.endpoint_id: each for each in connections}
         watched = by_name.keys() & self.processes.keys()
         sources = [name for name in self.graph.sources if name in watched and name not in self.drivers]
         last = sorted(watched - set(sources))
-        groups: list[tuple[Sequence[Any], bool]] = [([each for each in connections if each.endpoint_id not in watched],
-                                                     False)]
-        groups += [([by_name[name]], True) for name in sources]
-        return groups + [([by_name[name] for name in last], True)] * bool(last)
+        groups = [([each for each in connections if each.endpoint_id not in watched], False),
+                  *(([by_name[name]], True) for name in sources), ([by_name[name] for name in last], True)]
+        return [group for group in groups if group[0]]
 
     def obstacle(self, name: str) -> str | None:
         """Return the reason why a node that drives cannot be in step, or None."""

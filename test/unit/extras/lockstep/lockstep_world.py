@@ -61,13 +61,9 @@ class Processes:
     def find_sources(self):
         return self.new_source
 
-    def receivers(self, topic):
-        return topic.connections
-
-    def groups(self, connections):
-        watched = [[each] for each in connections if each.endpoint_id != 'recorder']
-        return [([each for each in connections if each.endpoint_id == 'recorder'], False)] + [
-            (group, True) for group in watched]
+    def groups(self, topic):
+        return [([each], each.endpoint_id != 'recorder')
+                for each in sorted(topic.connections, key=lambda each: each.endpoint_id != 'recorder')]
 
 
 class World:
@@ -92,20 +88,16 @@ class World:
     def send(self, name, command):
         self.lockstep.receive(self.target, self.headers[name], command)
 
-    def apply(self):
-        for target, command in self.lockstep.take():
-            target.apply(command)
-
     def deliver(self, *connections, message=Clock()):
         self.lockstep.deliver(SimpleNamespace(impl=SimpleNamespace(connections=connections, seq=0)), message)
 
     def tick(self, *commands, listen=0.001):
         """Make a tick that is answered with these commands, each (name, command); listen: s."""
         self.lockstep.begin()
-        self.apply()
+        self.lockstep.apply()
         self.deliver(Connection('a', lambda: self.processes.work.extend(
             [lambda each=each: self.send(*each) for each in commands])))
-        self.apply()
+        self.lockstep.apply()
         self.lockstep.listen(self.now + listen)
 
     def drive(self, count, listen=0.001):

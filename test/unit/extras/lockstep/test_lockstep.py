@@ -47,7 +47,7 @@ def test_the_order_of_a_tick(world):
     world.lockstep.begin()
     world.deliver(node('s'), node('a', ('b', FASTER), ('a', MOVE)), recorder, message=Twist())
     world.deliver(node('a', ('a', STOP)))
-    world.apply()
+    world.lockstep.apply()
     assert events == ['recorder receives', 's receives', 's works', 'a receives', 'a works', 'a receives', 'a works']
     assert world.applied == [(1, MOVE), (1, FASTER), (1, STOP)]
 
@@ -56,11 +56,13 @@ def test_a_command_between_two_ticks_belongs_to_the_tick_before(world):
     world.tick()
     world.send('a', MOVE)
     world.lockstep.begin()
-    assert [command for _, command in world.lockstep.take()] == [MOVE]
+    world.lockstep.apply()
+    assert world.applied == [(2, MOVE)]
     # also if it comes while the tick begins
     world.processes.work = [lambda: world.send('a', STOP)]
     world.lockstep.begin()
-    assert [command for _, command in world.lockstep.take()] == [STOP]
+    world.lockstep.apply()
+    assert world.applied[1:] == [(3, STOP)]
 
 
 def test_a_node_that_never_sleeps_is_given_up(world):

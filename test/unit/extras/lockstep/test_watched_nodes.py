@@ -62,8 +62,9 @@ def test_the_order_of_subscribers(world, monkeypatch):
     world.watch.update()
     assert world.watch.graph.sources == ['/base', '/teleop', '/driver', '/mux']
     assert set(world.watch.processes) == {'/mux', '/driver', '/teleop'} and world.watch.drivers == {'/mux'}
-    assert world.watch.groups(connections) == [([recorder], False), ([teleop], True), ([driver], True), ([mux], True)]
-    assert world.watch.groups([recorder]) == [([recorder], False)]
+    assert world.watch.groups(SimpleNamespace(connections=connections)) == [
+        ([recorder], False), ([teleop], True), ([driver], True), ([mux], True)]
+    assert world.watch.groups(SimpleNamespace(connections=[])) == []
 
 
 def test_a_node_that_starts_is_watched_until_it_waits(world):
