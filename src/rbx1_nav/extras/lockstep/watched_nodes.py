@@ -56,8 +56,10 @@ class Watch:
         self.listeners: dict[str, Any] = {}     # connections to the subscribers of /clock, by name
         self.reads_again = 0.0      # s of the monotonic clock: when a listener that has connected again surely reads
         self.drivers: set[str] = set()      # names of the watched publishers of commands
-        # nodes that are starting, by name; s of the monotonic clock since when they sleep by the wall clock
+        # nodes that are starting, by name; s of the monotonic clock since when they sleep by the wall clock. Another
+        # thread may remove some
         self.starting: dict[str, float | None] = {}
+        self.sleepers: set[str] = set()     # registered nodes that slept by the wall clock, and were not connected yet
         self.graph = Graph()
         self.master_time = 0    # ns of CPU time that the master had used when all nodes were asleep
         self.asked = False      # whether the work of the master since then was the answer
@@ -90,7 +92,7 @@ class Watch:
         for name in self.listeners.keys() - listeners.keys():
             self.missed[name] = 0.0     # it may have been killed: not waited for until it unregisters
         self.listeners = listeners
-        self.starting = {name: until for name, until in self.starting.items() if name in listeners}
+        self.starting = {name: since for name, since in list(self.starting.items()) if name in listeners}
         self._select()
         return True
 
@@ -171,18 +173,26 @@ class Watch:
         self.update()
         if monotonic() < self.reads_again:
             return 'a node that has connected again'
-        # before the check, which finds whatever wakes after this
-        naps = [name for name in self.starting if name in self.processes and self.processes[name].naps()]
+        naps = self._naps()     # before the check, which finds whatever wakes after this
         watched = {**self.processes, MASTER: self.master, self.own_name: self.own}
         processes = {process: name for name, process in watched.items() if process and name not in self.forgotten}
         found = awake(processes, self.network)
         if found:
             return processes[found] if isinstance(found, Process) else self.own_name    # or messages are in transit
+        naps |= self._naps()    # a thread may have waited for a lock before
+        connected = {each.header['callerid'] for each in self._connections() if is_complete(each)}
+        unconnected = (self.graph.registered & self.listeners.keys()) - self.forgotten.keys() - connected
+        for name in self.sleepers & unconnected - naps:
+            rospy.logwarn('%s has waited by the wall clock, but not until this node was connected: its first commands '
+                          'may be lost. Expected rospy.sleep instead of time.sleep', name)
+        self.sleepers = unconnected & naps
         return (self._ask_master() or self._greet(greetings)
                 or self._missed(self.graph.on_clock - self.listeners.keys()) or self._join(joining)
-                or self._missed((self.graph.registered & self.listeners.keys()) - self.forgotten.keys()
-                                - {each.header['callerid'] for each in self._connections() if is_complete(each)})
-                or self._sleeps_by_the_wall_clock(naps))
+                or self._missed(unconnected) or self._sleeps_by_the_wall_clock(naps))
+
+    def _naps(self) -> set[str]:
+        """Return the names of nodes that are starting, and are running or sleep by the wall clock."""
+        return {name for name in list(self.starting) if name in self.processes and self.processes[name].naps()}
 
     def _ask_master(self) -> str | None:
         """Ask the master for publishers of commands if it has worked; then return the name of this node, because others
@@ -218,10 +228,10 @@ class Watch:
         waits = any(now < each.since + CONNECT_TIME for each in joining if each in self.joining)
         return STARTING % 'a publisher of commands' if waits else None
 
-    def _sleeps_by_the_wall_clock(self, naps: list[str]) -> str | None:
+    def _sleeps_by_the_wall_clock(self, naps: set[str]) -> str | None:
         """Return whether to wait for a node that is starting and sleeps by the wall clock, as awake() does."""
         now = monotonic()
-        for name in naps:
+        for name in sorted(naps):
             self.starting[name] = since = self.starting.get(name) or now
             drives = name in self.graph.similar
             if now < since + (DRIVER_SLEEP if drives else START_SLEEP):

@@ -1,6 +1,5 @@
 """The clock waits for nodes that are starting, in an order that does not depend on chance."""
 import threading
-from types import SimpleNamespace
 
 import pytest
 
@@ -44,6 +43,20 @@ def test_a_driver_that_sleeps_by_the_wall_clock_for_long_is_named(world, monkeyp
                  world.connect('/other'))
     world.settle()
     assert named == [('/node', 'waits by the wall clock bef')]
+
+
+def test_a_driver_that_sleeps_by_the_wall_clock_but_not_until_it_is_connected_is_named(world, monkeypatch):
+    Master(monkeypatch, [['/cmd_vel', ['/node', '/other']]])
+    monkeypatch.setattr(watched_nodes, 'CONNECT_TIME', 1000.0)
+    named = []
+    monkeypatch.setattr(watched_nodes.rospy, 'logwarn', lambda text, name: named.append(name))
+    world.listen(world.connect('/node', 'import select; select.select([sys.stdin], [], [], 1000); sys.stdin.read()'),
+                 world.connect('/other', 'time.sleep(1000)'))
+    wait_for(lambda: world.watch.awake() and world.watch.sleepers == {'/node', '/other'})
+    world.children[0].stdin.write(b'\n')
+    world.children[0].stdin.flush()
+    wait_for(lambda: world.watch.awake() and named)
+    assert all(world.watch.awake() for _ in range(20)) and named == ['/node']
 
 
 def test_a_node_that_wakes_after_the_check_is_still_waited_for(world, monkeypatch):
