@@ -18,7 +18,7 @@ POLL = 0.02
 # the greatest number of processes with threads that poll at which it is usual that none of them has run during a check
 AT_REST = 2
 TESTS = 4       # how often to look for threads that poll, as long as it is uncertain for one of them
-ENDED = b'X', b'Z', b''     # states of a thread that has exited
+ENDED = b'X', b'Z'      # states of a thread that has exited
 NANOSLEEP = b'hrtimer_nanosleep'
 TIMED = b'sleep', b'poll', b'select'    # parts of the names of kernel functions that wait with a timeout
 # first parts of the names of the kernel functions in which most threads wait, always in state S
@@ -75,12 +75,12 @@ class Thread:
         return self.place
 
     def sleeps(self) -> bool:
-        """Return whether the thread is waiting or has exited."""
+        """Return whether the thread is waiting. False if it has gone: another one may have taken its place."""
         if self.waits_in().startswith(INTERRUPTIBLE):
             return True
         # state S alone may belong to a thread that is about to wait and may still find that it need not wait
         state = self.state()
-        return self.waits_in() != b'0' if state == b'S' else state in ENDED
+        return self.waits_in() not in (b'0', b'') if state == b'S' else state in ENDED
 
     def state(self) -> bytes:
         """Return the letter of the state of the thread."""
@@ -102,9 +102,9 @@ class Thread:
         if not (self.is_poller or self.place.startswith((b'0', NANOSLEEP))):
             return False
         now = time.monotonic()      # before the look: on a busy machine, the caller may be suspended in between
-        exists = self.look() and self.state() not in ENDED
+        exists = bool(self.look()) and self.state() not in ENDED
         self.is_poller = self.is_poller and now - self.changed < POLL
-        return bool(exists) and (now - self.changed < POLL or self.waits_in() == b'0')
+        return exists and (now - self.changed < POLL or self.waits_in() == b'0')
 
 
 Polling = List[Tuple[Thread, Optional[bytes]]]      # threads that poll, each with its `ran`
@@ -147,8 +147,9 @@ class Process:
     def sleeps(self) -> bool:
         """Return whether all threads are asleep or have exited."""
         try:
-            if os.stat(self.folder).st_nlink == len(self.threads) + 2 + (self.without is not None):
-                return all(thread.sleeps() for thread in self.threads.values())
+            if os.stat(self.folder).st_nlink == len(self.threads) + 2 + (self.without is not None) and all(
+                    thread.sleeps() for thread in self.threads.values()):
+                return True
         except OSError:
             pass
         return self.ended()     # which updates the list of threads

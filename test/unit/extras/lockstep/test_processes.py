@@ -1,4 +1,5 @@
 """The information of the kernel about other processes, tested with real processes."""
+import os
 import signal
 import socket
 import subprocess
@@ -97,6 +98,21 @@ def test_a_process_that_has_ended_counts_as_asleep(start):
     assert not awake([process]) and not polling([process])
     with pytest.raises(OSError):
         Process(child.pid)
+
+
+def test_a_thread_that_takes_the_place_of_another_one_is_watched(start):
+    """As in this node, of which one thread is not watched: the number of threads stays the same."""
+    child = start('def first():\n    sys.stdin.readline()\n    threading.Thread(target=second).start()\n'
+                  'def second():\n    while True: pass\n'
+                  'threading.Thread(target=first).start()\nthreading.Event().wait()')
+    process = Process(child.pid, child.pid)
+    wait_for(lambda: not awake([process]) and process.threads)
+    before = os.listdir(process.folder)
+    child.stdin.write(b'\n')
+    child.stdin.flush()
+    wait_for(lambda: len(os.listdir(process.folder)) == 2 and os.listdir(process.folder) != before)
+    for _ in range(20):
+        assert awake([process]) is process
 
 
 def test_a_thread_that_polls(start):
