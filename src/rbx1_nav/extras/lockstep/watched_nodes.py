@@ -59,7 +59,7 @@ class Watch:
         # nodes that are starting, by name; s of the monotonic clock since when they sleep by the wall clock. Another
         # thread may remove some
         self.starting: dict[str, float | None] = {}
-        self.sleepers: set[str] = set()     # possible drivers that slept by the wall clock, and were not connected
+        self.sleepers: set[str] = set()     # those that slept by the wall clock when all nodes were asleep
         self.graph = Graph()
         self.master_time = 0    # ns of CPU time that the master had used when all nodes were asleep
         self.asked = False      # whether the work of the master since then was the answer
@@ -185,7 +185,7 @@ class Watch:
         for name in self.sleepers & unconnected - naps:
             rospy.logwarn('%s has waited by the wall clock, but not until this node was connected: its first commands '
                           'may be lost. Expected rospy.sleep instead of time.sleep', name)
-        self.sleepers = unconnected & naps
+        self.sleepers = naps
         return (self._ask_master() or self._greet(greetings)
                 or self._missed(self.graph.on_clock - self.listeners.keys()) or self._join(joining)
                 or self._missed(unconnected & self.graph.registered) or self._sleeps_by_the_wall_clock(naps))
