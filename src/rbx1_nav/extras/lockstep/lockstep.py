@@ -231,13 +231,15 @@ class Lockstep:
             driver.intervals.append(received.time - driver.time)
         driver.tick, driver.time = self.tick, received.time
         driver.in_step = driver.in_step and driver.name not in self.watch.forgotten     # reported already
-        if not driver.in_step or driver.first_tick == self.tick:
-            return      # a node may wait by the wall clock before its first motion
-        # a node that has exited since it sent the command is no longer visible
-        reason = self.watch.obstacle(driver.name) if self.watch.is_connected(driver.header) else None
+        if not driver.in_step:
+            return
+        later = driver.first_tick != self.tick      # a node may wait by the wall clock before its first motion
+        reason = None
+        if later and self.watch.is_connected(driver.header):    # not if it has exited, and is no longer visible
+            reason = self.watch.obstacle(driver.name)
         if not reason and count > COMMANDS:
             reason = f'sends more than {COMMANDS} commands at once'
-        elif not reason and received.idle and not self.watch.find_sources():
+        elif not reason and later and received.idle and not self.watch.find_sources():
             reason = 'sends commands that no tick of /clock has prompted'
         if reason:
             self.watch.forget(driver.name)

@@ -147,6 +147,11 @@ def test_a_driver_that_never_lets_the_tick_end_is_named(world):
     assert world.reports == [('a', 'sends more than 3 commands at once')]
 
 
+def test_a_driver_that_does_not_let_the_first_tick_end_is_named(world):
+    world.tick(*[('b', MOVE)] * lockstep.COMMANDS, *[('a', MOVE)] * (lockstep.COMMANDS + 1), ('a', STOP))
+    assert world.reports == [('a', 'sends more than 3 commands at once')]
+
+
 def test_a_driver_that_cannot_be_in_step_is_named_if_it_drives(world):
     world.processes.obstacles = {'a': 'does not subscribe to /clock'}
     world.tick(('a', STOP), ('a', MOVE))

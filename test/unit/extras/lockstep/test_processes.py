@@ -105,12 +105,13 @@ def test_a_thread_that_takes_the_place_of_another_one_is_watched(start):
     child = start('def first():\n    sys.stdin.readline()\n    threading.Thread(target=second).start()\n'
                   'def second():\n    while True: pass\n'
                   'threading.Thread(target=first).start()\nthreading.Event().wait()')
+    folder = f'/proc/{child.pid}/task/'
+    before = wait_for(lambda: len(found := os.listdir(folder)) == 2 and found)
     process = Process(child.pid, child.pid)
-    wait_for(lambda: not awake([process]) and process.threads)
-    before = os.listdir(process.folder)
+    wait_for(lambda: not awake([process]))
     child.stdin.write(b'\n')
     child.stdin.flush()
-    wait_for(lambda: len(os.listdir(process.folder)) == 2 and os.listdir(process.folder) != before)
+    wait_for(lambda: len(found := os.listdir(folder)) == 2 and found != before)
     for _ in range(20):
         assert awake([process]) is process
 
