@@ -160,10 +160,9 @@ class Watch:
         """Return the reason why a node that drives cannot be in step, or None."""
         if name not in self.listeners:
             return 'does not subscribe to /clock'
-        if name not in self.processes:
-            return ('runs on another machine, in another container or as another user, so that its process is not '
-                    'visible from here')
-        return None
+        return None if name in self.processes else (
+            'runs on another machine, in another container or as another user, so that its process is not visible '
+            'from here')
 
     def awake(self) -> str | None:
         """Return the name of a node that is awake, or a text about one that is connecting or starting; None if all are
