@@ -185,9 +185,10 @@ class Watch:
             rospy.logwarn('%s has waited by the wall clock, but not until this node was connected: its first commands '
                           'may be lost. Expected rospy.sleep instead of time.sleep', name)
         self.sleepers = naps
-        return (self._ask_master() or self._greet(greetings)
-                or self._missed(self.graph.on_clock - self.listeners.keys()) or self._join(joining)
-                or self._missed(unconnected & self.graph.registered) or self._sleeps_by_the_wall_clock(naps))
+        asked = self._ask_master()
+        return (self._greet(greetings) or asked or self._missed(self.graph.on_clock - self.listeners.keys())
+                or self._join(joining) or self._missed(unconnected & self.graph.registered)
+                or self._sleeps_by_the_wall_clock(naps))
 
     def _naps(self) -> set[str]:
         """Return the names of nodes that are starting, and are running or sleep by the wall clock."""
