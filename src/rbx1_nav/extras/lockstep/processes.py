@@ -75,8 +75,9 @@ class Thread:
         return self.place
 
     def sleeps(self) -> bool:
-        """Return whether the thread is waiting. False if it has gone: another one may have taken its place."""
-        if self.waits_in().startswith(INTERRUPTIBLE):
+        """Return whether the thread is waiting. Raises OSError if it has gone: another one may have taken its place."""
+        self.place = os.pread(self.files[1], 64, 0)
+        if self.place.startswith(INTERRUPTIBLE):
             return True
         # state S alone may belong to a thread that is about to wait and may still find that it need not wait
         state = self.state()
@@ -147,9 +148,8 @@ class Process:
     def sleeps(self) -> bool:
         """Return whether all threads are asleep or have exited."""
         try:
-            if os.stat(self.folder).st_nlink == len(self.threads) + 2 + (self.without is not None) and all(
-                    thread.sleeps() for thread in self.threads.values()):
-                return True
+            if os.stat(self.folder).st_nlink == len(self.threads) + 2 + (self.without is not None):
+                return all(thread.sleeps() for thread in self.threads.values())
         except OSError:
             pass
         return self.ended()     # which updates the list of threads
