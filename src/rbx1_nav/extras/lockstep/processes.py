@@ -167,6 +167,12 @@ class Process:
         """Return whether the main thread naps, see Thread."""
         return any(thread.naps() for thread in self.threads.values())
 
+    def main_runs(self, longer_than: float) -> int:
+        """Return how often the main thread has run; 0 if it has not waited for longer than so many s since."""
+        runs = sum(thread.runs() for thread in self.threads.values() if thread.is_main)
+        since = max((thread.changed for thread in self.threads.values() if thread.is_main), default=0.0)
+        return runs if time.monotonic() - since > longer_than else 0
+
     def _update(self) -> None:
         try:
             numbers = set(map(int, os.listdir(self.folder))) - {self.without}

@@ -22,6 +22,7 @@ CONNECT_TIME = 4.0
 RECONNECT_TIME = 0.6    # s of wall time: rospy 1.15.9 connects again at once, but reads only 0.5 s later
 START_SLEEP = 0.5       # s of wall time for which a node that is starting may sleep by the wall clock
 DRIVER_SLEEP = 3.0      # s for which it may do so if it publishes commands
+SPIN = 0.2              # s: who sleeps a second time, and for longer than this, waits for no connection
 AWAKE_TIME = 2.0        # s of wall time: a publisher of commands is connected, even if a node is still awake
 MASTER_WORK = 100_000   # ns of CPU time: the master has answered a call (0.2 to 1 ms; 0.07 ms to look for work)
 
@@ -56,9 +57,9 @@ class Watch:
         self.listeners: dict[str, Any] = {}     # connections to the subscribers of /clock, by name
         self.reads_again = 0.0      # s of the monotonic clock: when a listener that has connected again surely reads
         self.drivers: set[str] = set()      # names of the watched publishers of commands
-        # nodes that are starting, by name; s of the monotonic clock since when they sleep by the wall clock. Another
-        # thread may remove some
-        self.starting: dict[str, float | None] = {}
+        # nodes that are starting, by name; s of the monotonic clock since when they sleep by the wall clock, and how
+        # often their main thread had run. Another thread may remove some
+        self.starting: dict[str, tuple[float, int] | None] = {}
         self.sleepers: set[str] = set()     # those that slept by the wall clock when all nodes were asleep
         self.graph = Graph()
         self.master_time = 0    # ns of CPU time that the master had used when all nodes were asleep
@@ -181,7 +182,9 @@ class Watch:
         naps |= self._naps()    # a thread may have waited for a lock before
         connected = {each.header['callerid'] for each in self._connections() if is_complete(each)}
         unconnected = (self.graph.similar & self.listeners.keys()) - self.forgotten.keys() - connected
-        for name in self.sleepers & unconnected - naps:
+        for name in self.sleepers & unconnected & self.processes.keys() - naps:
+            if self.processes[name].has_pollers():      # as ros::Rate does
+                continue
             rospy.logwarn('%s has waited by the wall clock, but not until this node was connected: its first commands '
                           'may be lost. Expected rospy.sleep instead of time.sleep', name)
         self.sleepers = naps
@@ -232,7 +235,12 @@ class Watch:
         """Return whether to wait for a node that is starting and sleeps by the wall clock, as awake() does."""
         now = monotonic()
         for name in sorted(naps):
-            self.starting[name] = since = self.starting.get(name) or now
+            process = self.processes.get(name)
+            if not process:
+                continue
+            self.starting[name] = since, runs = self.starting.get(name) or (now, process.main_runs(0.0))
+            if process.main_runs(SPIN) > runs:
+                continue        # it sleeps again and again, as rospy.spin() does
             drives = name in self.graph.similar
             if now < since + (DRIVER_SLEEP if drives else START_SLEEP):
                 return STARTING % name

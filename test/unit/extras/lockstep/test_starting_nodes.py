@@ -59,6 +59,16 @@ def test_a_driver_that_sleeps_by_the_wall_clock_but_not_until_it_is_connected_is
     assert all(world.watch.awake() for _ in range(20)) and named == ['/node']
 
 
+def test_a_driver_whose_main_thread_spins_is_not_waited_for(world, monkeypatch):
+    """rospy.spin() sleeps by the wall clock again and again; the callbacks need the time."""
+    Master(monkeypatch, [['/cmd_vel', ['/node']]])
+    monkeypatch.setattr(watched_nodes, 'CONNECT_TIME', 0.0)
+    monkeypatch.setattr(watched_nodes, 'DRIVER_SLEEP', 1000.0)
+    world.listen(world.connect('/node', 'while True: time.sleep(0.5)'))
+    world.settle()
+    assert not world.watch.starting
+
+
 def test_a_node_that_wakes_after_the_check_is_still_waited_for(world, monkeypatch):
     def check(*checked):
         found = awake(*checked)
