@@ -60,7 +60,6 @@ class Watch:
         # nodes that are starting, by name; s of the monotonic clock since when they sleep by the wall clock, and how
         # often their main thread had run. Another thread may remove some
         self.starting: dict[str, tuple[float, int] | None] = {}
-        self.sleepers: set[str] = set()     # those that slept by the wall clock when all nodes were asleep
         self.graph = Graph()
         self.master_time = 0    # ns of CPU time that the master had used when all nodes were asleep
         self.asked = False      # whether the work of the master since then was the answer
@@ -181,16 +180,10 @@ class Watch:
             return processes[found] if isinstance(found, Process) else self.own_name    # or messages are in transit
         naps |= self._naps()    # a thread may have waited for a lock before
         connected = {each.header['callerid'] for each in self._connections() if is_complete(each)}
-        unconnected = (self.graph.similar & self.listeners.keys()) - self.forgotten.keys() - connected
-        for name in self.sleepers & unconnected & self.processes.keys() - naps:
-            if self.processes[name].has_pollers():      # as ros::Rate does
-                continue
-            rospy.logwarn('%s has waited by the wall clock, but not until this node was connected: its first commands '
-                          'may be lost. Expected rospy.sleep instead of time.sleep', name)
-        self.sleepers = naps
+        unconnected = (self.graph.registered & self.listeners.keys()) - self.forgotten.keys() - connected
         asked = self._ask_master()
         return (self._greet(greetings) or asked or self._missed(self.graph.on_clock - self.listeners.keys())
-                or self._join(joining) or self._missed(unconnected & self.graph.registered)
+                or self._join(joining) or self._missed(unconnected)
                 or self._sleeps_by_the_wall_clock(naps))
 
     def _naps(self) -> set[str]:
@@ -249,7 +242,7 @@ class Watch:
                               'most %g s: the end pose of the robot may depend on the speed of the machine. Expected '
                               'rospy.sleep instead of time.sleep', name, DRIVER_SLEEP)
         if self.starting:
-            self.starting, self.sleepers = {}, set()
+            self.starting = {}
             self._select()
         return None
 

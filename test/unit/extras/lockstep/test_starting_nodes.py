@@ -45,20 +45,6 @@ def test_a_driver_that_sleeps_by_the_wall_clock_for_long_is_named(world, monkeyp
     assert named == [('/node', 'waits by the wall clock bef')]
 
 
-def test_a_driver_that_sleeps_by_the_wall_clock_but_not_until_it_is_connected_is_named(world, monkeypatch):
-    Master(monkeypatch, [['/cmd_vel', ['/node', '/other']]])
-    monkeypatch.setattr(watched_nodes, 'CONNECT_TIME', 1000.0)
-    named = []
-    monkeypatch.setattr(watched_nodes.rospy, 'logwarn', lambda text, name: named.append(name))
-    world.listen(world.connect('/node', 'import select; select.select([sys.stdin], [], [], 1000); sys.stdin.read()'),
-                 world.connect('/other', 'time.sleep(1000)'))
-    wait_for(lambda: world.watch.awake() and world.watch.sleepers == {'/node', '/other'})
-    world.children[0].stdin.write(b'\n')
-    world.children[0].stdin.flush()
-    wait_for(lambda: world.watch.awake() and named)
-    assert all(world.watch.awake() for _ in range(20)) and named == ['/node']
-
-
 def test_a_driver_whose_main_thread_spins_is_not_waited_for(world, monkeypatch):
     """rospy.spin() sleeps by the wall clock again and again; the callbacks need the time."""
     Master(monkeypatch, [['/cmd_vel', ['/node']]])
