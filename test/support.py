@@ -179,9 +179,10 @@ class Process:
     def __init__(self, *command, **environment):
         """environment: variables to set."""
         # unbuffered, so that each line arrives as soon as it is printed
+        environment = dict(os.environ, PYTHONUNBUFFERED='1', PYTHONFAULTHANDLER='1', **environment)
         self.process = subprocess.Popen(without_rosrun(command), stdin=subprocess.PIPE, stdout=subprocess.PIPE,
                                         stderr=subprocess.STDOUT, text=True, start_new_session=True,
-                                        env=dict(os.environ, PYTHONUNBUFFERED='1', **environment))
+                                        env=environment)
         self.started.append(self)
         self.lines = []
         self.reader = threading.Thread(target=self._read, daemon=True)
@@ -218,6 +219,8 @@ class Process:
         try:
             wait_for(lambda: self.process.poll() is not None, 'the exit')
         except AssertionError as error:
+            self.signal(signal.SIGABRT)     # Python then prints where each thread is
+            self.reader.join(5)
             raise AssertionError(f'{error} of:\n{self.output}') from None
         self.reader.join(5)
         return self.process.returncode
