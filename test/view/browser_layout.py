@@ -129,8 +129,9 @@ class TestBrowserLayout(support.Case):
 
     def values(self, plot):
         """Return the numbers beside the cursor of a plot by their names; the time has none."""
-        pairs = [re.fullmatch(r'(.*?) ?(-?[\d.]+)( s)?', each.text).groups() for each in
-                 self.driver.find_elements('css selector', f'#{plot} .value')]
+        texts = self.driver.execute_script(
+            'return [...document.querySelectorAll(arguments[0])].map(each => each.textContent)', f'#{plot} .value')
+        pairs = [re.fullmatch(r'(.*?) ?(-?[\d.]+)( s)?', each).groups() for each in texts]
         return {name: float(number) for name, number, _ in pairs}
 
     def test_the_cursor_of_the_plots(self):
