@@ -178,11 +178,9 @@ class Process:
 
     def __init__(self, *command, **environment):
         """environment: variables to set."""
-        # unbuffered, so that each line arrives as soon as it is printed
-        environment = dict(os.environ, PYTHONUNBUFFERED='1', PYTHONFAULTHANDLER='1', **environment)
         self.process = subprocess.Popen(without_rosrun(command), stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-                                        stderr=subprocess.STDOUT, text=True, start_new_session=True,
-                                        env=environment)
+                                        stderr=subprocess.STDOUT, text=True, start_new_session=True, env=dict(
+                                            os.environ, PYTHONUNBUFFERED='1', PYTHONFAULTHANDLER='1', **environment))
         self.started.append(self)
         self.lines = []
         self.reader = threading.Thread(target=self._read, daemon=True)

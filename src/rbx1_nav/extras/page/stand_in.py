@@ -114,8 +114,8 @@ class Rospy:
         try:
             if not self.is_shutdown and self.simulation.base.command(
                     time, linear.x, angular.z, (linear.y, linear.z, angular.x, angular.y)) and gate.clamped == 1:
-                self.log(WARNING, f'{linear.x:g} m/s, {angular.z:g} rad/s: expected at most {gate.limits.linear:g} m/s, '
-                                  f'{gate.limits.angular:g} rad/s; clamped')
+                self.log(WARNING, f'{linear.x:g} m/s, {angular.z:g} rad/s: expected at most '
+                                  f'{gate.limits.linear:g} m/s, {gate.limits.angular:g} rad/s; clamped')
         except RejectedCommand as error:
             self.log(WARNING, f'Rejected a command: {error}')
 
