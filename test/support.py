@@ -205,8 +205,7 @@ class Process:
 
     def type(self, line):
         """Type a line."""
-        self.process.stdin.write(f"{line}\n")
-        self.process.stdin.flush()
+        print(line, file=self.process.stdin, flush=True)
 
     def signal(self, number):
         """Send a signal."""
