@@ -38,7 +38,8 @@ function build() {
     Object.entries(connection.page.titles).filter(([name]) => name !== 'script').map(
       ([name, title]) => [name, WORDS.run(title)]));
   const text = make('textarea', {id: 'text', spellcheck: false, wrap: 'off', ariaLabel: WORDS.scriptHelp});
-  const edit = script => { text.value = connection.text = sessionStorage.script = script; };    // kept when the page is loaded again
+  // the browser keeps the script when the page is loaded again
+  const edit = script => { text.value = connection.text = sessionStorage.script = script; };
   text.oninput = () => edit(text.value);
   const restore = async () => edit(await (await fetch('script.py')).text());
   const cloud = button('many', WORDS.manyRuns(MANY), () => Array.from({length: MANY}, (_, index) => (

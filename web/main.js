@@ -120,8 +120,8 @@ function drawHeadline() {
 // The lines of a saved picture: what was run, and the numbers, which are also the legend of the colors.
 function caption() {
   const {surface, seed} = model.status;
-  const what = [model.run && WORDS.run(model.run), surface && surface !== 'ideal' && seed ? WORDS.withSeed(surface, seed) : surface]
-    .filter(Boolean).join(', ');
+  const what = [model.run && WORDS.run(model.run),
+    surface && surface !== 'ideal' && seed ? WORDS.withSeed(surface, seed) : surface].filter(Boolean).join(', ');
   const shown = model.earlier.filter(run => run.shown);
   const earlier = [...new Set(shown.map(kindOf))].map(kind =>
     ['', WORDS.earlierRuns(kind, shown.filter(run => kindOf(run) === kind).map(run => run.number).join(', '))]);

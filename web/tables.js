@@ -90,6 +90,21 @@ function meansOf(runs) {
   });
 }
 
+// A row of the list of runs: its first cell, its header, and the texts of the further cells. name: of the run, for its color.
+function makeRow(name, first, title, texts, kind = '') {
+  const row = document.createElement('tr'), header = document.createElement('th');
+  row.dataset.run = name;
+  row.className = kind;
+  row.insertCell().append(first);
+  header.scope = 'row';
+  header.textContent = title;
+  row.append(header);
+  for (const text of texts) {
+    row.insertCell().textContent = text;
+  }
+  return row;
+}
+
 // The earlier runs, each with a check box, and where it ended.
 export class EarlierRuns {
   // changed(): called when a run is shown or hidden
@@ -104,22 +119,11 @@ export class EarlierRuns {
     }
     this.drawn = runs;
     this.parent.hidden = !runs.length;
-    this.body.replaceChildren(...meansOf(runs).map(([name, number, surface, distance, angle]) => {
-      const row = document.createElement('tr'), title = document.createElement('th');
-      row.dataset.run = name;
-      row.className = 'mean';
-      row.insertCell().append(swatch(''));
-      title.scope = 'row';
-      title.textContent = WORDS.mean(WORDS.run(name), number);
-      row.append(title);
-      for (const text of [surface, fixed(distance, 3), fixed(angle, 1)]) {
-        row.insertCell().textContent = text;
-      }
-      return row;
-    }), ...runs.map(run => {
-      const row = document.createElement('tr'), box = document.createElement('input'), label = document.createElement('label');
-      const [, , heading, distance] = rowOf(run.end), name = document.createElement('th');
-      row.dataset.run = run.name;
+    const means = meansOf(runs).map(([name, number, surface, distance, angle]) => makeRow(
+      name, swatch(''), WORDS.mean(WORDS.run(name), number), [surface, fixed(distance, 3), fixed(angle, 1)], 'mean'));
+    this.body.replaceChildren(...means, ...runs.map(run => {
+      const box = document.createElement('input'), label = document.createElement('label');
+      const [, , heading, distance] = rowOf(run.end);
       box.type = 'checkbox';
       box.checked = run.shown;
       box.ariaLabel = WORDS.showRun(run.number);
@@ -128,15 +132,8 @@ export class EarlierRuns {
         this.changed();
       };
       label.append(box, swatch(''));
-      row.insertCell().append(label);
-      name.scope = 'row';
-      name.textContent = `${run.number} ${WORDS.run(run.name, run.stopped)}`;
-      row.append(name);
       const floor = run.surface && run.surface !== 'ideal' ? WORDS.withSeed(run.surface, run.seed) : run.surface || '';
-      for (const text of [floor, distance, heading]) {
-        row.insertCell().textContent = text;
-      }
-      return row;
+      return makeRow(run.name, label, `${run.number} ${WORDS.run(run.name, run.stopped)}`, [floor, distance, heading]);
     }));
   }
 }

@@ -68,7 +68,7 @@ class TestBrowserTeacher(support.Case):
             learner.send(type='choose', name='distance', value='0.1')
             support.wait_for(lambda: self.driver.execute_script(
                 'return rbx1.seats()[1].model.status.distance') == 0.1, 'the distance')
-            # not timed: on a busy machine, that script ends with an error, because a command was late
+            # not timed: on a busy machine, the timed script fails, because a command was late
             learner.send(type='run', method='odometry', reset=True)
             self.wait_for(2, 'state', '^Driving: with odometry$')
             self.wait_for(2, 'answer', '^$')

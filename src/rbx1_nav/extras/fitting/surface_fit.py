@@ -26,7 +26,7 @@ CLEARLY_WIDER = 2.0
 MIN_RUNS = 3        # number of runs required for a spread from run to run
 LARGEST = {'accel_limit': 0.3, 'lag': 0.1, 'gyro_noise': 0.02, 'gyro_bias': 0.02, 'gyro_scale_error': 0.01,
            **{key: error for key, (_, error) in MEANS.items()}, **dict.fromkeys(NOISES, 0.05)}  # see uncertainty()
-LARGEST_SPREAD = 1.5    # the same for a spread, in units of the spread: a larger error is that of the prior
+LARGEST_SPREAD = 1.5    # largest error of a spread, in units of the spread; a larger one comes from the prior
 POOR = 0.1          # fraction of the travel, rms, that the motor model may leave unexplained; but always at least
 POOR_TRAVEL = 0.002     # m
 
