@@ -10,7 +10,7 @@ DOCS = f'{simulated.CONFIG}/../docs'
 
 
 def test_the_pages_quote_the_gain():
-    """docs/answers.md, why_it_misses.md and figures.md: steered, the mean distance and the rms of y of 100 runs, cm."""
+    """answers.md, why_it_misses.md and figures.md: steered, the mean distance and the rms of y of 100 runs, cm."""
     results = steering.simulate('ekf', 100, steering.load_answer().steering)
     ends = numpy.array([result.end.truth for result in results])
     gain = 100 * numpy.hypot(*ends.T[:2]).mean(), 100 * numpy.sqrt((ends[:, 1] ** 2).mean())

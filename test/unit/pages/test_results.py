@@ -6,7 +6,8 @@ import pytest
 from pages import markdown
 
 ROOT = os.path.realpath(os.path.join(os.path.dirname(__file__), '..', '..', '..'))
-WHY, FIGURES, ANSWERS, TUTORIAL = (f'docs/{page}.md' for page in ('why_it_misses', 'figures', 'answers', 'tutorial'))
+WHY, ANSWERS, TUTORIAL = (f'docs/{page}.md' for page in ('why_it_misses', 'answers', 'tutorial'))
+FIGURES = 'bench/figures.md'
 ERROR = re.compile(r'(?P<what>misses its start|/odom is wrong|/odom_ekf is wrong) by (?P<mean>[\d.]+) m '
                    r'\(median (?P<median>[\d.]+), 90 % below (?P<most>[\d.]+)\) and (?P<angle>[\d.]+) degrees')
 NUMBER = r'(\d+(?:\.\d+)?)'
