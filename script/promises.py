@@ -16,7 +16,7 @@ HEAD = """\
 `script/promises.py` writes this page; do not edit it. Paths are relative to `test/`.
 
 The promises of [Reliability](../docs/reliability.md), from `promises.yaml`. Each row of the fault suite also holds the
-guarantee in its own table there.
+guarantee in [the results](faults/results.md).
 
 | promise | tests |
 |---|---|

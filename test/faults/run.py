@@ -23,6 +23,8 @@ sys.path[:0] = [FOLDER, TESTS, os.path.join(TESTS, 'base'), os.path.join(TESTS, 
 
 import processes
 from ports import free_port
+import results_table
+from results_table import spread
 
 FLAKY = 3           # flaky rows that fail the suite
 LIMIT = 20 * 60     # s of wall time for a row: longer means that it hangs
@@ -39,7 +41,7 @@ def read_arguments(names):
     parser.add_argument('--seed', type=int, default=random.randrange(10 ** 6), metavar='S',
                         help='repeats the same random faults; default: a new one')
     parser.add_argument('--times', type=int, metavar='N', help='how many faults of each row, whatever the row says')
-    parser.add_argument('--table', metavar='FILE', help='write the table of docs/reliability.md')
+    parser.add_argument('--table', action='store_true', help='update these rows of test/faults/results.md')
     arguments = parser.parse_args()
     for name in arguments.rows:
         if name not in names:
@@ -150,7 +152,7 @@ class Suite:
         """Run a row; once more if it fails."""
         module = self.modules[name]
         result = run_row(name, module, self.times(module), self.arguments.seed)
-        repeated = bool(result['failures'])
+        repeated = len(result['failures'])
         if ending.is_set():
             return
         if repeated:
@@ -174,30 +176,6 @@ class Suite:
             sys.stdout.flush()
 
 
-def spread(values):
-    """Numbers as text: one value if all are equal; otherwise smallest, largest and median."""
-    values = sorted(values)
-    if values[0] == values[-1]:
-        return f'{values[0]:.4g}'
-    return f'{values[0]:.3g} to {values[-1]:.3g}, median {values[len(values) // 2]:.3g}'
-
-
-def write_table(path, modules, results, seed):
-    """Write the rows as a Markdown table."""
-    with open(path, 'w', encoding='utf-8') as file:
-        file.write('Seed %d.\n\n| row | fault | times | guarantee | result |\n|---|---|---|---|---|\n' % seed)
-        for result in results:
-            module = modules[result['name']]
-            happened = (f"skipped: {result['skipped']}" if result['skipped'] else
-                        'all held' if not result['failures'] else f"{len(result['failures'])} failed")
-            if result['repeated'] and not result['failures']:
-                happened += ', on the second attempt'
-            for figure, values in sorted(result['figures'].items()):
-                happened += f'; {figure}: {spread(values)}'
-            file.write('| `%s` | %s | %d | %s | %s |\n' % (result['name'], module.FAULT, result['faults'],
-                                                         module.PROMISE, happened))
-
-
 def main():
     """Run the rows. Returns the exit status."""
     names = sorted(name[:-len('.py')] for name in os.listdir(os.path.join(FOLDER, 'rows')) if name.endswith('.py'))
@@ -210,7 +188,7 @@ def main():
     start = time.monotonic()
     results = Suite(modules, arguments).run()
     if arguments.table:
-        write_table(arguments.table, modules, results, arguments.seed)
+        results_table.update(results_table.PATH, modules, results, arguments.seed)
     failed = [result['name'] for result in results if result['failures']]
     skipped = [result['name'] for result in results if result['skipped']]
     flaky = [result['name'] for result in results if result['repeated'] and not result['failures']]
