@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 from functools import partial
+from itertools import groupby
 from math import pi
 import re
 import textwrap
@@ -140,10 +141,12 @@ def _range(parameter: Parameter) -> str:
 def table(parameters: Iterable[Parameter], kind: str = 'parameter') -> list[str]:
     """Return the lines of a table in Markdown.
 
-    kind: title of the column of names; if it is `parameter`, the names begin with ~.
+    kind: title of the column of names; if it is `parameter`, the names begin with ~. Neighbors that differ only in
+    their names share a line.
     """
     prefix = '~' if kind == 'parameter' else ''
-    rows = [(f'`{prefix}{each.name}`', each.default, each.unit, _range(each),
-             f'{each.text}; {each.note}' if each.note else each.text) for each in parameters]
+    rows = groupby(parameters, lambda each: (each.default, each.unit, _range(each),
+                                             f'{each.text}; {each.note}' if each.note else each.text))
     head = [f'| {kind} | default | unit | range | |', '|---|---|---|---|---|']
-    return head + [f"| {' | '.join(row)} |" for row in rows]
+    return head + ['| %s | %s |' % (', '.join(f'`{prefix}{each.name}`' for each in named), ' | '.join(row))
+                   for row, named in rows]

@@ -21,8 +21,6 @@ def _check_port(port: YamlValue) -> str:
     return port
 
 
-_CALIBRATED = 'see [calibration files](reference.md#calibration-files)'
-
 PARAMETERS = (
     custom('port', AUTO, 'serial port, or a link to it; auto: /dev/create if it exists, else /dev/ttyUSB0',
            _check_port),
@@ -31,43 +29,37 @@ PARAMETERS = (
            note='auto tries 57600, 115200 and 19200'),
     number('update_rate', 30.0, 'Hz', 'rate of sensor readings, odometry and repeated commands', 5, 60, 'a rate'),
     choice('operation_mode', (protocol.PASSIVE, protocol.SAFE, protocol.FULL), protocol.SAFE,
-           'mode in which the robot is driven; 1: passive, the robot is not driven; 2: safe; 3: full, where neither a '
-           'cliff nor a wheel drop stops the robot'),
+           'mode in which the robot is driven; 1: passive, not driven; 2: safe; 3: full, without a stop at a cliff or a '
+           'wheel drop'),
     flag('oi_mode_workaround', None, 'whether the robot reports its mode plus one, as some Roombas do',
          shown='false; roomba600_wifi: true'),
-    flag('wake_robot', False, 'whether to wake a robot that does not answer, using RTS and DTR',
-         note='if the port has no RTS and DTR, the node warns once and searches without waking the robot'),
+    flag('wake_robot', False, 'whether to wake a robot that does not answer, using RTS and DTR'),
     number('cmd_vel_timeout', 0.6, 's', 'age at which a command expires and the robot stops', 0.05, 10, 'a time'),
     flag('stop_motors_on_bump', True, 'whether the bumper stops forward motion'),
     number('min_abs_yaw_vel', 0.0, 'rad/s', 'minimum turning speed; slower turns are raised to it', 0, 10, 'a speed'),
     number('max_abs_yaw_vel', 0.0, 'rad/s', 'maximum turning speed; 0: no limit', 0, 10, 'a speed'),
     flag('has_gyro', None, 'whether a gyro is connected to the analog input', shown='create: true; others: false'),
-    number('gyro_measurement_range', 150.0, 'degrees/s', 'measurement range of the gyro chip', 1, 1000, 'a rate',
-           note=_CALIBRATED),
-    number('gyro_scale_correction', 1.35, '', 'factor for the angular velocity of the gyro', 0.01, 100,
-           'a factor', note=_CALIBRATED),
-    number('odom_linear_scale_correction', 1.0, '', 'factor for the distance that the robot reports', 0.01, 100,
-           'a factor', note=_CALIBRATED),
-    number('odom_angular_scale_correction', 1.0, '', 'factor for the angle that the robot reports', 0.01, 100,
-           'a factor', note=_CALIBRATED),
+    number('gyro_measurement_range', 150.0, 'degrees/s', 'measurement range of the gyro chip', 1, 1000, 'a rate'),
+    number('gyro_scale_correction', 1.35, '', 'factor for the angular velocity of the gyro', 0.01, 100, 'a factor'),
+    number('odom_linear_scale_correction', 1.0, '', 'factor for the distance that the robot reports', 0.01, 100, 'a factor'),
+    number('odom_angular_scale_correction', 1.0, '', 'factor for the angle that the robot reports', 0.01, 100, 'a factor'),
     choice('angle_fractions', KINDS, AUTO,
            'whether the robot keeps or loses fractions of a degree; auto: allow for either',
            note='test: calibrate_angular.py finds out'),
     number('odom_linear_error', 0.05, 'm', 'error of the calibrated distance, 1 sigma after 1 m', 0, 1, 'a distance'),
     number('odom_angular_error', 0.09, 'rad', 'error of the calibrated angle, 1 sigma after 1 rad', 0, 1, 'an angle'),
     number('odom_heading_error', 0.07, 'rad', 'error of the heading, 1 sigma after 1 m', 0, 1, 'an angle'),
-    number('moving_yaw_variance', 0.0, 'rad^2',
-           'variance of the heading while the robot moves (create_node: 1000); 0: use the calculated variance',
-           0, 1e6, 'a variance'),
+    number('moving_yaw_variance', 0.0, 'rad^2', 'variance of the heading while the robot moves; 0: calculated', 0, 1e6,
+           'a variance'),
     frame('odom_frame', 'odom', 'frame of the odometry'),
     frame('base_frame', 'base_footprint', 'frame of the robot'),
     elsewhere('left_wheel', 'joint of the left wheel in joint_states and in the URDF', WHEEL_JOINTS['left_wheel']),
     elsewhere('right_wheel', 'joint of the right wheel', WHEEL_JOINTS['right_wheel']),
     flag('publish_tf', True, 'whether to publish the transform from odom_frame to base_frame',
-         note='set to false if another node publishes it'),
+         note='false if another node publishes it'),
     MODEL,
     choice('drive_mode', ('twist',), 'twist', 'drive mode; twist is the only one supported'),
-    elsewhere('diagnostic_period', 'accepted for compatibility and ignored; /diagnostics is published at 1 Hz'))
+    elsewhere('diagnostic_period', 'accepted and ignored'))
 
 
 class Settings(NamedTuple):

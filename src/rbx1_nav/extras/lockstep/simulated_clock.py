@@ -31,8 +31,7 @@ PARAMETERS = (
     number('real_time_factor', None, '', 'highest speed of simulated time, relative to real time', 0.01, 1000,
            shown='real time', note='see [Simulated time](reference.md#simulated-time)'),
     number('clock_step', CLOCK_STEP, 's', 'step of simulated time', 0.001, 0.1, 'a time'),
-    flag('strict', False, 'whether this node exits if a driver is not in step with simulated time',
-         note='see [Simulated time](reference.md#simulated-time)'))
+    flag('strict', False, 'whether this node exits if a driver is not in step with simulated time'))
 
 
 def read_clock(rate: float) -> Clock:
