@@ -39,10 +39,8 @@ from rbx1_nav.simulation.floor_parameters import read_floor
 from rbx1_nav.simulation.simulated_robot import SimulatedRobot
 
 PARAMETERS = [
-    number('robots', 0, '', 'number of robots at the beginning: robot1, robot2 and so on; the parameters of a base are '
-           'below robot1/arbotix', 0, 200, 'a number'),
-    number('spacing', 1.0, 'm', 'distance between the origins of the odometry of neighbors, in the frame map', 0, 1000,
-           'a distance'),
+    number('robots', 0, '', 'number of robots at the beginning: robot1, robot2 and so on', 0, 200, 'a number'),
+    number('spacing', 1.0, 'm', 'distance between neighbors in the frame map', 0, 1000, 'a distance'),
     choice('method', ('none', *(name for name, each in OF_PAGE.items() if each.pose != 'estimate')), 'none',
            'script that fleet.launch starts for each robot'),
     number('rate', 50.0, 'Hz', 'rate at which the bases are updated; odometry at most', 1, 1000, 'a rate'),

@@ -145,8 +145,8 @@ def table(parameters: Iterable[Parameter], kind: str = 'parameter') -> list[str]
     their names share a line.
     """
     prefix = '~' if kind == 'parameter' else ''
-    rows = groupby(parameters, lambda each: (each.default, each.unit, _range(each),
+    rows = groupby(parameters, lambda each: (each.default, ' '.join(filter(None, [_range(each), each.unit])),
                                              f'{each.text}; {each.note}' if each.note else each.text))
-    head = [f'| {kind} | default | unit | range | |', '|---|---|---|---|---|']
+    head = [f'| {kind} | default | range | |', '|---|---|---|---|']
     return head + ['| %s | %s |' % (', '.join(f'`{prefix}{each.name}`' for each in named), ' | '.join(row))
                    for row, named in rows]

@@ -37,6 +37,7 @@ IN_PLACE_LEFT, IN_PLACE_RIGHT = 1, -1
 
 # bits per second, indexed by the code in the Baud command (Create p. 7, Create 2 p. 9)
 BAUD_RATES = (300, 600, 1200, 2400, 4800, 9600, 14400, 19200, 28800, 38400, 57600, 115200)
+BAUD_RANGE = f'{BAUD_RATES[0]} to {BAUD_RATES[-1]}'     # as shown in a usage text
 
 
 class Packet(NamedTuple):

@@ -14,7 +14,7 @@ from std_srvs.srv import SetBool, SetBoolResponse, Trigger, TriggerResponse
 from rbx1_nav.extras.create.emulator.body import CAPACITY, Body, BodyErrors
 from rbx1_nav.extras.create.emulator.emulator import EmulatedCreate
 from rbx1_nav.extras.create.emulator.serial_line import PseudoTerminal, SerialLine
-from rbx1_nav.extras.create.protocol import BAUD_RATES, BUMPS, CREATE, MODELS, WHEEL_DROP_LEFT
+from rbx1_nav.extras.create.protocol import BAUD_RANGE, BAUD_RATES, BUMPS, CREATE, MODELS, WHEEL_DROP_LEFT
 from rbx1_nav.node.config import ConfigError, Section, YamlValue, show
 from rbx1_nav.node.parameters import Parameter, choice, custom, flag, number, read
 from rbx1_nav.node.private_parameters import param
@@ -29,7 +29,7 @@ def _check_link(link: YamlValue) -> str:
 
 _BODY = {
     'gyro_sensitivity': "ratio of the gyro's sensitivity to its nominal value",
-    'wheel_travel': 'ratio of the distance counted by the encoders to the distance traveled by the wheels',
+    'wheel_travel': 'ratio of the counted distance to the traveled distance',
     'wheel_base': 'ratio of the true wheel separation to its nominal value'}
 _BITS = {
     'switches': ('bits of packet 7: bumper right 1, left 2, wheel drop right 4, left 8, caster 16', 31),
@@ -39,12 +39,13 @@ _BITS = {
 PARAMETERS = (
     choice('robot_type', tuple(MODELS), CREATE.name, 'model of the robot'),
     choice('baud', BAUD_RATES, None, 'rate after the robot is switched on; 19200: its power button was held',
-           'bits per second', shown='; '.join(f'{model.name}: {model.baud}' for model in MODELS.values())),
+           'bits per second', shown=f'{CREATE.name}: {CREATE.baud}; others: {MODELS["create2"].baud}')._replace(
+               range=BAUD_RANGE),
     custom('link', '', 'path of a symbolic link to the device', _check_link, shown='none',
            note="the log shows the device's name"),
     SURFACE,
     seed('slip, gyro errors and corruption'),
-    number('charge', 1.0, '', 'charge that the robot reports, as a fraction of the capacity of its battery', 0, 2),
+    number('charge', 1.0, '', 'reported charge, as a fraction of the capacity', 0, 2),
     number('battery_temperature', 25.0, 'degrees C', 'temperature of the battery', -40, 100, 'a temperature'),
     number('battery_voltage', 0.0, 'V', 'voltage of the battery; 0: it follows the charge', 0, 25, 'a voltage'),
     *(number(name, 0.0, '', text, 0, high, 'a number') for name, (text, high) in _BITS.items()),
@@ -53,9 +54,8 @@ PARAMETERS = (
     *(number(name, 1.0, '', _BODY[name], 0.1, 10, 'a factor') for name in BodyErrors._fields),
     number('gyro_stuck', -1.0, '', 'count at which the analog input is stuck; -1: it is not stuck', -1, 1023,
            'a count'),
-    flag('mode_plus_one', False,
-         'whether the robot reports its mode plus one, like a Roomba 642 and other models with Wi-Fi'),
-    flag('drops_fractions', False, 'whether each reading of the angle starts at 0 and loses the fraction of a degree'))
+    flag('mode_plus_one', False, 'whether the robot reports its mode plus one, like a Roomba with Wi-Fi'),
+    flag('drops_fractions', False, 'whether each reading of the angle loses the fraction of a degree'))
 
 # parameters that a topic can change: what they set, a part of the robot and its attribute, and the conversion
 CHANGEABLE: dict[str, tuple[str, str, Callable[[float], float]]] = {
