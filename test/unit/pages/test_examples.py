@@ -7,7 +7,7 @@ from pages import markdown
 ROOT = os.path.realpath(os.path.join(os.path.dirname(__file__), '..', '..', '..'))
 LANGUAGES = ('xml', 'python', 'yaml', 'cmake')
 # the folder of each page
-EXAMPLES = {'docs/test_bench.md': 'my_robot', 'docs/answers.md': 'answers', 'docs/beside_the_book.md': ''}
+EXAMPLES = {'docs/test_bench.md': 'my_robot', 'docs/answers.md': 'answers'}
 
 
 def shown():
