@@ -57,7 +57,7 @@ PARAMETERS = (
     custom('tf_prefix', '', 'prefix of both frame names, unless they begin with a slash', check_prefix, shown='none',
            note='may also be set in a namespace around the node, as in tf'),
     custom('surface', AUTO,
-           f'initially assumed floor: a name or path, {ANY}, or {AUTO}: the surface of a simulated base, otherwise {ANY}',
+           f'initially assumed floor: a name or path, {ANY}, or {AUTO}: the surface of a simulated base, or else {ANY}',
            _check_surface, note='see [surface files](reference.md#surface-files)'),
     number('max_speed', DEFAULT.max_speed, 'm/s', 'speed above which the odometry has jumped', 0.01, 1000, 'a speed'),
     number('max_turn_rate', DEFAULT.max_turn_rate, 'rad/s',
