@@ -78,9 +78,9 @@ def main():
         for method in 'odom', 'ekf':
             results = simulate(method, arguments.runs, steering)
             summary = Summary()
-            for result in results:
-                end = result.end
-                summary.add(end.truth, end.odometry, end.estimate, result.first_leg)
+            truths, odometry, estimates = zip(*((run.end.truth, run.end.odometry, run.end.estimate) for run in results))
+            summary.add(numpy.array(truths), numpy.array(odometry), numpy.array(estimates) if estimates[0] else None,
+                        numpy.array([run.first_leg for run in results]))
             print('\n'.join([f'{title}:', *summary.lines(method), across(results)]))
 
 
