@@ -36,15 +36,12 @@ def declared(kind, name):
 
 
 def surface_table():
-    """Return the lines of the table of surface files, with a column for each."""
-    from rbx1_nav.base.surfaces import KEYS, Surface, known_surfaces, load_surface
-    loaded = [load_surface(name, SURFACE_FILES) for name in known_surfaces(SURFACE_FILES)]
-    surfaces = [surface for surface in loaded if surface]       # without the ideal one, which has no values
-    rows = [['key', 'unit', 'range', *(surface.name for surface in surfaces), ''], ['---'] * (len(surfaces) + 4)]
+    """Return the lines of the table of the keys of surface files."""
+    from rbx1_nav.base.surfaces import KEYS, Surface
+    rows = [['key', ''], ['---', '---']]
     for name, key in KEYS.items():
-        values = [f'{key.from_si(getattr(surface, name)):.7g}' for surface in surfaces]
-        text = f'{key.text}; optional' if name in Surface._field_defaults else key.text
-        rows.append([f'`{name}`', key.unit, f'{key.low:.7g} to {key.high:.7g}', *values, text])
+        limits = f'{key.low:.7g} to {key.high:.7g} {key.unit}'.strip()
+        rows.append([f'`{name}`', f"{key.text}; {limits}{'; optional' if name in Surface._field_defaults else ''}"])
     return [f"| {' | '.join(row)} |" for row in rows]
 
 

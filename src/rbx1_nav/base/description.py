@@ -31,7 +31,7 @@ PARAMETERS = (
     flag('sim', True, 'whether the base is a simulation; must be true'))
 
 CONTROLLER = (
-    elsewhere('type', 'controller type; must be `diff_controller`'),
+    elsewhere('type', 'controller type: `diff_controller`'),
     number('base_width', None, 'm', 'distance between the wheels', 0.001, 100, 'a width', required=True),
     frame('base_frame_id', 'base_link', 'frame of the robot'),
     frame('odom_frame_id', 'odom', 'frame of the odometry'),
@@ -42,9 +42,9 @@ CONTROLLER = (
            shown='no limit'),
     number('max_angular_speed', inf, 'rad/s', 'turn rate to which commands are clamped', 0.001, 1000, 'a speed',
            shown='no limit'),
-    number('wheel_radius', 0.033, 'm', 'wheel radius, which converts wheel travel to joint angles', 0.001, 100,
+    number('wheel_radius', 0.033, 'm', 'wheel radius, for the joint angles of the wheels', 0.001, 100,
            'a radius'),
-    elsewhere('left_wheel', 'left wheel joint in `joint_states`, as named in the URDF file',
+    elsewhere('left_wheel', 'left wheel joint, as named in the URDF file',
               WHEEL_JOINTS['left_wheel']),
     elsewhere('right_wheel', 'right wheel joint', WHEEL_JOINTS['right_wheel']))
 
