@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Writes the parameters that the nodes declare, and the names of the surfaces, into the files that list them.
 
-A table in docs/ follows a comment: `<!-- parameters: FILE -->` for a node, `<!-- keys: NAME -->` for a part of the
-description of a robot, `<!-- keys: SURFACE -->` for surface files. Launch files and script/demo list the surfaces after
+A table in docs/ follows a comment: `<!-- parameters: FILE -->` for a node, or `<!-- parameters: FILE beyond OTHER -->`
+without the rows of another node, `<!-- keys: NAME -->` for a part of the description of a robot, `<!-- keys: SURFACE -->`
+for surface files. Launch files and script/demo list the surfaces after
 `floor:`.
 """
 import glob
@@ -14,7 +15,7 @@ import sys
 ROOT = os.path.realpath(os.path.join(os.path.dirname(__file__), '..'))
 SURFACE_FILES = os.path.join(ROOT, 'config', 'surfaces')
 FILES = ['docs/*.md', 'launch/*.launch', 'rbx1_bringup/launch/*.launch*', 'script/demo']
-TABLE = re.compile(r'(?m)^<!-- (parameter|key)s: (\S+) -->\n\n(?:\|.*\n)*')
+TABLE = re.compile(r'(?m)^<!-- (parameter|key)s: (\S+)( beyond (\S+))? -->\n\n(?:\|.*\n)*')
 SURFACES = re.compile(r'((?:doc="|NAME   )floor: )[^;\n]+')
 sys.path.insert(0, os.path.join(ROOT, 'src'))
 os.environ['ROS_PACKAGE_PATH'] = ROOT      # needed to find the surface files
@@ -51,9 +52,11 @@ def filled_in(text):
     from rbx1_nav.base.surfaces import known_surfaces
 
     def fill(match):
-        kind, name = match.groups()
+        kind, name, beyond, other = match.groups()
         lines = surface_table() if name == 'SURFACE' else table(declared(kind, name), kind)
-        return f'<!-- {kind}s: {name} -->\n\n' + '\n'.join(lines) + '\n'
+        known = table(declared(kind, other))[2:] if other else ()
+        lines = [line for line in lines if line not in known]
+        return f'<!-- {kind}s: {name}{beyond or ""} -->\n\n' + '\n'.join(lines) + '\n'
     surfaces = ', '.join(known_surfaces(SURFACE_FILES))
     return SURFACES.sub(lambda match: match[1] + surfaces, TABLE.sub(fill, text))
 

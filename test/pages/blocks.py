@@ -40,7 +40,7 @@ MARKERS = {kind: re.compile(pattern) for kind, pattern in {
     'not output': r'not output',
     'Ctrl-C': r'Ctrl-C: (?P<names>[\w-]+(?:, [\w-]+)*)'}.items()}
 # script/parameter_tables.py generates the table below, script/rooms.py the diagram
-GENERATED = re.compile(r'(?:parameter|key)s: \S+|imports')
+GENERATED = re.compile(r'(?:parameter|key)s: \S+(?: beyond \S+)?|imports')
 FOR_SHELL, FOR_OUTPUT = ('run', 'terminals', 'every terminal', 'not run'), ('output', 'not output')
 
 # The steps; line: number of the comment or the block; terminal None: last terminal used; tolerance None: any number
