@@ -53,9 +53,9 @@ def filled_in(text):
 
     def fill(match):
         kind, name, beyond, other = match.groups()
-        lines = surface_table() if name == 'SURFACE' else table(declared(kind, name), kind)
-        known = table(declared(kind, other))[2:] if other else ()
-        lines = [line for line in lines if line not in known]
+        known = [table([each]) for each in (declared(kind, other) if other else ())]
+        lines = surface_table() if name == 'SURFACE' else table(
+            [each for each in declared(kind, name) if table([each]) not in known], kind)
         return f'<!-- {kind}s: {name}{beyond or ""} -->\n\n' + '\n'.join(lines) + '\n'
     surfaces = ', '.join(known_surfaces(SURFACE_FILES))
     return SURFACES.sub(lambda match: match[1] + surfaces, TABLE.sub(fill, text))

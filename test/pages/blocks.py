@@ -41,6 +41,7 @@ MARKERS = {kind: re.compile(pattern) for kind, pattern in {
     'Ctrl-C': r'Ctrl-C: (?P<names>[\w-]+(?:, [\w-]+)*)'}.items()}
 # script/parameter_tables.py generates the table below, script/rooms.py the diagram
 GENERATED = re.compile(r'(?:parameter|key)s: \S+(?: beyond \S+)?|imports')
+KEY = re.compile(r'<!-- key: \w+ -->')     # behind a number: test/unit/pages/test_keys.py
 FOR_SHELL, FOR_OUTPUT = ('run', 'terminals', 'every terminal', 'not run'), ('output', 'not output')
 
 # The steps; line: number of the comment or the block; terminal None: last terminal used; tolerance None: any number
@@ -100,7 +101,7 @@ class _Reader:
             self.end_marker(line)
         if comment and not GENERATED.fullmatch(comment['text']):
             self.marker = self.read_marker(number, comment['text'])
-        elif not comment and '<!--' in markdown.CODE_SPAN.sub('', line):
+        elif not comment and '<!--' in KEY.sub('', markdown.CODE_SPAN.sub('', line)):
             raise PageError(number, 'expected a comment alone on its line')
         elif line.startswith(('    ', '\t')) and not self.before and not self.in_list:
             raise PageError(number, 'an indented code block, expected a fenced one')

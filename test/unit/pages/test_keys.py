@@ -25,7 +25,7 @@ def numbers(text):
 
 
 def problems(pages):
-    """The problems of pages, {path: text}: a comment that follows no number, a key with two values or with one place."""
+    """The problems of pages, {path: text}: a comment that follows no number, a key with two values or one place."""
     found, places = [], {}
     for path, text in pages.items():
         keyed = numbers(text)
@@ -46,7 +46,8 @@ def test_each_key_has_one_value_in_several_places():
 
 
 @pytest.mark.parametrize('first, second, count', [
-    ('within 1.4 s<!-- key: a -->.', '| 1.4 s<!-- key: a --> |', 0), ('48.2 cm<!-- key: a -->', '48.2 厘米<!-- key: a -->', 0),
+    ('within 1.4 s<!-- key: a -->.', '| 1.4 s<!-- key: a --> |', 0),
+    ('48.2 cm<!-- key: a -->', '48.2 厘米<!-- key: a -->', 0),
     ('5<!-- key: a -->', '5<!-- key: a --> m', 0), ('1.4 s<!-- key: a -->', '1.5 s<!-- key: a -->', 1),
     ('1.4 s<!-- key: a -->', '1.4 ms<!-- key: a -->', 1), ('1.4 s<!-- key: a -->', '', 1),
     ('1.4 s <!-- key: a -->', '1.4 s<!-- key: a -->', 2), ('soon<!-- key: a -->', '', 1)])
