@@ -50,7 +50,7 @@ PARAMETERS = [
            partial(check_text, 'address'),
            note='0.0.0.0: all addresses of this machine; see [Security](web_view.md#security)'),
     number('port', 8080, '', 'TCP port at which the page is served; 0: any free port', 0, 65535, 'a TCP port'),
-    number('robots', 0, '', 'number of robots of a fleet; 0: the robot in the namespace of this node', 0, 20, 'a number'),
+    number('robots', 0, '', 'number of robots of a fleet; 0: the robot in the namespace of this node', 0, 20),
     number('spacing', 1.0, 'm', 'distance between the starts of neighbors in a fleet', 0, 1000, 'a distance'),
     custom('title', 'Out and back', 'title of the page', partial(check_text, 'title')),
     custom('choices', ','.join(CHOICES), 'what can be chosen in the page for a simulated robot', read_choices,

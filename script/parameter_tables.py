@@ -2,8 +2,8 @@
 """Writes the parameters that the nodes declare, and the names of the surfaces, into the files that list them.
 
 A table in docs/ follows a comment: `<!-- parameters: FILE -->` for a node, or `<!-- parameters: FILE beyond OTHER -->`
-without the rows of another node, `<!-- keys: NAME -->` for a part of the description of a robot, `<!-- keys: SURFACE -->`
-for surface files. Launch files and script/demo list the surfaces after
+without the parameters of another node, `<!-- keys: NAME -->` for a part of the description of a robot, `<!-- keys:
+SURFACE -->` for surface files. Launch files and script/demo list the surfaces after
 `floor:`.
 """
 import glob

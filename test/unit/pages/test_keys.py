@@ -9,7 +9,7 @@ import pytest
 from pages import markdown
 
 ROOT = os.path.realpath(os.path.join(os.path.dirname(__file__), '..', '..', '..'))
-VALUE = r'(?P<value>\d+(?:\.\d+)?(?: ?(?:%|[A-Za-z]+|厘米|秒|度))?)'
+VALUE = r'(?P<value>\d+(?:\.\d+)?(?:[ \n]?(?:%|[A-Za-z]+|厘米|秒|度))?)'
 KEYED = re.compile(VALUE + r'<!-- key: (?P<key>\w+) -->')
 COMMENT = re.compile(r'<!--\s*key\b')
 UNITS = {'厘米': 'cm', '秒': 's', '度': 'degrees'}
@@ -19,7 +19,7 @@ def numbers(text):
     """The numbers with a key in a text: (key, value with its unit)."""
     found = []
     for match in KEYED.finditer(text):
-        number, unit = re.fullmatch(r'([\d.]+) ?(.*)', match['value']).groups()
+        number, unit = re.fullmatch(r'([\d.]+)\s?(.*)', match['value']).groups()
         found.append((match['key'], f'{number} {UNITS.get(unit, unit)}'.strip()))
     return found
 
