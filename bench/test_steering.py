@@ -21,7 +21,7 @@ def test_the_pages_quote_the_gain():
             texts[os.path.basename(page)] = ' '.join(file.read().split())
     for page, sentence, value in [
             ('answers', r'distance from the start \| 7.6 cm \| (\S+) cm', gain[0]),
-            ('answers', r'y \(root mean square\) \| 5.3 cm \| (\S+) cm', gain[1]),
+            ('answers', r'y \(root mean square\) \| 5.4 cm \| (\S+) cm', gain[1]),
             ('why_it_misses', r'reduces the error across the legs to (\S+) cm', gain[1]),
             ('why_it_misses', r'and the distance from the start to (\S+) cm', gain[0]),
             ('figures', r'#5-steer\) \(cm\) .* \| 7.6, (\S+) \| 0–99', gain[0]),

@@ -42,7 +42,7 @@ def surface_table():
     rows = [['key', ''], ['---', '---']]
     for name, key in KEYS.items():
         limits = f'{key.low:.7g} to {key.high:.7g} {key.unit}'.strip()
-        rows.append([f'`{name}`', f"{key.text}; {limits}{'; optional' if name in Surface._field_defaults else ''}"])
+        rows.append([f'`{name}`', f"{key.text} ({limits}{'; optional' if name in Surface._field_defaults else ''})"])
     return [f"| {' | '.join(row)} |" for row in rows]
 
 

@@ -138,6 +138,16 @@ def _range(parameter: Parameter) -> str:
     return parameter.range() if callable(parameter.range) else parameter.range
 
 
+def _cells(parameter: Parameter) -> tuple[str, str]:
+    """Return the default and the text of a parameter in a table; the unit stands once."""
+    default, unit, limits = parameter.default, parameter.unit, _range(parameter)
+    if re.fullmatch(r'pi|-?[\d.]+', default):
+        default, unit = f'{default} {unit}'.strip(), ''
+    limits = ' '.join(filter(None, [limits, unit]))
+    text = f'{parameter.text} ({limits})' if limits else parameter.text
+    return default, f'{text}; {parameter.note}' if parameter.note else text
+
+
 def table(parameters: Iterable[Parameter], kind: str = 'parameter') -> list[str]:
     """Return the lines of a table in Markdown.
 
@@ -145,8 +155,7 @@ def table(parameters: Iterable[Parameter], kind: str = 'parameter') -> list[str]
     their names share a line.
     """
     prefix = '~' if kind == 'parameter' else ''
-    rows = groupby(parameters, lambda each: (each.default, ' '.join(filter(None, [_range(each), each.unit])),
-                                             f'{each.text}; {each.note}' if each.note else each.text))
-    head = [f'| {kind} | default | range | |', '|---|---|---|---|']
+    rows = groupby(parameters, _cells)
+    head = [f'| {kind} | default | |', '|---|---|---|']
     return head + ['| %s | %s |' % (', '.join(f'`{prefix}{each.name}`' for each in named), ' | '.join(row))
                    for row, named in rows]

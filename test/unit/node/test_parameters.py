@@ -66,8 +66,9 @@ Parameters:
 
 def test_a_table():
     assert table([RATE, SPEED])[2:] == [
-        '| `~rate` | 50 | 2 to 1000 Hz | commands per second |',
-        '| `~speed` | 0.2 | m/s | forward speed; see [limits](#limits) |']
+        '| `~rate` | 50 Hz | commands per second (2 to 1000) |',
+        '| `~speed` | 0.2 m/s | forward speed; see [limits](#limits) |']
+    assert table([number('width', None, 'm', 'base', 1, 2)])[2] == '| `~width` |  | base (1 to 2 m) |'
     assert table([RATE, RATE._replace(name='period'), SPEED])[2:4] == [
-        '| `~rate`, `~period` | 50 | 2 to 1000 Hz | commands per second |', table([SPEED])[2]]
+        '| `~rate`, `~period` | 50 Hz | commands per second (2 to 1000) |', table([SPEED])[2]]
     assert table([RATE], 'key')[0].startswith('| key |') and table([RATE], 'key')[2].startswith('| `rate` |')
